@@ -1,4 +1,5 @@
-# Every library the project links. All come from system packages (tools/install-packages.sh).
+# Finds every library that the project links. All come from system packages
+# (tools/install-packages.sh).
 find_package(PkgConfig REQUIRED)
 find_package(embree 3 QUIET)
 if(NOT embree_FOUND)
@@ -20,9 +21,11 @@ pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(ZMQ REQUIRED IMPORTED_TARGET libzmq)
 if(OPENRT_FILMS)
-  pkg_check_modules(FFMPEG IMPORTED_TARGET libavformat libavcodec libswscale libavutil) # films; without them MovieTextures stand still
+  # films; without them MovieTextures show a still picture
+  pkg_check_modules(FFMPEG IMPORTED_TARGET libavformat libavcodec libswscale libavutil)
 endif()
-pkg_check_modules(SECCOMP IMPORTED_TARGET libseccomp) # without it untrusted scripts are held by resource limits alone
+# without it only resource limits restrict untrusted scripts
+pkg_check_modules(SECCOMP IMPORTED_TARGET libseccomp)
 if(OPENRT_WINDOW)
   pkg_check_modules(SDL2 IMPORTED_TARGET sdl2) # without it vv opens no window
 endif()

@@ -1,6 +1,7 @@
-# What `cmake --install` lays down, in components that become packages (Packages.cmake): libraries with their plug-ins, headers
-# (the generated xvrml/nodes.h too), programs, the Python package, CMake packages `openrt` and `xvrml`, pkg-config files. Manual
-# pages are ManPages.cmake's. The installed tree can be moved.
+# Defines what `cmake --install` installs, in components that become packages (Packages.cmake):
+# libraries with their plug-ins, headers (including the generated xvrml/nodes.h), programs, the
+# Python package, the CMake packages `openrt` and `xvrml`, pkg-config files. Manual pages are in
+# ManPages.cmake. The installed tree is relocatable.
 include(CMakePackageConfigHelpers)
 set(openrt_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/openrt)
 set(xvrml_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/xvrml)
@@ -19,7 +20,7 @@ set_target_properties(xvrml_openrt PROPERTIES EXPORT_NAME openrt)
 install(TARGETS xvrml xvrml_openrt xvrml_script_headers EXPORT xvrml_targets LIBRARY COMPONENT libxvrml ${namelink})
 install(DIRECTORY libxvrml/include/xvrml DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 get_target_property(xvrml_includes xvrml INTERFACE_INCLUDE_DIRECTORIES)
-foreach(folder ${xvrml_includes}) # the folder of generated headers is the one in the build tree
+foreach(folder ${xvrml_includes}) # the folder of generated headers is in the build tree
   if(folder MATCHES "^\\$<BUILD_INTERFACE:(${CMAKE_BINARY_DIR}.*)>$")
     install(DIRECTORY ${CMAKE_MATCH_1}/xvrml DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
   endif()
@@ -36,7 +37,9 @@ get_property(script_engines GLOBAL PROPERTY XVRML_SCRIPT_ENGINES)
 foreach(engine IN LISTS script_engines)
   set(component libxvrml)
   set(folder ${CMAKE_INSTALL_LIBDIR}/xvrml/scripts)
-  if(engine STREQUAL script_python) # it needs the package; a wheel's also the process of a Python: no other program finds it
+  # it needs the Python package; in a wheel it also needs a Python process, so programs must not
+  # find it
+  if(engine STREQUAL script_python)
     set(component python)
     if(OPENRT_WHEEL)
       set(folder scripts)
@@ -44,7 +47,7 @@ foreach(engine IN LISTS script_engines)
   endif()
   install(TARGETS ${engine} LIBRARY DESTINATION ${folder} COMPONENT ${component})
 endforeach()
-if(OPENRT_WHEEL) # what a bare system lacks beside libraries: fonts, and Tcl's procedures for trusted worlds
+if(OPENRT_WHEEL) # fonts, and Tcl's procedures for trusted worlds, which a bare system lacks
   find_path(dejavu_fonts DejaVuSans.ttf PATHS /usr/share/fonts PATH_SUFFIXES truetype/dejavu dejavu TTF NO_DEFAULT_PATH REQUIRED)
   foreach(font Sans Sans-Bold SansMono SansMono-Bold Serif Serif-Bold)
     install(FILES ${dejavu_fonts}/DejaVu${font}.ttf DESTINATION share/xvrml/fonts COMPONENT libxvrml)
@@ -61,7 +64,7 @@ endif()
 if(OPENRT_PYTHON)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/python/xvrml/ DESTINATION ${openrt_python_place} COMPONENT python PATTERN "__pycache__" EXCLUDE)
 endif()
-# Guides beside what they talk of: their commands run in this folder as in a checkout.
+# Guides; their commands work in this folder as in a checkout.
 install(FILES README.md LICENSE CHANGELOG.md ${CMAKE_BINARY_DIR}/libxvrml/generated/nodes.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT doc)
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc PATTERN "site" EXCLUDE PATTERN "__pycache__" EXCLUDE
@@ -79,7 +82,8 @@ install(FILES cmake/OpenrtShader.cmake DESTINATION ${openrt_cmake_dir})
 install(FILES cmake/XvrmlNodes.cmake DESTINATION ${xvrml_cmake_dir})
 install(FILES cmake/XvrmlScript.cmake DESTINATION ${xvrml_cmake_dir})
 
-# From lib/pkgconfig to the prefix, so that the tree can be moved: pkg-config knows where its file lies.
+# Path from lib/pkgconfig to the prefix. pkg-config resolves it against the file's folder, so that
+# the tree is relocatable.
 file(RELATIVE_PATH pkgconfig_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" pkgconfig_to_prefix ${pkgconfig_to_prefix})
 foreach(package openrt xvrml)

@@ -1,8 +1,9 @@
-# Where things are installed. Below a prefix as GNUInstallDirs says, the Python package in lib/openrt/python, where the engine for
-# Scripts in Python finds it, or in OPENRT_PYTHON_DIR; in a wheel the package itself is the prefix, and there are no links.
+# Defines the installation folders. Below a prefix they follow GNUInstallDirs; the Python package is
+# in OPENRT_PYTHON_DIR, by default lib/openrt/python, where the engine for Scripts in Python finds
+# it. In a wheel the package itself is the prefix, and there are no links.
 if(OPENRT_WHEEL)
-  set(OPENRT_WINDOW OFF) # SDL needs a desktop's libraries; a wheel brings its own of everything
-  set(OPENRT_FILMS OFF)  # Debian's ffmpeg links a hundred libraries
+  set(OPENRT_WINDOW OFF) # SDL needs a desktop's libraries, which a wheel cannot bring
+  set(OPENRT_FILMS OFF) # Debian's ffmpeg links a hundred libraries
   set(CMAKE_INSTALL_LIBDIR lib)
   set(CMAKE_INSTALL_BINDIR bin)
   set(CMAKE_INSTALL_LIBEXECDIR libexec)
@@ -16,14 +17,14 @@ if(OPENRT_WHEEL)
 else()
   set(openrt_python_place ${OPENRT_PYTHON_DIR}/xvrml)
 endif()
-# From the package to the libraries.
+# Relative path from the Python package to the libraries.
 cmake_path(SET openrt_python_to_lib NORMALIZE /${CMAKE_INSTALL_LIBDIR})
 cmake_path(RELATIVE_PATH openrt_python_to_lib BASE_DIRECTORY /${openrt_python_place})
 
-# openrt_shared_library(TARGET): the versioned names of a library of the project.
+# openrt_shared_library(TARGET): sets the versioned names of a library of the project.
 function(openrt_shared_library target)
   set_target_properties(${target} PROPERTIES SOVERSION 0)
-  if(NOT OPENRT_WHEEL) # a wheel holds no links: the file has the name that is looked for
+  if(NOT OPENRT_WHEEL) # a wheel cannot contain links: the file itself has the soname
     set_target_properties(${target} PROPERTIES VERSION ${PROJECT_VERSION})
   endif()
 endfunction()

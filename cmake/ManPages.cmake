@@ -1,5 +1,5 @@
-# Manual pages of the C interface, from the comments of its header, and what else tells of the programs; the pages and completions
-# are left out where there is no Python to make them with.
+# Builds manual pages of the C interface from the comments of its headers, and the other
+# documentation of the programs. Without Python, the pages and completions are left out.
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_Interpreter_FOUND)
   set(man_folder ${CMAKE_BINARY_DIR}/share/man/man3)
@@ -13,7 +13,7 @@ if(Python3_Interpreter_FOUND)
   install(DIRECTORY ${man_folder}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man3 FILES_MATCHING PATTERN "*.3")
 endif()
 
-# Manual pages and completions of the programs, from what their --help says.
+# Manual pages and completions of the programs, generated from their --help.
 if(Python3_Interpreter_FOUND)
   set(docs_script ${CMAKE_SOURCE_DIR}/tools/make_program_docs.py)
   set(documented vv openrt-replay nodegen)
@@ -42,7 +42,7 @@ if(Python3_Interpreter_FOUND)
   endforeach()
 endif()
 
-# The entry in a desktop's menu, the types of file that vv opens, its picture.
+# The desktop menu entry, the file types that vv opens, and its icon.
 if(NOT OPENRT_WHEEL)
   set(desktop ${CMAKE_SOURCE_DIR}/apps/vv/desktop)
   install(FILES ${desktop}/vv.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT vv)

@@ -1,12 +1,14 @@
-# openrt_add_shader(NAME SOURCE...): a shader plug-in NAME.so in <build>/lib/openrt/shaders. A plug-in sees the SDK's headers
-# (openrt/openrts.h, openrts.hpp) and links against nothing of OpenRT. Part of the project and of the installed CMake package.
+# openrt_add_shader(NAME SOURCE...): builds a shader plug-in NAME.so in <build>/lib/openrt/shaders.
+# A plug-in uses the SDK's headers (openrt/openrts.h, openrts.hpp) and links no library of OpenRT.
+# This file is part of the project and of the installed CMake package.
 include_guard(GLOBAL)
 function(openrt_add_shader name)
   add_library(shader_${name} MODULE ${ARGN})
   set_target_properties(shader_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         C_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/openrt/shaders)
   target_compile_features(shader_${name} PRIVATE cxx_std_20)
-  target_link_options(shader_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack) # as the programs that load it
+  # same hardening as the programs that load it
+  target_link_options(shader_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
   target_link_libraries(shader_${name} PRIVATE openrt::headers)
   if(TARGET project_options)
     target_link_libraries(shader_${name} PRIVATE project_options)

@@ -1,6 +1,6 @@
-# Debian packages by CPack, one for each component of Install.cmake: `make deb` configures with prefix /usr, builds and packs. What a
-# package depends on is read from what its files link (dpkg-shlibdeps), so that a library that the project begins to use needs no
-# entry here.
+# Builds Debian packages with CPack, one for each component of Install.cmake. `make deb` configures
+# with prefix /usr, builds and packs. dpkg-shlibdeps determines the dependencies from the linked
+# libraries, so a new library needs no entry here.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME openrt)
 set(CPACK_PACKAGE_VENDOR "The OpenRT authors")
@@ -17,7 +17,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
-# The packages of the project know each other: dpkg-shlibdeps looks up their libraries here.
+# Lets dpkg-shlibdeps find the libraries of the project's other packages.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR}/lib)
 
 # openrt_package(COMPONENT NAME SECTION DEPENDS SUMMARY TEXT)
@@ -53,7 +53,7 @@ set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
 set(CPACK_COMPONENTS_ALL ${packaged_components})
 
-# What Debian's policy asks of every package: its licence and its changes.
+# The licence and changelog that Debian's policy requires in every package.
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(debian ${CMAKE_BINARY_DIR}/package/debian)
   configure_file(cmake/debian/changelog.in ${debian}/changelog @ONLY)
@@ -65,13 +65,14 @@ if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
     install(FILES cmake/debian/copyright DESTINATION ${doc} COMPONENT ${component})
     install(FILES ${debian}/changelog.gz DESTINATION ${doc} RENAME changelog.Debian.gz COMPONENT ${component})
   endforeach()
-  foreach(component libopenrt libxvrml) # the list of libraries is made anew
+  foreach(component libopenrt libxvrml) # refresh the list of libraries
     string(TOUPPER ${component} upper)
     file(WRITE ${debian}/${component}/triggers "activate-noawait ldconfig\n")
     set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${debian}/${component}/triggers)
   endforeach()
 endif()
-# Manual pages are packed compressed, the Python module without symbols (it is installed as a file, not as a target).
+# Compresses the manual pages and strips the Python module, which is installed as a file instead of
+# a target.
 file(WRITE ${CMAKE_BINARY_DIR}/package/compress.cmake [=[
 file(GLOB_RECURSE pages ${CPACK_TEMPORARY_DIRECTORY}/*/usr/share/man/*.[13])
 if(pages)

@@ -1,7 +1,9 @@
-# openrt_version_script(TARGET NODE HEADERS... [PRIVATE NODE [SIBLINGS FOLDERS...]]): exports of a shared library what its public headers
-# declare, as symbols of the version NODE, and nothing else (cmake/tools/make_version_script.py). PRIVATE: what the sources in
-# SIBLINGS, other parts of the project, include of this one's private headers, under a version that names the very release.
-# With OPENRT_TESTS all of namespace xvrml is there under the private version: tests look inside.
+# openrt_version_script(TARGET NODE HEADERS... [PRIVATE NODE [SIBLINGS FOLDERS...]]): exports from a
+# shared library exactly what its public headers declare, as symbols of the version NODE
+# (cmake/tools/make_version_script.py). PRIVATE: also exports what the sources in SIBLINGS, other
+# parts of the project, include from this library's private headers, under a version that names this
+# release. With OPENRT_TESTS all of namespace xvrml is exported under the private version, because
+# tests use internals.
 find_package(Python3 COMPONENTS Interpreter)
 function(openrt_version_script target node)
   cmake_parse_arguments(arg "" "PRIVATE" "HEADERS;SIBLINGS" ${ARGN})
@@ -9,7 +11,8 @@ function(openrt_version_script target node)
     message(STATUS "No Python: ${target} without versions of its symbols")
     return()
   endif()
-  if(OPENRT_SANITIZE OR OPENRT_FUZZ OR CMAKE_CXX_FLAGS MATCHES coverage) # their run-time libraries look into it
+  # their run-time libraries need internal symbols
+  if(OPENRT_SANITIZE OR OPENRT_FUZZ OR CMAKE_CXX_FLAGS MATCHES coverage)
     return()
   endif()
   set(script ${CMAKE_CURRENT_BINARY_DIR}/${target}.map)

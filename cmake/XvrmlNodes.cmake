@@ -1,7 +1,8 @@
 include_guard(GLOBAL)
-# xvrml_generate_nodes(PREFIX spec.node...): runs nodegen on node specifications; sets PREFIX_sources and PREFIX_include.
-# The header xvrml/nodes.h, one .cpp per component and the list of types come out, in namespace xvrml::nodes; beside them
-# nodes.md, the node reference, and nodes.pyi, the Python stub. They lie in the build tree and are never committed.
+# xvrml_generate_nodes(PREFIX spec.node...): runs nodegen on node specifications and sets
+# PREFIX_sources and PREFIX_include. It generates, in namespace xvrml::nodes, the header
+# xvrml/nodes.h, one .cpp per component and the list of types, and also the node reference nodes.md
+# and the Python stub nodes.pyi. The files are in the build tree and are never committed.
 function(xvrml_generate_nodes prefix)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(sources ${out}/nodes_list.cpp)
@@ -17,9 +18,10 @@ function(xvrml_generate_nodes prefix)
   set(${prefix}_sources ${sources} ${out}/xvrml/nodes.h PARENT_SCOPE)
 endfunction()
 
-# xvrml_add_nodes(NAME spec.node... source.cpp...): a node plug-in NAME.so in <build>/lib/xvrml/nodes. nodegen writes the header
-# NAME_nodes.h and the tables from the specifications; the sources hold each node's `implementation` (docs/node-plugins.md).
-# Part of the project and of the installed CMake package.
+# xvrml_add_nodes(NAME spec.node... source.cpp...): builds a node plug-in NAME.so in
+# <build>/lib/xvrml/nodes. nodegen generates the header NAME_nodes.h and the tables from the
+# specifications; the sources define each node's `implementation` (docs/node-plugins.md). This file
+# is part of the project and of the installed CMake package.
 function(xvrml_add_nodes name)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${name}_generated)
   set(generated ${out}/${name}_nodes.h ${out}/${name}_plugin.cpp)
@@ -47,14 +49,15 @@ function(xvrml_add_nodes name)
   set_target_properties(nodes_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/xvrml/nodes)
   target_compile_features(nodes_${name} PRIVATE cxx_std_20)
-  target_link_options(nodes_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack) # as the programs that load it
+  # same hardening as the programs that load it
+  target_link_options(nodes_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
   target_include_directories(nodes_${name} PRIVATE ${out})
   if(TARGET xvrml::xvrml)
     target_link_libraries(nodes_${name} PRIVATE xvrml::xvrml)
   else()
     target_link_libraries(nodes_${name} PRIVATE xvrml)
   endif()
-  if(NOT OPENRT_SANITIZE) # their functions come with the program
+  if(NOT OPENRT_SANITIZE) # the program contains the sanitizers' functions
     target_link_options(nodes_${name} PRIVATE -Wl,--no-undefined)
   endif()
 endfunction()

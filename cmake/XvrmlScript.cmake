@@ -1,13 +1,16 @@
-# xvrml_add_script_engine(NAME SOURCE...): a script-engine plug-in NAME.so in <build>/lib/xvrml/scripts, target script_NAME. A
-# plug-in sees the SDK's header (xvrml/xscript.h) and links against nothing of XVRML; what its language needs is linked by the
-# caller: target_link_libraries(script_NAME PRIVATE ...). Part of the project and of the installed CMake package.
+# xvrml_add_script_engine(NAME SOURCE...): builds a script-engine plug-in NAME.so in
+# <build>/lib/xvrml/scripts, target script_NAME. A plug-in uses the SDK's header (xvrml/xscript.h)
+# and links no library of XVRML. The caller links the libraries of its language:
+# target_link_libraries(script_NAME PRIVATE ...). This file is part of the project and of the
+# installed CMake package.
 include_guard(GLOBAL)
 function(xvrml_add_script_engine name)
   add_library(script_${name} MODULE ${ARGN})
   set_target_properties(script_${name} PROPERTIES PREFIX "" OUTPUT_NAME ${name} CXX_VISIBILITY_PRESET hidden
                         C_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/xvrml/scripts)
   target_compile_features(script_${name} PRIVATE cxx_std_20 c_std_99)
-  target_link_options(script_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack) # as the programs that load it
+  # same hardening as the programs that load it
+  target_link_options(script_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
   target_link_libraries(script_${name} PRIVATE xvrml::script_headers)
   if(TARGET project_options)
     target_link_libraries(script_${name} PRIVATE project_options)

@@ -1,13 +1,13 @@
-// degenerate.h: which triangles the API drops: for libopenrt, and for bindings that number
-// triangles as their users do. Pure.
+// degenerate.h: Defines which triangles the API drops. libopenrt uses it, and so do bindings whose
+// users number the triangles. Pure function.
 #pragma once
 
 #include <cmath>
 
 namespace openrt {
 
-// No area: two corners in one place, or the cross product of the edges is not above its own
-// rounding error in double.
+// Returns whether a triangle has no area: two corners coincide, or the cross product of the edges
+// does not exceed its own rounding error in double.
 inline bool degenerateTriangle(const float* a, const float* b, const float* c) {
   const double ux = double(b[0]) - a[0], uy = double(b[1]) - a[1], uz = double(b[2]) - a[2];
   const double vx = double(c[0]) - a[0], vy = double(c[1]) - a[1], vz = double(c[2]) - a[2];

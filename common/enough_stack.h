@@ -1,6 +1,6 @@
-// enough_stack.h: runs a program on a stack that is large enough, however small the one is that the
-// shell gave it (ulimit -s). Worlds may nest a thousand nodes, and files within files; what walks
-// over them recurses.
+// enough_stack.h: Runs a program on a large stack, however small the shell's limit is (ulimit -s).
+// Worlds may nest a thousand nodes, and files may include files; the code that walks over them is
+// recursive.
 #pragma once
 
 #include <exception>
@@ -11,7 +11,7 @@
 #include <pthread.h>
 #include <sys/resource.h>
 
-// Bytes of this thread's stack below the caller; 0: not known.
+// Returns the free bytes of this thread's stack; 0: unknown.
 inline size_t stackLeft() {
   thread_local const char* lowest = [] {
     pthread_attr_t attributes;
@@ -27,8 +27,8 @@ inline size_t stackLeft() {
   return lowest && &here > lowest ? size_t(&here - lowest) : 0;
 }
 
-// Runs work() on this thread if so many bytes of its stack are left, else on a thread of its own
-// while this one waits. Returns what it returns, and throws what it throws.
+// Runs work() on this thread if `bytes` of its stack are free, otherwise on another thread while
+// this one waits. Returns the result of work() and rethrows its exceptions.
 template <class Work> auto onStackOf(size_t bytes, const Work& work) -> decltype(work()) {
   const size_t left = stackLeft();
   if (left == 0 || left >= bytes) return work();
@@ -56,16 +56,16 @@ template <class Work> auto onStackOf(size_t bytes, const Work& work) -> decltype
   return std::move(*job.result);
 }
 
-// Runs a function on this thread, if its stack is or can grow to 8 MB, else on one that has such a
-// stack; threads that are made later have it as well. Returns what the function returns; it must
-// not throw. Called by main() before there are other threads.
+// Runs a function on this thread if its stack is, or can grow to, 8 MB, otherwise on a thread with
+// such a stack; later threads get such a stack too. Returns the function's result; the function
+// must not throw. main() calls this before it creates threads.
 inline int withEnoughStack(const std::function<int()>& run) {
   constexpr rlim_t enough = rlim_t(8) << 20;
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, enough);
 #ifdef __GLIBC__
-  pthread_attr_t usual; // glibc takes the soft limit
+  pthread_attr_t usual; // glibc's default is the soft limit
   size_t bytes = 0;
   if (pthread_getattr_default_np(&usual) == 0) {
     pthread_attr_getstacksize(&usual, &bytes);
@@ -75,7 +75,7 @@ inline int withEnoughStack(const std::function<int()>& run) {
 #endif
   rlimit limit{};
   bool here = getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= enough;
-  if (!here && limit.rlim_max >= enough) { // the kernel asks for the limit when the stack grows
+  if (!here && limit.rlim_max >= enough) { // the kernel checks the limit when the stack grows
     limit.rlim_cur = enough;
     here = setrlimit(RLIMIT_STACK, &limit) == 0;
   }

@@ -1,5 +1,5 @@
-// folder_files.h: the files of a folder, for whoever looks for plug-ins there. Not
-// std::filesystem::directory_iterator: in GCC's library that ends the process where there is no
+// folder_files.h: Lists the files of a folder, for the searches for plug-ins. It does not use
+// std::filesystem::directory_iterator, because GCC's implementation ends the process if there is no
 // memory for a name. Stateless; any thread.
 #pragma once
 
@@ -14,8 +14,8 @@
 #include <dirent.h>
 #include <sys/stat.h>
 
-// Returns the paths of the regular files in a folder whose names end with a suffix, in the order of
-// their names. Links are followed. A folder that cannot be read has none. Throws std::bad_alloc.
+// Returns the paths of the regular files in a folder whose names end with `suffix`, sorted by name.
+// Links are followed. The result is empty if the folder cannot be read. Throws std::bad_alloc.
 inline std::vector<std::string> filesOfFolder(const std::string& folder, std::string_view suffix) {
   struct Close {
     void operator()(DIR* open) const { ::closedir(open); }

@@ -1,6 +1,7 @@
-// plugin_files.h: where plug-ins may come from, and what may be believed of their files: configured
-// folders only, bare names only, nothing that another user owns, may write or replace. Used by
-// whoever loads plug-ins: shaders (libopenrt), script engines (libxvrml). Stateless; any thread.
+// plugin_files.h: Finds the files of plug-ins and decides which ones to trust. Plug-ins come from
+// configured folders, are given by bare names, and must not be owned, writable or replaceable by
+// another user. Used by the loaders of shaders (libopenrt) and script engines (libxvrml).
+// Stateless; any thread.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +27,8 @@ namespace plugin_files {
 
 namespace fs = std::filesystem;
 
-// "libX.so", "X.so", "libX" and "X" all name X. Throws std::runtime_error for anything that is or
-// could be a path; what: kind of library, for the message.
+// Converts "libX.so", "X.so", "libX" and "X" to X. Throws std::runtime_error for anything that is
+// or could be a path. what: kind of library, for the message.
 inline std::string bareName(std::string_view name, const char* what) {
   constexpr size_t maxLength = 200;
   const bool plain = !name.empty() && name.size() <= maxLength && name.front() != '.' &&
@@ -43,16 +44,17 @@ inline std::string bareName(std::string_view name, const char* what) {
   return std::string(name);
 }
 
-// Whether a group has one member only, the owner: where the umask is 002, every user has a group of
-// the same name. In a container that does not know the user of a folder of the host, equal numbers
-// count.
+// Returns whether the owner is the only member of a group: with umask 002, every user has a group
+// of the same name. If a container does not know the user who owns a folder of the host, equal user
+// and group numbers count as private.
 inline bool isPrivateGroup(uid_t owner, gid_t group) {
   std::vector<char> userText(1 << 14), groupText(1 << 16);
   passwd user{}, *foundUser = nullptr;
   ::group members{}, *foundGroup = nullptr;
   getpwuid_r(owner, &user, userText.data(), userText.size(), &foundUser);
+  // the group has too many members
   if (getgrgid_r(group, &members, groupText.data(), groupText.size(), &foundGroup) != 0)
-    return false; // too many members
+    return false;
   if (!foundUser || !foundGroup) return !foundUser && !foundGroup && owner == group;
   if (std::strcmp(user.pw_name, members.gr_name) != 0) return false;
   for (char** name = members.gr_mem; name && *name; ++name)
@@ -60,8 +62,8 @@ inline bool isPrivateGroup(uid_t owner, gid_t group) {
   return true;
 }
 
-// The library with this function: its owner, and the folders in which it lies. Whoever can replace
-// one of them can replace the library itself, and needs no plug-in for that.
+// Returns the owner of the library that contains this function, and the folders above it. A user
+// who can replace one of them can replace the library itself, and needs no plug-in for that.
 struct ThisLibrary {
   uid_t owner = 0;
   std::set<std::string> folders;
@@ -81,11 +83,16 @@ inline ThisLibrary thisLibrary() {
   return result;
 }
 
-// Returns why code in a file or folder could be somebody else's, or nothing. It and all folders
-// above it belong to root, to the user who runs the program or to the owner of this library, and
-// nobody else may write to them. "Else" is a group, too, unless it is the owner's own. A folder
-// like /tmp, where only the owner of an entry may replace it (the sticky bit), may lie above it.
-// The folders of this library are not asked. Links are followed first.
+// Returns why another user could have written the code in a file or folder; empty if nobody could.
+//
+// * The file and all folders above it must belong to root, to the user who runs the program, or to
+//   the owner
+// of this library.
+// * No other user or group may write to them. A group whose only member is the owner is permitted.
+// * Folders above may have the sticky bit, like /tmp, where only an entry's owner can replace it.
+// * The folders of this library itself are not checked.
+//
+// Links are followed first.
 inline std::string objection(const std::string& fileOrFolder) {
   std::error_code error;
   const fs::path place = fs::canonical(fileOrFolder, error);
@@ -107,14 +114,14 @@ inline std::string objection(const std::string& fileOrFolder) {
   }
 }
 
-// Whether code may be loaded from a folder.
+// Returns whether code may be loaded from a folder.
 inline bool trusted(const std::string& folder) {
   std::error_code ignored;
   return fs::is_directory(folder, ignored) && objection(folder).empty();
 }
 
-// Throws std::runtime_error for a library that could be somebody else's; what: kind of library, for
-// the message.
+// Throws std::runtime_error for a library that another user could have written. what: kind of
+// library, for the message.
 inline void checkFile(const std::string& path, const char* what) {
   if (const std::string why = objection(path); !why.empty())
     throw std::runtime_error(
@@ -122,7 +129,7 @@ inline void checkFile(const std::string& path, const char* what) {
         (why.starts_with("others") ? " (chmod go-w takes that right away)" : ""));
 }
 
-// Size of the object that an exported symbol names; 0 if it is not known.
+// Returns the size of the object that an exported symbol names; 0 if it is unknown.
 inline size_t exportedBytes(void* symbol) {
   Dl_info info{};
   ElfW(Sym)* entry = nullptr;
@@ -132,7 +139,8 @@ inline size_t exportedBytes(void* symbol) {
   return entry->st_size;
 }
 
-// The file of a library in a folder, with or without the prefix lib; empty if it is not there.
+// Returns the file of a library in a folder, with or without the prefix lib; empty if it does not
+// exist.
 inline std::string file(const std::string& folder, const std::string& bareName) {
   for (const char* prefix : {"", "lib"}) {
     const fs::path candidate = fs::path(folder) / (prefix + bareName + ".so");
@@ -150,9 +158,9 @@ inline void appendList(std::vector<std::string>& folders, std::string_view list)
   }
 }
 
-// Folders of a process, in the order in which they are searched: configured ones (colon-separated),
-// those of an environment variable, and ../lib/SUBFOLDER or SUBFOLDER beside the library that holds
-// the object `here` and beside the program.
+// Returns the folders of this process in search order: configured ones (colon-separated), those of
+// an environment variable, then ../lib/SUBFOLDER and SUBFOLDER beside the library that contains the
+// object `here`, and beside the program.
 inline std::vector<std::string> folders(std::string_view configured,
                                         const char* environmentVariable, const char* subfolder,
                                         const void* here) {
@@ -178,7 +186,7 @@ inline std::vector<std::string> folders(std::string_view configured,
   return result;
 }
 
-// The folders for a message, with those that are refused.
+// Formats the folders for a message and marks the refused ones.
 inline std::string listed(const std::vector<std::string>& folders) {
   std::string text;
   for (const std::string& folder : folders) {

@@ -1,16 +1,17 @@
-// printable.h: text by strangers (names, titles and strings of a world, of a recording, of another
-// machine) for a terminal, which would obey the control characters in it. Used by every program
-// before it writes such text. Stateless; any thread.
+// printable.h: Makes untrusted text (names, titles and strings of a world, a recording or another
+// machine) safe for a terminal, which would interpret control characters. Every program calls this
+// before it prints such text. Stateless; any thread.
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace printable_text {
 
-// Returns the length of the UTF-8 character at the beginning of text, 1 to 4; 0: there is none
-// (overlong, half a pair, cut, alone).
+// Returns the length of the UTF-8 character at the beginning of text, 1 to 4. Returns 0 if it is
+// invalid: overlong, a surrogate, truncated, or a lone continuation byte.
 inline size_t utf8Length(std::string_view text) {
   const auto byte = [&](size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
@@ -24,14 +25,14 @@ inline size_t utf8Length(std::string_view text) {
   for (size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
   if (first == 0xe0 && byte(1) < 0xa0) return 0;  // overlong
-  if (first == 0xed && byte(1) >= 0xa0) return 0; // half a pair
+  if (first == 0xed && byte(1) >= 0xa0) return 0; // a surrogate
   if (first == 0xf0 && byte(1) < 0x90) return 0;  // overlong
-  if (first == 0xf4 && byte(1) >= 0x90) return 0; // beyond the last one
+  if (first == 0xf4 && byte(1) >= 0x90) return 0; // beyond U+10FFFF
   return length;
 }
 
-// Returns the length of the control character at the beginning of text: C0 (but the line feed and
-// the tab), DEL, C1 in UTF-8.
+// Returns the length of the control character at the beginning of text; 0 if there is none. Control
+// characters are C0 except line feed and tab, DEL, and C1 in UTF-8.
 inline size_t controlLength(std::string_view text) {
   const auto byte = [&](size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
@@ -40,16 +41,30 @@ inline size_t controlLength(std::string_view text) {
   return byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0 ? 2 : 0;
 }
 
+// Returns 3 if text begins with a character that changes the direction of what follows (U+202A to
+// U+202E, U+2066 to U+2069; Unicode Standard Annex 9), else 0: it could make a message read
+// otherwise than it is.
+inline size_t directionLength(std::string_view text) {
+  const auto byte = [&](size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  if (byte(0) != 0xe2) return 0;
+  const bool embedding = byte(1) == 0x80 && byte(2) >= 0xaa && byte(2) <= 0xae;
+  const bool isolate = byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9;
+  return embedding || isolate ? 3 : 0;
+}
+
 } // namespace printable_text
 
-// Returns text in which control characters and bytes that are no UTF-8 are shown as \x1b. Lines
-// stay lines.
+// Replaces control characters, characters that change the direction of text, and bytes that are not
+// UTF-8 by codes such as \x1b. Line feeds stay.
 inline std::string printable(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const size_t control = printable_text::controlLength(text),
-                 length = control ? 0 : printable_text::utf8Length(text);
+    const size_t control =
+        std::max(printable_text::controlLength(text), printable_text::directionLength(text));
+    const size_t length = control ? 0 : printable_text::utf8Length(text);
     const size_t hidden = control ? control : length ? 0 : 1;
     for (size_t i = 0; i < hidden; ++i) {
       char code[8];
@@ -62,8 +77,8 @@ inline std::string printable(std::string_view text) {
   return out;
 }
 
-// Returns text that is JSON with the control characters in its strings as \u009b: JSON itself asks
-// that of those below 0x20 only.
+// Replaces control characters in JSON text by codes such as \u009b; JSON itself requires this only
+// below 0x20.
 inline std::string printableJson(std::string_view text) {
   std::string out;
   out.reserve(text.size());

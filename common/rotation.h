@@ -1,9 +1,9 @@
-// rotation.h: the matrix of a rotation, for both libraries: rt* calls turn by degrees, VRML's nodes
-// by radians. Pure, any thread.
+// rotation.h: Computes rotation matrices for both libraries: rt* calls take degrees, VRML's nodes
+// radians. Pure, any thread.
 #pragma once
 
 // Rodrigues' formula, c I + s [a]x + (1 - c) a a^T, for a unit axis and the sine and cosine of the
-// angle. Makes a matrix from its 16 numbers, column by column for column vectors.
+// angle. The matrix is constructed from 16 numbers, column by column, for column vectors.
 template <class Matrix, class Vector> Matrix rotationMatrix(const Vector& a, double s, double c) {
   const double d = 1 - c;
   return Matrix{a.x * a.x * d + c,

@@ -1,5 +1,5 @@
-// background.cpp: Names of colours: CSS Color Module 4, its sixteen basic ones
-// and orange.
+// background.cpp: Parses backgrounds and composites pictures over them. The colour names are the
+// sixteen basic ones of CSS Color Module 4, and orange.
 #include "libpicture/background.h"
 
 #include <algorithm>
@@ -94,14 +94,14 @@ Background readBackground(const std::string& text) {
   refuse(text);
 }
 
-Backcloth::Backcloth(const Background& background, bool linear) {
+BackgroundLayer::BackgroundLayer(const Background& background, bool linear) {
   if (background.kind == Background::Kind::file) read(background.file, linear);
   if (background.kind != Background::Kind::colour) return;
   width_ = height_ = 1;
   for (const float v : background.colour) rgb_.push_back(linear ? linearOf(v) : v);
 }
 
-void Backcloth::read(const std::string& file, bool linear) {
+void BackgroundLayer::read(const std::string& file, bool linear) {
   if (isRadiance(suffixOf(file))) {
     const xvrml::RadianceImage read = readRadiance(file);
     width_ = read.width;
@@ -135,7 +135,7 @@ void Backcloth::read(const std::string& file, bool linear) {
     }
 }
 
-void Backcloth::colourAt(double x, double y, float rgb[3]) const {
+void BackgroundLayer::colourAt(double x, double y, float rgb[3]) const {
   const double left = std::clamp(x - 0.5, 0.0, width_ - 1.0),
                top = std::clamp(y - 0.5, 0.0, height_ - 1.0);
   const int x0 = int(left), y0 = int(top), x1 = std::min(x0 + 1, width_ - 1),
@@ -151,11 +151,12 @@ void Backcloth::colourAt(double x, double y, float rgb[3]) const {
   }
 }
 
-// Each pixel is the mean of as many places as the picture has pixels there, up to 8 x 8.
-void Backcloth::putBehind(std::vector<float>& rgba, int width, int height) const {
+// Each pixel is the mean of several background samples: as many as the background has pixels there,
+// up to 8 x 8.
+void BackgroundLayer::compositeOver(std::vector<float>& rgba, int width, int height) const {
   if (width_ == 0) return;
-  const double scale =
-      std::min(double(width_) / width, double(height_) / height); // its pixels for one of the frame
+  // background pixels per frame pixel
+  const double scale = std::min(double(width_) / width, double(height_) / height);
   const double left = (width_ - scale * width) / 2, top = (height_ - scale * height) / 2;
   const int parts = std::clamp(int(std::ceil(scale)), 1, 8);
   for (int y = 0; y < height; ++y)

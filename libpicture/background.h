@@ -1,6 +1,7 @@
-// background.h: what shows where nothing is drawn: what the world has there, nothing, one colour, a
-// picture. With any but the first the world is rendered without its Background, and colours are put
-// behind the finished picture by its alpha. [any thread]
+// background.h: Chooses and draws what is visible where no geometry is: the world's own Background,
+// nothing, one colour or a picture. For every choice except the first, the world is rendered
+// without its Background, and the finished picture is composited over the colours by its alpha.
+// [any thread]
 #pragma once
 
 #include <array>
@@ -12,34 +13,35 @@ namespace picture {
 
 struct Background {
   enum class Kind : unsigned char { world, none, colour, file } kind = Kind::world;
-  std::array<float, 3>
-      colour{};     // display values: 0 to 1, with the sRGB curve where colours are linear
-  std::string file; // png, jpg, gif; exr, hdr, pfm: radiance
+  // display values from 0 to 1 (sRGB-encoded); linear pictures convert them to linear
+  std::array<float, 3> colour{};
+  std::string file; // png, jpg or gif; exr, hdr and pfm hold radiance
   bool operator==(const Background&) const = default;
 };
 
-// Reads "none", a colour (a name, #rgb, #rrggbb, or R,G,B from 0 to 1) or the name of a picture's
+// Parses "none", a colour (a name, #rgb, #rrggbb, or R,G,B from 0 to 1) or the name of a picture
 // file. Throws std::invalid_argument that says what was expected.
 Background readBackground(const std::string& text);
 inline constexpr const char* backgroundForms =
     "none, a colour (a name such as white, #rgb, #rrggbb, or R,G,B from 0 to 1) or a picture (png, "
     "jpg, gif, exr, hdr, pfm)";
 
-// What is put behind a frame: a colour, or a picture that is scaled, without turning or stretching,
-// until it covers the frame, its middle in the middle.
-class Backcloth {
+// Draws a background behind frames: a colour, or a picture. The picture is centred and scaled until
+// it covers the frame; it is neither rotated nor stretched.
+class BackgroundLayer {
  public:
-  // Reads the file, if it is one; throws std::runtime_error that names it. Kind::none and
-  // Kind::world: nothing is put behind.
-  Backcloth(const Background& background, bool linear);
-  // Puts it behind a plane rgba of premultiplied colours, first row at the top; every pixel is
-  // opaque then.
-  void putBehind(std::vector<float>& rgba, int width, int height) const;
+  // Reads the file, if there is one; throws std::runtime_error that names it. With Kind::none and
+  // Kind::world, nothing is drawn.
+  BackgroundLayer(const Background& background, bool linear);
+  // Composites the plane `rgba` (premultiplied colours, first row at the top) over the background.
+  // Every pixel is opaque afterwards.
+  void compositeOver(std::vector<float>& rgba, int width, int height) const;
 
  private:
-  void colourAt(double x, double y, float rgb[3]) const; // in its pixels
+  // x and y are in pixels of the background picture
+  void colourAt(double x, double y, float rgb[3]) const;
   void read(const std::string& file, bool linear);
-  int width_ = 0, height_ = 0; // 0: nothing; a colour is a picture of one pixel
+  int width_ = 0, height_ = 0; // 0: there is nothing to draw; a colour is a picture of one pixel
   std::vector<float> rgb_;     // first row at the top
 };
 

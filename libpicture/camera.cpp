@@ -18,7 +18,7 @@ Vec cross(Vec a, Vec b) {
 double length(Vec a) { return std::hypot(a.x, a.y, a.z); }
 Vec divided(Vec a, double s) { return {a.x / s, a.y / s, a.z / s}; }
 
-// The axis that is farthest from the direction v.
+// Returns the coordinate axis that makes the largest angle with the direction v.
 Vec acrossAxis(Vec v) {
   const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
   if (x <= y && x <= z) return {1, 0, 0};
@@ -51,7 +51,7 @@ double verticalAngle(double smaller, double aspect) {
 
 namespace {
 
-// Turns a camera and its place about an axis through the middle of the bounds.
+// Rotates a camera about an axis through the centre of the bounds.
 void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axis axis,
           double angle) {
   const int along = int(axis) % 3, first = (along + 1) % 3, second = (along + 2) % 3;
@@ -68,7 +68,7 @@ void turn(xvrml::CameraSettings& camera, const xvrml::Bounds& bounds, xvrml::Axi
   }
 }
 
-// A model from three quarters, or a figure in the x-y plane from the front.
+// Shows a model from three quarters, or a figure in the x-y plane from the front.
 xvrml::CameraSettings modelCamera(const xvrml::OpenRTMapper& mapper, const View& view, double fovy,
                                   double aspect) {
   double axes[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -108,8 +108,8 @@ xvrml::Axis upOf(const xvrml::OpenRTMapper& mapper, const View& view) {
 xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view,
                                    double aspect) {
   constexpr double radians = std::numbers::pi / 180;
-  const double smaller =
-      view.fov ? *view.fov * radians : std::numbers::pi / 4; // a Viewpoint's default
+  // the default of Viewpoint.fieldOfView
+  const double smaller = view.fov ? *view.fov * radians : std::numbers::pi / 4;
   const double fovy = verticalAngle(smaller, aspect);
   xvrml::CameraSettings camera;
   if (view.pinhole) {

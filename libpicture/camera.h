@@ -1,5 +1,5 @@
-// camera.h: where a picture is taken from: a viewpoint of the world, a camera given by hand, or one
-// fitted to the world. [any thread]
+// camera.h: Chooses the camera of a picture: a Viewpoint of the world, a camera given by the user,
+// or one that fits the whole world. [any thread]
 #pragma once
 
 #include <optional>
@@ -12,17 +12,18 @@ namespace picture {
 
 struct LookAt {
   double position[3], target[3], up[3] = {0, 1, 0};
-  bool saysUp = false; // else the view's up, where it has one
+  bool saysUp = false; // false: the view's up axis, where it has one, replaces `up`
 };
 
-// What to look from. At most one of viewpoint, lookAt and fit is asked for, or lookAt and fit
-// together: the direction of the one, and as far away as everything is in the picture. None: the
-// world's first Viewpoint. In a world without one, and with an up axis that is given, fit and none
-// look at the model from three quarters (docs/decisions/0040-models.md).
+// Describes where a picture is taken from. The caller sets one of viewpoint, lookAt and fit, or
+// lookAt and fit together: the direction of lookAt, at the distance that shows everything. If none
+// is set, the camera is the world's first Viewpoint. A world without a Viewpoint but with a given
+// up axis shows the model from three quarters, for fit and for none
+// (docs/decisions/0040-models.md).
 struct View {
-  // A camera by its matrices, instead of all below but the shader. sheared: camera to world, with
-  // what a principal point that is not in the middle and pixels that are not square do to the rays
-  // of the angle fovy (radians, vertical).
+  // A camera given by its matrices. It replaces all other members except the shader. `sheared` maps
+  // camera to world; it also contains the effect of an off-centre principal point and of non-square
+  // pixels on the rays of the angle `fovy` (radians, vertical).
   struct Pinhole {
     double matrix[16], sheared[16], fovy;
   };
@@ -30,31 +31,34 @@ struct View {
   std::optional<size_t> viewpoint; // index into OpenRTMapper::viewpoints()
   std::optional<LookAt> lookAt;
   bool fit = false;
-  std::optional<xvrml::CameraSettings> viewer; // of a running world: instead of the first Viewpoint
-  std::optional<xvrml::Axis> up; // none: y where a Viewpoint is bound, else what the world suggests
-  double turn =
-      0; // radians about the up axis through the world's centre, counter-clockwise seen from above
-  xvrml::NodeRef shader; // an ORTShader that makes the rays, instead of the viewpoint's own
-  std::optional<double>
-      fov; // degrees; the smaller of the two angles of view, as a Viewpoint's fieldOfView
+  // camera of a running world; it replaces the first Viewpoint
+  std::optional<xvrml::CameraSettings> viewer;
+  // none: y if a Viewpoint is bound, otherwise what the world suggests
+  std::optional<xvrml::Axis> up;
+  // Radians about the up axis through the world's centre, counter-clockwise seen from above.
+  double turn = 0;
+  // an ORTShader that generates the camera rays; it replaces the viewpoint's own
+  xvrml::NodeRef shader;
+  // Degrees, for the smaller of the two angles of view, as in Viewpoint.fieldOfView.
+  std::optional<double> fov;
 };
 
-// False where position and target coincide; an up vector along the view is replaced by one across
-// it.
+// Returns false if position and target coincide. Replaces an up vector that is parallel to the view
+// direction by a perpendicular one.
 bool lookAtMatrix(const LookAt& view, double matrix[16]);
 
-// The same with the up axis of the view; false without lookAt too.
+// Does the same with the up axis of the view. Also returns false if the view has no lookAt.
 bool lookAtMatrix(const View& view, double matrix[16]);
 
-// "x", "-y", "+z" ..., and the other way round; nothing for another name.
+// Parses "x", "-y", "+z" and so on; axisName is its inverse. Returns nothing for another name.
 std::optional<xvrml::Axis> axisNamed(std::string_view name);
 const char* axisName(xvrml::Axis axis);
 
-// The vertical angle for the smaller of both angles (clause 6.53), radians.
+// Returns the vertical angle of view, given the smaller of both angles (clause 6.53), in radians.
 double verticalAngle(double smaller, double aspect);
 
-// Which axis is up for a view: as it says, else y where a Viewpoint is bound, else what the world
-// suggests.
+// Returns the up axis for a view: the view's own if it has one, otherwise y if a Viewpoint is
+// bound, otherwise what the world suggests.
 xvrml::Axis upOf(const xvrml::OpenRTMapper& mapper, const View& view);
 
 xvrml::CameraSettings chooseCamera(const xvrml::OpenRTMapper& mapper, const View& view,

@@ -16,7 +16,7 @@ namespace picture {
 
 namespace {
 
-// What the backend says of its workers begins so; everything else is about the scene.
+// Messages of the backend about its workers begin with this tag; all others are about the scene.
 constexpr std::string_view clusterTag = "cluster: ";
 constexpr auto patience = std::chrono::milliseconds(50);
 
@@ -44,13 +44,13 @@ std::string clusterConfiguration(const ClusterSettings& s) {
 struct Cluster::Impl {
   ClusterSettings settings;
   RTcontext context = nullptr;
-  mutable std::mutex mutex; // of what follows
+  mutable std::mutex mutex; // protects the members below
   std::condition_variable changed;
-  bool lent = false;
+  bool isBorrowed = false;
   Listener listener;
-  std::vector<ClusterNote> notes;
+  std::vector<ClusterMessage> notes;
 
-  // On any of the engine's threads.
+  // [any engine thread]
   static void listen(int level, const char* text, void* self) {
     auto& impl = *static_cast<Impl*>(self);
     constexpr size_t most = 1000;
@@ -84,7 +84,8 @@ std::vector<RTworker> Cluster::workers() const {
   for (size_t count = rtGetWorkers(impl_->context, &probe, 1); count > list.size();) {
     list.assign(count, RTworker{});
     list[0].size = sizeof(RTworker);
-    count = rtGetWorkers(impl_->context, list.data(), list.size()); // one may have joined meanwhile
+    // a worker may have joined since the first call
+    count = rtGetWorkers(impl_->context, list.data(), list.size());
     if (count < list.size()) list.resize(count);
   }
   return list;
@@ -105,18 +106,18 @@ bool Cluster::wait(size_t count, double seconds, const std::function<bool()>& st
   return true;
 }
 
-std::vector<ClusterNote> Cluster::takeNotes() {
+std::vector<ClusterMessage> Cluster::takeMessages() {
   const std::lock_guard lock(impl_->mutex);
   return std::exchange(impl_->notes, {});
 }
 
 RTcontext Cluster::borrow(Listener listener, const std::function<bool()>& stop) {
   std::unique_lock lock(impl_->mutex);
-  while (impl_->lent) {
+  while (impl_->isBorrowed) {
     if (stop && stop()) return nullptr;
     impl_->changed.wait_for(lock, patience);
   }
-  impl_->lent = true;
+  impl_->isBorrowed = true;
   impl_->listener = std::move(listener);
   lock.unlock();
   rtMakeCurrent(impl_->context);
@@ -132,7 +133,7 @@ void Cluster::giveBack() {
   {
     const std::lock_guard lock(impl_->mutex);
     impl_->listener = nullptr;
-    impl_->lent = false;
+    impl_->isBorrowed = false;
   }
   impl_->changed.notify_all();
 }

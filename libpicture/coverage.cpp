@@ -69,9 +69,8 @@ class Count {
   void one(const Shot& shot, size_t i, double off, double wider, double truth) {
     double half = double(shot.half[3 * i]) * wider;
     if (!reference_.half.empty()) half = std::hypot(half, double(reference_.half[3 * i]));
-    const bool held =
-        std::fabs(off) <=
-        half + 1e-6 * std::fabs(truth); // sums of floats have rounding errors of their own
+    // the margin covers rounding errors in sums of floats
+    const bool held = std::fabs(off) <= half + 1e-6 * std::fabs(truth);
     c_.pixels++;
     c_.held += held;
     if (shot.trust[i] == 0) return;
@@ -88,7 +87,7 @@ class Count {
     tile.second++;
   }
 
-  // Of the mean over the picture: independent from seed to seed.
+  // Computes the bias of the picture mean. These means are independent between seeds.
   void bias() {
     double all = 0, sum = 0, sum2 = 0;
     for (double r : reference_.colours) all += r;
@@ -104,14 +103,14 @@ class Count {
     c_.bias = sum / count;
     const double v =
         std::max(0.0, sum2 / count - c_.bias * c_.bias) * count / std::max(count - 1, 1.0);
-    c_.biasInterval = count > 1 ? 2 * std::sqrt(v * (1 / count + 1 / reference_.worth))
-                                : 1; // the reference has an error too
+    // the reference has an error of its own
+    c_.biasInterval = count > 1 ? 2 * std::sqrt(v * (1 / count + 1 / reference_.worth)) : 1;
   }
 
   const std::vector<Shot>& shots_;
   const Reference& reference_;
   size_t width_, pixels_, edge_, columns_;
-  std::vector<std::pair<uint64_t, uint64_t>> tiles_; // held, all
+  std::vector<std::pair<uint64_t, uint64_t>> tiles_; // intervals that hold, all intervals
   std::vector<double> sum_;
   double square_ = 0, variance_ = 0;
   Coverage c_;

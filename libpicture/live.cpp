@@ -1,7 +1,7 @@
-// live.cpp: The browser's thread and the render thread meet in `state`: who has the
-// world, and in `mutex`: the frame that is wanted and those that have ended. The settings are the
-// browser's thread's but for the time of mapping; what belongs to a frame in flight is in its
-// Flight.
+// live.cpp: Implements LiveRenderer. The browser's thread and the render thread share two things:
+// `state`, which says who may use the world, and, under `mutex`, the requested frame and the ended
+// frames. The settings belong to the browser's thread except while mapping; each frame in flight
+// has its own copy in its FrameInFlight.
 #include "libpicture/live.h"
 
 #include <algorithm>
@@ -28,34 +28,35 @@ double between(Clock::time_point start, Clock::time_point end) {
 }
 double secondsSince(Clock::time_point start) { return between(start, Clock::now()); }
 
-// Looking takes time that light could be traced in: a part of it at most, and not more often than
-// anybody sees.
-constexpr double leastBetweenLooks = 0.008, restPerLook = 8; // seconds; as long as that many looks
+// Polling a frame takes time from tracing. These limits bound that time, and polls are not more
+// frequent than a display shows.
+// seconds between polls; pause after a poll, in multiples of its duration
+constexpr double minPollInterval = 0.008, pausePerPoll = 8;
 constexpr uint32_t shownChannels = RT_RGBA | RT_SAMPLES;
-constexpr size_t mostOverlapping = 2;
-// How often it is asked whether a frame has ended behind which another one may still be started:
-// who waits for it cannot do that.
+constexpr size_t maxOverlapping = 2;
+// Poll interval for ended frames while another frame may still be started. The render thread cannot
+// block on a frame then.
 constexpr std::chrono::milliseconds patience(1);
 
-struct Wanted {
+struct FrameRequest {
   LiveFrame frame;
-  News news;
+  WorldChanges worldChanges;
   Clock::time_point started;
 };
 
-// A frame that was begun, and what can be said of it only then.
-struct Flight {
+// A frame that has begun, and the facts that are known only at its start.
+struct FrameInFlight {
   RenderSettings settings;
-  Clock::time_point started; // by start()
+  Clock::time_point started; // when start() was called
   xvrml::MapStats map;
   std::vector<std::string> names;
 };
 
-// A frame that has come to its end, or as far as it got.
-struct Made {
+// A frame that has finished or was cancelled.
+struct EndedFrame {
   Picture picture;
-  RenderResult result;           // without the picture
-  double seconds = 0, alone = 0; // as in LivePicture
+  RenderResult result;           // the picture in it is empty
+  double seconds = 0, alone = 0; // see LivePicture
   bool whole = false;
 };
 
@@ -63,7 +64,7 @@ bool all(const std::vector<float>& samples, float least) {
   return std::all_of(samples.begin(), samples.end(), [least](float s) { return s >= least; });
 }
 
-// Pixels without a sample get what stood at their place in the picture before, whatever its size.
+// Fills pixels without a sample from the same place of the previous picture, whatever its size.
 void fillFrom(const LivePicture& before, const std::vector<float>& samples, LivePicture& out) {
   if (before.rgb.empty()) return;
   for (int y = 0; y < out.height; ++y)
@@ -81,69 +82,71 @@ void fillFrom(const LivePicture& before, const std::vector<float>& samples, Live
 } // namespace
 
 struct LiveRenderer::Impl {
-  RenderSettings given; // width, height and samples are the frames'
+  RenderSettings given; // width, height and samples are overwritten for each frame
   Stage stage;
-  const size_t most; // frames in flight
+  const size_t most; // maximum number of frames in flight
   std::atomic<State> state{State::idle};
-  std::atomic<size_t> flying{0};      // started and not ended
-  std::atomic<bool> cancelled{false}; // those in flight; none is begun until they have ended
+  std::atomic<size_t> framesInFlight{0}; // number of frames started and not ended
+  // the frames in flight are cancelled; none starts until they have ended
+  std::atomic<bool> cancelled{false};
 
   std::mutex mutex;
   std::condition_variable changed;
-  std::optional<Wanted> wanted;
+  std::optional<FrameRequest> requested;
   bool ending = false;
-  std::shared_ptr<const Made> made; // the last one
-  std::deque<std::shared_ptr<const Made>>
-      unseen; // that look() has not given yet: as many as may be in flight
+  std::shared_ptr<const EndedFrame> lastEnded; // the last frame that ended
+  // Ended frames that look() has not returned yet; at most as many as may be in flight.
+  std::deque<std::shared_ptr<const EndedFrame>> unpolled;
   std::string failure;
 
-  // The render thread alone.
-  std::deque<Flight> flights; // oldest first
+  // Used by the render thread only.
+  std::deque<FrameInFlight> inFlight; // frames in flight, oldest first
   Clock::time_point lastEnd;
 
-  // The browser's thread alone.
+  // Used by the browser's thread only.
   Clock::time_point started;
-  float progress = 0;         // of the frame in flight when it was looked at
-  Clock::time_point nextLook; // at a frame in flight, not before
-  Picture seen;               // working storage of look()
-  LivePicture before;         // what look() has given last: size and rgb
+  float progress = 0;         // progress of the frame in flight at the last poll
+  Clock::time_point nextPoll; // earliest time of the next poll of a frame in flight
+  Picture scratch;            // scratch storage of look()
+  LivePicture before;         // size and rgb of the last picture that look() returned
 
   std::thread thread;
 
   Impl(xvrml::Browser& browser, const RenderSettings& settings)
       : given(settings), stage(browser.world(), &browser, settings),
-        most(settings.cluster ? mostOverlapping : 1) {
+        most(settings.cluster ? maxOverlapping : 1) {
     given.progressive = true;
   }
 
   // --- The render thread ---
-  // While another frame may be started the oldest one is not waited for: that would keep the newer
-  // one waiting.
+  //
+  // Waits for the oldest frame only when no other frame may be started; waiting earlier would delay
+  // the newer one.
   void loop() {
-    const auto news = [this] { return wanted || ending; };
+    const auto hasWork = [this] { return requested || ending; };
     std::unique_lock lock(mutex);
     while (!ending) {
-      if (wanted) {
-        Wanted frame = *std::exchange(wanted, {});
+      if (requested) {
+        FrameRequest frame = *std::exchange(requested, {});
         lock.unlock();
         std::string wrong = failureOf([&] { begin(std::move(frame)); });
         lock.lock();
-        settle(std::move(wrong));
-      } else if (flights.empty()) {
-        changed.wait(lock, news);
-      } else if (flights.size() < most && !cancelled && rtProgress(stage.context()) < 1) {
-        changed.wait_for(lock, patience, news);
+        updateState(std::move(wrong));
+      } else if (inFlight.empty()) {
+        changed.wait(lock, hasWork);
+      } else if (inFlight.size() < most && !cancelled && rtProgress(stage.context()) < 1) {
+        changed.wait_for(lock, patience, hasWork);
       } else {
         lock.unlock();
-        std::shared_ptr<const Made> result;
+        std::shared_ptr<const EndedFrame> result;
         std::string wrong = failureOf([&] { result = finish(); });
         lock.lock();
         if (result) {
-          made = result;
-          unseen.push_back(std::move(result));
-          if (unseen.size() > most) unseen.pop_front();
+          lastEnded = result;
+          unpolled.push_back(std::move(result));
+          if (unpolled.size() > most) unpolled.pop_front();
         }
-        settle(std::move(wrong));
+        updateState(std::move(wrong));
       }
     }
     lock.unlock();
@@ -161,57 +164,58 @@ struct LiveRenderer::Impl {
     }
   }
 
-  // Under the mutex, when a frame has been begun or has ended. One that was wanted meanwhile keeps
-  // its state.
-  void settle(std::string wrong) {
+  // Updates the state after a frame has begun or ended. A frame requested meanwhile keeps its
+  // state. The caller holds the mutex.
+  void updateState(std::string wrong) {
     if (!wrong.empty()) failure = std::move(wrong);
-    flying = flights.size() + (wanted ? 1 : 0);
-    if (wanted) return;
-    const State now = flights.empty()         ? State::idle
-                      : flights.size() < most ? State::ready
-                                              : State::rendering;
+    framesInFlight = inFlight.size() + (requested ? 1 : 0);
+    if (requested) return;
+    const State now = inFlight.empty()         ? State::idle
+                      : inFlight.size() < most ? State::ready
+                                               : State::rendering;
     state.store(now, std::memory_order_release);
   }
 
-  void begin(Wanted frame) {
-    Flight flight{stage.settings, frame.started, {}, {}};
+  void begin(FrameRequest frame) {
+    FrameInFlight flight{stage.settings, frame.started, {}, {}};
     try {
       map(std::move(frame));
       flight.map = stage.mapper()->stats();
       if (flight.settings.channels & RT_NAME) flight.names = stage.mapper()->names();
-    } catch (...) { // half mapped: the next frame begins anew
+    } catch (...) { // the world is only half mapped: the next frame starts with a new context
       stage.close();
-      flights.clear();
+      inFlight.clear();
       throw;
     }
     state.store(State::rendering, std::memory_order_release);
-    if (cancelled) return; // not even begun
+    if (cancelled) return; // cancelled before it began
     rtSwapBuffers();
     throwOnError("rendering");
-    flights.push_back(std::move(flight));
-    if (cancelled) rtCancel(stage.context()); // before there was anything to be cancelled
+    inFlight.push_back(std::move(flight));
+    if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
   }
 
-  // All that holds on to nodes is given up when this returns: from then on the browser uses them.
-  void map(Wanted frame) {
+  // Maps the world for a frame. All references to nodes are released when this returns, because the
+  // browser uses the nodes from then on.
+  void map(FrameRequest frame) {
     if (!stage.context()) {
       stage.open([this] { return cancelled.load(); });
-      frame.news.changes.clear(); // the mapper has begun with them
-      frame.news.otherWorld = false;
+      frame.worldChanges.changes.clear(); // the new mapper already contains them
+      frame.worldChanges.otherWorld = false;
     }
-    stage.apply(frame.news);
+    stage.apply(frame.worldChanges);
     stage.prepare(frame.frame.view);
     stage.setUpFrame();
-    rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // then rtSwapBuffers waits for none of them
+    rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // so that rtSwapBuffers waits for none of them
   }
 
-  // Waits for the oldest.
-  std::shared_ptr<const Made> finish() {
-    const Flight flight = std::move(flights.front());
-    flights.pop_front();
+  // Waits for the oldest frame and returns it.
+  std::shared_ptr<const EndedFrame> finish() {
+    const FrameInFlight flight = std::move(inFlight.front());
+    inFlight.pop_front();
     rtFinishFrame();
     throwOnError("rendering");
-    auto result = std::make_shared<Made>();
+    auto result = std::make_shared<EndedFrame>();
     stage.readChannels(flight.settings, result->picture, &flight.names);
     stage.describe(flight.settings, result->result);
     result->result.map = flight.map;
@@ -219,8 +223,8 @@ struct LiveRenderer::Impl {
         !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
     const Clock::time_point end = Clock::now();
     result->seconds = between(flight.started, end);
-    result->alone =
-        between(std::max(flight.started, lastEnd), flights.empty() ? end : flights.front().started);
+    result->alone = between(std::max(flight.started, lastEnd),
+                            inFlight.empty() ? end : inFlight.front().started);
     lastEnd = end;
     return result;
   }
@@ -236,29 +240,30 @@ struct LiveRenderer::Impl {
     if (const RTcontext context = stage.context()) rtCancel(context);
   }
 
-  std::shared_ptr<const Made> last() {
+  std::shared_ptr<const EndedFrame> last() {
     const std::lock_guard lock(mutex);
-    return made;
+    return lastEnded;
   }
 
-  std::shared_ptr<const Made> nextUnseen() {
+  std::shared_ptr<const EndedFrame> nextUnpolled() {
     const std::lock_guard lock(mutex);
-    if (unseen.empty()) return nullptr;
-    std::shared_ptr<const Made> next = std::move(unseen.front());
-    unseen.pop_front();
+    if (unpolled.empty()) return nullptr;
+    std::shared_ptr<const EndedFrame> next = std::move(unpolled.front());
+    unpolled.pop_front();
     return next;
   }
 
-  // The frame in flight is the one that was started last: the stage has its settings.
+  // Tells whether the frame in flight is the one that was started last, so that the stage has its
+  // settings.
   bool alone() const {
     const State now = state.load(std::memory_order_acquire);
-    return (now == State::rendering || now == State::ready) && flying == 1;
+    return (now == State::rendering || now == State::ready) && framesInFlight == 1;
   }
 
   void start(const LiveFrame& frame) {
     if (now() != State::idle && now() != State::ready)
       throw std::logic_error("a frame is in flight");
-    stage.passOn();
+    stage.reportMessages();
     stage.settings = given;
     stage.settings.width = frame.width;
     stage.settings.height = frame.height;
@@ -267,14 +272,14 @@ struct LiveRenderer::Impl {
     stage.settings.channels |= shownChannels;
     started = Clock::now();
     progress = 0;
-    nextLook = {};
+    nextPoll = {};
     cancelled = false;
-    Wanted next{frame, stage.collect(), started};
+    FrameRequest next{frame, stage.collectChanges(), started};
     {
       const std::lock_guard lock(mutex);
       failure.clear();
-      wanted = std::move(next);
-      flying++;
+      requested = std::move(next);
+      framesInFlight++;
       state = State::mapping;
     }
     changed.notify_all();
@@ -311,9 +316,9 @@ struct LiveRenderer::Impl {
   }
 
   bool look(LivePicture& out) {
-    stage.passOn();
-    const std::shared_ptr<const Made> finished = nextUnseen();
-    if (!finished) return alone() && lookAhead(out);
+    stage.reportMessages();
+    const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
+    if (!finished) return alone() && pollInFlight(out);
     show(finished->picture, out);
     out.seconds = finished->seconds;
     out.alone = finished->alone;
@@ -325,27 +330,27 @@ struct LiveRenderer::Impl {
     return true;
   }
 
-  // The frame in flight, if there is more of it.
-  bool lookAhead(LivePicture& out) {
+  // Returns the frame in flight, if it has new samples.
+  bool pollInFlight(LivePicture& out) {
     const Clock::time_point begin = Clock::now();
-    if (begin < nextLook) return false;
+    if (begin < nextPoll) return false;
     const RTcontext context = stage.context();
     const float now = rtProgress(context);
-    if (now <= progress || !stage.snapshot(seen, shownChannels)) return false;
-    if (now < 1) progress = now; // 1 also before it has begun
-    if (!std::any_of(seen.planes[RT_SAMPLES].begin(), seen.planes[RT_SAMPLES].end(),
+    if (now <= progress || !stage.snapshot(scratch, shownChannels)) return false;
+    if (now < 1) progress = now; // progress is also 1 before the frame has begun
+    if (!std::any_of(scratch.planes[RT_SAMPLES].begin(), scratch.planes[RT_SAMPLES].end(),
                      [](float s) { return s > 0; }))
       return false;
-    show(seen, out);
-    const double took = secondsSince(begin), rest = std::max(leastBetweenLooks, restPerLook * took);
-    nextLook = Clock::now() +
+    show(scratch, out);
+    const double took = secondsSince(begin), rest = std::max(minPollInterval, pausePerPoll * took);
+    nextPoll = Clock::now() +
                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));
     out.seconds = secondsSince(started);
     return true;
   }
 
   bool copy(Picture& out) {
-    const std::shared_ptr<const Made> finished = last();
+    const std::shared_ptr<const EndedFrame> finished = last();
     const bool begun = alone() && stage.snapshot(out, stage.settings.channels);
     if (!begun || (finished && !all(out.planes[RT_SAMPLES], 1))) {
       if (!finished) return false;

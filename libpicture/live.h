@@ -1,7 +1,7 @@
-// live.h: renders a running world while its user goes on working: a frame is started and looked
-// after, never waited for. With a cluster frames overlap: the next one may be started while the
-// last jobs of the one before are under way. One OpenRT context and one mapper on a thread of their
-// own, as in renderer.h. Called by one thread, the browser's.
+// live.h: Renders a running world while its user continues to interact. Frames are started and
+// polled; no call waits for one. With a cluster, frames overlap: the next one may start while the
+// last jobs of the previous one are outstanding. One OpenRT context and one mapper live on a thread
+// of their own, as in renderer.h. [one thread: the browser's]
 #pragma once
 
 #include <cstdint>
@@ -13,39 +13,39 @@
 
 namespace picture {
 
-// A frame to be made. Fewer pixels and samples come sooner; the picture is refined from 1 sample a
-// pixel on and can be looked at at any time. However often it was looked at, the finished picture
-// has the bytes of Renderer::render with the same samples.
+// A frame to be rendered. Fewer pixels and samples finish sooner. The picture is refined from 1
+// sample per pixel on and can be polled at any time. Polling does not change the result: the
+// finished picture has the same bytes as Renderer::render with the same samples.
 struct LiveFrame {
-  View view; // viewer set: looked at from there; else from the bound Viewpoint, where the browser's
-             // viewer has gone from it
+  // The camera is `viewer` if set, otherwise the browser's viewer (the bound Viewpoint plus the
+  // user's navigation).
+  View view;
   int width = 0, height = 0;
   int samples = 1;
 };
 
-// What can be seen of a frame by now.
+// The state of a frame when it was polled.
 struct LivePicture {
   int width = 0, height = 0;
-  // Display bytes, first row at the top. Pixels without a sample yet show what they did in the
-  // picture before.
+  // Display bytes, first row at the top. Pixels without a sample yet show the previous picture.
   std::vector<uint8_t> rgb;
-  double covered = 0;    // part of the pixels that have samples, 0 to 1
-  double samples = 0;    // taken so far, mean over the pixels
-  double seconds = 0;    // since the frame was started
-  double alone = 0;      // ended: of the seconds: while no other frame was in flight
+  double covered = 0;    // fraction of the pixels that have samples, 0 to 1
+  double samples = 0;    // samples taken so far, mean over the pixels
+  double seconds = 0;    // seconds since the frame was started
+  double alone = 0;      // seconds of an ended frame during which no other frame was in flight
   bool finished = false; // all samples are taken
-  bool ended =
-      false; // finished, or given up: there will not be more of it; overhead, map and stats hold
-  double overhead =
-      0; // of the seconds: until light was traced, for reading the world and building structures
+  // Finished or cancelled; no more updates follow. overhead, map and stats are valid.
+  bool ended = false;
+  // Part of `seconds` before tracing began: reading the world and building acceleration structures.
+  double overhead = 0;
   xvrml::MapStats map{};
   RTstats stats{};
 };
 
 class LiveRenderer {
  public:
-  // Returns at once; the world's geometry is read with the first frame. The browser must live as
-  // long as the renderer.
+  // Returns at once; the world's geometry is read with the first frame. The browser must outlive
+  // the renderer.
   LiveRenderer(xvrml::Browser& browser, const RenderSettings& settings);
   ~LiveRenderer();
   LiveRenderer(const LiveRenderer&) = delete;
@@ -53,30 +53,34 @@ class LiveRenderer {
 
   enum class State : uint8_t {
     idle,
-    mapping,   // the world is being read: the browser and its nodes must be left alone
-    rendering, // the browser may go on; the frame shows the world as it was
-    ready      // the same, and another frame may be started behind it: never without a cluster
+    mapping,   // the world is being read: the browser and its nodes must not be touched
+    rendering, // the browser may continue; the frame shows the world as it was
+    ready      // same as rendering, but another frame may be started; happens only with a cluster
   };
   State state() const;
-  // Only if idle or ready (else std::logic_error). Takes the browser's changes and returns at once.
-  // Two frames are in flight at most: what is seen is one frame old.
+  // Starts a frame from the browser's changes and returns at once. Throws std::logic_error unless
+  // the state is idle or ready. At most two frames are in flight, so the display lags by at most
+  // one frame.
   void start(const LiveFrame& frame);
-  // The frames in flight end soon, the older one as well; what is finished of them stays visible.
-  // No frame: nothing happens.
+  // Ends the frames in flight soon, including the older one. Finished parts stay visible. Does
+  // nothing without a frame.
   void cancel();
-  // A frame that has ended, each once and in their order; else the one in flight, if it is alone
-  // and there is more of it than at the last call. Never waits.
+  // Returns each ended frame once, in order. Otherwise returns the frame in flight, if it is the
+  // only one and has new samples since the last call. Never waits.
   bool look(LivePicture& picture);
-  // The same with all channels of the settings, for a file; false before the first frame.
+  // Copies the picture with all channels of the settings, for a file. Returns false before the
+  // first frame.
   bool copy(Picture& picture);
-  // Quality of the following frames. [idle]
+  // Changes the quality of the following frames. [idle]
   void change(const std::function<void(RenderSettings&)>& change);
-  const std::vector<xvrml::ViewpointInfo>&
-  viewpoints() const;           // after the first mapping; [not while mapping]
-  xvrml::Bounds bounds() const; // the same
-  xvrml::CameraSettings cameraOf(const View& view, double aspect) const; // see camera.h; the same
-  xvrml::Axis upOf(const View& view) const;                              // see camera.h; the same
-  // Why the last frame could not be made (RenderError's text), once; "" if nothing was wrong.
+  // Valid after the first mapping. [not while mapping]
+  const std::vector<xvrml::ViewpointInfo>& viewpoints() const;
+  xvrml::Bounds bounds() const; // As above: after the first mapping. [not while mapping]
+  // See camera.h; needs the first mapping. [not while mapping]
+  xvrml::CameraSettings cameraOf(const View& view, double aspect) const;
+  // See camera.h; needs the first mapping. [not while mapping]
+  xvrml::Axis upOf(const View& view) const;
+  // Returns, once, why the last frame failed (RenderError's text); "" if it did not.
   std::string takeFailure();
 
  private:

@@ -7,7 +7,7 @@ namespace picture {
 
 namespace {
 
-// Levenshtein's distance.
+// Returns the Levenshtein distance.
 size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t(0));

@@ -1,4 +1,4 @@
-// nearest.h: what somebody who mistyped a word most likely meant. [any thread]
+// nearest.h: Suggests the word that the user probably meant when one was mistyped. [any thread]
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace picture {
 
-// The word of `words` nearest to `word`; empty if none is near.
+// Returns the word of `words` nearest to `word`; empty if none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& words);
 
 } // namespace picture

@@ -22,22 +22,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr int maxInFlight = 64;
-constexpr size_t inFlightBytes = size_t(2) << 30,
-                 pixelBytes = 128; // of all frames in flight; of a pixel, about
+// pixelBytes: approximate bytes per pixel; inFlightBytes: limit for all frames in flight
+constexpr size_t inFlightBytes = size_t(2) << 30, pixelBytes = 128;
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// A frame that was started, and what can be said of it only then.
-struct Flight {
+// A started frame, and the facts that are known only at its start.
+struct FrameInFlight {
   RenderResult result{};
   std::vector<std::string> names;
 };
 
 } // namespace
 
-bool worthRounds(const RenderSettings& settings) {
+bool isWorthProgressive(const RenderSettings& settings) {
   constexpr int samples = 64;
   constexpr int64_t pixels = int64_t(2) << 20;
   return !settings.cluster && settings.samples >= samples &&
@@ -46,24 +46,25 @@ bool worthRounds(const RenderSettings& settings) {
 
 struct Renderer::Impl {
   Stage stage;
-  Watch watch;
+  ProgressCallback watch;
 
-  // Between the threads. `task` is set by the caller and cleared by the render thread when it is
+  // Shared by both threads. The caller sets `task`; the render thread clears it when the task is
   // done.
   std::mutex mutex;
   std::condition_variable changed;
   std::function<void()> task;
   std::exception_ptr failure;
   bool ending = false;
-  std::string wrong; // with the end; empty: nothing
+  std::string wrong; // error when the context was closed; empty: none
   std::atomic<bool> cancelled{false};
   std::thread thread;
 
-  // The calling thread, and the render thread while that waits.
-  std::deque<Flight> flights;
-  Clock::time_point lastEnd; // of a frame
+  // Used by the calling thread, and by the render thread while the calling thread waits.
+  std::deque<FrameInFlight> inFlight;
+  Clock::time_point lastEnd; // when the last frame ended
 
-  Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings, Watch w)
+  Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings,
+       ProgressCallback w)
       : stage(world, browser, settings), watch(std::move(w)) {}
 
   void loop() {
@@ -83,7 +84,7 @@ struct Renderer::Impl {
     wrong = stage.close();
   }
 
-  // Runs `work` on the render thread; meanwhile calls the watch.
+  // Runs `work` on the render thread and calls the progress callback meanwhile.
   void run(std::function<void()> work) {
     std::exception_ptr stopped;
     std::unique_lock lock(mutex);
@@ -92,7 +93,7 @@ struct Renderer::Impl {
     changed.notify_all();
     while (!changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return !task; })) {
       const RTcontext context = stage.context();
-      // Again and again: a cancellation before the frame has started would be lost.
+      // Cancel repeatedly: a cancellation before the frame has started would be lost.
       if (cancelled && context) rtCancel(context);
       if (!watch || stopped) continue;
       const float progress = context ? rtProgress(context) : 0;
@@ -111,13 +112,13 @@ struct Renderer::Impl {
 
   void noteCamera(RenderResult& result) const {
     result.camera = stage.shown();
-    result.ownRays = std::exchange(result.camera.shader, nullptr) != nullptr;
+    result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
   }
 
   void start(const View& view) {
     const auto begin = Clock::now();
     stage.prepare(view);
-    Flight flight;
+    FrameInFlight flight;
     flight.result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
     flight.result.map = stage.mapper()->stats();
     if (stage.settings.channels & RT_NAME) {
@@ -127,21 +128,22 @@ struct Renderer::Impl {
     noteCamera(flight.result);
     stage.setUpFrame();
     rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
-    if (flights.empty()) lastEnd = Clock::now();
+    if (inFlight.empty()) lastEnd = Clock::now();
     rtSwapBuffers();
     throwOnError("rendering");
-    flights.push_back(std::move(flight));
+    inFlight.push_back(std::move(flight));
   }
 
   void finish(RenderResult& result) {
-    const Flight flight = std::move(flights.front());
-    flights.pop_front();
+    const FrameInFlight flight = std::move(inFlight.front());
+    inFlight.pop_front();
     rtFinishFrame();
     throwOnError("rendering");
     result = flight.result;
-    result.renderSeconds = secondsSince(lastEnd); // of frames that overlap: what they add
+    // for overlapping frames: the time since the previous frame ended
+    result.renderSeconds = secondsSince(lastEnd);
     lastEnd = Clock::now();
-    stage.passOn();
+    stage.reportMessages();
     result.interrupted = cancelled;
     stage.readChannels(stage.settings, result.picture, &flight.names);
     stage.describe(stage.settings, result);
@@ -151,15 +153,15 @@ struct Renderer::Impl {
   void render(const View& view, RenderResult& result) {
     auto start = Clock::now();
     stage.prepare(view);
-    result.mapSeconds = secondsSince(start) +
-                        stage.takeMeshSeconds(); // meshes are made once, with the first picture
+    // meshes are built once, with the first picture
+    result.mapSeconds = secondsSince(start) + stage.takeMeshSeconds();
     noteCamera(result);
     stage.setUpFrame();
     start = Clock::now();
     rtRender();
     throwOnError("rendering");
     result.renderSeconds = secondsSince(start);
-    stage.passOn(); // the browser's thread waits
+    stage.reportMessages(); // safe here: the browser's thread is waiting
     result.interrupted = cancelled;
     stage.readChannels(stage.settings, result.picture);
     stage.describe(stage.settings, result);
@@ -167,14 +169,14 @@ struct Renderer::Impl {
   }
 };
 
-Renderer::Renderer(xvrml::World& world, const RenderSettings& settings, Watch watch)
+Renderer::Renderer(xvrml::World& world, const RenderSettings& settings, ProgressCallback watch)
     : impl_(std::make_unique<Impl>(world, nullptr, settings, std::move(watch))) {
   begin();
 }
 
-Renderer::Renderer(xvrml::Browser& browser, const RenderSettings& settings, Watch watch)
+Renderer::Renderer(xvrml::Browser& browser, const RenderSettings& settings, ProgressCallback watch)
     : impl_(std::make_unique<Impl>(browser.world(), &browser, settings, std::move(watch))) {
-  impl_->stage.collect(); // the mapper begins with the world as it is now
+  impl_->stage.collectChanges(); // discards them: the mapper starts from the current world
   begin();
 }
 
@@ -208,19 +210,19 @@ void Renderer::change(const std::function<void(RenderSettings&)>& change) {
   change(impl_->stage.settings);
 }
 
-void Renderer::setWatch(Watch watch) { impl_->watch = std::move(watch); }
+void Renderer::setProgressCallback(ProgressCallback watch) { impl_->watch = std::move(watch); }
 
 const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() {
-  const News news = impl_->stage.collect();
-  impl_->run([&] { impl_->stage.apply(news); });
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
+  impl_->run([&] { impl_->stage.apply(worldChanges); });
   return impl_->stage.mapper()->viewpoints();
 }
 
 xvrml::Bounds Renderer::bounds() {
   xvrml::Bounds bounds;
-  const News news = impl_->stage.collect();
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(news);
+    impl_->stage.apply(worldChanges);
     bounds = impl_->stage.mapper()->bounds();
   });
   return bounds;
@@ -229,9 +231,9 @@ xvrml::Bounds Renderer::bounds() {
 Renderer::Place Renderer::placeOf(const View& view) {
   checkViewpoint(view);
   Place place;
-  const News news = impl_->stage.collect();
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(news);
+    impl_->stage.apply(worldChanges);
     place.camera = impl_->stage.cameraOf(view);
     const xvrml::OpenRTMapper& mapper = *impl_->stage.mapper();
     place.up = upOf(mapper, view);
@@ -241,9 +243,9 @@ Renderer::Place Renderer::placeOf(const View& view) {
 }
 
 void Renderer::prepare(const View& view) {
-  const News news = impl_->stage.collect();
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(news);
+    impl_->stage.apply(worldChanges);
     impl_->stage.prepare(view);
   });
 }
@@ -266,27 +268,27 @@ void Renderer::checkViewpoint(const View& view) {
 
 void Renderer::start(const View& view) {
   checkViewpoint(view);
-  if (impl_->flights.empty()) impl_->cancelled = false;
-  const News news = impl_->stage.collect();
+  if (impl_->inFlight.empty()) impl_->cancelled = false;
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(news);
+    impl_->stage.apply(worldChanges);
     impl_->start(view);
   });
 }
 
 RenderResult Renderer::finish() {
-  if (impl_->flights.empty()) throw RenderError("no frame is in flight");
+  if (impl_->inFlight.empty()) throw RenderError("no frame is in flight");
   RenderResult result{};
   impl_->run([&] { impl_->finish(result); });
   return result;
 }
 
-size_t Renderer::flying() const { return impl_->flights.size(); }
+size_t Renderer::framesInFlight() const { return impl_->inFlight.size(); }
 
-size_t Renderer::overlap() const {
+size_t Renderer::maxFramesInFlight() const {
   const RenderSettings& settings = impl_->stage.settings;
   if (!settings.cluster) return 1;
-  // A frame has a place for the sums of all its channels, and a copy of them.
+  // A frame needs memory for the sums of all its channels and for a copy of them.
   const size_t bytes = size_t(settings.width) * size_t(settings.height) * pixelBytes;
   const size_t most = std::clamp(inFlightBytes / bytes, size_t(2), size_t(maxInFlight));
   const std::string& split = settings.cluster->settings().split;
@@ -298,9 +300,9 @@ RenderResult Renderer::render(const View& view) {
   checkViewpoint(view);
   RenderResult result{};
   impl_->cancelled = false;
-  const News news = impl_->stage.collect();
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(news);
+    impl_->stage.apply(worldChanges);
     impl_->render(view, result);
   });
   return result;

@@ -1,8 +1,8 @@
-// renderer.h: renders a world to pictures: one that stands still, or one that a Browser runs. It
-// keeps one OpenRT context and one mapper on a thread of its own, so that the calling thread stays
-// free for a progress bar, signals or Python's interrupts. Called by vv and the Python binding, by
-// one thread at a time: the browser's. While the render thread reads the world, that thread waits
-// in the call; the browser itself is never used from the render thread.
+// renderer.h: Renders a world to pictures; a Browser may be running the world. The renderer owns
+// one OpenRT context and one mapper on a thread of its own, so the calling thread stays free for a
+// progress bar, signals or Python's interrupts. vv and the Python binding call it from one thread
+// at a time, the browser's. That thread waits inside the call while the render thread reads the
+// world; the render thread never uses the browser itself.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@
 
 namespace picture {
 
-class Cluster; // cluster.h
+class Cluster;
 
 struct RenderSettings {
   int width = 800, height = 600;
@@ -31,106 +31,104 @@ struct RenderSettings {
   int transport = RT_TRANSPORT_AUTO;
   double error = 0;         // RT_TARGET_ERROR; 0: none
   double timeLimit = 0;     // seconds; 0: none
-  double energyCut = -1;    // RT_ENERGY_CUT; below 0: the engine's own
+  double energyCut = -1;    // RT_ENERGY_CUT; below 0: the engine's default
   double clamp = 0;         // RT_CLAMP; 0: none
   bool progressive = false; // RT_PROGRESSIVE
   int seed = 0;
-  int threads = 0; // 0: as many as the process may use
+  int threads = 0; // 0: as many threads as the process may use
   bool linear = true;
   bool multiplyTextures = false; // xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
   std::string backend = "local";
-  std::string record;      // file that keeps the scene edits
+  std::string record;      // file that records the scene edits
   std::string shaderPath;  // folders, separated by colons
-  std::string environment; // a picture of radiance (radiance.h) all around, instead of the world's
-                           // Background
+  std::string environment; // Environment map (radiance.h) that replaces the world's Background.
   double environmentIntensity = 1;
-  Background background;            // with any but Kind::world no environment may be given
+  Background background;            // Every kind except Kind::world excludes `environment`.
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
   bool operator==(const RenderSettings&) const = default;
 };
 
-// Whether a picture takes long enough to be progressive: what is saved of it before it is finished
-// then shows all of it, not only the tiles that are finished. That costs no time, but up to 320
-// bytes a pixel; with a cluster it would be many small jobs.
-bool worthRounds(const RenderSettings& settings);
+// Tells whether a picture takes long enough to be rendered progressively. Then a picture that is
+// saved early shows the whole frame instead of the finished tiles only. This costs no time, but up
+// to 320 bytes per pixel. On a cluster it would make many small jobs.
+bool isWorthProgressive(const RenderSettings& settings);
 
 struct RenderError : std::runtime_error {
   explicit RenderError(const std::string& text, RTenum engine = RT_NO_ERROR)
       : runtime_error(text), code(engine) {}
-  RTenum code; // the engine's, if it is one of these
+  RTenum code; // the engine's error code, or RT_NO_ERROR
 };
 
 struct RenderResult {
   Picture picture;
   xvrml::MapStats map;
   RTstats stats;
-  bool missing =
-      false; // a shader plug-in or a texture could not be found; the world's diagnostics say which
-  bool interrupted = false; // the picture holds what was finished until then
+  // A shader plug-in or a texture was not found; the world's diagnostics say which.
+  bool missing = false;
+  bool interrupted = false; // the picture holds what was finished when it was interrupted
   double mapSeconds = 0, renderSeconds = 0;
-  std::vector<RTworker> workers;  // of a cluster, as they then were
-  xvrml::CameraSettings camera{}; // that it was made with; its shader is null
-  bool ownRays = false;           // a shader made the rays
-  // With the channel RT_NAME: the Shape nodes by the numbers in it, [0] is null. To be given up
-  // while the world is at rest.
+  std::vector<RTworker> workers;  // workers of the cluster at the end of the picture
+  xvrml::CameraSettings camera{}; // camera of the picture; its shader is null
+  bool hasCameraShader = false;   // a camera shader generated the rays
+  // With channel RT_NAME: the Shape nodes, indexed by the channel's numbers; [0] is null. Release
+  // them while no thread uses the world.
   std::vector<xvrml::NodeRef> nodes;
 };
 
-// Called on the calling thread about 20 times a second with the fraction done; true ends the
-// picture early.
-using Watch = std::function<bool(float progress)>;
+// Called on the calling thread about 20 times a second with the fraction done. Returning true ends
+// the picture early.
+using ProgressCallback = std::function<bool(float progress)>;
 
 class Renderer {
  public:
-  // Throws RenderError. The world must live and stay unchanged as long as the renderer.
-  Renderer(xvrml::World& world, const RenderSettings& settings, Watch watch = {});
-  // The world that the browser runs, with everything that happens to it between two calls: the
-  // renderer takes its changes (Browser::takeChanges), so one renderer a browser. The browser must
-  // live as long as the renderer.
-  Renderer(xvrml::Browser& browser, const RenderSettings& settings, Watch watch = {});
+  // Throws RenderError. The world must outlive the renderer and must not change.
+  Renderer(xvrml::World& world, const RenderSettings& settings, ProgressCallback watch = {});
+  // Renders the world that the browser runs and follows its changes between two calls. The renderer
+  // consumes the changes (Browser::takeChanges), so a browser can have only one renderer. The
+  // browser must outlive the renderer.
+  Renderer(xvrml::Browser& browser, const RenderSettings& settings, ProgressCallback watch = {});
   ~Renderer();
-  // Ends the context, as the destructor does; throws RenderError where the recording that the
-  // settings ask for is not whole. No other call may follow.
+  // Ends the context, as the destructor does. Throws RenderError if the recording that the settings
+  // request is incomplete. No other call may follow.
   void close();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  void setWatch(Watch watch);
-  // Samples, seed, error, headlight and channels of the following pictures; the rest must stay.
-  // Between two calls of render().
+  void setProgressCallback(ProgressCallback watch);
+  // Changes samples, seed, error, headlight and channels of the following pictures; no other
+  // setting may change. Call it between two calls of render().
   void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();
-  // Where a view looks from and which way is up for it, without a picture.
+  // The camera and the up axis of a view; no picture is made.
   struct Place {
     xvrml::CameraSettings camera;
     xvrml::Axis up = xvrml::Axis::y;
-    std::string reason; // why up is that; "": a Viewpoint or the view says so
+    std::string reason; // why this axis is up; "" if a Viewpoint or the view says so
   };
   Place placeOf(const View& view);
-  // Maps the world for a view without making a picture; problems are in the world's diagnostics.
+  // Maps the world for a view without rendering. Problems are added to the world's diagnostics.
   void prepare(const View& view);
-  // What the world is rendered as; after prepare() or render().
+  // Describes the objects that the world is rendered as. Call it after prepare() or render().
   std::vector<xvrml::ExplainedObject> explain();
-  // The picture of the frame in flight as far as it is finished; for the watch to call. False if no
-  // frame is in flight.
+  // Copies the finished part of the frame in flight; called by the progress callback. Returns false
+  // if no frame is in flight.
   bool snapshot(Picture& picture);
-  // Throws RenderError. An exception of the watch ends the picture and is passed on.
+  // Throws RenderError. An exception of the progress callback ends the picture and propagates.
   RenderResult render(const View& view);
 
-  // Frames that overlap, where the settings have a cluster: start() returns when the world is
-  // mapped and the frame under way, and the world may then change; finish() waits for the oldest.
-  // Each frame has the bytes that render() gives. Not mixed with render() while a frame is in
-  // flight.
+  // Overlapping frames, for settings with a cluster. start() returns when the world is mapped and
+  // the frame is under way; the world may then change. finish() waits for the oldest frame. Each
+  // frame has the same bytes as from render(). Do not call render() while a frame is in flight.
   void start(const View& view);
   RenderResult finish();
-  size_t flying() const; // started and not finished
-  // How many frames may be in flight so that all machines have work, and not too much memory is
-  // used: 1 without a cluster.
-  size_t overlap() const;
+  size_t framesInFlight() const; // number of frames started and not finished
+  // Returns how many frames to keep in flight, so that all machines have work and memory stays
+  // limited; 1 without a cluster.
+  size_t maxFramesInFlight() const;
 
  private:
   void begin();
@@ -140,7 +138,8 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-// Index of the viewpoint with this DEF name, description or number from 0; -1 if there is none.
+// Returns the index of the viewpoint with this DEF name, description or number from 0; -1 if there
+// is none.
 int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std::string& name);
 
 } // namespace picture

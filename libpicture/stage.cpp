@@ -16,7 +16,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// "rtRender: why" -> "why": of what is wrong with workers, not with a call.
+// Strips the call from a message: "rtRender: why" becomes "why". Used for errors of workers, which
+// no call caused.
 std::string withoutCall(const std::string& message) {
   const size_t colon = message.find(": ");
   return message.starts_with("rt") && colon != message.npos ? message.substr(colon + 2) : message;
@@ -24,7 +25,7 @@ std::string withoutCall(const std::string& message) {
 
 double aspectOf(const RenderSettings& settings) { return double(settings.width) / settings.height; }
 
-// Room for each channel that is wanted; fill says whether it could be filled.
+// Allocates each wanted channel; `fill` returns whether it could fill it.
 template <class Fill> bool fillChannels(const RenderSettings& settings, uint32_t channels,
                                         Picture& picture, const Fill& fill) {
   for (const Channel& channel : channelTable()) {
@@ -61,29 +62,29 @@ RTcontext newContext(const std::string& configuration) {
 Stage::Stage(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& s)
     : settings(s), world_(&world), browser_(browser) {}
 
-// Errors of calls become diagnostics in the mapper; here only what the exit code depends on.
+// Records only what the exit code depends on. The mapper turns errors of calls into diagnostics.
 void Stage::note(RTenum error, const char*, void* self) {
   auto& stage = *static_cast<Stage*>(self);
   stage.pluginMissing_ |= error == RT_PLUGIN_ERROR;
   stage.memoryExhausted_ |= error == RT_OUT_OF_MEMORY;
 }
 
-// What the engine says: shaders that cannot be rendered, answers that were not finite. Called on
-// render threads too.
+// Receives the engine's messages: shaders that cannot be rendered, results that are not finite.
+// [any thread, also render threads]
 void Stage::listen(int level, const char* text, void* self) {
   auto& stage = *static_cast<Stage*>(self);
   constexpr size_t most = 100;
-  const std::lock_guard lock(stage.heardMutex_);
-  if (level >= 2 && stage.heard_.size() < most) stage.heard_.emplace_back(text);
+  const std::lock_guard lock(stage.messagesMutex_);
+  if (level >= 2 && stage.messages_.size() < most) stage.messages_.emplace_back(text);
 }
 
-void Stage::passOn() {
-  std::vector<std::string> news;
+void Stage::reportMessages() {
+  std::vector<std::string> messages;
   {
-    const std::lock_guard lock(heardMutex_);
-    news.swap(heard_);
+    const std::lock_guard lock(messagesMutex_);
+    messages.swap(messages_);
   }
-  for (const std::string& text : news) world_->diagnostics.warn({}, text);
+  for (const std::string& text : messages) world_->diagnostics.warn({}, text);
 }
 
 void Stage::open(const std::function<bool()>& stop) {
@@ -107,7 +108,7 @@ void Stage::open(const std::function<bool()>& stop) {
 }
 
 std::string Stage::close() {
-  if (borrowed_) rtCancel(context_); // a frame that nobody will see
+  if (borrowed_) rtCancel(context_); // nobody will see this frame
   mapper_.reset();
   if (borrowed_ && environment_) {
     rtUseEnvironment(0);
@@ -131,7 +132,7 @@ void Stage::makeMapper() {
   options.linearColor = settings.linear;
   options.headlight = settings.headlight;
   options.aspect = aspectOf(settings);
-  mapper_.reset(); // before the next one: both would own the context's scene
+  mapper_.reset(); // destroy first: two mappers would both own the context's scene
   mapper_ = std::make_unique<xvrml::OpenRTMapper>(*world_, options);
   mapper_->setMultiplyTextures(settings.multiplyTextures);
   meshSeconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
@@ -139,26 +140,27 @@ void Stage::makeMapper() {
 
 double Stage::takeMeshSeconds() { return std::exchange(meshSeconds_, 0); }
 
-News Stage::collect() {
-  News news;
-  if (!browser_) return news;
-  news.changes = browser_->takeChanges();
-  news.otherWorld = std::exchange(generation_, browser_->generation()) != browser_->generation();
-  if (news.otherWorld) world_ = &browser_->world();
-  news.bound = browser_->bound();
-  news.camera = browser_->camera(aspectOf(settings));
-  return news;
+WorldChanges Stage::collectChanges() {
+  WorldChanges worldChanges;
+  if (!browser_) return worldChanges;
+  worldChanges.changes = browser_->takeChanges();
+  worldChanges.otherWorld =
+      std::exchange(generation_, browser_->generation()) != browser_->generation();
+  if (worldChanges.otherWorld) world_ = &browser_->world();
+  worldChanges.bound = browser_->bound();
+  worldChanges.camera = browser_->camera(aspectOf(settings));
+  return worldChanges;
 }
 
-void Stage::apply(const News& news) {
+void Stage::apply(const WorldChanges& worldChanges) {
   if (!browser_) return;
-  if (news.otherWorld)
+  if (worldChanges.otherWorld)
     makeMapper();
   else
-    mapper_->update(news.changes);
-  mapper_->bind(news.bound);
+    mapper_->update(worldChanges.changes);
+  mapper_->bind(worldChanges.bound);
   viewer_.reset();
-  if (news.bound.viewpoint) viewer_ = news.camera;
+  if (worldChanges.bound.viewpoint) viewer_ = worldChanges.camera;
 }
 
 xvrml::CameraSettings Stage::cameraOf(const View& view) const {
@@ -170,8 +172,8 @@ xvrml::CameraSettings Stage::cameraOf(const View& view) const {
 void Stage::prepare(const View& view) {
   mapper_->setHeadlight(settings.headlight);
   mapper_->setModelLight(settings.environment.empty());
-  mapper_->setBackground(settings.background.kind ==
-                         Background::Kind::world); // else alpha is what the shapes cover
+  // otherwise alpha is the coverage by shapes
+  mapper_->setBackground(settings.background.kind == Background::Kind::world);
   readBackground();
   shown_ = cameraOf(view);
   mapper_->map(shown_);
@@ -185,11 +187,11 @@ void Stage::prepare(const View& view) {
 
 void Stage::readBackground() {
   if (background_ == settings.background) return;
-  backcloth_ = Backcloth(settings.background, settings.linear);
+  backgroundLayer_ = BackgroundLayer(settings.background, settings.linear);
   background_ = settings.background;
 }
 
-// Light from all around that the user gives. The mapper sets its own when that has changed.
+// Sets the user's environment map. The mapper replaces it with its own when the world's changes.
 void Stage::useEnvironment() {
   if (settings.environment.empty()) return;
   if (environment_ == 0) {
@@ -238,12 +240,12 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
     return rtSnapshot(context, channel, plane.data(), plane.size()) != 0;
   };
   if (!context) return false;
-  // Tiles go on being finished: where there are samples there is to be the rest, too.
+  // Other tiles finish meanwhile. Reading RT_SAMPLES first ensures that counted samples have data.
   if (!fillChannels(settings, channels & RT_SAMPLES, picture, copied)) return false;
   if (!fillChannels(settings, channels & ~uint32_t(RT_SAMPLES), picture, copied)) return false;
   describe(settings, picture, channels);
   if (channels & RT_RGBA)
-    backcloth_.putBehind(picture.planes[RT_RGBA], settings.width, settings.height);
+    backgroundLayer_.compositeOver(picture.planes[RT_RGBA], settings.width, settings.height);
   return true;
 }
 
@@ -257,7 +259,7 @@ void Stage::readChannels(const RenderSettings& frame, Picture& picture,
     return true;
   });
   if (frame.channels & RT_RGBA)
-    backcloth_.putBehind(picture.planes[RT_RGBA], frame.width, frame.height);
+    backgroundLayer_.compositeOver(picture.planes[RT_RGBA], frame.width, frame.height);
 }
 
 void Stage::describe(const RenderSettings& frame, RenderResult& result) const {

@@ -1,7 +1,7 @@
-// stage.h: what is rendered and how: one OpenRT context, the mapper that fills it with a world, and
-// the settings of its frames. Owned by the renderers (renderer.cpp, live.cpp), each of which has a
-// thread for it: the context's. What happens to a running world comes over as News, which are
-// collected on the browser's thread.
+// stage.h: Owns what is rendered and how: one OpenRT context, the mapper that fills it from a
+// world, and the settings of its frames. The renderers (renderer.cpp, live.cpp) own one each and
+// give the context its own thread. Changes of a running world are collected as WorldChanges on the
+// browser's thread and passed to the context's thread.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@
 
 namespace picture {
 
-// What happened to a world since the last call. It holds on to nodes: to be used and given up while
-// the browser is at rest.
-struct News {
+// Changes of a world since the last call. They hold references to nodes, so use and release them
+// only while the browser is at rest.
+struct WorldChanges {
   bool otherWorld = false;
   xvrml::FieldChanges changes;
   xvrml::BoundNodes bound;
@@ -27,45 +27,48 @@ struct News {
 
 class Stage {
  public:
-  // browser null: the world stands still. Nothing is made yet.
+  // browser may be null: the world is static. The constructor creates no context.
   Stage(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings);
   ~Stage() = default;
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  RenderSettings settings; // between frames
+  RenderSettings settings; // may be changed between frames
 
   // --- On the browser's thread ---
-  News collect();
-  // What the engine said meanwhile, into the world's diagnostics.
-  void passOn();
+  //
+  // Takes the changes since the last call.
+  WorldChanges collectChanges();
+  // Adds the engine's messages since the last call to the world's diagnostics.
+  void reportMessages();
 
   // --- On the context's thread ---
-  // The context and the mapper; throws RenderError. stop: asked while a cluster is in use by
-  // others; true: give up.
+  //
+  // Creates the context and the mapper; throws RenderError. While other renderers use the cluster,
+  // it calls `stop` and gives up when that returns true.
   void open(const std::function<bool()>& stop = {});
-  // Ends the context. Returns why a recording is not whole; empty where all is well.
+  // Ends the context. Returns why a recording is incomplete; empty if it is complete.
   std::string close();
-  void apply(const News& news);
-  // Where a view looks from; the viewer of a running world unless another view is asked for.
+  void apply(const WorldChanges& worldChanges);
+  // Returns the camera of a view. The default is the viewer of a running world.
   xvrml::CameraSettings cameraOf(const View& view) const;
   // Maps the world for a view.
   void prepare(const View& view);
-  // The size, channels and quality of the next frame, from the settings.
+  // Sets size, channels and quality of the next frame from the settings.
   void setUpFrame();
-  // The channels of the frame that is finished, whose settings these were. names: as they were when
-  // it was started; null: as they are.
+  // Reads the channels of the finished frame, which had these settings. `names` are the names at
+  // its start; null: the current names.
   void readChannels(const RenderSettings& frame, Picture& picture,
                     const std::vector<std::string>* names = nullptr) const;
-  void describe(const RenderSettings& frame, RenderResult& result) const; // statistics of it
-  const xvrml::CameraSettings& shown() const { return shown_; }           // by the last prepare()
+  void describe(const RenderSettings& frame, RenderResult& result) const; // adds the statistics
+  const xvrml::CameraSettings& shown() const { return shown_; } // camera of the last prepare()
   const xvrml::OpenRTMapper* mapper() const { return mapper_.get(); }
-  double takeMeshSeconds(); // that mappers were made in
+  double takeMeshSeconds(); // seconds spent constructing mappers since the last call
 
   // --- On any thread ---
-  RTcontext context() const { return context_; } // null: not yet
-  // Channels of the frame in flight as far as it is finished; false: there is none. The settings
-  // must be its own, and the mapper at rest.
+  RTcontext context() const { return context_; } // null before open()
+  // Copies the finished part of the channels of the frame in flight; returns false if there is
+  // none. The settings must be those of the frame, and the mapper must be idle.
   bool snapshot(Picture& picture, uint32_t channels) const;
 
  private:
@@ -76,28 +79,29 @@ class Stage {
   static void note(RTenum error, const char* message, void* self);
   static void listen(int level, const char* text, void* self);
 
-  xvrml::World* world_;     // as it stands; with a browser: the one that it runs
-  xvrml::Browser* browser_; // null: the world stands still
+  xvrml::World* world_;     // the world that is rendered; with a browser, the one that it runs
+  xvrml::Browser* browser_; // null: the world is static
   std::unique_ptr<xvrml::OpenRTMapper> mapper_;
   std::atomic<RTcontext> context_{nullptr};
   double meshSeconds_ = 0;
   bool pluginMissing_ = false, memoryExhausted_ = false;
   RTid environment_ = 0, environmentTexture_ = 0;
-  Backcloth backcloth_{{}, true}; // what is put behind the frames, as `background_` says
+  BackgroundLayer backgroundLayer_{{}, true}; // drawn behind the frames, as `background_` says
   Background background_;
   xvrml::CameraSettings shown_{};
-  bool borrowed_ = false;                       // the context is the cluster's
-  std::optional<xvrml::CameraSettings> viewer_; // of a running world, where a Viewpoint is bound
-  uint64_t generation_ = 0;                     // of the browser's world that the mapper shows
-  std::mutex heardMutex_;
-  std::vector<std::string> heard_;
+  bool borrowed_ = false; // the context belongs to the cluster
+  // viewer of a running world, if a Viewpoint is bound
+  std::optional<xvrml::CameraSettings> viewer_;
+  uint64_t generation_ = 0; // generation of the browser's world that the mapper shows
+  std::mutex messagesMutex_;
+  std::vector<std::string> messages_;
 };
 
 void throwOnError(const char* doing);
 
-// What the settings say of a context besides its backend: " threads=...".
+// Returns the part of a context's configuration that does not concern the backend: " threads=...".
 std::string contextConfiguration(const RenderSettings& settings);
-// rtNewContext. Throws RenderError.
+// Calls rtNewContext. Throws RenderError.
 RTcontext newContext(const std::string& configuration);
 
 } // namespace picture

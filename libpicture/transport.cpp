@@ -6,8 +6,9 @@
 namespace picture {
 
 namespace {
-constexpr const char* names[] = {"auto", "direct", "whitted", "path", "light"}; // by RT_TRANSPORT_*
-}
+// indexed by RT_TRANSPORT_*
+constexpr const char* names[] = {"auto", "direct", "whitted", "path", "light"};
+} // namespace
 
 std::optional<int> transportNamed(std::string_view name) {
   for (size_t i = 0; i < std::size(names); ++i)
@@ -19,8 +20,8 @@ const char* transportName(RTenum transport) {
   return transport < std::size(names) ? names[transport] : "plug-in";
 }
 
-std::vector<LeftOut> leftOutBy(RTenum transport, uint32_t leaves) {
-  static constexpr std::pair<uint32_t, LeftOut> table[] = {
+std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves) {
+  static constexpr std::pair<uint32_t, OmittedLight> table[] = {
       {RT_LEAVES_IMAGES, {"mirror_images", "mirror images and what is behind glass"}},
       {RT_LEAVES_BETWEEN, {"interreflection", "light that goes from surface to surface"}},
       {RT_LEAVES_EMITTERS, {"emitters", "light of emitters on other surfaces"}},
@@ -28,7 +29,7 @@ std::vector<LeftOut> leftOutBy(RTenum transport, uint32_t leaves) {
       {RT_LEAVES_CAUSTICS,
        {"caustics", "light of lamps without extent that comes by way of mirrors or glass"}},
   };
-  std::vector<LeftOut> list;
+  std::vector<OmittedLight> list;
   for (const auto& [bit, left] : table)
     if (leaves & bit) list.push_back(left);
   if (transport == RT_TRANSPORT_LIGHT && (leaves & RT_LEAVES_CAUSTICS))
@@ -37,9 +38,9 @@ std::vector<LeftOut> leftOutBy(RTenum transport, uint32_t leaves) {
   return list;
 }
 
-std::vector<std::string> leftOutNames(const RTstats& stats) {
+std::vector<std::string> omittedLightNames(const RTstats& stats) {
   std::vector<std::string> names;
-  for (const LeftOut& left : leftOutBy(stats.transport, stats.transportLeavesOut))
+  for (const OmittedLight& left : omittedLights(stats.transport, stats.transportLeavesOut))
     names.emplace_back(left.name);
   return names;
 }

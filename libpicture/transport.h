@@ -1,4 +1,4 @@
-// transport.h: the transports by name. [any thread]
+// transport.h: Converts transports to and from their names. [any thread]
 #pragma once
 
 #include <optional>
@@ -13,15 +13,16 @@ namespace picture {
 inline constexpr const char* transportNames = "auto, direct, whitted, path or light";
 
 std::optional<int> transportNamed(std::string_view name); // RT_TRANSPORT_*
-const char* transportName(RTenum transport); // "path" of RT_TRANSPORT_PATH ...; "plug-in" of others
+// "path" for RT_TRANSPORT_PATH and so on; "plug-in" for others
+const char* transportName(RTenum transport);
 
-// A kind of light that a transport leaves out of a scene.
-struct LeftOut {
-  const char* name; // for programs: "sky" ...
-  const char* text; // for people
+// A kind of light that a transport omits in a scene.
+struct OmittedLight {
+  const char* name; // identifier for programs: "sky" and so on
+  const char* text; // description for people
 };
 // leaves: RTstats.transportLeavesOut.
-std::vector<LeftOut> leftOutBy(RTenum transport, uint32_t leaves);
-std::vector<std::string> leftOutNames(const RTstats& stats);
+std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves);
+std::vector<std::string> omittedLightNames(const RTstats& stats);
 
 } // namespace picture

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/accuracy.md: runs the numeric tests and the audit of the error bars, and puts what they print between the
-markers of that page. `make accuracy`.
+"""Writes the tables of docs/accuracy.md: runs the numeric tests and the audit of the error bars,
+and inserts their output between the markers of that page (`make accuracy`).
 
 usage: accuracy.py BIN [--seeds N] [--edge N] [--page docs/accuracy.md] [--only audit|numeric]
 """

@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""What the cluster costs and gains, on this machine, over loopback.
+"""Measures the cost and the speedup of the cluster on this machine, over loopback.
 
-bench_cluster.py BUILD [--world FILE] [--size 640x480] [--spp 16] [--runs 5] [--threads N] [--key] [--vv OPTIONS] [--json FILE]
+bench_cluster.py BUILD [--world FILE] [--size 640x480] [--spp 16] [--runs 5] [--threads N]
+                 [--key] [--vv OPTIONS] [--json FILE]
 
-Measures in turns, so that all see the same load of the machine, and prints medians:
+Runs the configurations in turns, so that all see the same load of the machine, and prints medians:
+
   local       vv --threads N
-  one         one worker of N threads, the master with none of its own: its ratio to local is what the way costs
+  one         one worker of N threads, none in the master: its ratio to local is the overhead
   one, CURVE  the same, encrypted (--key)
   single      one worker of one thread
-  two         two workers of one thread: how much faster than single
-Seconds are those that vv --stats tells of rendering: from the start of the frame, scene sent and prepared, to its last pixel.
-Processor time is that of all processes together from start to end; on a machine that does other things it tells more. All
-pictures must be the same bytes.
+  two         two workers of one thread: its ratio to single is the speedup
+
+Seconds are the rendering time from vv --stats: from the start of the frame, with the scene sent and
+prepared, to its last pixel. Processor time is the total of all processes from start to end; on a
+busy machine it is the more reliable number. All pictures must have the same bytes.
 """
 import argparse
 import json
@@ -38,7 +41,7 @@ def processor_seconds(process):
 
 
 def picture(args, folder, options):
-    """Seconds of rendering, processor time of vv, and the bytes of the picture."""
+    """Returns the seconds of rendering, the processor time of vv, and the bytes of the picture."""
     stats, out = folder / "stats.json", folder / "picture.pfm"
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run([args.build / "bin/vv", args.world, "-q", "--size", args.size, "--spp", str(args.spp), "--stats", stats, "-o", out,

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Ray queries from numpy: xvrml.rt's cast_rays beside raw Embree (tests/bench/raw_rays.cpp, one rtcIntersect1 a ray), Open3D and embreex,
-where they are installed, on the same mesh and the same incoherent rays. Rounds take turns; the best of each is compared.
+"""Compares ray queries from numpy: xvrml.rt's cast_rays, raw Embree (tests/bench/raw_rays.cpp, one
+rtcIntersect1 per ray), and Open3D and embreex if they are installed. All use the same mesh and the
+same incoherent rays, in alternating rounds; the best round of each counts.
 
-PYTHONPATH=build/release/python tools/bench_rays.py --raw build/release/lib/libraw_rays.so [--rays 2000000] [--threads 2]"""
+PYTHONPATH=build/release/python tools/bench_rays.py --raw build/release/lib/libraw_rays.so
+    [--rays 2000000] [--threads 2]
+"""
 import argparse
 import ctypes
 import os
@@ -12,7 +15,7 @@ import numpy as np
 
 
 def terrain(edge):
-    """The mesh of tests/bench/openrt_rays.cpp: 2 edge^2 triangles over 10 x 10 units."""
+    """Returns the mesh of tests/bench/openrt_rays.cpp: 2 edge^2 triangles over 10 x 10 units."""
     u, v = np.meshgrid(np.linspace(-5, 5, edge + 1), np.linspace(-5, 5, edge + 1))
     y = 0.4 * np.sin(3 * u) * np.cos(2 * v) + 0.02 * np.sin(40 * u + 30 * v)
     vertices = np.stack([u, y, v], -1).reshape(-1, 3).astype(np.float32)
@@ -22,7 +25,7 @@ def terrain(edge):
 
 
 def incoherent(count):
-    """From anywhere near the terrain to anywhere: nine tenths meet it."""
+    """Returns rays from random points near the terrain in random directions; nine tenths hit it."""
     random = np.random.default_rng(1)
     rays = np.empty((count, 6), np.float32)
     rays[:, :3] = random.uniform((-5, 0, -5), (5, 3, 5), (count, 3))
@@ -72,7 +75,7 @@ def contenders(arguments, vertices, triangles):
         other = rtcore_scene.EmbreeScene()
         TriangleMesh(other, vertices[triangles])
         yield "embreex (one thread)", lambda rays: other.run(np.ascontiguousarray(rays[:, :3]), np.ascontiguousarray(rays[:, 3:]),
-                                                             output=True)["tfar"]  # 1e37: nothing
+                                                             output=True)["tfar"]  # 1e37: no hit
     except ImportError as error:
         print("embreex:", error)
 

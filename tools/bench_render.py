@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Speed against error: our transports, and Mitsuba 3 where it is installed, on four worlds. `make bench-render`.
+"""Compares speed and error of our transports, and of Mitsuba 3 if it is installed, on four worlds.
 
 bench_render.py --out FOLDER [--full] [--docs] [--again] [--vv PROGRAM] [--mitsuba PYTHON] [--scenes a,b]
 
-FOLDER gets render.csv (a row for each renderer, world and number of samples), a plot each (SVG) and render.md. --docs puts the last
-two into docs/. The reference of a world is a long render made in the run by the transport named below, in two halves: their
-difference is its own noise, which is taken off what is measured. Mitsuba's Python is $MITSUBA_PYTHON or this one.
+`make bench-render` runs it. FOLDER gets render.csv (a row for each renderer, world and number of
+samples), one plot per world (SVG) and render.md. --docs writes the last two to docs/. The reference
+of a world is a long render with the transport named below, in two halves. Their difference measures
+its own noise, which is subtracted from the errors. Mitsuba's Python is $MITSUBA_PYTHON or this one.
 """
 import argparse
 import array
@@ -24,7 +25,7 @@ from export_mitsuba import ROOT, read_pfm  # noqa: E402
 from plot_svg import log_plot  # noqa: E402
 
 SIZE = (160, 120)
-SAMPLES = (2, 4, 16, 64, 256, 1024)  # a single sample lies in the middle of its pixel
+SAMPLES = (2, 4, 16, 64, 256, 1024)  # a single sample would lie at the pixel's centre
 T95 = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36}  # Student's t, 95 %
 
 # World: title, our transports (the first makes the reference), whether every surface has an exact counterpart in Mitsuba
@@ -37,7 +38,7 @@ SCENES = {
 
 
 class Budget:
-    """Seconds: of a reference, and of a picture beyond which no more samples are tried."""
+    """Seconds for a reference, and for a picture; slower pictures get no more samples."""
 
     def __init__(self, full):
         self.reference, self.picture, self.seeds = (600, 60, 6) if full else (30, 3, 3)
@@ -46,7 +47,8 @@ class Budget:
 # Pictures ---------------------------------------------------------------------------------------------------------------------
 
 def ours(vv, scene, folder, transport, seed, *more):
-    """Floats of a picture, its seconds, the transport that made it; None where this build has no such transport."""
+    """Returns the floats of a picture, its seconds and the transport used; None if this build lacks
+    the transport."""
     world = ROOT / f"examples/scenes/{scene}.wrl"
     picture, stats = folder / "x.pfm", folder / "x.json"
     done = subprocess.run([str(a) for a in (vv, world, "-o", picture, "--size", f"{SIZE[0]}x{SIZE[1]}", "--seed", seed, "--transport",
@@ -60,7 +62,8 @@ def ours(vv, scene, folder, transport, seed, *more):
 
 
 def worker(request):
-    """In Mitsuba's Python: renders as asked, writes raw floats, answers with the seconds of each picture."""
+    """Runs in Mitsuba's Python: renders on request, writes raw floats and returns the seconds of
+    each picture."""
     import time
 
     import mitsuba as mi
@@ -74,7 +77,7 @@ def worker(request):
         image = np.array(mi.render(scene, spp=spp, seed=seed))[:, :, :3]
         return image, time.time() - start
 
-    render(1, 12345)  # compiled once
+    render(1, 12345)  # so that compilation is not measured
     answers = []
     for job in request["jobs"]:
         total, seconds, passes = np.zeros((height, width, 3)), 0.0, 0
@@ -93,7 +96,8 @@ class Mitsuba:
         self.python, self.variant = python, variant
 
     def works(self, folder):
-        """Also a small picture: the just-in-time compiler may miss its library, or end the process."""
+        """Also renders a small picture: the just-in-time compiler may lack its library, or end the
+        process."""
         test = ("import mitsuba as mi; mi.set_variant(%r); mi.render(mi.load_dict(mi.cornell_box()), spp=1).numpy()" % self.variant)
         try:
             return subprocess.run([self.python, "-c", test], capture_output=True, timeout=300, cwd=folder).returncode == 0
@@ -115,7 +119,7 @@ class Mitsuba:
 # Errors -----------------------------------------------------------------------------------------------------------------------
 
 class Reference:
-    """The mean of two halves, and what it is uncertain by."""
+    """The mean of two halves, and its uncertainty."""
 
     def __init__(self, a, b):
         self.values = [(x + y) / 2 for x, y in zip(a, b)]
@@ -139,8 +143,9 @@ class Reference:
 
 
 def summary(scene, renderer, spp, reference, pictures):
-    """A row: means over the pictures of several seeds."""
-    rows = [reference.compare(values) for values, _ in pictures]  # errors below the reference's own say nothing
+    """Returns a row: means over the pictures of several seeds."""
+    # errors below the reference's own error are meaningless
+    rows = [reference.compare(values) for values, _ in pictures]
     n = len(rows)
     seconds = sum(s for _, s in pictures) / n
     mse, relative = (sum(r[k] for r in rows) / n for k in (0, 1))
@@ -170,7 +175,7 @@ def measure_ours(vv, scene, folder, transport, reference, budget):
 
 def measure_mitsuba(mitsuba, scene, folder, reference, budget):
     exported = folder / "scene.xml"
-    if reference is None:  # its own
+    if reference is None:  # the transport's own reference
         halves = mitsuba.render(exported, [{"spp": 64, "seed": s, "seconds": budget.reference / 2, "out": str(folder / f"ref{s}")}
                                            for s in (501, 502)], math.inf)
         if len(halves) < 2:
@@ -193,11 +198,11 @@ def measure(scene, options, budget, mitsubas):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         halves = None
-        for transport in transports:  # the first that this build has
+        for transport in transports:  # the first transport that this build has
             probe = ours(options.vv, scene, folder, transport, 1000, "--spp", 16)
             if probe is None:
                 continue
-            # A power of two: nets of samples are far better than as many rounds.
+            # A power of two: low-discrepancy point sets are far better than several rounds.
             spp = 16 * 2 ** max(0, int(math.log2(budget.reference / 2 / max(probe[1], 1e-3))))
             halves = [ours(options.vv, scene, folder, transport, seed, "--spp", min(spp, 65536))[0] for seed in (1001, 1002)]
             break
@@ -221,7 +226,8 @@ def measure(scene, options, budget, mitsubas):
 # Reports ----------------------------------------------------------------------------------------------------------------------
 
 def table(rows):
-    """By world and renderer: what the pictures with the most samples say, as far as the reference can tell."""
+    """Returns the table by world and renderer, from the pictures with the most samples that the
+    reference can resolve."""
     text = ("| world | renderer | samples | seconds | RMSE | relMSE | relMSE x seconds | bias, 95 % |\n"
             "| --- | --- | --- | --- | --- | --- | --- | --- |\n")
     for key in dict.fromkeys((r["scene"], r["renderer"]) for r in rows):
@@ -265,7 +271,8 @@ def report(rows, options, mitsubas):
         page = ROOT / "docs/benchmarks.md"
         begin, end = "<!-- bench-render -->\n", "<!-- /bench-render -->\n"
         before, rest = page.read_text().split(begin)
-        plots = [p for p in plots if not p.endswith("relmse.svg")]  # says what the table says
+        # the table contains the same data
+        plots = [p for p in plots if not p.endswith("relmse.svg")]
         images = "".join(f"![{p[13:-4].replace('_', ': ')} over seconds](images/{p})\n" for p in plots)
         page.write_text(before + begin + text + "\n" + images + end + rest.split(end)[1])
         for plot in plots:

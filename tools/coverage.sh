@@ -1,5 +1,6 @@
 #!/bin/bash
-# coverage.sh BUILD: sums gcov's line counts per source of the libraries after the tests ran in a coverage build.
+# coverage.sh BUILD: sums gcov's line counts per source file of the libraries, after the tests have
+# run in a coverage build.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$1

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""A VRML world for Mitsuba 3: triangles as our mapper hands them over, our stock shaders as the BSDFs that mean the same.
+"""Exports a VRML world to Mitsuba 3, with our stock shaders as equivalent BSDFs.
 
 export_mitsuba.py WORLD.wrl FOLDER [--size WxH] [--vv PROGRAM] [--replay PROGRAM]
 
-Writes FOLDER/scene.xml with meshes as PLY, and the surroundings, as our own panorama camera sees them, as PFM. What has no
-counterpart is said on standard error and left out or replaced (see SURFACES). Needs nothing but Python and our programs; Mitsuba
-only to render the result. As a module: export(world, folder, size, vv, replay) -> list of remarks.
+Writes FOLDER/scene.xml, the triangles of our mapper as PLY, and the surroundings, rendered by our
+panorama camera, as PFM. Features without a counterpart are reported on standard error and left out
+or replaced (see SURFACES). It needs only Python and our programs; Mitsuba is needed only to render
+the result. As a module: export(world, folder, size, vv, replay) -> list of remarks.
 """
 import argparse
 import array
@@ -28,7 +29,8 @@ def point(m, p):
 
 
 def inverse_transpose(m):
-    """Rows of the inverse of the upper 3x3: what normals are multiplied with; not scaled."""
+    """Returns the rows of the inverse of the upper 3x3, which normals are multiplied with; not
+    scaled."""
     a, b, c = m[0:3], m[4:7], m[8:11]
 
     def cross(u, v):
@@ -228,7 +230,7 @@ def write_pfm(path, width, height, values):
 
 
 def read_pfm(path):
-    """width, height, floats: rows from the bottom up, as in the file."""
+    """Returns width, height, floats; rows from the bottom up, as in the file."""
     data = pathlib.Path(path).read_bytes()
     head = data.split(b"\n", 3)
     width, height = map(int, head[1].split())
@@ -238,14 +240,16 @@ def read_pfm(path):
 
 
 def panorama(world, folder, vv, size):
-    """What is seen around, as Mitsuba's envmap has it: from so far away that nothing of the world is as large as a pixel."""
+    """Renders the surroundings for Mitsuba's envmap, from so far away that the whole world is
+    smaller than a pixel."""
     width, height = size
     run(vv, world, "-o", folder / "around.pfm", "--size", f"{width}x{height}", "--spp", "16", "--transport", "direct", "--quiet",
         "--camera", "0,1e9,0:0,1e9,-1", "--camera-shader", "Panorama")
     _, _, values = read_pfm(folder / "around.pfm")
     if not any(values):
         return ""
-    rolled = array.array("f")  # our middle looks along -z, theirs is the left edge
+    # the centre of our picture looks along -z, which is the left edge of Mitsuba's
+    rolled = array.array("f")
     for y in range(height):
         row = values[3 * width * y:3 * width * (y + 1)]
         rolled += row[3 * (width // 2):] + row[:3 * (width // 2)]

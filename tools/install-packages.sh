@@ -1,7 +1,8 @@
 #!/bin/bash
-# Installs the Debian packages that the project needs: `tools/install-packages.sh` for building, testing and the demo,
-# `tools/install-packages.sh dev` also what `make fuzz`, `make tidy` and `make format` use, `docs` what `make docs` uses. Does nothing, quickly and
-# without a network, when all of them are there. Runs as root or through sudo.
+# Installs the Debian packages that the project needs. `tools/install-packages.sh` installs those
+# for building, testing and the demo; `dev` adds the ones for `make fuzz`, `make tidy` and `make
+# format`, `docs` those for `make docs`. If all are installed, it returns at once and needs no
+# network. Runs as root or through sudo.
 set -euo pipefail
 
 build=(
@@ -12,10 +13,11 @@ build=(
   libflatbuffers-dev flatbuffers-compiler # scene edits
   libzmq3-dev cppzmq-dev liblz4-dev       # the cluster
   libfast-float-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev
-  libavcodec-dev libavformat-dev libswscale-dev # films; the build does without, too
+  libavcodec-dev libavformat-dev libswscale-dev # films; optional
   libfreetype-dev libharfbuzz-dev libfontconfig-dev fonts-dejavu-core libglu1-mesa-dev # text, polygons
   python3 python3-dev python3-numpy python3-venv pybind11-dev
-  duktape-dev tcl-dev tk-dev libffi-dev libseccomp-dev # script engines, each built where its library is; their cage
+  # script engines, each built if its library is installed; their sandbox
+  duktape-dev tcl-dev tk-dev libffi-dev libseccomp-dev
   libsdl2-dev                                          # the window
 )
 tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy)
@@ -50,7 +52,8 @@ install() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -y -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 \
     install --no-install-recommends "${missing[@]}" </dev/null >"$log" 2>&1
 }
-# The package lists may be old or absent: fetch them first, and try with what is there if that fails.
+# The package lists may be old or missing: fetch them first. If that fails, try with the existing
+# ones.
 "${as_root[@]}" apt-get -qq -o DPkg::Lock::Timeout=300 update </dev/null >"$log" 2>&1 || cat "$log" >&2
 if ! install; then
   cat "$log" >&2

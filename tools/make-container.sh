@@ -1,6 +1,7 @@
 #!/bin/bash
-# make-container.sh [OPTION...]: the image `openrt` (contrib/container), by podman, buildah or docker, whichever is installed; options
-# are passed on (`--isolation=chroot --network=host` where containers cannot be nested).
+# make-container.sh [OPTION...]: builds the image `openrt` (contrib/container) with podman, buildah
+# or docker, whichever is installed. Options are passed on (`--isolation=chroot --network=host` if
+# containers cannot be nested).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 for tool in podman buildah docker; do

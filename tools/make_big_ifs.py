@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""Writes a VRML97 world of one large IndexedFaceSet: a wavy grid of N x N cells, two triangles each.
+"""Writes a VRML97 world of one large IndexedFaceSet: a wavy grid of N x N cells, two triangles
+each.
 
-usage: make_big_ifs.py [N] > big.wrl      (632: about 800,000 triangles and 30 MB, the file docs/benchmarks.md speaks of)
+usage: make_big_ifs.py [N] > big.wrl
+
+N = 632 gives about 800,000 triangles and 30 MB, as in docs/benchmarks.md.
 """
 import math
 import sys

@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""Writes examples/kicad: a small board in the form in which KiCad's board editor exports VRML, and the models that it names.
+"""Writes examples/kicad: a small board in the form of KiCad's VRML export, and the models that it
+names.
 
 make_kicad_example.py FOLDER     blinker.wrl and shapes3D/*.wrl; checked in, run it again after a change
 
-As in such exports the board is a list of layers without names, z is up, the unit is the millimetre, and parts are Inlines of models
-whose unit is a tenth of an inch (hence their scale of 2.54) and whose Materials have DEF names. The board and the models are ours.
+As in such exports, the board is a list of layers without names, z is up, and the unit is the
+millimetre. Parts are Inlines of models whose unit is a tenth of an inch (hence their scale of
+2.54), and their Materials have DEF names. The board and the models were made for this project.
 """
 import math
 import pathlib
 import sys
 
 WIDTH, HEIGHT, THICK = 40.0, 26.0, 1.6  # mm
-MATERIALS = {  # of the models, named as KiCad's libraries do
+MATERIALS = {  # materials of the models, named as in KiCad's libraries
     "IC-BODY-EPOXY-04": "ambientIntensity 0.29 diffuseColor 0.148 0.145 0.145 specularColor 0.18 0.168 0.16 shininess 0.35",
     "PIN-01": "ambientIntensity 0.271 diffuseColor 0.824 0.82 0.781 specularColor 0.328 0.258 0.172 shininess 0.7",
     "PIN-02": "ambientIntensity 0.379 diffuseColor 0.859 0.738 0.496 specularColor 0.137 0.145 0.184 shininess 0.4",
@@ -21,7 +23,7 @@ MATERIALS = {  # of the models, named as KiCad's libraries do
     "LED-RED": "ambientIntensity 0.789 diffuseColor 0.7 0.1 0.05 specularColor 0.33 0.24 0.2 shininess 0.5 transparency 0.1",
     "MET-ALUMINUM": "ambientIntensity 0.256 diffuseColor 0.372 0.322 0.373 specularColor 0.556 0.554 0.556 shininess 0.127",
 }
-LAYERS = {  # colours of the board's layers; nothing has a name
+LAYERS = {  # colours of the board's layers; the layers have no names
     "body": "diffuseColor 0.41 0.38 0.22 specularColor 0.09 0.05 0.03 shininess 0.1",
     "copper": "diffuseColor 0.72 0.47 0.22 specularColor 0.6 0.4 0.3 shininess 0.3",
     "mask": "diffuseColor 0.03 0.27 0.11 specularColor 0.1 0.2 0.1 shininess 0.4",
@@ -32,13 +34,13 @@ LAYERS = {  # colours of the board's layers; nothing has a name
 
 
 class Faces:
-    """An IndexedFaceSet that grows."""
+    """Collects the faces of an IndexedFaceSet."""
 
     def __init__(self):
         self.points, self.faces = [], []
 
     def prism(self, outline, low, high, top=True, bottom=True):
-        """outline: convex or not, counter-clockwise seen from +z."""
+        """outline: convex or concave, counter-clockwise seen from +z."""
         base, n = len(self.points), len(outline)
         self.points += [(x, y, low) for x, y in outline] + [(x, y, high) for x, y in outline]
         if top:
@@ -52,7 +54,7 @@ class Faces:
                    z - sz / 2, z + sz / 2)
 
     def track(self, way, width, low, high):
-        """A strip of copper along a way of points, with round ends."""
+        """Adds a strip of copper along a path of points, with round ends."""
         for (x0, y0), (x1, y1) in zip(way, way[1:]):
             a = math.atan2(y1 - y0, x1 - x0)
             outline = [(x1 + width / 2 * math.cos(a + t), y1 + width / 2 * math.sin(a + t)) for t in half_turn(-math.pi / 2)]
@@ -64,7 +66,8 @@ class Faces:
         self.prism([(x + radius * math.cos(t), y + radius * math.sin(t)) for t in turns], low, high, bottom=False)
 
     def lathe(self, profile, steps=32):
-        """profile: (radius, z) from the bottom up; about the z axis."""
+        """Adds a surface of revolution about the z axis. profile: (radius, z) from the bottom
+        up."""
         base = len(self.points)
         for r, z in profile:
             self.points += [(r * math.cos(2 * math.pi * i / steps), r * math.sin(2 * math.pi * i / steps), z) for i in range(steps)]
@@ -173,7 +176,7 @@ def board():
     top = THICK / 2 + .02
     for way in TRACKS:
         tracks.track(way, .5, top, top + .03)
-    for i in range(4):  # the header's and the LED's rings, the corners' holes
+    for i in range(4):  # the rings of the header and the LED, the holes in the corners
         copper.disc(-16, 3.81 - 2.54 * i, .85, top, top + .04)
     for y in (3.73, 6.27):
         copper.disc(13, y, .9, top, top + .04)
@@ -202,7 +205,7 @@ def placed(name, x, y, turn):
 
 
 def in_tenths(text):
-    """A model in tenths of an inch: its points are in millimetres above."""
+    """Converts a model from millimetres to tenths of an inch."""
     return f"Transform {{ scale 0.3937008 0.3937008 0.3937008 children [\n{text}] }}\n"
 
 

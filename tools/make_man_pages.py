@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Makes manual pages of section 3 from the comments of C headers: one page for each part, and a link for every function.
+"""Writes manual pages of section 3 from the comments of C headers: one page for each part, and a
+link for every function.
 
 make_man_pages.py FOLDER VERSION HEADER...
 
-The first comment of the first header introduces the library. A part begins with a comment of one line that ends in dashes. What a comment stands above, up to the next comment or blank line, it
-is about. Lines that are indented within a comment stay as they are; those that begin with a dash are items of a list.
+The first comment of the first header introduces the library. A part begins with a comment of one
+line that ends in dashes. A comment describes what is below it, up to the next comment or blank
+line. Indented lines of a comment stay unchanged; lines that begin with a dash are items of a list.
 """
 import pathlib
 import re
@@ -26,13 +28,13 @@ def escape(text):
 
 
 def comment_text(block):
-    """The lines of a comment without its frame."""
+    """Returns the lines of a comment without its frame."""
     lines = re.sub(r"^\s*/\*+ ?|\s*\*/\s*$", "", block, flags=re.S).split("\n")
     return [re.sub(r"^ ?\* ?", "", line.lstrip() if line.lstrip().startswith("*") else line).rstrip() for line in lines]
 
 
 def paragraphs(lines):
-    """Running text, items and literal lines of a comment as roff."""
+    """Converts running text, items and literal lines of a comment to roff."""
     out, text, literal = [], [], []
 
     def flush():
@@ -65,7 +67,8 @@ def paragraphs(lines):
 
 
 def tokens(part):
-    """Comments, function declarations, other declarations and blank lines of a part, in order."""
+    """Returns the comments, function declarations, other declarations and blank lines of a part, in
+    order."""
     lines, i = part.split("\n"), 0
     while i < len(lines):
         line = lines[i]
@@ -100,7 +103,7 @@ def function_name(declaration):
 
 
 def describe(part):
-    """Body of DESCRIPTION, and the declarations of the part's functions."""
+    """Returns the body of DESCRIPTION, and the declarations of the part's functions."""
     body, functions, said, open_run = [], [], None, False
     for kind, text in tokens(part):
         if kind == "blank":
@@ -119,7 +122,7 @@ def describe(part):
             open_run = True
             continue_said = said
             if continue_said is not None:
-                body += ["@" + "\n".join(continue_said)]  # moved behind the run of declarations below
+                body += ["@" + "\n".join(continue_said)]  # moved after the declarations below
                 said = None
         else:
             if said is not None:
@@ -133,7 +136,7 @@ def describe(part):
 
 
 def settle(body):
-    """Puts what a comment says behind the declarations that it stands above."""
+    """Moves the text of a comment behind the declarations below it."""
     out, waiting = [], None
     for i, line in enumerate(body):
         if line.startswith("@"):

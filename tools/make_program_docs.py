@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Manual pages (section 1) and completions for bash, zsh and fish of the project's programs, from their tables of options as
-`PROGRAM --help` prints them: whatever a table gains is there at the next build.
+"""Writes manual pages (section 1) and completions for bash, zsh and fish of the project's programs.
+It reads their tables of options from `PROGRAM --help`, so new options appear at the next build.
 
 make_program_docs.py VERSION FOLDER PROGRAM...
 
-writes FOLDER/man/man1/NAME.1, FOLDER/bash-completion/completions/NAME, FOLDER/zsh/site-functions/_NAME and
-FOLDER/fish/vendor_completions.d/NAME.fish. The names of an option's argument say what can be completed: FILE, TEXT and the like a
-file, DIR a folder, alternatives in small letters (on|off|auto) words.
+It writes FOLDER/man/man1/NAME.1, FOLDER/bash-completion/completions/NAME,
+FOLDER/zsh/site-functions/_NAME and FOLDER/fish/vendor_completions.d/NAME.fish. The name of an
+option's argument determines the completion: FILE, TEXT and similar names complete files, DIR
+completes folders, and alternatives in lower case (on|off|auto) complete words.
 """
 import pathlib
 import re
@@ -29,12 +30,13 @@ class Option:
         return [p for p in parts if re.fullmatch(r"[a-z][a-z0-9]*", p)] if len(parts) > 1 else []
 
     def members(self):
-        """Of a LIST the words that may stand in it, between commas: "... out of a, b, c ..."."""
+        """For a LIST: returns the words that it may contain, between commas: "... out of a, b, c
+        ..."."""
         found = re.search(r"out of ((?:[a-z]+, )+[a-z]+)", self.text) if self.argument == "LIST" else None
         return found.group(1).split(", ") if found else []
 
     def takes(self):
-        """What follows it: nothing, words, list, file, folder, or something that cannot be completed."""
+        """Returns the kind of argument: nothing, words, list, file, folder, or not completable."""
         if not self.argument:
             return "nothing"
         if self.words():
@@ -51,7 +53,7 @@ class Option:
         return self.argument.startswith("[")
 
     def brief(self):
-        """The first sentence."""
+        """Returns the first sentence."""
         return re.split(r"(?<=[a-z0-9)])[.;:](?: |$)", self.text)[0].strip().rstrip(".")
 
 
@@ -66,7 +68,7 @@ class Program:
         return [o for _, group in self.groups for o in group]
 
     def suffixes(self):
-        """Of the files it reads: `FILE is .wrl, ...;` in its introduction."""
+        """Returns the suffixes of files it reads: `FILE is .wrl, ...;` in its introduction."""
         found = re.search(r"^FILE is ([^;]*)", "\n".join(self.intro), re.M)
         return re.findall(r"\.[a-z.]+[a-z]", found.group(1)) if found else []
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the worlds of examples/scenes that show what shaders and transports do. They are checked in; run it again after a change.
+"""Writes the worlds of examples/scenes that show shaders and transports. They are checked in; run
+it again after a change.
 
-make_scenes.py FOLDER     a .wrl for each function below and of scenes/, packed (.wrz) where it is long
+make_scenes.py FOLDER     a .wrl for each function below and of scenes/, packed (.wrz) if it is long
 """
 import gzip
 import math
@@ -52,7 +53,8 @@ def mirror_corridor():
 
 
 def cornell():
-    """As the box at Cornell is usually quoted, a metre wide; colours of its paints and lamp."""
+    """The Cornell box with its usually quoted dimensions, scaled to a width of one metre, and the
+    colours of its paints and lamp."""
     white = shader("Diffuse", "diffuse", "color reflectance .73 .73 .73")
     parts = [
         "DEF Lamp " + shape(shader("Diffuse", "diffuse", "color reflectance .78 .78 .78", "color emission 17 12 4"),
@@ -71,7 +73,8 @@ def cornell():
 
 
 def furnace():
-    """Emission and reflectance add up to 1: the radiance is 1 everywhere, and nothing can be seen."""
+    """Emission and reflectance add up to 1, so the radiance is 1 everywhere and the objects are
+    invisible."""
     walls = shader("Diffuse", "diffuse", "color emission .5 .4 .2", "color reflectance .5 .6 .8")
     faces = ("IndexedFaceSet { solid FALSE coord Coordinate { point [ -4 -4 4, 4 -4 4, 4 4 4, -4 4 4, -4 -4 -4, 4 -4 -4, 4 4 -4, "
              "-4 4 -4 ] } coordIndex [ 0 1 2 3 -1 5 4 7 6 -1 1 5 6 2 -1 4 0 3 7 -1 3 2 6 7 -1 4 5 1 0 -1 ] }")
@@ -84,7 +87,8 @@ def furnace():
 
 
 def caustic():
-    """Sunlight of a small lamp through a ball of glass, and off a ring of gold, onto a wall and a table."""
+    """Sunlight from a small lamp through a ball of glass and off a ring of gold, onto a wall and a
+    table."""
     matt = "DEF Wall " + shader("Diffuse", "diffuse", "color reflectance .75 .73 .7")
     ring = lathe([(1.0, -.25), (1.0, .25), (1.04, .25), (1.04, -.25), (1.0, -.25)], 64, .5)
     gold = shader("Metal", "metal", "color n .16 .42 1.35", "color k 3.5 2.4 1.8")
@@ -99,7 +103,7 @@ def caustic():
 
 
 def car_paint():
-    """The body of a model car, turned from a few sections along its length."""
+    """The body of a model car, lofted from a few sections along its length."""
     sections = [(-2.2, .22, .48, .34), (-2.05, .42, .52, .52), (-1.2, .5, .56, .62), (-.7, .54, .58, .7), (0, .56, .76, .74),
                 (.55, .56, .77, .74), (1.2, .54, .6, .72), (1.9, .48, .5, .64), (2.15, .34, .44, .46), (2.25, .2, .38, .3)]
     ring = 24
@@ -137,7 +141,7 @@ def car_paint():
 
 
 def carved():
-    """Wood, marble and a chequered table; a label that is a picture."""
+    """Wood, marble and a chequered table, and a label with a picture."""
     label = ("PixelTexture { repeatS FALSE repeatT FALSE image 8 8 1 " + " ".join(
         "0xE0" if (x in (0, 7) or y in (0, 7) or (x + y) % 3) else "0x30" for y in range(8) for x in range(8)) + " }")
     return world(
@@ -157,7 +161,7 @@ def carved():
 
 
 def interior():
-    """A room that all its light reaches through a pane of glass."""
+    """A room that receives all its light through a pane of glass."""
     plaster = "DEF Plaster " + shader("Diffuse", "diffuse", "color reflectance .75 .73 .68")
     w = "USE Plaster"
     return world(
@@ -181,11 +185,12 @@ def interior():
 
 
 def headlight():
-    """A lamp in the focus of a paraboloid, behind a lens of glass; their light on a wall. Centimetres."""
+    """A lamp in the focus of a paraboloid, behind a glass lens, and their light on a wall. Unit:
+    centimetre."""
     focus, radius, hole = 3.0, 8.0, 1.0
     reflector = lathe([(r, r * r / (4 * focus) - focus) for r in [hole + (radius - hole) * i / 14 for i in range(15)]], 64, 1)
     rim = radius * radius / (4 * focus) - focus
-    # Plano-convex: flat towards the lamp, a paraboloid outside; faces outwards.
+    # Plano-convex: flat towards the lamp, a paraboloid on the outside; its faces point outwards.
     convex = [(radius * i / 10, rim + 3.2 - 2.2 * (i / 10) ** 2) for i in range(11)]
     lens = lathe(convex + [(radius, rim + .5), (0, rim + .5)], 64, .7)
     lacquer = shader("Reflector", "reflector", "1f lacquer 1")
@@ -204,7 +209,8 @@ def headlight():
 
 
 def board():
-    """A circuit board as layout programs export them: many small shapes, few materials; lit by a sky."""
+    """A circuit board as exported by layout programs: many small shapes, few materials; lit by a
+    sky."""
     parts = []
     plastic = "DEF Black " + shader("Plastic", "plastic", "color color .03 .03 .035", "1f roughness .25")
     tin = "DEF Tin " + shader("Metal", "metal", "1f roughness .12")
@@ -246,7 +252,8 @@ def board():
 
 
 def studio():
-    """A photographer's studio all around as a picture (PNG): dim walls, three bright panels and a window."""
+    """Returns a picture (PNG) of the surroundings in a photographer's studio: dim walls, three
+    bright panels and a window."""
     width, height = 128, 64
     panels = [(.05, .2, .12, .3, (255, 250, 240)), (.38, .53, .06, .2, (255, 255, 255)), (.62, .7, .3, .42, (255, 225, 180)),
               (.8, .95, .16, .36, (190, 215, 255))]
@@ -271,7 +278,7 @@ def studio():
 
 SCENES = [glass_ball, mirror_corridor, cornell, furnace, caustic, car_paint, carved, interior, headlight, board, chess, headlight_studio, car,
           globe]
-LONG = 250000  # bytes
+LONG = 250000  # bytes of a file that is packed
 
 
 def main():

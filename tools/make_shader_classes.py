@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""The reference of shader classes from the texts in their plug-ins: make_shader_classes.py VV > docs/shader-classes.md
+"""Writes the reference of shader classes from the texts in their plug-ins.
 
-VV: the program vv of a build. With --check PAGE nothing is written: what the page says of a class must be what the plug-ins
-say; classes that it lacks are named.
+make_shader_classes.py VV > docs/shader-classes.md
+
+VV: the program vv of a build. --check PAGE writes nothing: it checks that the page agrees with the
+plug-ins, and names the classes that the page lacks.
 """
 import json
 import os

@@ -1,4 +1,4 @@
-"""Plots as SVG, without any library: lines of (x, y) on logarithmic axes."""
+"""Writes plots as SVG without any library: lines of (x, y) on logarithmic axes."""
 import math
 from xml.sax.saxutils import escape
 
@@ -17,7 +17,8 @@ def tick(power):
 
 
 def log_plot(title, xlabel, ylabel, lines):
-    """lines: name -> list of (x, y) or (x, y, lower end, upper end of a bar), all above 0. The text of an SVG file."""
+    """Returns the text of an SVG file. lines: name -> list of (x, y) or (x, y, lower end, upper end
+    of a bar), all above 0."""
     points = [p for line in lines.values() for p in line]
     x0, x1 = decades([p[0] for p in points])
     y0, y1 = decades([y for p in points for y in p[1:]])

@@ -1,8 +1,9 @@
 #!/bin/bash
-# run-fuzz.sh FOLDER SECONDS [CORPUS]: runs every fuzz target of FOLDER for SECONDS, from the seeds in tests/ and the corpus of earlier
-# runs (CORPUS, default build/fuzz-corpus), under a limit of memory. Afterwards the corpus is minimised and the executions of all runs
-# are added up in CORPUS/executions.tsv, so that campaigns on several days count together. A finding ends the run with exit code 1 and
-# its file in build/fuzz-findings.
+# run-fuzz.sh FOLDER SECONDS [CORPUS]: runs every fuzz target of FOLDER for SECONDS, with limited
+# memory. It starts from the seeds in tests/ and the corpus of earlier runs (CORPUS, default
+# build/fuzz-corpus). Afterwards it minimizes the corpus and adds the executions to
+# CORPUS/executions.tsv, so that campaigns on several days count together. A finding ends the run
+# with exit code 1; its file is in build/fuzz-findings.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=$1 seconds=$2 corpora=${3:-build/fuzz-corpus}
@@ -22,7 +23,7 @@ for target in "$folder"/fuzz_*; do
   dictionary=()
   if [ -f "tests/fuzz/$name.dict" ]; then dictionary=("-dict=tests/fuzz/$name.dict"); fi
   memory=(-rss_limit_mb=2048 -malloc_limit_mb=512)
-  # Readers of pictures: small files, however large they say to be, take little.
+  # Readers of pictures: a small file must take little memory, whatever size it claims.
   if [ "$name" = fuzz_xvrml_image ]; then memory=(-rss_limit_mb=1024 -malloc_limit_mb=256); fi
   log=build/fuzz-findings/$name.log
   if ! "$target" -max_total_time="$seconds" -timeout=10 "${memory[@]}" -print_final_stats=1 \
@@ -35,7 +36,7 @@ for target in "$folder"/fuzz_*; do
     if "$target" -merge=1 -rss_limit_mb=2048 "$smaller" "$corpus" "${seeds[@]}" >>"$log" 2>&1; then
       rm -rf "$corpus" && mv "$smaller" "$corpus"
     else
-      rm -rf "$smaller" # the whole corpus stays
+      rm -rf "$smaller" # keep the whole corpus
     fi
   fi
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | head -n 1)

@@ -1,5 +1,6 @@
 #!/bin/bash
-# run-tidy.sh BUILD JOBS: clang-tidy (.clang-tidy) over every source of the repository that BUILD compiles. Fails on any warning.
+# run-tidy.sh BUILD JOBS: runs clang-tidy (.clang-tidy) on every source of the repository that BUILD
+# compiles. Fails on any warning.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$1 jobs=$2

@@ -1,7 +1,8 @@
 #!/bin/bash
-# test-embree4.sh FOLDER JOBS: builds the project and runs all its tests in a Debian 13 (trixie), whose Embree is version 4. FOLDER
-# becomes its root; nothing of this system is mounted there, the sources are copied, and the corpus (OPENRT_CORPUS) where there is one.
-# A second run uses what the first one left: packages, ccache, the build. Needs root, debootstrap, unshare and Debian's mirror.
+# test-embree4.sh FOLDER JOBS: builds the project and runs all its tests in a Debian 13 (trixie),
+# which has Embree 4. FOLDER becomes its root. Nothing of this system is mounted there; the sources,
+# and the corpus (OPENRT_CORPUS) if there is one, are copied. A later run reuses packages, ccache
+# and the build. Needs root, debootstrap, unshare and Debian's mirror.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=$(realpath -m "$1") jobs=${2:-2} corpus=${OPENRT_CORPUS:-../shared/corpus}
@@ -10,21 +11,22 @@ for tool in debootstrap unshare; do
 done
 [ "$(id -u)" = 0 ] || { echo "test-embree4: needs root" >&2; exit 1; }
 
-# A root of its own, with its own processes; /proc and /dev/shm end with the command.
+# Runs a command with its own root and its own processes; /proc and /dev/shm end with the command.
 inside() {
   unshare --mount --pid --fork --kill-child --mount-proc="$root/proc" bash -c \
     'mkdir -p "$0/dev/shm" && mount -t tmpfs none "$0/dev/shm" && exec chroot "$0" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 bash -euc "$1"' \
     "$root" "$1" </dev/null
 }
 
-# The stamp is written last: a root that was interrupted is made anew.
+# The stamp is written last, so that an interrupted root is created again.
 if [ ! -e "$root/debootstrap-done" ]; then
   mkdir -p "$root"
   debootstrap --variant=minbase --include=ca-certificates trixie "$root" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}"
   touch "$root/debootstrap-done"
 fi
 cp -L /etc/resolv.conf "$root/etc/"
-# The sources are laid anew beside the build, so that nothing stays that is gone; what is the same keeps its time, what is not is new.
+# Copies the sources again, so that deleted files disappear. Unchanged files keep their time, and
+# changed ones get a new one.
 mkdir -p "$root/src" && rm -rf "$root/src.new" && mkdir "$root/src.new"
 git ls-files -z | tar --null -T - -c | tar -xm -C "$root/src.new"
 (cd "$root/src.new" && find . -type f -print0 | while IFS= read -r -d '' file; do

@@ -1,8 +1,9 @@
 #!/bin/bash
-# test-wheel.sh WHEEL FOLDER: installs a wheel into a Debian 12 that has Python and nothing else, made in FOLDER, and uses it there:
-# pictures by the command vv, with text, and by Python; Scripts of all engines; two workers; and nothing may be warned of. Pictures are
-# left in FOLDER/pictures. Nothing of this system is mounted there. NUMPY: which numpy ("numpy<2"). Needs root, debootstrap, pip
-# (which fetches numpy) and Debian's mirror.
+# test-wheel.sh WHEEL FOLDER: installs a wheel into a Debian 12 that contains only Python, created
+# in FOLDER, and uses it there: pictures with text by the command vv and by Python, Scripts of all
+# engines, two workers. No warning may occur. The pictures stay in FOLDER/pictures. Nothing of this
+# system is mounted there. NUMPY: the version of numpy ("numpy<2"). Needs root, debootstrap, pip
+# (which downloads numpy) and Debian's mirror.
 set -euo pipefail
 wheel=$(realpath "$1") folder=$(realpath -m "$2") here=$(realpath "$(dirname "$0")/..")
 root=$folder/root
@@ -51,7 +52,7 @@ inside() {
   unshare --mount --pid --fork --kill-child --mount-proc="$root/proc" bash -c 'mkdir -p "$0/dev/shm" && mount -t tmpfs none "$0/dev/shm" &&
     exec chroot "$0" /usr/bin/env -i PATH=/usr/bin:/bin HOME=/root bash -euc "cd /try; $1"' "$root" "$1" </dev/null
 }
-# No library of ours, no font and no display may be there.
+# The root must contain no library of this project, no font and no display.
 inside 'if ls /usr/lib/x86_64-linux-gnu | grep -E "embree|tbb|OpenEXR|libX11|libglib|libtcl"; then echo "the root is not bare"; exit 1; fi
         if [ -e /usr/share/fonts ] || [ -e /etc/fonts ]; then echo "the root has fonts"; exit 1; fi'
 inside 'python3 -m venv v && v/bin/pip install -q --no-index --find-links=. xvrml-*.whl && v/bin/pip list'

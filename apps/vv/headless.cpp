@@ -26,8 +26,8 @@ namespace vv {
 
 namespace {
 
-// After the first SIGINT or SIGTERM the process has ended, also while a shader hangs. Supervisors
-// wait as long (docker stop: 10).
+// Seconds from the first SIGINT or SIGTERM until the process ends, even if a shader hangs.
+// Supervisors wait about as long (docker stop: 10).
 constexpr unsigned interruptSeconds = 9;
 
 class Headless {
@@ -55,7 +55,7 @@ class Headless {
     checkOutputs(options_);
     browser_ = startWorld(readWorld(options_.input, options_.load), options_, problems_);
     const xvrml::World& world = browser_->world();
-    keepFilesOf(world, options_);
+    protectFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) return exitProblems;
     if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
     if (options_.check) return check();
@@ -66,11 +66,11 @@ class Headless {
       deferInterrupt(true, interruptSeconds);
       code = makePictures(options_, commandLine_, *browser_, problems_);
     }
-    if (code == exitDone) problems_.tellEnd(browser_->world());
+    if (code == exitDone) problems_.reportEnd(browser_->world());
     return code;
   }
 
-  // The files that the world was made of; empty if it could not be loaded.
+  // Returns the files that the world was made of; empty if it could not be loaded.
   std::vector<std::string> files() const {
     return browser_ ? usedFiles(browser_->world()) : std::vector<std::string>{};
   }
@@ -84,9 +84,8 @@ class Headless {
     return settings;
   }
 
-  // Also maps the world, into nothing: what is wrong with its geometry and its textures shows only
-  // there. With --time or
-  // --frames the world runs that far.
+  // Also maps the world, because problems of geometry and textures appear only there; nothing is
+  // drawn. With --time or --frames, the world runs up to that time.
   int check() {
     {
       picture::Renderer renderer(*browser_, withoutPicture());
@@ -121,7 +120,7 @@ class Headless {
     }
   }
 
-  // The engine chooses the transport when it makes a picture: one of a single pixel.
+  // Renders a picture of a single pixel, because the engine chooses the transport when it renders.
   void explain() {
     picture::RenderSettings settings = options_.render;
     settings.record.clear();
@@ -140,7 +139,7 @@ class Headless {
   std::unique_ptr<xvrml::Browser> browser_;
 };
 
-// Runs the job and says what stopped it.
+// Runs the job and prints the error that stopped it.
 int runOnce(Headless& job) {
   try {
     return job.run();
@@ -162,7 +161,7 @@ int runOnce(Headless& job) {
   }
 }
 
-// The job again and again, whenever a file has changed; errors are said and the files watched on.
+// Repeats the job whenever a file has changed. Errors are printed, and watching continues.
 int runWatching(const Options& options, const std::string& commandLine) {
   deferInterrupt(true);
   Watched watched({options.input});

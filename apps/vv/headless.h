@@ -1,11 +1,12 @@
-// headless.h: everything vv does without a window: load, check, list, write, render. [main thread]
+// headless.h: Runs every job of vv that needs no window: load, check, list, write and render. [main
+// thread]
 #pragma once
 
 #include "options/options.h"
 
 namespace vv {
 
-// Returns an exit code; what went wrong has been said.
+// Returns an exit code; error messages have been printed.
 int runHeadless(const Options& options, const std::string& commandLine);
 
 } // namespace vv

@@ -1,4 +1,4 @@
-// main.cpp: the program vv: options, then the job.
+// main.cpp: Starts the program vv: reads the options and runs the job.
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -40,8 +40,8 @@ int run(int argc, char** argv) {
   return vv::runHeadless(options, quoted(argc, argv));
 }
 
-// Returns the exit code; whatever went wrong is said.
-int runAndTell(int argc, char** argv) {
+// Runs the program and returns its exit code; error messages have been printed.
+int runAndReport(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const vv::UsageError& error) {
@@ -66,5 +66,5 @@ int runAndTell(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   vv::installSignals();
-  return withEnoughStack([&] { return runAndTell(argc, argv); });
+  return withEnoughStack([&] { return runAndReport(argc, argv); });
 }

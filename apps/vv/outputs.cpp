@@ -22,8 +22,8 @@ struct Named {
   std::string option, path;
 };
 
-// Every file that is written, as far as its name is known: the first picture of a sequence. Not of
-// --viewpoint all.
+// Returns every output file whose name is known. For a sequence this is the first picture; the
+// pictures of --viewpoint all are missing.
 std::vector<Named> outputsOf(const Options& options) {
   const std::optional<long long> frame =
       options.isSequence() ? std::optional(Timeline(options)[0].frame.value_or(0)) : std::nullopt;
@@ -57,7 +57,8 @@ std::vector<Named> inputsOf(const Options& options) {
   return all;
 }
 
-// One name for each place, whether there is a file already or not. Devices may be named often.
+// Returns one name for each place, whether the file exists or not. Returns "" for devices, which
+// may be named several times.
 std::string placeOf(const std::string& path) {
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) return "";
@@ -81,7 +82,7 @@ void checkOutputs(const Options& options) {
     if (const std::string why = picture::whyNoFilm(output.film); !why.empty())
       throw Failure{exitRender, output.path + ": " + why};
   }
-  std::map<std::string, std::string> taken; // by place: the option
+  std::map<std::string, std::string> taken; // maps a place to its option
   for (const Named& output : outputsOf(options)) {
     const std::string place = placeOf(output.path);
     if (place.empty()) continue;
@@ -90,22 +91,22 @@ void checkOutputs(const Options& options) {
       throw Failure{exitUsage, fmt::format("{} and {} name one file, {}: each needs its own",
                                            found->second, output.option, output.path)};
   }
-  for (const Named& input : inputsOf(options)) picture::keepFile(input.path, input.option);
+  for (const Named& input : inputsOf(options)) picture::protectFile(input.path, input.option);
   refuseKept(options);
 }
 
-void keepFilesOf(const xvrml::World& world, const Options& options) {
-  for (const Named& output : outputsOf(options)) keepFilesOf(world, output.path);
+void protectFilesOf(const xvrml::World& world, const Options& options) {
+  for (const Named& output : outputsOf(options)) protectFilesOf(world, output.path);
   refuseKept(options);
 }
 
-// Without a file of the output's name there is nothing to be replaced, and no need to walk over all
-// of the world.
-void keepFilesOf(const xvrml::World& world, const std::string& output) {
+// Without an existing file of this name, nothing can be replaced, and the walk over the world is
+// skipped.
+void protectFilesOf(const xvrml::World& world, const std::string& output) {
   std::error_code error;
   if (!fs::is_regular_file(output, error)) return;
   for (const std::string& file : usedFiles(world))
-    picture::keepFile(file, "a file that the world is made of");
+    picture::protectFile(file, "a file that the world is made of");
 }
 
 } // namespace vv

@@ -1,5 +1,5 @@
-// outputs.h: before anything is rendered: can the files be written that are asked for, and does
-// none of them take the place of a file that is read, or of another one? [main thread]
+// outputs.h: Checks, before anything is rendered, that the output files can be written and that
+// none of them replaces an input file or another output. [main thread]
 #pragma once
 
 #include "options/options.h"
@@ -7,15 +7,16 @@
 
 namespace vv {
 
-// Throws Failure if a file cannot be written, is named twice, or is one that the command line names
-// to be read. Afterwards no file of vv replaces one of these.
+// Throws Failure if a file cannot be written, is named twice, or is also an input on the command
+// line. After this call, vv refuses to replace the input files.
 void checkOutputs(const Options& options);
 
-// The same for the files that a world is made of, as far as they are known: Inlines, textures,
+// Protects the files that a world consists of, as far as they are known: Inlines, textures,
 // prototypes, scripts, sounds. Throws Failure.
-void keepFilesOf(const xvrml::World& world, const Options& options);
+void protectFilesOf(const xvrml::World& world, const Options& options);
 
-// Before a file is replaced: the world may have read further files since it was loaded.
-void keepFilesOf(const xvrml::World& world, const std::string& output);
+// Protects them again before `output` is replaced: the world may have read more files since it was
+// loaded.
+void protectFilesOf(const xvrml::World& world, const std::string& output);
 
 } // namespace vv

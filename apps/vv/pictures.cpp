@@ -33,15 +33,16 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-constexpr int stuckSeconds = 4; // from an interrupt until a render that has not stopped is given up
+// seconds between an interrupt and giving up a render that does not stop
+constexpr int stuckSeconds = 4;
 
-// One picture to make: where from, and the name that tells it from the others.
+// A picture to render: its camera, and the name that identifies it.
 struct Job {
   picture::View view;
   PictureName name;
 };
 
-// The views of one moment.
+// Returns the views of one moment.
 std::vector<Job> chooseJobs(const Options& options,
                             const std::vector<xvrml::ViewpointInfo>& viewpoints) {
   if (options.viewpoint.empty() || (options.allViewpoints() && viewpoints.empty()))
@@ -92,11 +93,11 @@ class Pictures {
 
   int make() {
     picture::RenderSettings settings = options_.render;
-    if (!options_.stats.empty() && !options_.isSequence())
-      settings.channels |= RT_VARIANCE;                      // then RTstats has the error
-    if (settings.error > 0) settings.channels |= RT_SAMPLES; // whyMissed()
+    // RTstats then contains the error
+    if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE;
+    if (settings.error > 0) settings.channels |= RT_SAMPLES; // whyMissed() needs the samples
     warnOfAlpha();
-    settings.progressive = !options_.isSequence() && picture::worthRounds(settings);
+    settings.progressive = !options_.isSequence() && picture::isWorthProgressive(settings);
     const Timeline timeline(options_);
     if (options_.script) beginScript(settings);
     WorldClock clock([this](double time) { tick(time); }, options_.fps);
@@ -104,13 +105,13 @@ class Pictures {
       return stopped("vv: interrupted before the first picture");
     if (!renderer_) renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
     picture::Renderer& renderer = *renderer_;
-    renderer.setWatch([this](float fraction) { return watch(fraction); });
+    renderer.setProgressCallback([this](float fraction) { return watch(fraction); });
     moments_ = timeline.size();
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
       if (!clock.advance(moment.time))
-        return flights_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
-                                : land();
+        return inFlight_.empty() ? stopped("vv: interrupted; the pictures so far are saved")
+                                 : finishOldest();
       std::vector<Job> jobs =
           pilot_ ? std::vector<Job>{scriptedJob()} : chooseJobs(options_, renderer.viewpoints());
       views_ = jobs.size();
@@ -120,15 +121,15 @@ class Pictures {
         if (const int code = makeOne(job, moment); code != exitDone) return code;
       }
     }
-    while (!flights_.empty())
-      if (const int code = land(); code != exitDone) return code;
+    while (!inFlight_.empty())
+      if (const int code = finishOldest(); code != exitDone) return code;
     finishSequence();
     endRecording();
     return exitDone;
   }
 
  private:
-  // Warns if no file keeps the transparency that was asked for.
+  // Warns if no output file keeps the requested transparency.
   void warnOfAlpha() const {
     if (options_.quiet || options_.render.background.kind != picture::Background::Kind::none ||
         options_.outputs.empty())
@@ -143,19 +144,19 @@ class Pictures {
                  "other files");
   }
 
-  // What is recorded is whole only now. The renderer goes with it.
+  // Closes the renderer, because a recording is complete only then.
   void endRecording() {
     if (!options_.render.record.empty() && renderer_) renderer_->close();
   }
 
-  // The user of --input: where he looks from. Whether he has all of the world in view only the
-  // renderer knows.
+  // Sets up the camera of a run with --input. Only the renderer knows the extent of the world,
+  // which a view of the whole world needs.
   void beginScript(const picture::RenderSettings& settings) {
     renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
     pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view.fov);
     pilot_->setAspect(double(options_.render.width) / options_.render.height);
     if (pilot_->begin(options_.view, options_.viewpoint)) present();
-    pilot_->smooth();
+    pilot_->animateTransitions();
     replay_ = std::make_unique<Replay>(*pilot_, *options_.script,
                                        [this](const InputEvent&, Action action) {
                                          if (action == Action::frameAll)
@@ -165,7 +166,7 @@ class Pictures {
   }
 
   void present() {
-    const std::optional<picture::View> view = pilot_->beginning(options_.view);
+    const std::optional<picture::View> view = pilot_->initialView(options_.view);
     if (!view) return pilot_->frameAll(renderer_->bounds());
     const picture::Renderer::Place place = renderer_->placeOf(*view);
     pilot_->present(place.camera, place.up);
@@ -193,7 +194,7 @@ class Pictures {
   }
 
   bool watch(float fraction) {
-    tellNotes();
+    reportClusterMessages();
     if (progress_) {
       const double all = double(moments_ * views_);
       progress_->show(float((double(done_) + double(fraction)) / std::max(1.0, all)),
@@ -201,22 +202,22 @@ class Pictures {
     }
     saveWanted_ |= takeSaveRequest();
     picture::Picture soFar;
-    if (!flights_.empty() && saveWanted_ && renderer_->snapshot(soFar)) {
+    if (!inFlight_.empty() && saveWanted_ && renderer_->snapshot(soFar)) {
       saveWanted_ = false;
-      savePart(flights_.front().job, soFar);
+      savePart(inFlight_.front().job, soFar);
     }
     if (secondsInterrupted() >= stuckSeconds) giveUp(soFar);
     return interrupted();
   }
 
-  // The render was told to stop, and does not: a shader hangs, and with it whoever waits for it.
-  // What there is of the picture is saved from here. (An alarm ends the process if even that hangs:
-  // deferInterrupt.)
+  // Ends the process when a render does not stop after an interrupt: a shader hangs and blocks the
+  // render thread. Saves the finished part of the picture first. If even that hangs, an alarm ends
+  // the process (deferInterrupt).
   [[noreturn]] void giveUp(picture::Picture& soFar) {
     progress_.reset();
-    const bool saved = !flights_.empty() && renderer_->snapshot(soFar);
-    interruptObeyed();
-    if (saved) savePart(flights_.front().job, soFar);
+    const bool saved = !inFlight_.empty() && renderer_->snapshot(soFar);
+    interruptHandled();
+    if (saved) savePart(inFlight_.front().job, soFar);
     try {
       finishSequence();
     } catch (const std::exception& error) { sayWarning(error.what()); }
@@ -226,39 +227,39 @@ class Pictures {
     ::_exit(exitInterrupted);
   }
 
-  // What is said of workers, between the pictures of a progress bar.
-  void tellNotes() {
+  // Prints messages about workers; the progress bar is cleared for them.
+  void reportClusterMessages() {
     if (!options_.render.cluster) return;
-    const std::vector<std::string> lines =
-        noteLines(options_.render.cluster->takeNotes(), options_.verbose, options_.quiet);
+    const std::vector<std::string> lines = clusterMessageLines(
+        options_.render.cluster->takeMessages(), options_.verbose, options_.quiet);
     if (progress_ && !lines.empty()) progress_->clear();
     for (const std::string& line : lines) say(line);
   }
 
-  // As many frames as there is somebody to work at are under way at a time; they are saved in their
-  // order.
+  // Starts a picture. Keeps as many frames in flight as there are machines to work on them, and
+  // saves them in order.
   int makeOne(const Job& job, const Moment& moment) {
     if (options_.audit) return auditOne(job);
     if (!progress_) progress_ = std::make_unique<Progress>(job.name.text(), options_.quiet);
     renderer_->start(job.view);
-    flights_.push_back({job, moment});
-    const size_t most = options_.strict ? 1 : renderer_->overlap();
-    while (flights_.size() >= most)
-      if (const int code = land(); code != exitDone) return code;
+    inFlight_.push_back({job, moment});
+    const size_t most = options_.strict ? 1 : renderer_->maxFramesInFlight();
+    while (inFlight_.size() >= most)
+      if (const int code = finishOldest(); code != exitDone) return code;
     return exitDone;
   }
 
   // Waits for the oldest frame and saves it.
-  int land() {
-    if (progress_) progress_->rename(flights_.front().job.name.text());
+  int finishOldest() {
+    if (progress_) progress_->rename(inFlight_.front().job.name.text());
     const picture::RenderResult result = renderer_->finish();
-    interruptObeyed();
-    const Flight flight = std::move(flights_.front());
-    flights_.pop_front();
+    interruptHandled();
+    const FrameInFlight flight = std::move(inFlight_.front());
+    inFlight_.pop_front();
     ++done_;
     if (done_ == moments_ * views_) progress_.reset();
     if (progress_) progress_->clear();
-    tellNotes();
+    reportClusterMessages();
     problems_.tell(browser_.world());
     if (options_.strict && Problems::any(browser_.world()))
       return result.missing ? exitMissing : exitProblems;
@@ -300,7 +301,7 @@ class Pictures {
         continue;
       }
       const std::string path = pathFor(output.path, job.name);
-      keepFilesOf(browser_.world(), path);
+      protectFilesOf(browser_.world(), path);
       picture::writeFile(path, bytes);
     }
   }
@@ -322,7 +323,7 @@ class Pictures {
     }
   }
 
-  // A copy that cannot be written is no reason to give up the picture.
+  // Saves the picture so far. A failure to write this copy does not stop the picture.
   void savePart(const Job& job, const picture::Picture& soFar) {
     try {
       writePictures(job, soFar);
@@ -342,12 +343,12 @@ class Pictures {
                       job.name.text(), job.name.text().empty() ? "" : ": ", result.stats.triangles,
                       duration(result.mapSeconds), duration(result.renderSeconds),
                       duration(writeSeconds)));
-    if (options_.verbose && done_ == moments_ * views_) tellLast(result);
+    if (options_.verbose && done_ == moments_ * views_) reportLast(result);
     const bool nothing = !options_.quiet && !result.interrupted && showsNothing(result.picture);
     anythingShown_ = anythingShown_ || !nothing;
-    // The last picture of a sequence speaks for all of them.
+    // In a sequence, only the last picture prints a hint.
     const bool hints = !options_.isSequence() || (done_ == moments_ * views_ && !anythingShown_);
-    if (nothing && hints && flights_.empty())
+    if (nothing && hints && inFlight_.empty())
       if (const std::string hint = hintFor(options_, job.view, result, *renderer_); !hint.empty())
         say("vv: " + hint);
     const RTstats& s = result.stats;
@@ -367,19 +368,19 @@ class Pictures {
 
   RunningWorld running() const { return {browser_.world(), browser_.scripts()}; }
 
-  // Says what -v adds with the last picture.
-  void tellLast(const picture::RenderResult& result) {
+  // Prints the details that -v adds after the last picture.
+  void reportLast(const picture::RenderResult& result) {
     for (const std::string& line : clusterLines(result)) say(line);
     if (const xvrml::ScriptCounts counts = browser_.scripts(); counts.started > 0)
       say(fmt::format("vv: {} of {} Scripts run; {} calls have taken {}", counts.started,
                       counts.scripts, counts.calls, duration(counts.seconds)));
   }
 
-  // Why a picture has not reached --error, from the samples that it took.
+  // Explains why a picture has not reached --error, from the samples that it took.
   std::string whyMissed(const picture::RenderResult& result) const {
     const auto samples = result.picture.planes.find(RT_SAMPLES);
     const auto most = float(options_.render.samples);
-    double full = 0, largest = 0; // share of the pixels; samples of one
+    double full = 0, largest = 0; // share of the pixels with all samples; most samples of a pixel
     if (samples != result.picture.planes.end() && !samples->second.empty()) {
       const std::vector<float>& all = samples->second;
       full = double(std::count_if(all.begin(), all.end(), [&](float n) { return n >= most; })) /
@@ -403,7 +404,7 @@ class Pictures {
 
   void finishSequence() {
     for (auto& [path, film] : films_) {
-      keepFilesOf(browser_.world(), path);
+      protectFilesOf(browser_.world(), path);
       picture::writeFile(path, film->finish());
     }
     films_.clear();
@@ -419,17 +420,17 @@ class Pictures {
   const Clock::time_point start_ = Clock::now();
   std::unique_ptr<picture::Renderer> renderer_;
   std::unique_ptr<Progress> progress_;
-  std::unique_ptr<Pilot> pilot_; // of --input; null: none
+  std::unique_ptr<Pilot> pilot_; // drives the world with --input; null: no --input
   std::unique_ptr<Replay> replay_;
-  struct Flight {
+  struct FrameInFlight {
     Job job;
     Moment moment;
   };
-  std::deque<Flight> flights_;                // being rendered, the oldest first
-  size_t moments_ = 1, views_ = 1, done_ = 0; // pictures: of a moment, finished
-  bool anythingShown_ = false;                // by one of them
+  std::deque<FrameInFlight> inFlight_;        // frames being rendered, oldest first
+  size_t moments_ = 1, views_ = 1, done_ = 0; // moments; pictures per moment; finished pictures
+  bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
-  std::map<std::string, std::unique_ptr<picture::Film>> films_; // by path
+  std::map<std::string, std::unique_ptr<picture::Film>> films_; // indexed by path
   SequenceStats frames_;
 };
 

@@ -1,5 +1,5 @@
-// pictures.h: the pictures that the command line asks for: views, frames, turntables, files and
-// films. [main thread]
+// pictures.h: Renders and writes the pictures that the command line asks for: views, frames,
+// turntables, files and films. [main thread]
 #pragma once
 
 #include "options/options.h"
@@ -7,14 +7,14 @@
 
 namespace vv {
 
-// Returns an exit code. Throws Failure, picture::RenderError and what writing throws.
+// Returns an exit code. Throws Failure, picture::RenderError and the errors of writing files.
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
                  Problems& problems);
 
-// The channels that were asked for, without those that only the statistics need.
+// Returns the requested channels, without those that only the statistics need.
 picture::Picture wantedPart(const picture::Picture& made, uint32_t channels);
 
-// To a file or ("-") to standard output.
+// Writes to a file, or to standard output if the path is "-".
 void writeText(const std::string& path, const std::string& text);
 
 } // namespace vv

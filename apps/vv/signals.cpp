@@ -16,13 +16,13 @@ namespace vv {
 namespace {
 
 std::atomic<bool> deferred{false}, interruptSeen{false}, saveWanted{false};
-std::atomic<unsigned> patience{0};   // seconds
+std::atomic<unsigned> patience{0};   // time limit in seconds
 std::atomic<int64_t> interruptAt{0}; // seconds of the steady clock
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
 
 int64_t steadySeconds() {
   timespec now = {};
-  ::clock_gettime(CLOCK_MONOTONIC, &now); // may be called by a signal handler
+  ::clock_gettime(CLOCK_MONOTONIC, &now); // async-signal-safe
   return now.tv_sec;
 }
 
@@ -39,11 +39,11 @@ void onInterrupt(int number) {
 void onSave(int) { saveWanted = true; }
 
 void put(const char* text) {
-  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return; // nobody left to tell
+  if (::write(STDERR_FILENO, text, std::strlen(text)) < 0) return; // standard error is closed
 }
 
-// Says whose fault it may be, then lets the crash take its course. Only what a signal handler may
-// call.
+// Prints which shader was running, then lets the crash continue. Calls only async-signal-safe
+// functions.
 void onCrash(int number) {
   const char* const name = number == SIGSEGV  ? "SIGSEGV"
                            : number == SIGBUS ? "SIGBUS"
@@ -75,7 +75,7 @@ void installSignals() {
   install(SIGTERM, onInterrupt);
   install(SIGUSR1, onSave);
   for (int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) install(crash, onCrash);
-  install(SIGPIPE, SIG_IGN); // a write that fails says so itself
+  install(SIGPIPE, SIG_IGN); // failed writes report errors themselves
   install(SIGXFSZ, SIG_IGN);
 }
 
@@ -84,7 +84,7 @@ void deferInterrupt(bool on, unsigned seconds) {
   deferred = on;
   if (seconds > 0) install(SIGALRM, onInterrupt);
 }
-void interruptObeyed() { ::alarm(0); }
+void interruptHandled() { ::alarm(0); }
 bool interrupted() { return interruptSeen; }
 int secondsInterrupted() { return interruptSeen ? int(steadySeconds() - interruptAt) : 0; }
 bool takeSaveRequest() { return saveWanted.exchange(false); }

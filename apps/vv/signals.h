@@ -1,22 +1,25 @@
-// signals.h: SIGINT and SIGTERM end a picture early and keep what there is, a second one ends at
-// once, and so does a while without an end, because a shader may hang; SIGUSR1 asks for a copy of
-// the picture so far. A crash says which shader was running. Installed by main(); the handlers only
-// set flags.
+// signals.h: Handles signals; main() installs the handlers, which only set flags.
+//
+// * SIGINT and SIGTERM end a picture early and keep the finished part. A second one ends the
+//   process at once.
+// So does a time limit, because a shader may hang.
+// * SIGUSR1 requests a copy of the picture so far.
+// * A crash prints the shader that was running.
 #pragma once
 
 namespace vv {
 
 void installSignals();
 
-// While `on`, the first SIGINT is noted for interrupted(); otherwise it ends the process with exit
-// code 130 at once. seconds: above 0, the process ends anyhow when so much time has passed since
-// then, unless interruptObeyed() was called.
+// While `on`, the first SIGINT is only recorded for interrupted(); otherwise it ends the process at
+// once with exit code 130. If `seconds` is above 0, the process ends that long after the first
+// SIGINT, unless interruptHandled() was called.
 void deferInterrupt(bool on, unsigned seconds = 0);
 bool interrupted();
-int secondsInterrupted(); // whole seconds since then; 0: it was not
-void interruptObeyed();   // what was to stop has stopped; what is left takes as long as it takes
+int secondsInterrupted(); // whole seconds since the interrupt; 0: there was none
+void interruptHandled();  // the render has stopped; the rest of the work has no time limit
 
-// True once for each SIGUSR1.
+// Returns true once for each SIGUSR1.
 bool takeSaveRequest();
 
 } // namespace vv

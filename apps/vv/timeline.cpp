@@ -27,14 +27,14 @@ Moment Timeline::operator[](size_t i) const {
 }
 
 bool WorldClock::advance(double time) {
-  if (there_ == time) return true; // one moment has one tick
+  if (currentTime_ == time) return true; // each moment is ticked once
   for (; double(next_) / fps_ < time; ++next_) {
     if (interrupted()) return false;
     tick_(double(next_) / fps_);
   }
   if (double(next_) / fps_ == time) ++next_;
   tick_(time);
-  there_ = time;
+  currentTime_ = time;
   return true;
 }
 

@@ -1,6 +1,6 @@
-// timeline.h: which moments of a world are pictured, and how its clock gets there: in steps of
-// 1/fps from 0, so that the world at frame N is the same whether the frames before it are pictured
-// or not. No wall clock. [main thread]
+// timeline.h: Chooses the moments of a world to render, and advances its clock to them in steps of
+// 1/fps from 0. The world at frame N is therefore the same whether earlier frames are rendered or
+// not. The wall clock is never used. [main thread]
 #pragma once
 
 #include <functional>
@@ -12,9 +12,9 @@
 namespace vv {
 
 struct Moment {
-  double time = 0;                // of the world's clock
-  std::optional<long long> frame; // number in its sequence
-  double turn = 0;                // radians around the world
+  double time = 0;                // time of the world's clock
+  std::optional<long long> frame; // number in the sequence
+  double turn = 0;                // rotation around the world in radians
 };
 
 class Timeline {
@@ -32,17 +32,18 @@ class WorldClock {
  public:
   WorldClock(xvrml::Browser& browser, double fps)
       : WorldClock([&browser](double time) { browser.tick(time); }, fps) {}
-  // tick: what a step is.
+  // tick: performs one step.
   WorldClock(std::function<void(double time)> tick, double fps)
       : tick_(std::move(tick)), fps_(fps) {}
-  // Steps up to `time`, which is not before the last one. False, and not there, after an interrupt.
+  // Steps up to `time`, which must not decrease. Returns false after an interrupt; the clock then
+  // stops earlier.
   bool advance(double time);
 
  private:
   std::function<void(double time)> tick_;
   double fps_;
-  long long next_ = 0;          // step that comes next: at next_ / fps
-  std::optional<double> there_; // the time it has come to
+  long long next_ = 0;                // number of the next step, at time next_ / fps
+  std::optional<double> currentTime_; // the current time
 };
 
 } // namespace vv

@@ -56,7 +56,7 @@ Watched::Stamp Watched::stampOf(const std::string& path) {
 
 timespec Watched::now() {
   timespec time{};
-  clock_gettime(CLOCK_REALTIME_COARSE, &time); // what the kernel writes into files
+  clock_gettime(CLOCK_REALTIME_COARSE, &time); // the kernel stamps files with this clock
   return time;
 }
 

@@ -1,6 +1,6 @@
-// watched.h: files that are looked at again and again, for --watch. Their times, sizes and numbers
-// are compared five times a second: that also sees editors that replace a file, and folders of
-// other machines. [main thread]
+// watched.h: Polls files for changes, for --watch. Modification times, sizes and inode numbers are
+// compared five times a second, which also detects editors that replace a file, and works on
+// network file systems. [main thread]
 #pragma once
 
 #include <ctime>
@@ -12,39 +12,39 @@
 
 namespace vv {
 
-// The files that a world was made of, and those that it names in vain: its own, Inlines,
-// prototypes, pictures, sounds, scripts.
+// Returns the files of a world, existing or not: its own, Inlines, prototypes, pictures, sounds,
+// scripts.
 std::vector<std::string> usedFiles(const xvrml::World& world);
 
-// Shader libraries in the folders that were asked for: of --shader-path and $OPENRT_SHADER_PATH
+// Returns the shader libraries in the folders of --shader-path and $OPENRT_SHADER_PATH
 // (colon-separated).
 std::vector<std::string> shaderFiles(const std::string& shaderPath);
 
 class Watched {
  public:
   explicit Watched(const std::vector<std::string>& files) { add(files, now()); }
-  // The clock of files' times.
+  // Returns the time of the clock that stamps files.
   static timespec now();
-  // read: when files may have been read first. One that was written since counts as changed: nobody
-  // knows what of it was read.
+  // read: the earliest time at which the files may have been read. A file written later counts as
+  // changed, because the reader may have seen any part of it.
   void add(const std::vector<std::string>& files, timespec read);
-  // True once a file has changed and all have been at rest since the last call; to be called about
-  // five times a second.
+  // Returns true once, after a file has changed and no file has changed since the previous call.
+  // Call it about five times a second.
   bool changed();
-  // Comes back when a file has changed and all have been at rest for a moment. False if `ended`
-  // said so.
+  // Waits until a file has changed and all files have been unchanged for a moment. Returns false if
+  // `ended` returns true.
   bool waitForChange(bool (*ended)());
 
  private:
   struct Stamp {
-    long long seconds = -1, nanoseconds = 0, size = 0; // seconds -1: no such file
+    long long seconds = -1, nanoseconds = 0, size = 0; // seconds -1: the file does not exist
     unsigned long long number = 0;
     bool operator==(const Stamp&) const = default;
   };
   static Stamp stampOf(const std::string& path);
-  bool update(); // true if a stamp is another one
+  bool update(); // returns true if a stamp has changed
   std::map<std::string, Stamp> files_;
-  bool pending_ = false; // a change has been seen
+  bool pending_ = false; // a change was detected and not yet reported
 };
 
 } // namespace vv

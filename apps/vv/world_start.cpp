@@ -30,15 +30,15 @@ std::string readStandardInput(uint64_t limit) {
   }
 }
 
-// Scripts start while the Browser is made: that is shown if it takes long.
+// Creates the Browser, which starts the Scripts; shows the progress if that takes long.
 std::unique_ptr<xvrml::Browser> startScripts(std::unique_ptr<xvrml::World> world,
                                              const Options& options) {
   const auto progress = std::make_shared<std::unique_ptr<Progress>>(
       std::make_unique<Progress>("Scripts", options.quiet));
   xvrml::RunOptions run = options.run;
   run.epoch = options.epoch.value_or(xvrml::worldEpoch);
-  run.onScriptStart = [progress](const xvrml::ScriptCounts& counts) { // later ones are started in
-                                                                      // the midst of other things
+  // Scripts that start later run in the middle of other work.
+  run.onScriptStart = [progress](const xvrml::ScriptCounts& counts) {
     if (*progress && counts.scripts > 0)
       (*progress)->show(1 - float(counts.waiting) / float(counts.scripts));
   };

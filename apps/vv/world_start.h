@@ -1,5 +1,5 @@
-// world_start.h: reads worlds, and brings them alive as the options ask for: what vv does before a
-// picture and before a window.
+// world_start.h: Reads worlds and starts them according to the options, for pictures and for the
+// window.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace vv {
 
-// "-": standard input. Throws xvrml::LoadError or Failure. [any thread]
+// Reads a world; "-" is standard input. Throws xvrml::LoadError or Failure. [any thread]
 std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options);
 
-// Brings the world alive at time 0 after options.epoch, with what -D and --shader change, and tells
+// Starts the world at time 0 after options.epoch, with the changes of -D and --shader, and reports
 // its problems. Throws Failure and UsageError. [the browser's thread]
 std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
                                            const Options& options, Problems& problems);

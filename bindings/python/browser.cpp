@@ -1,6 +1,6 @@
-// browser.cpp: the Python class Browser: a World that runs. Time, events, the pointer and the
-// viewer are arguments; callbacks of listeners run on the calling thread. Called with the GIL held;
-// what runs the world releases it.
+// browser.cpp: Implements the Python class Browser, a World that runs. Time, events, the pointer
+// and the viewer are arguments; listeners' callbacks run on the calling thread. [GIL held; released
+// while the world runs]
 #include <array>
 #include <cmath>
 
@@ -14,7 +14,7 @@ using namespace xvrml;
 
 namespace {
 
-// A world that runs from the beginning: nothing else.
+// A world that runs from the beginning.
 struct BrowserObject : WorldObject {};
 using BrowserPtr = std::shared_ptr<BrowserObject>;
 
@@ -24,7 +24,7 @@ BrowserPtr makeBrowser(const py::object& source, double start, const py::object&
   if (!(start >= -latestTime && start < latestTime))
     throw py::value_error(fmt::format("start: a number between -{0} and {0} was expected, not {1}",
                                       latestTime, start));
-  if (!(epoch > -1 && epoch < latestTime)) // also NaN; as --epoch of vv
+  if (!(epoch > -1 && epoch < latestTime)) // rejects NaN too; same range as --epoch of vv
     throw py::value_error(
         fmt::format("epoch: a number between -1 and {} was expected, not {}", latestTime, epoch));
   BrowserOptions options;
@@ -40,7 +40,7 @@ BrowserPtr makeBrowser(const py::object& source, double start, const py::object&
 }
 
 void tick(const BrowserPtr& self, double time) {
-  if (!(time >= self->running->now() && time < latestTime)) // also NaN
+  if (!(time >= self->running->now() && time < latestTime)) // rejects NaN too
     throw py::value_error(fmt::format("tick: a time from {} to {} expected, not {}",
                                       self->running->now(), latestTime, time));
   const auto lock = self->lock();
@@ -106,7 +106,7 @@ py::dict bound(const BrowserPtr& self) {
 py::array camera(const BrowserPtr& self, double aspect) {
   if (!(aspect > 0)) throw py::value_error("camera: aspect: a number above 0 expected");
   const CameraSettings settings = self->running->camera(aspect);
-  py::array_t<double> matrix({4, 4}); // rows as on paper: column vectors
+  py::array_t<double> matrix({4, 4}); // mathematical notation, for column vectors
   for (size_t i = 0; i < 16; ++i)
     matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = settings.matrix[i];
   return matrix;

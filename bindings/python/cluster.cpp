@@ -1,4 +1,4 @@
-// cluster.cpp: Called with the GIL held; what waits releases it.
+// cluster.cpp: Implements the Python class Cluster. [GIL held; released while waiting]
 #include <chrono>
 #include <optional>
 #include <utility>
@@ -13,15 +13,15 @@ namespace {
 
 // Owned by the module for the life of the interpreter.
 PyObject* clusterError = nullptr;
-PyObject* scope =
-    nullptr; // contextvars.ContextVar: the innermost Cluster that a `with` holds, or None
+// contextvars.ContextVar: the Cluster of the innermost `with`, or None
+PyObject* scope = nullptr;
 
 struct ClusterObject {
   std::shared_ptr<picture::Cluster> cluster; // null: closed
   picture::ClusterSettings settings;
-  std::weak_ptr<WorldObject>
-      holder; // the world that was rendered last, and may go on having the context
-  std::vector<py::object> tokens; // of the scopes, innermost last
+  // The world that was rendered last; it may still hold the context.
+  std::weak_ptr<WorldObject> holder;
+  std::vector<py::object> tokens; // tokens of the nested `with` scopes, innermost last
 
   const picture::Cluster& open() const {
     if (!cluster) throw py::value_error("the cluster is closed");
@@ -30,7 +30,7 @@ struct ClusterObject {
 };
 using ClusterPtr = std::shared_ptr<ClusterObject>;
 
-// "a:7447,b", ["a:7447", "b"] or "@hosts.txt".
+// Accepts "a:7447,b", ["a:7447", "b"] or "@hosts.txt".
 std::string workersOf(const py::object& given) {
   if (given.is_none()) return "";
   if (py::isinstance<py::str>(given)) return fromText(given);
@@ -77,21 +77,21 @@ ClusterPtr make(const py::object& workers, const py::object& key, const py::obje
   return made;
 }
 
-// The world that has the context gives it back; it may have to finish a picture before.
+// Makes the world that holds the context return it; this may wait for a picture.
 void release(ClusterObject& self) {
   const WorldPtr holder = self.holder.lock();
   self.holder.reset();
   if (!holder) return;
   const auto lock = holder->lock();
   const ReleaseGil released;
-  holder->rest();
+  holder->releaseRenderer();
 }
 
 void closeCluster(const ClusterPtr& self) {
   release(*self);
   std::shared_ptr<picture::Cluster> last = std::exchange(self->cluster, nullptr);
   const ReleaseGil released;
-  last.reset(); // says goodbye to the workers
+  last.reset(); // disconnects from the workers
 }
 
 ClusterPtr enter(const ClusterPtr& self) {

@@ -1,5 +1,5 @@
-// cluster_object.h: the Python class Cluster: machines that pictures are rendered with. Used with
-// the GIL held.
+// cluster_object.h: Declares the Python class Cluster, the machines that pictures are rendered
+// with. [GIL held]
 #pragma once
 
 #include <memory>
@@ -7,9 +7,9 @@
 #include "libpicture/cluster.h"
 #include "objects.h"
 
-// The machines for a picture of this world: of the argument `cluster` of a render, else (None) of
-// the innermost `with` around the call; null: this machine alone. Another world that still holds on
-// to them gives them up. Raises TypeError or ValueError.
+// Returns the machines for a picture of this world: the argument `cluster` of render(), or if that
+// is None, the innermost `with` around the call. Null means this machine alone. Another world that
+// still holds the cluster releases it. Raises TypeError or ValueError.
 std::shared_ptr<picture::Cluster> clusterFor(const py::object& given, const WorldPtr& world);
 
 void defineCluster(py::module_& module);

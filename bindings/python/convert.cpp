@@ -1,4 +1,4 @@
-// convert.cpp: the 20 field types to and from Python. Called with the GIL held.
+// convert.cpp: Converts the 20 field types to and from Python. [GIL held]
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -14,7 +14,7 @@ using namespace xvrml;
 
 namespace {
 
-// Floats (doubles) that one value consists of, and what Python calls it.
+// Number of floats (or doubles) in one value, and the name of such a value in Python.
 template <class T> constexpr size_t width = sizeof(T) / sizeof(float);
 static_assert(width<Vec2f> == 2 && width<Vec3f> == 3 && width<Color> == 3 && width<Rotation> == 4);
 
@@ -44,12 +44,12 @@ std::string expectation(FieldType type) {
   return "";
 }
 
-// Who is to blame, for messages.
+// The field that is being assigned, for messages.
 struct Target {
   const FieldInfo& field;
   const NodeObject& owner;
-  mutable WorldPtr place =
-      nullptr; // of a loose owner: the world of the first of its nodes that is in one
+  // Loose owner: the world of the first of its new nodes that is in one.
+  mutable WorldPtr place = nullptr;
 
   std::string text() const {
     return fmt::format("{}.{} ({}): {} expected", owner.node->type().name, field.name,
@@ -66,7 +66,8 @@ struct Target {
   void checkFinite(double v) const {
     if (!std::isfinite(v)) wrongValue("not infinity or NaN");
   }
-  // The ends of a range of floats are floats: what was read from a node can be written back.
+  // Compares with the range limits rounded to float, so that every value read from a node can be
+  // written back.
   void checkRange(double v) const {
     const FieldRange& r = field.range;
     checkFinite(v);
@@ -86,7 +87,7 @@ std::string shapeText(const py::array& array) {
   return "not of shape " + std::string(py::str(array.attr("shape")));
 }
 
-// Any array-like of numbers; text, objects and complex numbers are of the wrong type.
+// Converts any array-like of numbers. Text, objects and complex numbers raise TypeError.
 py::array numbersOf(const py::handle& object, const Target& target, const char* kinds) {
   if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) || object.is_none())
     target.wrongType(object);
@@ -108,7 +109,7 @@ py::array numbersOf(const py::handle& object, const Target& target, const char* 
 
 template <class T> using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-// One float32 from a double, checked. free: any finite number will do.
+// Converts a double to a checked float32. free: any finite number is accepted.
 float single(double v, const Target& target, bool free = false) {
   free ? target.checkFinite(v) : target.checkRange(v);
   const float f = float(v);
@@ -116,8 +117,8 @@ float single(double v, const Target& target, bool free = false) {
   return f;
 }
 
-// The axes of rotations are normalised by the node, as everywhere (docs/decisions/0042); 0 0 0
-// stays and turns nothing.
+// Rotations accept any axis, because the node normalises it (docs/decisions/0042). The axis 0 0 0
+// stays and has no effect.
 template <class T> constexpr bool isFree = std::is_same_v<T, Rotation>;
 
 template <class T> T fixed(const py::handle& object, const Target& target) {
@@ -176,7 +177,7 @@ std::vector<int32_t> integerList(const py::handle& object, const Target& target)
 int32_t integer(const py::handle& object, const Target& target) {
   if (PyBool_Check(object.ptr()) || !PyIndex_Check(object.ptr())) target.wrongType(object);
   auto number = py::reinterpret_steal<py::object>(PyNumber_Index(object.ptr()));
-  if (!number) { // an array with an index method that refuses
+  if (!number) { // an array whose __index__ method fails
     PyErr_Clear();
     target.wrongType(object);
   }
@@ -200,7 +201,7 @@ double number(const py::handle& object, const Target& target) {
 bool boolean(const py::handle& object, const Target& target) {
   if (PyBool_Check(object.ptr())) return object.ptr() == Py_True;
   const std::string type = py::str(py::type::handle_of(object).attr("__name__"));
-  if (type == "bool_" || type == "bool") // numpy's, before and from version 2 on
+  if (type == "bool_" || type == "bool") // numpy's names before and since version 2
     return py::bool_(py::reinterpret_borrow<py::object>(object));
   target.wrongType(object);
 }
@@ -212,7 +213,7 @@ std::string text(const py::handle& object, const Target& target) {
   } catch (py::error_already_set&) { target.wrongValue("not half a surrogate pair"); }
 }
 
-// Rows run from the top in Python, as in every other picture there, and from the bottom in VRML.
+// Converts an image. Python stores rows from the top, VRML from the bottom.
 Image image(const py::handle& object, const Target& target) {
   py::array any = numbersOf(object, target, "iu");
   if (any.size() == 0) return {};
@@ -233,8 +234,8 @@ Image image(const py::handle& object, const Target& target) {
   return result;
 }
 
-// True if a field of these node types (names and abstract types, blank-separated; empty: any) takes
-// the node.
+// Returns whether a field of these node types accepts the node. nodeTypes: names and abstract
+// types, separated by blanks; empty: any.
 bool accepts(const std::string& nodeTypes, const Node& node) {
   if (nodeTypes.empty()) return true;
   const std::string padded = " " + nodeTypes + " ";
@@ -261,7 +262,7 @@ NodeRef nodeOf(const py::handle& object, const Target& target) {
   if (!accepts(target.field.nodeTypes, *given.node))
     target.wrongValue(
         fmt::format("one of {}, not {}", target.field.nodeTypes, given.node->type().name));
-  given.heldByNone = false;
+  given.isUnowned = false;
   return given.node;
 }
 
@@ -270,7 +271,7 @@ py::sequence sequenceOf(const py::handle& object, const Target& target) {
   return py::reinterpret_borrow<py::sequence>(object);
 }
 
-// A copy that cannot be written to: `node.point[0] = ...` must fail, it would change nothing.
+// Returns a read-only copy, so that `node.point[0] = ...` fails; it could not change the node.
 template <class T> py::object readOnly(const T* data, std::vector<py::ssize_t> shape) {
   py::array_t<T> array(std::move(shape));
   if (array.size()) std::memcpy(array.mutable_data(), data, size_t(array.nbytes()));
@@ -330,7 +331,7 @@ struct ToPython {
   }
 };
 
-// What an array of a field's own numbers keeps: the view ends before the node.
+// Keeps alive what an array of a field's numbers refers to. The view is released before the node.
 struct Viewing {
   NodeObject node;
   std::shared_ptr<const ViewedField> view;
@@ -343,7 +344,7 @@ template <class T> py::object viewArray(Viewing* viewing, std::vector<py::ssize_
   return array;
 }
 
-// Nodes below a node that its fields hold.
+// Appends the nodes that this node's fields contain.
 void below(Node& node, std::vector<Node*>& out) {
   for (const FieldInfo& field : node.type().fields) {
     if (field.access != Access::field && field.access != Access::exposedField) continue;
@@ -411,8 +412,8 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
   if (py::isinstance<NodeObject>(object)) {
     const WorldPtr to = owner.world(), from = object.cast<const NodeObject&>().world();
     if (from == to) return;
-    // The one that stands for fewer joins the other, so that the way from any node to its world
-    // stays short.
+    // The smaller tree joins the larger one, so that the path from any node to its world stays
+    // short.
     if (from->loose() && (!to->loose() || from->rank <= to->rank)) {
       to->rank += from->rank == to->rank;
       from->joined = to;
@@ -426,8 +427,8 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
 }
 
 void refuseLoops(const NodeObject& owner, const FieldInfo& field, const Value& value) {
-  if (owner.heldByNone && owner.world()->loose())
-    return; // neither the value nor what is below it holds the owner
+  // neither the value nor anything below it can contain the owner
+  if (owner.isUnowned && owner.world()->loose()) return;
   std::vector<Node*> open;
   if (const auto* one = std::get_if<NodeRef>(&value)) open.push_back(one->get());
   if (const auto* many = std::get_if<MFNode>(&value))

@@ -1,5 +1,5 @@
-// film.cpp: the Python class Film: pictures or arrays become a film file. Called with the GIL held;
-// encoding releases it.
+// film.cpp: Implements the Python class Film, which writes pictures or arrays to a film file. [GIL
+// held; released while encoding]
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -63,7 +63,7 @@ class FilmObject {
     raiseOsError(failure);
   }
 
-  // After an exception in a with block nothing is written.
+  // Writes nothing if the with block ended with an exception.
   void exit(const py::object& type, const py::object&, const py::object&) {
     if (type.is_none()) return close();
     closed_ = true;
@@ -89,7 +89,7 @@ class FilmObject {
   double fps_;
   int width_ = 0, height_ = 0;
   bool closed_ = false;
-  std::unique_ptr<picture::Film> film_; // null before the first picture and after the last
+  std::unique_ptr<picture::Film> film_; // null before the first picture and after the last one
 };
 
 } // namespace

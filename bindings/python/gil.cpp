@@ -1,5 +1,6 @@
-// gil.cpp: A hook of atexit does the waiting: it runs after threads that are no daemons
-// have been joined, and before the interpreter refuses its lock to those that are.
+// gil.cpp: Implements the lock guards. An atexit hook waits for the other threads: it runs after
+// non-daemon threads have been joined, and before the interpreter refuses its lock to daemon
+// threads.
 #include "gil.h"
 
 #include <chrono>
@@ -13,22 +14,23 @@ namespace {
 
 enum class State { runs, ends, ended };
 
-struct Sections { // of this process; never destroyed: threads may outlive the module
+struct Sections { // state of the process; never destroyed, because threads may outlive the module
   std::mutex mutex;
   State state = State::runs;
   std::thread::id ending; // the thread that ends the interpreter
-  int inside = 0;         // threads that have given the lock up
-  int asking = 0;         // threads that ask for it
+  int inside = 0;         // number of threads that have released the GIL
+  int asking = 0;         // number of threads that are asking for the GIL
 };
 Sections& sections() {
   static Sections& all = *new Sections;
   return all;
 }
 
-thread_local int insideHere = 0; // of them, those of this thread: one in a callback of another
+// nested ReleaseGils of this thread: one inside a callback of another
+thread_local int nestedReleases = 0;
 
-// Before a thread asks for the lock. False: it must not.
-bool mayAsk(bool whileItEnds) {
+// Registers that this thread is about to ask for the GIL. Returns false if it must not ask.
+bool mayAcquireGil(bool whileItEnds) {
   Sections& s = sections();
   const std::scoped_lock lock(s.mutex);
   const bool other = s.ending != std::this_thread::get_id();
@@ -37,7 +39,7 @@ bool mayAsk(bool whileItEnds) {
   return true;
 }
 
-void asked(int inside) {
+void finishAcquiring(int inside) {
   Sections& s = sections();
   const std::scoped_lock lock(s.mutex);
   s.asking--;
@@ -57,8 +59,8 @@ bool waitFor(std::chrono::milliseconds longest, const Condition& condition) {
   }
 }
 
-// Renders stop within a fraction of a second, because their watch says so; a file that is being
-// read goes on.
+// Waits for the other threads. Renders stop within a fraction of a second, because their progress
+// callback ends them; a file that is being read continues.
 void endInterpreter() {
   using std::chrono::seconds;
   Sections& s = sections();
@@ -73,8 +75,8 @@ void endInterpreter() {
     const std::scoped_lock lock(s.mutex);
     s.state = State::ended;
   }
-  waitFor(seconds(60),
-          [&] { return s.asking == 0; }); // they get it soon: this thread does not have it
+  // this is short: this thread does not hold the GIL
+  waitFor(seconds(60), [&] { return s.asking == 0; });
   PyEval_RestoreThread(state);
 }
 
@@ -85,28 +87,28 @@ ReleaseGil::ReleaseGil() {
   {
     Sections& s = sections();
     const std::scoped_lock lock(s.mutex);
-    ends = s.state != State::runs && s.ending != std::this_thread::get_id() && awaitedHere == 0 &&
-           insideHere == 0;
+    ends = s.state != State::runs && s.ending != std::this_thread::get_id() &&
+           trackedMutexesHeld == 0 && nestedReleases == 0;
     if (!ends) {
       s.inside++;
-      insideHere++;
+      nestedReleases++;
     }
   }
   state_ = PyEval_SaveThread();
-  while (ends) ::pause(); // until the process ends
+  while (ends) ::pause(); // blocks until the process ends
 }
 
 ReleaseGil::~ReleaseGil() {
-  while (!mayAsk(true)) ::pause(); // until the process ends
+  while (!mayAcquireGil(true)) ::pause(); // blocks until the process ends
   PyEval_RestoreThread(state_);
-  insideHere--;
-  asked(-1);
+  nestedReleases--;
+  finishAcquiring(-1);
 }
 
-AcquireGil::AcquireGil() : held_(mayAsk(false)) {
+AcquireGil::AcquireGil() : held_(mayAcquireGil(false)) {
   if (!held_) return;
   state_ = PyGILState_Ensure();
-  asked(0);
+  finishAcquiring(0);
 }
 
 AcquireGil::~AcquireGil() {
@@ -121,7 +123,7 @@ bool interpreterEnds() {
 
 void watchInterpreter() {
   sections();
-  // A child has the thread that called fork() and none of those that were inside.
+  // After fork(), the child has only the calling thread, none of the threads counted here.
   pthread_atfork([] { sections().mutex.lock(); }, [] { sections().mutex.unlock(); },
                  [] {
                    Sections& s = sections();

@@ -1,42 +1,43 @@
-// gil.h: the interpreter's lock (GIL) around what takes long, also while the interpreter ends.
-// Python ends a thread that asks for the lock after the interpreter has begun to end by
-// pthread_exit(): from a destructor in C++ that aborts the process. So before the end all that is
-// under way without the lock is stopped and waited for, and what does not stop never asks for the
-// lock again.
+// gil.h: Releases and acquires the interpreter's lock (GIL) around long operations, also while the
+// interpreter ends. A thread that asks for the GIL after that point is ended by Python with
+// pthread_exit(), which aborts the process when it happens in a C++ destructor. Therefore all work
+// without the GIL is stopped and awaited before the interpreter ends. A thread that does not stop
+// never asks for the GIL again.
 #pragma once
 
 #include <pybind11/pybind11.h>
 
 namespace py = pybind11;
 
-inline thread_local int awaitedHere = 0; // mutexes that this thread holds and others may wait for
+// mutexes held by this thread that other threads may wait for
+inline thread_local int trackedMutexesHeld = 0;
 
-// A mutex that others may wait for while they are without the interpreter's lock. A thread that
-// holds one when the interpreter ends goes on until it has given it back.
-template <class Mutex> class Awaited : public Mutex {
+// A mutex that other threads may wait for without holding the GIL. A thread that holds one when the
+// interpreter ends continues until it has released it.
+template <class Mutex> class TrackedMutex : public Mutex {
  public:
   void lock() {
     Mutex::lock();
-    ++awaitedHere;
+    ++trackedMutexesHeld;
   }
   bool try_lock() {
     const bool locked = Mutex::try_lock();
-    awaitedHere += locked;
+    trackedMutexesHeld += locked;
     return locked;
   }
   void unlock() {
-    --awaitedHere;
+    --trackedMutexesHeld;
     Mutex::unlock();
   }
 };
 
-// Gives the lock up while it lives. Once the interpreter ends a daemon thread that holds nothing
-// does not return from the constructor: it would begin something new again and again, and the end
-// would wait for it.
+// Releases the GIL for its lifetime. After the interpreter has begun to end, the constructor does
+// not return on a daemon thread that holds no TrackedMutex mutex: such a thread would start new
+// work again and again, and the end would wait for it.
 class ReleaseGil {
  public:
   ReleaseGil();
-  ~ReleaseGil(); // does not return on a daemon thread once the interpreter has ended
+  ~ReleaseGil(); // does not return on a daemon thread after the interpreter has ended
   ReleaseGil(const ReleaseGil&) = delete;
   ReleaseGil& operator=(const ReleaseGil&) = delete;
 
@@ -44,8 +45,8 @@ class ReleaseGil {
   PyThreadState* state_;
 };
 
-// Takes the lock while it lives, within ReleaseGil. False: it was not taken, because the
-// interpreter ends: stop what you do.
+// Acquires the GIL for its lifetime, inside a ReleaseGil. False: the GIL was not acquired because
+// the interpreter ends; the caller must stop its work.
 class AcquireGil {
  public:
   AcquireGil();
@@ -59,9 +60,9 @@ class AcquireGil {
   PyGILState_STATE state_{};
 };
 
-// Whether the interpreter ends and this is not the thread that ends it: nothing long should begin.
-// [GIL not needed]
+// Returns whether the interpreter is ending and another thread ends it. Nothing long should begin
+// then. [GIL not needed]
 bool interpreterEnds();
 
-// To be called once, when the module is imported.
+// Call once, when the module is imported.
 void watchInterpreter();

@@ -1,4 +1,4 @@
-// module.cpp: the extension module xvrml._xvrml: load() and the exceptions.
+// module.cpp: Defines the extension module xvrml._xvrml, load() and the exceptions.
 #include <cerrno>
 #include <cstring>
 
@@ -48,7 +48,7 @@ void setLimits(Limits& limits, const py::dict& given) {
   }
 }
 
-// Bytes of bytes, bytearray, memoryview, and of what read() returns.
+// Gets the bytes of bytes, bytearray, memoryview, and of the result of read().
 bool bytesOf(const py::object& source, std::string& bytes) {
   if (py::isinstance<py::str>(source) || !PyObject_CheckBuffer(source.ptr())) return false;
   Py_buffer buffer;
@@ -73,7 +73,7 @@ WorldPtr load(const py::object& source, const py::object& limits, bool allowAbso
   return made;
 }
 
-// A line for each plug-in that is refused.
+// Returns a line for each rejected plug-in.
 py::list loadPlugins(const py::object& path) {
   std::vector<std::string> refused;
   const std::string folders = path.is_none() ? "" : toPath(path);
@@ -86,8 +86,8 @@ py::list loadPlugins(const py::object& path) {
   return lines;
 }
 
-// X.__new__(X) makes an object without anything in it; pybind11 would give its methods memory that
-// nobody has initialised.
+// Rejects X.__new__(X), which would create an object without a C++ part; pybind11 would pass
+// uninitialised memory to its methods.
 void refuseEmptyObjects(const py::module_& module) {
   for (const auto& [name, value] : py::reinterpret_borrow<py::dict>(module.attr("__dict__")))
     if (PyType_Check(value.ptr()))
@@ -97,8 +97,8 @@ void refuseEmptyObjects(const py::module_& module) {
         };
 }
 
-// pickle and copy call the class that all classes are below, which pybind11 answers with an
-// exception through Python's C.
+// pickle and copy call the common base class. pybind11 would answer with a C++ exception that
+// passes through Python's C code.
 PyObject* newObject(PyTypeObject* type, PyObject*, PyObject*) {
   try {
     if (!py::detail::all_type_info(type).empty()) return py::detail::make_new_instance(type);
@@ -154,8 +154,8 @@ PYBIND11_MODULE(_xvrml, module) {
       if (failure) std::rethrow_exception(failure);
     } catch (const LoadError& error) { setParseError(error.diagnostic); }
   });
-  // Functions check what they are given; a conversion that none of them has checked is still a
-  // matter of the caller's value.
+  // Functions check their arguments. A conversion error that none of them has caught is still
+  // caused by the caller's value.
   py::register_exception_translator([](std::exception_ptr failure) {
     try {
       if (failure) std::rethrow_exception(failure);

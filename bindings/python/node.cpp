@@ -1,5 +1,5 @@
-// node.cpp: the Python class Node and a class below it for every node type: attributes are fields,
-// found in the type's table. Called with the GIL held.
+// node.cpp: Implements the Python class Node and a subclass for every node type. Attributes are
+// fields, looked up in the type's table. [GIL held]
 #include <memory>
 #include <unordered_map>
 
@@ -22,7 +22,7 @@ const FieldInfo* findValue(const Node& node, const std::string& name) {
   return field && holdsValue(*field) ? field : nullptr;
 }
 
-// events: they count as fields, in a running world.
+// events: also list the eventIns and eventOuts, which are attributes in a running world.
 [[noreturn]] void noField(const Node& node, const std::string& name, bool events) {
   std::vector<std::string> names;
   for (const FieldInfo& field : node.type().fields)
@@ -37,7 +37,8 @@ py::object value(const NodeObject& self, const FieldInfo& field) {
   return fieldToPython(self, field);
 }
 
-// In a running world an eventOut's value is the last one that it sent.
+// Returns the value of a field. In a running world, an eventOut's value is the last one that it
+// sent.
 py::object getAttribute(const NodeObject& self, const std::string& name) {
   if (const FieldInfo* field = findValue(*self.node, name)) return value(self, *field);
   const WorldPtr world = self.world();
@@ -48,8 +49,8 @@ py::object getAttribute(const NodeObject& self, const std::string& name) {
   return toPython(browser->get(*self.node, name), world);
 }
 
-// Whether a node in the body of an instance takes a value of the interface as an event alone: a
-// Script's eventIn.
+// Returns whether a node in the body of an instance receives a value of the interface only as an
+// event: a Script's eventIn.
 bool takesEvent(const ProtoInstance& instance, const std::string& name) {
   for (const IsConnection& connection : instance.is) {
     if (connection.interfaceName != name) continue;
@@ -61,8 +62,8 @@ bool takesEvent(const ProtoInstance& instance, const std::string& name) {
   return false;
 }
 
-// In a world that stands still: as if the file had the value.
-void setStanding(WorldObject& world, const NodeRef& node, const FieldInfo& field, Value value) {
+// Sets a field of a static world, as if the file contained the value.
+void setStaticField(WorldObject& world, const NodeRef& node, const FieldInfo& field, Value value) {
   const auto* instance = dynamic_cast<const ProtoInstance*>(node.get());
   if (!world.world) {
     node->set(field, std::move(value));
@@ -73,10 +74,10 @@ void setStanding(WorldObject& world, const NodeRef& node, const FieldInfo& field
     setField(*world.world, *node, field.name, std::move(value));
   }
   if (instance && field.access == Access::exposedField && takesEvent(*instance, field.name))
-    world.early.emplace_back(node, field.name);
+    world.initialEvents.emplace_back(node, field.name);
 }
 
-// In a running world exposedFields and eventIns get an event.
+// Sets a field. In a running world, exposedFields and eventIns receive an event.
 void setAttribute(const NodeObject& self, const std::string& name, const py::handle& object) {
   const WorldPtr world = self.world();
   Browser* browser = world->browser();
@@ -100,10 +101,11 @@ void setAttribute(const NodeObject& self, const std::string& name, const py::han
   if (browser)
     now->change([&] { browser->set(*self.node, field->name, std::move(fresh)); });
   else
-    setStanding(*now, self.node, *field, std::move(fresh));
+    setStaticField(*now, self.node, *field, std::move(fresh));
 }
 
-// A property of Node whose name is also a field's (NavigationInfo has a field `type`): the field.
+// Returns the field if the node has a field of that name, otherwise Node's property (NavigationInfo
+// has a field `type`).
 template <class Get> auto unlessField(const char* name, Get get) {
   return [name, get](const NodeObject& self) -> py::object {
     if (const FieldInfo* field = findValue(*self.node, name)) return value(self, *field);
@@ -134,8 +136,8 @@ std::string describe(const NodeObject& self) {
                      node.source.line ? fmt::format(" at line {}", node.source.line) : "");
 }
 
-// Classes by node type, owned by the module for the life of the interpreter. A plug-in's are made
-// when it is loaded.
+// Classes by node type, owned by the module for the life of the interpreter. A plug-in's classes
+// are made when it is loaded.
 auto& classes() {
   static auto& all = *new std::unordered_map<const NodeType*, PyTypeObject*>();
   return all;
@@ -155,7 +157,7 @@ std::string description(const NodeType& type) {
 }
 
 PyTypeObject* classOf(const NodeType& type) {
-  if (type.index < 0) return nodeClass; // of a prototype or a Script
+  if (type.index < 0) return nodeClass; // the type of a prototype or a Script
   PyTypeObject*& known = classes()[&type];
   if (known) return known;
   py::dict members;
@@ -176,7 +178,7 @@ py::dict nodeClasses() {
   return all;
 }
 
-// The constructor of all classes: keywords are fields. The node is in no world until it is put into
+// The constructor of all classes; keywords are fields. The node is in no world until it is added to
 // one.
 void makeLoose(py::detail::value_and_holder& self, const py::kwargs& fields) {
   const NodeType* type = nullptr;
@@ -189,7 +191,7 @@ void makeLoose(py::detail::value_and_holder& self, const py::kwargs& fields) {
   NodeRef node = makeNode(*type);
   if (!node) throw py::type_error(type->name + " nodes come from files alone");
   auto made = std::make_unique<NodeObject>(std::make_shared<WorldObject>(), std::move(node));
-  made->heldByNone = true;
+  made->isUnowned = true;
   for (const auto& [name, value] : fields) setAttribute(*made, fromText(name), value);
   self.value_ptr() = made.release();
 }
@@ -201,7 +203,7 @@ py::object asNode(const WorldPtr& world, const NodeRef& node) {
   PyTypeObject* type = classOf(node->type());
   auto made = py::reinterpret_steal<py::object>(type->tp_new(type, py::tuple().ptr(), nullptr));
   if (!made) throw py::error_already_set();
-  // As pybind11 does it for the class itself.
+  // Create the instance in the same way as pybind11.
   static const py::detail::type_info* info = py::detail::get_type_info(typeid(NodeObject), true);
   auto* instance = reinterpret_cast<py::detail::instance*>(made.ptr());
   instance->get_value_and_holder(info).value_ptr() = new NodeObject(world, node);

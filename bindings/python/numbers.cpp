@@ -25,8 +25,9 @@ py::array numberArray(const py::object& given, const std::string& name, const st
   if (!std::strchr("biuf", kind))
     throw py::type_error(fmt::format("{}: {} expected, not {}", name, expected, shown(given)));
   if (whole && kind == 'f') {
+    // also true for NaN
     const py::array odd =
-        array[array.attr("__ne__")(py::module_::import("numpy").attr("floor")(array))]; // NaN, too
+        array[array.attr("__ne__")(py::module_::import("numpy").attr("floor")(array))];
     if (odd.size() > 0) {
       const std::string first = fromText(py::str(odd.attr("flat")[py::int_(0)]));
       throw py::value_error(fmt::format("{}: whole {} expected, not {}", name, expected, first));

@@ -1,5 +1,5 @@
-// numbers.h: arguments out of Python objects where the types of the signature do not say enough,
-// with errors that name the argument, what was expected and what came. Called with the GIL held.
+// numbers.h: Converts Python arguments where the types of the signature are not specific enough.
+// Errors name the argument, the expected value and the given value. [GIL held]
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace py = pybind11;
 
-// Returns a value as messages name it: "the str 'a'".
+// Formats a value for messages: "the str 'a'".
 std::string shown(const py::handle& value);
 
-// Returns the numbers as an array of whatever type. Raises TypeError for text and other objects,
-// ValueError for rows of different lengths; whole: ValueError for numbers with a fraction, too.
-// expected: "numbers of shape (n, 3)".
+// Returns the numbers as an array of any type. Raises TypeError for text and other objects, and
+// ValueError for rows of different lengths. whole: fractions also raise ValueError. expected: for
+// the message, such as "numbers of shape (n, 3)".
 py::array numberArray(const py::object& given, const std::string& name, const std::string& expected,
                       bool whole = false);

@@ -1,5 +1,5 @@
-// picture.cpp: the Python class Picture: planes as numpy arrays that share the picture's memory.
-// Called with the GIL held.
+// picture.cpp: Implements the Python class Picture: planes are numpy arrays that share the
+// picture's memory. [GIL held]
 #include <cstring>
 
 #include <fmt/format.h>
@@ -13,8 +13,8 @@
 void describePicture(py::dict& stats, const RTstats& s) {
   stats["transport"] = picture::transportName(s.transport);
   stats["transport_reason"] = s.transportReason;
-  stats["transport_leaves_out"] = picture::leftOutNames(s);
-  py::dict left; // under the names of vv --stats
+  stats["transport_leaves_out"] = picture::omittedLightNames(s);
+  py::dict left; // the keys have the names of vv --stats
   left["cut_by_depth"] = s.cutByDepth;
   left["cut_by_energy"] = s.cutByEnergy;
   left["clipped"] = s.clipped;
@@ -23,7 +23,7 @@ void describePicture(py::dict& stats, const RTstats& s) {
   left["wrong_hits"] = s.wrongHits;
   left["rejected_rays"] = s.rejectedRays;
   stats["left_out"] = left;
-  if (s.errorPixels == 0) return; // nobody has asked for the error
+  if (s.errorPixels == 0) return; // no error estimate was requested
   stats["error_mean"] = s.errorMean;
   stats["error_mean_interval"] = s.errorMeanInterval;
   stats["error_half_width"] = s.errorHalfWidth;
@@ -35,8 +35,8 @@ void describePicture(py::dict& stats, const RTstats& s) {
 
 namespace {
 
-// The plane without a copy; it keeps the picture alive, and what is written into it is saved by
-// save().
+// Returns the plane without a copy. The array keeps the picture alive, and save() saves what is
+// written to it.
 py::array floats(const py::object& self, const picture::Channel& channel) {
   picture::Picture& p = self.cast<PictureObject&>().picture;
   std::vector<py::ssize_t> shape{p.height, p.width};
@@ -136,9 +136,9 @@ py::tuple channels(const PictureObject& self) {
   return py::tuple(out);
 }
 
-constexpr int pickleVersion = 2; // 1 had no camera
+constexpr int pickleVersion = 2; // version 1 had no camera
 
-// What pickle keeps: version, size, whether linear, names, time, stats, {name of channel: numbers},
+// Returns the pickled members: version, size, linear, names, time, stats, {channel name: numbers},
 // camera.
 py::tuple pickled(const py::object& self) {
   PictureObject& object = self.cast<PictureObject&>();

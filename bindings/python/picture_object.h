@@ -1,4 +1,4 @@
-// picture_object.h: the C++ side of the Python class Picture.
+// picture_object.h: Declares the C++ side of the Python class Picture.
 #pragma once
 
 #include <vector>
@@ -11,20 +11,20 @@
 struct PictureObject {
   picture::Picture picture;
   pybind11::dict stats;
-  std::vector<NodeObject> nodes; // by the numbers of channel id; of number 0: null
-  pybind11::object nodeList;     // the same as a tuple, once somebody has asked for it
-  double time = 0;               // of the world
-  // Where it was taken from; fovy 0: by no pinhole. camera: as Pinhole, once somebody has asked for
-  // it, or as it was given.
+  std::vector<NodeObject> nodes; // indexed by the numbers of channel id; number 0 is null
+  pybind11::object nodeList;     // the same as a tuple; created on first use
+  double time = 0;               // time of the world
+  // The camera's place; fovy 0: the camera was not a pinhole. `camera` is a Pinhole created on
+  // first use, or the camera as the caller gave it.
   xvrml::CameraSettings place{.matrix = {}, .fovy = 0};
   pybind11::object camera;
 };
 
-// The channels of these names (one or several) and RGBA, as bits. Raises TypeError or ValueError.
+// Returns the bits of the channels with these names (one or several), plus RGBA. Raises TypeError
+// or ValueError.
 uint32_t channelsOf(const pybind11::object& list);
-// What the argument progress asks for: a function of the fraction done, or None. Raises TypeError.
+// Checks the argument `progress`: a function of the fraction done, or None. Raises TypeError.
 pybind11::object progressOf(const pybind11::object& given);
 
-// Adds to Picture.stats how light was followed, what is left out and how large the picture's error
-// is.
+// Adds to Picture.stats the light transport, what it omits, and the size of the picture's error.
 void describePicture(pybind11::dict& stats, const RTstats& s);

@@ -1,5 +1,5 @@
-// render.cpp: World.render(): options checked, a picture made without the GIL, Ctrl-C and progress
-// watched. Called with the GIL held.
+// render.cpp: Implements World.render(): checks the options and renders without the GIL, with
+// Ctrl-C and progress callbacks. [GIL held]
 #include <array>
 #include <cmath>
 
@@ -26,7 +26,7 @@ std::string typeOf(const py::handle& value) {
   return py::str(py::type::handle_of(value).attr("__name__"));
 }
 
-// Width and height, any whole numbers.
+// Returns width and height, any whole numbers.
 std::pair<long long, long long> sizeOf(const py::object& size) {
   try {
     const auto sides = size.cast<std::vector<long long>>();
@@ -47,7 +47,7 @@ MapOptions::Headlight headlightOf(const py::object& value) {
   throw py::value_error("headlight: 'auto', 'on', 'off', True or False expected");
 }
 
-// A pose: camera to world, looking along -z with +y up, as VRML's own.
+// Converts a pose: a camera-to-world matrix that looks along -z with +y up, as in VRML.
 picture::LookAt posed(const std::vector<std::vector<double>>& rows) {
   picture::LookAt camera;
   camera.saysUp = true;
@@ -79,7 +79,7 @@ picture::LookAt posed(const std::vector<std::vector<double>>& rows) {
   return camera;
 }
 
-// Whether an array is a rotation, which says where a camera looks but not where it stands.
+// Returns whether an array is a rotation, which gives a camera's direction but not its position.
 bool isRotation(const py::object& given, const std::vector<std::vector<double>>& rows) {
   if (rows.size() != 3 || !py::isinstance<py::array>(given)) return false;
   double off = 0;
@@ -124,8 +124,8 @@ picture::LookAt cameraOf(const py::object& given) {
   return camera;
 }
 
-// A Pinhole (xvrml/_camera.py). The rays of a symmetric camera with square pixels, of the same
-// focal length fy, are sheared until they are its own.
+// Converts a Pinhole (xvrml/_camera.py). The rays of a symmetric camera with square pixels and the
+// same focal length fy are sheared to those of the Pinhole.
 picture::View::Pinhole pinholeOf(const py::object& given, int width, int height) {
   const auto [numbers, pose] =
       given.attr("_numbers")().cast<std::pair<std::array<double, 5>, std::array<double, 16>>>();
@@ -133,7 +133,7 @@ picture::View::Pinhole pinholeOf(const py::object& given, int width, int height)
   picture::View::Pinhole camera{};
   camera.fovy = 2 * std::atan(height / 2.0 / fy);
   const double up = (cy - height / 2.0) / fy, right = (width / 2.0 - cx) / fx + skew / fx * up;
-  for (size_t i = 0; i < 3; ++i) { // the pose's y runs down and its z ahead
+  for (size_t i = 0; i < 3; ++i) { // the pose's y points down and its z forward
     const double x = pose[4 * i], y = -pose[4 * i + 1], z = -pose[4 * i + 2];
     const double columns[] = {x, y, z, pose[4 * i + 3]};
     const double sheared[] = {x * fy / fx, y + x * skew / fx, z - x * right - y * up,
@@ -147,8 +147,8 @@ picture::View::Pinhole pinholeOf(const py::object& given, int width, int height)
   return camera;
 }
 
-// The renderer measures along the middle of the picture, which is not the view axis where the
-// principal point lies elsewhere.
+// Converts depths from the picture's centre direction to the view axis. They differ if the
+// principal point is off-centre.
 void measureAlongAxis(const picture::View::Pinhole& camera, picture::Picture& picture) {
   const std::vector<float>& position = picture.planes.at(RT_POSITION);
   std::vector<float>& depth = picture.planes.at(RT_DEPTH);
@@ -183,7 +183,7 @@ picture::Background backgroundOf(const py::object& given) {
   }
 }
 
-// Index of the viewpoint asked for by name or number.
+// Returns the index of the viewpoint with this name or number.
 size_t viewpointIndex(const std::vector<ViewpointInfo>& list, const py::object& wanted) {
   if (py::isinstance<py::int_>(wanted) && !py::isinstance<py::bool_>(wanted)) {
     int overflow = 0;
@@ -271,7 +271,7 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
           ? uint32_t(RT_RGBA | RT_DEPTH | (settings.error > 0 ? RT_ERROR | RT_TRUST : 0))
           : channelsOf(channels);
 
-  settings.progressive = picture::worthRounds(settings);
+  settings.progressive = picture::isWorthProgressive(settings);
 
   picture::View view;
   const bool pinhole = py::hasattr(camera, "_numbers");
@@ -297,12 +297,12 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.cluster = clusterFor(cluster, self); // before the lock: it may wait for another world
   picture::RenderResult result;
   const auto lock = self->lockDrawing();
-  if (self->drawingNow)
+  if (self->isRenderingHere)
     throw picture::RenderError("a picture is being made: its progress cannot make another");
-  struct Drawing { // from here on changes of this thread are refused, those of others wait
+  struct Drawing { // meanwhile changes by this thread are rejected, and those of other threads wait
     WorldObject& world;
-    explicit Drawing(WorldObject& w) : world(w) { world.drawingNow = true; }
-    ~Drawing() { world.drawingNow = false; }
+    explicit Drawing(WorldObject& w) : world(w) { world.isRenderingHere = true; }
+    ~Drawing() { world.isRenderingHere = false; }
   };
   const auto pictureOf = [&] {
     auto made = std::make_unique<PictureObject>();
@@ -310,7 +310,7 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
     made->time = self->browser() ? self->browser()->now() : 0;
     if (view.pinhole && (wanted & RT_DEPTH)) measureAlongAxis(*view.pinhole, result.picture);
     if (!(wanted & RT_POSITION)) result.picture.planes.erase(RT_POSITION);
-    if (!result.ownRays) made->place = result.camera;
+    if (!result.hasCameraShader) made->place = result.camera;
     if (pinhole) made->camera = camera;
     made->picture = std::move(result.picture);
     made->nodes.reserve(result.nodes.size());
@@ -320,28 +320,28 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   std::shared_ptr<picture::Renderer> renderer;
   try {
     const Drawing drawing(*self);
-    interruptible([&](picture::Watch watch) {
+    interruptible([&](picture::ProgressCallback watch) {
       renderer = self->renderer(settings, std::move(watch));
-      renderer->setWatch({}); // what it refers to ends here
+      renderer->setProgressCallback({}); // the callback's captures end here
     });
     if (!viewpoint.is_none()) view.viewpoint = viewpointIndex(renderer->viewpoints(), viewpoint);
     interruptible(
-        [&](picture::Watch watch) {
-          renderer->setWatch(std::move(watch));
+        [&](picture::ProgressCallback watch) {
+          renderer->setProgressCallback(std::move(watch));
           try {
             result = renderer->render(view);
           } catch (...) {
-            renderer->setWatch({});
+            renderer->setProgressCallback({});
             throw;
           }
-          renderer->setWatch({});
+          renderer->setProgressCallback({});
           renderer.reset();
         },
         bar);
   } catch (py::error_already_set& stopped) {
     if (py::hasattr(bar, "close")) bar.attr("close")();
-    if (!result.picture.planes.empty())
-      stopped.value().attr("image") = pictureOf(); // as far as it was finished
+    // the finished part of the picture
+    if (!result.picture.planes.empty()) stopped.value().attr("image") = pictureOf();
     throw;
   }
   if (py::hasattr(bar, "close")) bar.attr("close")();
@@ -380,7 +380,7 @@ py::object progressOf(const py::object& given) {
       typeOf(given));
 }
 
-void interruptible(const std::function<void(picture::Watch watch)>& work,
+void interruptible(const std::function<void(picture::ProgressCallback watch)>& work,
                    const py::object& progress) {
   if (interpreterEnds()) throw std::runtime_error("the interpreter is ending");
   bool stopped = false, signalled = false;

@@ -1,4 +1,4 @@
-// rt_context.cpp: life of the contexts of xvrml.rt, errors, matrices. See rt_objects.h.
+// rt_context.cpp: Implements the contexts of xvrml.rt: lifetime, errors, matrices.
 #include "numbers.h"
 #include "objects.h"
 #include "rt_objects.h"
@@ -51,7 +51,7 @@ void RtContext::close() {
     const ReleaseGil release;
     const std::scoped_lock lock(mutex);
     const RTcontext before = rtGetCurrent();
-    rtMakeCurrent(nullptr); // the errors of this thread alone
+    rtMakeCurrent(nullptr); // so that only errors of this thread are seen
     rtGetError();
     rtDeleteContext(std::exchange(handle, nullptr));
     if ((code = rtGetError()) != RT_NO_ERROR) text = rtGetErrorMessage();
@@ -60,7 +60,8 @@ void RtContext::close() {
   if (code != RT_NO_ERROR) raise(code, text);
 }
 
-RtUse::RtUse(const RtContextPtr& context, bool edits) : context_(context), before_(rtGetCurrent()) {
+CurrentContext::CurrentContext(const RtContextPtr& context, bool edits)
+    : context_(context), before_(rtGetCurrent()) {
   if (context->drawing && context->owner == std::this_thread::get_id())
     throw std::runtime_error("the context cannot be used while a picture of it is made");
   {
@@ -72,16 +73,16 @@ RtUse::RtUse(const RtContextPtr& context, bool edits) : context_(context), befor
   context->dirty |= edits;
 }
 
-RtUse::~RtUse() {
-  rtGetError(); // of a call that was given up
+CurrentContext::~CurrentContext() {
+  rtGetError(); // clears the error of an abandoned call
   rtMakeCurrent(before_);
 }
 
-void RtUse::check() const {
+void CurrentContext::check() const {
   if (const RTenum code = rtGetError(); code != RT_NO_ERROR) raise(code, rtGetErrorMessage());
 }
 
-void RtUse::commit() const {
+void CurrentContext::commit() const {
   if (!context_->dirty) return;
   {
     const ReleaseGil release;

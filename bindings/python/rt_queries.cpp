@@ -1,6 +1,6 @@
-// rt_queries.cpp: ray and point queries of xvrml.rt over arrays: (..., 6) in, a dict of (...)
-// arrays out. Worked off in chunks that stay in the caches, each packed, traced and unpacked by all
-// threads, without the GIL.
+// rt_queries.cpp: Implements the ray and point queries of xvrml.rt over arrays: the input has shape
+// (..., 6), the result is a dict of arrays of shape (...). The input is processed in chunks that
+// fit into the caches. All threads pack, trace and unpack each chunk, without the GIL.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -23,9 +23,9 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Shape = std::vector<py::ssize_t>;
 
-struct Rows { // of numbers, whatever shape is before the last side
+struct Rows { // rows of numbers, with any shape before the last dimension
   Floats values;
-  Shape shape; // without the last side
+  Shape shape; // without the last dimension
   size_t count = 0;
   Rows(const py::object& given, const char* name, py::ssize_t width) {
     const std::string expected = fmt::format("numbers of shape (..., {})", width);
@@ -57,7 +57,7 @@ void pack(const float* from, float near, float far, RTray& to) {
   to.tfar = far;
 }
 
-// What all lists of hits have; pointers into the arrays.
+// The arrays common to all lists of hits, and pointers into them.
 struct Hits {
   py::array_t<float> t, uv, normal;
   py::array_t<uint32_t> geometry, primitive, instance, name;
@@ -95,8 +95,8 @@ struct Hits {
   }
 };
 
-// Chunks of rays, as OpenRT wants them; Ctrl-C is looked for between them.
-template <class F> void inChunks(const RtUse& use, size_t count, const F& f) {
+// Calls f for chunks of rays and checks for Ctrl-C between them.
+template <class F> void inChunks(const CurrentContext& use, size_t count, const F& f) {
   for (size_t first = 0; first < count; first += chunk) {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     {
@@ -116,7 +116,7 @@ py::dict castRays(const RtContextPtr& self, const py::object& given, float near,
   const Rows rays(given, "rays", 6);
   checkEnds(near, far);
   const Hits hits(rays.shape);
-  const RtUse use(self, false);
+  const CurrentContext use(self, false);
   use.commit();
   std::vector<RTray> packed(std::min(chunk, rays.count));
   std::vector<RThit> found(packed.size());
@@ -134,7 +134,7 @@ py::array testOcclusions(const RtContextPtr& self, const py::object& given, floa
   checkEnds(near, far);
   py::array_t<bool> out = like<bool>(rays.shape);
   bool* to = out.mutable_data();
-  const RtUse use(self, false);
+  const CurrentContext use(self, false);
   use.commit();
   std::vector<RTray> packed(std::min(chunk, rays.count));
   std::vector<uint8_t> found(packed.size());
@@ -147,7 +147,7 @@ py::array testOcclusions(const RtContextPtr& self, const py::object& given, floa
   return out;
 }
 
-std::vector<uint32_t> counted(const RtUse& use, const Rows& rays, float near, float far) {
+std::vector<uint32_t> counted(const CurrentContext& use, const Rows& rays, float near, float far) {
   std::vector<uint32_t> counts(rays.count);
   std::vector<RTray> packed(std::min(chunk, rays.count));
   const float* from = rays.values.data();
@@ -162,7 +162,7 @@ py::array countIntersections(const RtContextPtr& self, const py::object& given, 
                              float far) {
   const Rows rays(given, "rays", 6);
   checkEnds(near, far);
-  const RtUse use(self, false);
+  const CurrentContext use(self, false);
   use.commit();
   const std::vector<uint32_t> counts = counted(use, rays, near, far);
   py::array_t<int32_t> out = like<int32_t>(rays.shape);
@@ -174,7 +174,7 @@ py::dict listIntersections(const RtContextPtr& self, const py::object& given, fl
                            float far) {
   const Rows rays(given, "rays", 6);
   checkEnds(near, far);
-  const RtUse use(self, false);
+  const CurrentContext use(self, false);
   use.commit();
   const std::vector<uint32_t> counts = counted(use, rays, near, far);
   std::vector<size_t> first(rays.count + 1);
@@ -215,7 +215,7 @@ py::dict closestPoints(const RtContextPtr& self, const py::object& given, float 
   const Hits hits(points.shape);
   py::array_t<float> where = like<float>(points.shape, 3);
   float* whereTo = where.mutable_data();
-  const RtUse use(self, false);
+  const CurrentContext use(self, false);
   use.commit();
   std::vector<RTclosest> found(std::min(chunk, points.count));
   const float* from = points.values.data();

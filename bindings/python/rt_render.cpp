@@ -1,5 +1,5 @@
-// rt_render.cpp: Context.render() of xvrml.rt: the frame is made on a thread of its own, so that
-// the calling one can look for Ctrl-C and report progress. Called with the GIL held.
+// rt_render.cpp: Implements Context.render() of xvrml.rt. A thread of its own renders the frame, so
+// that the calling thread can check for Ctrl-C and report progress. [GIL held]
 #include <chrono>
 #include <condition_variable>
 
@@ -13,8 +13,8 @@
 
 namespace {
 
-// The frame, as far as it is made when the watch stops it.
-void renderWatched(RtContext& context, const picture::Watch& watch) {
+// Renders the frame; the callback may stop it early.
+void renderWatched(RtContext& context, const picture::ProgressCallback& watch) {
   std::mutex mutex;
   std::condition_variable changed;
   bool done = false;
@@ -31,8 +31,8 @@ void renderWatched(RtContext& context, const picture::Watch& watch) {
   while (!changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return done; })) {
     lock.unlock();
     stopped = stopped || watch(rtProgress(context.handle));
-    if (stopped)
-      rtCancel(context.handle); // again and again: one before the frame has started would be lost
+    // repeated: a cancellation before the frame has started would be lost
+    if (stopped) rtCancel(context.handle);
     lock.lock();
   }
   lock.unlock();
@@ -52,7 +52,7 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
   const py::object bar = progressOf(progress);
   auto made = std::make_unique<PictureObject>();
   picture::Picture& picture = made->picture;
-  const RtUse use(self);
+  const CurrentContext use(self);
   rtFrameBuffer(size.first, size.second, bits);
   rtQuality(RT_SAMPLES_PER_PIXEL, spp.value_or(timeLimit > 0 ? 65536 : error > 0 ? 4096 : 16));
   rtQualityf(RT_TARGET_ERROR, error);
@@ -90,7 +90,7 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
     explicit Drawing(RtContext& c) : context(c) {
       context.owner = std::this_thread::get_id();
       context.drawing = true;
-      rtMakeCurrent(nullptr); // current on the other thread meanwhile
+      rtMakeCurrent(nullptr); // the rendering thread makes it current
     }
     ~Drawing() {
       context.drawing = false;
@@ -102,12 +102,12 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
   };
   try {
     const Drawing drawing(*self);
-    interruptible([&](picture::Watch watch) { renderWatched(*self, watch); }, bar);
+    interruptible([&](picture::ProgressCallback watch) { renderWatched(*self, watch); }, bar);
   } catch (py::error_already_set& stopped) {
     close();
     read();
     rtGetError();
-    stopped.value().attr("image") = py::cast(std::move(made)); // as far as it was finished
+    stopped.value().attr("image") = py::cast(std::move(made)); // the finished part of the picture
     throw;
   }
   close();

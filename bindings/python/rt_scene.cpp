@@ -1,5 +1,5 @@
-// rt_scene.cpp: what is in a context of xvrml.rt: meshes from arrays, instances, shaders and their
-// parameters, lights, camera, textures. Called with the GIL held; what takes long releases it.
+// rt_scene.cpp: Implements the scene of an xvrml.rt context: meshes from arrays, instances, shaders
+// and their parameters, lights, camera, textures. [GIL held; released for long operations]
 // Longer than 500 lines because it binds one class.
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -24,7 +24,7 @@ template <class T> Dense<T> rows(const py::object& given, const char* name, py::
   return Dense<T>(numbers);
 }
 
-// The value as one of our objects.
+// Casts the value to one of this module's classes.
 template <class T> const T& thing(const py::handle& value, const char* name, const char* expected) {
   if (!py::isinstance<T>(value))
     throw py::type_error(fmt::format("{}: {} expected, not {}", name, expected, shown(value)));
@@ -38,9 +38,9 @@ const RtShader* shaderOf(const RtContextPtr& context, const py::object& shader) 
   return &found;
 }
 
-struct Opened { // an object's definition
+struct ObjectDefinition { // begins and ends the definition of an object
   RTid id = rtBeginObject(0);
-  ~Opened() {
+  ~ObjectDefinition() {
     rtVertexPointer(3, RT_FLOAT, 0, nullptr);
     rtNormalPointer(RT_FLOAT, 0, nullptr);
     rtTexCoordPointer(2, RT_FLOAT, 0, nullptr);
@@ -77,11 +77,11 @@ RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::ob
   if (!texcoords.is_none()) t = rows<float>(texcoords, "texcoords", 2, count);
   if (!colors.is_none()) c = rows<float>(colors, "colors", 3, count);
   const RtShader* surface = shaderOf(self, shader);
-  const RtUse use(self);
+  const CurrentContext use(self);
   RtObject made;
   {
     const ReleaseGil release;
-    const Opened opened;
+    const ObjectDefinition opened;
     made = {{self, opened.id}};
     if (surface) rtBindShader(surface->id);
     rtLoadName(name);
@@ -102,7 +102,7 @@ RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::ob
   return made;
 }
 
-// Numbers of the triangles that a mesh of these arrays keeps, or None if that are all.
+// Returns the numbers of the triangles that a mesh of these arrays keeps, or None if it keeps all.
 py::object keptTriangles(const py::object& vertices, const py::object& faces) {
   const auto points = rows<float>(vertices, "vertices", 3);
   const auto corners = rows<uint32_t>(faces, "faces", 3);
@@ -124,10 +124,10 @@ py::object keptTriangles(const py::object& vertices, const py::object& faces) {
 
 RtObject sphere(const RtContextPtr& self, float radius, const py::object& shader, uint32_t name) {
   const RtShader* surface = shaderOf(self, shader);
-  const RtUse use(self);
+  const CurrentContext use(self);
   RtObject made;
   {
-    const Opened opened;
+    const ObjectDefinition opened;
     made = {{self, opened.id}};
     if (surface) rtBindShader(surface->id);
     rtLoadName(name);
@@ -148,10 +148,10 @@ RtObject group(const RtContextPtr& self, const py::iterable& parts) {
     if (object.context != self) throw py::value_error("parts: an object of another context");
     all.emplace_back(object.id, rtMatrix(part[py::int_(1)]));
   }
-  const RtUse use(self);
+  const CurrentContext use(self);
   RtObject made;
   {
-    const Opened opened;
+    const ObjectDefinition opened;
     made = {{self, opened.id}};
     for (const auto& [object, matrix] : all) {
       rtLoadMatrixd(matrix.data());
@@ -167,7 +167,7 @@ RtInstance instance(const RtContextPtr& self, const RtObject& object, const py::
   if (object.context != self) throw py::value_error("instance: an object of another context");
   const RtShader* surface = shaderOf(self, shader);
   const auto m = rtMatrix(matrix);
-  const RtUse use(self);
+  const CurrentContext use(self);
   rtPushMatrix();
   rtLoadMatrixd(m.data());
   rtLoadName(name);
@@ -183,9 +183,9 @@ RtInstance instance(const RtContextPtr& self, const RtObject& object, const py::
   return made;
 }
 
-struct Bound { // the shader that rtParameter* means
-  explicit Bound(const RtShader& shader) { rtBindShader(shader.id); }
-  ~Bound() { rtBindShader(0); }
+struct BoundShader { // binds the shader that rtParameter* refers to
+  explicit BoundShader(const RtShader& shader) { rtBindShader(shader.id); }
+  ~BoundShader() { rtBindShader(0); }
 };
 
 std::vector<RTparameterInfo> parametersOf(const RtShader& shader) {
@@ -211,8 +211,8 @@ const char* parameterText(RTenum type) {
 }
 
 void setParameter(const RtShader& self, const std::string& name, const py::object& value) {
-  const RtUse use(self.context);
-  const Bound bound(self);
+  const CurrentContext use(self.context);
+  const BoundShader bound(self);
   const int handle = rtParameterHandle(name.c_str());
   if (handle < 0) {
     rtGetError();
@@ -292,7 +292,7 @@ RtShader shader(const RtContextPtr& self, const std::string& name, const py::obj
   RtShader made;
   {
     const std::string folder = library.is_none() ? "" : fromText(library);
-    const RtUse use(self);
+    const CurrentContext use(self);
     const RTid shaderClass =
         rtNewShaderClass(name.c_str(), library.is_none() ? nullptr : folder.c_str());
     use.check();
@@ -307,7 +307,7 @@ RtShader shader(const RtContextPtr& self, const std::string& name, const py::obj
 py::dict parameters(const RtShader& self) {
   constexpr const char* types[] = {"",      "int",    "float",  "vec2",   "vec3",   "vec4",
                                    "color", "matrix", "floats", "string", "texture"};
-  const RtUse use(self.context, false);
+  const CurrentContext use(self.context, false);
   py::dict all;
   for (const RTparameterInfo& p : parametersOf(self))
     all[p.name] = py::make_tuple(types[p.type < 11 ? p.type : 0], p.text ? p.text : "");
@@ -328,7 +328,7 @@ RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
   if ((wrap != "repeat" && wrap != "clamp") || (filter != "linear" && filter != "nearest"))
     throw py::value_error(
         "texture: wrap 'repeat' or 'clamp', filter 'linear' or 'nearest' expected");
-  // Rows from the top in Python, from the bottom in OpenRT.
+  // Python stores rows from the top, OpenRT from the bottom.
   const py::object turned = any[py::make_tuple(py::slice(py::none(), py::none(), py::int_(-1)))];
   Dense<uint8_t> small;
   Dense<float> large;
@@ -336,7 +336,7 @@ RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
     small = Dense<uint8_t>(turned);
   else
     large = Dense<float>(turned);
-  const RtUse use(self);
+  const CurrentContext use(self);
   RtTexture made{{self, 0}};
   rtGenTextures(1, &made.id);
   rtBindTexture(made.id);
@@ -352,12 +352,12 @@ RtTexture texture(const RtContextPtr& self, const py::object& pixels, bool srgb,
   return made;
 }
 
-struct Placed { // the current matrix of a role
-  explicit Placed(const std::array<double, 16>& matrix) {
+struct ScopedMatrix { // sets the current matrix while a role is assigned
+  explicit ScopedMatrix(const std::array<double, 16>& matrix) {
     rtPushMatrix();
     rtLoadMatrixd(matrix.data());
   }
-  ~Placed() { rtPopMatrix(); }
+  ~ScopedMatrix() { rtPopMatrix(); }
 };
 
 RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object& matrix,
@@ -366,8 +366,8 @@ RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object
   const auto m = rtMatrix(matrix);
   const RTid instance =
       scope.is_none() ? 0 : thing<RtInstance>(scope, "scope", "an Instance or None").id;
-  const RtUse use(self);
-  const Placed placed(m);
+  const CurrentContext use(self);
+  const ScopedMatrix placed(m);
   RtLight made{{self, rtUseLight(shader.id)}};
   if (instance) rtLightScope(made.id, instance);
   use.check();
@@ -377,8 +377,8 @@ RtLight light(const RtContextPtr& self, const RtShader& shader, const py::object
 void camera(const RtContextPtr& self, const std::array<double, 3>& eye,
             const std::array<double, 3>& at, const std::array<double, 3>& up, double fov,
             std::optional<double> height) {
-  const RtUse use(self);
-  const Placed placed(rtMatrix(py::none()));
+  const CurrentContext use(self);
+  const ScopedMatrix placed(rtMatrix(py::none()));
   rtLookAt(eye[0], eye[1], eye[2], at[0], at[1], at[2], up[0], up[1], up[2]);
   if (height)
     rtOrtho(*height);
@@ -391,15 +391,15 @@ void role(const RtContextPtr& self, const py::object& shader, const py::object& 
           void (*take)(RTid)) {
   const RtShader* given = shaderOf(self, shader);
   const auto m = rtMatrix(matrix);
-  const RtUse use(self);
-  const Placed placed(m);
+  const CurrentContext use(self);
+  const ScopedMatrix placed(m);
   take(given ? given->id : 0);
   use.check();
 }
 
 template <class F> auto call(F f) {
-  return [f](const RtThing& self) {
-    const RtUse use(self.context);
+  return [f](const RtHandle& self) {
+    const CurrentContext use(self.context);
     f(self.id);
     use.check();
   };
@@ -410,27 +410,27 @@ template <class F> auto call(F f) {
 void defineRtScene(py::module_& module) {
   using namespace pybind11::literals;
   const py::object none = py::none();
-  const auto unread = [](const RtThing&) -> py::object {
+  const auto unread = [](const RtHandle&) -> py::object {
     throw py::attribute_error("it can be assigned, not read");
   };
-  py::class_<RtThing>(module, "_Thing")
-      .def_readonly("id", &RtThing::id, "The number in the C API.");
-  py::class_<RtObject, RtThing>(module, "Object", "Geometry that instances place.")
+  py::class_<RtHandle>(module, "_Thing")
+      .def_readonly("id", &RtHandle::id, "The number in the C API.");
+  py::class_<RtObject, RtHandle>(module, "Object", "Geometry that instances place.")
       .def("delete", call(rtDeleteObject), "Instances of it vanish with it.");
-  py::class_<RtInstance, RtThing>(module, "Instance", "An object where it stands.")
+  py::class_<RtInstance, RtHandle>(module, "Instance", "An object where it stands.")
       .def("delete", call(rtDeleteInstance))
       .def_property(
           "matrix", unread,
           [](const RtInstance& self, const py::object& matrix) {
             const auto m = rtMatrix(matrix);
-            const RtUse use(self.context);
+            const CurrentContext use(self.context);
             rtInstanceMatrix(self.id, m.data());
             use.check();
           },
           "Assign a 4x4 matrix for column vectors.")
       .def_property("visible", unread,
                     [](const RtInstance& self, bool visible) {
-                      const RtUse use(self.context);
+                      const CurrentContext use(self.context);
                       rtInstanceVisible(self.id, visible);
                       use.check();
                     })
@@ -438,7 +438,7 @@ void defineRtScene(py::module_& module) {
           "shader", unread,
           [](const RtInstance& self, const py::object& shader) {
             const RtShader* given = shaderOf(self.context, shader);
-            const RtUse use(self.context);
+            const CurrentContext use(self.context);
             rtInstanceShader(self.id, given ? given->id : 0);
             use.check();
           },
@@ -446,22 +446,22 @@ void defineRtScene(py::module_& module) {
       .def_property(
           "user_data", unread,
           [](const RtInstance& self, uint64_t data) {
-            const RtUse use(self.context);
+            const CurrentContext use(self.context);
             rtInstanceUserData(self.id, data);
             use.check();
           },
           "A number that queries report.");
-  py::class_<RtTexture, RtThing>(module, "Texture").def("delete", call(rtDeleteTexture));
-  py::class_<RtLight, RtThing>(module, "Light")
+  py::class_<RtTexture, RtHandle>(module, "Texture").def("delete", call(rtDeleteTexture));
+  py::class_<RtLight, RtHandle>(module, "Light")
       .def("delete", call(rtRemoveLight))
       .def_property("matrix", unread, [](const RtLight& self, const py::object& matrix) {
         const auto m = rtMatrix(matrix);
-        const RtUse use(self.context);
+        const CurrentContext use(self.context);
         rtLightMatrix(self.id, m.data());
         use.check();
       });
-  py::class_<RtShader, RtThing>(module, "Shader",
-                                "A shader; shader['reflectance'] = 0.5 sets a parameter.")
+  py::class_<RtShader, RtHandle>(module, "Shader",
+                                 "A shader; shader['reflectance'] = 0.5 sets a parameter.")
       .def("__setitem__", setParameter, "name"_a, "value"_a)
       .def_property_readonly("parameters", parameters, "Names of the parameters: (type, text).")
       .def_readonly("name", &RtShader::name, "Its class.")

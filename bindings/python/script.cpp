@@ -1,7 +1,7 @@
-// script.cpp: what the script engine of Python (plugins/script/python) takes from this module, so
-// that a Script sees the same Node objects as a program: functions whose names begin with _script_.
-// The engine hands over addresses that its host gave it
-// (`object` of xvrml/xscript.h). Called with the GIL held.
+// script.cpp: Defines the functions that the script engine of Python (plugins/script/python) calls
+// in this module; their names begin with _script_. Scripts thus see the same Node objects as a
+// program. The engine passes addresses that its host gave it (`object` of xvrml/xscript.h). [GIL
+// held]
 #include <unordered_map>
 
 #include "objects.h"
@@ -10,12 +10,12 @@ using namespace xvrml;
 
 namespace {
 
-// The world as a Script sees it. It does not hold the browser: the browser holds the Script, which
-// keeps nodes.
+// The world as a Script sees it. It does not own the browser, because the browser owns the Script,
+// which keeps nodes.
 struct ScriptWorld : WorldObject {
   Browser* scripted;
-  const bool
-      foreign; // the browser is no object of this module: nobody here knows when it may be changed
+  // The browser does not belong to this module, so it is unknown when it may be changed.
+  const bool foreign;
   ScriptWorld(Browser* browser, LocksPtr known) : scripted(browser), foreign(!known) {
     if (known) locks = std::move(known);
   }
@@ -32,7 +32,7 @@ struct ScriptWorld : WorldObject {
                      : nullptr;
   }
   std::shared_ptr<picture::Renderer> renderer(const picture::RenderSettings&,
-                                              picture::Watch) override {
+                                              picture::ProgressCallback) override {
     throw picture::RenderError("a Script cannot render");
   }
 };
@@ -43,7 +43,7 @@ auto& worlds() {
 }
 thread_local LocksPtr making;
 
-// Of the browsers of this module. One may end on a thread that does not have the GIL.
+// The locks of all browsers of this module. A browser may end on a thread without the GIL.
 class AllLocks {
  public:
   LocksPtr find(const Browser* browser) {
@@ -68,8 +68,8 @@ AllLocks& allLocks() {
   return all;
 }
 
-// handler(browser, node, field, value) -> whether a Script is running there; owned by the module
-// for the life of the interpreter.
+// handler(browser, node, field, value) returns whether a Script is running there. Owned by the
+// module for the life of the interpreter.
 PyObject* assignHandler = nullptr;
 
 py::object wrap(uintptr_t browserAddress, uintptr_t nodeAddress) {
@@ -86,7 +86,7 @@ uintptr_t address(const NodeObject& node, uintptr_t browserAddress) {
   return reinterpret_cast<uintptr_t>(node.node.get());
 }
 
-// No Script of the browser is left: nodes that somebody has kept can be read and no longer changed.
+// Called when the browser's last Script has ended. Nodes that Python still holds become read-only.
 void end(uintptr_t browserAddress) {
   const auto found = worlds().find(reinterpret_cast<const Browser*>(browserAddress));
   if (found == worlds().end()) return;

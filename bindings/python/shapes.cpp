@@ -1,5 +1,5 @@
-// shapes.cpp: the Python class Mesh and World.meshes(): what of a world is drawn, as arrays. Called
-// with the GIL held, which is released while geometry is made.
+// shapes.cpp: Implements the Python class Mesh and World.meshes(), which return the drawn geometry
+// of a world as arrays. [GIL held; released while geometry is made]
 #include <array>
 #include <cstring>
 #include <map>
@@ -15,7 +15,7 @@ using Arrays = std::shared_ptr<const GeometryArrays>;
 
 struct MeshObject {
   NodeObject shape;
-  Arrays arrays; // shared by all places of a geometry node
+  Arrays arrays; // shared by all instances of a geometry node
   std::array<double, 16> matrix;
 };
 
@@ -23,7 +23,7 @@ struct Keeper {
   Arrays arrays;
 };
 
-// A view of shared arrays: nothing of them changes any more.
+// Returns a read-only view of shared arrays; they no longer change.
 template <class T, class From>
 py::array view(const MeshObject& self, const std::vector<From>& list, py::ssize_t width) {
   const auto rows = py::ssize_t(list.size() * sizeof(From) / sizeof(T)) / width;
@@ -55,7 +55,7 @@ py::array faces(const MeshObject& self) {
 }
 
 py::array matrixOf(const MeshObject& self) {
-  py::array_t<double> matrix({4, 4}); // rows as on paper: column vectors
+  py::array_t<double> matrix({4, 4}); // mathematical notation, for column vectors
   for (size_t i = 0; i < 16; ++i)
     matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = self.matrix[i];
   return matrix;

@@ -1,5 +1,5 @@
-// world.cpp: the Python class World: names, problems, what is in it, events, writing. Called with
-// the GIL held; what takes long releases it.
+// world.cpp: Implements the Python class World: names, problems, contents, events, writing. [GIL
+// held; released for long operations]
 #include <algorithm>
 #include <optional>
 
@@ -55,16 +55,16 @@ picture::RenderSettings withoutPicture() {
   return settings;
 }
 
-// In Python the matrix of a viewpoint is its pose, where render(viewpoint=...) looks from, rather
-// than that of its parent.
+// Returns the viewpoints. In Python a viewpoint's matrix is its own pose, from which
+// render(viewpoint=...) looks, instead of its parent's matrix.
 std::vector<ViewpointInfo> viewpoints(const WorldPtr& self) {
   std::vector<ViewpointInfo> list;
   const auto lock = self->lock();
-  interruptible([&](picture::Watch watch) {
+  interruptible([&](picture::ProgressCallback watch) {
     picture::Renderer renderer(self->graph(), withoutPicture(), std::move(watch));
     list = renderer.viewpoints();
     picture::View view;
-    view.up = Axis::y; // or a world without a bound Viewpoint is measured each time to guess it
+    view.up = Axis::y; // avoids guessing the up axis from the world's extent for each viewpoint
     for (size_t i = 0; i < list.size(); ++i) {
       view.viewpoint = i;
       std::ranges::copy(renderer.placeOf(view).camera.matrix, list[i].matrix);
@@ -97,7 +97,7 @@ double now(const WorldPtr& self) { return self->browser() ? self->browser()->now
 void setTime(const WorldPtr& self, double time) {
   Browser& browser = self->live();
   const auto lock = self->lock();
-  if (!(time < latestTime)) // also NaN
+  if (!(time < latestTime)) // rejects NaN too
     throw py::value_error(
         fmt::format("time: a number of seconds below {} expected, not {}", latestTime, time));
   if (time < browser.now())
@@ -129,7 +129,7 @@ uint64_t listen(const WorldPtr& self, const NodeObject& object, const std::strin
   return self->listen(object.node, event, std::move(function));
 }
 
-// Routes are in the list that is written, too.
+// Adds or removes a route; the list that is written changes too.
 bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
            const NodeObject& to, const std::string& in, bool add) {
   Node &source = own(self, from), &target = own(self, to);
@@ -161,7 +161,7 @@ bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
   return done;
 }
 
-// A name for a node that has none, or another: of the file, as DEF gives it.
+// Names a node, or renames it, as DEF does in a file.
 void setName(const WorldPtr& self, const NodeObject& node, const std::string& name) {
   auto& names = self->graph().scope.names;
   const bool good = !name.empty() && name.find_first_of(" \t\r\n,\"'#.[]\\{}") == name.npos &&
@@ -179,7 +179,7 @@ void setName(const WorldPtr& self, const NodeObject& node, const std::string& na
 const NodeObject& add(const WorldPtr& self, const NodeObject& added,
                       const std::optional<std::string>& name) {
   const WorldPtr from = added.world();
-  self->graph(); // or raises
+  self->graph(); // raises ValueError for loose nodes
   if (!from->loose() && !sameWorld(from, self))
     throw py::value_error("the node is in another world");
   const auto lock = self->lock();
@@ -209,7 +209,7 @@ WorldPtr emptyWorld() {
   return made;
 }
 
-// A name that is none would be kept, and nothing happen.
+// Rejects unknown attributes; a misspelt name would be stored without any effect.
 void setAttribute(const py::object& self, const py::str& name, const py::object& value) {
   const py::handle type = py::type::handle_of(self);
   const bool ours = std::string(py::str(type.attr("__module__"))).starts_with("xvrml");
@@ -225,7 +225,7 @@ void setAttribute(const py::object& self, const py::str& name, const py::object&
 }
 
 py::array matrixOf(const ViewpointInfo& v) {
-  py::array_t<double> matrix({4, 4}); // rows as on paper: column vectors
+  py::array_t<double> matrix({4, 4}); // mathematical notation, for column vectors
   for (size_t i = 0; i < 16; ++i)
     matrix.mutable_at(py::ssize_t(i % 4), py::ssize_t(i / 4)) = v.matrix[i];
   return matrix;

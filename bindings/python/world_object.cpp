@@ -1,5 +1,5 @@
-// world_object.cpp: what is behind the Python class World: how it comes alive, who may change it
-// when, callbacks after events.
+// world_object.cpp: Implements WorldObject: starting a world, the locks for its changes, and
+// callbacks after events.
 #include <algorithm>
 #include <filesystem>
 #include <utility>
@@ -12,7 +12,7 @@ using namespace xvrml;
 
 namespace {
 
-constexpr int maximumRounds = 1000; // of callbacks that make events that call back
+constexpr int maximumRounds = 1000; // limit for callbacks that cause events with callbacks
 
 struct Count {
   int& number;
@@ -20,8 +20,8 @@ struct Count {
   ~Count() { --number; }
 };
 
-// In a wheel the engine for Scripts in Python lies beside this module, where no program without a
-// Python finds it.
+// Adds the folder of this module to the script engines' path: a wheel contains the engine for
+// Scripts in Python there, so that programs without Python do not find it.
 BrowserOptions withOwnEngines(BrowserOptions options) {
   static const char here = 0;
   std::error_code error;
@@ -39,8 +39,8 @@ WorldObject::~WorldObject() {
   const Browser* ending = running.get();
   if (locks->callbacks == this) locks->callbacks = nullptr;
   dropped_.clear();
-  drawing_.reset();
-  running.reset(); // Scripts are shut down
+  renderer_.reset();
+  running.reset(); // shuts down the Scripts
   if (ending) scriptsLock(ending, nullptr);
 }
 
@@ -61,11 +61,11 @@ Browser& WorldObject::live() {
 
 void WorldObject::run(std::unique_ptr<World> made, const BrowserOptions& options, double start,
                       const RunOptions& more) {
-  const MakingBrowser making(locks); // its Scripts begin at once
+  const MakingBrowser making(locks); // its Scripts start at once
   locks->callbacks = this;
   change([&] {
     running = std::make_unique<Browser>(std::move(made), withOwnEngines(options), start, more);
-    for (const auto& [node, field] : std::exchange(early, {}))
+    for (const auto& [node, field] : std::exchange(initialEvents, {}))
       running->set(*node, field, running->get(*node, field));
   });
   scriptsLock(running.get(), locks);
@@ -81,28 +81,28 @@ void WorldObject::change(const std::function<void()>& work) {
     } catch (...) { failure = std::current_exception(); }
   }
   if (failure) std::rethrow_exception(failure);
-  WorldObject* own = locks->callbacks; // a Script's nodes are of a world that this module may know
+  WorldObject* own = locks->callbacks; // a Script's nodes may belong to a world of this module
   if (own && depth_ == 0 && own->depth_ == 0 && !own->delivering_) own->deliver();
 }
 
 std::shared_ptr<picture::Renderer> WorldObject::renderer(const picture::RenderSettings& settings,
-                                                         picture::Watch watch) {
+                                                         picture::ProgressCallback watch) {
   if (depth_ > 0)
     throw picture::RenderError("a Script cannot render: the events are still under way");
   if (!running) return std::make_shared<picture::Renderer>(graph(), settings, std::move(watch));
-  if (drawing_ && drawn_ == settings) {
-    drawing_->setWatch(std::move(watch));
-    return drawing_;
+  if (renderer_ && rendererSettings_ == settings) {
+    renderer_->setProgressCallback(std::move(watch));
+    return renderer_;
   }
-  drawing_.reset(); // one renderer a browser: it takes the changes
-  drawing_ = std::make_shared<picture::Renderer>(*running, settings, std::move(watch));
-  drawn_ = settings;
-  return drawing_;
+  renderer_.reset(); // only one renderer per browser: it consumes the changes
+  renderer_ = std::make_shared<picture::Renderer>(*running, settings, std::move(watch));
+  rendererSettings_ = settings;
+  return renderer_;
 }
 
-void WorldObject::rest() {
-  drawing_.reset();
-  drawn_.cluster.reset();
+void WorldObject::releaseRenderer() {
+  renderer_.reset();
+  rendererSettings_.cluster.reset();
 }
 
 WorldObject::Changing WorldObject::lock() {
@@ -111,9 +111,9 @@ WorldObject::Changing WorldObject::lock() {
     const ReleaseGil release;
     locked.drawing = std::unique_lock(locks->drawing);
     locked.graph = std::unique_lock(locks->graph);
-    sweep();
+    destroyDropped();
   }
-  if (drawingNow)
+  if (isRenderingHere)
     throw py::value_error("the world cannot be changed while a picture of it is made");
   if (const char* why = frozen()) throw py::value_error(why);
   return locked;
@@ -135,10 +135,10 @@ uint64_t WorldObject::listen(const NodeRef& node, const std::string& event, py::
   const auto number = std::make_shared<uint64_t>(0);
   *number =
       browser.listen(*node, event, [this, number](Node&, const FieldInfo&, const Value& value) {
-        heard_.push_back({*number, value, running->now()});
+        pendingEvents_.push_back({*number, value, running->now()});
       });
-  // Callbacks belong to the Python object, where the garbage collector sees them: what they refer
-  // to may be the world itself.
+  // Callbacks belong to the Python object, so that the garbage collector sees them: they may refer
+  // to the world itself.
   py::dict own = py::cast(shared_from_this()).attr("__dict__");
   if (!own.contains("_callbacks")) own["_callbacks"] = py::dict();
   own["_callbacks"][py::int_(*number)] = std::move(callback);
@@ -153,32 +153,32 @@ void WorldObject::unlisten(Node& node, uint64_t number) {
   if (own.contains("_callbacks")) own["_callbacks"].attr("pop")(number, py::none());
 }
 
-// One call after the other, those of later events too, until none is left.
+// Calls the callbacks one after the other, including those of later events, until none is left.
 void WorldObject::deliver() {
-  if (heard_.empty()) return;
+  if (pendingEvents_.empty()) return;
   struct Delivering {
     WorldObject& world;
     explicit Delivering(WorldObject& w) : world(w) { world.delivering_ = true; }
     ~Delivering() {
       world.delivering_ = false;
-      world.heard_.clear(); // after an exception the rest is not called
+      world.pendingEvents_.clear(); // after an exception, the remaining callbacks are dropped
     }
   } const delivering(*this);
   const WorldPtr self = shared_from_this();
-  for (int round = 0; !heard_.empty(); ++round) {
+  for (int round = 0; !pendingEvents_.empty(); ++round) {
     if (round == maximumRounds)
       throw std::runtime_error("callbacks keep making events that call them");
-    for (const Heard& one : std::exchange(heard_, {})) {
+    for (const PendingEvent& one : std::exchange(pendingEvents_, {})) {
       py::dict own = py::cast(self).attr("__dict__");
       if (!own.contains("_callbacks")) return;
       const py::object callback = own["_callbacks"].attr("get")(one.callback);
-      if (!callback.is_none())
-        callback(toPython(one.value, self), one.time); // unlisten() may have come first
+      // null if unlisten() was called meanwhile
+      if (!callback.is_none()) callback(toPython(one.value, self), one.time);
     }
   }
 }
 
-void WorldObject::sweep() noexcept {
+void WorldObject::destroyDropped() noexcept {
   std::vector<NodeRef> ended;
   {
     const std::scoped_lock lock(droppedMutex_);

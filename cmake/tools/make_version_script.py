@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""The linker's version script of a library: what its public headers declare is exported under VERSION, what a sibling library of
-the project includes of its private headers under a private version of exactly this release, everything else is local.
+"""Writes the linker's version script of a library. It exports what the library's public headers
+declare under VERSION, and what a sibling library of the project includes of its private headers
+under a private version of this release. Everything else is local.
 
-make_version_script.py --output FILE --version NODE [--private NODE (--private-all NAMESPACE | --of FOLDER --siblings FOLDER...)] HEADER...
+make_version_script.py --output FILE --version NODE
+    [--private NODE (--private-all NAMESPACE | --of FOLDER --siblings FOLDER...)] HEADER...
 
-C functions are found by RT_API. Of C++ headers, functions and variables of namespaces, member functions, static members, tables of
-virtual functions and type information are taken, as patterns over demangled names (`extern "C++"`). Run by CMake; no Python, no
-version script.
+C functions are recognized by RT_API. From C++ headers it takes functions and variables of
+namespaces, member functions, static members, virtual function tables and type information, as
+patterns over demangled names (`extern "C++"`). CMake runs it; without Python there is no version
+script.
 """
 import argparse
 import pathlib
@@ -17,13 +20,14 @@ TOKEN = re.compile(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'|[A-Za-z_]\w*|::|[^\s
 
 def tokens(text):
     text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", text, flags=re.S)
-    text = re.sub(r"(?<=[0-9a-fA-F])'(?=[0-9a-fA-F])", "", text)  # separators of digits are no characters
+    # digit separators, not character literals
+    text = re.sub(r"(?<=[0-9a-fA-F])'(?=[0-9a-fA-F])", "", text)
     text = re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", " ", text, flags=re.M)
     return TOKEN.findall(text)
 
 
 def skip(words, i, opening, closing):
-    """Behind the bracket that closes the one at i."""
+    """Returns the index after the bracket that closes the one at i."""
     depth = 0
     while i < len(words):
         depth += (words[i] == opening) - (words[i] == closing)
@@ -34,7 +38,7 @@ def skip(words, i, opening, closing):
 
 
 def without_templates(statement):
-    """A statement without template arguments: `std::vector<int()> f(int)` -> `std :: vector f ( int )`."""
+    """Removes template arguments: `std::vector<int()> f(int)` -> `std :: vector f ( int )`."""
     out, depth = [], 0
     for k, word in enumerate(statement):
         if word == "<" and out and re.match(r"\w", out[-1]) and out[-1] != "operator":
@@ -47,7 +51,7 @@ def without_templates(statement):
 
 
 def declared(statement, scope, kind):
-    """The name that a statement (no body, no `;`) declares for the linker, or None."""
+    """Returns the linker name that a statement (without body and `;`) declares, or None."""
     if not statement or statement[0] in ("using", "typedef", "friend", "template", "static_assert", "public", "enum"):
         return None
     words = without_templates(statement)
@@ -69,7 +73,7 @@ def declared(statement, scope, kind):
         if at >= 2 and words[at - 2] == "~":
             name = "~" + name
         if "=" in words[:at] or name in ("void", "bool", "int", "double", "float", "char"):
-            return None  # a value, a pointer to a function
+            return None  # an initial value, or a pointer to a function
         return name
     if kind == "class" and "static" not in words or kind != "class" and "extern" not in words:
         return None
@@ -79,7 +83,7 @@ def declared(statement, scope, kind):
 
 
 def scan(words):
-    """(names for the linker, classes) of a header, both with their scopes."""
+    """Returns (names for the linker, classes) of a header, both with their scopes."""
     names, classes, stack, statement, i = set(), set(), [], [], 0
 
     def scope():
@@ -134,12 +138,13 @@ def scan(words):
 
 
 def pattern(name):
-    """A pattern of the linker for a demangled name: what it may not hold becomes ?."""
+    """Returns a linker pattern for a demangled name; characters that a pattern cannot contain
+    become ?."""
     return re.sub(r"[^\w:*]", "?", name)
 
 
 def patterns(names, classes):
-    """Versions of the ABI tag and parameters follow a function's name, nothing a variable's."""
+    """A function's name may be followed by ABI tags and parameters, a variable's by nothing."""
     lines = set()
     for name in names:
         lines |= {pattern(name), pattern(name) + "[!a-zA-Z0-9_]*"}
@@ -153,7 +158,7 @@ def c_functions(text):
 
 
 def private_headers(folder, sources):
-    """The headers of a library's own folder that a sibling's sources include."""
+    """Returns the headers of a library's own folder that a sibling's sources include."""
     found = set()
     for source in sources:
         for name in re.findall(r'^#include "([^"]+)"', source.read_text(), re.M):
@@ -192,7 +197,7 @@ def main():
             names |= n
             classes |= c
     out = ["/* Made by cmake/tools/make_version_script.py from the headers; do not edit. */"]
-    if o.private:  # first: of patterns that match the linker takes the last
+    if o.private:  # first, because the linker uses the last matching pattern
         inner = [f"{o.private_all}::*", f"*?for?{o.private_all}::*"] if o.private_all else sibling_patterns(o)
         out += [o.private + " {", "  global:", '    extern "C++" {', *[f"      {p};" for p in inner], "    };", "};"]
     out += [o.version + " {", "  global:", *[f"    {name};" for name in sorted(functions)]]

@@ -1,6 +1,6 @@
-/* animation.c: a turning wheel of six balls. Frames overlap: rtSwapBuffers hands over the next
- * positions and gives back the picture of those before, which is written while the next one is
- * being made. usage: animation [picture.ppm] */
+/* animation.c: Animates a turning wheel of six balls with overlapping frames. rtSwapBuffers
+ * commits the new positions and returns the previous picture, which the program writes while the
+ * next frame renders. usage: animation [picture.ppm] */
 #include "picture.h"
 
 enum { width = 160, height = 120, balls = 6, frames = 12 };
@@ -21,8 +21,7 @@ int main(int argc, char** argv) {
   }
   rtEndObject();
   RTid turning = rtInstantiateObject(wheel);
-  rtInstanceHint(turning,
-                 RT_DYNAMIC); /* its matrix will change: then a change costs next to nothing */
+  rtInstanceHint(turning, RT_DYNAMIC); /* the matrix will change; this hint makes changes cheap */
 
   rtTranslated(0, 0, 4);
   rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", NULL)));
@@ -37,17 +36,17 @@ int main(int argc, char** argv) {
     rtRotated(60.0 * frame / frames, 0, 0, 1);
     rtGetMatrixd(m);
     rtInstanceMatrix(turning, m);
-    rtSwapBuffers();          /* commits this matrix, starts this frame ... */
-    if (frame == 0) continue; /* ... and waits for the one before, if there was one */
+    rtSwapBuffers();          /* commits this matrix, starts this frame */
+    if (frame == 0) continue; /* and waits for the previous one, if there is one */
     rtReadPixels(RT_RGBA, rgba, sizeof(rgba) / sizeof(*rgba));
-    seen[frame - 1] = rgba[4 * (height / 2 * width + width / 2 + 36)]; /* where a ball begins */
+    seen[frame - 1] = rgba[4 * (height / 2 * width + width / 2 + 36)]; /* at the edge of a ball */
   }
   RTstats stats = {.size = sizeof(stats)};
   rtGetStats(&stats);
   rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
   printf("%d frames, %d structures built\n", frames, (int)stats.objectBuilds);
-  /* A ball was there in the first frame and not halfway to the next one's place; nothing was built
+  /* A ball was there in the first frame, but not half a step later, and no structures were built
    * for the later frames. */
   return !failed && seen[0] > 0.1f && seen[frames / 2] == 0 && stats.objectBuilds <= 2 ? 0 : 2;
 }

@@ -1,5 +1,5 @@
-/* arrays.c: a hilly surface of 80,000 triangles from arrays with indices, moved between two frames
- * without being sent again. usage: arrays [picture.ppm] */
+/* arrays.c: Draws a hilly surface of 80,000 triangles from indexed arrays, and moves it between
+ * two frames without sending it again. usage: arrays [picture.ppm] */
 #include <openrt/openrt.h>
 
 #include <stdio.h>
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
       *out++ = b, *out++ = c, *out++ = d;
     }
 
-  /* The arrays are copied by rtDrawElements. */
+  /* rtDrawElements copies the arrays. */
   RTid surface = rtBeginObject(0);
   rtVertexPointer(3, RT_FLOAT, sizeof(Vertex), vertices->position);
   rtNormalPointer(RT_FLOAT, sizeof(Vertex), vertices->normal);
@@ -60,8 +60,8 @@ int main(int argc, char** argv) {
   rtReadPixels(RT_DEPTH, depth, width * height);
   float before = depth[height / 2 * width + width / 2];
 
-  /* The next frame costs one edit: the instance's matrix moves it by one unit, straight away from
-   * the camera. */
+  /* The next frame needs a single edit: the instance's matrix moves the surface one unit away
+   * from the camera. */
   const double further[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -0.447214, -0.894427, 1};
   rtInstanceMatrix(instance, further);
   rtRender();

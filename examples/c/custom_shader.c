@@ -1,6 +1,6 @@
-/* custom_shader.c: uses the plug-in stripes.c: asks what its class has, sets parameters, draws two
- * squares with it. usage: custom_shader --rt-shaderpath=FOLDER [picture.ppm]      FOLDER holds
- * stripes.so */
+/* custom_shader.c: Uses the plug-in stripes.c: queries the parameters of its class, sets them,
+ * and draws two squares with it. usage: custom_shader --rt-shaderpath=FOLDER [picture.ppm]
+ * FOLDER contains stripes.so. */
 #include "picture.h"
 
 enum { width = 200, height = 100 };
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   rtReadPixels(RT_RGBA, rgba, sizeof(rgba) / sizeof(*rgba));
   rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
-  const float *first = rgba + 4 * (height / 2 * width + 10),
-              *second = first + 4 * 22; /* in the left square: on, and between */
+  /* Two pixels of the left square: on a stripe, and between stripes. */
+  const float *first = rgba + 4 * (height / 2 * width + 10), *second = first + 4 * 22;
   return !failed && count == 2 && first[0] == 1 && first[1] == 0.5f && second[0] == 0.25f ? 0 : 2;
 }

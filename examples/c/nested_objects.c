@@ -1,5 +1,5 @@
-/* nested_objects.c: objects that contain objects: a ball, a row of balls, a square of rows and a
- * cube of squares, 5^3 balls of one definition; then the one row is defined anew, and every copy
+/* nested_objects.c: Builds objects from objects: a ball, a row of balls, a square of rows and a
+ * cube of squares, 5^3 balls from one definition. Then it redefines the row, and every copy
  * changes. usage: nested_objects [picture.ppm] */
 #include <openrt/openrt.h>
 
@@ -10,7 +10,7 @@
 enum { width = 320, height = 240, side = 5 };
 static float rgba[width * height * 4];
 
-/* An object of `side` instances of another, one unit apart along an axis. */
+/* Defines an object of `side` instances of another one, one unit apart along an axis. */
 static RTid rowOf(RTid object, RTid id, int x, int y, int z) {
   RTid row = rtBeginObject(id);
   for (int i = 0; i < side; i++) {
@@ -57,13 +57,13 @@ int main(int argc, char** argv) {
   rtLoadIdentity();
   rtLookAt(7, 5, 9, 0, 0, 0, 0, 1, 0);
   rtUseLight(rtNewShader(
-      rtNewShaderClass("VRML97DirectionalLight", NULL))); /* shines where the camera looks */
+      rtNewShaderClass("VRML97DirectionalLight", NULL))); /* shines in the view direction */
   rtPerspective(35);
   rtFrameBuffer(width, height, RT_RGBA);
 
   float before = brightness();
   RTid large = makeBall(surfaceClass, 0.4f, 0.2f, 0.7f, 0.9f);
-  rowOf(large, row, 1, 0, 0); /* the same id: the 25 rows are all new */
+  rowOf(large, row, 1, 0, 0); /* the same id: all 25 rows change */
   float after = brightness();
 
   RTstats stats;

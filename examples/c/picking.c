@@ -1,5 +1,5 @@
-/* picking.c: what is under a pixel: names of primitives, instances, barycentrics. The picture is
- * the channel of names. usage: picking [picture.ppm] */
+/* picking.c: Finds what is under a pixel: names of primitives, instances, barycentric
+ * coordinates. The picture shows the channel of names. usage: picking [picture.ppm] */
 #include "picture.h"
 
 enum { width = 160, height = 120 };
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   for (int y = 2; y < height; y += 7)
     for (int x = 3; x < width; x += 7) {
       RThit hit;
-      rtPick(x + 0.5, y + 0.5, &hit); /* the middle of the pixel */
+      rtPick(x + 0.5, y + 0.5, &hit); /* the centre of the pixel */
       wrong += hit.name != (uint32_t)names[y * width + x];
     }
   RThit hit;

@@ -1,5 +1,5 @@
-/* picture.h: what the C examples share: a context with its messages on stderr, and a rendered frame
- * written as a PPM file (linear colour to the sRGB curve, 8 bits). */
+/* picture.h: Shared by the C examples: creates a context that prints its messages on stderr, and
+ * writes a rendered frame as a PPM file (linear colour to sRGB, 8 bits). */
 #ifndef EXAMPLES_PICTURE_H
 #define EXAMPLES_PICTURE_H
 
@@ -17,8 +17,8 @@ static void printError(RTenum error, const char* message, void* user) {
   fprintf(stderr, "%s\n", message);
 }
 
-/* A context; options such as --rt-threads=1 or --rt-backend=debug:local are taken out of argv.
- * failed is set by errors. */
+/* Creates a context. Options such as --rt-threads=1 or --rt-backend=debug:local are removed from
+ * argv. Errors set *failed. */
 static inline int start(int* argc, char** argv, int* failed) {
   *failed = 0;
   rtInit(argc, argv);
@@ -37,7 +37,7 @@ static unsigned char toByte(float linear) {
   return (unsigned char)(255 * c + 0.5f);
 }
 
-/* rgba: four floats a pixel, first row at the top. Returns 0 if the file cannot be written. */
+/* rgba: four floats per pixel, first row at the top. Returns 0 if the file cannot be written. */
 static int writePicture(const char* path, int width, int height, const float* rgba) {
   FILE* file = fopen(path, "wb");
   if (!file) return 0;

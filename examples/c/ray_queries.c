@@ -1,6 +1,6 @@
-/* ray_queries.c: rays without a picture: the height of a terrain below a grid of points, and what
- * of it a lamp reaches. The picture is a map: bright is high, red lies in the shadow. usage:
- * ray_queries [picture.ppm] */
+/* ray_queries.c: Casts rays without rendering: computes the height of a terrain below a grid of
+ * points, and which of these points a lamp reaches. The picture is a map: bright is high, red is
+ * in shadow. usage: ray_queries [picture.ppm] */
 #include "picture.h"
 
 enum { side = 100, cells = 40 };
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   rtInstantiateObject(object);
   rtTranslated(0, 5, 0);
   rtRotated(-90, 1, 0, 0);
-  rtOrtho(2); /* rays are answered by the committed scene, which is committed with a frame */
+  rtOrtho(2); /* rays query the committed scene; a frame commits the scene */
   rtFrameBuffer(1, 1, RT_RGBA);
   rtRender();
 
@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
     RTray down = {{x, 2, z}, 0, {0, -1, 0}, INFINITY};
     rays[i] = down;
   }
-  rtCastRays(side * side, rays, hits); /* all of them in one call, on all threads */
+  rtCastRays(side * side, rays, hits); /* one call for all rays, on all threads */
   double worst = 0;
   const float lamp[3] = {0.9f, 0.6f, 0};
   for (int i = 0; i < side * side; i++) {

@@ -1,6 +1,6 @@
-/* recording.c: what a program hands over is written to a file while it is rendered; `openrt-replay
- * FILE -o DIR` makes the same pictures of it later, elsewhere, without the program. Recording the
- * same scene twice makes the same bytes. usage: recording FILE.rec [picture.ppm] */
+/* recording.c: Records the scene edits of a program while it renders. `openrt-replay FILE -o
+ * DIR` renders the same pictures later or elsewhere, without the program. Recording the same
+ * scene twice gives the same bytes. usage: recording FILE.rec [picture.ppm] */
 #include "picture.h"
 
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static int draw(const char* path) {
   rtRender();
   const double aside[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5, 0, 0, 1};
   rtInstanceMatrix(ball, aside);
-  rtRender(); /* a second frame: only the matrix is written */
+  rtRender(); /* a second frame: only the matrix is recorded */
   rtReadPixels(RT_RGBA, rgba, sizeof(rgba) / sizeof(*rgba));
   RTenum error = rtGetError();
   if (error != RT_NO_ERROR) fprintf(stderr, "%s\n", rtGetErrorMessage());

@@ -1,5 +1,5 @@
-/* stripes.c: a shader plug-in: stripes across the texture coordinate s, of a colour that every
- * vertex may have its own of. It includes one header and links against nothing; custom_shader.c and
+/* stripes.c: A shader plug-in that draws stripes across the texture coordinate s. Each vertex may
+ * have its own colour. It includes one header and needs no library; custom_shader.c and
  * vertex_parameters.c use it. */
 #include <openrt/openrts.h>
 
@@ -22,7 +22,7 @@ static const RtsParam parameters[] = {
 };
 static const uint8_t frequency[] = {RTS_PER_VERTEX, RTS_PER_SHADER};
 
-/* Answers a batch of hits at once. */
+/* Shades a batch of hits. */
 static void shade(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   (void)host;
   (void)batch;

@@ -1,11 +1,11 @@
-/* textures.c: an image on a square and on a ball, by texture coordinates, with repeated and with
- * clamped edges. usage: textures [picture.ppm] */
+/* textures.c: Maps an image to a square and a ball by texture coordinates, with repeated and
+ * with clamped edges. usage: textures [picture.ppm] */
 #include "picture.h"
 
 enum { width = 320, height = 160, size = 8 };
 static float rgba[width * height * 4];
 
-/* A surface of the stock class VRML97 with a texture. */
+/* Creates a surface shader of the stock class VRML97 with a texture. */
 static RTid textured(RTid image) {
   RTid surface = rtNewShader(rtNewShaderClass("VRML97", NULL));
   rtBindShader(surface);
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   int failed;
   if (!start(&argc, argv, &failed)) return 1;
 
-  /* A chess board of 8 x 8 texels; rows run from the bottom up. */
+  /* A chessboard of 8 x 8 texels; rows run from the bottom up. */
   unsigned char texels[size][size][3];
   for (int t = 0; t < size; t++)
     for (int s = 0; s < size; s++)
@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   rtEnd();
   rtEndObject();
   RTid ball = rtBeginObject(0);
-  rtSphere(0.9f); /* has texture coordinates by itself */
+  rtSphere(0.9f); /* has texture coordinates of its own */
   rtEndObject();
 
   rtTranslated(-1.1, 0, 0);
@@ -60,8 +60,7 @@ int main(int argc, char** argv) {
   rtExit();
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
 
-  /* Two neighbouring fields in the lower row of the square: the left one is dark red, the right one
-   * bright. */
+  /* Two neighbouring squares in the lower row: the left one is dark red, the right one bright. */
   const float *dark = rgba + 4 * (139 * width + 28), *bright = dark + 4 * 17;
   printf("dark %g %g, bright %g %g\n", dark[0], dark[1], bright[0], bright[1]);
   return !failed && dark[0] > 0.1f && dark[1] < 0.05f && bright[1] > 0.5f ? 0 : 2;

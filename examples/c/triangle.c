@@ -1,4 +1,4 @@
-/* triangle.c: the smallest picture: one object with one triangle, three colours, a lamp and a
+/* triangle.c: The smallest picture: one object with one triangle in three colours, a lamp and a
  * camera. usage: triangle [picture.ppm] */
 #include <openrt/openrt.h>
 
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   int failed;
   if (!start(&argc, argv, &failed)) return 1;
 
-  /* What there is: an object, and an instance of it in the scene. */
+  /* The scene: an object, and an instance of it. */
   RTid triangle = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
   rtColor3f(1, 0, 0);
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   /* A lamp that shines along -z, of the stock class VRML97DirectionalLight. */
   rtUseLight(rtNewShader(rtNewShaderClass("VRML97DirectionalLight", NULL)));
 
-  /* The camera stands at z = 4 and looks at the origin. */
+  /* The camera is at z = 4 and looks at the origin. */
   rtLookAt(0, 0, 4, 0, 0, 0, 0, 1, 0);
   rtPerspective(40);
 
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   rtExit();
 
   if (argc > 1 && !writePicture(argv[1], width, height, rgba)) return 1;
-  /* The middle of the picture is inside the triangle and lit, its corner is empty. */
+  /* The centre of the picture is inside the triangle and lit; the corner is empty. */
   const float* middle = rgba + 4 * (height / 2 * width + width / 2);
   return !failed && middle[0] > 0.1f && middle[1] > 0.1f && middle[2] > 0.1f && rgba[0] == 0 ? 0
                                                                                              : 2;

@@ -1,6 +1,6 @@
-/* vertex_parameters.c: a parameter of a shader by vertex: between rtBegin and rtEnd, and from an
- * array. With the plug-in stripes.c. usage: vertex_parameters --rt-shaderpath=FOLDER [picture.ppm]
- * FOLDER holds stripes.so */
+/* vertex_parameters.c: Sets a shader parameter per vertex: between rtBegin and rtEnd, and from
+ * an array. It uses the plug-in stripes.c. usage: vertex_parameters --rt-shaderpath=FOLDER
+ * [picture.ppm] FOLDER contains stripes.so. */
 #include "picture.h"
 
 enum { width = 200, height = 100 };
@@ -15,9 +15,9 @@ int main(int argc, char** argv) {
   const float colors[4][3] = {{1, 0, 0}, {0, 0, 1}, {0, 0, 1}, {1, 0, 0}};
   rtBindShader(rtNewShader(rtNewShaderClass("Stripes", "stripes")));
   int color = rtParameterHandle("color");
-  rtParameter1f(rtParameterHandle("count"), 7); /* this one is of the whole shader */
+  rtParameter1f(rtParameterHandle("count"), 7); /* this parameter applies to the whole shader */
 
-  /* Latched like a normal or a colour: each vertex takes what was set last. */
+  /* Latched like a normal or a colour: each vertex gets the last value that was set. */
   RTid one = rtBeginObject(0);
   rtBegin(RT_QUADS);
   for (int i = 0; i < 4; i++) {
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   rtEnd();
   rtEndObject();
 
-  /* The same from arrays. */
+  /* The same, from arrays. */
   RTid other = rtBeginObject(0);
   rtVertexPointer(3, RT_FLOAT, 0, corners);
   rtTexCoordPointer(2, RT_FLOAT, 0, places);

@@ -1,4 +1,4 @@
-// springs.cpp: the nodes of springs.node. See docs/node-plugins.md.
+// springs.cpp: Implements the nodes of springs.node. See docs/node-plugins.md.
 #include <cmath>
 
 #include "xvrml/nodes.h"
@@ -8,7 +8,7 @@ namespace {
 
 using namespace xvrml;
 
-// A circle drawn along a helix.
+// Sweeps a circle along a helix.
 NodeRef expandSpring(const Node& node) {
   const auto& spring = static_cast<const nodes::Spring&>(node);
   constexpr int stepsPerTurn = 16, corners = 10;
@@ -31,7 +31,7 @@ NodeRef expandSpring(const Node& node) {
   return made;
 }
 
-// The children are the field's own nodes: what they do, and what routes do to them, goes on.
+// Uses the field's own nodes as children, so that routes and behaviour keep working.
 NodeRef expandHanging(const Node& node) {
   const auto& hanging = static_cast<const nodes::Hanging&>(node);
   auto* place = new nodes::Transform();

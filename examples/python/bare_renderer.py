@@ -1,4 +1,4 @@
-"""The renderer without VRML: a mesh from numpy and an exact sphere: bare_renderer.py PICTURE."""
+"""Renders without VRML: a mesh from numpy and an exact sphere. Usage: bare_renderer.py PICTURE."""
 import sys
 
 import numpy as np

@@ -1,4 +1,5 @@
-"""A world made by a program: a spiral of spheres and a curved surface from numpy; written and rendered: build_world.py FOLDER."""
+"""Builds a world in a program, with a spiral of spheres and a curved surface from numpy; writes and
+renders it. Usage: build_world.py FOLDER."""
 import pathlib
 import sys
 

@@ -1,4 +1,5 @@
-"""What a depth camera sees of a world, without making a picture: depth_camera.py WORLD. Prints distances as characters."""
+"""Prints what a depth camera sees of a world, as characters, without rendering a picture. Usage:
+depth_camera.py WORLD."""
 import sys
 
 import numpy as np

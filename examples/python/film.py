@@ -1,4 +1,5 @@
-"""A world's first seconds as numbered pictures, and what one of its nodes sends meanwhile: film.py WORLD FOLDER [SECONDS]."""
+"""Renders a world's first seconds as numbered pictures and prints what one of its nodes sends.
+Usage: film.py WORLD FOLDER [SECONDS]."""
 import pathlib
 import sys
 from typing import Tuple

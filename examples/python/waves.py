@@ -1,10 +1,12 @@
-"""Heights of a sea, and a buoy that floats on it: the program of a Script (waves.wrl)."""
+"""The program of a Script (waves.wrl): computes the heights of a sea and of a buoy that floats on
+it."""
 from math import atan, cos, sin
 from typing import Any
 
-script: Any  # the Script node: set before the program begins
+script: Any  # the Script node; set before the program starts
 
-WAVES = ((0.9, 0.4, 1.3, 1.0), (-0.7, 1.1, 1.7, 0.5), (2.1, -0.6, 2.3, 0.2))  # along x and z, in time, height
+# wave numbers along x and z, frequency, height
+WAVES = ((0.9, 0.4, 1.3, 1.0), (-0.7, 1.1, 1.7, 0.5), (2.1, -0.6, 2.3, 0.2))
 
 
 def level(x: float, z: float, time: float) -> float:
@@ -20,5 +22,6 @@ def set_time(time: float) -> None:
     columns = [step * i - 5 for i in range(sea.xDimension)]
     rows = [sea.zSpacing * i - 5 for i in range(sea.zDimension)]
     script.heights = [level(x, z, time) for z in rows for x in columns]
-    script.buoy.translation = 0, level(0, 2, time) + 0.1, 2  # an event to the node: it needs directOutput TRUE
+    # sends an event to the node: it needs directOutput TRUE
+    script.buoy.translation = 0, level(0, 2, time) + 0.1, 2
     script.buoy.rotation = 0, 0, 1, atan(slope(0, 2, time))

@@ -1,9 +1,11 @@
-# chess.tcl: moves the pieces of chess.wrl. It knows the rules, reads games (PGN), and plays one by the world's clock; in a
-# trusted world with a display it opens a panel instead (chess_panel.tcl) and waits for what is pressed there. One file, since
-# programs of other worlds cannot read a second.
+# chess.tcl: Moves the pieces of chess.wrl. It implements the rules, reads games (PGN), and plays
+# one by the world's clock. In a trusted world with a display it opens a panel instead
+# (chess_panel.tcl) and waits for the user. It is one file, because programs of untrusted worlds
+# cannot read a second one.
 #
-# A position is a list {board side castling enPassant halfmoves moveNumber}. The board has 12 rows of 10, with a margin of #, so
-# that no step leaves it: a1 is 21, h1 28, a8 91, h8 98. PNBRQK are White's pieces, pnbrqk Black's, a dot is an empty square.
+# A position is a list {board side castling enPassant halfmoves moveNumber}. The board has 12 rows of
+# 10, with a margin of #, so that no step leaves it: a1 is 21, h1 28, a8 91, h8 98. PNBRQK are
+# White's pieces, pnbrqk Black's, a dot is an empty square.
 
 namespace eval rules {
   variable start {rnbqkbnr/pppppppp/8/8/8/8/PPPPPPPP/RNBQKBNR w KQkq - 0 1}
@@ -11,7 +13,7 @@ namespace eval rules {
   variable straight {-10 -1 1 10}
   variable diagonal {-11 -9 9 11}
   variable around [concat $straight $diagonal]
-  # What moving from or to a square takes of the right to castle.
+  # Castling rights that are lost by a move from or to a square.
   variable rights {25 KQ 21 Q 28 K 95 kq 91 q 98 k}
   namespace export *
 }
@@ -24,7 +26,7 @@ proc rules::name square {format %c%d [expr {96 + $square % 10}] [expr {$square /
 proc rules::sideOf piece {expr {$piece eq "." || $piece eq "#" ? {} : [string is upper $piece] ? {w} : {b}}}
 proc rules::other side {expr {$side eq "w" ? {b} : {w}}}
 
-# --- Positions as texts (FEN) ---
+# --- Positions as text (FEN) ---
 
 proc rules::read fen {
   set fields [concat $fen [lrange {- w - - 0 1} [llength $fen] 5]]
@@ -51,9 +53,9 @@ proc rules::write position {
   list [join $rows /] $side [expr {$castling eq {} ? {-} : $castling}] [expr {$enPassant ? [name $enPassant] : {-}}] $half $full
 }
 
-# --- Moves: {from to promotion}, the last empty or one of q r b n ---
+# --- Moves: {from to promotion}; promotion is empty or one of q r b n ---
 
-# Could a piece of this side take on the square?
+# Returns whether a piece of this side attacks the square.
 proc rules::attacked {board square side} {
   variable knight
   variable straight
@@ -83,7 +85,7 @@ proc rules::inCheck {position {side {}}} {
   attacked $board [lsearch -exact $board [expr {$side eq "w" ? {K} : {k}}]] [other $side]
 }
 
-# All moves by the ways of the pieces, also those that leave the king in check.
+# Returns all pseudo-legal moves: they may leave the king in check.
 proc rules::pseudo position {
   variable knight
   variable straight
@@ -150,7 +152,7 @@ proc rules::pseudo position {
   return $moves
 }
 
-# The position after a move; the rules are not asked.
+# Returns the position after a move, which is not checked against the rules.
 proc rules::make {position move} {
   variable rights
   lassign $position board side castling enPassant half full
@@ -201,7 +203,8 @@ proc rules::perft {position depth} {
   return $count
 }
 
-# What two positions have in common that count as the same: an en passant that nobody can play does not.
+# Returns a key that is equal for positions that count as repeated. An en passant square counts only
+# if a capture there is possible.
 proc rules::key position {
   lassign $position board side castling enPassant
   set possible 0
@@ -214,13 +217,14 @@ proc rules::key position {
   list $board $side $castling [expr {$possible ? $enPassant : 0}]
 }
 
-# Neither side has what it takes to mate.
+# Returns whether neither side has enough material to mate.
 proc rules::isDead board {
   set men [string map {# {} . {} K {} k {}} [join $board {}]]
   expr {$men eq {} || [regexp {^[NBnb]$} $men]}
 }
 
-# {over text}: whether the game has ended, and how things stand. keys: of all positions of the game so far.
+# Returns {over text}: whether the game has ended, and a description of the state. keys: keys of all
+# positions of the game so far.
 proc rules::status {position keys} {
   lassign $position board side castling enPassant half
   set who [expr {$side eq "w" ? {White} : {Black}}]
@@ -239,7 +243,7 @@ proc rules::status {position keys} {
   list 0 $text
 }
 
-# --- Moves as texts ---
+# --- Moves as text ---
 
 proc rules::san {position move} {
   lassign $position board side
@@ -274,7 +278,8 @@ proc rules::san {position move} {
   return $text
 }
 
-# The legal move that a text means: SAN (Nbd7, exd8=Q+, O-O) or squares (e2e4, e7e8q). An error if there is none, or more.
+# Returns the legal move for a text: SAN (Nbd7, exd8=Q+, O-O) or squares (e2e4, e7e8q). Raises an
+# error unless exactly one move matches.
 proc rules::find {position text} {
   lassign $position board side
   set plain [string map {0-0-0 O-O-O 0-0 O-O} [regsub {[+#!?]*(e\.p\.)?$} [string trim $text] {}]]
@@ -299,7 +304,8 @@ proc rules::find {position text} {
   lindex $found 0
 }
 
-# --- Games as texts (PGN): a list of games {tags moves result}. Comments, variations and annotations are left out. ---
+# --- Games as text (PGN): a list of games {tags moves result}, without comments, variations and
+# annotations ---
 
 namespace eval pgn {}
 proc pgn::read text {
@@ -343,17 +349,18 @@ proc pgn::read text {
   return $games
 }
 
-# --- The game under way ---
+# --- The current game ---
 
-# history: of each position so far {position key move san layout}; layout: a dict from nodes to where they stand.
+# history: a list of {position key move san layout} for each position so far; layout: a dict from
+# nodes to their places.
 namespace eval game {
   variable history {}
-  variable line {}    ;# the moves of the game that is played, as texts
-  variable running 0  ;# plays them by itself
-  variable nextAt 0   ;# time of its next move
-  variable waiting {} ;# moves that came while another one was under way
-  variable motion {}  ;# {start {node kind from to delay} ...}: pieces on their way
-  variable dressed {} ;# pawns that look like something else: node -> children before
+  variable line {}    ;# moves of the game that is played, as text
+  variable running 0  ;# true while it plays them by itself
+  variable nextAt 0   ;# time of the next move
+  variable waiting {} ;# moves that arrived during another one
+  variable motion {}  ;# {start {node kind from to delay} ...}: moving pieces
+  variable dressed {} ;# promoted pawns: node -> previous children
   variable moveTime 0.85
   variable pause 0.4
   variable observers {} ;# called after each change
@@ -366,7 +373,8 @@ namespace eval game {
 
 proc game::place square {list [expr {$square % 10 - 4.5}] 0.0 [expr {5.5 - $square / 10}]}
 
-# Beside the board, to the right of White: White's men nearer to White. n: how many of this side stand there.
+# Returns a place beside the board, to the right of White; White's men are nearer to White. n: number
+# of men of this side there.
 proc game::besidePlace {side n} {
   set z [expr {4.1 - 0.74 * ($n / 3)}]
   list [expr {5.15 + 0.73 * ($n % 3)}] 0.0 [expr {$side eq "w" ? $z : -$z}]
@@ -398,7 +406,7 @@ proc game::nodeAt {layout square} {
   error "no piece on [rules::name $square]"
 }
 
-# The layout after a legal move. Of pieces that leave the board: beside it.
+# Returns the layout after a legal move. Captured pieces go beside the board.
 proc game::after {layout position move} {
   lassign $position board side castling enPassant
   lassign $move from to promotion
@@ -425,15 +433,15 @@ proc game::after {layout position move} {
     set spare [lindex $::spares $index]
     if {[lindex [dict get $layout $spare] 0] eq {} && [dict get $layout $spare] eq [list {} [lindex $game::sparePlaces $index]]} {
       dict set layout $spare [list $to [place $to]]
-      dict set layout $node [list {} [lindex $game::sparePlaces $index]] ;# they change places
+      dict set layout $node [list {} [lindex $game::sparePlaces $index]] ;# the two change places
     } else {
-      dress $node $spare ;# there is one of each only
+      dress $node $spare ;# only one spare piece of each kind exists
     }
   }
   return $layout
 }
 
-# How many of a side stand beside the board.
+# Returns the number of men of a side beside the board.
 proc game::taken {layout side} {
   set count 0
   set half [expr {$side eq "w" ? 1 : -1}]
@@ -450,14 +458,14 @@ proc game::dress {node like} {
   $node set children [$like get children]
 }
 
-# Pieces go at once to where they belong.
+# Moves all pieces to their places at once.
 proc game::show {before after} {
   dict for {node where} $after {
     if {![dict exists $before $node] || [dict get $before $node] ne $where} {$node set translation [lindex $where 1]}
   }
 }
 
-# Pieces set out for where they belong; when: the time of it.
+# Starts moving the pieces to their places. when: the start time.
 proc game::setOut {before after mover when} {
   variable motion
   finish
@@ -471,9 +479,9 @@ proc game::setOut {before after mover when} {
     set dz [expr {abs($z2 - $z1)}]
     set straight [expr {$dx < 0.01 || $dz < 0.01 || abs($dx - $dz) < 0.01}]
     if {[lindex $old 0] eq {} || [lindex $where 0] eq {}} {
-      lappend motion [list $node 1.9 [lindex $old 1] [lindex $where 1] 0.12] ;# over the others, to or from beside the board
+      lappend motion [list $node 1.9 [lindex $old 1] [lindex $where 1] 0.12] ;# above the others, to or from a place beside the board
     } elseif {!$straight || $node ne $mover} {
-      lappend motion [list $node 1.7 [lindex $old 1] [lindex $where 1] 0.0] ;# a knight; a rook over its king
+      lappend motion [list $node 1.7 [lindex $old 1] [lindex $where 1] 0.0] ;# a knight, or a rook over its king
     } else {
       lappend motion [list $node 0.0 [lindex $old 1] [lindex $where 1] 0.0]
     }
@@ -503,7 +511,7 @@ proc game::animate time {
   }
 }
 
-# Plays a move now; texts as rules::find takes them.
+# Plays a move now; its text is in the syntax of rules::find.
 proc game::move {text when} {
   variable history
   set position [position]
@@ -521,7 +529,7 @@ proc game::keys {} {lmap entry $game::history {lindex $entry 1}}
 proc game::sans {} {lmap entry [lrange $game::history 1 end] {lindex $entry 3}}
 proc game::isOver {} {lindex [rules::status [position] [keys]] 0}
 
-# The next move of the line that is played, if the game has followed it so far.
+# Returns the next move of the played line, if the game has followed the line so far.
 proc game::nextText {} {
   variable line
   variable history
@@ -562,7 +570,7 @@ proc game::back when {
   tell
 }
 
-# Another game: PGN, or moves alone. They are tried before anything is changed.
+# Starts another game from PGN or from moves alone. The moves are checked before anything changes.
 proc game::load {text {index 0}} {
   lassign [lindex [pgn::read $text] $index] tags moves
   if {[dict exists $tags FEN]} {error "a game that begins with another position: the pieces of this set begin at home"}
@@ -591,8 +599,8 @@ proc game::run {on when} {
   set game::nextAt $when
 }
 
-# What time brings: pieces on their way, the next move of a game that plays by itself. Moves begin when they are due, whenever the
-# picture is drawn.
+# Advances the time: moves pieces, and starts the next move of a game that plays by itself. Moves
+# start at their due time, independently of the frame rate.
 proc game::tick time {
   variable running
   variable nextAt
@@ -618,7 +626,7 @@ proc game::tick time {
   animate $time
 }
 
-# --- What chess.wrl calls ---
+# --- Procedures called by chess.wrl ---
 
 proc initialize time {
   set ::game::sparePlaces [lmap node $::spares {$node get translation}]

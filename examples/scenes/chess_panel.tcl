@@ -1,13 +1,14 @@
-# chess_panel.tcl: the panel of chess.tcl: a board of buttons, the game's moves, what pieces, board and light look like. Read by
-# chess.tcl in a trusted world with a display. Only what Tk calls runs here: nothing waits.
+# chess_panel.tcl: The panel of chess.tcl: a board of buttons, the game's moves, and the looks of
+# pieces, board and light. chess.tcl reads it in a trusted world with a display. Only callbacks of Tk
+# run here; nothing waits.
 
 namespace eval panel {
-  variable selected {}  ;# square of the piece that has been pressed
+  variable selected {}  ;# square of the selected piece
   variable promotion q
   variable file {}
-  variable games {}     ;# of the file: as pgn::read gives them
+  variable games {}     ;# games of the file, from pgn::read
   variable glyph {K \u265a Q \u265b R \u265c B \u265d N \u265e P \u265f}
-  # What is looked at. shaders: indices into the Script's fields shaders and materials.
+  # The part whose look is edited. shaders: indices into the Script's fields shaders and materials.
   variable parts {{White pieces} {0 0} {Black pieces} {1 1} {Light squares} {2 2} {Dark squares} {3 3}}
   variable part {White pieces}
   variable kinds {Plastic Glass Marble Wood Metal}
@@ -153,14 +154,15 @@ proc panel::indices {} {
   dict get $parts $part
 }
 
-# n and k of a metal that reflects this fraction (Gulbrandsen, JCGT 3(4), 2014), for an edge between the two extremes.
+# Returns n and k of a metal with this reflectance (Gulbrandsen, JCGT 3(4), 2014), for an edge tint
+# between the two extremes.
 proc panel::metal reflectance {
   set r [expr {min(0.97, max(0.02, $reflectance))}]
   set n [expr {0.6 * (1 - $r) / (1 + $r) + 0.4 * (1 + sqrt($r)) / (1 - sqrt($r))}]
   list $n [expr {sqrt(max(0, ($r * ($n + 1) ** 2 - ($n - 1) ** 2) / (1 - $r)))}]
 }
 
-# Materials have colours as screens show them, shaders' options are linear.
+# Materials have display colours, shaders' options are linear.
 proc panel::linear color {
   lmap x $color {format %.4g [expr {$x <= 0.04045 ? $x / 12.92 : (($x + 0.055) / 1.055) ** 2.4}]}
 }
@@ -189,7 +191,7 @@ proc panel::options look {
   }
 }
 
-# The part as its look says, in the world.
+# Applies the look of a part to the world.
 proc panel::apply_ {} {
   variable looks
   variable part
@@ -213,7 +215,7 @@ proc panel::choosePart {} {
   foreach name {index roughness scale} {$w.$name set [dict get $look $name]}
   set kind [dict get $look kind]
   swatch
-  after 50 {set panel::ready 1} ;# scales report what they are set to
+  after 50 {set panel::ready 1} ;# scale widgets report the values they are set to
 }
 proc panel::swatch {} {
   variable looks

@@ -1,15 +1,14 @@
-/* formula.c: a script engine for a language of one kind of statement, NAME = EXPRESSION: a template
- * for engines of your own (docs/script-engines.md). Scheme "formula:", files "*.formula".
+/* formula.c: A script engine for a language with one kind of statement, NAME = EXPRESSION. It is
+ * a template for other engines (docs/script-engines.md). Scheme "formula:", files "*.formula".
+ * [the browser's thread]
  *
  *   DEF Wave Script {
  *     eventIn SFTime time  field SFFloat height 2  eventOut SFFloat y
  *     url "formula: y = height * sin(3 * time)"
  *   }
  *
- * Names are the Script's fields and events of the types SFBool, SFInt32, SFFloat and SFTime, and
- * those of functions. Whenever events have come, all statements are run in their order. See
- * xvrml/xscript.h; everything is called on the browser's thread.
- */
+ * Names are functions, and the Script's fields and events of the types SFBool, SFInt32, SFFloat
+ * and SFTime. When events have arrived, all statements run in order. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,24 +17,23 @@
 
 #include <xvrml/xscript.h>
 
-enum { mostDepth = 200 }; /* of parentheses: a program is somebody else's */
+enum { mostDepth = 200 }; /* maximum nesting of parentheses: programs are not trusted */
 
-/* --- The interpreter of a Script: what `create` makes and `destroy` frees --- */
+/* --- The interpreter of a Script, from `create` to `destroy` --- */
 
 typedef struct Formula {
-  const XsHost* host;       /* both are good until destroy */
-  const XsScriptInfo* info; /* the program, and what the Script declares */
-  int due;                  /* events have come */
-  const char* at;           /* while a statement is read: the next character, */
-  const char* end;          /* the end of the program, */
-  uint32_t line;            /* from 1, */
-  uint32_t depth;           /* and how deep in parentheses it is */
-  uint64_t steps;           /* operations since the host was asked last */
-  double values[];          /* of info->fields, the last ones */
+  const XsHost* host;       /* both are valid until destroy */
+  const XsScriptInfo* info; /* the program and the Script's declarations */
+  int due;                  /* events have arrived */
+  const char* at;           /* parser: the next character */
+  const char* end;          /* parser: the end of the program */
+  uint32_t line;            /* parser: the line, from 1 */
+  uint32_t depth;           /* parser: nesting depth of parentheses */
+  uint64_t steps;           /* operations since shouldStop was last called */
+  double values[];          /* current values of info->fields */
 } Formula;
 
-/* --- Messages: the host adds the name of the file and counts the line from where the program
- * stands in it --- */
+/* --- Messages; the host adds the file name and the program's first line --- */
 
 static XsResult fail(Formula* f, const char* what, const char* name, size_t length) {
   char text[200];
@@ -46,7 +44,7 @@ static XsResult fail(Formula* f, const char* what, const char* name, size_t leng
   return XS_FAILED;
 }
 
-/* --- Values: plain arrays of C, here of one number --- */
+/* --- Values: plain C arrays, here of one number --- */
 
 static double numberOf(const XsValue* value) {
   switch (value->type) {
@@ -58,7 +56,7 @@ static double numberOf(const XsValue* value) {
   }
 }
 
-/* Sends it, or keeps it in a field. The host refuses what is no good value (NaN), and says why. */
+/* Sends an eventOut or writes a field. The host refuses invalid values (NaN) and says why. */
 static XsResult give(Formula* f, const XsField* field, double number) {
   const XsHost* host = f->host;
   const int isInt = number > -2147483649.0 && number < 2147483648.0;
@@ -79,8 +77,8 @@ static XsResult give(Formula* f, const XsField* field, double number) {
   return fail(f, "", why.data, why.bytes);
 }
 
-/* --- The language: a parser that computes while it reads; with `run` 0 it only reads, which
- * `create` does to find errors --- */
+/* --- The language: a parser that evaluates while it reads; with `run` 0 it only parses, as in
+ * `create`, to find errors --- */
 
 static const struct {
   const char* name;
@@ -88,7 +86,7 @@ static const struct {
 } functions[] = {{"sin", sin},     {"cos", cos},     {"tan", tan}, {"sqrt", sqrt}, {"abs", fabs},
                  {"floor", floor}, {"round", round}, {"exp", exp}, {"log", log}};
 
-static void blanks(Formula* f) { /* of a line: its end ends a statement */
+static void blanks(Formula* f) { /* skips blanks; a line end ends the statement */
   while (f->at < f->end && (*f->at == ' ' || *f->at == '\t' || *f->at == '\r')) f->at++;
 }
 static int take(Formula* f, char c) {
@@ -120,8 +118,8 @@ static XsResult factor(Formula* f, double* result) {
   XsResult answer;
   f->steps++;
   blanks(f);
-  if (f->at < f->end && (isdigit((unsigned char)*f->at) ||
-                         *f->at == '.')) { /* the host's texts end with a zero byte: strtod stops */
+  if (f->at < f->end && (isdigit((unsigned char)*f->at) || *f->at == '.')) {
+    /* strtod stops at the zero byte that ends the host's texts. */
     char* rest;
     *result = strtod(f->at, &rest);
     if (rest == f->at) return fail(f, "a number was expected", "", 0);
@@ -203,7 +201,7 @@ static XsResult program(Formula* f, int run) {
     f->depth = 0;
     blanks(f);
     if (f->at < f->end && *f->at != '\n') answer = statement(f, run);
-    while (f->at < f->end && *f->at != '\n') f->at++; /* the rest of a line that failed */
+    while (f->at < f->end && *f->at != '\n') f->at++; /* the rest of a line with an error */
     if (f->at < f->end) f->at++;
     if (f->host->shouldStop(f->host, f->info->self, f->steps)) return XS_STOPPED;
     f->steps = 0;
@@ -211,7 +209,7 @@ static XsResult program(Formula* f, int run) {
   return answer;
 }
 
-/* --- The engine: what the host calls --- */
+/* --- The functions that the host calls --- */
 
 static XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made) {
   Formula* f = calloc(1, sizeof *f + info->fieldCount * sizeof *f->values);
@@ -227,7 +225,7 @@ static XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpret
 }
 static void destroy(XsInterpreter interpreter) { free((void*)(uintptr_t)interpreter); }
 
-/* What an event brings is good until the function returns: numbers are copied. */
+/* The event's data are valid until this function returns, so numbers are copied. */
 static XsResult event(XsInterpreter interpreter, const XsEvent* event) {
   Formula* f = (Formula*)(uintptr_t)interpreter;
   f->values[event->index] = numberOf(&event->value);
@@ -241,7 +239,7 @@ static XsResult eventsProcessed(XsInterpreter interpreter, double time) {
   (void)time;
   if (!f->due) return XS_OK;
   f->due = 0;
-  for (uint32_t i = 0; i < f->info->fieldCount; i++) { /* others may have changed a field */
+  for (uint32_t i = 0; i < f->info->fieldCount; i++) { /* other nodes may have changed a field */
     const XsField* field = &f->info->fields[i];
     if (field->access == XS_FIELD &&
         f->host->read(f->host, f->info->self, f->info->self, field->name, &value) == XS_OK)
@@ -252,9 +250,9 @@ static XsResult eventsProcessed(XsInterpreter interpreter, double time) {
 
 static const char* const schemes[] = {"formula", NULL};
 static const char* const suffixes[] = {".formula", NULL};
-/* XS_HARMLESS: a program ends soon, takes no memory, and reaches nothing but the host's functions.
- * Leave it out where you cannot promise that: programs of untrusted worlds then run in a process of
- * their own. */
+/* XS_HARMLESS promises that a program ends soon, allocates no memory, and uses only the host's
+ * functions. Without this promise, leave the flag out; programs of untrusted worlds then run in
+ * a process of their own. */
 static const XsEngine engine = {.size = sizeof(XsEngine),
                                 .flags = XS_HARMLESS,
                                 .name = "formula",

@@ -1,6 +1,6 @@
-// commit.cpp: turns the state of the scene into the edits of one commit, in the order that
-// scene_state.h fixes. All memory is taken in make(), before settle() marks the edits as sent: a
-// commit that fails leaves the scene as it was.
+// commit.cpp: turns the changed state of the scene into the edits of one commit, in the order given
+// in scene_state.h. make() allocates all memory before markCommitted() marks the edits as sent, so
+// a commit that fails leaves the scene unchanged. Runs on the application's thread.
 #include <algorithm>
 #include <cstring>
 #include <unordered_map>
@@ -18,9 +18,9 @@ std::unique_ptr<edit::Matrix> toEdit(const Matrix4d& matrix) {
 
 } // namespace
 
-class CommitMaker {
+class CommitBuilder {
  public:
-  explicit CommitMaker(SceneState& scene) : scene_(scene), commit_(std::make_shared<Commit>()) {}
+  explicit CommitBuilder(SceneState& scene) : scene_(scene), commit_(std::make_shared<Commit>()) {}
 
   std::shared_ptr<const Commit> make(bool render) {
     commit_->edits.render = render;
@@ -35,7 +35,7 @@ class CommitMaker {
     addDeletions<edit::DeleteObjectT>(scene_.objects);
     addDeletions<edit::DeleteShaderT>(scene_.shaders);
     addDeletions<edit::DeleteTextureT>(scene_.textures);
-    settle();
+    markCommitted();
     return commit_;
   }
 
@@ -54,14 +54,14 @@ class CommitMaker {
     }
   }
 
-  // The changed things of a table that still exist.
+  // Calls f for every changed entry of a table that still exists.
   template <class State, class F> void forEachDirty(Table<State>& table, const F& f) {
     for (RTid id : table.dirty)
       if (State* state = table.find(id)) f(id, *state);
   }
 
-  // Arrays with the same bytes travel once: a coordinate list that several geometries share, the
-  // corners of equal boxes.
+  // Adds an array to the commit, once for all arrays with the same bytes: for example a coordinate
+  // list that several geometries share, or the corners of equal boxes.
   ArrayId addArray(const ArrayPtr& array) {
     if (!array) return 0;
     const uint64_t hash = XXH3_64bits(array->data(), array->size());
@@ -111,8 +111,8 @@ class CommitMaker {
   std::unique_ptr<edit::GeometryT> toEditGeometry(const BuiltGeometry& built) {
     auto e = std::make_unique<edit::GeometryT>();
     e->primitive = built.primitive;
-    e->shader = scene_.shaders.find(built.state.shader) ? built.state.shader
-                                                        : 0; // may be deleted since it was latched
+    // The shader may have been deleted since it was latched.
+    e->shader = scene_.shaders.find(built.state.shader) ? built.state.shader : 0;
     e->name = built.state.name;
     e->matrix = toEdit(built.state.matrix);
     e->cull = built.state.cull;
@@ -195,7 +195,8 @@ class CommitMaker {
     if (scene_.frameDirty) add(edit::FrameSettingsT(scene_.frame));
   }
 
-  template <class State, class F> void settleTable(Table<State>& table, const F& release) noexcept {
+  template <class State, class F>
+  void markTableCommitted(Table<State>& table, const F& release) noexcept {
     forEachDirty(table, [&](RTid, State& state) {
       release(state);
       state.dirty = false;
@@ -205,14 +206,14 @@ class CommitMaker {
     table.deleted.clear();
   }
 
-  void settle() noexcept {
-    settleTable(scene_.objects,
-                [](ObjectState& s) { std::vector<BuiltGeometry>().swap(s.geometries); });
-    settleTable(scene_.instances, [](InstanceState&) {});
-    settleTable(scene_.classes, [](ShaderClassState&) {});
-    settleTable(scene_.shaders, [](ShaderState& s) { s.parameters.clear(); });
-    settleTable(scene_.textures, [](TextureState& s) { s.texels.reset(); });
-    settleTable(scene_.lights, [](LightState&) {});
+  void markCommitted() noexcept {
+    markTableCommitted(scene_.objects,
+                       [](ObjectState& s) { std::vector<BuiltGeometry>().swap(s.geometries); });
+    markTableCommitted(scene_.instances, [](InstanceState&) {});
+    markTableCommitted(scene_.classes, [](ShaderClassState&) {});
+    markTableCommitted(scene_.shaders, [](ShaderState& s) { s.parameters.clear(); });
+    markTableCommitted(scene_.textures, [](TextureState& s) { s.texels.reset(); });
+    markTableCommitted(scene_.lights, [](LightState&) {});
     scene_.generationDirty = false;
     scene_.camera.dirty = scene_.environment.dirty = scene_.defaultShader.dirty =
         scene_.transport.dirty = scene_.frameDirty = false;
@@ -220,11 +221,11 @@ class CommitMaker {
 
   SceneState& scene_;
   std::shared_ptr<Commit> commit_;
-  std::unordered_multimap<uint64_t, ArrayId> known_; // of this commit, by hash
+  std::unordered_multimap<uint64_t, ArrayId> known_; // arrays of this commit, by hash
 };
 
 std::shared_ptr<const Commit> SceneState::takeCommit(bool render) {
-  return CommitMaker(*this).make(render);
+  return CommitBuilder(*this).make(render);
 }
 
 } // namespace openrt

@@ -1,5 +1,6 @@
-// config.cpp: grammar  options ::= { blank } [ key "=" ( '"' { any but '"' } '"' | { any but blank
-// } ) { blank } ... ]
+// config.cpp: parses the options of a context. Grammar:
+//   options ::= { blank } [ key "=" value { blank } ... ]
+//   value   ::= '"' { any but '"' } '"'  |  { any but blank }
 #include "api/config.h"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ BackendKind parseBackend(std::string_view text) {
            ": expected local, null, record or cluster, or debug: and one of these");
 }
 
-// Takes one value off the front of the text.
+// Removes one value from the front of the text and returns it.
 std::string_view takeValue(std::string_view& text, std::string_view key) {
   if (text.starts_with('"')) {
     const size_t end = text.find('"', 1);

@@ -1,5 +1,5 @@
-// config.h: the options of a context, read from the text that rtNewContext takes. Application
-// thread.
+// config.h: the options of a context, parsed from the text passed to rtNewContext. Called on the
+// application's thread.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@ enum class BackendKind { Local, Null, Record, Cluster };
 
 struct ContextConfig {
   BackendKind backend = BackendKind::Local;
-  bool debug = false; // debug:NAME
-  uint32_t threads = 0;
+  bool debug = false;     // backend=debug:NAME
+  uint32_t threads = 0;   // 0: as many as the process may use
   std::string file;       // the recording of backend=record
-  std::string record;     // a recording made beside another backend
+  std::string record;     // a recording that is written while another backend renders
   std::string shaderPath; // colon-separated folders
   ClusterOptions cluster;
 
-  // Sets one option; throws ApiError for an unknown key or an impossible value.
+  // Sets one option. Throws ApiError for an unknown key or an invalid value.
   void set(std::string_view key, std::string_view value);
-  // What no single option can show: throws ApiError.
+  // Checks the options against each other. Throws ApiError.
   void check() const;
 
  private:
-  bool setCluster(std::string_view key, std::string_view value); // false: no such key
-  std::string clusterKey_; // one that only backend=cluster has; empty: none was set
+  bool setCluster(std::string_view key, std::string_view value); // returns false for unknown keys
+  std::string clusterKey_; // a key that was set and needs backend=cluster; empty: none
 };
 
-// Reads blank-separated key=value pairs; a value with blanks stands in double quotes.
+// Parses blank-separated key=value pairs. A value that contains blanks is in double quotes.
 ContextConfig parseConfig(std::string_view text);
 
 } // namespace openrt

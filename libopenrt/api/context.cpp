@@ -1,5 +1,5 @@
-// context.cpp: construction of a context, what primitives latch, and the course of frames.
-// Application thread but for cancel, progress and the log sink.
+// context.cpp: creates and closes a context, and commits, starts and finishes its frames. Runs on
+// the application's thread, except cancel, progress, snapshot, workers and the log sink.
 #include "api/context.h"
 
 #include <utility>
@@ -20,7 +20,7 @@ void LogSink::forward(int level, const char* message, void* self) {
   if (!sink.callback_) return;
   try {
     sink.callback_(level, message, sink.user_);
-  } catch (...) { // the application's exception must not run through render threads
+  } catch (...) { // an exception of the application must not unwind render threads
   }
 }
 
@@ -53,8 +53,8 @@ void Context::makeBackend(const ContextConfig& config) {
 std::exception_ptr Context::close() noexcept {
   if (!open_) return nullptr;
   try {
-    if (!flying_.empty()) giveUpFrames();
-  } catch (...) { // the backend goes whatever became of its frame
+    if (!inFlight_.empty()) abandonFrames();
+  } catch (...) { // the backend is destroyed even if its frame failed
   }
   std::exception_ptr wrong;
   try {
@@ -62,7 +62,7 @@ std::exception_ptr Context::close() noexcept {
   } catch (...) { wrong = std::current_exception(); }
   const std::lock_guard lock(backendMutex_);
   open_ = false;
-  flying_.clear();
+  inFlight_.clear();
   backend_.reset();
   unsent_.clear();
   definition.reset();
@@ -111,9 +111,9 @@ int Context::reloadShaders(const char* function) {
     });
   std::erase_if(
       parameterArrays,
-      [&](ParameterArray& array) { // where the parameter may still have values of geometry's own
+      [&](ParameterArray& array) { // drops arrays whose parameter no longer varies over geometry
         const RtsClass& table = *scene.shaderClass(array.shaderClass).table;
-        OwnParameter& own = array.from.parameter;
+        VaryingParameter& own = array.from.parameter;
         array.from.declared = &table.params[own.index];
         const uint8_t frequency =
             table.frequency ? table.frequency[own.index] : uint8_t(RTS_PER_SHADER);
@@ -133,8 +133,8 @@ RTid Context::stockCamera(const char* className, RTid& cached) {
   return cached = scene.newShader(scene.newShaderClass(table, className, ""));
 }
 
-// Hands the edits over. A backend that fails to take them is offered the same edits again by the
-// next commit.
+// Applies the edits to the backend. If the backend throws, the next commit sends the same edits
+// again.
 void Context::commit() {
   unsent_.reserve(unsent_.size() + 1);
   unsent_.push_back(scene.takeCommit(true));
@@ -147,43 +147,43 @@ void Context::commit() {
 
 void Context::start() {
   const edit::FrameSettingsT settings = scene.frame;
-  flying_.push_back(settings);
+  inFlight_.push_back(settings);
   try {
     backend_->start();
   } catch (...) {
-    flying_.pop_back();
+    inFlight_.pop_back();
     throw;
   }
   started_++;
 }
 
-bool Context::forgetCancel() {
+bool Context::takeCancelRequest() {
   const std::lock_guard lock(backendMutex_);
   return std::exchange(cancelled_, false);
 }
 
-// A cancellation that comes while edits are handed over and structures are built is for this frame,
-// too, though the backend does not know of it yet.
+// Commits and starts a frame. A cancel() during the commit or the build is meant for this frame,
+// which the backend does not know yet, so it is repeated after the start.
 void Context::begin() {
   commit();
   start();
-  if (forgetCancel()) backend_->cancel();
+  if (takeCancelRequest()) backend_->cancel();
 }
 
 void Context::finishOldest() {
-  const edit::FrameSettingsT settings = flying_.front();
-  const uint64_t number = started_ - flying_.size() + 1;
-  flying_.pop_front();
+  const edit::FrameSettingsT settings = inFlight_.front();
+  const uint64_t number = started_ - inFlight_.size() + 1;
+  inFlight_.pop_front();
   backend_->wait();
   finished_ = settings;
-  finishedNumber_ = number;
+  finishedFrameNumber_ = number;
 }
 
-// Frames that nobody will see. What went wrong with the first of them is thrown once none is left.
-void Context::giveUpFrames() {
+// Cancels and finishes all frames in flight. Then throws the first error, if any.
+void Context::abandonFrames() {
   backend_->cancel();
   std::exception_ptr problem;
-  while (!flying_.empty()) {
+  while (!inFlight_.empty()) {
     try {
       finishOldest();
     } catch (...) {
@@ -196,22 +196,22 @@ void Context::giveUpFrames() {
 void Context::swapBuffers() {
   require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
   const bool pipelines = backend_->pipelines();
-  if (!pipelines && !flying_.empty()) finishOldest();
-  forgetCancel();
-  begin(); // of a backend that pipelines: when the last jobs of the frame before are still out
-  while (pipelines && flying_.size() > framesInFlight) finishOldest();
+  if (!pipelines && !inFlight_.empty()) finishOldest();
+  takeCancelRequest();
+  begin(); // if the backend pipelines, the last jobs of the previous frame may still be outstanding
+  while (pipelines && inFlight_.size() > framesInFlight) finishOldest();
 }
 
 bool Context::finishFrame() {
-  if (flying_.empty()) return false;
+  if (inFlight_.empty()) return false;
   finishOldest();
   return true;
 }
 
 void Context::render() {
   require(scene.frame.width > 0, RT_INVALID_OPERATION, "no frame buffer: call rtFrameBuffer first");
-  forgetCancel();
-  if (!flying_.empty()) giveUpFrames();
+  takeCancelRequest();
+  if (!inFlight_.empty()) abandonFrames();
   begin();
   finishOldest();
 }

@@ -1,6 +1,6 @@
-// context.h: everything behind one RTcontext. Used on the application's thread; rtCancel and
-// rtProgress reach the backend from any thread under backendMutex_, and the log sink is called by
-// render threads.
+// context.h: the state of one RTcontext: scene, bound state, backend and frames. Used on the
+// application's thread. Only rtCancel, rtProgress, rtSnapshot and rtGetWorkers use the backend from
+// any thread, under backendMutex_; the log sink is called by render threads.
 #pragma once
 
 #include <deque>
@@ -21,25 +21,26 @@
 
 namespace openrt {
 
-// Where the library's messages go; may be changed while render threads are talking.
+// Passes the library's messages to the application's log callback. set() may be called while render
+// threads log. [any thread]
 class LogSink {
  public:
   void set(RTlogCallback callback, void* user);
   static void forward(int level, const char* message, void* sink); // an RTlogCallback
 
  private:
-  std::recursive_mutex mutex_; // the callback may set another one
+  std::recursive_mutex mutex_; // recursive, because the callback may call set()
   RTlogCallback callback_ = nullptr;
   void* user_ = nullptr;
 };
 
-// What rtParameterPointer said: values for geometry whose shader is of a class.
+// An array set by rtParameterPointer: values for geometry whose shader is of this class.
 struct ParameterArray {
   RTid shaderClass = 0;
   ParameterSource from;
 };
 
-// The object being defined.
+// The object between rtBeginObject and rtEndObject.
 struct Definition {
   RTid object = 0;
   ObjectBuilder builder;
@@ -49,14 +50,14 @@ struct Definition {
 class Context {
  public:
   explicit Context(const ContextConfig& config);
-  // For tests: renders with a backend of theirs.
+  // For tests: renders with the given backend.
   Context(const ContextConfig& config, std::unique_ptr<Backend> backend);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  // Frees everything; the context answers no call afterwards. Returns why a recording is not whole;
-  // null where all is well.
+  // Frees everything; afterwards every call fails. Returns the error if a recording is incomplete,
+  // else null.
   std::exception_ptr close() noexcept;
   bool open() const { return open_; }
 
@@ -71,7 +72,7 @@ class Context {
   uint32_t name = 0;
   float lineWidth = 1, pointSize = 1;
   bool cull = false, clockwise = false;
-  VertexState attributes; // outside definitions, forgotten by rtBeginObject
+  VertexState attributes; // current attributes outside definitions, which do not inherit them
   AttributeSource vertexArray, normalArray, texCoordArray, colorArray;
   std::vector<ParameterArray> parameterArrays;
 
@@ -80,14 +81,14 @@ class Context {
   std::vector<RTid>* openChildren() { return definition ? &definition->children : nullptr; }
   void requireOutsideList() const;
   void requireOutsideDefinition() const;
-  // What a primitive of this mode latches now; RT_INVALID_OPERATION if the bound shader is no
-  // surface shader.
+  // Returns the current state for a primitive. Throws RT_INVALID_OPERATION if the bound shader is
+  // not a surface shader.
   GeometryState latch(edit::Primitive primitive);
-  // The stock camera class's shader, made when it is first asked for.
+  // Returns the shader of a stock camera class; creates it on the first call.
   RTid stockCamera(const char* className, RTid& cached);
   const RtsClass& findClass(std::string_view className, std::string_view library) const;
-  // Loads the libraries anew whose files have changed; returns how many. A failure is recorded and
-  // does not keep the others from it.
+  // Reloads the shader libraries whose files have changed and returns their number. A failure is
+  // recorded as an error; the other libraries are reloaded all the same.
   int reloadShaders(const char* function);
 
   // Frames.
@@ -97,12 +98,13 @@ class Context {
   void cancel();
   float progress();
   bool snapshot(RTenum channel, std::span<float> out);
-  std::vector<RTworker> workers(); // [any]
+  std::vector<RTworker> workers(); // [any thread]
   const edit::FrameSettingsT& finishedFrame() const;
   Backend& backend() { return *backend_; }
   bool everCommitted() const { return everCommitted_; }
-  uint64_t finishedNumber() const { return finishedNumber_; }
-  uint32_t framesInFlight = 1; // that swapBuffers() leaves to a backend that pipelines
+  uint64_t finishedFrameNumber() const { return finishedFrameNumber_; }
+  uint32_t framesInFlight =
+      1; // frames that swapBuffers() leaves in flight if the backend pipelines
   uint64_t degenerate = 0;
   RTid perspectiveCamera = 0, orthographicCamera = 0;
 
@@ -112,25 +114,27 @@ class Context {
   void commit();
   void start();
   void finishOldest();
-  bool forgetCancel();
-  void giveUpFrames();
+  bool takeCancelRequest();
+  void abandonFrames();
 
   std::unique_ptr<ShaderRegistry> registry_;
   std::unique_ptr<Backend> backend_;
-  std::mutex backendMutex_; // cancel and progress against close; cancelled_
-  std::vector<std::shared_ptr<const Commit>>
-      unsent_;             // made, but the backend could not take them yet
-  bool cancelled_ = false; // since the frame being begun was asked for
+  // Guards backend_ against close() during calls from other threads, and cancelled_.
+  std::mutex backendMutex_;
+  // Commits that the backend has not accepted yet.
+  std::vector<std::shared_ptr<const Commit>> unsent_;
+  bool cancelled_ = false; // cancel() was called since the start of the current frame was requested
   bool everCommitted_ = false, open_ = true;
-  std::deque<edit::FrameSettingsT> flying_; // of the frames in flight, oldest first
+  std::deque<edit::FrameSettingsT> inFlight_; // settings of the frames in flight, oldest first
   std::optional<edit::FrameSettingsT> finished_;
-  uint64_t started_ = 0, finishedNumber_ = 0;
+  uint64_t started_ = 0, finishedFrameNumber_ = 0;
 };
 
-// The context of this thread: raw for speed, kept alive by a handle beside it (life.cpp).
+// The current context of this thread: a raw pointer for speed; a handle beside it keeps the context
+// alive (life.cpp).
 extern constinit thread_local Context* currentContext;
 
-// Makes a context known, current and owned by the table of live contexts. (life.cpp)
+// Adds a context to the table of live contexts, which owns it, and makes it current (life.cpp).
 RTcontext adoptContext(std::shared_ptr<Context> context);
 
 } // namespace openrt

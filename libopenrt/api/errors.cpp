@@ -1,5 +1,5 @@
-// errors.cpp: the sticky error and the translation of exceptions into error numbers. Application
-// thread.
+// errors.cpp: the sticky error, and the translation of exceptions into error codes. Runs on the
+// application's thread.
 #include "api/errors.h"
 
 #include <cstdio>
@@ -25,7 +25,7 @@ void ErrorState::record(RTenum code, const char* function, const char* text) noe
   if (!callback_) return;
   try {
     callback_(code, message, user_);
-  } catch (...) { // an application's exception has no way through a C interface
+  } catch (...) { // an exception of the application must not cross the C interface
   }
 }
 

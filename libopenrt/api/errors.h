@@ -1,6 +1,6 @@
-// errors.h: how a call of the API fails. Inner functions throw; the guard (guard.h) turns what they
-// throw into the sticky error of the current context, or of the thread where no context is current.
-// Application thread only.
+// errors.h: errors of API calls. Inner functions throw ApiError; the guard (guard.h) records the
+// exception as the sticky error of the current context, or of the thread if no context is current.
+// Used on the application's thread only.
 #pragma once
 
 #include <exception>
@@ -30,8 +30,8 @@ inline void require(bool condition, RTenum code, const char* message) {
     fail(code, message);
 }
 
-// The first error since it was last taken. Texts live in fixed storage: reporting that memory is
-// short takes none.
+// Keeps the first error since the last take(). Texts are in fixed storage, so that reporting an
+// out-of-memory error allocates nothing.
 class ErrorState {
  public:
   void record(RTenum code, const char* function, const char* text) noexcept;
@@ -39,7 +39,7 @@ class ErrorState {
     callback_ = callback;
     user_ = user;
   }
-  // Returns the error and clears it; its text goes into the thread's last message.
+  // Returns the error and clears it. Its text becomes the thread's last message.
   RTenum take() noexcept;
 
  private:

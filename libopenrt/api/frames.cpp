@@ -1,4 +1,5 @@
-// frames.cpp: the frame buffer, frames, statistics and ray queries. Application thread.
+// frames.cpp: API functions for the frame buffer, quality settings, frames, statistics and ray
+// queries. Runs on the application's thread.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -37,7 +38,7 @@ void setQuality(Context& c, RTenum name, int value) {
     require(value >= low && value <= high, RT_INVALID_VALUE, "out of range");
   };
   switch (name) {
-  case RT_FRAMES_IN_FLIGHT: // how frames are asked for, not what they are
+  case RT_FRAMES_IN_FLIGHT: // affects how frames are started, not their content
     within(1, 64);
     c.framesInFlight = static_cast<uint32_t>(value);
     return;
@@ -129,8 +130,8 @@ void getStats(Context& c, RTstats* out) {
   stats.lights = c.scene.lights.entries.size();
   stats.textures = c.scene.textures.entries.size();
   stats.degenerate += c.degenerate;
-  stats.frame = c.finishedNumber();
-  stats.size = size; // an older program's structure ends earlier
+  stats.frame = c.finishedFrameNumber();
+  stats.size = size; // the structure of an older program is shorter
   std::memcpy(out, &stats, std::min(size, sizeof(stats)));
 }
 
@@ -169,7 +170,7 @@ int pick(Context& c, double x, double y, RThit* hit) {
 }
 
 void requireNoDefinition(Context& c) {
-  c.requireOutsideDefinition(); // a scene is committed whole
+  c.requireOutsideDefinition(); // no commit while an object is only partly defined
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// guard.h: the one way into the library from C: finds the current context, and lets no exception
-// out.
+// guard.h: the entry from C into the library. Every API function runs inside guarded(), which finds
+// the current context and catches all exceptions.
 #pragma once
 
 #include <utility>
@@ -10,8 +10,8 @@ namespace openrt {
 
 void reportNoContext(const char* function) noexcept;
 
-// Runs body(context). Where that throws, or no context is current, records the error and returns
-// `failure`.
+// Runs body(context) and returns its result. If it throws, or if no context is current, records the
+// error and returns `failure`.
 template <class Result, class Body>
 Result guarded(const char* function, Result failure, Body&& body) noexcept {
   Context* const context = currentContext;

@@ -1,5 +1,5 @@
-// life.cpp: contexts and errors: rtNewContext, rtMakeCurrent, rtInit, rtGetError and their kin, and
-// the table of live contexts, by which a handle is known to be genuine on any thread.
+// life.cpp: API functions for contexts and errors (rtNewContext, rtMakeCurrent, rtInit, rtGetError
+// and related ones), and the table of live contexts, which validates handles on any thread.
 #include <cstring>
 #include <mutex>
 #include <new>
@@ -18,10 +18,11 @@ thread_local std::shared_ptr<Context> currentHandle;
 struct LiveContexts {
   std::mutex mutex;
   std::unordered_map<RTcontext, std::shared_ptr<Context>> table;
-  RTcontext initial = nullptr; // made by rtInit
+  RTcontext initial = nullptr; // the context made by rtInit
 };
 
-// Never destroyed: threads may outlive the static objects of the process.
+// Returns the table. It is never destroyed, because threads may outlive the static objects of the
+// process.
 LiveContexts& live() {
   static LiveContexts* const contexts = new LiveContexts;
   return *contexts;
@@ -49,7 +50,7 @@ ErrorState& errorsHere() noexcept {
   return currentContext && currentContext->open() ? currentContext->errors : threadErrors();
 }
 
-// For calls that need no current context.
+// Runs body() for calls that need no current context. Records exceptions like guarded().
 template <class Result, class Body>
 Result guardedAnywhere(const char* function, Result failure, Body&& body) noexcept {
   try {
@@ -76,7 +77,7 @@ void deleteContext(RTcontext handle) {
   if (const std::exception_ptr wrong = context->close()) std::rethrow_exception(wrong);
 }
 
-// Splits off the arguments --rt-KEY=VALUE: they go into the configuration, the others stay in kept.
+// Moves the arguments --rt-KEY=VALUE to the configuration and the others to `kept`.
 ContextConfig configFromArguments(int argc, char** argv, std::vector<char*>& kept) {
   ContextConfig config;
   constexpr std::string_view prefix = "--rt-";
@@ -108,7 +109,7 @@ void initialise(int* argc, char** argv) {
   }
   if (!arguments) return;
   const bool terminated =
-      static_cast<int>(kept.size()) < *argc; // room for the closing NULL of a main's argv
+      static_cast<int>(kept.size()) < *argc; // there is room for the final NULL of argv
   std::copy(kept.begin(), kept.end(), argv);
   if (terminated) argv[kept.size()] = nullptr;
   *argc = static_cast<int>(kept.size());
@@ -218,8 +219,8 @@ size_t rtGetWorkers(RTcontext context, RTworker* out, size_t count) {
     if (size < sizeof(size_t))
       fail(RT_INVALID_VALUE, "set size to sizeof(RTworker) before the call");
     const std::vector<RTworker> workers = found->workers();
-    for (size_t i = 0; i < std::min(count, workers.size());
-         i++) { // an older program's structures are smaller
+    for (size_t i = 0; i < std::min(count, workers.size()); i++) {
+      // The structures of an older program are shorter.
       RTworker worker = workers[i];
       worker.size = size;
       std::memcpy(reinterpret_cast<std::byte*>(out) + i * size, &worker,

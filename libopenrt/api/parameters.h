@@ -1,5 +1,5 @@
-// parameters.h: parameters of shaders as the API's calls name them: handles, types, and values of a
-// geometry's own. Application thread.
+// parameters.h: shader parameters in API calls: checks handles and types, and sets values per
+// triangle and per vertex. Called on the application's thread.
 #pragma once
 
 #include <initializer_list>
@@ -9,21 +9,21 @@
 
 namespace openrt {
 
-// RT_PER_* of a parameter.
+// Returns the RT_PER_* value of a parameter.
 inline RTenum frequencyOf(const RtsClass& table, uint32_t index) {
   return table.frequency ? table.frequency[index] : RTenum(RT_PER_SHADER);
 }
 
-// The class's parameter with this handle, which must be of one of these types: else
-// RT_INVALID_PARAMETER.
+// Returns the class's parameter with this handle. Throws RT_INVALID_PARAMETER if there is none or
+// if its type is not in the list.
 const RtsParam& declaredParameter(const RtsClass& table, int handle,
                                   std::initializer_list<RtsType> types);
 
 inline bool inList(const Context& c) { return c.definition && c.definition->builder.inList(); }
 
-// Between rtBegin and rtEnd: sets the value for the triangles or vertices that follow. False
-// outside lists, and for a parameter of the whole shader.
-bool setOwnValue(Context& c, int handle, std::initializer_list<RtsType> types,
-                 std::span<const float> values);
+// Sets, between rtBegin and rtEnd, the value for the following triangles or vertices. Returns false
+// outside rtBegin and rtEnd, and for per-shader parameters.
+bool setVaryingValue(Context& c, int handle, std::initializer_list<RtsType> types,
+                     std::span<const float> values);
 
 } // namespace openrt

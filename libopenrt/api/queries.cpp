@@ -1,12 +1,12 @@
-// queries.cpp: rtCountHits, rtListHits, rtClosestPoints: arguments checked, then the backend's own.
-// [app]
+// queries.cpp: the API functions rtCountHits, rtListHits and rtClosestPoints. They check the
+// arguments and call the backend. Runs on the application's thread.
 #include "api/guard.h"
 #include "backend/surface_queries.h"
 
 namespace openrt {
 namespace {
 
-// Of the backend, if anything was committed and it has surfaces.
+// Forwards queries to the backend, if it has surfaces and anything was committed.
 class CommittedQueries final : public ForwardedQueries {
  public:
   explicit CommittedQueries(Context& c)

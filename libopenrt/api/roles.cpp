@@ -1,5 +1,5 @@
-// roles.cpp: what shaders are used for: lights, the camera, the environment, the default surface.
-// Application thread.
+// roles.cpp: API functions that give a shader a role: light, camera, environment, transport or
+// default surface. Runs on the application's thread.
 #include <cmath>
 
 #include "api/geometry/transform.h"
@@ -11,11 +11,11 @@ namespace {
 
 template <class Change> void changeLight(Context& c, RTid id, const Change& change) {
   LightState& state = c.scene.light(id);
-  c.scene.lights.touch(id, state);
+  c.scene.lights.markDirty(id, state);
   change(state);
 }
 
-// A camera's frame must be one: a view cannot be flat.
+// Throws RT_INVALID_VALUE if the matrix is singular, because a camera needs three independent axes.
 void requireFrame(const Matrix4d& matrix) {
   require(matrix.determinant() != 0, RT_INVALID_VALUE, "the current matrix is singular");
 }

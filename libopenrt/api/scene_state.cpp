@@ -1,5 +1,5 @@
-// scene_state.cpp: making, finding and deleting things; every function reserves what it needs
-// before it changes anything.
+// scene_state.cpp: creates, finds and deletes the entries of the scene. Every function allocates
+// the memory it needs before it changes anything, so a failure changes nothing.
 #include "api/scene_state.h"
 
 #include <limits>
@@ -13,14 +13,14 @@ template <class State> State& lookup(Table<State>& table, RTid id, const char* k
   return *state;
 }
 
-// Makes the next push_back infallible, with amortised growth.
-void makeRoom(std::vector<RTid>& ids, size_t more = 1) {
+// Reserves room so that the next push_back cannot throw, with amortised growth.
+void reserveMore(std::vector<RTid>& ids, size_t more = 1) {
   if (ids.capacity() - ids.size() < more)
     ids.reserve(std::max(ids.size() + more, 2 * ids.capacity()));
 }
 
 template <class State> State& insert(Table<State>& table, RTid id) {
-  makeRoom(table.dirty);
+  reserveMore(table.dirty);
   return table.entries[id];
 }
 
@@ -55,20 +55,20 @@ RTid SceneState::newId() {
 
 RTid SceneState::newObject() {
   const RTid id = newId();
-  objects.touch(id, insert(objects, id));
+  objects.markDirty(id, insert(objects, id));
   return id;
 }
 
-// Enters the object's list of users; the caller enters it into the parent's list of children.
+// Adds the instance to the object's users. The caller adds it to the parent's children.
 RTid SceneState::newInstance(const InstanceState& fresh) {
   ObjectState& target = object(fresh.object);
-  makeRoom(target.users);
+  reserveMore(target.users);
   const RTid id = newId();
   InstanceState& state = insert(instances, id);
   state = fresh;
   state.userSlot = target.users.size();
   target.users.push_back(id);
-  instances.touch(id, state);
+  instances.markDirty(id, state);
   return id;
 }
 
@@ -80,7 +80,7 @@ RTid SceneState::newShaderClass(const RtsClass& table, std::string_view name,
   const RTid id = newId();
   ShaderClassState& state = insert(classes, id);
   state = std::move(fresh);
-  classes.touch(id, state);
+  classes.markDirty(id, state);
   return id;
 }
 
@@ -89,7 +89,7 @@ RTid SceneState::newShader(RTid classId) {
   const RTid id = newId();
   ShaderState& state = insert(shaders, id);
   state.shaderClass = classId;
-  shaders.touch(id, state);
+  shaders.markDirty(id, state);
   return id;
 }
 
@@ -104,7 +104,7 @@ RTid SceneState::newLight(RTid shaderId, const Matrix4d& matrix) {
   LightState& state = insert(lights, id);
   state.shader = shaderId;
   state.matrix = matrix;
-  lights.touch(id, state);
+  lights.markDirty(id, state);
   return id;
 }
 
@@ -112,9 +112,9 @@ void SceneState::defineObject(RTid id, std::vector<BuiltGeometry> geometries,
                               const std::vector<RTid>& children) {
   ObjectState& state = object(id);
   std::vector<RTid> fresh = children;
-  makeRoom(instances.deleted, state.children.size());
-  objects.touch(id, state);
-  if (state.committed) state.dynamic = true; // it has been defined before: it will be again
+  reserveMore(instances.deleted, state.children.size());
+  objects.markDirty(id, state);
+  if (state.committed) state.dynamic = true; // redefined once, it is likely to be redefined again
   while (!state.children.empty()) deleteInstance(state.children.back(), nullptr);
   state.geometries = std::move(geometries);
   state.children = std::move(fresh);
@@ -138,10 +138,10 @@ bool SceneState::contains(RTid inner, RTid outer) {
   return false;
 }
 
-// openChildren: the children of the definition that is open, whose list is not yet its object's.
+// openChildren: the children of the open definition; they are not yet in its object's list.
 void SceneState::deleteInstance(RTid id, std::vector<RTid>* openChildren) {
   InstanceState& state = instance(id);
-  makeRoom(instances.deleted);
+  reserveMore(instances.deleted);
   const auto leave = [this](std::vector<RTid>& list, size_t slot, size_t InstanceState::*place) {
     list[slot] = list.back();
     instances.find(list[slot])->*place = slot;
@@ -157,8 +157,8 @@ void SceneState::deleteInstance(RTid id, std::vector<RTid>* openChildren) {
 
 void SceneState::deleteObject(RTid id, std::vector<RTid>* openChildren) {
   ObjectState& state = object(id);
-  makeRoom(objects.deleted);
-  makeRoom(instances.deleted, state.children.size() + state.users.size());
+  reserveMore(objects.deleted);
+  reserveMore(instances.deleted, state.children.size() + state.users.size());
   while (!state.children.empty()) deleteInstance(state.children.back(), openChildren);
   while (!state.users.empty()) deleteInstance(state.users.back(), openChildren);
   objects.erase(id, state);
@@ -171,14 +171,14 @@ void SceneState::deleteShader(RTid id) {
     if (light.shader == id) itsLights.push_back(lightId);
   for (const auto& [instanceId, instance] : instances.entries)
     if (instance.shader == id) itsInstances.push_back(instanceId);
-  makeRoom(lights.deleted, itsLights.size());
-  makeRoom(instances.dirty, itsInstances.size());
-  makeRoom(shaders.deleted);
+  reserveMore(lights.deleted, itsLights.size());
+  reserveMore(instances.dirty, itsInstances.size());
+  reserveMore(shaders.deleted);
   for (RTid lightId : itsLights) lights.erase(lightId, lights.entries[lightId]);
   for (RTid instanceId : itsInstances) {
     InstanceState& instance = instances.entries[instanceId];
     instance.shader = 0;
-    instances.touch(instanceId, instance);
+    instances.markDirty(instanceId, instance);
   }
   for (RoleState* role : {&camera, &environment, &defaultShader, &transport})
     if (role->shader == id) *role = {0, Matrix4d(), true};
@@ -200,11 +200,11 @@ void SceneState::shadersReloaded(
 
 void SceneState::setParameter(RTid id, edit::ParameterT parameter) {
   ShaderState& state = shader(id);
-  shaders.touch(id, state);
+  shaders.markDirty(id, state);
   parameter.shader = id;
   constexpr size_t largestType = 16; // a matrix
-  const size_t floats =
-      parameter.floats.size(); // kept for surfaces alone: only geometry has values of its own
+  // Values are kept only for surface shaders, because only geometry can vary a parameter.
+  const size_t floats = parameter.floats.size();
   if (floats > 0 && floats <= largestType && classOf(state).kind == RTS_SURFACE)
     state.values[parameter.index] = parameter.floats;
   const uint32_t index = parameter.index;

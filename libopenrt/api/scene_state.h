@@ -1,19 +1,19 @@
-// scene_state.h: what the application has said about the scene: tables by id, and the edits that
-// the next commit carries. The latest state of an id is what a commit sends, however often it
-// changed. Application thread.
+// scene_state.h: the application's view of the scene: a table for each kind of id, and the edits of
+// the next commit. A commit sends only the latest state of an id, however often it changed. Used on
+// the application's thread.
 //
-// Order of the edits in a commit, made so that a backend applies them one after the other:
-//   1. DeleteLight, DeleteInstance            nothing but a light's scope refers to them
+// A backend applies the edits of a commit in this order:
+//   1. DeleteLight, DeleteInstance            only the scope of a light refers to them
 //   2. Texture
 //   3. ReloadShaders, ShaderClass, Shader, Parameter
-//   4. Object                                 (replaces; its former children were deleted in 1)
+//   4. Object                                 replaces it; its former children were deleted in 1
 //   5. Instance                               new and changed ones, of the scene and of objects
 //   6. Light, Camera, Environment, DefaultShader, Transport, FrameSettings
 //   7. DeleteObject, DeleteShader, DeleteTexture
-// An edit may keep naming a deleted thing: a shader of geometry is then the default one, a texture
-// is texture 0, a light whose scope is gone shines on nothing. A commit carries the arrays that it
-// names for the first time; an array lives in a backend as long as an object or a texture there
-// names it.
+// An edit may refer to deleted ids. A deleted shader of a geometry is then the default shader, a
+// deleted texture is texture 0, and a light whose scope is deleted lights nothing. A commit
+// contains the arrays that it refers to for the first time. A backend keeps an array as long as one
+// of its objects or textures refers to it.
 #pragma once
 
 #include <functional>
@@ -33,9 +33,9 @@
 namespace openrt {
 
 struct ObjectState {
-  std::vector<RTid> children;            // instances placed in it
-  std::vector<RTid> users;               // instances of it
-  std::vector<BuiltGeometry> geometries; // until they are committed
+  std::vector<RTid> children;            // instances inside this object
+  std::vector<RTid> users;               // instances of this object
+  std::vector<BuiltGeometry> geometries; // kept until they are committed
   bool dynamic = false;
   bool dirty = false, committed = false;
 };
@@ -46,8 +46,8 @@ struct InstanceState {
   Matrix4d matrix;
   bool visible = true, dynamic = false;
   uint64_t userData = 0;
-  size_t childSlot = 0, userSlot = 0; // places in the parent's and the object's lists
-  bool inDefinition = false;          // its parent's definition is still open
+  size_t childSlot = 0, userSlot = 0; // indices in the parent's children and the object's users
+  bool inDefinition = false;          // the definition of its parent is still open
   bool dirty = false, committed = false;
 };
 
@@ -60,14 +60,14 @@ struct ShaderClassState {
 struct ShaderState {
   RTid shaderClass = 0;
   std::map<uint32_t, edit::ParameterT> parameters; // set since the last commit, by index
-  std::map<uint32_t, std::vector<float>>
-      values; // ever set, of numbers: geometry may have values of its own
+  // All numeric values ever set, by index: the initial values where geometry varies a parameter.
+  std::map<uint32_t, std::vector<float>> values;
   bool dirty = false, committed = false;
 };
 
 struct TextureState {
   edit::TextureT description;
-  ArrayPtr texels; // until they are committed
+  ArrayPtr texels; // kept until they are committed
   bool dirty = false, committed = false;
 };
 
@@ -83,7 +83,7 @@ struct RoleState {
   bool dirty = false;
 };
 
-// One kind of thing: a table by id, which of them changed, and which committed ones were deleted.
+// The entries of one kind by id, with the ids that changed and the committed ids that were deleted.
 template <class State> struct Table {
   std::unordered_map<RTid, State> entries;
   std::vector<RTid> dirty, deleted;
@@ -92,8 +92,8 @@ template <class State> struct Table {
     const auto found = entries.find(id);
     return found == entries.end() ? nullptr : &found->second;
   }
-  // Marks for the next commit; what fails changes nothing.
-  void touch(RTid id, State& state) {
+  // Marks an entry for the next commit. If it throws, nothing is changed.
+  void markDirty(RTid id, State& state) {
     if (state.dirty) return;
     dirty.push_back(id);
     state.dirty = true;
@@ -108,7 +108,7 @@ class SceneState {
  public:
   SceneState();
 
-  // Lookups: RT_INVALID_ID with a text that names the kind.
+  // Look-ups. They throw RT_INVALID_ID with a text that names the kind.
   ObjectState& object(RTid id);
   InstanceState& instance(RTid id);
   ShaderClassState& shaderClass(RTid id);
@@ -118,7 +118,7 @@ class SceneState {
   const RtsClass& classOf(const ShaderState& shader) {
     return *shaderClass(shader.shaderClass).table;
   }
-  // RT_INVALID_OPERATION if the shader is of another kind; 0 passes where none is allowed.
+  // Throws RT_INVALID_OPERATION if the shader is of another kind. Accepts shader 0 (none).
   void requireKind(RTid shader, RtsKind kind);
 
   RTid newId();
@@ -129,10 +129,10 @@ class SceneState {
   RTid newTexture();
   RTid newLight(RTid shader, const Matrix4d& matrix);
 
-  // Ends the definition of an object: its geometry and children take the place of the former ones.
+  // Ends the definition of an object: replaces its geometry and its children.
   void defineObject(RTid id, std::vector<BuiltGeometry> geometries,
                     const std::vector<RTid>& children);
-  // Whether the object inner is, or contains, the object outer.
+  // Returns whether the object `inner` is, or contains, the object `outer`.
   bool contains(RTid inner, RTid outer);
 
   void deleteInstance(RTid id, std::vector<RTid>* openChildren);
@@ -145,12 +145,11 @@ class SceneState {
     role = {shader, matrix, true};
   }
   void setParameter(RTid shader, edit::ParameterT parameter);
-  // Libraries were loaded anew: looks every class up again and tells the backends with the next
-  // commit.
+  // Looks up every class again after libraries were reloaded. The next commit tells the backend.
   void shadersReloaded(const std::function<const RtsClass*(const std::string& name,
                                                            const std::string& library)>& find);
 
-  // All edits since the last one; they count as committed when it returns. (commit.cpp)
+  // Returns all edits since the last commit and marks them as committed (commit.cpp).
   std::shared_ptr<const Commit> takeCommit(bool render);
 
   Table<ObjectState> objects;
@@ -162,11 +161,11 @@ class SceneState {
   RoleState camera, environment, defaultShader, transport;
   edit::FrameSettingsT frame;
   bool frameDirty = false;
-  uint32_t shaderGeneration = 0; // how often libraries were loaded anew
+  uint32_t shaderGeneration = 0; // number of times that libraries were reloaded
   bool generationDirty = false;
 
  private:
-  friend class CommitMaker;
+  friend class CommitBuilder;
   RTid nextId_ = 1;
   ArrayId nextArray_ = 1;
 };

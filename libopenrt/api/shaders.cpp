@@ -1,5 +1,6 @@
-// shaders.cpp: shader classes, shaders and their parameters, by the tables that the classes
-// publish. Parameters of triangles and vertices: geometry_parameters.cpp. Application thread.
+// shaders.cpp: API functions for shader classes, shaders and per-shader parameters, checked against
+// the parameter tables of the classes. Per-triangle and per-vertex parameters are in
+// geometry_parameters.cpp. Runs on the application's thread.
 #include <cfloat>
 #include <cstring>
 #include <initializer_list>
@@ -27,8 +28,8 @@ ShaderState& bound(Context& c) {
   return c.scene.shader(c.boundShader);
 }
 
-// The bound shader's parameter with this handle, which must be of one of these types. It is set
-// outside lists of vertices.
+// Returns the bound shader's parameter with this handle, whose type must be in the list. Throws
+// between rtBegin and rtEnd.
 const RtsParam& parameter(Context& c, int handle, std::initializer_list<RtsType> types) {
   const RtsClass& table = c.scene.classOf(bound(c));
   const RtsParam& param = declaredParameter(table, handle, types);
@@ -39,8 +40,8 @@ const RtsParam& parameter(Context& c, int handle, std::initializer_list<RtsType>
   return param;
 }
 
-// Raises what valueProblem found.
-void refuse(const std::string& problem) {
+// Throws RT_INVALID_VALUE if the text from valueProblem() is not empty.
+void throwIfInvalid(const std::string& problem) {
   if (!problem.empty()) fail(RT_INVALID_VALUE, problem);
 }
 
@@ -52,9 +53,9 @@ edit::ParameterT edited(int handle) {
 
 void setFloats(Context& c, int handle, std::initializer_list<RtsType> types,
                std::span<const float> values) {
-  if (setOwnValue(c, handle, types, values)) return;
+  if (setVaryingValue(c, handle, types, values)) return;
   const RtsParam& param = parameter(c, handle, types);
-  refuse(valueProblem(param, values));
+  throwIfInvalid(valueProblem(param, values));
   edit::ParameterT e = edited(handle);
   e.floats.assign(values.begin(), values.end());
   c.scene.setParameter(c.boundShader, std::move(e));
@@ -113,7 +114,7 @@ int rtParameterHandle(const char* name) {
 
 void rtParameter1i(int handle, int value) {
   guarded("rtParameter1i", [&](Context& c) {
-    refuse(valueProblem(parameter(c, handle, {RTS_INT}), value));
+    throwIfInvalid(valueProblem(parameter(c, handle, {RTS_INT}), value));
     edit::ParameterT e = edited(handle);
     e.integer = value;
     c.scene.setParameter(c.boundShader, std::move(e));

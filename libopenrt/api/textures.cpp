@@ -1,4 +1,4 @@
-// textures.cpp: images that shaders sample. Application thread.
+// textures.cpp: API functions for textures. Runs on the application's thread.
 #include <cmath>
 #include <cstring>
 
@@ -32,7 +32,7 @@ void setImage(Context& c, int components, int width, int height, RTenum type, co
   if (type == RT_FLOAT)
     for (size_t i = 0; i < values; i++)
       require(std::isfinite(texels->as<float>()[i]), RT_INVALID_VALUE, "a texel is not finite");
-  c.scene.textures.touch(c.boundTexture, state);
+  c.scene.textures.markDirty(c.boundTexture, state);
   edit::TextureT& d = state.description;
   d.components = static_cast<uint32_t>(components);
   d.width = static_cast<uint32_t>(width);
@@ -66,8 +66,8 @@ void setParameter(Context& c, RTenum name, int value) {
   default: fail(RT_INVALID_ENUM, "unknown texture parameter " + std::to_string(name));
   }
   const bool hasImage =
-      state.texels || changed.texels != 0; // before its image there is nothing to send
-  if (hasImage) c.scene.textures.touch(c.boundTexture, state);
+      state.texels || changed.texels != 0; // without an image there is nothing to send
+  if (hasImage) c.scene.textures.markDirty(c.boundTexture, state);
   state.description = changed;
 }
 

@@ -1,5 +1,6 @@
-// backend.h: the waist between the API and whoever renders: local, record, null, cluster.
-// Called on the application's thread only, except cancel(), progress(), snapshot() and workers().
+// backend.h: the interface between the API and the backends: local, cluster, record, null, debug. A
+// backend applies commits, renders frames and answers ray queries. Functions are called on the
+// application's thread, except those marked [any thread].
 #pragma once
 
 #include <cstdint>
@@ -19,24 +20,24 @@ class ShaderRegistry;
 
 struct BackendOptions {
   uint32_t threads = 0; // 0: as many as the process may use
-  std::string file;     // recording
+  std::string file;     // the recording to write
   const ShaderRegistry* shaders = nullptr;
   RTlogCallback log = nullptr;
   void* logUser = nullptr;
-  bool diagnose = false; // costs time: looks for misuse while it renders
+  bool diagnose = false; // detect misuse while rendering; costs time
 };
 
 struct ClusterOptions {
-  std::vector<std::string> workers; // HOST[:PORT][=PUBLICKEY] to call; @FILE
-  std::string listen;               // ADDRESS[:PORT]; empty: nobody calls in
+  std::vector<std::string> workers; // workers to connect to: HOST[:PORT][=PUBLICKEY] or @FILE
+  std::string listen;               // ADDRESS[:PORT]; empty: accepts no connections
   std::string keyFile, allowFile;
-  std::optional<uint32_t> local; // threads of this process; none: BackendOptions.threads
-  std::string split = "auto";    // tiles, samples, frames
-  uint32_t require = 0;          // workers without which a frame fails
-  bool tolerant = false;         // workers of other instruction sets and versions are taken
+  std::optional<uint32_t> local; // render threads of this process; none: BackendOptions.threads
+  std::string split = "auto";    // how work is divided: auto, tiles, samples, frames
+  uint32_t require = 0;          // a frame fails with fewer workers
+  bool tolerant = false;         // also accepts workers with other instruction sets and versions
 };
 
-// Workers are missing, an address or a key is of no use. The message is for people.
+// Thrown if workers are missing, or an address or a key is unusable. The message is for the user.
 class ClusterError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -44,46 +45,50 @@ class ClusterError : public std::runtime_error {
 class Backend {
  public:
   virtual ~Backend() = default;
-  // True: apply() and start() may be called while frames are in flight, which are finished in their
-  // order.
+  // Returns true if apply() and start() may be called while frames are in flight. Frames then
+  // finish in the order of their start.
   virtual bool pipelines() const { return false; }
-  // Takes the edits over; they hold from the next start() on. Never called while a frame is in
-  // flight, if !pipelines().
+  // Applies the edits of a commit; they take effect with the next start(). If !pipelines(), never
+  // called while a frame is in flight.
   virtual void apply(std::shared_ptr<const Commit> commit) = 0;
-  // Starts a frame of the committed scene; returns at once.
+  // Starts rendering a frame of the committed scene and returns at once.
   virtual void start() = 0;
-  // Waits for the (oldest) frame in flight, which then is the one that read() reads.
+  // Waits for the (oldest) frame in flight. After it, read() reads that frame.
   virtual void wait() = 0;
-  virtual void cancel() = 0;          // [any] all frames in flight
-  virtual float progress() const = 0; // [any] 0..1, of the (oldest) frame in flight
-  // One channel of the (oldest) frame in flight, its finished tiles; false if there is no such
-  // channel or frame. [any]
+  // Cancels all frames in flight. [any thread]
+  virtual void cancel() = 0;
+  // Returns the finished fraction, 0..1, of the (oldest) frame in flight. [any thread]
+  virtual float progress() const = 0;
+  // Copies the finished tiles of one channel of the (oldest) frame in flight. Returns false if
+  // there is no such channel or frame. [any thread]
   virtual bool snapshot(RTenum, std::span<float>) const { return false; }
-  // One channel of the finished frame, first row at the top; false if there is no such channel or
-  // frame.
+  // Copies one channel of the finished frame, first row at the top. Returns false if there is no
+  // such channel or frame.
   virtual bool read(RTenum channel, std::span<float> out) const = 0;
   virtual void stats(RTstats& stats) const = 0;
-  virtual std::vector<RTworker> workers() const { return {}; } // [any] of a cluster
+  // Returns the workers of a cluster. [any thread]
+  virtual std::vector<RTworker> workers() const { return {}; }
   virtual void castRays(std::span<const RTray> rays, std::span<RThit> hits) = 0;
   virtual void occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) = 0;
-  // What the committed camera sees at a place of the picture, as castRays; false if no camera or no
-  // frame is committed.
+  // Writes the hit of the committed camera's ray through the picture at (x, y) (pixels), in the
+  // form of castRays. Returns false if no camera or no frame is committed.
   virtual bool pick(double x, double y, RThit& hit) = 0;
-  // Ends the file that is written, if one is: throws where it is not whole. No call but the
-  // destructor may follow.
+  // Completes the file that the backend writes, if any; throws if it is incomplete. Afterwards only
+  // the destructor may be called.
   virtual void finish() {}
 };
 
-// Throws std::runtime_error with a message for people when the backend cannot start.
+// These throw std::runtime_error with a message for the user if the backend cannot start.
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeNullBackend(const BackendOptions& options);
+// Also throws ClusterError.
 std::unique_ptr<Backend> makeClusterBackend(const BackendOptions& options,
-                                            const ClusterOptions& cluster); // or ClusterError
-// Passes everything on to the backend that renders and explains misuse to options.log.
+                                            const ClusterOptions& cluster);
+// Forwards every call to the backend that renders, and explains misuse to options.log.
 std::unique_ptr<Backend> makeDebugBackend(const BackendOptions& options,
                                           std::unique_ptr<Backend> renderer);
-// Writes the recording options.file and passes everything on to the backend that renders.
+// Writes the recording options.file and forwards every call to the backend that renders.
 std::unique_ptr<Backend> makeTeeBackend(const BackendOptions& options,
                                         std::unique_ptr<Backend> renderer);
 

@@ -1,3 +1,5 @@
+// surface_queries.cpp: forwards surface queries, or reports that nothing is hit. Called on the
+// application's thread.
 #include "backend/surface_queries.h"
 
 #include <algorithm>

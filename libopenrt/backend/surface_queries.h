@@ -1,6 +1,6 @@
-// surface_queries.h: what a backend that has surfaces answers beside Backend's own queries
-// (openrt/queries.h). A backend that is none of these meets nothing. Called on the application's
-// thread, after the first commit.
+// surface_queries.h: the queries of openrt/queries.h, implemented by backends that have surfaces.
+// On other backends the queries find no surface. Called on the application's thread, after the
+// first commit.
 #pragma once
 
 #include <span>
@@ -13,14 +13,15 @@ class SurfaceQueries {
  public:
   virtual ~SurfaceQueries() = default;
   virtual void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) = 0;
-  // first: one number more than rays, checked.
+  // Writes the hits of ray i to hits[first[i]] .. hits[first[i + 1] - 1]. first has one number more
+  // than rays and has been checked.
   virtual void listHits(std::span<const RTray> rays, std::span<const size_t> first,
                         std::span<RThit> hits) = 0;
   virtual void closestPoints(std::span<const float> points, float radius,
                              std::span<RTclosest> closest) = 0;
 };
 
-// For backends that pass everything on to another: that one's, if it has some.
+// For backends that wrap another backend: forwards the queries to it.
 class ForwardedQueries : public SurfaceQueries {
  public:
   void countHits(std::span<const RTray> rays, std::span<uint32_t> counts) override;
@@ -30,7 +31,7 @@ class ForwardedQueries : public SurfaceQueries {
                      std::span<RTclosest> closest) override;
 
  protected:
-  virtual SurfaceQueries* target() const = 0; // null: nothing is met
+  virtual SurfaceQueries* target() const = 0; // null: the queries find no surface
 };
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// arena.h: structure-of-arrays storage of one render thread: aligned blocks cut from large chunks,
-// released in reverse order.
+// arena.h: arena allocator of one render thread for structure-of-arrays storage: aligned blocks cut
+// from large chunks, released in reverse order.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace openrt {
 inline constexpr uint32_t lanes = 16;
 inline uint32_t padded(uint32_t n) { return (n + lanes - 1) / lanes * lanes; }
 
-// Bump allocator in chunks. Blocks stay where they are until release() to an earlier mark().
+// Bump allocator in chunks. Blocks do not move until release() to an earlier mark().
 class Arena {
  public:
   Arena() = default;
@@ -43,7 +43,7 @@ class Arena {
     return result;
   }
 
-  // 0, 1, 2 ...
+  // Returns an array with 0, 1, 2, ..., count - 1.
   uint32_t* takeNumbers(uint32_t count) {
     auto* result = take<uint32_t>(count);
     std::iota(result, result + count, 0u);
@@ -75,7 +75,7 @@ class Arena {
   size_t current_ = 0;
 };
 
-// Releases what was taken within a block of code.
+// Releases at the end of a scope what was allocated within it.
 class ArenaScope {
  public:
   explicit ArenaScope(Arena& arena) : arena_(arena), mark_(arena.mark()) {}

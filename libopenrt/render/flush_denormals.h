@@ -1,5 +1,6 @@
-// flush_denormals.h: within a block of code denormal floats are zero, as the ray kernels want it:
-// for all that makes or rounds a picture's numbers, so that these do not depend on the thread.
+// flush_denormals.h: RAII guard that flushes denormal floats to zero, as the ray kernels require.
+// Used around all code that computes or rounds the numbers of a picture, so that they do not depend
+// on the thread.
 #pragma once
 
 #include <xmmintrin.h>

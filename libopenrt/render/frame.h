@@ -1,11 +1,11 @@
-// frame.h: two unit vectors at right angles to a third. Pure functions. [any thread]
+// frame.h: completes a unit vector to an orthonormal frame. Pure functions. [any thread]
 //
 // No such frame is continuous over all directions. Where it jumps, neighbouring samples choose
-// unrelated places on a lamp, which makes noise. T. Duff et al., "Building an Orthonormal Basis,
-// Revisited", JCGT 6(1), 2017, jumps along the whole circle z = 0, on which walls and lamps often
+// unrelated points on a light, which makes noise. T. Duff et al., "Building an Orthonormal Basis,
+// Revisited", JCGT 6(1), 2017, jumps along the whole circle z = 0, on which walls and lights often
 // lie; rounding alone then decides on a side. Here a fixed frame is reflected at the plane between
-// its third axis and -n, which is continuous but in one direction, chosen so that hardly anything
-// is built along it.
+// its third axis and -n. That is continuous except in one direction, which was chosen so that
+// scenes hardly use it.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
-// rays.h: batches of rays between the wavefront (render/) and whoever intersects them
-// (backend/local). Structures of arrays in render space: the world's axes and units, origin at the
-// camera.
+// rays.h: batches of rays and hits, the interface between the wavefront (render/) and the
+// intersector (backend/local). Structures of arrays in render space: the world's axes and units,
+// origin at the camera.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace openrt {
 
 inline constexpr uint32_t noHit = ~0u;
 
-enum RayMask : uint32_t { // what a ray may meet
+enum RayMask : uint32_t { // what a ray can hit
   maskOpaque = 1,
   maskTransparent = 2,
   maskThin = 4, // lines and points, which cast no shadows
@@ -19,7 +19,7 @@ enum RayMask : uint32_t { // what a ray may meet
 };
 
 struct Rays {
-  uint32_t count = 0; // arrays have room for padded(count)
+  uint32_t count = 0; // the arrays have room for padded(count)
   float* org[3];
   float* dir[3];
   float* tnear;
@@ -39,9 +39,9 @@ struct RayHits {
   float* t;
   float* u;
   float* v;
-  float* ng[3];     // geometric normal as the kernel gives it: not unit, in the frame of the record
-  uint32_t* record; // index of the Record hit, or noHit
-  uint32_t* primitive; // in the record's geometry
+  float* ng[3];        // the kernel's geometric normal: not normalised, in the frame of the record
+  uint32_t* record;    // index of the Record hit, or noHit
+  uint32_t* primitive; // index of the primitive in the record's geometry
 
   void allocate(Arena& arena, uint32_t capacity) {
     const uint32_t n = padded(capacity);
@@ -56,21 +56,21 @@ struct RayHits {
 
 enum class Coherence : uint8_t { coherent, incoherent };
 
-// Thread-safe. A ray that is not finite, has no direction or an interval that is no interval hits
-// nothing and is counted.
+// Intersects rays with the scene. Thread-safe. An invalid ray (not finite, without a direction, or
+// with an empty interval) hits nothing and is counted.
 class Intersector {
  public:
   virtual ~Intersector() = default;
   virtual void intersect(const Rays& rays, uint32_t mask, Coherence coherence,
                          RayHits& hits) const = 0;
-  // The same, but the backs of culled surfaces are not there. Slower: for the rays whose first hit
-  // is such a back.
+  // The same without the back faces of culled surfaces. Slower; for rays whose first hit is such a
+  // face.
   virtual void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const = 0;
-  // Nearest hits on other records than one for each ray.
+  // Finds the nearest hit of each ray that is not on the given record.
   virtual void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const = 0;
-  // Of all there is; low > high where nothing is. [any]
+  // Writes the bounds of the scene; low > high if it is empty. [any]
   virtual void bounds(float low[3], float high[3]) const = 0;
-  // 1 where something lies within the ray's interval.
+  // Sets blocked to 1 where anything lies within the ray's interval.
   virtual void occluded(const Rays& rays, uint32_t mask, Coherence coherence,
                         uint8_t* blocked) const = 0;
 };

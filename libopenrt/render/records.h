@@ -1,5 +1,5 @@
-// records.h: what the renderer needs to know of one placed geometry to turn a hit into a shading
-// point. Made by a backend when it builds a scene, immutable while a frame renders.
+// records.h: per-geometry data that turn a hit into a shading point. A backend makes the records
+// when it builds a scene; they are immutable while a frame renders.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct Affine { // 3x4: x' = r[0][0..2] . p + r[0][3]
   }
 };
 
-// Of the linear part.
+// Returns the determinant of the linear part.
 inline double determinantOf(const Affine& map) {
   const auto& m = map.r;
   return m[0][0] * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
@@ -27,7 +27,7 @@ inline double determinantOf(const Affine& map) {
          m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
 }
 
-// Of an invertible map; zero where it is not.
+// Returns the inverse of an affine map; zero if it is singular.
 inline Affine inverseOf(const Affine& m) {
   const auto& r = m.r;
   const float c[3][3] = {
@@ -49,30 +49,32 @@ inline Affine inverseOf(const Affine& m) {
 
 struct Record {
   edit::Primitive primitive = edit::Primitive::Triangles;
-  bool instanced = false; // vertices are in the kernel's object frame and `toRender` applies; else
-                          // in render space times `scale`
+  // Vertices are in the kernel's object frame and `toRender` applies; otherwise they are in render
+  // space divided by `scale`.
+  bool instanced = false;
   bool cull = false;
   bool flip = false;   // the kernel's geometric normal points to the back
   uint32_t shader = 0; // index into ShaderTable
-  uint32_t bucket = 0; // (class, light set): hits of a bucket are shaded together
+  // Index into the buckets (class, light set); hits of a bucket are shaded together.
+  uint32_t bucket = 0;
   uint32_t name = 0, instance = 0;
-  uint32_t primitives = 0; // triangles, segments, points
+  uint32_t primitives = 0; // number of triangles, segments or points
   uint64_t userData = 0;
   const float* vertices = nullptr;   // stride 3, as the kernel sees them
   const uint32_t* indices = nullptr; // into vertices and attributes
   const float* normals = nullptr;    // stride 3, in the geometry's local frame
   const float* texCoords = nullptr;  // stride 2
   const float* colors = nullptr;     // stride 4
-  const GeometryParameter* parameters =
-      nullptr; // values of shader parameters of its own; usable as they are
+  // The geometry's own values of shader parameters, already validated.
+  const GeometryParameter* parameters = nullptr;
   uint32_t parameterCount = 0;
-  float scale = 1; // not instanced: vertices x scale = render space
-  Affine toRender; // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render
-                   // space
-  Affine fromRender;        // sphere: its inverse
-  float normalMatrix[3][3]; // normals of the geometry -> render space (inverse transpose), not
-                            // normalised
-  Affine toObject;          // render space -> frame of the object that has the geometry
+  float scale = 1; // not instanced: vertices times scale are in render space
+  // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
+  Affine toRender;
+  Affine fromRender; // sphere: inverse of toRender
+  // Normals of the geometry -> render space (inverse transpose), not normalised.
+  float normalMatrix[3][3];
+  Affine toObject;          // render space -> frame of the object that contains the geometry
   float kernelNormal[3][3]; // instanced: the kernel's geometric normal -> render space
 };
 

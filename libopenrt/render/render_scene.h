@@ -1,6 +1,6 @@
 // render_scene.h: the immutable snapshot that a frame renders: records, shaders with their
-// parameters, lights, camera and environment in render space. Made between frames by the local
-// backend, read by all render threads.
+// parameters, lights, camera and environment in render space. The local backend builds it between
+// frames; all render threads read it.
 #pragma once
 
 #include <map>
@@ -25,7 +25,7 @@ struct ShaderSlot {
   const RtsClass* shaderClass = nullptr;
   const void* params = nullptr;
   uint32_t traits = 0;
-  uint16_t medium = 0; // 1 + its place in ShaderTable::media()
+  uint16_t medium = 0; // 1 + index into ShaderTable::media(); 0: none
 };
 
 struct LightSlot {
@@ -35,16 +35,16 @@ struct LightSlot {
 };
 
 struct RoleSlot {
-  ShaderSlot shader; // shaderClass null: none
+  ShaderSlot shader; // shaderClass null if there is none
   Affine toLocal, fromLocal;
 };
 
-// The host table that shaders see, with what its functions need behind it.
+// The host table that shaders see, and the data that its functions need.
 struct RenderHost : RtsHost {
   const std::vector<Texture>* textures = nullptr;
   RTlogCallback logCallback = nullptr;
   void* logUser = nullptr;
-  bool diagnose = false; // shaders are held to what their traits say
+  bool diagnose = false; // check shader output against the declared traits
 };
 
 // Shaders of the scene with their parameter blocks. Slot 0 is the default surface shader.
@@ -52,69 +52,70 @@ class ShaderTable {
  public:
   ShaderTable(const Scene& scene, const ShaderRegistry& registry,
               const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
-  // The same scene after parameters of these shaders changed, and nothing else of shaders and
-  // textures.
+  // The table of the same scene after only parameters of the `changed` shaders have changed.
   ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed, const Scene& scene,
               const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
-  uint32_t slotOf(uint32_t shaderId) const; // surface shaders; unknown ids: slot 0
+  uint32_t slotOf(uint32_t shaderId) const; // slot of a surface shader; 0 for unknown ids
   const ShaderSlot& operator[](uint32_t slot) const { return slots_[slot]; }
-  // Everything of the other has the same slot, class and traits here: records made for it serve
-  // this one.
+  // Returns whether every shader of `other` has the same slot, class and traits here, so that
+  // records made for it can be used with this table.
   bool extends(const ShaderTable& other) const;
   std::span<const RtsMedium> media() const { return media_; }
-  // The slot of a light, camera or environment shader; shaderClass null if it is none of that kind.
+  // Returns the slot of a light, camera or environment shader; shaderClass is null if the id is not
+  // of that kind.
   ShaderSlot role(uint32_t shaderId, RtsKind kind) const;
 
  private:
-  struct Block { // parameter struct and what it points to
+  struct Block { // the parameter struct and the lists and strings it points to
     std::unique_ptr<std::byte[]> bytes;
     std::vector<std::vector<float>> lists;
     std::vector<std::unique_ptr<std::string>> strings;
-    const RtsClass* prepared = nullptr; // whose `release` is due
+    const RtsClass* prepared = nullptr; // class whose `release` must be called
     Block() = default;
     Block(const Block&) = delete;
     Block& operator=(const Block&) = delete;
     ~Block();
   };
-  using Slots = std::map<uint32_t, uint32_t>; // by shader id
+  using Slots = std::map<uint32_t, uint32_t>; // slot by shader id
   bool make(uint32_t slot, const RtsClass& shaderClass, const ShaderValues* values,
             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   void setMedium(ShaderSlot& slot, const RtsHost& host);
   std::vector<ShaderSlot> slots_;
-  std::vector<std::shared_ptr<const Block>>
-      blocks_;                           // by slot; tables share those that did not change
-  std::vector<const RtsClass*> classes_; // by slot, also where another stands for what was refused
+  // By slot; shared between tables while unchanged.
+  std::vector<std::shared_ptr<const Block>> blocks_;
+  // The requested class by slot, even if the default shader replaces it.
+  std::vector<const RtsClass*> classes_;
   std::vector<RtsMedium> media_;
   std::shared_ptr<const Slots> slotOf_;
-  uint32_t defaultShader_ = 0; // the shader whose values slot 0 has
+  uint32_t defaultShader_ = 0; // the shader that slot 0 takes its values from
 };
 
 struct RenderScene {
   std::shared_ptr<const Intersector> kernel;
-  std::span<const Record> records; // of the kernel
+  std::span<const Record> records; // records of the kernel
   std::span<const Bucket> buckets;
   std::vector<std::vector<uint32_t>> lightSets; // indices into lights
   std::vector<LightSlot> lights;
-  std::shared_ptr<const std::vector<Texture>> textures; // [0] is the missing one
-  std::shared_ptr<const ShaderTable>
-      shaders; // like the textures shared by snapshots between which they did not change
+  std::shared_ptr<const std::vector<Texture>> textures; // [0] is the missing texture
+  // Shared between snapshots while unchanged, like the textures.
+  std::shared_ptr<const ShaderTable> shaders;
   RoleSlot camera, environment;
-  ShaderSlot transport;                               // shaderClass null: the engine's own
+  ShaderSlot transport; // shaderClass null: the engine's own transport
   float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
-  double origin[3] = {0, 0, 0};                       // of render space, in the world
-  Emitters emitters; // path tracing: what sends out light besides the lights
-  std::shared_ptr<const std::vector<ManyLights>>
-      manyLights; // by light set; null: all lights are asked everywhere
+  double origin[3] = {0, 0, 0};                       // world position of render space's origin
+  Emitters emitters; // path tracing: emissive surfaces and the environment
+  // By light set; null: all lights are evaluated at every hit.
+  std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>
-      lightSources;                // light tracing: null where it has nothing to do
-  bool transparentShadows = false; // something transparent may stand before a light
-  bool skyKnown = false,
-       skyShines = false; // whether the environment was asked for light, and has some
+      lightSources;                // light tracing; null if there is nothing to trace
+  bool transparentShadows = false; // something transparent may lie between a point and a light
+  // skyKnown: the environment was tested for light; skyShines: it emits some
+  bool skyKnown = false, skyShines = false;
   RenderHost host;
   edit::FrameSettingsT frame;
 };
 
-// Fills the host table's functions (render/surface/host.cpp).
+// Fills in the host table's functions (render/surface/host.cpp).
 void fillHost(RtsHost& host);
 
 } // namespace openrt

@@ -1,5 +1,5 @@
 // array.cpp: storage of bulk arrays: aligned for vector loads, with readable bytes past the end for
-// the ray kernels. Made on the application's thread, freed by whoever holds it last.
+// the ray kernels. Made on the application's thread, freed by the last owner.
 #include "scene/commit.h"
 
 #include <cstdlib>
@@ -17,8 +17,8 @@ Array::Array(size_t bytes) : data_(nullptr), size_(bytes) {
   const size_t capacity = (bytes + alignment - 1) / alignment * alignment + padding;
   data_ = static_cast<std::byte*>(std::aligned_alloc(alignment, capacity));
   if (!data_) throw std::bad_alloc();
-  std::memset(data_ + bytes, 0,
-              capacity - bytes); // only the tail: the rest is the caller's to fill
+  // Clears only the padding; the caller fills the rest.
+  std::memset(data_ + bytes, 0, capacity - bytes);
 }
 
 Array::~Array() { std::free(data_); }

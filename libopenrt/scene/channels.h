@@ -1,4 +1,4 @@
-// channels.h: the channels of a picture (openrt.h) and their floats per pixel; one table for the
+// channels.h: the channels of a picture (openrt.h) and their floats per pixel, in one table for the
 // front end and the film.
 #pragma once
 
@@ -15,9 +15,9 @@ inline constexpr uint32_t channelBits = 10;
 // Limits of a frame's quality (openrt.h).
 inline constexpr uint32_t maxReplicates = 1024;
 inline constexpr float maxTimeLimit = 1e6f;
-inline constexpr uint32_t smallestTile = 4, largestTile = 128; // edge, pixels
+inline constexpr uint32_t smallestTile = 4, largestTile = 128; // tile edge in pixels
 
-// Floats per pixel of one channel; 0: no such channel.
+// Returns the floats per pixel of one channel; 0 if there is no such channel.
 constexpr uint32_t channelComponents(uint32_t channel) {
   switch (channel) {
   case RT_RGBA: return 4;

@@ -1,7 +1,7 @@
-// commit.h: what travels from the API's front end to a backend: a list of edits (edits.fbs) and the
-// bulk arrays they name. Made on the application's thread, immutable afterwards, read by backends
-// on any thread. The order of the edits and what they may name: api/scene_state.h;
-// backend/record/validator.h checks both.
+// commit.h: the data that the API's front end sends to a backend: a list of edits (edits.fbs) and
+// the bulk arrays they refer to. Made on the application's thread, immutable afterwards, read by
+// backends on any thread. api/scene_state.h defines the order of the edits and the references they
+// may hold; backend/record/validator.h checks both.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 
 namespace openrt {
 
-// Bytes of one bulk array, 64-byte aligned, followed by 64 readable bytes (ray kernels read past
-// the end). Immutable once shared.
+// The bytes of one bulk array, 64-byte aligned and followed by 64 readable bytes (ray kernels read
+// past the end). Immutable once shared.
 class Array {
  public:
   explicit Array(size_t bytes);
@@ -34,11 +34,12 @@ class Array {
 };
 
 using ArrayPtr = std::shared_ptr<const Array>;
-using ArrayId = uint64_t; // 0: none; numbered by the front end, never reused within a context
+// 0: none. The front end numbers arrays; a number is never reused within a context.
+using ArrayId = uint64_t;
 
 struct Commit {
   edit::EditsT edits;
-  std::unordered_map<ArrayId, ArrayPtr> arrays; // those that this commit names for the first time
+  std::unordered_map<ArrayId, ArrayPtr> arrays; // arrays that this commit uses for the first time
 };
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// flatten.cpp: a depth-first walk of the instances with a stack of its own: depth costs no call
-// stack. Subtrees without geometry are pruned, so that a doubling tower of empty objects costs
+// flatten.cpp: walks the instances depth first with an explicit stack, so that nesting depth costs
+// no call stack. Subtrees without geometry are pruned: a doubling tower of empty objects costs
 // nothing.
 #include "scene/flatten.h"
 
@@ -26,14 +26,15 @@ class Flattener {
   }
 
  private:
-  struct Frame { // an object being walked, with what its path inherits
+  struct Frame { // an object being walked and the attributes its path inherits
     uint32_t object = 0;
     Inherited path;
     Matrix4d matrix;
     size_t next = 0; // child to visit
   };
 
-  // Whether an object or anything below it has geometry; computed once an object, iteratively.
+  // Returns true if an object or anything below it has geometry. Computed once per object, without
+  // recursion.
   bool drawable(uint32_t root) {
     enum : uint8_t { unknown, open, no, yes };
     std::vector<uint32_t> todo{root};
@@ -58,7 +59,7 @@ class Flattener {
         }
       }
       if (wait && !result) {
-        drawable_[id] = open; // visited again when its children are known
+        drawable_[id] = open; // visited again once its children are known
         continue;
       }
       drawable_[id] = result ? yes : no;
@@ -129,7 +130,7 @@ class Flattener {
     return result_.lightSet(all);
   }
 
-  // Clusters breadth first: the children of one stand in a row, behind it.
+  // Places the clusters breadth first: the children of a cluster are contiguous and come after it.
   void placeAll() {
     result_.clusters.push_back({});
     size_t placed = result_.parts[0].items.size();
@@ -151,8 +152,8 @@ class Flattener {
     std::sort(result_.clustersOf.begin(), result_.clustersOf.end());
   }
 
-  // Too many: what has been placed below cluster c and after it goes, so that every cluster has all
-  // its children or none.
+  // Removes the clusters below cluster c and after it when there are too many, so that every
+  // cluster has all of its children or none.
   void truncate(uint32_t c) {
     result_.truncated = true;
     const uint32_t kept = result_.clusters[c].firstChild;
@@ -163,7 +164,8 @@ class Flattener {
   }
 
  public:
-  static constexpr uint32_t none = ~0u; // firstChild of a cluster whose children were too many
+  // firstChild of a cluster that had too many children.
+  static constexpr uint32_t none = ~0u;
 
   static void place(const Scene& scene, Flattened& flat, uint32_t c) {
     Cluster& cluster = flat.clusters[c];
@@ -181,13 +183,13 @@ class Flattener {
   size_t items_ = 0;
   std::vector<Frame> stack_;
   std::unordered_map<uint32_t, std::vector<uint32_t>> scoped_;
-  std::unordered_map<uint32_t, uint32_t> partOf_; // by object
+  std::unordered_map<uint32_t, uint32_t> partOf_; // part index by object
   std::unordered_map<uint32_t, uint8_t> drawable_;
 };
 
 } // namespace
 
-uint32_t Flattened::unite(uint32_t a, uint32_t b) {
+uint32_t Flattened::uniteLightSets(uint32_t a, uint32_t b) {
   if (a == b || b == 0) return a;
   if (a == 0) return b;
   std::vector<uint32_t> all;
@@ -204,8 +206,9 @@ uint32_t Flattened::lightSet(const std::vector<uint32_t>& ids) {
 
 Inherited Flattened::inherit(const Inherited& outer, const Inherited& inner) {
   return {outer.instance ? outer.instance : inner.instance,
-          outer.shader ? outer.shader : inner.shader, unite(outer.lightSet, inner.lightSet),
-          inner.name ? inner.name : outer.name, inner.userData ? inner.userData : outer.userData};
+          outer.shader ? outer.shader : inner.shader,
+          uniteLightSets(outer.lightSet, inner.lightSet), inner.name ? inner.name : outer.name,
+          inner.userData ? inner.userData : outer.userData};
 }
 
 std::vector<uint32_t> unscopedLights(const Scene& scene) {
@@ -217,8 +220,8 @@ std::vector<uint32_t> unscopedLights(const Scene& scene) {
 
 Flattened flatten(const Scene& scene) { return Flattener(scene).run(); }
 
-std::vector<uint32_t> replace(const Scene& scene, Flattened& flat,
-                              const std::vector<uint32_t>& instances) {
+std::vector<uint32_t> updateClusters(const Scene& scene, Flattened& flat,
+                                     const std::vector<uint32_t>& instances) {
   std::vector<uint32_t> found;
   for (uint32_t id : instances) {
     auto it =

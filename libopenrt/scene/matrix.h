@@ -39,7 +39,8 @@ struct Matrix4d {
       if (!std::isfinite(v)) return false;
     return true;
   }
-  // Finite, columns of length 1e-15 .. 1e15, not singular: what may reach the ray kernels.
+  // Returns true if the ray kernels can use the matrix: finite, not singular, columns of length
+  // 1e-15 to 1e15.
   bool usable() const {
     if (!finite()) return false;
     double product = 1;
@@ -63,12 +64,12 @@ inline Matrix4d operator*(const Matrix4d& a, const Matrix4d& b) {
   return r;
 }
 
-// Inverse of an affine matrix that is not singular.
+// Returns the inverse of an affine matrix that is not singular.
 inline Matrix4d inverse(const Matrix4d& a) {
   const Vec3d c0 = a.column(0), c1 = a.column(1), c2 = a.column(2);
   const double d = 1 / a.determinant();
-  const Vec3d r0 = cross(c1, c2) * d, r1 = cross(c2, c0) * d,
-              r2 = cross(c0, c1) * d; // rows of the inverse
+  // Rows of the inverse.
+  const Vec3d r0 = cross(c1, c2) * d, r1 = cross(c2, c0) * d, r2 = cross(c0, c1) * d;
   const Vec3d t = a.translation();
   Matrix4d r;
   r.m = {r0.x, r1.x, r2.x, 0, r0.y,        r1.y,        r2.y,        0,

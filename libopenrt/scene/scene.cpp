@@ -1,4 +1,4 @@
-// scene.cpp: applies edits to the tables of the scene, one small function a kind of edit.
+// scene.cpp: applies edits to the tables of the scene, one small function per kind of edit.
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ size_t Geometry::primitives() const {
 
 ArrayPtr Scene::array(ArrayId id) const {
   if (id == 0) return nullptr;
-  if (auto found = arriving_.find(id); found != arriving_.end()) return found->second;
+  if (auto found = commitArrays_.find(id); found != commitArrays_.end()) return found->second;
   auto known = arrays_.find(id);
   return known == arrays_.end() ? nullptr : known->second.lock();
 }
@@ -53,19 +53,20 @@ std::map<ArrayId, ArrayPtr> Scene::arrays() const {
 }
 
 SceneChanges Scene::apply(const Commit& commit) {
-  if (arrays_.size() > 2 * arraysSwept_ + 64) { // now and then: a commit costs what it changes
+  // Only now and then, so that a commit costs what it changes.
+  if (arrays_.size() > 2 * arraysSwept_ + 64) {
     std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });
     arraysSwept_ = arrays_.size();
   }
   for (const auto& [id, data] : commit.arrays) {
-    arriving_[id] = data;
+    commitArrays_[id] = data;
     arrays_[id] = data;
   }
   SceneChanges changes;
   for (const auto& edit : commit.edits.edits)
     if (edit) applyEdit(edit->any, changes);
   sortChildren();
-  arriving_.clear();
+  commitArrays_.clear();
   return changes;
 }
 
@@ -167,7 +168,7 @@ void Scene::placeInstance(const edit::InstanceT& edit, SceneChanges& changes) {
     changes.moved.push_back(edit.id);
   else
     changes.structure = true;
-  if (known.parent != next.parent) { // no front end does that
+  if (known.parent != next.parent) { // the front end never does this
     children_[next.parent].push_back(edit.id);
     unsorted_.insert(unsorted_.end(), {known.parent, next.parent});
   }
@@ -226,13 +227,14 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
   dropChildren(object.id);
 }
 
-// Its instances were deleted before; one that was not draws nothing.
+// Its instances were deleted before; any that is left draws nothing.
 void Scene::deleteObject(uint32_t id) {
   objects.erase(id);
   dropChildren(id);
 }
 
-// Brings the lists that changed up to date: ids ascend, each is there once, and its instance is.
+// Updates the child lists that changed: sorted by id, without duplicates and without deleted
+// instances.
 void Scene::sortChildren() {
   std::sort(unsorted_.begin(), unsorted_.end());
   unsorted_.erase(std::unique(unsorted_.begin(), unsorted_.end()), unsorted_.end());

@@ -1,6 +1,6 @@
-// scene.h: the committed scene as tables by id: what commits (scene/commit.h) add up to. A backend
-// owns one and applies commits between frames; the renderer reads it while nobody writes. Maps are
-// ordered, so every walk has one order.
+// scene.h: the committed scene as tables by id, the sum of all commits (scene/commit.h). A backend
+// owns one and applies commits between frames; the renderer reads it while no commit is applied.
+// The maps are ordered, so every traversal has the same order.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace openrt {
 
-// Values of a shader parameter of a geometry's own, as many floats as its type has for every vertex
-// or primitive.
+// A shader parameter with its own value for every vertex or primitive of a geometry. Each value has
+// as many floats as its type.
 struct GeometryParameter {
-  uint32_t index = 0; // in the class's table
+  uint32_t index = 0; // index in the class's table
   bool perVertex = false;
   ArrayPtr values;
 };
@@ -27,15 +27,15 @@ struct Geometry {
   uint32_t shader = 0, name = 0;
   Matrix4d matrix;
   bool cull = false, clockwise = false;
-  float width = 1; // pixels; sphere: radius
+  float width = 1; // pixels; radius of a sphere
   ArrayPtr points, indices, normals, texCoords, colors;
   std::vector<GeometryParameter> parameters;
 
-  size_t primitives() const; // triangles, segments, points; 1 for a sphere
+  size_t primitives() const; // triangles, segments or points; 1 for a sphere
 };
 
 struct Object {
-  uint64_t version = 0; // another number each time any object is defined
+  uint64_t version = 0; // a new number whenever an object is defined
   bool dynamic = false;
   std::vector<Geometry> geometries;
 };
@@ -54,15 +54,15 @@ struct Light {
   Matrix4d matrix;
 };
 
-struct Role { // camera, environment
+struct Role { // camera or environment
   uint32_t shader = 0;
   Matrix4d matrix;
 };
 
 struct ShaderValues {
   uint32_t shaderClass = 0;
-  std::map<uint32_t, edit::ParameterT>
-      parameters; // by index in the class's table; those that were set
+  // Parameters that were set, by index in the class's table.
+  std::map<uint32_t, edit::ParameterT> parameters;
 };
 
 struct TextureImage {
@@ -74,17 +74,17 @@ struct ShaderClassName {
   std::string name, library;
 };
 
-// What a commit touched: decides what a backend makes anew.
+// The kinds of changes in a commit. They decide what a backend rebuilds.
 struct SceneChanges {
-  bool structure = false; // instances made, deleted, or changed in more than their place; objects
-                          // made or deleted
-  bool shaders = false;   // made, deleted, or another default; not their parameters
+  // Instances created, deleted or changed in more than their placement; objects created or deleted.
+  bool structure = false;
+  bool shaders = false; // created, deleted, or a new default; not parameters
   bool textures = false, lights = false, camera = false, frame = false;
-  std::vector<uint32_t> parameters; // shaders of which some were set
-  std::vector<uint32_t>
-      moved; // dynamic instances whose matrix or visibility changed, and nothing else
-  std::vector<uint32_t>
-      redefined; // dynamic objects that were defined before, without instances in them
+  std::vector<uint32_t> parameters; // shaders with changed parameters
+  // Dynamic instances of which only the matrix or visibility changed.
+  std::vector<uint32_t> moved;
+  // Dynamic objects without child instances that were defined again.
+  std::vector<uint32_t> redefined;
   bool any() const {
     return structure || shaders || textures || lights || camera || frame || !parameters.empty() ||
            !moved.empty() || !redefined.empty();
@@ -94,8 +94,8 @@ struct SceneChanges {
 
 class Scene {
  public:
-  // Applies a commit; edits that name unknown ids are ignored (the front end and the reader of
-  // recordings check them).
+  // Applies a commit. Edits that name unknown ids are ignored; the front end and the reader of
+  // recordings check them before.
   SceneChanges apply(const Commit& commit);
 
   std::map<uint32_t, TextureImage> textures;
@@ -108,9 +108,9 @@ class Scene {
   uint32_t defaultShader = 0, transport = 0;
   edit::FrameSettingsT frame;
 
-  // The arrays that are alive, by the numbers that commits gave them.
+  // Returns the arrays in use, by the numbers that commits gave them.
   std::map<ArrayId, ArrayPtr> arrays() const;
-  // Ids of the instances placed in an object (0: in the scene), in order.
+  // Returns the ids of the instances placed in an object (0: in the scene), in order.
   const std::vector<uint32_t>& childrenOf(uint32_t object) const;
 
  private:
@@ -122,13 +122,13 @@ class Scene {
   void deleteObject(uint32_t id);
   void dropChildren(uint32_t object);
   void sortChildren();
-  std::map<ArrayId, std::weak_ptr<const Array>>
-      arrays_;             // alive as long as something of the scene uses them
-  size_t arraysSwept_ = 0; // how many there were after the last sweep
+  // Weak: an array lives as long as the scene uses it.
+  std::map<ArrayId, std::weak_ptr<const Array>> arrays_;
+  size_t arraysSwept_ = 0; // size of arrays_ after the last sweep
   uint64_t version_ = 0;
-  std::map<ArrayId, ArrayPtr> arriving_; // of the commit being applied
+  std::map<ArrayId, ArrayPtr> commitArrays_; // arrays of the commit being applied
   std::map<uint32_t, std::vector<uint32_t>> children_;
-  std::vector<uint32_t> unsorted_; // objects whose lists of children are out of date
+  std::vector<uint32_t> unsorted_; // objects whose child lists are out of date
 };
 
 } // namespace openrt

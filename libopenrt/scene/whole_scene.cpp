@@ -1,5 +1,5 @@
-// whole_scene.cpp: writes the tables of a scene as edits, in an order in which everything is there
-// before it is named.
+// whole_scene.cpp: writes the tables of a scene as edits, in an order in which everything is
+// defined before it is used.
 #include "scene/whole_scene.h"
 
 #include <unordered_map>
@@ -7,7 +7,7 @@
 namespace openrt {
 namespace {
 
-std::unique_ptr<edit::Matrix> toEdit(const Matrix4d& matrix) {
+std::unique_ptr<edit::Matrix> makeEdit(const Matrix4d& matrix) {
   return std::make_unique<edit::Matrix>(flatbuffers::span<const double, 16>(matrix.m));
 }
 
@@ -34,7 +34,8 @@ class Writer {
     commit_->edits.edits.push_back(std::move(entry));
   }
 
-  // The same bytes may have come under several numbers; all of them may be named again.
+  // Returns the number of an array. The same array may have several numbers; all are added, because
+  // later commits may use any of them.
   ArrayId number(const ArrayPtr& array) {
     if (!array) return 0;
     const auto& numbers = numbers_.at(array.get());
@@ -73,12 +74,12 @@ class Writer {
     }
   }
 
-  std::unique_ptr<edit::GeometryT> toEdit(const Geometry& g) {
+  std::unique_ptr<edit::GeometryT> makeEdit(const Geometry& g) {
     auto e = std::make_unique<edit::GeometryT>();
     e->primitive = g.primitive;
     e->shader = shader(g.shader);
     e->name = g.name;
-    e->matrix = openrt::toEdit(g.matrix);
+    e->matrix = openrt::makeEdit(g.matrix);
     e->cull = g.cull;
     e->clockwise = g.clockwise;
     e->width = g.width;
@@ -88,7 +89,7 @@ class Writer {
     e->texCoords = number(g.texCoords);
     e->colors = number(g.colors);
     for (const GeometryParameter& own : g.parameters) {
-      if (e->shader == 0) break; // they belong to its class
+      if (e->shader == 0) break; // parameters belong to the shader's class
       auto p = std::make_unique<edit::GeometryParameterT>();
       p->index = own.index;
       p->perVertex = own.perVertex;
@@ -103,7 +104,7 @@ class Writer {
       edit::ObjectT e;
       e.id = id;
       e.dynamic = object.dynamic;
-      for (const Geometry& geometry : object.geometries) e.geometries.push_back(toEdit(geometry));
+      for (const Geometry& geometry : object.geometries) e.geometries.push_back(makeEdit(geometry));
       add(std::move(e));
     }
   }
@@ -118,7 +119,7 @@ class Writer {
       e.parent = instance.parent;
       e.object = instance.object;
       e.shader = shader(instance.shader);
-      e.matrix = openrt::toEdit(instance.matrix);
+      e.matrix = openrt::makeEdit(instance.matrix);
       e.visible = instance.visible;
       e.userData = instance.userData;
       e.name = instance.name;
@@ -134,12 +135,12 @@ class Writer {
       e.id = id;
       e.shader = light.shader;
       e.scope = light.scope;
-      e.matrix = openrt::toEdit(light.matrix);
+      e.matrix = openrt::makeEdit(light.matrix);
       add(std::move(e));
     }
     const auto role = [this]<class T>(T e, const Role& from) {
       e.shader = shader(from.shader);
-      e.matrix = openrt::toEdit(from.matrix);
+      e.matrix = openrt::makeEdit(from.matrix);
       add(std::move(e));
     };
     role(edit::CameraT(), scene_.camera);

@@ -1,5 +1,5 @@
-// whole_scene.h: a scene as one commit, for those who were not there when it came to be: a worker
-// that joins late. [any], while nobody changes the scene.
+// whole_scene.h: writes a scene as one commit, for a worker that joins late. [any], while the scene
+// does not change.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,9 @@
 
 namespace openrt {
 
-// Applied to an empty scene it makes an equal one: the same ids, the same numbers of arrays (later
-// commits may name them again), hence the same pictures. What names something that was deleted
-// names nothing instead.
+// Returns a commit that makes an equal scene when applied to an empty one: the same ids and array
+// numbers (later commits may use them again), hence the same pictures. References to deleted things
+// become null.
 std::shared_ptr<const Commit> wholeScene(const Scene& scene);
 
 } // namespace openrt

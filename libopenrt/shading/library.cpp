@@ -1,4 +1,5 @@
-// library.cpp: Called by the registry under its lock.
+// library.cpp: loads a shader library and merges its parameter tables with those of the version
+// that it replaces. Called by the registry under its lock.
 #include "shading/library.h"
 
 #include <cerrno>
@@ -24,24 +25,24 @@ const char* runningShader() noexcept { return runningClass ? labelOf(*runningCla
 
 namespace {
 
-[[noreturn]] void failed(const std::string& path, const std::string& why) {
+[[noreturn]] void failLoading(const std::string& path, const std::string& why) {
   throw std::runtime_error("shader library " + path + ": " + why);
 }
 
-// A copy of a file in a folder of its own that nobody else may write to; both are gone with the
-// object: what is loaded stays.
+// A copy of a file in a new folder that only this user can write to. The destructor removes both; a
+// library that was loaded from it stays loaded.
 class PrivateCopy {
  public:
   PrivateCopy(const std::string& path, const std::string& name) {
     std::error_code error;
     std::string folder = (plugin_files::fs::temp_directory_path(error) / "openrt-XXXXXX").string();
     if (error || !mkdtemp(folder.data()))
-      failed(path, std::string("no folder for a copy: ") + std::strerror(errno));
+      failLoading(path, std::string("no folder for a copy: ") + std::strerror(errno));
     folder_ = folder;
     file_ = folder_ / (name + ".so");
     if (!plugin_files::fs::copy_file(path, file_, error)) {
       remove();
-      failed(path, "cannot be copied: " + error.message());
+      failLoading(path, "cannot be copied: " + error.message());
     }
   }
   ~PrivateCopy() { remove(); }
@@ -57,9 +58,10 @@ class PrivateCopy {
   plugin_files::fs::path folder_, file_;
 };
 
-// The loader takes a file for loaded that it knows by its name, even if another one lies there now.
-// In a process with several registries, or after one is gone and its libraries could not be
-// unloaded, that is not seen by this registry alone.
+// Returns whether the file at this path differs from the one first loaded from it by this process.
+// The dynamic loader would return the old library, because it knows the path. A registry cannot
+// detect this by itself: another registry may have loaded the file, or an earlier one may have left
+// it loaded.
 bool replacedSinceLoaded(const std::string& path, const FileStamp& stamp) {
   static std::mutex mutex;
   static std::map<std::string, FileStamp>& loaded =
@@ -77,7 +79,7 @@ uint8_t frequencyOf(const RtsClass& c, uint32_t i) {
   return c.frequency ? c.frequency[i] : uint8_t(RTS_PER_SHADER);
 }
 
-// Puts the parameters of a class into the places that they had in the table before.
+// Orders the parameters of a class as in the table before, so that handles stay valid.
 void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
   std::vector<RtsParam> params;
   std::vector<uint8_t> frequency;
@@ -98,13 +100,13 @@ void keepHandles(LoadedClass& fresh, const LoadedClass& before) {
       frequency.push_back(frequencyOf(fresh, j));
       continue;
     }
-    RtsParam gone = before.params[i]; // what its text is, goes with the former library at the
-                                      // earliest when nobody asks any more
-    gone.name = "";
-    gone.text = "no longer declared";
-    gone.offset = uint32_t(size);
-    size += (parameterBytes(gone.type) + 15) / 16 * 16;
-    params.push_back(gone);
+    // The parameter no longer exists. Its name and text must not point into the old library.
+    RtsParam removed = before.params[i];
+    removed.name = "";
+    removed.text = "no longer declared";
+    removed.offset = uint32_t(size);
+    size += (parameterBytes(removed.type) + 15) / 16 * 16;
+    params.push_back(removed);
     frequency.push_back(frequencyOf(before, i));
   }
   for (uint32_t j = 0; j < fresh.paramCount; j++) {
@@ -134,12 +136,12 @@ void ShaderLibrary::open(const std::string& file) {
   handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle) return;
   const char* reason = dlerror();
-  failed(path, reason ? reason : "cannot be loaded");
+  failLoading(path, reason ? reason : "cannot be loaded");
 }
 
 void ShaderLibrary::readClasses() {
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
-  if (!symbol) failed(path, "exports no " RTS_ENTRY_NAME ", so it is no shader plug-in");
+  if (!symbol) failLoading(path, "exports no " RTS_ENTRY_NAME ", so it is no shader plug-in");
   for (const RtsClass& c : checkPlugin(static_cast<const RtsPlugin*>(symbol),
                                        plugin_files::exportedBytes(symbol), path)) {
     auto loaded = std::make_unique<LoadedClass>();
@@ -183,8 +185,8 @@ ShaderLibrary::ShaderLibrary(std::string bareName, std::string file, const Shade
         keepHandles(*same, *former);
         same->found = former->found.load();
       } else if (former->found) {
-        failed(path, std::string("its class ") + former->name +
-                         (same ? " is of another kind now" : " is gone") + ", but in use");
+        failLoading(path, std::string("its class ") + former->name +
+                              (same ? " is of another kind now" : " is gone") + ", but in use");
       }
     }
   } catch (...) {

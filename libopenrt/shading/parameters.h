@@ -1,5 +1,5 @@
-// parameters.h: what values a class's parameter takes. Used by the API for what an application
-// sets, and by the reader of recordings for what a file claims. Pure functions.
+// parameters.h: types and valid values of shader parameters. Used by the API to check values from
+// the application, and by the reader of recordings to check values from a file. Pure functions.
 #pragma once
 
 #include <span>
@@ -9,11 +9,11 @@
 
 namespace openrt {
 
-// Floats that a parameter of this type has; 0 for types of another kind and for lists, which have
-// any number.
+// Returns the number of floats of a parameter type; 0 for types that are not floats, and for lists,
+// which have any number.
 size_t parameterFloats(RtsType type);
 
-// Why the parameter cannot have these values, or an empty text: not finite, or out of its range.
+// Returns why the values are invalid (not finite or out of range), or an empty string.
 std::string valueProblem(const RtsParam& param, std::span<const float> values);
 std::string valueProblem(const RtsParam& param, int value);
 

@@ -1,5 +1,5 @@
-// plugin_check.cpp: the rules of the shader ABI, one function a table. Called by the registry under
-// its lock.
+// plugin_check.cpp: checks the rules of the shader ABI, with one function for each table. Called by
+// the registry under its lock.
 #include "shading/plugin_check.h"
 
 #include <algorithm>
@@ -12,10 +12,11 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t maxVaryingBytes = 1 << 14; // every hit then has a copy of the structure
+// Limit for structs with varying parameters, because every hit gets a copy of the struct.
+constexpr uint32_t maxVaryingBytes = 1 << 14;
 constexpr uint32_t maxClasses = 1024, maxParameters = 4096, maxParameterBytes = 1 << 20;
-// A class reaches at least to its parameter table; everything behind that is functions, absent in
-// older minors.
+// A class contains at least the fields up to its parameter table. The fields behind are functions,
+// which older minor versions may lack.
 constexpr size_t minClassSize = offsetof(RtsClass, traits);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -34,7 +35,7 @@ size_t parameterAlignment(RtsType type) {
   }
 }
 
-// The part of a plug-in that says whether the rest may be read at all.
+// Checks the header of a plug-in, which decides whether the rest may be read.
 void checkHeader(const RtsPlugin* plugin, size_t symbolBytes, const std::string& path) {
   if (symbolBytes != 0 && symbolBytes < sizeof(RtsPlugin))
     refuse(path, "its " RTS_ENTRY_NAME " has " + std::to_string(symbolBytes) +
@@ -114,7 +115,7 @@ void checkFunctions(const RtsClass& shaderClass, const std::string& where) {
   if (missing) throw std::runtime_error(where + ": lacks the function " + missing);
 }
 
-// Bytes of a class structure of ABI 1.minor.
+// Returns the size of RtsClass in ABI 1.minor.
 size_t classBytes(unsigned minor) {
   return minor == 0   ? offsetof(RtsClass, surface)
          : minor == 1 ? offsetof(RtsClass, frequency)
@@ -132,7 +133,7 @@ RtsClass checkClass(const RtsClass* theirs, unsigned minor, const std::string& p
                      " bytes; that of ABI " + version(RTS_ABI_MAJOR, minor) + " has " +
                      std::to_string(classBytes(minor)));
   RtsClass ours{};
-  // Whole pointers only: half a function pointer would be a wild one.
+  // Copies whole pointers only: a partly copied function pointer would point anywhere.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));
   ours.size = theirs->size;
   if (!ours.name || !*ours.name) refuse(path, "a class without a name");

@@ -1,5 +1,5 @@
-// plugin_check.h: decides whether the constant that a shader library exports may be trusted with
-// being called. Used by the registry when it loads a library, and by the ABI tests. Any thread.
+// plugin_check.h: checks the constant that a shader library exports before any of its functions are
+// called. Used by the registry when it loads a library, and by the ABI tests. [any thread]
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace openrt {
 
-// Checks magic, versions, sizes and every table of a plug-in and returns its classes as the host
-// sees them: whole RtsClass structures in which functions unknown to an older plug-in are NULL.
-// symbolBytes: size of the exported constant where the loader knows it, else 0. Throws
-// std::runtime_error that says what is wrong, with both versions where they differ.
+// Checks magic, versions, sizes and every table of a plug-in. Returns its classes as the host sees
+// them: complete RtsClass structures in which functions that an older plug-in does not know are
+// NULL. symbolBytes: size of the exported constant if the loader knows it, else 0. Throws
+// std::runtime_error with the reason, and with both versions if they differ.
 std::vector<RtsClass> checkPlugin(const RtsPlugin* plugin, size_t symbolBytes,
                                   const std::string& path);
 
-// Bytes that a value of this type takes in a parameter struct; 0 for an unknown type.
+// Returns the size in bytes of a value of this type in a parameter struct; 0 for an unknown type.
 size_t parameterBytes(RtsType type);
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// registry.cpp: finds shader libraries by bare name in the configured folders, and loads them
-// (library.h). Called by the front end on the application's thread and by backends on theirs; one
+// registry.cpp: finds shader libraries by bare name in the configured folders and loads them
+// (library.h). Called by the API on the application's thread and by backends on theirs, under one
 // lock.
 #include "shading/registry.h"
 

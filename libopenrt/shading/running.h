@@ -1,6 +1,6 @@
-// running.h: which shader class runs on this thread, for handlers of crashes. Whoever calls a
-// function of a class puts a RunningShader beside the call. Any thread; runningShader() is
-// async-signal-safe.
+// running.h: records which shader class runs on the current thread, so that a crash handler can
+// name it. Code that calls a function of a class holds a RunningShader during the call. [any
+// thread] runningShader() is async-signal-safe.
 #pragma once
 
 #include <atomic>
@@ -11,15 +11,15 @@
 
 namespace openrt {
 
-// A class as the host keeps it: every RtsClass that the registry hands out is one.
+// A class in a loaded library. Every RtsClass that the registry returns is a LoadedClass.
 struct LoadedClass : RtsClass {
-  uint16_t minor = RTS_ABI_MINOR;         // of the ABI that its library was made for
+  uint16_t minor = RTS_ABI_MINOR;         // ABI minor version of its library
   std::string label;                      // "CLASS of LIBRARY"
-  mutable std::atomic<bool> found{false}; // somebody asked for it
-  // Tables of the host's where a library was loaded anew; empty: the plug-in's own.
+  mutable std::atomic<bool> found{false}; // was returned by find(), so it may be in use
+  // The host's tables for a reloaded library; empty: the plug-in's own tables are used.
   std::vector<RtsParam> mergedParams;
   std::vector<uint8_t> mergedFrequency;
-  std::vector<std::string> mergedNames; // by parameter, also of those that are gone
+  std::vector<std::string> mergedNames; // by parameter, including removed ones
 };
 
 inline const char* labelOf(const RtsClass& shaderClass) {
@@ -30,7 +30,7 @@ inline uint16_t minorOf(const RtsClass& shaderClass) {
   return static_cast<const LoadedClass&>(shaderClass).minor;
 }
 
-// No lazy allocation of the thread's storage: a signal handler may come first.
+// The initial-exec model allocates no storage lazily: a signal handler may be the first to read it.
 #if defined(__GNUC__) && !defined(_WIN32)
 #define OPENRT_SIGNAL_SAFE_TLS __attribute__((tls_model("initial-exec")))
 #else
@@ -42,7 +42,7 @@ class RunningShader {
  public:
   explicit RunningShader(const RtsClass& shaderClass) : before_(runningClass) {
     runningClass = &shaderClass;
-    std::atomic_signal_fence(std::memory_order_seq_cst); // the call comes after it
+    std::atomic_signal_fence(std::memory_order_seq_cst); // keeps the call behind the store
   }
   ~RunningShader() {
     std::atomic_signal_fence(std::memory_order_seq_cst);
@@ -55,7 +55,7 @@ class RunningShader {
   const RtsClass* before_;
 };
 
-// Label of the class whose function runs on this thread, or null.
+// Returns the label of the class whose function runs on this thread, or null.
 const char* runningShader() noexcept;
 
 } // namespace openrt

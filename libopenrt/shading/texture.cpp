@@ -1,6 +1,5 @@
-// texture.cpp: bilinear and nearest look-up. Bytes stay bytes in memory and are decoded by a table
-// texel by texel, before they are mixed: mixing encoded values would darken every edge. See
-// texture.h.
+// texture.cpp: bilinear and nearest texture look-up. Bytes stay bytes in memory; a table decodes
+// each texel before filtering, because filtering encoded values would darken every edge.
 #include "shading/texture.h"
 
 #include <algorithm>
@@ -32,17 +31,16 @@ const Decoding& decoding(bool srgb) {
   return srgb ? encoded : linear;
 }
 
-// Where the lanes of a small piece of a batch lie along one axis: the two texels around them and
-// the share of the second. Worked out for all lanes at once, without calls, so that the loops go
-// into vector lanes.
-constexpr uint32_t piece = 64;
-struct Places {
-  int32_t first[piece], second[piece];
-  float share[piece];
+// The look-up of a chunk of a batch along one axis: the two neighbouring texels, and the weight of
+// the second. The loops run over all lanes without calls, so that compilers vectorise them.
+constexpr uint32_t chunk = 64;
+struct TexelLookup {
+  int32_t first[chunk], second[chunk];
+  float weight[chunk];
 };
 
-// Coordinates in texels, 0..size. Whole numbers are taken off by conversion; beyond 2^23 a float
-// has no fraction to keep.
+// Converts coordinates to texels, 0..size. The integer part is removed by conversion to int; beyond
+// 2^23 a float has no fraction.
 void place(uint32_t n, const float* u, const Texture::Axis& axis, float* out) {
   const auto size = static_cast<float>(axis.size);
   if (axis.clamp) {
@@ -60,21 +58,21 @@ void place(uint32_t n, const float* u, const Texture::Axis& axis, float* out) {
   }
 }
 
-void between(uint32_t n, const float* u, const Texture::Axis& axis, Places& p) {
-  float texels[piece];
+void lookUpLinear(uint32_t n, const float* u, const Texture::Axis& axis, TexelLookup& p) {
+  float texels[chunk];
   place(n, u, axis, texels);
   const int32_t last = axis.size - 1, before = axis.clamp ? 0 : last, after = axis.clamp ? last : 0;
   for (uint32_t i = 0; i < n; i++) {
-    const float x = texels[i] + 0.5f; // half a texel left of the place, plus one: never negative
+    const float x = texels[i] + 0.5f; // minus half a texel, plus one, so that it is never negative
     const auto whole = static_cast<int32_t>(x);
-    p.share[i] = x - static_cast<float>(whole);
+    p.weight[i] = x - static_cast<float>(whole);
     p.first[i] = whole > 0 ? whole - 1 : before;
     p.second[i] = whole > last ? after : whole;
   }
 }
 
-void nearest(uint32_t n, const float* u, const Texture::Axis& axis, Places& p) {
-  float texels[piece];
+void nearest(uint32_t n, const float* u, const Texture::Axis& axis, TexelLookup& p) {
+  float texels[chunk];
   place(n, u, axis, texels);
   const int32_t last = axis.size - 1;
   for (uint32_t i = 0; i < n; i++) {
@@ -130,11 +128,11 @@ void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv
   const auto index = [&](int32_t x, int32_t y) {
     return (static_cast<size_t>(y) * width + static_cast<size_t>(x)) * components;
   };
-  Places s, t;
-  for (uint32_t begin = 0; begin < n; begin += piece) {
-    const uint32_t count = std::min(piece, n - begin);
-    (single ? nearest : between)(count, uv[0] + begin, texture.axis_[0], s);
-    (single ? nearest : between)(count, uv[1] + begin, texture.axis_[1], t);
+  TexelLookup s, t;
+  for (uint32_t begin = 0; begin < n; begin += chunk) {
+    const uint32_t count = std::min(chunk, n - begin);
+    (single ? nearest : lookUpLinear)(count, uv[0] + begin, texture.axis_[0], s);
+    (single ? nearest : lookUpLinear)(count, uv[1] + begin, texture.axis_[1], t);
     for (uint32_t i = 0; i < count; i++) {
       float value[components];
       const size_t k00 = index(s.first[i], t.first[i]);
@@ -144,9 +142,9 @@ void Texture::sampleAs(const Texture& texture, uint32_t n, const float* const uv
         const size_t k10 = index(s.second[i], t.first[i]), k01 = index(s.first[i], t.second[i]);
         const size_t k11 = index(s.second[i], t.second[i]);
         for (int c = 0; c < components; c++) {
-          const float below = at(k00, c) * (1 - s.share[i]) + at(k10, c) * s.share[i];
-          const float above = at(k01, c) * (1 - s.share[i]) + at(k11, c) * s.share[i];
-          value[c] = below * (1 - t.share[i]) + above * t.share[i];
+          const float below = at(k00, c) * (1 - s.weight[i]) + at(k10, c) * s.weight[i];
+          const float above = at(k01, c) * (1 - s.weight[i]) + at(k11, c) * s.weight[i];
+          value[c] = below * (1 - t.weight[i]) + above * t.weight[i];
         }
       }
       spread<components>(value, begin + i, rgba);

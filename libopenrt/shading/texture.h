@@ -1,5 +1,5 @@
-// texture.h: one image that shaders sample. Made when a commit is applied, immutable afterwards;
-// sample() is called from render threads, for batches.
+// texture.h: one image that shaders sample. Created after a commit and immutable afterwards. Render
+// threads call sample() for batches.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,22 @@ namespace openrt {
 
 class Texture {
  public:
-  // texels: what description.texels names, rows from the bottom up. A description that does not fit
-  // its texels (a damaged recording) makes a texture without components, which samples as white.
+  // texels: the array that description.texels refers to, rows from the bottom up. If the texels are
+  // too short for the description (a damaged recording), the texture has no components and samples
+  // as white.
   Texture(const edit::TextureT& description, ArrayPtr texels);
 
-  // 1 grey, 2 grey and alpha, 3 rgb, 4 rgba; 0: nothing to sample.
+  // Returns 1 grey, 2 grey and alpha, 3 rgb, 4 rgba; 0: no image.
   uint32_t components() const { return components_; }
   uint32_t width() const { return uint32_t(axis_[0].size); }
 
-  // rgba at n places; grey is replicated, missing alpha is 1. Coordinates that are not finite count
-  // as 0.
+  // Writes linear rgba at n texture coordinates. Grey is replicated; a missing alpha is 1.
+  // Coordinates that are not finite count as 0.
   void sample(uint32_t n, const float* const uv[2], float* const rgba[4]) const {
     sample_(*this, n, uv, rgba);
   }
 
-  // One direction of the image: texel centres at (i + 1/2) / size, ends joined or held.
+  // One axis of the image. Texel centres are at (i + 1/2) / size; coordinates repeat or clamp.
   struct Axis {
     int32_t size = 1;
     bool clamp = false;
@@ -39,7 +40,7 @@ class Texture {
   ArrayPtr texels_;
   Axis axis_[2];
   uint32_t components_ = 0;
-  const float* decode_; // 256 values of a colour byte
+  const float* decode_; // table of 256: colour byte to linear value
   Sampler sample_;
 };
 

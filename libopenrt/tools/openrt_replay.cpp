@@ -1,6 +1,6 @@
 // openrt_replay.cpp: the program openrt-replay: renders a recording again and writes one of its
-// frames. Reads the file on the main thread; the local backend brings its own. Exit codes: 0 done,
-// 1 render failed or picture not written, 2 usage, 3 recording missing or unusable.
+// frames. It reads the file on the main thread; the local backend has its own threads. Exit codes:
+// 0 done, 1 render failed or picture not written, 2 usage, 3 recording missing or unusable.
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -27,13 +27,13 @@ enum ExitCode { Done = 0, RenderFailed = 1, Usage = 2, InputUnusable = 3 };
 struct Options {
   std::string recording, output, exported, shaderPath;
   uint32_t threads = 0;
-  uint64_t frame = 0; // from 1; 0: the last
+  uint64_t frame = 0; // counted from 1; 0: the last frame
   bool stats = false;
 };
 
 struct Picture {
   uint32_t width = 0, height = 0;
-  std::vector<float> rgba; // first row at the top
+  std::vector<float> rgba; // top row first
 };
 
 void log(int level, const char* message, void*) {
@@ -43,8 +43,8 @@ void log(int level, const char* message, void*) {
                  printable(message).c_str());
 }
 
-// Colour PFM: three floats a pixel, little-endian, rows from the bottom up. Written beside its name
-// and renamed.
+// Writes a colour PFM: three floats per pixel, little-endian, rows from the bottom up. The file is
+// written under a temporary name and renamed.
 bool writePfm(const Picture& picture, const std::string& path) {
   const std::string partial = path + ".partial";
   std::FILE* file = std::fopen(partial.c_str(), "wbe");
@@ -81,7 +81,7 @@ void printStats(const Backend& backend, uint64_t frames) {
               s.renderSeconds, s.threads, s.isa, s.kernel);
 }
 
-int complain(ExitCode code, const std::string& message) {
+int reportError(ExitCode code, const std::string& message) {
   std::fprintf(stderr, "openrt-replay: error: %s\n", printable(message).c_str());
   return code;
 }
@@ -113,13 +113,13 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   return options;
 }
 
-// Applies commits and renders their frames, up to the one asked for. Messages of the reader leave
-// as they are thrown.
+// Applies commits and renders their frames, up to the requested one. Exceptions of the reader pass
+// through.
 class Replay {
  public:
   Replay(RecordingReader& reader, Backend& backend) : reader_(reader), backend_(backend) {}
 
-  // Returns false when the recording has no further frame.
+  // Returns false if the recording has no further frame.
   bool renderNext() {
     while (std::shared_ptr<const Commit> commit = reader_.next()) {
       for (const auto& entry : commit->edits.edits)
@@ -161,23 +161,23 @@ int writeScene(const Options& options, RecordingReader& reader, const ShaderRegi
       scene.apply(*commit);
       frames += commit->edits.render;
     }
-  } catch (const BadRecording& e) { return complain(InputUnusable, e.what()); }
+  } catch (const BadRecording& e) { return reportError(InputUnusable, e.what()); }
   exportScene(scene, shaders, options.exported);
   return Done;
 }
 
 int run(const Options& options) {
   for (const std::string& written : {options.output, options.exported}) {
-    std::error_code none; // one of them is not there: they are not the same
+    std::error_code none; // if one of them does not exist, they differ
     if (!written.empty() && std::filesystem::equivalent(written, options.recording, none))
-      return complain(Usage,
-                      written + ": it is the recording that is read; another name is needed");
+      return reportError(Usage,
+                         written + ": it is the recording that is read; another name is needed");
   }
   const ShaderRegistry shaders(shaderFolders(options.shaderPath));
   std::unique_ptr<RecordingReader> reader;
   try {
     reader = openRecording(options.recording, &shaders);
-  } catch (const std::exception& e) { return complain(InputUnusable, e.what()); }
+  } catch (const std::exception& e) { return reportError(InputUnusable, e.what()); }
   if (!options.exported.empty()) return writeScene(options, *reader, shaders);
   BackendOptions backendOptions;
   backendOptions.threads = options.threads;
@@ -189,31 +189,32 @@ int run(const Options& options) {
   try {
     while (more && (options.frame == 0 || replay.frames() < options.frame))
       more = replay.renderNext();
-  } catch (const BadRecording& e) { return complain(InputUnusable, e.what()); }
+  } catch (const BadRecording& e) { return reportError(InputUnusable, e.what()); }
   if (options.stats) printStats(*backend, replay.frames());
   if (replay.frames() < std::max<uint64_t>(options.frame, 1))
-    return complain(InputUnusable,
-                    options.recording + ": has " + std::to_string(replay.frames()) + " frames");
+    return reportError(InputUnusable,
+                       options.recording + ": has " + std::to_string(replay.frames()) + " frames");
   if (options.output.empty()) return Done;
   const std::optional<Picture> picture = replay.picture();
-  if (!picture) return complain(RenderFailed, "the frame has no colour channel");
+  if (!picture) return reportError(RenderFailed, "the frame has no colour channel");
   if (!writePfm(*picture, options.output))
-    return complain(RenderFailed, options.output + ": cannot be written");
+    return reportError(RenderFailed, options.output + ": cannot be written");
   return Done;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN); // a file that may not be as long says so itself, and is removed
+  // A write beyond the file size limit then returns an error, and the file is removed.
+  std::signal(SIGXFSZ, SIG_IGN);
   return withEnoughStack([&] {
     int exitCode = Done;
     try {
       const std::optional<Options> options = parseOptions(argc, argv, exitCode);
       if (options) exitCode = run(*options);
       if (exitCode == Done && !outputWritten())
-        return int(complain(RenderFailed, "standard output cannot be written"));
+        return int(reportError(RenderFailed, "standard output cannot be written"));
       return exitCode;
-    } catch (const std::exception& e) { return int(complain(RenderFailed, e.what())); }
+    } catch (const std::exception& e) { return int(reportError(RenderFailed, e.what())); }
   });
 }

@@ -1,7 +1,7 @@
 // openrt_worker.cpp: the program openrt-worker: lends this machine's threads to masters
-// (backend=cluster, vv --workers). Options and signals here; the work in
-// backend/cluster/worker/serve.h. Exit codes: 0 done (also by SIGTERM), 1 something failed, 2
-// usage, 3 key file missing or unusable, 75 a port that is taken, or out of memory; 130 by SIGINT.
+// (backend=cluster, vv --workers). This file handles options and signals;
+// backend/cluster/worker/serve.h does the work. Exit codes: 0 done (also by SIGTERM), 1 something
+// failed, 2 usage, 3 key file missing or unusable, 75 port in use or out of memory, 130 by SIGINT.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -36,8 +36,8 @@ enum ExitCode {
   Interrupted = 130
 };
 
-constexpr const char* here = "127.0.0.1:7447";
-constexpr unsigned graceSeconds = 1; // from a signal to the end, whatever happens
+constexpr const char* defaultAddress = "127.0.0.1:7447";
+constexpr unsigned graceSeconds = 1; // seconds from a signal to a forced exit
 
 struct Options {
   std::string listen, connect, key, allow, newKey, shaderPath;
@@ -46,7 +46,7 @@ struct Options {
   bool once = false, quiet = false;
 };
 
-WorkerService* service = nullptr; // for the signal handler
+WorkerService* service = nullptr; // used by the signal handler
 volatile std::sig_atomic_t signalled = 0;
 
 extern "C" void onSignal(int number) {
@@ -57,7 +57,7 @@ extern "C" void onSignal(int number) {
   service->stop();
 }
 
-int complain(ExitCode code, const std::string& message) {
+int reportError(ExitCode code, const std::string& message) {
   std::fprintf(stderr, "openrt-worker: error: %s\n", printable(message).c_str());
   return code;
 }
@@ -101,7 +101,7 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
     exitCode = app.exit(e, std::cout, std::cerr) == 0 ? Done : Usage;
     return std::nullopt;
   }
-  if (o.connect.empty() && o.listen.empty()) o.listen = here;
+  if (o.connect.empty() && o.listen.empty()) o.listen = defaultAddress;
   return o;
 }
 
@@ -112,23 +112,23 @@ void report(bool quiet, int level, const std::string& text) {
                  printable(text).c_str());
 }
 
-// The exit code of what only prints.
+// Returns the exit code of a command that only prints.
 int printed() {
-  return outputWritten() ? int(Done) : complain(Failed, "standard output cannot be written");
+  return outputWritten() ? int(Done) : reportError(Failed, "standard output cannot be written");
 }
 
 int newKey(const std::string& path) {
   try {
     std::printf("%s\n", makeKeyFile(path).c_str());
     return printed();
-  } catch (const std::exception& e) { return complain(KeysUnusable, e.what()); }
+  } catch (const std::exception& e) { return reportError(KeysUnusable, e.what()); }
 }
 
 int serve(const Options& o) {
   ServeOptions options;
   try {
     if (!o.key.empty()) options.wire.keys = readKeys(o.key, o.allow);
-  } catch (const std::exception& e) { return complain(KeysUnusable, e.what()); }
+  } catch (const std::exception& e) { return reportError(KeysUnusable, e.what()); }
   options.wire.listen = o.listen;
   if (!o.connect.empty()) options.wire.connect = {o.connect};
   const ShaderRegistry shaders(shaderFolders(o.shaderPath));
@@ -150,11 +150,11 @@ int serve(const Options& o) {
     std::fflush(stdout);
   }
   worker.run();
-  service = nullptr; // a signal ends the program at once while all is put away
+  service = nullptr; // from here on a signal ends the program at once
   return signalled && signalled != SIGTERM ? Interrupted : Done;
 }
 
-// Returns the exit code; whatever went wrong is said.
+// Runs the program and reports errors. Returns the exit code.
 int run(int argc, char** argv) {
   int exitCode = Done;
   try {
@@ -162,12 +162,12 @@ int run(int argc, char** argv) {
     if (!options) return exitCode == Done ? printed() : exitCode;
     return options->newKey.empty() ? serve(*options) : newKey(options->newKey);
   } catch (const std::system_error& e) {
-    return complain(TryAgain, e.what());
+    return reportError(TryAgain, e.what());
   } catch (const std::bad_alloc&) {
-    return complain(TryAgain, "out of memory");
+    return reportError(TryAgain, "out of memory");
   } catch (const std::runtime_error& e) {
-    return complain(Usage, e.what());
-  } catch (const std::exception& e) { return complain(Failed, e.what()); }
+    return reportError(Usage, e.what());
+  } catch (const std::exception& e) { return reportError(Failed, e.what()); }
 }
 
 } // namespace

@@ -31,8 +31,8 @@ uint32_t floatsOf(RtsType type) {
   }
 }
 
-// A file that is written beside its name and renamed when it is whole. Throws std::runtime_error
-// that names it.
+// A file that is written under a temporary name and renamed once complete. Throws
+// std::runtime_error that names the file.
 class Output {
  public:
   explicit Output(const std::string& path)
@@ -103,8 +103,8 @@ class Export {
     return {{"shader", shader}, {"matrix", matrix.m}};
   }
 
-  // Where an array lies in the file of arrays; each is written once.
-  Json place(const ArrayPtr& array) {
+  // Returns the position of an array in the array file; each array is written once.
+  Json writeArray(const ArrayPtr& array) {
     if (!array) return nullptr;
     const auto [found, fresh] = offsets_.try_emplace(array.get(), end_);
     if (fresh) {
@@ -124,15 +124,15 @@ class Export {
               {"cull", g.cull},
               {"clockwise", g.clockwise}};
     if (g.primitive == edit::Primitive::Sphere) m["radius"] = g.width;
-    m["points"] = place(g.points);
-    m["indices"] = place(g.indices);
-    m["normals"] = place(g.normals);
-    m["texCoords"] = place(g.texCoords);
-    m["colors"] = place(g.colors);
+    m["points"] = writeArray(g.points);
+    m["indices"] = writeArray(g.indices);
+    m["normals"] = writeArray(g.normals);
+    m["texCoords"] = writeArray(g.texCoords);
+    m["colors"] = writeArray(g.colors);
     return m;
   }
 
-  // With a stack of its own: instances may be nested deeply.
+  // Lists the placed geometries. Uses an explicit stack, because instances may be nested deeply.
   Json meshes() {
     constexpr size_t limit = 1'000'000;
     struct Open {
@@ -151,7 +151,8 @@ class Export {
       const std::vector<uint32_t>& children = scene_.childrenOf(at.object);
       for (size_t i = children.size(); i-- > 0;) {
         const Instance& instance = scene_.instances.at(children[i]);
-        const uint32_t shader = at.shader ? at.shader : instance.shader; // the outermost counts
+        // The outermost override applies.
+        const uint32_t shader = at.shader ? at.shader : instance.shader;
         if (instance.visible)
           open.push_back({instance.object, shader, at.matrix * instance.matrix});
       }
@@ -190,7 +191,7 @@ class Export {
   Json image(const TextureImage& texture) {
     const edit::TextureT& d = texture.description;
     return {{"width", d.width},   {"height", d.height}, {"components", d.components},
-            {"float", d.isFloat}, {"srgb", d.srgb},     {"texels", place(texture.texels)}};
+            {"float", d.isFloat}, {"srgb", d.srgb},     {"texels", writeArray(texture.texels)}};
   }
 
   const Scene& scene_;

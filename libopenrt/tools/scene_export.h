@@ -1,4 +1,5 @@
-// scene_export.h: a scene of a recording for other programs: openrt-replay --export. [main thread]
+// scene_export.h: exports the scene of a recording for other programs (openrt-replay --export).
+// [main thread]
 #pragma once
 
 #include <string>
@@ -11,14 +12,13 @@ namespace openrt {
 // Writes PATH (JSON) and PATH.bin (arrays, little-endian). The JSON has
 //   frame        width, height, samples, depth
 //   shaders      by id: class, library, kind, parameters by name (defaults where nothing was set)
-//   meshes       every placed geometry: kind (triangles, sphere, lines, points), shader, matrix to
-//   the world (column-major), cull,
-//                clockwise, radius; points, indices, normals, texCoords, colors: {offset, count} in
-//                PATH.bin, floats or uint32
+//   meshes       every placed geometry: kind (triangles, sphere, lines, points), shader, matrix
+//                to the world (column-major), cull, clockwise, radius; points, indices, normals,
+//                texCoords, colors: {offset, count} in PATH.bin, floats or uint32
 //   lights, camera, environment    shader and matrix
-//   textures     by id: width, height, components, float, srgb, texels {offset, bytes}, rows from
-//   the bottom up
-// Per-vertex parameters are left out. Throws std::runtime_error.
+//   textures     by id: width, height, components, float, srgb, texels {offset, count},
+//                rows from the bottom up
+// Per-vertex parameters are not exported. Throws std::runtime_error.
 void exportScene(const Scene& scene, const ShaderRegistry& shaders, const std::string& path);
 
 } // namespace openrt

@@ -20,9 +20,10 @@ namespace {
 char temporaryName[PATH_MAX];
 std::atomic<bool> temporaryExists{false};
 
-std::map<std::pair<dev_t, ino_t>, std::string> kept; // what they are
+// protected files: device and inode, description
+std::map<std::pair<dev_t, ino_t>, std::string> kept;
 
-std::string whyKept(const std::string& path, const struct stat& info) {
+std::string whyProtected(const std::string& path, const struct stat& info) {
   const auto found = kept.find({info.st_dev, info.st_ino});
   return found == kept.end()
              ? ""
@@ -39,7 +40,7 @@ std::string folderOf(const std::string& path) {
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-// A link stays a link: the file it leads to is replaced.
+// Resolves symbolic links, so that the link stays and its target is replaced.
 std::string followLinks(const std::string& path) {
   char* real = ::realpath(path.c_str(), nullptr);
   if (!real) return path;
@@ -80,7 +81,7 @@ int makeTemporary(const std::string& path, const std::string& target, mode_t mod
 
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name) {
   while (!bytes.empty()) {
-    // Linux writes at most 2 GiB at once.
+    // Linux writes at most 2 GiB in one call.
     ssize_t done = ::write(descriptor, bytes.data(), std::min<size_t>(bytes.size(), 1u << 30));
     if (done < 0 && errno == EINTR) continue;
     if (done < 0) fail(name, errno);
@@ -95,7 +96,8 @@ void writeFile(const std::string& path, std::string_view bytes) {
   if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
   if (exists && !S_ISREG(info.st_mode)) return writeDirectly(path, bytes);
   if (exists)
-    if (const std::string why = whyKept(path, info); !why.empty()) throw std::runtime_error(why);
+    if (const std::string why = whyProtected(path, info); !why.empty())
+      throw std::runtime_error(why);
   if (exists && ::access(target.c_str(), W_OK) != 0) fail(path, errno);
 
   int descriptor = makeTemporary(path, target, 0666);
@@ -117,7 +119,7 @@ void writeFile(const std::string& path, std::string_view bytes) {
   temporaryExists = false;
 }
 
-void keepFile(const std::string& path, const std::string& what) {
+void protectFile(const std::string& path, const std::string& what) {
   struct stat info;
   if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode))
     kept.try_emplace({info.st_dev, info.st_ino}, what);
@@ -133,7 +135,7 @@ std::string whyNotWritable(const std::string& path) {
     else if (::access(target.c_str(), W_OK) != 0)
       reason = errno;
     if (!reason && !S_ISREG(info.st_mode)) return "";
-    if (const std::string why = whyKept(path, info); !reason && !why.empty()) return why;
+    if (const std::string why = whyProtected(path, info); !reason && !why.empty()) return why;
   }
   const std::string folder = folderOf(target);
   if (!reason && ::stat(folder.c_str(), &info) == 0 && !S_ISDIR(info.st_mode)) reason = ENOTDIR;

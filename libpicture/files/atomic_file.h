@@ -1,5 +1,5 @@
-// atomic_file.h: output that is whole or not there: written beside its name, then renamed. [one
-// thread at a time]
+// atomic_file.h: Writes files atomically: the content goes to a temporary file in the same folder,
+// which is then renamed. A file is either complete or absent. [one thread at a time]
 #pragma once
 
 #include <string>
@@ -7,24 +7,23 @@
 
 namespace picture {
 
-// Writes a file; what was there before stays until the new content is complete. Devices and pipes
-// are written to directly. Throws std::runtime_error naming the file and the reason.
+// Writes a file. The previous file stays until the new content is complete. Devices and pipes are
+// written directly. Throws std::runtime_error naming the file and the reason.
 void writeFile(const std::string& path, std::string_view bytes);
 
-// Writes everything to an open descriptor; `name` for the message. Throws std::runtime_error.
+// Writes all bytes to an open descriptor; `name` is for the message. Throws std::runtime_error.
 void writeDescriptor(int descriptor, std::string_view bytes, const std::string& name);
 
-// Keeps a regular file from being replaced: writeFile() refuses it under every name that it has.
-// what: "the world that is read", for the message. Anything else, or nothing, at this path is
-// passed over.
-void keepFile(const std::string& path, const std::string& what);
+// Protects a regular file: writeFile() refuses to replace it, under any of its names. `what` is for
+// the message, such as "the world that is read". Does nothing if the path is not a regular file.
+void protectFile(const std::string& path, const std::string& what);
 
-// Why writeFile(path) cannot succeed, as far as can be told without writing; empty if nothing
-// speaks against it.
+// Returns why writeFile(path) would fail, as far as this is known without writing; empty if no
+// reason is known.
 std::string whyNotWritable(const std::string& path);
 
-// Removes the file that a write in progress would have renamed. May be called from a signal handler
-// that ends the process.
+// Removes the temporary file of a write in progress. A signal handler that ends the process may
+// call it.
 void removeTemporary() noexcept;
 
 } // namespace picture

@@ -1,6 +1,6 @@
-// exr.cpp: OpenEXR into memory: one part, 32 bit floats, ZIP, planes named as oiiotool and tev
-// group them, the names behind the numbers of channel id as a JSON object in the string attribute
-// idNames. Nothing that changes from run to run is written. [any thread]
+// exr.cpp: Encodes a picture as OpenEXR in memory: one part, 32-bit floats, ZIP. Planes are named
+// as oiiotool and tev group them; the names for the numbers of channel id are a JSON object in the
+// string attribute idNames. Nothing that changes from run to run is written. [any thread]
 #include <stdexcept>
 
 #include <ImfChannelList.h>

@@ -1,5 +1,6 @@
-// exr_read.cpp: the colours of an OpenEXR file, for comparisons, and its error bars if it has any.
-// Files are the user's own, named on the command line; never one that a world names. [any thread]
+// exr_read.cpp: Reads the colours of an OpenEXR file for comparisons, and its error bars if it has
+// any. The user names these files on the command line; a file named by a world is never read here.
+// [any thread]
 #include <algorithm>
 #include <stdexcept>
 
@@ -17,7 +18,7 @@ namespace picture {
 
 namespace {
 
-// Appends rows y, y+1 ... to the planes of these channels.
+// Appends `rows` rows, starting at row y, to the planes of these channels.
 void readRows(Imf::InputFile& file, const Imath::Box2i& window,
               const std::vector<const Channel*>& channels, int64_t y, int64_t rows,
               Picture& picture) {
@@ -29,7 +30,7 @@ void readRows(Imf::InputFile& file, const Imath::Box2i& window,
     plane.resize(size_t(picture.width) * size_t(y + rows) * size_t(channel->components));
     for (int c = 0; c < channel->components; ++c) {
       char* base = reinterpret_cast<char*>(plane.data() + c);
-      // OpenEXR counts from the window's corner on, which may be anywhere.
+      // OpenEXR addresses pixels relative to the data window, whose corner may be anywhere.
       base -= std::ptrdiff_t(window.min.x) * std::ptrdiff_t(pixel) +
               std::ptrdiff_t(window.min.y) * std::ptrdiff_t(row);
       frame.insert(std::string(channel->exr[c]),
@@ -61,11 +62,11 @@ Picture readExr(const std::string& path) {
         channels.push_back(&channel);
     if (channels.empty() || channels[0]->bit != RT_RGBA)
       throw std::runtime_error("there is no channel R");
-    // The planes grow with the rows that come: a header that promises much and a file that holds
-    // little cost little.
+    // The planes grow as rows are read, so a small file whose header claims a large picture costs
+    // little.
     constexpr int64_t pixelsAtOnce = 1 << 20;
-    const int64_t rowsAtOnce = std::max<int64_t>(
-        pixelsAtOnce / width, 256); // a block of the widest compression has 256 rows
+    // one block of the tallest compression has 256 rows
+    const int64_t rowsAtOnce = std::max<int64_t>(pixelsAtOnce / width, 256);
     for (int64_t y = 0; y < height; y += rowsAtOnce) {
       const int64_t rows = std::min(rowsAtOnce, height - y);
       readRows(file, window, channels, y, rows, picture);

@@ -1,7 +1,7 @@
-// film.h: a sequence of pictures as the bytes of a film: MP4 and WebM by the ffmpeg libraries where
-// the build has them, animated GIF by giflib always. vv and the Python binding write the bytes with
-// writeFile() when the film is finished, so that a file is whole or not there. Same pictures, same
-// bytes. [one thread at a time for each Film]
+// film.h: Encodes a sequence of pictures as a film in memory: MP4 and WebM with the ffmpeg
+// libraries if the build has them, animated GIF with giflib always. vv and the Python binding write
+// the bytes with writeFile() when the film is finished, so a file is complete or absent. The same
+// pictures give the same bytes. [one thread at a time for each Film]
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ namespace picture {
 enum class FilmKind { none, mp4, webm, gif };
 inline constexpr std::string_view filmSuffixes = "mp4, webm, gif";
 
-// Returns the kind of film that a file name's suffix says; none for every other suffix.
+// Returns the kind of film for a file name's suffix; none for every other suffix.
 FilmKind filmOf(std::string_view path);
 
-// Returns why this build cannot make such a film, as a clause that says what to do instead; "" if
+// Returns why this build cannot encode such a film, as a clause that says what to do instead; "" if
 // it can.
 std::string whyNoFilm(FilmKind kind);
 
-// What makes a film of one kind; film_gif.cpp and film_libav.cpp hold one each.
+// Encodes one kind of film; implemented in film_gif.cpp and film_libav.cpp.
 class FilmEncoder {
  public:
   virtual ~FilmEncoder() = default;
@@ -32,11 +32,11 @@ class FilmEncoder {
 
 class Film {
  public:
-  // width, height: of all pictures, in pixels (1 to 16384); fps: pictures a second, above 0. MP4
-  // and WebM halve the resolution of colour, so an odd width or height gets a black column or row.
-  // Throws std::runtime_error.
+  // width, height: size of all pictures, in pixels (1 to 16384); fps: pictures per second, above 0.
+  // MP4 and WebM halve the resolution of colour, so an odd width or height gets a black column or
+  // row. Throws std::runtime_error.
   Film(FilmKind kind, int width, int height, double fps);
-  // Appends a picture: red, green, blue of 8 bits, first row at the top, width * height * 3 bytes.
+  // Appends a picture: 8-bit red, green, blue, first row at the top, width * height * 3 bytes.
   // Throws std::runtime_error.
   void add(std::span<const uint8_t> rgb);
   // Returns the bytes of the file; nothing can be added afterwards. Throws std::runtime_error if

@@ -1,6 +1,6 @@
-// film_gif.cpp: animated GIF by giflib. Each picture has a palette of its own, made by median cut
-// (Heckbert, "Color image quantization for frame buffer display", 1982), and its colours are
-// dithered by error diffusion (Floyd and Steinberg, 1976). See film.h.
+// film_gif.cpp: Encodes animated GIF with giflib. Each picture has a palette of its own, made by
+// median cut (Heckbert, "Color image quantization for frame buffer display", 1982). Colours are
+// dithered by error diffusion (Floyd and Steinberg, 1976).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,22 +18,22 @@ namespace picture {
 
 namespace {
 
-constexpr int mostColours = 256;
-constexpr int bits = 5; // of each channel in the histogram
+constexpr int maxColours = 256;
+constexpr int bits = 5; // bits per channel in the histogram
 constexpr int levels = 1 << bits;
 
-// A cell of the histogram: how many pixels fall into it and the sum of their colours.
+// A cell of the histogram: the number of its pixels and the sum of their colours.
 struct Cell {
   uint32_t count = 0;
   std::array<uint64_t, 3> sum{};
-  std::array<uint8_t, 3> at{}; // its place, 0 to levels - 1 on each axis
+  std::array<uint8_t, 3> at{}; // position, 0 to levels - 1 on each axis
 };
 
-// Cells first to last - 1, which share one colour of the palette.
+// The cells first to last - 1, which share one colour of the palette.
 struct Box {
   size_t first, last;
-  int axis = 0;      // along which it is longest
-  uint64_t size = 0; // pixels times length: the largest is cut next
+  int axis = 0;      // longest axis
+  uint64_t size = 0; // number of pixels times length; the largest box is split next
 };
 
 void measure(Box& box, const std::vector<Cell>& cells) {
@@ -47,7 +47,7 @@ void measure(Box& box, const std::vector<Cell>& cells) {
     }
   }
   int length = 0;
-  for (int k : {1, 0, 2}) { // green first: the eye sees its steps best
+  for (int k : {1, 0, 2}) { // green first: the eye resolves its steps best
     if (high[size_t(k)] - low[size_t(k)] <= length) continue;
     length = high[size_t(k)] - low[size_t(k)];
     box.axis = k;
@@ -74,10 +74,10 @@ std::vector<GifColorType> medianCut(std::span<const uint8_t> rgb) {
   std::vector<Cell> cells = histogram(rgb);
   std::vector<Box> boxes{{0, cells.size()}};
   measure(boxes[0], cells);
-  while (boxes.size() < mostColours) {
+  while (boxes.size() < maxColours) {
     const auto largest = std::max_element(
         boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.size < b.size; });
-    if (largest->size == 0) break; // every box is one cell
+    if (largest->size == 0) break; // every box is a single cell
     Box& box = *largest;
     const auto axis = size_t(box.axis);
     std::stable_sort(cells.begin() + long(box.first), cells.begin() + long(box.last),
@@ -85,7 +85,7 @@ std::vector<GifColorType> medianCut(std::span<const uint8_t> rgb) {
     uint64_t half = 0, before = 0;
     for (size_t i = box.first; i < box.last; ++i) half += cells[i].count;
     half /= 2;
-    size_t cut = box.first + 1; // both parts hold at least a cell
+    size_t cut = box.first + 1; // both parts hold at least one cell
     for (before = cells[box.first].count; cut + 1 < box.last && before < half; ++cut)
       before += cells[cut].count;
     Box second{cut, box.last};
@@ -110,7 +110,7 @@ std::vector<GifColorType> medianCut(std::span<const uint8_t> rgb) {
   return palette;
 }
 
-// Finds the nearest colour of a palette; what was found is kept by cells of the histogram's size.
+// Finds the nearest colour of a palette. Results are cached for cells of the histogram's size.
 class Nearest {
  public:
   explicit Nearest(const std::vector<GifColorType>& palette)
@@ -143,8 +143,8 @@ class Nearest {
 std::vector<GifPixelType> dithered(std::span<const uint8_t> rgb, int width, int height,
                                    const std::vector<GifColorType>& palette) {
   std::vector<GifPixelType> out(size_t(width) * size_t(height));
-  std::vector<std::array<int, 3>> here(size_t(width) + 2),
-      below(size_t(width) + 2); // errors, in sixteenths
+  // quantization errors of the current and the next row, in sixteenths
+  std::vector<std::array<int, 3>> here(size_t(width) + 2), below(size_t(width) + 2);
   Nearest nearest(palette);
   for (int y = 0; y < height; ++y) {
     std::swap(here, below);
@@ -187,7 +187,7 @@ class GifEncoder : public FilmEncoder {
     if (!gif_) fail(error);
     EGifSetGifVersion(gif_, true);
     check(EGifPutScreenDesc(gif_, width, height, 8, 0, nullptr));
-    // Netscape's extension: the film begins again at its end.
+    // The Netscape extension makes the film loop.
     static constexpr unsigned char forEver[] = {1, 0, 0};
     check(EGifPutExtensionLeader(gif_, APPLICATION_EXT_FUNC_CODE));
     check(EGifPutExtensionBlock(gif_, 11, "NETSCAPE2.0"));
@@ -202,10 +202,11 @@ class GifEncoder : public FilmEncoder {
   void add(std::span<const uint8_t> rgb) override {
     std::vector<GifColorType> palette = medianCut(rgb);
     std::vector<GifPixelType> pixels = dithered(rgb, width_, height_, palette);
-    palette.resize(mostColours);
-    ColorMapObject* map = GifMakeMapObject(mostColours, palette.data());
+    palette.resize(maxColours);
+    ColorMapObject* map = GifMakeMapObject(maxColours, palette.data());
     if (!map) throw std::bad_alloc();
-    // A GIF counts hundredths of a second: delays differ by one, so that their sum does not drift.
+    // GIF delays are in hundredths of a second. They differ by one, so that their sum does not
+    // drift.
     const double end = std::round(double(++pictures_) * 100 / fps_), length = end - shown_;
     shown_ = end;
     GraphicsControlBlock control{DISPOSE_DO_NOT, false, int(std::clamp(length, 2.0, 65535.0)),
@@ -237,7 +238,7 @@ class GifEncoder : public FilmEncoder {
     if (result != GIF_OK) fail(gif_->Error);
   }
   int width_, height_;
-  double fps_, shown_ = 0; // shown_: hundredths of a second
+  double fps_, shown_ = 0; // shown_: hundredths of a second since the start
   size_t pictures_ = 0;
   std::string bytes_;
   GifFileType* gif_ = nullptr;

@@ -1,5 +1,5 @@
-// film_libav.cpp: MP4 (H.264, or MPEG-4 where the libraries have no encoder of H.264) and WebM (VP9
-// or VP8) by the ffmpeg libraries, into memory. See film.h.
+// film_libav.cpp: Encodes MP4 (H.264, or MPEG-4 if the libraries have no H.264 encoder) and WebM
+// (VP9 or VP8) in memory with the ffmpeg libraries.
 #include "libpicture/files/film.h"
 
 #ifndef PICTURE_WITH_FFMPEG
@@ -45,8 +45,8 @@ struct Deleter {
 template <class T> using Owned = std::unique_ptr<T, Deleter>;
 
 struct Codec {
-  const char* encoder; // the library's name for it
-  const char* options; // of this encoder: constant quality that shows no blocks
+  const char* encoder; // the library's name for the encoder
+  const char* options; // options of the encoder: constant quality without visible blocks
 };
 constexpr Codec mp4Codecs[] = {{"libx264", "crf=18"}, {"libopenh264", ""}, {"mpeg4", ""}};
 constexpr Codec webmCodecs[] = {{"libvpx-vp9", "crf=24:b=0"}, {"libvpx", "crf=10:b=8000000"}};
@@ -73,7 +73,7 @@ template <class T> T* made(T* pointer) {
   return pointer;
 }
 
-// A file in memory: muxers go back to fill in what they know only at the end.
+// A seekable file in memory. Muxers seek back to fill in fields that are known only at the end.
 struct Memory {
   std::string bytes;
   size_t at = 0;
@@ -103,7 +103,7 @@ class LibavEncoder : public FilmEncoder {
  public:
   LibavEncoder(FilmKind kind, int width, int height, double fps)
       : width_(width), height_(height), row_(size_t(width) * 3) {
-    av_log_set_level(AV_LOG_QUIET); // a library never prints
+    av_log_set_level(AV_LOG_QUIET); // a library must not print
     const Codec& codec = *codecOf(kind);
     AVFormatContext* format = nullptr;
     check(avformat_alloc_output_context2(&format, nullptr, kind == FilmKind::mp4 ? "mp4" : "webm",
@@ -114,8 +114,8 @@ class LibavEncoder : public FilmEncoder {
     io_.reset(made(avio_alloc_context(static_cast<unsigned char*>(made(av_malloc(buffer))), buffer,
                                       1, &memory_, nullptr, Memory::write, Memory::seek)));
     format_->pb = io_.get();
-    format_->flags |= AVFMT_FLAG_CUSTOM_IO |
-                      AVFMT_FLAG_BITEXACT; // no dates and no versions: same pictures, same bytes
+    // no dates and no versions: the same pictures give the same bytes
+    format_->flags |= AVFMT_FLAG_CUSTOM_IO | AVFMT_FLAG_BITEXACT;
     openCodec(codec, fps);
     stream_ = made(avformat_new_stream(format_.get(), nullptr));
     stream_->time_base = codec_->time_base;
@@ -158,10 +158,11 @@ class LibavEncoder : public FilmEncoder {
     codec_->colorspace = AVCOL_SPC_BT709;
     codec_->color_primaries = AVCOL_PRI_BT709;
     codec_->color_trc = AVCOL_TRC_BT709;
-    codec_->thread_count = 4; // the bytes of some encoders depend on it
+    codec_->thread_count = 4; // fixed, because the bytes of some encoders depend on it
     codec_->flags |= AV_CODEC_FLAG_BITEXACT;
     if (format_->oformat->flags & AVFMT_GLOBALHEADER) codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    if (std::string_view(codec.encoder) == "mpeg4") { // it has no constant quality by name
+    // this encoder has no named option for constant quality
+    if (std::string_view(codec.encoder) == "mpeg4") {
       codec_->flags |= AV_CODEC_FLAG_QSCALE;
       codec_->global_quality = 3 * FF_QP2LAMBDA;
     }
@@ -172,7 +173,7 @@ class LibavEncoder : public FilmEncoder {
     check(opened, codec.encoder);
   }
 
-  // From red, green, blue to the film's colours (ITU-R BT.709, 16 to 235).
+  // Converts red, green, blue to the film's colours (ITU-R BT.709, 16 to 235).
   void openScaler() {
     scaler_.reset(made(sws_getContext(codec_->width, codec_->height, AV_PIX_FMT_RGB24,
                                       codec_->width, codec_->height, AV_PIX_FMT_YUV420P,
@@ -189,7 +190,7 @@ class LibavEncoder : public FilmEncoder {
     check(av_frame_get_buffer(frame_.get(), 0), "frame");
   }
 
-  // Gives a picture to the encoder (null: that was the last) and writes what it has ready.
+  // Sends a picture to the encoder (null: end of the film) and writes the packets that are ready.
   void encode(const AVFrame* frame) {
     check(avcodec_send_frame(codec_.get(), frame), "encoder");
     for (;;) {
@@ -204,7 +205,7 @@ class LibavEncoder : public FilmEncoder {
   }
 
   int width_, height_;
-  size_t row_; // bytes
+  size_t row_; // bytes per row
   int64_t pictures_ = 0;
   Memory memory_;
   Owned<AVIOContext> io_;
@@ -213,8 +214,8 @@ class LibavEncoder : public FilmEncoder {
   Owned<SwsContext> scaler_;
   Owned<AVPacket> packet_;
   Owned<AVFrame> frame_;
-  std::vector<uint8_t> padded_; // a picture of even width and height
-  AVStream* stream_ = nullptr;  // the container's
+  std::vector<uint8_t> padded_; // the picture with even width and height
+  AVStream* stream_ = nullptr;  // owned by format_
 };
 
 } // namespace

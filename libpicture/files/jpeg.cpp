@@ -1,4 +1,5 @@
-// jpeg.cpp: JPEG through libjpeg, quality 95, colours at full resolution, into memory. [any thread]
+// jpeg.cpp: Encodes JPEG with libjpeg in memory: quality 95, colours at full resolution. [any
+// thread]
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +27,7 @@ void fail(j_common_ptr info) {
 
 void silent(j_common_ptr, int) {}
 
-// False on an error, with errors.message set. Holds only C values across libjpeg's longjmp.
+// Returns false on an error, with errors.message set. Holds only C values across libjpeg's longjmp.
 bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, unsigned char** out,
            unsigned long* size) {
   jpeg_compress_struct info;
@@ -45,8 +46,8 @@ bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, unsigned
   info.in_color_space = JCS_RGB;
   jpeg_set_defaults(&info);
   jpeg_set_quality(&info, 95, TRUE);
-  info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor =
-      1; // thin coloured lines survive
+  // no chroma subsampling: thin coloured lines survive
+  info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&info, TRUE);
   while (info.next_scanline < info.image_height) {
     JSAMPROW row = bytes + size_t(info.next_scanline) * size_t(width) * 3;

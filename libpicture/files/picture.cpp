@@ -1,5 +1,5 @@
-// picture.cpp: the table of channels, display colours, and the two formats that need no library
-// (PPM, PFM).
+// picture.cpp: Defines the table of channels, converts to display colours, and encodes the two
+// formats that need no library (PPM, PFM).
 #include "libpicture/files/picture.h"
 
 #include <algorithm>
@@ -40,15 +40,15 @@ constexpr Channel table[] = {
     {"trust", RT_TRUST, 1, {"trust"}, "1 where that interval can be trusted, else 0"},
 };
 
-// The curve of IEC 61966-2-1, from linear to display values.
+// Encodes a linear value with the curve of IEC 61966-2-1 (sRGB).
 float srgb(float v) {
   return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }
 
 uint8_t rounded(float v) { return uint8_t(v * 255 + 0.5f); }
 
-// The curve as bytes: pictures are looked at thirty times a second. Which byte a number becomes is
-// looked up near it and found by comparing, so that it is the one that the formula gives.
+// Converts linear values to sRGB bytes; pictures are displayed thirty times a second. A table gives
+// a nearby byte, and comparisons then find exactly the byte of the formula.
 class CurveBytes {
  public:
   CurveBytes() {
@@ -56,7 +56,7 @@ class CurveBytes {
     least_[256] = std::numeric_limits<float>::infinity();
     for (uint32_t i = 0; i < places; i++) near_[i] = rounded(srgb(float(i) / places));
   }
-  // 0 < v < 1
+  // Requires 0 < v < 1.
   uint8_t of(float v) const {
     uint32_t byte = near_[uint32_t(v * places)];
     while (v >= least_[byte + 1]) byte++;
@@ -64,7 +64,7 @@ class CurveBytes {
   }
 
  private:
-  // The smallest number that becomes this byte, among floats in the order of their bits.
+  // Returns the smallest float that becomes this byte, by bisection over the bit patterns.
   static float leastOf(uint8_t byte) {
     uint32_t below = 0, from = std::bit_cast<uint32_t>(1.0f);
     while (from - below > 1) {
@@ -80,7 +80,7 @@ class CurveBytes {
 
 uint8_t displayByte(float v, bool linear) {
   static const CurveBytes curve;
-  if (!(v > 0)) return 0; // also NaN
+  if (!(v > 0)) return 0; // also true for NaN
   if (v >= 1) return 255;
   return linear ? curve.of(v) : rounded(v);
 }
@@ -99,7 +99,8 @@ std::string encodePpm(const Picture& picture) {
   return out;
 }
 
-// Portable float map: rows from the bottom up; the sign of the third number says little-endian.
+// Encodes a portable float map: rows from the bottom up; the negative third number means
+// little-endian.
 std::string encodePfm(const Picture& picture) {
   static_assert(std::endian::native == std::endian::little);
   std::string out =

@@ -1,4 +1,5 @@
-// png.cpp: PNG through libpng, 8 bit red, green, blue, perhaps alpha, into memory. [any thread]
+// png.cpp: Encodes PNG with libpng in memory: 8-bit red, green, blue and optionally alpha. [any
+// thread]
 #include <csetjmp>
 #include <stdexcept>
 
@@ -21,7 +22,7 @@ void append(png_structp png, png_bytep bytes, size_t size) {
 void nothing(png_structp) {}
 void silent(png_structp, png_const_charp) {}
 
-// False on an error. Holds only C values across libpng's longjmp.
+// Returns false on an error. Holds only C values across libpng's longjmp.
 bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, int width, int height,
            bool alpha) {
   if (setjmp(png_jmpbuf(png))) return false;

@@ -1,5 +1,4 @@
-// radiance.h: pictures of radiance, for light from all around: files that the user names on the
-// command line. [any thread]
+// radiance.h: Reads environment maps that the user names on the command line. [any thread]
 #pragma once
 
 #include <string>
@@ -8,8 +7,8 @@
 
 namespace picture {
 
-// Reads what worlds may name too, and every OpenEXR file that OpenEXR's library can read: the file
-// is the user's own. Throws std::runtime_error.
+// Reads the formats that worlds may name, and every OpenEXR file that OpenEXR's library can read;
+// the file is the user's own, so it is trusted. Throws std::runtime_error.
 xvrml::RadianceImage readRadiance(const std::string& path);
 
 } // namespace picture

@@ -1,5 +1,5 @@
-// budget.cpp: Budgets are kept beside the worlds: class World is public, and its
-// layout stays as programs know it.
+// budget.cpp: keeps the budgets in a registry outside of World, because World is a public class
+// whose layout must not change.
 #include "base/budget.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint64_t unlimited = ~uint64_t(0);
 
-// A file of one number, "max" for none.
+// Reads a number from a file that contains nothing else; "max" gives `unlimited`.
 uint64_t readNumber(const char* path) {
   std::FILE* file = std::fopen(path, "re");
   if (!file) return unlimited;
@@ -32,7 +32,7 @@ struct Registry {
   std::unordered_map<const World*, BudgetPtr> budgets;
 };
 
-// Never destroyed: worlds may end after static objects do.
+// Never destroyed: worlds may outlive static objects.
 Registry& registry() {
   static Registry& all = *new Registry;
   return all;

@@ -1,6 +1,6 @@
-// budget.h: the memory that one world may take: everything made from its files draws from one
-// budget (limit worldBytes). What is drawn is an estimate by constants that were measured, the same
-// on every machine, so that a world near its limit loses the same nodes each time. [any thread]
+// budget.h: the memory budget of a world (limit worldBytes). Everything made from the world's files
+// draws from it. The amounts are estimates from measured constants and the same on every machine,
+// so that a world near its limit always loses the same nodes. [any thread]
 #pragma once
 
 #include <atomic>
@@ -22,13 +22,13 @@ class Budget {
   Budget(const Budget&) = delete;
   Budget& operator=(const Budget&) = delete;
 
-  // Takes bytes; false if there are not enough left, and then nothing is taken.
+  // Reserves bytes. Returns false, and reserves nothing, if not enough are left.
   bool take(uint64_t bytes);
   void give(uint64_t bytes) { used_.fetch_sub(bytes, std::memory_order_relaxed); }
   uint64_t limit() const { return limit_; }
   uint64_t used() const { return used_.load(std::memory_order_relaxed); }
   uint64_t left() const;
-  // "limit worldBytes=4294967296", for messages.
+  // Returns "limit worldBytes=4294967296", for messages.
   std::string name() const;
 
  private:
@@ -38,7 +38,7 @@ class Budget {
 
 using BudgetPtr = std::shared_ptr<Budget>;
 
-// Memory that is taken from a budget as long as this object lives. Starts with none.
+// A reservation of a budget's memory, released when this object is destroyed. Starts with no bytes.
 class Share {
  public:
   Share() = default;
@@ -52,7 +52,7 @@ class Share {
     return *this;
   }
   ~Share() { clear(); }
-  // Takes more bytes; false if there are not enough. Without a budget there are always enough.
+  // Reserves more bytes. Returns false if not enough are left; without a budget it always succeeds.
   bool take(uint64_t bytes) {
     if (budget_ && !budget_->take(bytes)) return false;
     bytes_ += bytes;
@@ -63,7 +63,7 @@ class Share {
     bytes_ -= bytes;
   }
   void clear() { give(bytes_); }
-  // Makes bytes its own that somebody else has taken from the budget.
+  // Takes over the release of bytes that other code has reserved from the budget.
   void adopt(BudgetPtr budget, uint64_t bytes) {
     clear();
     budget_ = std::move(budget);
@@ -77,17 +77,17 @@ class Share {
   uint64_t bytes_ = 0;
 };
 
-// Returns an eighth of the memory that this process may use: of the machine, of its control group
-// (cgroup v2 or v1), or of its address space (ulimit -v), whichever is least; 256 MiB at least.
-// Read once.
+// Returns an eighth of the memory that this process may use, at least 256 MiB. That memory is the
+// smallest of the machine's, the control group's (cgroup v2 or v1) and the address space (ulimit
+// -v). It is read once.
 uint64_t defaultWorldBytes();
 
-// Returns the budget of a world, made when it is first asked for by the limit in world.options. It
-// ends with the world.
+// Returns the budget of a world. The first call makes it, with the limit in world.options. It lives
+// as long as the world.
 BudgetPtr budgetOf(const World& world);
-// Gives a world that is about to be loaded the budget of another one, of which it becomes part.
+// Makes a world that is about to be loaded use the budget of the world that it becomes part of.
 void setBudget(const World& world, BudgetPtr budget);
-// For the end of a world.
+// Removes a world's budget. Called by the world's destructor.
 void forgetBudget(const World& world) noexcept;
 
 } // namespace xvrml

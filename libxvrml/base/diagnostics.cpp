@@ -1,5 +1,5 @@
-// diagnostics.cpp: messages with a place. A Diagnostics object belongs to the thread that loads its
-// world.
+// diagnostics.cpp: collects and prints messages. A Diagnostics object belongs to the thread that
+// loads its world.
 #include "xvrml/diagnostics.h"
 
 #include <string_view>
@@ -17,8 +17,8 @@ std::string_view severityName(Severity severity) {
   return "error";
 }
 
-// Blanks up to the character `column` (from 1): tabs stay tabs and UTF-8 continuation bytes take no
-// room, so that the caret stands below its character on a terminal.
+// Returns blanks up to the character `column` (from 1). Tabs stay tabs, and UTF-8 continuation
+// bytes take no room, so that the caret stands below its character on a terminal.
 std::string caretIndent(std::string_view line, size_t column) {
   std::string indent;
   for (const char c : line) {
@@ -29,8 +29,8 @@ std::string caretIndent(std::string_view line, size_t column) {
   return indent;
 }
 
-// What a file says goes to a terminal: control characters (C0 but the tab, DEL, C1 in UTF-8) become
-// one question mark each.
+// Makes text from a file safe for a terminal: each control character (C0 except the tab, DEL, C1 in
+// UTF-8) becomes a question mark, and a line feed a blank.
 std::string printable(std::string_view text) {
   std::string result;
   result.reserve(text.size());
@@ -71,7 +71,7 @@ std::string Diagnostic::text() const {
   return result;
 }
 
-// Errors have a share of the list that other messages cannot use up.
+// Errors have their own share of the list, which other messages cannot use up.
 void Diagnostics::add(Diagnostic diagnostic) {
   const bool kept = keeps(diagnostic.severity);
   if (diagnostic.severity == Severity::error) ++errors_;

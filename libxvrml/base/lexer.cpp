@@ -1,4 +1,4 @@
-// lexer.cpp: tokens of VRML97 text and the places of messages. See lexer.h.
+// lexer.cpp: tokens of VRML97 text, and the positions of messages.
 #include "base/lexer.h"
 
 #include <algorithm>
@@ -10,7 +10,8 @@
 namespace xvrml {
 namespace {
 
-// Annex A.3: neither digits nor + and - start an identifier; these bytes stand in none.
+// The characters of identifiers (Annex A.3): all but those below. Digits, + and - cannot start an
+// identifier.
 constexpr std::array<bool, 256> makeIdentifierRest() {
   std::array<bool, 256> table{};
   for (int c = 0x21; c < 256; ++c) table[c] = true;
@@ -31,11 +32,12 @@ uint32_t countCharacters(const char* from, const char* to) {
       std::count_if(from, to, [](char c) { return !isContinuationByte(c); }));
 }
 
-// Ends of lines (LF, CR or CR LF) in [from, to), by blocks small enough for byte sums so that
-// compilers vectorise it.
+// Returns the number of line ends (LF, CR or CR LF) in [from, to). Blocks are small enough for byte
+// sums, so that compilers vectorise the loop.
 uint32_t countLines(const char* from, const char* to, const char* end) {
   if (from < to && to == end)
-    return countLines(from, to - 1, end) + (to[-1] == '\n' || to[-1] == '\r'); // no byte after it
+    // to[0] cannot be read.
+    return countLines(from, to - 1, end) + (to[-1] == '\n' || to[-1] == '\r');
   uint32_t lines = 0;
   while (from < to) {
     const ptrdiff_t block = std::min<ptrdiff_t>(to - from, 240);
@@ -87,8 +89,8 @@ const char* Lexer::skipComments(const char* p) {
   return p;
 }
 
-// float ::= ([+/-]?((([0-9]+(\.)?)|([0-9]*\.[0-9]+))([eE][+\-]?[0-9]+)?)).   int32 ::=
-// ([+\-]?(([0-9]+)|(0[xX][0-9a-fA-F]+)))
+// float ::= ([+/-]?((([0-9]+(\.)?)|([0-9]*\.[0-9]+))([eE][+\-]?[0-9]+)?))
+// int32 ::= ([+\-]?(([0-9]+)|(0[xX][0-9a-fA-F]+)))
 const char* Lexer::lexNumber(const char* p, bool& valid) const {
   if (*p == '+' || *p == '-') ++p;
   const char* digits = p;
@@ -187,7 +189,7 @@ Token Lexer::nextName() {
   case TokenKind::invalid: break;
   default: return next();
   }
-  if (!token.text.empty() && token.text[0] == '"') return next(); // a string that does not end
+  if (!token.text.empty() && token.text[0] == '"') return next(); // an unterminated string
   const char* p = token.at();
   while (p < end_ && !isVrmlSeparator(*p)) ++p;
   seek(p);
@@ -211,12 +213,12 @@ SourcePosition Lexer::place(const char* at) {
 }
 
 void Lexer::report(Severity severity, const char* at, std::string message) {
-  if (!diagnostics_.keeps(severity)) { // it will only be counted: spare the search for its line
+  if (!diagnostics_.keeps(severity)) { // it is only counted, so its line is not needed
     diagnostics_.add({severity, {}, 0, 0, {}, {}, 0});
     return;
   }
   const SourcePosition where = place(at);
-  // A very long line is shown as a window around the place, cut between characters.
+  // A very long line is shown as a window around the position, cut between characters.
   constexpr ptrdiff_t before = 100, after = 80;
   const char* from = startOfLine(at, at - begin_ > before ? at - before : begin_, end_);
   while (from < at && isContinuationByte(*from)) ++from;

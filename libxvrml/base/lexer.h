@@ -1,6 +1,6 @@
-// lexer.h: the tokens of VRML97 text (ISO/IEC 14772-1 Annex A) as views over the bytes; nothing is
-// copied or stored. Used by the value parser, the file parser and nodegen. One lexer per text, on
-// one thread. The bytes must outlive it.
+// lexer.h: the tokens of VRML97 text (ISO/IEC 14772-1 Annex A). Tokens are views of the bytes;
+// nothing is copied or stored, so the bytes must outlive the lexer. Used by the value parser, the
+// file parser and nodegen. [one thread per lexer]
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ enum class TokenKind : uint8_t {
 
 struct Token {
   TokenKind kind = TokenKind::end;
-  std::string_view text; // strings with their quotes; empty but placed at the end of the text
+  // A string includes its quotes; the end token is empty, placed at the end of the text.
+  std::string_view text;
   const char* at() const { return text.data(); }
   bool is(TokenKind k) const { return kind == k; }
   bool is(std::string_view keyword) const {
@@ -48,11 +49,11 @@ constexpr std::array<uint8_t, 256> makeClasses() {
 inline constexpr auto classes = makeClasses();
 } // namespace lexer_detail
 
-// White space and commas.
+// Returns whether c is white space or a comma.
 constexpr bool isVrmlSpace(char c) {
   return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::space;
 }
-// Bytes at which a number or a word ends.
+// Returns whether a number or a word ends at c.
 constexpr bool isVrmlSeparator(char c) {
   return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::separator;
 }
@@ -78,32 +79,31 @@ class Lexer {
     peeked_ = false;
     return true;
   }
-  // The next token read as a name where the grammar wants one: takes what real files write
-  // (1stRoom, a.b, it's), which the grammar forbids; such a token is of kind invalid. Structure ({
-  // } [ ] " and the end) is returned as it is.
+  // Reads the next token as a name where the grammar expects one. It accepts what real files
+  // contain (1stRoom, a.b, it's) and the grammar forbids; such a token has the kind `invalid`.
+  // Structure ({ } [ ] " and the end) is returned unchanged.
   Token nextName();
-  // The last comment skipped before the next token, without its #; empty if there was none before
-  // it.
+  // Returns the last comment skipped before the next token, without its #; empty if there was none.
   std::string_view comment() {
     peek();
     return comment_;
   }
 
-  // Raw access for loops over big arrays: the first byte not yet consumed.
+  // Raw access for loops over big arrays. Returns the first byte not yet consumed.
   const char* cursor() const { return peeked_ ? token_.at() : position_; }
   const char* end() const { return end_; }
   void seek(const char* position) {
     position_ = position;
     peeked_ = false;
   }
-  // Skips white space, commas and comments from p.
+  // Returns the first position from p on that is not white space, a comma or a comment.
   const char* skipSpace(const char* p) {
     while (p < end_ && isVrmlSpace(*p)) ++p;
     return p < end_ && *p == '#' ? skipComments(p) : p;
   }
 
-  // Line and column (in characters, from 1) of a place in the text. Costs the distance from the
-  // place asked for before.
+  // Returns the line and column (in characters, from 1) of a position in the text. The cost is
+  // proportional to the distance from the position of the last call.
   SourcePosition place(const char* at);
   void error(const char* at, std::string message) {
     report(Severity::error, at, std::move(message));
@@ -128,11 +128,13 @@ class Lexer {
   std::string_view comment_;
   std::shared_ptr<const std::string> file_;
   Diagnostics& diagnostics_;
-  const char* mark_; // where lines were last counted to, and what they were there
+  // Position of the last call of place(), with its line and column.
+  const char* mark_;
   uint32_t line_ = 1, column_ = 1;
 };
 
-// What a message says was found: 'word', "string…", end of file.
+// Returns the description of a token for "found ..." in a message: 'word', the string "...", the
+// end of the file.
 std::string describe(const Token& token);
 
 } // namespace xvrml

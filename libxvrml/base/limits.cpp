@@ -1,5 +1,5 @@
-// limits.cpp: the limits by name, for messages and for `vv --limit NAME=VALUE`. Pure functions, any
-// thread.
+// limits.cpp: the table of limits by name, for messages and for `vv --limit NAME=VALUE`. [any
+// thread]
 #include "xvrml/limits.h"
 
 #include <array>
@@ -32,7 +32,7 @@ static_assert(sizeof(Limits) == table.size() * sizeof(uint64_t), "every limit ha
 std::span<const LimitInfo> limitTable() { return table; }
 
 bool setLimit(Limits& limits, std::string_view name, uint64_t value) {
-  if (name == "copyBytes") name = "worldBytes"; // as scripts of the first version spell it
+  if (name == "copyBytes") name = "worldBytes"; // the name in scripts written for the first version
   for (const LimitInfo& info : table) {
     if (info.name != name) continue;
     limits.*info.value = value;

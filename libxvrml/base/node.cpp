@@ -1,6 +1,5 @@
-// node.cpp: generic access to nodes through their tables. Everybody who does not know a node's
-// struct reads and writes its fields here: parser, writer, router, prototypes, bindings. A node is
-// used by one thread at a time.
+// node.cpp: generic access to nodes through their tables, for code that does not know a node's
+// struct: parser, writer, event engine, prototypes, bindings. [one thread at a time per node]
 #include "xvrml/node.h"
 
 #include <algorithm>
@@ -13,7 +12,7 @@
 namespace xvrml {
 namespace {
 
-// One function per field type, found by FieldType's number.
+// One function per field type, indexed by FieldType.
 template <size_t I> using ValueType = std::variant_alternative_t<I, Value>;
 template <size_t I> Value load(const void* storage) {
   return Value(std::in_place_index<I>, *static_cast<const ValueType<I>*>(storage));
@@ -47,7 +46,7 @@ const FieldInfo* findWith(const NodeType& type, std::string_view name, Access ac
   return field && field->access == access ? field : nullptr;
 }
 
-// Looks numbers up in a range; float fields compare with the range's ends as floats, so
+// Checks numbers against a range. Float fields compare with the ends of the range as floats, so
 // that 1.5707964 is within pi/2.
 class RangeCheck {
  public:
@@ -76,7 +75,7 @@ class RangeCheck {
     const bool below = range_.maximumOpen ? number < maximum : number <= maximum;
     return (above && below) || number == T(range_.also);
   }
-  // The exceptional number counts only where all have it: bboxSize -1 -1 -1.
+  // The exceptional number is allowed only if all numbers have it: bboxSize -1 -1 -1.
   bool all(std::initializer_list<float> numbers) const {
     const auto exceptional = [this](float number) { return number == float(range_.also); };
     if (std::any_of(numbers.begin(), numbers.end(), exceptional))
@@ -106,9 +105,9 @@ const FieldInfo* NodeType::find(std::string_view fieldName) const {
   return nullptr;
 }
 
-// Clause 4.7: an exposedField x takes events as x and as set_x. Clause 4.10.2: in a route the set_
-// of an eventIn may be left out. The exact name comes first, so a node may have both `x` and
-// `set_x`.
+// An exposedField x receives events as x and as set_x (clause 4.7). In a route, the set_ of an
+// eventIn may be left out (clause 4.10.2). The exact name has priority, so a node may have both `x`
+// and `set_x`.
 const FieldInfo* NodeType::findEventIn(std::string_view eventName) const {
   if (const FieldInfo* field = findWith(*this, eventName, Access::eventIn)) return field;
   if (const FieldInfo* field = findWith(*this, eventName, Access::exposedField)) return field;
@@ -136,21 +135,21 @@ bool Node::set(const FieldInfo& field, Value value) {
   if (isMultiple(field.type)) leaveToViews(*this, field);
   storeByType(size_t(field.type), storage(field), std::move(value), allTypes);
   if (hasNormalizedAxes(field)) normalizeAxes(field.type, storage(field));
-  if (!live && type_->expand) // in a running world the event engine renews it
+  if (!live && type_->expand) // in a running world the event engine renews the expansion
     if (NodeRef* standsFor = expansion()) *standsFor = {};
   return true;
 }
 
-// A node's destructor releases its children. Those whose last reference goes meanwhile wait in a
-// list until it returns: a chain of a million nodes would otherwise need a million stack frames.
+// A node's destructor releases its children. Children whose last reference goes meanwhile wait in a
+// list until it returns; a chain of a million nodes would otherwise need a million stack frames.
 void Node::destroy(Node* node) noexcept {
-  if (node->live) node->live->forget(node->live); // its fields are still there
+  if (node->live) node->live->forget(node->live); // its fields still exist
   thread_local std::vector<Node*>* waiting = nullptr;
   if (waiting) {
     try {
       waiting->push_back(node);
     } catch (...) {
-      delete node; // no memory for the list: the stack has to do
+      delete node; // no memory for the list: fall back to recursion
     }
     return;
   }

@@ -1,5 +1,5 @@
-// number.h: VRML97 numbers from text (Annex A.4), correctly rounded: a branch-poor path for the
-// short plain decimals that fill big arrays, fast_float for the rest. Used by the value parser's
+// number.h: parses VRML97 numbers (Annex A.4), correctly rounded. A path with few branches handles
+// the short decimals that fill big arrays; fast_float handles the rest. Used in the value parser's
 // loops. [any thread]
 #pragma once
 
@@ -21,9 +21,9 @@ inline constexpr double powersOfTen[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7,
 inline constexpr uint32_t integerPowersOfTen[] = {1,      10,      100,      1000,     10000,
                                                   100000, 1000000, 10000000, 100000000};
 
-// Up to eight digits at p (eight bytes are read): how many there are, and their value. Eight digits
-// at a time as in Lemire, "Number parsing at a gigabyte per second" (2021), with the run's length
-// found by a bit scan instead of a loop.
+// The value and the number of up to eight digits at p. Eight bytes are read. The digits are
+// converted together as in Lemire, "Number parsing at a gigabyte per second" (2021); a bit scan
+// instead of a loop finds their number.
 struct Digits {
   uint32_t value;
   int count;
@@ -33,13 +33,12 @@ inline Digits readDigits(const char* p) {
   uint64_t bytes = 0;
   std::memcpy(&bytes, p, 8);
   bytes ^= 0x3030303030303030; // digits become 0..9
-  // A byte above 9 gets its top bit set: either it has a high nibble, or adding 0x76 to it carries
-  // into bit 7.
+  // A byte above 9 gets its top bit set: it has a high nibble, or adding 0x76 carries into bit 7.
   const uint64_t other = ((bytes & 0x7f7f7f7f7f7f7f7f) + 0x7676767676767676) | bytes;
   const uint64_t marks = other & 0x8080808080808080;
   const int count = marks ? std::countr_zero(marks) >> 3 : 8;
   if (count == 0) return {0, 0};
-  bytes <<= 64 - 8 * count; // leading zeros
+  bytes <<= 64 - 8 * count; // the missing digits become leading zeros
   bytes = bytes * 10 + (bytes >> 8);
   constexpr uint64_t mask = 0x000000ff000000ff, mul1 = 0x000f424000000064,
                      mul2 = 0x0000271000000001;
@@ -54,7 +53,7 @@ template <class T> NumberError readSlow(const char*& p, const char* end, T& out)
   if (start < end && *start == '+') ++start;
   const char* first = start < end && *start == '-' && start == p ? start + 1 : start;
   if (first >= end || !(isDigit(*first) || *first == '.'))
-    return NumberError::notANumber; // refuses nan, inf, +-1
+    return NumberError::notANumber; // rejects nan, inf, +-1
   const auto result = fast_float::from_chars(start, end, out);
   if (result.ptr == start) return NumberError::notANumber;
   p = result.ptr;
@@ -63,8 +62,8 @@ template <class T> NumberError readSlow(const char*& p, const char* end, T& out)
 
 } // namespace number_detail
 
-// Reads the longest number at p and moves p behind it. On an error p is untouched or behind the
-// number out of range. Underflow gives the nearest representable number.
+// Reads the longest number at p and moves p behind it. On an error, p is unchanged or, for
+// outOfRange, behind the number. Underflow gives the nearest representable number.
 inline NumberError readNumber(const char*& p, const char* end, float& out) {
   using namespace number_detail;
   if (end - p > 24) {
@@ -81,9 +80,9 @@ inline NumberError readNumber(const char*& p, const char* end, float& out) {
       mantissa = mantissa * integerPowersOfTen[decimals] + fraction.value;
       q += decimals;
     }
-    // At most 15 digits and no more to come: mantissa and power are exact doubles, so their
-    // quotient is correctly rounded (Clinger 1990). Rounding it again to float is right unless it
-    // stands exactly half way between two floats.
+    // With at most 15 digits and nothing more to come, mantissa and power are exact doubles, so
+    // that their quotient is correctly rounded (Clinger 1990). Rounding it again to float is
+    // correct unless it lies exactly half way between two floats.
     const int digits = whole.count + decimals;
     if (digits > 0 && digits <= 15 && !isDigit(*q) && *q != 'e' && *q != 'E' && *q != '.') {
       const double value = static_cast<double>(mantissa) / powersOfTen[decimals];
@@ -101,7 +100,7 @@ inline NumberError readNumber(const char*& p, const char* end, double& out) {
   return number_detail::readSlow(p, end, out);
 }
 
-// Decimal or 0x hexadecimal; eight hexadecimal digits are the bits (0xFFFFFFFF is -1).
+// Reads decimal or 0x hexadecimal digits. Eight hexadecimal digits are the bits (0xFFFFFFFF is -1).
 inline NumberError readNumber(const char*& p, const char* end, int32_t& out) {
   using namespace number_detail;
   const char* q = p;
@@ -117,7 +116,7 @@ inline NumberError readNumber(const char*& p, const char* end, int32_t& out) {
     }
   }
   uint64_t value = 0;
-  constexpr uint64_t limit = 1ull << 33; // beyond every range, far from overflow
+  constexpr uint64_t limit = 1ull << 33; // larger than every range, far from overflow
   const bool hexadecimal = end - q > 2 && q[0] == '0' && (q[1] | 0x20) == 'x';
   const char* start = hexadecimal ? q += 2 : q;
   for (; q < end; ++q) {

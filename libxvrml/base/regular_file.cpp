@@ -1,5 +1,5 @@
-// regular_file.cpp: O_NONBLOCK lets the open of a pipe return at once; it means
-// nothing for regular files.
+// regular_file.cpp: opens with O_NONBLOCK, so that the open of a pipe returns at once. The flag has
+// no effect on regular files.
 #include "base/regular_file.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// types.cpp: names and neutral values of the 20 field types (ISO/IEC 14772-1 clause 5). Pure
-// functions, any thread; used by the parser, the writer, nodegen and the bindings.
+// types.cpp: names and default values of the 20 field types (ISO/IEC 14772-1 clause 5). Used by the
+// parser, the writer, nodegen and the bindings. [any thread]
 #include "xvrml/types.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-// value_parser.cpp: field values from text. See value_parser.h.
+// value_parser.cpp: the implementation of ValueParser, one function per kind of value.
 #include "base/value_parser.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace xvrml {
 namespace {
 
-// The numbers of a tuple in the order they are written, and the field type messages name.
+// The number of components of a tuple, and the field type that messages name.
 template <class T> struct Tuple;
 template <> struct Tuple<float> {
   static constexpr int size = 1;
@@ -71,7 +71,8 @@ bool ValueParser::failFound(const Token& found, std::string_view expected) {
   return fail(found.at(), fmt::format("expected {}, found {}", expected, describe(found)));
 }
 
-// Takes memory for a value from the budget. False, after a message, if there is not enough left.
+// Reserves memory for a value from the budget. Returns false, after one message, if not enough is
+// left.
 bool ValueParser::take(const char* at, uint64_t bytes) {
   if (!budget_ || budget_->take(bytes)) return true;
   if (std::exchange(refused_, true)) return false;
@@ -79,7 +80,7 @@ bool ValueParser::take(const char* at, uint64_t bytes) {
                               budget_->name()));
 }
 
-// One number at p, which is not white space. Moves p behind it.
+// Reads one number at p, which must not be white space, and moves p behind it.
 template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, FieldType type) {
   const char* start = p;
   const NumberError error = readNumber(p, lexer_.end(), out);
@@ -92,7 +93,7 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
     return fail(start, fmt::format("number {} is out of range for {}", describe(found), name));
   }
   if constexpr (std::is_integral_v<Scalar>) {
-    // Some writers put 1.0 where an integer belongs.
+    // Some exporters write 1.0 for an integer.
     float real = 0;
     p = start;
     if (readNumber(p, lexer_.end(), real) == NumberError::none && endsNumber(p, lexer_.end()) &&
@@ -112,7 +113,7 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
                                       name));
 }
 
-// SFFloat, SFInt32, SFTime, SFVec2f, SFVec3f, SFColor, SFRotation: one to four numbers
+// SFFloat, SFInt32, SFTime, SFVec2f, SFVec3f, SFColor, SFRotation: one to four numbers.
 template <class T> bool ValueParser::single(T& out) {
   const char* p = lexer_.cursor();
   auto* components = numbers(out);
@@ -154,8 +155,8 @@ bool ValueParser::single(std::string& out) {
   return true;
 }
 
-// sfimageValue ::= int32 int32 int32 ... (clause 5.5: width, height, components, then one number a
-// pixel)
+// sfimageValue ::= int32 int32 int32 ...: width, height, components, then one number per pixel
+// (clause 5.5).
 bool ValueParser::single(Image& out) {
   const char* start = lexer_.skipSpace(lexer_.cursor());
   int32_t header[3];
@@ -178,14 +179,14 @@ bool ValueParser::single(Image& out) {
   }
   if (!take(start, pixels * uint64_t(components))) return false;
   out = {width, height, components, {}};
-  // A pixel takes two bytes of text at least: a header alone reserves nothing.
+  // A pixel takes at least two bytes of text, so a header alone reserves nothing.
   out.pixels.reserve(std::min<uint64_t>(pixels, (lexer_.end() - p) / 2 + 1) * uint64_t(components));
   for (uint64_t i = 0; i < pixels; ++i) {
     p = lexer_.skipSpace(p);
     const char* at = p;
     int32_t number = 0;
-    if (readNumber(p, lexer_.end(), number) == NumberError::outOfRange &&
-        *at != '-') { // a 32-bit pixel in decimal
+    // A 32-bit pixel in decimal does not fit into int32.
+    if (readNumber(p, lexer_.end(), number) == NumberError::outOfRange && *at != '-') {
       double real = 0;
       p = at;
       if (readNumber(p, lexer_.end(), real) == NumberError::none && real < 4294967296.0)
@@ -212,8 +213,8 @@ bool ValueParser::single(NodeRef& out) {
   return true;
 }
 
-// Capacity from the density of the first elements, so that a big array is not copied while it
-// grows.
+// Reserves the vector's capacity. It is extrapolated from the bytes per element so far, so that a
+// big array is not copied while it grows.
 template <class T>
 void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to) {
   const char* close = static_cast<const char*>(std::memchr(to, ']', lexer_.end() - to));
@@ -230,7 +231,7 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   out.clear();
   if (!lexer_.accept(TokenKind::bracketOpen)) return single(out.emplace_back());
   constexpr size_t sample = 1024;
-  uint64_t taken = 0; // values for which memory has been taken
+  uint64_t taken = 0; // number of values for which memory has been reserved
   const char* const first = lexer_.cursor();
   const char* p = lexer_.skipSpace(first);
   for (; p < lexer_.end() && *p != ']' && *p != '}'; p = lexer_.skipSpace(p)) {
@@ -261,7 +262,7 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
                                        limits_.arrayElements));
       }
     }
-    if (out.size() == taken) { // as far as the vector grows now
+    if (out.size() == taken) { // double the reservation, as the vector doubles its capacity
       const uint64_t more = std::max<uint64_t>(taken, 4);
       if (!take(start, more * sizeof(T))) {
         if (budget_) budget_->give(taken * sizeof(T));
@@ -276,7 +277,7 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   if (budget_) budget_->give((taken - out.size()) * sizeof(T));
   if (lexer_.accept(TokenKind::bracketClose)) return true;
   if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
-  lexer_.error(p, "']' is missing before '}'"); // the brace ends the node, and the list with it
+  lexer_.error(p, "']' is missing before '}'"); // the brace ends the node and its list
   return true;
 }
 

@@ -1,6 +1,6 @@
-// value_parser.h: field values of ISO/IEC 14772-1 clause 5 from text into typed storage. Used by
-// the file parser (big arrays are read straight into a node's vectors) and by nodegen (defaults).
-// On the lexer's thread.
+// value_parser.h: parses field values (ISO/IEC 14772-1 clause 5) from text into typed storage. Used
+// by the file parser, which reads big arrays straight into a node's vectors, and by nodegen for
+// defaults. [the lexer's thread]
 #pragma once
 
 #include "base/budget.h"
@@ -11,13 +11,13 @@ namespace xvrml {
 
 class ValueParser {
  public:
-  // budget: what the values draw their memory from; null: nothing is counted.
+  // budget: the memory budget of the values; null: memory is not counted.
   ValueParser(Lexer& lexer, const Limits& limits, Budget* budget = nullptr)
       : lexer_(lexer), limits_(limits), budget_(budget) {}
 
-  // Reads a value into *storage, which is of the C++ type of `type`. SFNode takes NULL and MFNode [
-  // ] only: nodes are the file parser's. False after an error was reported; the lexer then stands
-  // at or behind what was wrong, the storage is unspecified.
+  // Reads a value into *storage, whose C++ type must be that of `type`. SFNode accepts only NULL
+  // and MFNode only [ ]; the file parser reads nodes. Returns false after it has reported an error.
+  // The lexer then stands at or behind the error, and the storage is unspecified.
   bool parse(FieldType type, void* storage);
   bool parse(FieldType type, Value& value);
 
@@ -28,7 +28,7 @@ class ValueParser {
   bool single(std::string& out);
   bool single(Image& out);
   bool single(NodeRef& out);
-  template <class T> bool single(T& out); // numbers and tuples of them
+  template <class T> bool single(T& out); // numbers and tuples of numbers
   template <class Scalar> bool scalar(const char*& p, Scalar& out, FieldType type);
   bool take(const char* at, uint64_t bytes);
   bool fail(const char* at, std::string message);
@@ -37,11 +37,11 @@ class ValueParser {
   Lexer& lexer_;
   const Limits& limits_;
   Budget* budget_;
-  bool refused_ = false; // by the budget: said once
+  bool refused_ = false; // the budget has refused memory; reported once
 };
 
-// The characters a string token stands for: \" and \\ are undone, other backslashes stay
-// (clause 5.9).
+// Returns the characters that a string token stands for. \" and \\ are unescaped; other backslashes
+// stay (clause 5.9).
 std::string unescape(std::string_view token);
 
 } // namespace xvrml

@@ -1,5 +1,5 @@
-// viewed.cpp: A table by the place of the field's storage: there is one view of
-// each value at most.
+// viewed.cpp: a table of the living views, by the address of the field's storage. There is at most
+// one view of each value.
 #include "xvrml/viewed.h"
 
 #include <atomic>
@@ -12,18 +12,18 @@ namespace {
 struct Table {
   struct Entry {
     const ViewedField* view;
-    std::weak_ptr<ViewedField> alive; // gone as soon as the view begins to end
+    std::weak_ptr<ViewedField> alive; // expires as soon as the view's destruction begins
   };
   std::mutex mutex;
   std::unordered_map<const void*, Entry> byStorage;
-  std::atomic<size_t> size{0}; // asked by every change of a list: most programs have no views
+  std::atomic<size_t> size{0}; // read at every change of a list; most programs have no views
 };
 Table& table() {
-  static Table& all = *new Table(); // views may end after everything else
+  static Table& all = *new Table(); // never destroyed: views may outlive static objects
   return all;
 }
 
-// Calls with the list if the field holds one of numbers.
+// Calls f with the list if the field's type is a list of numbers. Returns whether it is.
 template <class F> bool withNumbers(FieldType type, void* storage, const F& f) {
   switch (type) {
   case FieldType::MFColor: f(*static_cast<MFColor*>(storage)); return true;
@@ -63,7 +63,7 @@ std::shared_ptr<const ViewedField> viewField(Node& node, const FieldInfo& field)
   if (!holdsValue(field) || !withNumbers(field.type, node.storage(field), [](const auto&) {}))
     return nullptr;
   Table& all = table();
-  std::shared_ptr<ViewedField> made; // ends after the lock
+  std::shared_ptr<ViewedField> made; // destroyed after the lock is released
   const std::scoped_lock lock(all.mutex);
   auto& entry = all.byStorage[node.storage(field)];
   if (auto known = entry.alive.lock()) return known;
@@ -76,14 +76,14 @@ std::shared_ptr<const ViewedField> viewField(Node& node, const FieldInfo& field)
 void leaveToViews(Node& node, const FieldInfo& field) {
   Table& all = table();
   if (all.size.load(std::memory_order_relaxed) == 0) return;
-  std::shared_ptr<ViewedField> view; // ends after the lock
+  std::shared_ptr<ViewedField> view; // destroyed after the lock is released
   const std::scoped_lock lock(all.mutex);
   const auto found = all.byStorage.find(node.storage(field));
   if (found == all.byStorage.end()) return;
   view = found->second.alive.lock();
   all.byStorage.erase(found);
   all.size = all.byStorage.size();
-  // A vector that is moved keeps its elements where they are.
+  // Moving a vector keeps its elements at their addresses.
   if (view)
     withNumbers(field.type, node.storage(field),
                 [&](auto& list) { view->kept_ = std::move(list); });

@@ -1,5 +1,5 @@
-// audio_clip.cpp: AudioClip (clause 6.4): duration_changed and isActive; the samples for
-// xvrml/media.h.
+// audio_clip.cpp: AudioClip (clause 6.4): sends duration_changed and isActive, and provides the
+// samples for xvrml/media.h.
 #include <exception>
 #include <stdexcept>
 
@@ -31,10 +31,10 @@ struct State : Media {
   }
   void play(Events&, Node&, const TimeStep& step) override { position = step.fraction * duration; }
 
-  std::string path; // empty: nothing could be read
+  std::string path; // empty: no file could be read
   std::shared_ptr<const Clip> clip;
-  double position = 0; // seconds
-  Share share;         // of the world's budget: the samples
+  double position = 0; // in seconds
+  Share share;         // of the world's budget, for the samples
   Diagnostics* diagnostics = nullptr;
 };
 
@@ -53,11 +53,11 @@ Playing playingOf(const Node& node) {
     try {
       state->clip = std::make_shared<Clip>(readWav(state->path, [&](uint64_t bytes) {
         if (!state->share.take(bytes))
-          throw std::runtime_error(tooMuch(bytes, *state->share.budget()));
+          throw std::runtime_error(overBudgetMessage(bytes, *state->share.budget()));
       }));
     } catch (const std::exception& failure) {
       state->diagnostics->warn(node.source, "AudioClip: no sound: " + std::string(failure.what()));
-      state->path.clear(); // its events go on
+      state->path.clear(); // its events continue
       return {};
     }
   }

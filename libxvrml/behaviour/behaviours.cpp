@@ -1,4 +1,4 @@
-// behaviours.cpp: behaviours by node type index. See xvrml/behaviour.h.
+// behaviours.cpp: behaviours by node type index.
 #include <deque>
 
 #include "behaviour/builtin.h"

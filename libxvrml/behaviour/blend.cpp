@@ -1,4 +1,4 @@
-// blend.cpp: In double: the arguments are floats of any size.
+// blend.cpp: interpolation. Computed in double, because the arguments are floats of any size.
 #include "behaviour/blend.h"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ Hsv toHsv(const Color& c) {
 }
 
 Color toRgb(const Hsv& c) {
-  const auto channel = [&](double n) { // Smith 1978 in the form of one expression per channel
+  // HSV to RGB of Smith 1978, written as one expression per channel
+  const auto channel = [&](double n) {
     const double k = std::fmod(n + c.h, 6);
     return float(c.v - c.v * c.s * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
   };
@@ -46,14 +47,15 @@ Quaternion toQuaternion(const Rotation& r) {
   return {axis * std::sin(0.5 * double(r.angle)), std::cos(0.5 * double(r.angle))};
 }
 
-// Weights of the ends of an arc of the given angle, in [0,pi); near 0 those of the chord.
+// Returns the weights of the ends of an arc with the given angle in [0,pi). Near 0 they are those
+// of the chord.
 std::pair<double, double> arcWeights(double angle, double t) {
   const double sine = std::sin(angle);
   if (sine < 1e-6) return {1 - t, t};
   return {std::sin((1 - t) * angle) / sine, std::sin(t * angle) / sine};
 }
 
-// Of two unit vectors; exact also where their product is near 1 or -1 (Kahan).
+// Returns the angle of two unit vectors. It is accurate also near 0 and pi (Kahan).
 double angleBetween(const V3d& a, const V3d& b) {
   return 2 * std::atan2((a - b).length(), (a + b).length());
 }
@@ -89,7 +91,7 @@ Rotation blend(const Rotation& first, const Rotation& second, float t) {
   }
   const double length = v.length();
   const V3d axis = unit(v);
-  if (axis == V3d(0)) { // no rotation: any axis, so one of the ends'
+  if (axis == V3d(0)) { // no rotation: keep the axis of one of the ends
     const V3d kept = unit(V3d(first.x, first.y, first.z));
     return kept == V3d(0) ? Rotation{0, 0, 1, 0}
                           : Rotation{float(kept.x), float(kept.y), float(kept.z), 0};
@@ -103,7 +105,7 @@ Vec3f blendNormals(const Vec3f& first, const Vec3f& second, float t) {
   if (b == V3d(0)) b = a;
   if (a == V3d(0)) return {0, 0, 0};
   const double angle = angleBetween(a, b);
-  if (angle > M_PI - 1e-6) { // opposite: half a turn about an axis that depends on a alone
+  if (angle > M_PI - 1e-6) { // opposite: half a turn about an axis that depends on a only
     const V3d side =
         unit(std::abs(a.x) < 0.7 ? a.cross(V3d(1, 0, 0)) : a.cross(V3d(0, 1, 0))).cross(a);
     return toVec3f(a * std::cos(M_PI * t) + side * std::sin(M_PI * t));

@@ -1,5 +1,5 @@
-// builtin.h: the behaviours of the standard's nodes, one function a file; the list is in
-// builtin.cpp.
+// builtin.h: the behaviours of the standard's nodes, one function per file. builtin.cpp calls them
+// all.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@ using AddBehaviour = std::function<void(const NodeType& type, const Behaviour& b
 void addBuiltinBehaviours(const AddBehaviour& add);
 
 void addBindingBehaviours(const AddBehaviour& add); // Viewpoint, NavigationInfo, Background, Fog
-void addPointingBehaviours(
-    const AddBehaviour& add); // TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
+// TouchSensor, PlaneSensor, SphereSensor, CylinderSensor
+void addPointingBehaviours(const AddBehaviour& add);
 void addRegionBehaviours(const AddBehaviour& add);   // ProximitySensor, VisibilitySensor
-void addInlineBehaviours(const AddBehaviour& add);   // set_url loads
+void addInlineBehaviours(const AddBehaviour& add);   // set_url loads the content
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
 void addTimeSensorBehaviours(const AddBehaviour& add);

@@ -6,8 +6,8 @@
 namespace xvrml {
 namespace {
 
-// children is an exposedField: what changes it sends children_changed. What is there already is not
-// added again; what is not there cannot be removed. Both make no event.
+// Adds or removes children. children is an exposedField, so a change sends children_changed. Adding
+// a present child or removing an absent one has no effect and sends no event.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   const bool adds = in.name == "addChildren";
   if (!adds && in.name != "removeChildren") return;
@@ -27,7 +27,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
     });
   }
   if (!events.store(node, children, std::move(list))) return;
-  const Value now = node.get(children); // a node that cannot be a child has been left out
+  const Value now = node.get(children); // nodes that are no valid children have been left out
   if (now != Value(before)) events.send(node, children, now);
 }
 

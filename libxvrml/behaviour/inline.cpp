@@ -11,7 +11,7 @@
 namespace xvrml {
 namespace {
 
-// Files an Inline stands in, from the outside: none of them may be read into it again.
+// Returns the files around an Inline, outermost first. None of them may be loaded into it again.
 std::vector<std::string> enclosingFiles(const Node& node) {
   std::vector<std::string> files;
   const std::vector<Path> paths = pathsTo(node, 1);
@@ -28,13 +28,13 @@ bool loadInlineContent(Engine& engine, Node& node) {
   auto* inlineNode = dynamic_cast<InlineNode*>(&node);
   if (!inlineNode || !engine.browser()) return false;
   World& world = engine.browser()->world();
-  engine.contentLeaves(node);
-  const std::shared_ptr<const Scope> old =
-      std::exchange(inlineNode->content, nullptr); // ends when nothing refers to it here
+  engine.contentUnloading(node);
+  // The old content is destroyed here unless something else refers to it.
+  const std::shared_ptr<const Scope> old = std::exchange(inlineNode->content, nullptr);
   inlineNode->share.clear();
   const BudgetPtr budget = budgetOf(world);
   const uint64_t before = budget->used();
-  Loader(world, world.options).loadLate(*inlineNode, enclosingFiles(node));
+  Loader(world, world.options).loadDeferredInline(*inlineNode, enclosingFiles(node));
   if (const uint64_t after = budget->used(); after > before)
     inlineNode->share.adopt(budget, after - before);
   engine.contentLoaded(node);

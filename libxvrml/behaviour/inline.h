@@ -1,4 +1,4 @@
-// inline.h: content of Inline nodes (clause 6.25) that comes while the world runs. [the browser's
+// inline.h: loads the content of Inline nodes (clause 6.25) while the world runs. [the browser's
 // thread]
 #pragma once
 
@@ -6,10 +6,10 @@
 
 namespace xvrml {
 
-// Reads the content of an Inline anew, from the urls it has now. False if there is none.
+// Reloads the content of an Inline from its current urls. Returns false if it has no content then.
 bool loadInlineContent(Engine& engine, Node& inlineNode);
-// All Inlines below the roots of a scope that have none, as long as some bring in others. Returns
-// how many were loaded.
+// Loads all Inlines without content below the roots of a scope, and those in the new content.
+// Returns how many were loaded.
 uint64_t loadInlinesBelow(Engine& engine, const Scope& scope);
 
 } // namespace xvrml

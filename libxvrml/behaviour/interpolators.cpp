@@ -1,5 +1,5 @@
 // interpolators.cpp: the six interpolators (clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39):
-// set_fraction makes value_changed.
+// set_fraction produces value_changed.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -14,20 +14,20 @@ namespace xvrml {
 namespace {
 
 struct State : NodeState {
-  bool warned = false; // that key and keyValue do not fit
+  bool warned = false; // the mismatch of key and keyValue has been reported
 };
 
-// Where a fraction lies: between values `left` and `left` + 1, at `t` of the way; t 0: the value
-// itself.
-struct Place {
+// The position of a fraction: between the values `left` and `left` + 1, at parameter t. t 0:
+// exactly the value `left`.
+struct KeyPosition {
   size_t left;
   float t;
 };
 
-// Clause 4.6.8: below the first key its value, above the last key the last; at a key given several
-// times the last of its values (the limit from the right), except at the ends. Keys that decrease
-// give some value, never an access out of bounds.
-Place locate(const float* keys, size_t count, float fraction) {
+// Finds the position of a fraction (clause 4.6.8). Below the first key it is the first value, above
+// the last key the last value. At a repeated key it is the last of its values (the limit from the
+// right), except at the ends. With decreasing keys the result is arbitrary but never out of bounds.
+KeyPosition locate(const float* keys, size_t count, float fraction) {
   if (fraction <= keys[0]) return {0, 0};
   if (fraction >= keys[count - 1]) return {count - 1, 0};
   const size_t right = size_t(std::upper_bound(keys, keys + count, fraction) - keys);
@@ -38,12 +38,12 @@ Place locate(const float* keys, size_t count, float fraction) {
   return {right - 1, t > 0 ? t : 0};
 }
 
-template <class T> T between(const T* values, Place place) {
+template <class T> T between(const T* values, KeyPosition place) {
   return place.t == 0 ? values[place.left]
                       : blend(values[place.left], values[place.left + 1], place.t);
 }
 
-// How many keys can be used, and how many values belong to each. Nothing if there are none.
+// Number of usable keys and of values per key; zero if there are none.
 struct Shape {
   size_t keys = 0, perKey = 0;
 };
@@ -72,13 +72,13 @@ template <class Interpolator> void evaluate(Events& events, Interpolator& node, 
               between(node.keyValue.data(), locate(node.key.data(), shape.keys, fraction)));
 }
 
-// CoordinateInterpolator, NormalInterpolator: perKey values for each key, one after the other.
+// For CoordinateInterpolator and NormalInterpolator: perKey consecutive values for each key.
 template <class Interpolator>
 void evaluateLists(Events& events, Interpolator& node, float fraction,
                    Vec3f (*blendOne)(const Vec3f&, const Vec3f&, float)) {
   const Shape shape = shapeOf(events, node, true);
   if (shape.keys == 0) return;
-  const Place place = locate(node.key.data(), shape.keys, fraction);
+  const KeyPosition place = locate(node.key.data(), shape.keys, fraction);
   const Vec3f* left = node.keyValue.data() + place.left * shape.perKey;
   MFVec3f result(left, left + shape.perKey);
   if (place.t != 0)
@@ -95,7 +95,7 @@ void evaluate(Events& events, nodes::NormalInterpolator& node, float fraction) {
   evaluateLists(events, node, fraction, blendNormals);
 }
 
-// Read before it has sent, value_changed is the first value (4.6.8).
+// Sets value_changed to the first value until the node sends (4.6.8).
 template <class Interpolator> void presetFirst(Events& events, Interpolator& node) {
   static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
   if (node.keyValue.empty()) return;
@@ -109,7 +109,7 @@ template <class Interpolator> void presetFirst(Events& events, Interpolator& nod
   }
 }
 
-// A new key or keyValue makes no event of its own: only set_fraction does.
+// Handles eventIns. A new key or keyValue sends nothing; only set_fraction does.
 template <class Interpolator>
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   static const FieldInfo& fraction = fieldOf<Interpolator>("set_fraction");

@@ -19,7 +19,7 @@ void send(Events& events, Node& node, Media& media, const TimeStep& step) {
   if (step.ends) events.send(node, "isActive", false);
 }
 
-bool mayTurn(const Events& events, const Node& node) {
+bool maySendActive(const Events& events, const Node& node) {
   return !events.hasSent(node, *node.type().find("isActive"));
 }
 
@@ -40,8 +40,8 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
     events.send(node, "duration_changed", media.duration);
   }
   const TimeFields fields = media.fields(node);
-  const TimeStep step =
-      media.time.fieldChanged(fields, events.now(), mayTurn(events, node), in.name == "startTime");
+  const TimeStep step = media.time.fieldChanged(fields, events.now(), maySendActive(events, node),
+                                                in.name == "startTime");
   send(events, node, media, step);
   events.wantTicks(node, media.time.wantsTicks(fields, events.now()));
 }
@@ -49,7 +49,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
 void tick(Events& events, Node& node) {
   Media& media = mediaOf(events, node);
   const TimeFields fields = media.fields(node);
-  send(events, node, media, media.time.tick(fields, events.now(), mayTurn(events, node)));
+  send(events, node, media, media.time.tick(fields, events.now(), maySendActive(events, node)));
   if (!media.time.wantsTicks(fields, events.now())) events.wantTicks(node, false);
 }
 
@@ -78,7 +78,7 @@ Share mediaShare(const Events& events) {
   return events.browser() ? Share(budgetOf(events.browser()->world())) : Share();
 }
 
-std::string tooMuch(uint64_t bytes, const Budget& budget) {
+std::string overBudgetMessage(uint64_t bytes, const Budget& budget) {
   return fmt::format("with all that the world holds its {} bytes are more than {}", bytes,
                      budget.name());
 }

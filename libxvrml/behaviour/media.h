@@ -1,5 +1,5 @@
-// media.h: what AudioClip and MovieTexture have in common: a file that is loaded, its duration, and
-// when it plays (clauses 4.6.9, 6.4, 6.28). [the browser's thread]
+// media.h: the common part of AudioClip and MovieTexture: a loaded file, its duration and its
+// playing time (clauses 4.6.9, 6.4, 6.28). [the browser's thread]
 #pragma once
 
 #include "base/budget.h"
@@ -10,35 +10,36 @@ namespace xvrml {
 
 class Media : public NodeState {
  public:
-  // Loads what url names and returns its length in seconds; -1, with a message, if it cannot be
-  // had.
+  // Loads the node's url and returns its length in seconds. Returns -1, after a message, if loading
+  // fails.
   virtual double load(Events& events, Node& node) = 0;
-  // duration: as load() returned it; the cycle follows from it and the node's rate.
+  // Returns the timing fields. The cycle follows from `duration` (the result of load()) and the
+  // node's rate.
   virtual TimeFields fields(const Node& node) const = 0;
-  // Each step while it plays, the last included.
+  // Called for each step while the node plays, including the last one.
   virtual void play(Events& events, Node& node, const TimeStep& step) = 0;
 
   TimeDependent time;
   double duration = -1;
 };
 
-// begin: makes the state and calls beginMedia. pitch and speed are rates, which an active node does
-// not change.
+// Adds the behaviour of a media node. begin: makes the state and calls beginMedia. An active node
+// ignores changes of its rates pitch and speed.
 void addMedia(const AddBehaviour& add, const NodeType& type,
               std::unique_ptr<NodeState> (*begin)(Events&, Node&));
-// For begin functions: loads, and says the duration.
+// Loads the file and sends duration_changed. Called by begin functions.
 std::unique_ptr<NodeState> beginMedia(Events& events, Node& node, std::unique_ptr<Media> state);
 
-// Calls read(path) with the file that each URL of a list means, until it returns true; it throws
-// std::exception to say why not. Otherwise one message with the first reason. node: whose URLs they
-// are.
+// Calls read(path) with the file of each URL in a list until it returns true. read throws
+// std::exception to give a reason for failure. If all fail, one message is written with the first
+// reason. node: the node that has the URLs.
 bool readFirst(Events& events, const Node& node, const MFString& urls,
                const std::function<bool(const std::string& path)>& read);
-// The limits of the world that events runs; defaults without a browser.
+// Returns the load options of the running world; defaults if there is no browser.
 const LoadOptions& loadOptions(const Events& events);
-// An empty share of the budget of the world that events runs; without a browser of none.
+// Returns an empty share of the running world's budget; without a browser, of no budget.
 Share mediaShare(const Events& events);
-// Says that so many bytes are more than the budget has left.
-std::string tooMuch(uint64_t bytes, const Budget& budget);
+// Returns the message that so many bytes exceed what the budget has left.
+std::string overBudgetMessage(uint64_t bytes, const Budget& budget);
 
 } // namespace xvrml

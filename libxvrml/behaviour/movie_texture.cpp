@@ -1,5 +1,5 @@
-// movie_texture.cpp: MovieTexture (clause 6.28): its events, and which picture of the film it
-// shows; decoded when asked for.
+// movie_texture.cpp: MovieTexture (clause 6.28): its events and its current picture, which is
+// decoded on request.
 #include <atomic>
 #include <exception>
 #include <stdexcept>
@@ -13,8 +13,8 @@
 namespace xvrml {
 namespace {
 
-// Pixels of all films that are being decoded, in this process: a world may not open thousands of
-// large ones.
+// Pixels of all films being decoded in this process. A world must not open thousands of large
+// films.
 std::atomic<uint64_t> openPixels{0};
 
 struct State : Media {
@@ -32,12 +32,12 @@ struct State : Media {
                 if (decodesFilms()) {
                   auto read = FilmData::read(path, limits);
                   if (!share.take(read->bytes()))
-                    throw std::runtime_error(tooMuch(read->bytes(), *share.budget()));
+                    throw std::runtime_error(overBudgetMessage(read->bytes(), *share.budget()));
                   film = std::move(read);
-                } else { // a picture at least, if it is a GIF
+                } else { // without a decoder show at least the picture of a GIF
                   try {
                     image = readImage(path, {limits, ~uint64_t(0), share.budget().get()});
-                  } catch (const std::exception&) { FilmData::read(path, limits); } // says why
+                  } catch (const std::exception&) { FilmData::read(path, limits); } // throws why
                   wanted = shown = 0;
                   events.diagnostics().warn(
                       node.source,
@@ -58,8 +58,7 @@ struct State : Media {
   void play(Events& events, Node& node, const TimeStep& step) override {
     if (!film) return;
     const auto& n = static_cast<const nodes::MovieTexture&>(node);
-    // The end of a cycle is the beginning of the next one; where none follows the last picture
-    // stays.
+    // The end of a cycle is the start of the next one. If none follows, the last picture stays.
     const double fraction = step.fraction == 1 && n.loop && !step.ends ? 0 : step.fraction;
     const size_t picture = n.speed == 0 ? 0
                                         : film->pictureAt(n.speed < 0 ? duration * (1 - fraction)
@@ -71,7 +70,7 @@ struct State : Media {
 
   const Image* picture() {
     if (film && wanted != shown) decode();
-    if (!time.active()) close(); // one picture is all it needs now
+    if (!time.active()) close(); // one picture is enough now
     return image.components > 0 ? &image : nullptr;
   }
 
@@ -79,14 +78,14 @@ struct State : Media {
   static constexpr size_t none = ~size_t(0);
 
   void decode() {
-    shown = wanted; // not tried twice
+    shown = wanted; // it is not tried twice
     try {
       if (!reader) {
         if (openPixels.load() > limits.imagePixels) return;
         reader = std::make_unique<FilmReader>(film, limits);
       }
       reader->read(wanted, image);
-    } catch (const std::exception&) { return; } // the picture stays
+    } catch (const std::exception&) { return; } // the previous picture stays
     const uint64_t pixels = uint64_t(image.width) * uint64_t(image.height);
     openPixels += pixels - counted;
     counted = pixels;
@@ -99,12 +98,12 @@ struct State : Media {
   }
 
   Limits limits;
-  Share share;                          // of the world's budget: the compressed pictures
-  std::shared_ptr<const FilmData> film; // null: nothing could be read
+  Share share;                          // of the world's budget, for the compressed pictures
+  std::shared_ptr<const FilmData> film; // null: no file could be read
   std::unique_ptr<FilmReader> reader;
   Image image;
-  size_t wanted = none, shown = none; // numbers of pictures
-  uint64_t counted = 0;               // of openPixels
+  size_t wanted = none, shown = none; // picture numbers
+  uint64_t counted = 0;               // this film's part of openPixels
 };
 
 std::unique_ptr<NodeState> begin(Events& events, Node& node) {

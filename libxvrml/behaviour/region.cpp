@@ -1,6 +1,6 @@
-// region.cpp: ProximitySensor and VisibilitySensor (clauses 6.38, 6.54): boxes that the viewer is
-// in, or sees. They look once a tick, after its events, and at jumps. A sensor that is USEd senses
-// the union of its boxes.
+// region.cpp: ProximitySensor and VisibilitySensor (clauses 6.38, 6.54): boxes that the viewer
+// enters or sees. They are evaluated once per tick, after its events, and after jumps. A sensor
+// that is USEd several times senses the union of its boxes.
 #include <array>
 #include <cmath>
 
@@ -17,7 +17,7 @@ namespace {
 
 struct RegionState : NodeState {
   bool active = false;
-  Vec3f position; // last sent
+  Vec3f position; // last value sent
   Rotation orientation;
 };
 
@@ -44,7 +44,8 @@ void setActive(Events& events, Node& node, bool active) {
   events.send(node, active ? "enterTime" : "exitTime", events.now());
 }
 
-// The way to the viewer from the first of the sensor's boxes that he is in.
+// Finds the first of the sensor's boxes that contains the viewer, and the matrix from the viewer to
+// the sensor.
 bool viewerInside(const Node& node, const Region& region, const Matrix& view,
                   Matrix& viewerToSensor) {
   for (const Path& path : pathsTo(node)) {
@@ -63,8 +64,8 @@ void lookProximity(Events& events, Node& node) {
   auto& state = static_cast<RegionState&>(*events.state(node));
   const auto& sensor = static_cast<nodes::ProximitySensor&>(node);
   const Region region = regionOf(sensor);
-  const bool senses =
-      sensor.enabled && sensor.size != Vec3f(); // 6.38: a box without any extent senses nothing
+  // A box of size 0 senses nothing (6.38).
+  const bool senses = sensor.enabled && sensor.size != Vec3f();
   Matrix viewer;
   const bool inside =
       senses && viewerInside(node, region, interactionOf(events).viewer.view(), viewer);
@@ -81,7 +82,7 @@ void lookProximity(Events& events, Node& node) {
   state.orientation = orientation;
 }
 
-// The part of a convex polygon on the inner side of a plane through the eye (Sutherland and Hodgman
+// Clips a convex polygon to the inner side of a plane through the eye (Sutherland and Hodgman
 // 1974).
 void clip(std::vector<Vector>& polygon, const Vector& inwards) {
   std::vector<Vector> kept;
@@ -94,7 +95,7 @@ void clip(std::vector<Vector>& polygon, const Vector& inwards) {
   polygon = std::move(kept);
 }
 
-// A box is seen if a part of its surface is in the pyramid of view, or the eye is in it.
+// Returns whether a part of the box's surface is in the view frustum, or the eye is in the box.
 bool seen(const Region& region, const Matrix& toCamera, double fovy, double aspect) {
   std::array<Vector, 8> corner;
   for (int i = 0; i < 8; ++i)
@@ -124,7 +125,7 @@ void lookVisibility(Events& events, Node& node) {
   const auto& sensor = static_cast<nodes::VisibilitySensor&>(node);
   const Region region = regionOf(sensor);
   bool visible = false;
-  if (sensor.enabled) { // 6.54 has no rule on a box without extent: it is a point
+  if (sensor.enabled) { // 6.54 has no rule for a box without extent: it is treated as a point
     const CameraSettings camera = interaction.viewer.camera(interaction.aspect);
     const Matrix view = fromArray(camera.matrix);
     Matrix toCamera;
@@ -142,7 +143,7 @@ std::unique_ptr<NodeState> begin(Events& events, Node& node) {
   return std::make_unique<RegionState>();
 }
 
-// A sensor that is disabled says so at once (4.6.7.2).
+// A sensor that is disabled sends isActive FALSE at once (4.6.7.2).
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   if (in.name == "enabled" && !std::get<bool>(value) &&
       static_cast<RegionState&>(*events.state(node)).active)

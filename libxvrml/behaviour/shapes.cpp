@@ -1,4 +1,5 @@
-// shapes.cpp: The walk has a stack of its own: nesting costs no C++ stack.
+// shapes.cpp: lists the shapes of a world and their triangles for programs. The walk uses an
+// explicit stack, so nesting costs no C++ stack.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,8 +16,9 @@ namespace {
 
 constexpr size_t maximumVisits = 4'000'000;
 
-// What a viewer sees below a node.
-void seenBelow(Node& node, const Matrix& toWorld, const Matrix& view, std::vector<Node*>& parts) {
+// Appends the children of a node that the viewer sees.
+void appendVisibleChildren(Node& node, const Matrix& toWorld, const Matrix& view,
+                           std::vector<Node*>& parts) {
   if (const auto* lod = nodeCast<nodes::LOD>(&node)) {
     if (!lod->level.empty()) parts.push_back(lod->level[levelFor(*lod, toWorld, view)].get());
   } else if (const auto* choice = nodeCast<nodes::Switch>(&node)) {
@@ -61,13 +63,13 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
   constexpr uint32_t none = ~0u;
   struct Visit {
     Node* node;
-    uint32_t parent; // in `way`
+    uint32_t parent; // index into `ancestors`
   };
   const Matrix viewer = view ? fromArray(view) : Matrix();
   std::vector<PlacedShape> shapes;
   std::vector<Visit> open;
-  std::vector<Matrix> way; // from a root down to where the walk is
-  std::vector<Node*> path; // the same
+  std::vector<Matrix> ancestors; // world matrices from a root down to the current node
+  std::vector<Node*> path;       // the nodes of `ancestors`
   std::vector<Node*> parts;
   const auto& roots = world.scope.roots;
   for (size_t i = roots.size(); i-- > 0;)
@@ -77,11 +79,11 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
       throw std::length_error("the world has more than 4,000,000 nodes where they are drawn");
     const Visit visit = open.back();
     open.pop_back();
-    way.resize(visit.parent + 1); // none + 1 is 0
+    ancestors.resize(visit.parent + 1); // none + 1 is 0
     path.resize(visit.parent + 1);
-    const Matrix outside = visit.parent == none ? Matrix() : way[visit.parent];
-    if (std::find(path.begin(), path.end(), visit.node) != path.end())
-      continue; // holds itself: a program has made it so
+    const Matrix outside = visit.parent == none ? Matrix() : ancestors[visit.parent];
+    // A program may have made a node that contains itself; it is skipped.
+    if (std::find(path.begin(), path.end(), visit.node) != path.end()) continue;
     if (auto* shape = nodeCast<nodes::Shape>(visit.node)) {
       Node* geometry = renderedNode(shape->geometry.get());
       if (!geometry) continue;
@@ -92,9 +94,9 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
     Matrix inner;
     if (!innerMatrix(*visit.node, outside, viewer, inner) || !finite(inner)) continue;
     parts.clear();
-    seenBelow(*visit.node, outside, viewer, parts);
-    const auto index = uint32_t(way.size());
-    way.push_back(inner);
+    appendVisibleChildren(*visit.node, outside, viewer, parts);
+    const auto index = uint32_t(ancestors.size());
+    ancestors.push_back(inner);
     path.push_back(visit.node);
     for (size_t i = parts.size(); i-- > 0;)
       if (parts[i]) open.push_back({parts[i], index});

@@ -1,4 +1,4 @@
-// sound.cpp: the geometry of loudness and mixing of xvrml/media.h: clause 6.42.
+// sound.cpp: loudness and mixing of sounds for xvrml/media.h (clause 6.42).
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +9,16 @@
 namespace xvrml {
 namespace {
 
-// Distance from the focus at the location to the ellipsoid that reaches `front` ahead and `back`
-// behind, at an angle to the direction: with a = (front + back) / 2 and c = (front - back) / 2 the
-// polar form (a^2 - c^2) / (a - c cosine).
+// Returns the distance, at an angle to the direction, from the location to the ellipsoid that
+// reaches `front` ahead and `back` behind. The location is a focus of the ellipsoid. With a =
+// (front + back) / 2 and c = (front - back) / 2 the polar form is (a^2 - c^2) / (a - c cosine).
 double radius(double front, double back, double cosine) {
   if (!(front > 0 && back > 0)) return 0;
   return 2 * front * back / (front + back - (front - back) * cosine);
 }
 
 struct Distances {
-  double viewer = 0, inner = 0, outer = 0; // from the location, on the line to the viewer
+  double viewer = 0, inner = 0, outer = 0; // from the location towards the viewer
 };
 Distances distances(const nodes::Sound& sound, const Vec3f& viewer) {
   const Vector way = vector(viewer) - vector(sound.location), direction = vector(sound.direction);
@@ -28,7 +28,7 @@ Distances distances(const nodes::Sound& sound, const Vec3f& viewer) {
           radius(sound.maxFront, sound.maxBack, cosine)};
 }
 
-// A sample of one channel at a place in frames.
+// Returns the linearly interpolated sample of one channel. place: position in frames.
 double sampleAt(const Clip& clip, double place, int channel, bool loop) {
   const size_t frames = clip.frames(), at = size_t(place), next = at + 1 < frames ? at + 1 : 0;
   const double a = clip.samples[at * size_t(clip.channels) + size_t(channel)];
@@ -45,7 +45,8 @@ double soundGain(const nodes::Sound& sound, const Vec3f& viewer) {
   if (!std::isfinite(d.viewer)) return 0;
   if (d.viewer <= d.inner) return intensity;
   if (!(d.outer > d.inner) || d.viewer > d.outer) return 0;
-  return intensity * std::pow(10, -(d.viewer - d.inner) / (d.outer - d.inner)); // -20 dB d' / d''
+  // -20 dB at the outer ellipsoid
+  return intensity * std::pow(10, -(d.viewer - d.inner) / (d.outer - d.inner));
 }
 
 SoundLevels soundLevels(const nodes::Sound& sound, const Vec3f& viewer, const Vec3f& fromViewer) {
@@ -55,7 +56,7 @@ SoundLevels soundLevels(const nodes::Sound& sound, const Vec3f& viewer, const Ve
   const Distances d = distances(sound, viewer);
   const double inside = d.inner > 0 ? std::min(1.0, d.viewer / d.inner) : 1;
   const double angle = (fromViewer.x / away * inside + 1) * M_PI / 4; // 0: left, pi/2: right
-  // Ahead both are the gain, as without direction.
+  // Straight ahead both equal the gain, as without a direction.
   return {gain * std::sqrt(2) * std::cos(angle), gain * std::sqrt(2) * std::sin(angle)};
 }
 

@@ -1,4 +1,4 @@
-// time_sensor.cpp: TimeSensor (clause 6.50) over the state machine of all time-dependent nodes.
+// time_sensor.cpp: TimeSensor (clause 6.50), based on the state machine of time-dependent nodes.
 #include "behaviour/builtin.h"
 #include "behaviour/time_dependent.h"
 #include "xvrml/nodes.h"
@@ -10,15 +10,17 @@ struct State : NodeState {
   TimeDependent time;
 };
 
-// The rows of TimeSensor that are sent, looked up once.
-struct Rows {
-  const FieldInfo &isActive = row("isActive"), &cycleTime = row("cycleTime"),
-                  &fraction = row("fraction_changed"), &time = row("time"),
-                  &startTime = row("startTime");
-  static const FieldInfo& row(std::string_view name) { return fieldOf<nodes::TimeSensor>(name); }
+// The fields of TimeSensor that are sent, looked up once.
+struct SentFields {
+  const FieldInfo &isActive = fieldNamed("isActive"), &cycleTime = fieldNamed("cycleTime"),
+                  &fraction = fieldNamed("fraction_changed"), &time = fieldNamed("time"),
+                  &startTime = fieldNamed("startTime");
+  static const FieldInfo& fieldNamed(std::string_view name) {
+    return fieldOf<nodes::TimeSensor>(name);
+  }
 };
-const Rows& rows() {
-  static const Rows all;
+const SentFields& sentFields() {
+  static const SentFields all;
   return all;
 }
 
@@ -31,13 +33,13 @@ TimeDependent& machine(Events& events, Node& node) {
   return static_cast<State*>(events.state(node))->time;
 }
 
-// In the order of 6.50: active first and inactive last, the events of the moment between.
+// Sends the events of a step in the order of 6.50: isActive TRUE first, isActive FALSE last.
 void send(Events& events, Node& node, const TimeStep& step) {
-  const Rows& out = rows();
+  const SentFields& out = sentFields();
   if (step.running) {
     if (step.begins) events.send(node, out.isActive, true);
     if (step.newCycle) events.send(node, out.cycleTime, step.cycleStart);
-    if (!step.told) {
+    if (!step.alreadySent) {
       events.send(node, out.fraction, float(step.fraction));
       events.send(node, out.time, step.time);
     }
@@ -62,15 +64,16 @@ bool accept(Events& events, Node& node, const FieldInfo& field, const Value& val
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
   const TimeFields fields = fieldsOf(node);
   TimeDependent& time = machine(events, node);
-  const bool mayTurn = !events.hasSent(node, rows().isActive);
-  send(events, node, time.fieldChanged(fields, events.now(), mayTurn, &in == &rows().startTime));
+  const bool maySendActive = !events.hasSent(node, sentFields().isActive);
+  send(events, node,
+       time.fieldChanged(fields, events.now(), maySendActive, &in == &sentFields().startTime));
   events.wantTicks(node, time.wantsTicks(fields, events.now()));
 }
 
 void tick(Events& events, Node& node) {
   const TimeFields fields = fieldsOf(node);
   TimeDependent& time = machine(events, node);
-  send(events, node, time.tick(fields, events.now(), !events.hasSent(node, rows().isActive)));
+  send(events, node, time.tick(fields, events.now(), !events.hasSent(node, sentFields().isActive)));
   if (!time.wantsTicks(fields, events.now())) events.wantTicks(node, false);
 }
 

@@ -1,4 +1,5 @@
-// wav.cpp: Sizes in the file are not trusted: a chunk ends with the file at the latest.
+// wav.cpp: the reader of WAVE files. Sizes in the file are not trusted: a chunk ends at the end of
+// the file at the latest.
 #include "behaviour/wav.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ class File {
  public:
   explicit File(const std::string& path) : file_(path) {}
   uint64_t size() const { return file_.size(); }
-  // False if the file ends before.
+  // Returns false if the file is too short.
   bool read(uint64_t at, void* to, uint64_t bytes) {
     if (at > size() || bytes > size() - at) return false;
     return file_.read(at, to, bytes) == bytes;
@@ -43,8 +44,8 @@ void readFormat(const uint8_t* p, uint64_t bytes, WavInfo& info, uint32_t& bytes
   bytesPerSecond = little(p + 8, 4);
   frameBytes = little(p + 12, 2);
   info.bits = int(little(p + 14, 2));
-  if (info.format == 0xfffe && bytes >= 26)
-    info.format = int(little(p + 24, 2)); // extensible: the first bytes of a GUID
+  // In the extensible format the code is in the first bytes of a GUID.
+  if (info.format == 0xfffe && bytes >= 26) info.format = int(little(p + 24, 2));
 }
 
 WavInfo readHeader(File& file) {
@@ -90,7 +91,7 @@ float sample(const uint8_t* p, int format, int bytes) {
     std::memcpy(&value, &bits, 4);
     return std::isfinite(value) ? std::clamp(value, -1.0f, 1.0f) : 0;
   }
-  if (bytes == 1) return (float(p[0]) - 128) / 128; // the only unsigned one
+  if (bytes == 1) return (float(p[0]) - 128) / 128; // 8-bit samples are the only unsigned ones
   return float(double(int32_t(little(p, bytes) << (32 - 8 * bytes))) / 2147483648.0);
 }
 

@@ -19,7 +19,7 @@ Browser::Browser(std::unique_ptr<World> world, BrowserOptions options, double st
   impl_->engine->beginCascade(impl_->run.epoch + start);
   impl_->engine->adoptScope(impl_->world->scope, true);
   impl_->engine->settle();
-  impl_->workOff();
+  impl_->runJobs();
 }
 
 Browser::~Browser() = default;
@@ -29,10 +29,10 @@ Events& Browser::events() { return *impl_->engine; }
 double Browser::now() const { return impl_->time; }
 double Browser::epoch() const { return impl_->run.epoch; }
 void Browser::tick(double time) {
-  if (impl_->engine->settling()) return;     // a listener or a Script must not move time
-  impl_->time = std::max(time, impl_->time); // the caller's number, which epoch + time rounds
+  if (impl_->engine->settling()) return;     // a listener or a Script must not advance time
+  impl_->time = std::max(time, impl_->time); // keeps the caller's value; epoch + time may round
   impl_->engine->tick(impl_->run.epoch + impl_->time);
-  impl_->workOff();
+  impl_->runJobs();
 }
 FieldChanges Browser::takeChanges() { return impl_->engine->takeChanges(); }
 bool Browser::hasChanges() const { return impl_->engine->hasChanges(); }
@@ -47,8 +47,8 @@ NodeRef Browser::node(std::string_view name) const {
   return found == names.end() ? NodeRef() : found->second;
 }
 
-// Stores a field, and if it is of a prototype's instance also in the body: what takes events there
-// gets one.
+// Stores a field. For a prototype instance it also stores the connected fields in the body, and
+// posts an event to connected exposedFields.
 static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value value) {
   if (!engine.store(node, field, std::move(value))) return false;
   std::vector<std::pair<ProtoInstance*, const FieldInfo*>> open;
@@ -81,7 +81,7 @@ bool Browser::set(Node& node, std::string_view field, Value value) {
     return stored;
   }
   const bool sent = impl_->engine->dispatch(node, field, std::move(value));
-  impl_->workOff();
+  impl_->runJobs();
   return sent;
 }
 

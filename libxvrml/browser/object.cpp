@@ -1,6 +1,5 @@
-// object.cpp: the Browser object that Scripts and programs see (ISO/IEC 14772-1 4.12.10): what it
-// knows, what it loads, and how one world takes the place of another. See xvrml/browser.h. [the
-// browser's thread]
+// object.cpp: the Browser object of Scripts and programs (ISO/IEC 14772-1 4.12.10): its properties,
+// loading, and the replacement of one world by another. [the browser's thread]
 #include <fmt/format.h>
 
 #include "behaviour/viewer/interaction.h"
@@ -29,8 +28,8 @@ void append(Diagnostics& to, const Diagnostics& from) {
   for (const Diagnostic& d : from.list()) to.add(d);
 }
 
-// The first of the URLs that is a world, or null after a warning.
-// budget: of the world that it becomes part of; null: it has one of its own.
+// Loads the first of the URLs that is a world. Returns null after a warning. budget: of the world
+// that the result joins; null: the result has a budget of its own.
 std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std::string& base,
                                  const LoadOptions& options, Diagnostics& diagnostics,
                                  const SourcePosition& where, std::string_view what,
@@ -54,13 +53,14 @@ std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std
   return nullptr;
 }
 
-// What programs make is checked against the budget while it is made. It is not counted afterwards:
-// a world that makes and drops nodes for hours would come to its end otherwise. The number of nodes
-// that live bounds it (limit expandedNodes).
-class Passing {
+// Charges nodes made by programs to the budget only while they are made. Counting them longer would
+// stop a world that makes and drops nodes for hours. The number of live nodes limits them (limit
+// expandedNodes).
+class TemporaryCharge {
  public:
-  explicit Passing(const World& world) : budget_(budgetOf(world)), before_(budget_->used()) {}
-  ~Passing() {
+  explicit TemporaryCharge(const World& world)
+      : budget_(budgetOf(world)), before_(budget_->used()) {}
+  ~TemporaryCharge() {
     if (const uint64_t now = budget_->used(); now > before_) budget_->give(now - before_);
   }
   const BudgetPtr& budget() const { return budget_; }
@@ -82,14 +82,14 @@ Browser::Impl::Impl(Browser& browser, std::unique_ptr<World> world, const Browse
   engine->scripts = scripts.get();
 }
 
-void Browser::Impl::later(std::function<void()> job) {
+void Browser::Impl::addJob(std::function<void()> job) {
   constexpr size_t most = 10'000;
   if (jobs.size() >= most) throw std::runtime_error("too many worlds are waiting to be loaded");
   jobs.push_back(std::move(job));
-  workOff();
+  runJobs();
 }
 
-void Browser::Impl::workOff() {
+void Browser::Impl::runJobs() {
   if (working || engine->settling()) return;
   working = true;
   for (int done = 0; done < 100 && !jobs.empty(); ++done) {
@@ -97,12 +97,12 @@ void Browser::Impl::workOff() {
     const std::function<void()> job = std::move(jobs.front());
     jobs.pop_front();
     job();
-    if (generation != before) break; // at most one new world a call
+    if (generation != before) break; // at most one new world per call
   }
   working = false;
 }
 
-SourcePosition Browser::Impl::asking() const {
+SourcePosition Browser::Impl::callerPosition() const {
   const Node* script = scripts ? scripts->runningNode() : nullptr;
   return script ? script->source
                 : SourcePosition{std::make_shared<const std::string>(world->path), 0, 0};
@@ -120,8 +120,8 @@ MFNode Browser::Impl::adopt(World& loaded) {
   return nodes;
 }
 
-void Browser::Impl::become(Scope scope, const std::vector<NodeRef>& kept,
-                           std::vector<NodeRef> cyclic) {
+void Browser::Impl::replaceScene(Scope scope, const std::vector<NodeRef>& kept,
+                                 std::vector<NodeRef> cyclic) {
   engine->keepOnly(kept);
   for (NodeRef& node : breakCycles(world->cyclic)) cyclic.push_back(std::move(node));
   world->cyclic = std::move(cyclic);
@@ -130,7 +130,7 @@ void Browser::Impl::become(Scope scope, const std::vector<NodeRef>& kept,
   engine->beginCascade(engine->now());
   engine->adoptScope(world->scope, true);
   engine->settle();
-  engine->takeChanges(); // whoever draws it begins with it as it is now
+  engine->takeChanges(); // a renderer starts with the current state of the new world
 }
 
 std::string Browser::name() const { return "OpenRT XVRML"; }
@@ -147,7 +147,7 @@ MFNode Browser::createVrmlFromString(std::string_view text) {
   uint64_t& most = options.limits.expandedNodes;
   most -= std::min<uint64_t>(most, impl_->engine->nodes());
   const auto loaded = loadFragment(text, impl_->world->path + " (createVrmlFromString)", options,
-                                   Passing(*impl_->world).budget());
+                                   TemporaryCharge(*impl_->world).budget());
   MFNode nodes = impl_->adopt(*loaded);
   impl_->settle();
   return nodes;
@@ -155,11 +155,11 @@ MFNode Browser::createVrmlFromString(std::string_view text) {
 
 void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node,
                                 std::string_view eventIn, const std::string& base) {
-  impl_->later([this, urls, to = NodeRef(&node), in = std::string(eventIn),
-                base = base.empty() ? impl_->world->path : base, where = impl_->asking()] {
+  impl_->addJob([this, urls, to = NodeRef(&node), in = std::string(eventIn),
+                 base = base.empty() ? impl_->world->path : base, where = impl_->callerPosition()] {
     World& world = *impl_->world;
     const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, where,
-                                  "createVrmlFromURL", nullptr, Passing(world).budget());
+                                  "createVrmlFromURL", nullptr, TemporaryCharge(world).budget());
     if (!loaded || !to->live) return;
     MFNode nodes = impl_->adopt(*loaded);
     impl_->engine->dispatch(*to, in, std::move(nodes));
@@ -168,8 +168,8 @@ void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node
 
 void Browser::loadUrl(const std::vector<std::string>& urls,
                       const std::vector<std::string>& parameters, const std::string& base) {
-  impl_->later([this, urls, parameters, base = base.empty() ? impl_->world->path : base,
-                where = impl_->asking()] {
+  impl_->addJob([this, urls, parameters, base = base.empty() ? impl_->world->path : base,
+                 where = impl_->callerPosition()] {
     if (impl_->options.loadUrl && impl_->options.loadUrl(urls, parameters, base)) return;
     const auto bind = [&](const std::string& name) {
       const NodeRef view = node(name);
@@ -188,19 +188,19 @@ void Browser::loadUrl(const std::vector<std::string>& urls,
     world.path = loaded->path;
     world.times = loaded->times;
     world.nodeCount = loaded->nodeCount;
-    impl_->become(std::move(loaded->scope), {}, std::exchange(loaded->cyclic, {}));
+    impl_->replaceScene(std::move(loaded->scope), {}, std::exchange(loaded->cyclic, {}));
     if (!fragment.empty()) bind(fragment);
   });
 }
 
 void Browser::replaceWorld(const MFNode& nodes) {
-  impl_->later([this, nodes] {
+  impl_->addJob([this, nodes] {
     Scope scope;
     for (const NodeRef& node : nodes)
       if (node) scope.roots.push_back(node);
     const std::vector<NodeRef> kept = scope.roots;
     setBudget(*impl_->world, std::make_shared<Budget>(impl_->world->options.limits.worldBytes));
-    impl_->become(std::move(scope), kept, {});
+    impl_->replaceScene(std::move(scope), kept, {});
   });
 }
 

@@ -1,4 +1,4 @@
-// state.h: what a Browser is made of. One member a subsystem, each with files of its own.
+// state.h: the state of a Browser: one member per subsystem, each with files of its own.
 #pragma once
 
 #include "event/engine.h"
@@ -10,26 +10,26 @@ namespace xvrml {
 struct Browser::Impl {
   Impl(Browser& browser, std::unique_ptr<World> world, const BrowserOptions& options,
        const RunOptions& run);
-  void settle() { // what has been made outside of a cascade
+  void settle() { // runs a cascade for changes made outside of one
     if (engine->settling()) return;
     engine->beginCascade(engine->now());
     engine->settle();
   }
-  // Does what had to wait for the end of a cascade. Much of it waits for the next call: a world may
-  // load itself for ever.
-  void workOff();
-  void later(std::function<void()> job);
-  SourcePosition asking() const; // the Script that calls, else the world's file
-  MFNode adopt(World& loaded);   // what has been loaded beside the world
-  void become(Scope scope, const std::vector<NodeRef>& kept,
-              std::vector<NodeRef> cyclic); // another world
+  // Runs jobs that had to wait for the end of a cascade. Many are left to the next call, because a
+  // world may load itself for ever.
+  void runJobs();
+  void addJob(std::function<void()> job);
+  SourcePosition callerPosition() const; // the calling Script, else the world's file
+  MFNode adopt(World& loaded);           // takes over what was loaded besides the world
+  void replaceScene(Scope scope, const std::vector<NodeRef>& kept,
+                    std::vector<NodeRef> cyclic); // replaces the world
 
   BrowserOptions options;
   RunOptions run;
   std::unique_ptr<World> world;
-  std::unique_ptr<Engine> engine;      // ends before the world
-  std::unique_ptr<ScriptHost> scripts; // ends before the engine; null: Scripts do nothing
-  double time = 0;                     // after run.epoch; the engine's time is their sum, rounded
+  std::unique_ptr<Engine> engine;      // destroyed before the world
+  std::unique_ptr<ScriptHost> scripts; // destroyed before the engine; null: Scripts do not run
+  double time = 0; // time since run.epoch; the engine's time is their rounded sum
   uint64_t generation = 1;
   std::function<void(Node& anchor)> onAnchor;
   std::deque<std::function<void()>> jobs;

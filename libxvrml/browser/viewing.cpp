@@ -1,5 +1,5 @@
-// viewing.cpp: the Browser's members about the viewer: binding, camera, rays, pointer, navigation,
-// Inlines. See xvrml/browser.h.
+// viewing.cpp: the Browser's functions for the viewer: binding, camera, rays, pointer, navigation,
+// Inlines.
 #include <cmath>
 
 #include "behaviour/inline.h"
@@ -27,9 +27,9 @@ void Browser::placeViewer(const double view[16]) {
   if (engine.settling()) return;
   engine.beginCascade(engine.now());
   interactionOf(engine).viewer.moveTo(fromArray(view));
-  interactionOf(engine).navigation.rest();
+  interactionOf(engine).navigation.resetMotion();
   engine.settle();
-  impl_->workOff();
+  impl_->runJobs();
 }
 
 void Browser::setUp(const double up[3]) {
@@ -94,17 +94,17 @@ void Browser::pointer(double x, double y, bool button) {
       {transformPoint(view, Vector(0)),
        transformDirection(view, {x * size * interaction.aspect, y * size, -1})},
       button);
-  impl_->workOff(); // a Script may have asked for another world
+  impl_->runJobs(); // a Script may have requested another world
 }
 
 void Browser::pointerRay(const double origin[3], const double direction[3], bool button) {
   interactionOf(*impl_->engine).pointer.point(rayOf(origin, direction), button);
-  impl_->workOff();
+  impl_->runJobs();
 }
 
 void Browser::pointerLeave() {
   interactionOf(*impl_->engine).pointer.leave();
-  impl_->workOff();
+  impl_->runJobs();
 }
 
 std::vector<NodeRef> Browser::sensorsAtPointer() const {
@@ -130,7 +130,7 @@ void Browser::navigate(const NavigationInput& input, double dt) {
   engine.beginCascade(engine.now());
   interactionOf(engine).navigation.move(input, dt);
   engine.settle();
-  impl_->workOff();
+  impl_->runJobs();
 }
 
 void Browser::key(Key key, bool pressed) {
@@ -139,7 +139,7 @@ void Browser::key(Key key, bool pressed) {
   engine.beginCascade(engine.now());
   interactionOf(engine).navigation.key(key, pressed);
   engine.settle();
-  impl_->workOff();
+  impl_->runJobs();
 }
 
 Navigation Browser::navigation() const { return interactionOf(*impl_->engine).navigation.type(); }
@@ -154,7 +154,7 @@ bool Browser::loadInline(Node& inlineNode) {
   engine.beginCascade(engine.now());
   const bool loaded = loadInlineContent(engine, inlineNode);
   engine.settle();
-  impl_->workOff();
+  impl_->runJobs();
   return loaded;
 }
 
@@ -164,7 +164,7 @@ uint64_t Browser::loadInlines() {
   engine.beginCascade(engine.now());
   const uint64_t loaded = loadInlinesBelow(engine, impl_->world->scope);
   engine.settle();
-  impl_->workOff();
+  impl_->runJobs();
   return loaded;
 }
 

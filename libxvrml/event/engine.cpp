@@ -1,4 +1,4 @@
-// engine.cpp: the queue of events and how one is worked off. See engine.h.
+// engine.cpp: the event queue and the processing of one event.
 #include "event/engine.h"
 
 #include <fmt/format.h>
@@ -11,8 +11,8 @@ namespace xvrml {
 Engine::Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser)
     : Events(diagnostics, browser), observer(makeObserver(*this)) {}
 
-// An eventOut sends once in a cascade (4.10.3, 4.10.4). Without anybody to receive it only its last
-// value is kept.
+// An eventOut sends once per cascade (4.10.3, 4.10.4). If nothing receives the event, only its last
+// value is stored.
 void Events::send(Node& from, const FieldInfo& out, Value value) {
   auto& engine = static_cast<Engine&>(*this);
   if (value.index() != size_t(out.type)) return;
@@ -89,7 +89,7 @@ void Engine::settle() {
   if (settling_) return;
   settling_ = true;
   do {
-    while (scriptsBegin_ || !queue_.empty()) {
+    while (scriptsToStart_ || !queue_.empty()) {
       if (++inCascade_ > maximumEvents) {
         if (!overflow_)
           diagnostics_.warn({}, fmt::format("more than {} events at time {}: the rest is dropped",
@@ -99,14 +99,14 @@ void Engine::settle() {
         if (scripts) scripts->drop();
         break;
       }
-      if (scriptsBegin_ && (scriptsBegin_ = scripts && scripts->initializeNext())) continue;
+      if (scriptsToStart_ && (scriptsToStart_ = scripts && scripts->initializeNext())) continue;
       if (queue_.empty()) break;
       Event event = std::move(queue_.front());
       queue_.pop_front();
-      if (event.arriving)
-        arrive(*event.node, *event.field, event.value);
+      if (event.isArriving)
+        deliver(*event.node, *event.field, event.value);
       else
-        leave(event);
+        followLinks(event);
     }
   } while (!overflow_ && ((scripts && scripts->eventsProcessed()) || observer->settled()));
   settling_ = false;
@@ -115,21 +115,22 @@ void Engine::settle() {
   if (scripts) scripts->finish();
 }
 
-// Follows the links of an eventOut. Routes added meanwhile are not followed, deleted ones neither.
-void Engine::leave(Event& event) {
+// Follows the links of an eventOut. Routes added or deleted meanwhile are not followed.
+void Engine::followLinks(Event& event) {
   Node& node = *event.node;
   const size_t count = part(node).links.size();
   for (size_t i = 0; i < count; ++i) {
     const Link link = part(node).links[i];
-    if (link.out != event.field || !link.carriesOut() || !link.leads()) continue;
+    if (link.out != event.field || !link.isOutgoing() || !link.isConnected()) continue;
     const NodeRef keep(link.instance);
-    if (link.instance) // that a field has changed the instance knows already: see mirror()
-      relay(*link.instance, *link.in, event.value, event.field->access == Access::eventOut);
+    if (link.instance) // a field's change has already reached the instance through mirror()
+      sendFromInstance(*link.instance, *link.in, event.value,
+                       event.field->access == Access::eventOut);
     else
-      arrive(*link.to, *link.in, event.value);
+      deliver(*link.to, *link.in, event.value);
   }
   if (!part(node).listeners.empty()) {
-    const auto listeners = part(node).listeners; // one may remove itself
+    const auto listeners = part(node).listeners; // a copy, because a listener may remove itself
     for (const auto& [number, listener] : listeners)
       if (listener.first == event.field) listener.second(node, *event.field, event.value);
   }
@@ -137,18 +138,19 @@ void Engine::leave(Event& event) {
     part(node).out(*event.field).last = std::move(event.value);
 }
 
-void Engine::arrive(Node& node, const FieldInfo& in, const Value& value) {
+void Engine::deliver(Node& node, const FieldInfo& in, const Value& value) {
   ++delivered_;
-  if (node.type().index >= 0) return arriveAtStatic(node, in, value);
+  if (node.type().index >= 0) return deliverToStatic(node, in, value);
   if (auto* instance = dynamic_cast<ProtoInstance*>(&node))
-    return arriveAtInstance(*instance, in, value);
+    return deliverToInstance(*instance, in, value);
   auto& script = static_cast<ScriptNode&>(node);
   if (in.access == Access::exposedField && store(node, in, value)) send(node, in, value);
   if (scripts) scripts->receive(script, in, value);
 }
 
-// Clause 4.7: an exposedField takes the value and sends it on.
-void Engine::arriveAtStatic(Node& node, const FieldInfo& in, const Value& value) {
+// Delivers an event to a built-in node. An exposedField stores the value and sends it on (clause
+// 4.7).
+void Engine::deliverToStatic(Node& node, const FieldInfo& in, const Value& value) {
   const Behaviour* behaviour = behaviourOf(node.type());
   if (in.access == Access::exposedField) {
     if (behaviour && behaviour->accept && !behaviour->accept(*this, node, in, value)) return;
@@ -162,21 +164,24 @@ void Engine::arriveAtStatic(Node& node, const FieldInfo& in, const Value& value)
   if (behaviour && behaviour->receive) behaviour->receive(*this, node, in, value);
 }
 
-// Into the body; an exposedField that no exposedField in the body IS keeps its value itself.
-void Engine::arriveAtInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value) {
+// Forwards an event into the body. An exposedField stores its value itself, unless an exposedField
+// in the body IS it.
+void Engine::deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value) {
   bool kept = false;
   for (const Link& link : part(instance).links) {
     if (link.kind != Link::Kind::intoBody || link.out != &in || !link.to) continue;
-    for (const Link& back : part(*link.to).links) // it will send the value back
+    for (const Link& back : part(*link.to).links) // this one will send the value back
       kept |= back.instance == &instance && back.in == &in && back.out == link.in &&
               link.in->access == Access::exposedField;
     queue_.push_back({link.to, link.in, value, true});
   }
-  if (!kept && in.access == Access::exposedField) relay(instance, in, value, true);
+  if (!kept && in.access == Access::exposedField) sendFromInstance(instance, in, value, true);
 }
 
-// Out of the body: the instance's eventOut or exposedField sends what the node in it has sent.
-void Engine::relay(ProtoInstance& instance, const FieldInfo& out, const Value& value, bool keeps) {
+// Sends an event out of the body: the instance's eventOut or exposedField sends what the node in
+// the body has sent.
+void Engine::sendFromInstance(ProtoInstance& instance, const FieldInfo& out, const Value& value,
+                              bool keeps) {
   if (keeps && out.access == Access::exposedField) store(instance, out, value);
   send(instance, out, value);
 }
@@ -190,8 +195,8 @@ bool Engine::dispatch(Node& to, std::string_view in, Value value) {
   return true;
 }
 
-// Nodes may end, and others begin, while the functions run: those there were at the beginning and
-// still are get called.
+// Calls a function of all watchers. Nodes may be destroyed or added meanwhile: only nodes that
+// existed at the beginning and still exist are called.
 void Engine::callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&)) {
   std::vector<NodeRef> nodes;
   nodes.reserve(watchers.size());
@@ -203,10 +208,10 @@ void Engine::callAll(const Watchers& watchers, void (*Behaviour::*function)(Even
 }
 
 void Engine::tick(double time) {
-  if (settling_) return; // a listener or a Script must not move time
+  if (settling_) return; // listeners and Scripts cannot advance time
   beginCascade(std::max(time, now_));
   observer->ticked();
-  settling_ = true; // what their functions do waits for its turn
+  settling_ = true; // events of these functions wait in the queue
   if (scripts) scripts->tick();
   settling_ = false;
   callAll(ticking_, &Behaviour::tick);

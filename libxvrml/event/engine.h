@@ -1,6 +1,6 @@
-// engine.h: the event engine of ISO/IEC 14772-1 4.10: routes, cascades, who is part of the world.
-// One queue, no recursion, no clock of its own: time is an argument. Owned by the Browser; on its
-// thread.
+// engine.h: the event engine of ISO/IEC 14772-1 4.10: routes, event cascades, and membership in the
+// world. It has one queue, no recursion and no clock: time is an argument. The Browser owns it.
+// [the browser's thread]
 #pragma once
 
 #include <deque>
@@ -13,82 +13,83 @@
 
 namespace xvrml {
 
-// Runs Script nodes; the engine hands their events over.
+// Runs Script nodes. The engine passes their events to it.
 class ScriptRunner {
  public:
   virtual ~ScriptRunner() = default;
-  virtual void begin(ScriptNode& script) = 0; // part of the world now
-  virtual bool
-  initializeNext() = 0; // starts the first of those that have begun; false if there is none
+  virtual void begin(ScriptNode& script) = 0; // the Script has become part of the world
+  // Starts the first Script that has begun but is not started. Returns false if there is none.
+  virtual bool initializeNext() = 0;
   virtual void receive(ScriptNode& script, const FieldInfo& in, const Value& value) = 0;
-  // Calls eventsProcessed() of all Scripts that received something since; true if there was one.
+  // Calls eventsProcessed() of all Scripts that have received events since the last call. Returns
+  // true if there were any.
   virtual bool eventsProcessed() = 0;
-  virtual void drop() = 0; // events that still wait are dropped
-  virtual void tick() = 0; // time has come to now()
-  virtual void
-  end(ScriptNode& script) noexcept = 0; // is being destroyed; called wherever that happens
-  virtual void finish() = 0;            // a good time to shut down those that have ended
+  virtual void drop() = 0; // drops the events that still wait
+  virtual void tick() = 0; // time has advanced to now()
+  // The Script is being destroyed. May be called at any point.
+  virtual void end(ScriptNode& script) noexcept = 0;
+  virtual void finish() = 0; // Scripts that have ended can be shut down now
 };
 
-// Is told what happens in a running world while it happens. The Browser injects the one of the
-// viewer.
+// Is notified of everything that happens in a running world. The Browser injects the viewer's
+// observer.
 class EngineObserver {
  public:
   virtual ~EngineObserver() = default;
-  virtual void began(const Scope& scope) = 0; // the file's own nodes are part of the world now
-  virtual void
-  changed(Node& node,
-          const FieldInfo& field) = 0;          // every change that takeChanges would tell, at once
-  virtual void forgotten(const Node& node) = 0; // is being destroyed
-  virtual void ticked() = 0;                    // time has come to now(); before tick() functions
-  virtual bool settled() = 0; // nothing is left to do: true if it has sent something
+  virtual void began(const Scope& scope) = 0; // the file's own nodes have become part of the world
+  // Called at once for each change that takeChanges would report.
+  virtual void changed(Node& node, const FieldInfo& field) = 0;
+  virtual void forgotten(const Node& node) = 0; // the node is being destroyed
+  virtual void ticked() = 0;  // time has advanced to now(); before the tick() functions
+  virtual bool settled() = 0; // no event is left; returns true if it has sent one
 };
 
 class Engine : public Events {
  public:
-  // Makes the observer of an engine that is being constructed. It may keep the reference, and call
-  // it from began() on.
+  // Makes the observer of an engine that is being constructed. The observer may keep the reference,
+  // and use it from began() on.
   using MakeObserver = std::function<std::unique_ptr<EngineObserver>(Engine&)>;
   Engine(Diagnostics& diagnostics, const MakeObserver& makeObserver, Browser* browser = nullptr);
   ~Engine();
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  uint64_t maximumEvents = 1'000'000; // of one cascade; more are dropped with a message
+  uint64_t maximumEvents = 1'000'000; // limit for one cascade; more are dropped with a message
   ScriptRunner* scripts = nullptr;    // not owned; null: Scripts do nothing
   const std::unique_ptr<EngineObserver> observer;
 
-  // Makes everything in a scope part of the world: nodes, routes, bodies of prototypes, Inlines.
-  // roots: its nodes are roots of the world. Scopes and what they hold must outlive the engine or
-  // be taken out.
+  // Makes everything in a scope part of the world: nodes, routes, prototype bodies, Inlines. roots:
+  // its nodes become roots of the world. Scopes and their contents must outlive the engine or be
+  // removed first.
   void adoptScope(const Scope& scope, bool roots);
-  void adopt(Node& node);               // a node and all below
+  void adopt(Node& node);               // adds a node and its descendants
   void contentLoaded(Node& inlineNode); // an Inline that is part of the world has got its content
-  void
-  contentLeaves(Node& inlineNode); // is about to lose it: its nodes lose a parent, its routes end
-  // Makes a node a root of the world, or no longer one (its routes stay).
+  // An Inline is about to lose its content: the nodes lose a parent, the routes end.
+  void contentUnloading(Node& inlineNode);
+  // Make a node a root of the world, or no longer a root (its routes stay).
   void addRoot(Node& node);
   void removeRoot(Node& node);
 
-  // Another world is to come: of all nodes only these remain, with what hangs below them and what
-  // their routes lead to; none is a root any more. Not while events are under way.
+  // Prepares for another world: only these nodes remain, with their descendants and the targets of
+  // their routes. None of them is a root afterwards. Not to be called while events are under way.
   void keepOnly(const std::vector<NodeRef>& kept);
   size_t nodes() const { return lives_.size(); }
 
-  // False, with a message, if there are no such events or their types differ; adding a route twice
-  // is adding it once.
+  // Adds a route. Returns false, with a message, if there are no such events or their types differ.
+  // A route that is added twice exists once.
   bool addRoute(Node& from, std::string_view out, Node& to, std::string_view in);
   bool deleteRoute(Node& from, std::string_view out, Node& to, std::string_view in);
   uint64_t routes() const { return routes_; }
 
-  // Everything posted or sent from here on has one time and belongs to one cascade, until it has
-  // settled.
+  // Begins a cascade. Everything posted or sent until it has settled belongs to it and has its
+  // time.
   void beginCascade(double time);
   void settle();
-  // One event from outside as a cascade of its own at the present time. False if the node has no
-  // such eventIn or the type does not match.
+  // Sends one event from outside as a cascade of its own at the present time. Returns false if the
+  // node has no such eventIn or the type does not match.
   bool dispatch(Node& to, std::string_view in, Value value);
-  // Time has come: tick() functions and their cascade, then look() functions and theirs.
+  // Advances the time: runs the tick() functions and their cascade, then the look() functions and
+  // theirs.
   void tick(double time);
   bool settling() const { return settling_; }
 
@@ -97,14 +98,13 @@ class Engine : public Events {
   void markReach(Node& node, const FieldInfo& in, const std::string& reason);
   FieldChanges takeChanges();
   bool hasChanges() const { return !changes_.empty() || !outdated_.empty(); }
-  uint64_t delivered() const { return delivered_; } // events so far
-  uint64_t structure() const {
-    return structure_;
-  } // grows whenever nodes get or lose a parent or become roots or no longer
+  uint64_t delivered() const { return delivered_; } // number of events so far
+  // Grows whenever nodes get or lose a parent, or become or cease to be roots.
+  uint64_t structure() const { return structure_; }
   uint64_t cascade() const { return cascade_; }
-  // Some Script is to be started before the next event.
-  void scriptsBegin() { scriptsBegin_ = true; }
-  // Calls look() of all that want it, within the present cascade.
+  // Announces a Script that must be started before the next event.
+  void requestScriptStart() { scriptsToStart_ = true; }
+  // Calls all active look() functions within the present cascade.
   void lookNow() { callAll(looking_, &Behaviour::look); }
 
  private:
@@ -113,47 +113,48 @@ class Engine : public Events {
     NodeRef node;
     const FieldInfo* field;
     Value value;
-    bool arriving; // at an eventIn of node; else it leaves an eventOut
+    bool isArriving; // true: arrives at an eventIn of node; false: is sent by an eventOut of node
   };
-  struct Newcomers; // what an adoption has met
+  struct AdoptedNodes; // nodes and scopes that an adoption collects
   Live& makeLive(Node& node);
   Participant& part(Node& node);
   static void forget(LiveBase* base) noexcept;
-  void enter(Node& node, Newcomers& newcomers);
-  void enterScope(const Scope& scope, Newcomers& newcomers);
-  void complete(Newcomers& newcomers);
+  void collect(Node& node, AdoptedNodes& adopted);
+  void collectScope(const Scope& scope, AdoptedNodes& adopted);
+  void complete(AdoptedNodes& adopted);
   void connectBody(ProtoInstance& instance);
   void mirror(Node& node, const FieldInfo& stored);
   void disconnectBody(ProtoInstance& instance);
-  void bury(std::unique_ptr<Participant> part) noexcept;
+  void destroyLater(std::unique_ptr<Participant> part) noexcept;
   void linkChild(Node& parent, Node& child);
   void unlinkChild(Node& parent, Node& child);
   void rootsChanged();
-  bool wouldLoop(Node& parent, const Value& value);
+  bool wouldCreateCycle(Node& parent, const Value& value);
   void addLink(Node& from, Link link);
-  void leave(Event& event);
-  void arrive(Node& node, const FieldInfo& in, const Value& value);
-  void arriveAtInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value);
-  void arriveAtStatic(Node& node, const FieldInfo& in, const Value& value);
-  void relay(ProtoInstance& instance, const FieldInfo& out, const Value& value, bool keeps);
+  void followLinks(Event& event);
+  void deliver(Node& node, const FieldInfo& in, const Value& value);
+  void deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value);
+  void deliverToStatic(Node& node, const FieldInfo& in, const Value& value);
+  void sendFromInstance(ProtoInstance& instance, const FieldInfo& out, const Value& value,
+                        bool keeps);
   void sweep();
   void renewExpansions();
   void renewExpansion(Node& node);
-  void takeOver(Node& old, Node& fresh);
-  using Watchers = std::map<uint32_t, Node*>; // by order
+  void reuseNodes(Node& old, Node& fresh);
+  using Watchers = std::map<uint32_t, Node*>; // by Live::order
   void callAll(const Watchers& watchers, void (*Behaviour::*function)(Events&, Node&));
 
   std::vector<Live*> lives_;
   std::deque<Event> queue_;
   Watchers ticking_, looking_;
   FieldChanges changes_;
-  std::vector<NodeRef> outdated_; // nodes of plug-ins that may stand for something else now
+  std::vector<NodeRef> outdated_; // plug-in nodes whose expansion may have changed
   std::vector<NodeRef> swept_;    // nodes with deleted links
-  std::vector<std::unique_ptr<Participant>> buried_;
+  std::vector<std::unique_ptr<Participant>> pendingDestruction_;
   uint64_t structure_ = 0, cascade_ = 0, delivered_ = 0, inCascade_ = 0, routes_ = 0,
            listeners_ = 0;
   uint32_t order_ = 0;
-  bool settling_ = false, overflow_ = false, scriptsBegin_ = false, burying_ = false;
+  bool settling_ = false, overflow_ = false, scriptsToStart_ = false, destroying_ = false;
 };
 
 } // namespace xvrml

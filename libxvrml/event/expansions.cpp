@@ -1,6 +1,6 @@
-// expansions.cpp: keeps what nodes of plug-ins stand for up to date in a running world. A new
-// answer is compared with the former one: equal parts stay as they are, the others get new values,
-// so that only they are changes for those who draw. See engine.h.
+// expansions.cpp: keeps the expansions of plug-in nodes up to date in a running world. A new
+// expansion is compared with the old one. Equal parts stay, and the others get new values, so that
+// the renderer sees only real changes.
 #include <algorithm>
 
 #include "event/engine.h"
@@ -10,22 +10,22 @@
 namespace xvrml {
 namespace {
 
-// A node of the former answer that can take the place of one in the new answer.
-bool canTakeOver(const NodeRef& old, const NodeRef& fresh) {
+// Returns whether a node of the old expansion can stay in place of one in the new expansion.
+bool canReuse(const NodeRef& old, const NodeRef& fresh) {
   return old && fresh && &old->type() == &fresh->type() && isMadeByPlugin(*old) &&
          isMadeByPlugin(*fresh) && !fresh->live;
 }
 
 bool sameNodes(const MFNode& old, const MFNode& fresh) {
   return std::equal(old.begin(), old.end(), fresh.begin(), fresh.end(),
-                    [](const NodeRef& a, const NodeRef& b) { return a == b || canTakeOver(a, b); });
+                    [](const NodeRef& a, const NodeRef& b) { return a == b || canReuse(a, b); });
 }
 
 } // namespace
 
 void Engine::renewExpansions() {
-  // One that stands for a node of another plug-in outdates that one; more rounds than plug-ins nest
-  // are none.
+  // Expanding a node may outdate a node of another plug-in. 32 rounds are enough for nested
+  // plug-ins.
   for (int round = 0; !outdated_.empty() && round < 32; ++round) {
     std::vector<NodeRef> nodes = std::exchange(outdated_, {});
     std::sort(nodes.begin(), nodes.end(), [](const NodeRef& a, const NodeRef& b) {
@@ -43,15 +43,15 @@ void Engine::renewExpansion(Node& node) {
   if (!place) return;
   const NodeRef fresh = makeExpansion(node);
   if (*place == fresh) return;
-  if (canTakeOver(*place, fresh)) return takeOver(**place, *fresh);
+  if (canReuse(*place, fresh)) return reuseNodes(**place, *fresh);
   const NodeRef old = std::exchange(*place, fresh);
   if (old && old->live) unlinkChild(node, *old);
   if (fresh) {
     adopt(*fresh);
     linkChild(node, *fresh);
   }
-  // For those who hold the node, or the prototype instance it stands in, their field has another
-  // value.
+  // For the nodes that hold this node, or the prototype instance it stands for, the value of a
+  // field has changed.
   std::vector<Node*> open{&node};
   for (size_t i = 0; i < open.size() && i < 10'000; ++i) {
     const Node* child = open[i];
@@ -68,9 +68,8 @@ void Engine::renewExpansion(Node& node) {
   }
 }
 
-// The former nodes get the new ones' values; those that are no values but made nodes are compared
-// in turn.
-void Engine::takeOver(Node& old, Node& fresh) {
+// Gives the old nodes the values of the new ones. Nodes made by the plug-in are compared in turn.
+void Engine::reuseNodes(Node& old, Node& fresh) {
   std::vector<std::pair<NodeRef, NodeRef>> open{{NodeRef(&old), NodeRef(&fresh)}};
   while (!open.empty()) {
     const auto [to, from] = open.back();
@@ -81,7 +80,7 @@ void Engine::takeOver(Node& old, Node& fresh) {
       if (before == after) continue;
       if (field.type == FieldType::SFNode) {
         const NodeRef &a = std::get<NodeRef>(before), &b = std::get<NodeRef>(after);
-        if (canTakeOver(a, b)) {
+        if (canReuse(a, b)) {
           open.emplace_back(a, b);
           continue;
         }

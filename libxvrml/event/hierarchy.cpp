@@ -1,3 +1,4 @@
+// hierarchy.cpp: walks the graph down through fields, and up through the parents in Live.
 #include "event/hierarchy.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ void holdersOf(const Node& node, std::vector<Node*>& holders) {
 std::vector<Path> pathsTo(const Node& node, size_t limit) {
   struct Open {
     Node* node;
-    size_t next; // parent to visit
+    size_t next; // next parent to visit
   };
   std::vector<Path> paths;
   if (!node.live) return paths;

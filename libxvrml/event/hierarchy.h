@@ -1,6 +1,6 @@
-// hierarchy.h: the transformation hierarchy of a running world (clause 4.4.4): what hangs below a
-// node, and the ways that lead to it. A prototype instance holds the first node of its body, an
-// Inline what it loaded; Scripts hold nothing. [the browser's thread]
+// hierarchy.h: the transformation hierarchy of a running world (clause 4.4.4): children and paths.
+// A prototype instance has the first node of its body as its child, an Inline the nodes it loaded.
+// Scripts have no children. [the browser's thread]
 #pragma once
 
 #include "event/live.h"
@@ -8,25 +8,25 @@
 
 namespace xvrml {
 
-// Calls visit(Node&) for each node directly below, in the order of the fields; a node held twice is
-// visited twice.
+// Appends the children of a node, in the order of its fields. A node that is held twice appears
+// twice.
 void childrenInHierarchy(Node& node, std::vector<Node*>& out);
 
-using Path = std::vector<Node*>; // from a root of the world to the node, prototype instances and
-                                 // Inlines included
+// The nodes from a root of the world to a node, prototype instances and Inlines included.
+using Path = std::vector<Node*>;
 
-// Every way from the roots to a node that is part of the world, in no particular order; at most
-// `limit` of them. Empty if the node hangs nowhere.
+// Returns all paths from the roots to a node that is part of the world, in no particular order, at
+// most `limit`. Empty if no path leads to it.
 std::vector<Path> pathsTo(const Node& node, size_t limit = 1000);
 
-// True if a way leads from a root of the world to the node.
+// Returns true if a path leads from a root of the world to the node.
 bool isInScene(const Node& node);
 
-// The coordinate system of a path's last node's children: the product of its Transforms. Billboards
-// are taken as unturned.
+// Returns the matrix of a path: the product of its Transforms. It maps the coordinates of the last
+// node's children to the world. Billboards are taken as not rotated.
 Matrix localToWorld(const Path& path);
 
-// False if a Switch on the path leads elsewhere. LODs are taken to show any level.
+// Returns false if a Switch on the path has chosen another child. LODs count as showing any level.
 bool isChosen(const Path& path);
 
 } // namespace xvrml

@@ -1,6 +1,6 @@
-// live.h: what a running world knows of a node: where it hangs, and its part in the events. Made
-// when the node becomes part of the world, gone with the node or the world. Only event/ writes
-// here. [the browser's thread]
+// live.h: the event engine's data for each node of a running world: its parents and its links. It
+// is made when the node becomes part of the world and destroyed with the node or the world. Only
+// event/ writes to it. [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -17,38 +17,40 @@ namespace xvrml {
 
 class Engine;
 
-// From an eventOut to an eventIn of another node, or across a prototype's border (clause 4.8.2:
-// IS).
+// A connection from an eventOut to an eventIn of another node, or between a prototype instance and
+// its body (clause 4.8.2: IS).
 struct Link {
-  // keepsField: no events: a field of the instance has the value of the exposedField that IS it,
-  // for whoever writes the world.
-  enum class Kind : uint8_t { route, intoBody, outOfBody, keepsField };
+  // mirrorsField carries no events: a field of the instance mirrors the value of the exposedField
+  // that IS it, so that a written world contains it.
+  enum class Kind : uint8_t { route, intoBody, outOfBody, mirrorsField };
   const FieldInfo* out;
-  NodeRef to; // null: deleted, swept after the cascade
+  NodeRef to; // null: deleted, removed after the cascade
   const FieldInfo* in;
   Kind kind = Kind::route;
-  ProtoInstance* instance =
-      nullptr; // outOfBody, keepsField: instead of `to`: it holds its body, which must not hold it
+  // For outOfBody and mirrorsField, instead of `to`: a raw pointer, because the instance owns its
+  // body and the body must not own the instance.
+  ProtoInstance* instance = nullptr;
 
-  bool carriesOut() const { return kind == Kind::route || kind == Kind::outOfBody; }
-  bool leads() const { return to || instance; }
+  bool isOutgoing() const { return kind == Kind::route || kind == Kind::outOfBody; }
+  bool isConnected() const { return to || instance; }
 };
 
 using Listener = std::function<void(Node& node, const FieldInfo& out, const Value& value)>;
 
+// A node's state in the event engine, made when it is first needed.
 struct Participant {
   struct Out {
     const FieldInfo* field;
-    uint64_t cascade = 0; // the last one it sent in
-    Value last;           // of an eventOut
+    uint64_t cascade = 0; // the last cascade in which it sent
+    Value last;           // the last value of an eventOut
   };
-  std::vector<Link> links; // by their order of making
-  std::vector<Out> outs;   // those that have sent
+  std::vector<Link> links; // in the order in which they were made
+  std::vector<Out> outs;   // outputs that have sent
   std::vector<std::pair<uint64_t, std::pair<const FieldInfo*, Listener>>> listeners; // by number
-  std::vector<std::pair<Change, std::string>> reasons; // of the bits in Live::reach
+  std::vector<std::pair<Change, std::string>> reasons; // reasons for the bits in Live::reach
   std::unique_ptr<NodeState> state;
-  std::set<std::tuple<const FieldInfo*, const Node*, const FieldInfo*, Link::Kind>>
-      index; // of links, if there are many
+  // Index of `links`, used only if there are many.
+  std::set<std::tuple<const FieldInfo*, const Node*, const FieldInfo*, Link::Kind>> index;
 
   bool holds(const Link& link) const;
   void add(Link link);
@@ -59,13 +61,15 @@ struct Participant {
 struct Live : LiveBase {
   Engine* engine;
   Node* node;
-  size_t slot;                // in Engine's list
-  uint32_t order;             // in which nodes became part of the world
-  uint16_t reach = 0;         // see xvrml/change.h
-  bool root = false;          // of the world
-  uint64_t changed = 0;       // fields already in the list of changes, by index in the type
-  std::vector<Node*> parents; // nodes that have it among their children, once for each time; bodies
-                              // and Inlines included
+  size_t slot;        // index in Engine's list
+  uint32_t order;     // position in the order in which nodes became part of the world
+  uint16_t reach = 0; // kinds of change that events may bring (xvrml/change.h)
+  bool root = false;  // is a root of the world
+  // Bit set of the fields already in the list of changes, by index in the type.
+  uint64_t changed = 0;
+  // Nodes that have it among their children, once for each time. Includes prototype instances and
+  // Inlines.
+  std::vector<Node*> parents;
   std::unique_ptr<Participant> part;
 };
 

@@ -1,5 +1,5 @@
-// membership.cpp: who is part of a running world: adoption of nodes and scopes, parents, and the
-// end of nodes. See engine.h.
+// membership.cpp: membership in a running world: adoption of nodes and scopes, parents, and the
+// removal of nodes.
 #include <algorithm>
 #include <new>
 #include <utility>
@@ -13,7 +13,7 @@
 
 namespace xvrml {
 
-struct Engine::Newcomers {
+struct Engine::AdoptedNodes {
   std::vector<NodeRef> nodes; // in the order of the files
   std::vector<ProtoInstance*> instances;
   std::vector<const Scope*> scopes;
@@ -34,12 +34,13 @@ Live& Engine::makeLive(Node& node) {
 }
 
 Engine::~Engine() {
-  // Links may hold the last reference to a node: they go when no node knows of the engine any more.
+  // Links may hold the last reference to a node, so they are destroyed after all nodes have been
+  // detached from the engine.
   for (Live* live : lives_) live->node->live = nullptr;
   for (Live* live : std::exchange(lives_, {})) delete live;
 }
 
-// The node is about to be destroyed; what it holds is still there.
+// Called when a node is about to be destroyed. Its children still exist.
 void Engine::forget(LiveBase* base) noexcept {
   auto* live = static_cast<Live*>(base);
   Engine& engine = *live->engine;
@@ -48,7 +49,7 @@ void Engine::forget(LiveBase* base) noexcept {
     childrenInHierarchy(*live->node, children);
     for (Node* child : children)
       if (child && child->live) engine.unlinkChild(*live->node, *child);
-  } catch (const std::bad_alloc&) { // nobody may keep the node as a parent
+  } catch (const std::bad_alloc&) { // no node may keep it as a parent
     for (Live* other : engine.lives_) std::erase(other->parents, live->node);
     ++engine.structure_;
   }
@@ -66,21 +67,21 @@ void Engine::forget(LiveBase* base) noexcept {
   live->node->live = nullptr;
   std::unique_ptr<Participant> part = std::move(live->part);
   delete live;
-  if (part) engine.bury(std::move(part));
+  if (part) engine.destroyLater(std::move(part));
 }
 
-// Links may hold the last reference to the next node, and so on down a long chain of routes: one
-// after the other, not one within the other.
-void Engine::bury(std::unique_ptr<Participant> part) noexcept {
+// Destroys a node's links. A link may hold the last reference to the next node, and so on along a
+// chain of routes. The queue destroys them one after the other instead of recursively.
+void Engine::destroyLater(std::unique_ptr<Participant> part) noexcept {
   try {
-    buried_.push_back(std::move(part));
-  } catch (const std::bad_alloc&) { return; } // the stack has to do
-  if (std::exchange(burying_, true)) return;
-  while (!buried_.empty()) {
-    const std::unique_ptr<Participant> next = std::move(buried_.back());
-    buried_.pop_back();
+    pendingDestruction_.push_back(std::move(part));
+  } catch (const std::bad_alloc&) { return; } // no memory for the queue: fall back to recursion
+  if (std::exchange(destroying_, true)) return;
+  while (!pendingDestruction_.empty()) {
+    const std::unique_ptr<Participant> next = std::move(pendingDestruction_.back());
+    pendingDestruction_.pop_back();
   }
-  burying_ = false;
+  destroying_ = false;
 }
 
 void Engine::linkChild(Node& parent, Node& child) {
@@ -95,20 +96,20 @@ void Engine::unlinkChild(Node& parent, Node& child) {
   if (found != parents.rend()) parents.erase(std::next(found).base());
 }
 
-// A node and what it holds, without recursion.
-void Engine::enter(Node& first, Newcomers& newcomers) {
+// Collects a node and its descendants, without recursion.
+void Engine::collect(Node& first, AdoptedNodes& adopted) {
   std::vector<Node*> open{&first}, below;
   while (!open.empty()) {
     Node& node = *open.back();
     open.pop_back();
     if (node.live) continue;
     makeLive(node);
-    newcomers.nodes.emplace_back(&node);
+    adopted.nodes.emplace_back(&node);
     below.clear();
-    if (const Scope* content = inlineScope(node)) newcomers.scopes.push_back(content);
+    if (const Scope* content = inlineScope(node)) adopted.scopes.push_back(content);
     if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
-      newcomers.instances.push_back(instance);
-      newcomers.scopes.push_back(&instance->body);
+      adopted.instances.push_back(instance);
+      adopted.scopes.push_back(&instance->body);
       for (size_t i = 1; i < instance->body.roots.size(); ++i)
         below.push_back(instance->body.roots[i].get());
       for (const IsConnection& c : instance->is) below.push_back(c.node.get());
@@ -122,41 +123,41 @@ void Engine::enter(Node& first, Newcomers& newcomers) {
   }
 }
 
-void Engine::enterScope(const Scope& scope, Newcomers& newcomers) {
+void Engine::collectScope(const Scope& scope, AdoptedNodes& adopted) {
   for (const NodeRef& root : scope.roots)
-    if (root) enter(*root, newcomers);
-  newcomers.scopes.push_back(&scope);
+    if (root) collect(*root, adopted);
+  adopted.scopes.push_back(&scope);
 }
 
-// Parents, prototypes' borders, routes, behaviours, in this order: each needs those before it for
-// all newcomers.
-void Engine::complete(Newcomers& newcomers) {
+// Adds the collected nodes: first parents, then links of prototype bodies, routes and behaviours.
+// Each step needs the one before it for all nodes.
+void Engine::complete(AdoptedNodes& adopted) {
   std::vector<Node*> below;
   for (size_t done = 0, scopes = 0;
-       done < newcomers.nodes.size() || scopes < newcomers.scopes.size();) {
-    for (; done < newcomers.nodes.size(); ++done) {
+       done < adopted.nodes.size() || scopes < adopted.scopes.size();) {
+    for (; done < adopted.nodes.size(); ++done) {
       below.clear();
-      childrenInHierarchy(*newcomers.nodes[done], below);
+      childrenInHierarchy(*adopted.nodes[done], below);
       for (Node* child : below)
-        if (child) linkChild(*newcomers.nodes[done], *child);
+        if (child) linkChild(*adopted.nodes[done], *child);
     }
-    for (; scopes < newcomers.scopes.size();
-         ++scopes) { // a route may hold nodes that nothing else does
-      for (const Route& route : newcomers.scopes[scopes]->routes) {
-        if (route.from) enter(*route.from, newcomers);
-        if (route.to) enter(*route.to, newcomers);
+    // A route may hold nodes that nothing else holds.
+    for (; scopes < adopted.scopes.size(); ++scopes) {
+      for (const Route& route : adopted.scopes[scopes]->routes) {
+        if (route.from) collect(*route.from, adopted);
+        if (route.to) collect(*route.to, adopted);
       }
     }
   }
-  for (ProtoInstance* instance : newcomers.instances) connectBody(*instance);
-  for (const Scope* scope : newcomers.scopes)
+  for (ProtoInstance* instance : adopted.instances) connectBody(*instance);
+  for (const Scope* scope : adopted.scopes)
     for (const Route& route : scope->routes)
       if (route.from && route.to) addRoute(*route.from, route.fromField, *route.to, route.toField);
-  for (const NodeRef& node : newcomers.nodes) {
+  for (const NodeRef& node : adopted.nodes) {
     if (auto* script = dynamic_cast<ScriptNode*>(node.get())) {
       if (!scripts) continue;
       scripts->begin(*script);
-      scriptsBegin_ = true;
+      scriptsToStart_ = true;
     } else if (const Behaviour* behaviour = behaviourOf(node->type());
                behaviour && behaviour->begin) {
       part(*node).state = behaviour->begin(*this, *node);
@@ -165,20 +166,20 @@ void Engine::complete(Newcomers& newcomers) {
 }
 
 void Engine::adoptScope(const Scope& scope, bool roots) {
-  Newcomers newcomers;
-  enterScope(scope, newcomers);
+  AdoptedNodes adopted;
+  collectScope(scope, adopted);
   if (roots)
     for (const NodeRef& root : scope.roots)
       if (root) liveOf(*root)->root = true;
-  complete(newcomers);
+  complete(adopted);
   if (roots) observer->began(scope);
 }
 
 void Engine::adopt(Node& node) {
   if (node.live) return;
-  Newcomers newcomers;
-  enter(node, newcomers);
-  complete(newcomers);
+  AdoptedNodes adopted;
+  collect(node, adopted);
+  complete(adopted);
 }
 
 void Engine::contentLoaded(Node& inlineNode) {
@@ -189,9 +190,9 @@ void Engine::contentLoaded(Node& inlineNode) {
     if (root) linkChild(inlineNode, *root);
 }
 
-// Routes hold their nodes: those of content that goes would keep it alive. An Inline that shares
-// its content has none.
-void Engine::contentLeaves(Node& inlineNode) {
+// Routes hold their nodes, and those of the old content would keep it alive. An Inline that shares
+// its content has no routes.
+void Engine::contentUnloading(Node& inlineNode) {
   const Scope* content = inlineScope(inlineNode);
   if (!content || !inlineNode.live) return;
   for (const Route& route : content->routes)
@@ -257,8 +258,8 @@ void Engine::rootsChanged() {
   if (!known) changes_.push_back({NodeRef(), nullptr});
 }
 
-// Would a node that is to be a child of parent hold parent itself?
-bool Engine::wouldLoop(Node& parent, const Value& value) {
+// Returns whether a new child of `parent` would have `parent` as a descendant.
+bool Engine::wouldCreateCycle(Node& parent, const Value& value) {
   std::unordered_set<const Node*> above{&parent};
   std::vector<Node*> open{&parent};
   while (!open.empty()) {
@@ -290,7 +291,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
     const bool keeps = keepsNull(field) || !inHierarchy;
     if (auto* many = std::get_if<MFNode>(&value))
       std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
-    if (inHierarchy && engine.wouldLoop(node, value)) {
+    if (inHierarchy && engine.wouldCreateCycle(node, value)) {
       diagnostics_.warn(node.source, fmt::format("{} of {} would hold the node itself (4.4.4)",
                                                  field.name, node.type().name));
       return false;

@@ -1,5 +1,5 @@
-// routes.cpp: links between nodes: ROUTEs, the borders of prototypes, listeners; what events can
-// reach. See engine.h.
+// routes.cpp: links between nodes: ROUTEs, IS connections of prototypes, listeners; and the
+// analysis of which changes events can cause.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -20,8 +20,9 @@ bool isSame(const Link& a, const Link& b) {
          a.instance == b.instance;
 }
 
-// From so many links on a search through all would make a wide fan-out quadratic.
-constexpr size_t manyLinks = 64;
+// From this number of links on they are indexed. A linear search would make a wide fan-out
+// quadratic.
+constexpr size_t indexThreshold = 64;
 auto keyOf(const Link& l) {
   return std::make_tuple(l.out, static_cast<const Node*>(l.to.get()), l.in, l.kind);
 }
@@ -37,7 +38,7 @@ void Participant::add(Link link) {
   links.push_back(std::move(link));
   if (!index.empty())
     index.insert(keyOf(links.back()));
-  else if (links.size() >= manyLinks)
+  else if (links.size() >= indexThreshold)
     for (const Link& l : links) index.insert(keyOf(l));
 }
 
@@ -90,7 +91,7 @@ bool Engine::deleteRoute(Node& from, std::string_view out, Node& to, std::string
   for (Link& link : liveOf(from)->part->links) {
     if (!isSame(link, {source, NodeRef(&to), target, Link::Kind::route})) continue;
     liveOf(from)->part->index.erase(keyOf(link));
-    link.to = {}; // its links may just be followed
+    link.to = {}; // the engine may be following its links
     swept_.emplace_back(&from);
     --routes_;
     if (!settling_) sweep();
@@ -102,19 +103,19 @@ bool Engine::deleteRoute(Node& from, std::string_view out, Node& to, std::string
 void Engine::sweep() {
   for (const NodeRef& node : std::exchange(swept_, {}))
     if (node->live && liveOf(*node)->part)
-      std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.leads(); });
+      std::erase_if(liveOf(*node)->part->links, [](const Link& l) { return !l.isConnected(); });
 }
 
-// Whether nothing else in the body IS the same field: the field could not have the values of both.
-static bool isAlone(const ProtoInstance& instance, const IsConnection& connection) {
+// Returns whether no other connection uses the same interface field, which cannot have two values.
+static bool isOnlyConnection(const ProtoInstance& instance, const IsConnection& connection) {
   return std::none_of(instance.is.begin(), instance.is.end(), [&](const IsConnection& other) {
     return &other != &connection && other.interfaceName == connection.interfaceName;
   });
 }
 
-// A value of a node in a body is that of the instance's field or exposedField that it IS, and of
-// those around it. Without events: of these an eventOut sends one at a time (4.10.3), but a field
-// may be stored more often.
+// Copies a stored value from a node in a body to the instance's field or exposedField that it IS,
+// and on to enclosing instances. No events are sent: an eventOut sends one per cascade (4.10.3),
+// but a field may be stored more often.
 void Engine::mirror(Node& first, const FieldInfo& stored) {
   std::vector<std::pair<Node*, const FieldInfo*>> open{{&first, &stored}};
   while (!open.empty()) {
@@ -132,7 +133,8 @@ void Engine::mirror(Node& first, const FieldInfo& stored) {
   }
 }
 
-// Clause 4.8.2: events cross the border where an interface's event IS one of a node in the body.
+// Links an instance with its body where an event of the interface IS an event of a node in it
+// (clause 4.8.2).
 void Engine::connectBody(ProtoInstance& instance) {
   for (const IsConnection& c : instance.is) {
     const FieldInfo* interface = instance.type().find(c.interfaceName);
@@ -140,8 +142,8 @@ void Engine::connectBody(ProtoInstance& instance) {
     if (interface->access == Access::field) {
       const FieldInfo* of = c.node->type().find(c.field);
       if (of && of->type == interface->type && of->access == Access::exposedField &&
-          isAlone(instance, c))
-        addLink(*c.node, {of, {}, interface, Link::Kind::keepsField, &instance});
+          isOnlyConnection(instance, c))
+        addLink(*c.node, {of, {}, interface, Link::Kind::mirrorsField, &instance});
       continue;
     }
     if (interface->access != Access::eventOut)
@@ -155,7 +157,7 @@ void Engine::connectBody(ProtoInstance& instance) {
   }
 }
 
-// The instance is being destroyed; nodes of its body may live on.
+// Called when the instance is being destroyed. Nodes of its body may live on.
 void Engine::disconnectBody(ProtoInstance& instance) {
   for (const IsConnection& c : instance.is) {
     if (!c.node->live || !liveOf(*c.node)->part) continue;
@@ -166,12 +168,12 @@ void Engine::disconnectBody(ProtoInstance& instance) {
       link.instance = nullptr;
     }
     if (!settling_) {
-      std::erase_if(part.links, [](const Link& l) { return !l.leads(); });
+      std::erase_if(part.links, [](const Link& l) { return !l.isConnected(); });
       continue;
     }
-    try { // its links may just be followed
+    try { // the engine may be following its links
       swept_.push_back(c.node);
-    } catch (const std::bad_alloc&) {} // then links that lead nowhere stay
+    } catch (const std::bad_alloc&) {} // if this fails, unconnected links stay
   }
 }
 
@@ -192,7 +194,7 @@ void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string&
       live.reach |= uint16_t(1 << int(in->change));
       part(*node).reasons.emplace_back(in->change, reason);
     }
-    // A node of a plug-in that can change may stand for anything else then.
+    // If a plug-in's node can change, its expansion can become anything.
     if (Node* standsFor = node->type().expand ? expansionOf(*node) : nullptr) {
       std::vector<Node*> made{standsFor};
       while (!made.empty()) {

@@ -1,4 +1,4 @@
-// bounds.cpp: bounding boxes over the points that indices name.
+// bounds.cpp: bounding boxes over indexed points.
 #include "geometry/bounds.h"
 
 #include <algorithm>

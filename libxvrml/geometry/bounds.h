@@ -1,6 +1,6 @@
-// bounds.h: bounding boxes of points and meshes, over those points only that are drawn (a
-// Coordinate may hold the points of many shapes). Used for default texture mapping and to fit a
-// camera.
+// bounds.h: bounding boxes of points and meshes. Only the points that indices refer to count,
+// because a Coordinate may hold the points of many shapes. Used for default texture mapping and to
+// fit a camera.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,6 @@ struct Box3 {
 };
 
 Box3 boundsOf(std::span<const Vec3f> points, std::span<const uint32_t> indices);
-Box3 boundsOf(const Mesh& mesh); // a sphere's is that of its radius
+Box3 boundsOf(const Mesh& mesh); // uses the radius of a sphere
 
 } // namespace xvrml

@@ -5,8 +5,8 @@
 namespace xvrml {
 namespace {
 
-// A side by its lower left corner and its edges to the right and up, as seen from outside with the
-// texture upright.
+// A side: its lower left corner and its edges to the right and up, as seen from outside. The
+// texture is upright in this view.
 struct Side {
   V3f corner, right, up;
 };
@@ -37,7 +37,7 @@ Mesh buildBox(const nodes::Box& node, const MeshOptions&, Faults& faults) {
       mesh.ownTexCoords.push_back({s, t});
     }
     const auto& p = mesh.ownPoints;
-    if (hasArea(p[first], p[first + 1], p[first + 2])) // a box without height has only two sides
+    if (hasArea(p[first], p[first + 1], p[first + 2])) // a box of height zero has only two sides
       mesh.ownIndices.insert(mesh.ownIndices.end(),
                              {first, first + 1, first + 2, first, first + 2, first + 3});
   }

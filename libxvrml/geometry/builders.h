@@ -1,5 +1,5 @@
-// builders.h: one function a geometry node; buildMesh (mesh.cpp) chooses among them. Called on the
-// caller's thread.
+// builders.h: one function per geometry node. buildMesh (mesh.cpp) chooses among them. Called on
+// the caller's thread.
 #pragma once
 
 #include "geometry/faults.h"
@@ -22,8 +22,8 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
 Mesh buildExtrusion(const nodes::Extrusion& node, const MeshOptions& options, Faults& faults);
 Mesh buildText(const nodes::Text& node, const MeshOptions& options, Faults& faults);
 
-// The arrays of property nodes, empty for NULL and for a node of another type. May be a prototype
-// instance.
+// Return the arrays of property nodes, also through a prototype instance. They return an empty span
+// for NULL and for nodes of another type.
 std::span<const Vec3f> coordinates(const NodeRef& node);
 std::span<const Vec3f> normalVectors(const NodeRef& node);
 std::span<const Color> colorValues(const NodeRef& node);
@@ -33,7 +33,7 @@ inline uint64_t triangleLimit(const MeshOptions& options) {
   return options.limits ? options.limits->triangles : Limits().triangles;
 }
 
-// What the number of triangles is bounded by, for messages.
+// Returns the name of the limit on triangles for messages.
 inline std::string_view triangleLimitName(const MeshOptions& options) {
   return options.limitName.empty() ? "the limit 'triangles'" : options.limitName;
 }

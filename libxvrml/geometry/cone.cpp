@@ -1,5 +1,5 @@
-// cone.cpp: Cone (clause 6.11). Every side triangle has its own apex vertex, with the normal of the
-// middle of its segment.
+// cone.cpp: Cone (clause 6.11). Every side triangle has an apex vertex of its own, with the normal
+// at the middle of its segment.
 #include "geometry/builders.h"
 #include "geometry/round.h"
 #include "geometry/vector_math.h"
@@ -16,7 +16,7 @@ Mesh buildCone(const nodes::Cone& node, const MeshOptions&, Faults& faults) {
   if (!(node.bottomRadius > 0 && node.height > 0))
     faults.note("bottomRadius and height must be positive");
   if (node.side) {
-    // The outward normal of a cone is (height around the axis, radius up it).
+    // The outward normal is (height around the axis, radius along the axis), normalised.
     V3d slope = unit(V3d(height, radius, 0));
     auto normal = [&](const Vec2f& at) {
       return Vec3f{float(at.x * slope.x), float(slope.y), float(at.y * slope.x)};

@@ -6,7 +6,7 @@
 namespace xvrml {
 namespace {
 
-// Attributes of a grid lie one to one beside its points or its quadrilaterals.
+// Binds values in order to the points or the quadrilaterals of the grid.
 template <class T> void bind(Attribute<T>& attribute, std::span<const T> values, bool perVertex,
                              size_t points, uint32_t faces, Fault fault, Faults& faults) {
   using Per = typename Attribute<T>::Per;
@@ -67,7 +67,7 @@ Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& opt
       set.corners.insert(set.corners.end(), {a, a + width, a + width + 1, a + 1});
       set.faceStart.push_back(uint32_t(set.corners.size()));
     }
-  set.plainFaces = faces;
+  set.uncheckedFaces = faces;
   set.solid = node.solid;
   set.ccw = node.ccw;
   set.creaseAngle = node.creaseAngle;

@@ -31,7 +31,7 @@ class Sweep {
       faults_.note("spine or crossSection is not finite; nothing is drawn");
       return {};
     }
-    // 64 bits: sizes are below 2^32 each.
+    // In 64 bits, because each size is below 2^32.
     uint64_t points = uint64_t(spine_.size()) * section_.size() + 2 * section_.size();
     if (points > triangleLimit(options_) / 2 + 4 || points >= noValue / 4) {
       faults_.note("more triangles than " + std::string(triangleLimitName(options_)) +
@@ -41,7 +41,7 @@ class Sweep {
     closedSection_ = section_.size() > 2 && section_.front() == section_.back();
     closedSpine_ = spine_.size() > 2 && spine_.front() == spine_.back();
     makePoints();
-    // Ends that meet are one row of points, so that creases see across the seam.
+    // Ends that meet share one row of points, so that creases are smoothed across the seam.
     joined_ = closedSpine_ && std::equal(row(0), row(0) + columns_, row(rows_ - 1));
     if (joined_) set_.ownPoints.resize((rows_ - 1) * columns_);
     makeSides();
@@ -55,12 +55,12 @@ class Sweep {
     set_.ccw = node_.ccw;
     set_.convex = node_.convex;
     set_.creaseAngle = node_.creaseAngle;
-    set_.quietNoArea = true; // scale 0 makes a tip: not a mistake
+    set_.ignoreNoArea = true; // scale 0 makes a tip, which is valid
     return buildFaceMesh(std::move(set_), options_, faults_);
   }
 
  private:
-  // Too few values of scale or orientation: the last one goes on.
+  // If scale or orientation has too few values, the last one is repeated.
   template <class T> static T valueAt(const std::vector<T>& values, size_t i, const T& otherwise) {
     return values.empty() ? otherwise : values[std::min(i, values.size() - 1)];
   }
@@ -112,17 +112,18 @@ class Sweep {
         };
         addFace({corner(i, j), corner(i, j + 1), corner(i + 1, j + 1), corner(i + 1, j)});
       }
-    set_.plainFaces = set_.faceCount();
+    set_.uncheckedFaces = set_.faceCount();
   }
 
-  // A cap has points of its own: its normal is along the spine, never smoothed into the sides.
+  // Adds a cap. It has points of its own: its normal is along the spine and never smoothed into the
+  // sides.
   void makeCap(size_t rowIndex, bool begin) {
     size_t count = columns_;
     if (count < 3) return;
     uint32_t firstPoint = uint32_t(set_.ownPoints.size()),
              firstTexCoord = uint32_t(set_.texCoords.own.size());
     for (size_t j = 0; j < count; j++) set_.ownPoints.push_back(Vec3f(row(rowIndex)[j]));
-    if (options_.needTexCoords) { // the cross-section itself, its larger side from 0 to 1
+    if (options_.needTexCoords) { // the cross-section itself; its larger side runs from 0 to 1
       Vec2f low = section_[0], high = section_[0];
       for (const Vec2f& p : section_) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};

@@ -1,6 +1,5 @@
-// extrusion_frames.cpp: the rules of 6.18.2 and 6.18.3 for the axes of the spine-aligned
-// cross-section planes. Coincident spine points share a frame, so the rules run over the different
-// points only.
+// extrusion_frames.cpp: the axes of the spine-aligned cross-section planes by clauses 6.18.2 and
+// 6.18.3. Coincident spine points share a frame, so the rules run over the distinct points only.
 #include "geometry/extrusion_frames.h"
 
 namespace xvrml {
@@ -8,7 +7,7 @@ namespace {
 
 const V3d none(0, 0, 0);
 
-// Rotates v as the shortest rotation from +y to `to` does.
+// Rotates v by the shortest rotation from +y to `to`.
 V3d rotateFromY(const V3d& to, const V3d& v) {
   V3d y(0, 1, 0), axis = y.cross(to);
   double cosine = y.dot(to);
@@ -18,14 +17,13 @@ V3d rotateFromY(const V3d& to, const V3d& v) {
 
 SpineFrame frame(const V3d& y, const V3d& z) {
   V3d x = unit(y.cross(z));
-  if (x == none) { // z along y, where z was taken over from a distant point: the frame of a
-                   // straight spine
+  if (x == none) { // z along y (z was copied from a distant point): the frame of a straight spine
     x = rotateFromY(y, {1, 0, 0});
   }
   return {x, y, unit(x.cross(y))};
 }
 
-// y: from the point before to the point after; at an open end along the end's segment.
+// Computes y: from the previous to the next point, or along the end segment at an open end.
 std::vector<V3d> yAxes(const std::vector<V3d>& p, bool closed) {
   size_t n = p.size();
   std::vector<V3d> axes(n);
@@ -35,19 +33,19 @@ std::vector<V3d> yAxes(const std::vector<V3d>& p, bool closed) {
       axes[i] = unit(p[1] - p[n - 2]);
     else
       axes[i] = unit(p[std::min(i + 1, n - 1)] - p[i ? i - 1 : 0]);
-    // The spine turns straight back: on along the segment that leads here.
+    // If the spine turns straight back, y continues along the segment before.
     if (axes[i] == none) axes[i] = i ? unit(p[i] - p[i - 1]) : unit(p[1] - p[0]);
   }
   return axes;
 }
 
-// z: the normal of the plane of three successive points; zero where they are on a line.
+// Computes z: the normal of the plane of three successive points; zero if they are collinear.
 std::vector<V3d> zAxes(const std::vector<V3d>& p, bool closed) {
   size_t n = p.size();
   auto cross = [](const V3d& a, const V3d& b) {
     V3d u = unit(a), v = unit(b), c = u.cross(v);
     return c.dot(c) > 1e-14 ? unit(c)
-                            : none; // float coordinates on a line rarely are so to the last bit
+                            : none; // float coordinates on a line are rarely exactly collinear
   };
   std::vector<V3d> axes(n, none);
   for (size_t i = 1; i + 1 < n; i++) axes[i] = cross(p[i + 1] - p[i], p[i - 1] - p[i]);
@@ -58,8 +56,8 @@ std::vector<V3d> zAxes(const std::vector<V3d>& p, bool closed) {
 } // namespace
 
 std::vector<SpineFrame> spineFrames(std::span<const Vec3f> spine, bool closed) {
-  std::vector<V3d> p;          // without points that repeat the one before
-  std::vector<size_t> placeOf; // of each spine point among p
+  std::vector<V3d> p;          // without repeated points
+  std::vector<size_t> placeOf; // index into p of each spine point
   for (const Vec3f& point : spine) {
     V3d v = toV3d(point);
     if (p.empty() || v != p.back()) p.push_back(v);
@@ -74,13 +72,13 @@ std::vector<SpineFrame> spineFrames(std::span<const Vec3f> spine, bool closed) {
   size_t defined = 0;
   while (defined < n && z[defined] == none) defined++;
   std::vector<SpineFrame> frames(n);
-  if (defined == n) { // all on one line: the xz plane turned from +y to the line
+  if (defined == n) { // all collinear: the xz plane rotated from +y to the line
     V3d along = unit(p[n - 1] - p[0]);
     if (along == none) along = unit(p[1] - p[0]);
     for (auto& f : frames)
       f = {rotateFromY(along, {1, 0, 0}), along, rotateFromY(along, {0, 0, 1})};
   } else {
-    // Where z is not defined it is that of the point before, or of the first point that has one.
+    // An undefined z is copied from the previous point, or from the first point that has one.
     for (size_t i = 0; i < defined; i++) z[i] = z[defined];
     for (size_t i = defined; i < n; i++) {
       if (z[i] == none) z[i] = z[i - 1];

@@ -9,13 +9,13 @@
 
 namespace xvrml {
 
-// Unit axes at right angles: the cross-section's x and z lie along x and z, y points along the
-// spine.
+// Orthonormal axes of one cross-section plane. x and z are the axes of the cross-section; y points
+// along the spine.
 struct SpineFrame {
   V3d x, y, z;
 };
 
-// One frame a spine point. `closed`: the first and last points are the same place.
+// Returns one frame per spine point. closed: the first and last points coincide.
 std::vector<SpineFrame> spineFrames(std::span<const Vec3f> spine, bool closed);
 
 } // namespace xvrml

@@ -1,4 +1,4 @@
-// faults.cpp: the wording of the one warning a geometry node may give.
+// faults.cpp: the text of the warning about a geometry node.
 #include "geometry/faults.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ bool Faults::any() const {
   return !notes_.empty();
 }
 
-// Points, lines and faces without area are seen with or without them the same.
+// Returns whether only degenerate points, lines and faces were dropped, which are invisible anyway.
 bool Faults::invisible() const {
   for (size_t i = 0; i < entries_.size(); i++)
     if (entries_[i].count && Fault(i) != Fault::fewVertices && Fault(i) != Fault::noArea)

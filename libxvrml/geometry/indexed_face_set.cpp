@@ -1,5 +1,5 @@
-// indexed_face_set.cpp: IndexedFaceSet (clause 6.23): faces and attribute indices out of the lists
-// of the node, with a direct way for large sets of triangles.
+// indexed_face_set.cpp: IndexedFaceSet (clause 6.23): reads faces and attribute indices from the
+// node's lists, with a fast path for large sets of triangles.
 #include <algorithm>
 
 #include "geometry/builders.h"
@@ -9,11 +9,11 @@
 namespace xvrml {
 namespace {
 
-// How an index list, a value list and a flag give each face or corner its value (colorIndex, color,
-// colorPerVertex and so on).
+// Gives each face or corner its value from an index list, a value list and a flag, such as
+// colorIndex, color and colorPerVertex.
 struct Binding {
   bool perVertex = true;
-  std::span<const int32_t> index; // empty: coordIndex (a vertex), or the faces in order
+  std::span<const int32_t> index; // empty: coordIndex (per vertex), or the faces in order
   size_t values = 0;
   Fault fault = Fault::colorMissing;
 
@@ -36,7 +36,7 @@ template <class T> struct Bound {
   Attribute<T>& attribute;
   Binding binding;
 
-  // Values that lie beside the points one to one need no index.
+  // Values that match the points one to one need no index.
   void start(size_t points) {
     using Per = typename Attribute<T>::Per;
     if (attribute.values.empty())
@@ -89,12 +89,12 @@ class FaceReader {
   void readFace(size_t begin, size_t end, uint64_t face) {
     const auto& index = node_.coordIndex;
     for (size_t i = begin; i < end; i++) {
-      if (uint32_t(index[i]) >= set_.points.size()) { // negative ones too
+      if (uint32_t(index[i]) >= set_.points.size()) { // also catches negative indices
         faults_.add(Fault::indexRange, i);
         return;
       }
     }
-    // A vertex given twice in a row, or closing the face again, is one.
+    // Drop repeated vertices, also a last vertex that equals the first.
     places_.clear();
     for (size_t i = begin; i < end; i++)
       if (places_.empty() || index[places_.back()] != index[i]) places_.push_back(i);
@@ -125,7 +125,7 @@ class FaceReader {
   std::vector<size_t> places_;
 };
 
-// Triangles only, all sound: their indices. False at the first thing that needs a closer look.
+// Reads the indices of a list of valid triangles only. Returns false at the first anything else.
 bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> points,
                     std::vector<uint32_t>& out) {
   size_t n = index.size();
@@ -147,7 +147,7 @@ bool plainTriangles(std::span<const int32_t> index, std::span<const Vec3f> point
   return true;
 }
 
-// Points as they are in the node, for flat triangles without colours or texture coordinates of
+// Uses the node's points directly, for flat triangles without colours or texture coordinates of
 // their own.
 bool buildInPlace(const nodes::IndexedFaceSet& node, std::span<const Vec3f> points,
                   const MeshOptions& options, Mesh& mesh) {

@@ -1,5 +1,5 @@
-// indexed_line_set.cpp: IndexedLineSet (clause 6.24): polylines to segments, colours a vertex or a
-// polyline.
+// indexed_line_set.cpp: IndexedLineSet (clause 6.24): polylines as segments, with colours per
+// vertex or per polyline.
 #include "geometry/builders.h"
 #include "geometry/vector_math.h"
 
@@ -11,7 +11,7 @@ class LineReader {
   LineReader(const nodes::IndexedLineSet& node, Faults& faults)
       : node_(node), faults_(faults), points_(coordinates(node.coord)),
         colors_(colorValues(node.color)) {
-    // Colours beside the points need no vertices of their own.
+    // Colours that match the points one to one need no extra vertices.
     ownVertices_ = !allFinite(points_) || !allFinite(colors_) ||
                    (!colors_.empty() && (!node.colorPerVertex || !node.colorIndex.empty() ||
                                          colors_.size() < points_.size()));
@@ -61,9 +61,10 @@ class LineReader {
     uint32_t previous = 0;
     size_t previousPlace = end, segments = 0;
     for (size_t i = begin; i < end; i++) {
+      // Segments of length zero are skipped.
       if (previousPlace != end &&
           points_[size_t(node_.coordIndex[previousPlace])] == points_[size_t(node_.coordIndex[i])])
-        continue; // no length
+        continue;
       uint32_t vertex = addVertex(i, line);
       if (previousPlace != end) {
         mesh_.ownIndices.insert(mesh_.ownIndices.end(), {previous, vertex});
@@ -83,7 +84,7 @@ class LineReader {
     return uint32_t(mesh_.ownPoints.size() - 1);
   }
 
-  // Clause 6.24: by colorIndex where given, else by point, or by polyline.
+  // Returns the colour by colorIndex if given, else by point or polyline (clause 6.24).
   Color color(size_t place, uint32_t point, uint64_t line) {
     int64_t at = node_.colorPerVertex ? point : int64_t(line);
     if (!node_.colorIndex.empty()) {

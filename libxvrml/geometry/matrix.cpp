@@ -1,4 +1,4 @@
-// matrix.cpp: composition of the standard's transformations. See matrix.h.
+// matrix.cpp: composition of the standard's transformations.
 #include "geometry/matrix.h"
 
 #include <algorithm>
@@ -85,13 +85,13 @@ Matrix frame(const Vector& x, const Vector& y, const Vector& z, const Vector& or
   return {x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, origin.x, origin.y, origin.z, 1};
 }
 
-// A unit vector at right angles to the unit vector v.
+// Returns a unit vector perpendicular to the unit vector v.
 Vector perpendicular(const Vector& v) {
   const Vector axis = std::abs(v.x) < 0.6 ? Vector(1, 0, 0) : Vector(0, 1, 0);
   return (axis - v * axis.dot(v)).normalized();
 }
 
-// y and x to a given unit z; y as near to `up` as can be.
+// Completes a unit z to a frame with y as close to `up` as possible.
 Matrix frameAbout(const Vector& z, const Vector& up, const Vector& origin) {
   Vector y = up - z * up.dot(z);
   y = y.length() > 1e-9 * up.length() ? y.normalized() : perpendicular(z);
@@ -136,7 +136,7 @@ Matrix billboardMatrix(const Vector& axisOfRotation, const Vector& viewer, const
   if (!(distance > 0) || !std::isfinite(distance)) return {};
   if (!(axisOfRotation.length() > 0))
     return frameAbout(viewer / distance, up.length() > 0 ? up : Vector(0, 1, 0), Vector(0));
-  // Turn about the axis until the local z axis lies in the plane of the axis and the viewer.
+  // Rotate about the axis until the local z axis lies in the plane of the axis and the viewer.
   const Vector a = axisOfRotation.normalized();
   const Vector z(0, 0, 1), zFlat = z - a * a.dot(z), vFlat = viewer - a * a.dot(viewer);
   if (zFlat.length() < 1e-9 || vFlat.length() < 1e-9 * distance) return {};

@@ -1,5 +1,4 @@
-// mesh.cpp: from a geometry node to the function that knows it, and the views of a Mesh on its own
-// arrays.
+// mesh.cpp: chooses the builder of a geometry node and sets the views of a Mesh to its own arrays.
 #include "geometry/mesh.h"
 
 #include "geometry/builders.h"

@@ -1,6 +1,6 @@
-// mesh.h: what a geometry node becomes: flat arrays that the OpenRT mapper hands on. Built by pure
-// functions, one file a node, on the caller's thread; what is degenerate or out of range is dropped
-// with one warning a node.
+// mesh.h: the tessellated form of a geometry node: flat arrays for the OpenRT mapper. Built by pure
+// functions, one file per node, on the caller's thread. Degenerate and out-of-range parts are
+// dropped with one warning per node.
 #pragma once
 
 #include <cstdint>
@@ -21,42 +21,41 @@ struct Color4 {
 struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
-  // Views into the node's own arrays where they can be used as they are, else into the owned
-  // vectors below. One entry per vertex; normals, texCoords and colors are empty or as long as
-  // points.
+  // Views of the node's own arrays where these can be used unchanged, else of the vectors below.
+  // One entry per vertex; normals, texCoords and colors are empty or as long as points.
   std::span<const Vec3f> points;
-  std::span<const uint32_t> indices; // 3 a triangle, 2 a line segment, 1 a point
-  std::span<const Vec3f> normals;    // empty: flat, the face's own normal
+  std::span<const uint32_t> indices; // 3 per triangle, 2 per line segment, 1 per point
+  std::span<const Vec3f> normals;    // empty: flat, with the face normal
   std::span<const Vec2f> texCoords;
   std::span<const Color> colors;
-  bool solid = true; // back faces are not drawn
+  bool solid = true; // back faces are culled
   bool ccw = true;
-  float radius = 0; // sphere
+  float radius = 0; // of a sphere
 
   std::vector<Vec3f> ownPoints, ownNormals;
   std::vector<uint32_t> ownIndices;
   std::vector<Vec2f> ownTexCoords;
   std::vector<Color> ownColors;
-  void viewOwn(); // points all views at the owned vectors
+  void viewOwn(); // makes all views refer to the owned vectors
 
   Mesh() = default;
-  Mesh(Mesh&&) = default; // moving vectors keeps their storage, so views stay valid
+  Mesh(Mesh&&) = default; // moved vectors keep their storage, so views stay valid
   Mesh& operator=(Mesh&&) = default;
   Mesh(const Mesh&) = delete;
 };
 
 struct MeshOptions {
-  bool needTexCoords =
-      false; // the shape has a texture: make the default mapping where the node gives none
+  // The shape has a texture: make default texture coordinates if the node has none.
+  bool needTexCoords = false;
   const Limits* limits = nullptr;
   Diagnostics* diagnostics = nullptr;
-  std::string_view limitName =
-      {}; // what limits->triangles follows from, for messages; empty: the limit 'triangles'
+  // The name of limits->triangles in messages; empty: the limit 'triangles'.
+  std::string_view limitName = {};
 };
 
-// The mesh of any geometry node (Box ... Text); kind empty for a node that is none or has nothing
-// to draw. The node must outlive the mesh. coord, color, normal and texCoord children may be
-// prototype instances (renderedNode).
+// Builds the mesh of any geometry node (Box ... Text). Its kind is empty for other nodes and if
+// there is nothing to draw. The node must outlive the mesh. The coord, color, normal and texCoord
+// children may be prototype instances (renderedNode).
 Mesh buildMesh(Node& geometry, const MeshOptions& options);
 
 } // namespace xvrml

@@ -17,7 +17,7 @@ Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions&, Faults& faul
     else
       faults.add(Fault::notFinite, i);
   }
-  if (mesh.ownIndices.size() < points.size()) { // only what can be drawn
+  if (mesh.ownIndices.size() < points.size()) { // keep only points that can be drawn
     for (uint32_t& index : mesh.ownIndices) {
       mesh.ownPoints.push_back(points[index]);
       if (!colors.empty())

@@ -8,7 +8,7 @@
 namespace xvrml {
 
 Vec2f aroundAxis(double s) {
-  // Whole quarters exactly, so that seams and opposite vertices meet to the last bit.
+  // Whole quarters are exact, so that seams and opposite vertices match bit for bit.
   double quarter = std::floor(s * 4), rest = (s * 4 - quarter) * std::numbers::pi / 2;
   double sine = std::sin(rest), cosine = std::cos(rest);
   switch (int(quarter) & 3) {
@@ -31,8 +31,8 @@ void addTriangle(Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
 }
 
 void addDisc(Mesh& mesh, float y, float radius, bool up) {
-  // The texture is upright when the top is tilted towards +z (up), or the bottom towards it (down):
-  // t runs to -z or to +z.
+  // The texture is upright when the top, or the bottom, is tilted towards +z: t runs to -z on the
+  // top and to +z on the bottom.
   const Vec3f normal{0, up ? 1.f : -1.f, 0};
   const uint32_t centre = uint32_t(mesh.ownPoints.size());
   addVertex(mesh, {0, y, 0}, normal, {0.5f, 0.5f});

@@ -23,7 +23,7 @@ std::vector<Vec2f> defaultTextureMapping(std::span<const Vec3f> points,
   for (size_t i = 0; i < points.size(); i++) {
     if (!isFinite(points[i])) continue;
     double p[3] = {points[i].x, points[i].y, points[i].z};
-    // Points that no face uses may lie anywhere.
+    // Unused points may lie anywhere, so the result is clamped.
     auto number = [](double v) { return float(std::min(std::max(v, -1e30), 1e30)); };
     mapping[i] = {number((p[s] - low[s]) / size[s]), number((p[t] - low[t]) / size[s])};
   }

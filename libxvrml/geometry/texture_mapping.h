@@ -1,4 +1,4 @@
-// texture_mapping.h: the texture coordinates of an IndexedFaceSet that gives none.
+// texture_mapping.h: default texture coordinates of an IndexedFaceSet.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace xvrml {
 
-// Default mapping of clause 6.23: S along the longest side of the bounding box of the points that
-// `indices` name, T along the second, both divided by the longest; equal sides in the order X, Y,
-// Z. One coordinate a point.
+// Returns one default texture coordinate per point (clause 6.23). S runs along the longest side of
+// the bounding box of the points in `indices`, T along the second longest. Both are divided by the
+// longest side. Equal sides are taken in the order X, Y, Z.
 std::vector<Vec2f> defaultTextureMapping(std::span<const Vec3f> points,
                                          std::span<const uint32_t> indices);
 

@@ -1,5 +1,5 @@
-// vector_math.h: between the scene graph's plain vectors and Imath's; checks for finite numbers.
-// Used by geometry/ only.
+// vector_math.h: conversions between the scene graph's vectors and Imath's, and checks for finite
+// numbers. Used by geometry/ only.
 #pragma once
 
 #include <Imath/ImathVec.h>
@@ -30,7 +30,8 @@ inline bool isFinite(const Color& v) {
   return std::isfinite(v.r) && std::isfinite(v.g) && std::isfinite(v.b);
 }
 
-// x * 0 is 0 for every finite x, else NaN: a sum of products keeps the loop free of branches.
+// Returns whether all numbers are finite. x * 0 is 0 for finite x and NaN otherwise, so summing the
+// products needs no branches.
 template <class T> bool allFinite(std::span<const T> values) {
   static_assert(sizeof(T) % sizeof(float) == 0);
   const float* p = reinterpret_cast<const float*>(values.data());
@@ -42,17 +43,16 @@ template <class T> bool allFinite(std::span<const T> values) {
   return sums[0] + sums[1] + sums[2] + sums[3] + sums[4] + sums[5] + sums[6] + sums[7] == 0.0f;
 }
 
-// Unit vector of v, or zero where v has no direction.
+// Returns the unit vector of v, or zero if v has no direction.
 inline V3d unit(const V3d& v) {
   double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (!(largest > 0) || !std::isfinite(largest)) return {0, 0, 0};
-  V3d scaled = v / largest; // squares of the smallest and largest floats' products would leave the
-                            // range otherwise
+  V3d scaled = v / largest; // avoids overflow and underflow of the squares
   return scaled / std::sqrt(scaled.dot(scaled));
 }
 
-// Twice the area of a triangle is zero exactly when it has none: products of differences of floats
-// in double.
+// Returns whether the cross product of two edges is non-zero. Computed in double, this is exact: it
+// is zero only for degenerate triangles.
 inline bool hasArea(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   V3f u = toV3f(b) - toV3f(a), v = toV3f(c) - toV3f(a);
   V3f quick = u.cross(v);

@@ -1,3 +1,4 @@
+// crossing.cpp: adapts urls, ranges and child nodes when a value passes into a prototype's body.
 #include "graph/crossing.h"
 
 #include <filesystem>
@@ -16,8 +17,7 @@ bool isUrlField(const FieldInfo& field) {
   return field.type == FieldType::MFString && (field.name == "url" || field.name.ends_with("Url"));
 }
 
-// A relative URL written in the file of the instance, for a node that stands in another file
-// (4.5.3).
+// Converts relative URLs written in the instance's file for a node that is in another file (4.5.3).
 void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
   namespace fs = std::filesystem;
   const fs::path fromFolder = fs::path(from).lexically_normal().parent_path();
@@ -33,8 +33,8 @@ void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) 
   }
 }
 
-// Whether `target` hangs below `top`, fields of Scripts and prototype instances left out. Asked
-// only where a node may be part of itself.
+// Returns whether `target` is a descendant of `top`, without the fields of Scripts and prototype
+// instances. Called only where a node may be part of itself.
 bool reaches(Node& top, const Node& target) {
   std::unordered_set<const Node*> seen{&top};
   std::vector<Node*> open{&top};
@@ -59,10 +59,10 @@ bool reaches(Node& top, const Node& target) {
   return false;
 }
 
-// Whether the field takes the node; if not, that is told.
-bool takes(const Crossing& c, const NodeRef& child, Diagnostics& diagnostics) {
+// Returns whether the field accepts the node. Reports it if not.
+bool acceptsNode(const IsAssignment& c, const NodeRef& child, Diagnostics& diagnostics) {
   if (!child) return true;
-  if (c.findLoops && c.node.type().index >= 0 && reaches(*child, c.node)) {
+  if (c.checkCycles && c.node.type().index >= 0 && reaches(*child, c.node)) {
     diagnostics.error(
         c.instance.source,
         fmt::format("the value of {} would make a node its own descendant (4.4.4)", c.from.name));
@@ -79,7 +79,7 @@ bool takes(const Crossing& c, const NodeRef& child, Diagnostics& diagnostics) {
 
 } // namespace
 
-void giveAcross(const Crossing& c, const Value& value, Diagnostics& diagnostics) {
+void assignThroughIs(const IsAssignment& c, const Value& value, Diagnostics& diagnostics) {
   visitStorage(c.to.type, c.node.storage(c.to), [&](auto& target) {
     using T = std::remove_reference_t<decltype(target)>;
     target = std::get<T>(value);
@@ -88,11 +88,11 @@ void giveAcross(const Crossing& c, const Value& value, Diagnostics& diagnostics)
                            c.instance.source.file && c.node.source.file;
       if (foreign) rebaseUrls(target, *c.instance.source.file, *c.node.source.file);
     } else if constexpr (std::is_same_v<T, NodeRef>) {
-      if (!takes(c, target, diagnostics)) target = {};
+      if (!acceptsNode(c, target, diagnostics)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {
       const bool keeps = keepsNull(c.to) || c.node.type().index < 0;
       std::erase_if(target, [&](const NodeRef& child) {
-        return child ? !takes(c, child, diagnostics) : !keeps;
+        return child ? !acceptsNode(c, child, diagnostics) : !keeps;
       });
     }
   });

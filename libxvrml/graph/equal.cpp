@@ -1,6 +1,6 @@
-// equal.cpp: are two graphs the same? Nodes are matched one to one as they are met, so sharing must
-// be the same too; bodies of prototype instances follow from their declarations and are not
-// compared. [the thread that owns both]
+// equal.cpp: compares two graphs. Nodes are matched one to one in the order of the traversal, so
+// that sharing must be equal, too. Bodies of prototype instances follow from their declarations and
+// are not compared. [the thread that owns both]
 #include <algorithm>
 #include <tuple>
 #include <unordered_map>
@@ -100,7 +100,7 @@ class Comparison {
   bool values(const MFNode& a, const MFNode& b) { return nodeLists(a, b); }
   template <class T> bool values(const T& a, const T& b) { return a == b || fail("values differ"); }
 
-  // Routes and connections have no order that means anything.
+  // The order of routes and connections has no meaning, so they are compared sorted by node number.
   size_t number(const NodeRef& a) const {
     const auto found = order_.find(a.get());
     return found == order_.end() ? ~size_t(0) : found->second;

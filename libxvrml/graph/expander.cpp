@@ -1,3 +1,4 @@
+// expander.cpp: copies prototype bodies. Nodes that nothing can change are shared by all copies.
 #include "graph/expander.h"
 
 #include <unordered_set>
@@ -12,8 +13,8 @@
 namespace xvrml {
 namespace {
 
-// Nodes that events, names and the viewer never single out: what is drawn, and how it is placed. If
-// no connection, route or Script reaches them they are the same in every copy.
+// Returns whether events, names and the viewer never single out the node: it only draws or places
+// something. If no connection, route or Script reaches such a node, it is the same in every copy.
 bool isPassive(const Node& node) {
   const NodeType& type = node.type();
   if (type.index < 0) return false;
@@ -74,18 +75,19 @@ void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes,
   }
 }
 
-// The declaration that has the body, or null.
+// Returns the declaration that has the body, or null.
 ProtoPtr Expander::definition(ProtoInstance& instance) {
   return instance.declaration->isExtern ? resolve_(*instance.declaration) : instance.declaration;
 }
 
 bool Expander::addNested(Plan& plan, ProtoInstance& nested, const SourcePosition& where) {
   const ProtoPtr inner = definition(nested);
-  if (!inner) return true; // stands for nothing
+  if (!inner) return true; // the instance expands to nothing
   const PlanPtr innerPlan = this->plan(inner, where);
   if (!innerPlan->usable) {
     if (innerPlan->computing && nested.declaration->isExtern)
-      nested.declaration->resolved = nullptr; // no cycle of owners
+      // Avoids a cycle of shared pointers.
+      nested.declaration->resolved = nullptr;
     return false;
   }
   plan.expandedNodes = saturatingAdd(plan.expandedNodes, innerPlan->expandedNodes);
@@ -140,7 +142,7 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
   return plan;
 }
 
-// The nodes an interface has as defaults are copied for each instance too.
+// Adds the cost of the nodes in the interface's defaults, which are copied for each instance, too.
 bool Expander::addDefaults(Plan& plan, const SourcePosition& where) {
   std::vector<Node*> roots, nodes;
   for (const FieldInfo& field : plan.declaration->type->fields)
@@ -159,7 +161,8 @@ bool Expander::addDefaults(Plan& plan, const SourcePosition& where) {
 
 void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const {
   std::unordered_map<const Node*, uint32_t> reached;
-  std::vector<Node*> script; // and what is held by Scripts or passed to prototypes
+  // Scripts and prototype instances. The nodes that they hold or get passed cannot be shared.
+  std::vector<Node*> script;
   for (Node* node : plan.nodes) {
     if (node->type().index < 0) script.push_back(node);
   }
@@ -177,7 +180,7 @@ void Expander::markShared(Plan& plan, const ProtoDeclaration& declaration) const
     exclude(route.from);
     exclude(route.to);
   }
-  // What holds something that is not shared is not shared either.
+  // A node that holds an unshared node is not shared either.
   std::vector<std::vector<uint32_t>> holders(plan.nodes.size());
   std::vector<uint32_t> changed;
   for (uint32_t i = 0; i < plan.nodes.size(); ++i) {
@@ -252,16 +255,16 @@ std::vector<NodeRef> Expander::copyAll(const std::vector<Node*>& nodes,
   for (size_t i = 0; i < nodes.size(); ++i) {
     if (copies[i].get() == nodes[i]) continue;
     copyFields(*nodes[i], *copies[i], index, copies);
-    if (state_.entered.contains(nodes[i])) state_.entered.insert(copies[i].get());
+    if (state_.selfContaining.contains(nodes[i])) state_.selfContaining.insert(copies[i].get());
     if (dynamic_cast<ProtoInstance*>(copies[i].get())) todo_.push_back(copies[i]);
     if (dynamic_cast<InlineNode*>(copies[i].get())) inlines.push_back(copies[i]);
-    // A copy of a node that may hold itself may do so too.
-    if (state_.cycleHolders.contains(nodes[i])) holdsItself(copies[i]);
+    // A copy of a node that may hold itself may hold itself, too.
+    if (state_.cycleHolders.contains(nodes[i])) addCyclic(copies[i]);
   }
   return copies;
 }
 
-// An interface's default; nodes in a copy of their own.
+// Returns a copy of an interface's default, with nodes of its own.
 Value Expander::copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inlines) {
   Value value = declared.defaultValue;
   if (!holdsNodes(declared)) return value;
@@ -278,13 +281,29 @@ Value Expander::copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inl
   return value;
 }
 
-// Values the instance does not give come from the declaration (all of them for an EXTERNPROTO,
-// whose interface has none).
+// Finds a field as NodeType::find does, in constant time for types of many fields: instances of such
+// a prototype ask for every one of them.
+const FieldInfo* Expander::fieldOf(const NodeType& type, std::string_view name) {
+  constexpr size_t few = 32;
+  if (type.fields.size() <= few) return type.find(name);
+  auto& byName = fieldsByName_[&type];
+  if (byName.size() != type.fields.size()) {
+    byName.clear();
+    for (uint32_t i = 0; i < type.fields.size(); ++i) byName.emplace(type.fields[i].name, i);
+  }
+  const auto found = byName.find(std::string(name));
+  if (found != byName.end() && type.fields[found->second].name == name)
+    return &type.fields[found->second];
+  return type.find(name);
+}
+
+// Sets the fields that the instance does not give to the declaration's defaults. For an
+// EXTERNPROTO, whose interface has none, these are all such fields.
 void Expander::completeFields(ProtoInstance& instance, const ProtoDeclaration& definition,
                               std::vector<NodeRef>& inlines) {
   for (const FieldInfo& field : instance.type().fields) {
     if (!holdsValue(field) || instance.isGiven(field)) continue;
-    const FieldInfo* declared = definition.type->find(field.name);
+    const FieldInfo* declared = fieldOf(*definition.type, field.name);
     if (declared && declared->type == field.type && holdsValue(*declared))
       instance.values[field.offset] = copyDefault(*declared, inlines);
   }
@@ -335,7 +354,7 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
 }
 
 void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef>& inlines) {
-  // A stack in the order of the file.
+  // The stack keeps the order of the file.
   todo_.assign(instances.rbegin(), instances.rend());
   while (!todo_.empty()) {
     const NodeRef next = std::move(todo_.back());
@@ -345,20 +364,20 @@ void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef
   }
 }
 
-// "field IS name": the instance's value becomes that of the node in its body (4.8.2).
+// Applies "field IS name": the node in the body gets the instance's value (4.8.2).
 void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition,
                                 std::vector<NodeRef>& inlines) {
-  std::unordered_map<std::string_view, Value>
-      undeclared; // what an EXTERNPROTO's interface leaves out has its default
+  // Fields that the EXTERNPROTO's interface leaves out, with their defaults.
+  std::unordered_map<std::string_view, Value> undeclared;
   for (const IsConnection& connection : instance.is) {
-    const FieldInfo* to = connection.node->type().find(connection.field);
+    const FieldInfo* to = fieldOf(connection.node->type(), connection.field);
     if (!to || !holdsValue(*to)) continue;
-    const FieldInfo* from = instance.type().find(connection.interfaceName);
+    const FieldInfo* from = fieldOf(instance.type(), connection.interfaceName);
     if (from && holdsValue(*from) && from->type == to->type) {
       connect(instance, *from, instance.values[from->offset], connection);
       continue;
     }
-    const FieldInfo* declared = definition.type->find(connection.interfaceName);
+    const FieldInfo* declared = fieldOf(*definition.type, connection.interfaceName);
     if (!declared || !holdsValue(*declared) || declared->type != to->type ||
         &definition == instance.declaration.get())
       continue;
@@ -369,17 +388,17 @@ void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration&
   }
 }
 
-void Expander::holdsItself(const NodeRef& node) {
+void Expander::addCyclic(const NodeRef& node) {
   if (state_.cycleHolders.insert(node.get()).second) state_.world.cyclic.push_back(node);
 }
 
 void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value,
                        const IsConnection& connection) {
   Node& node = *connection.node;
-  const FieldInfo& to = *node.type().find(connection.field);
+  const FieldInfo& to = *fieldOf(node.type(), connection.field);
   if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
-  if (!state_.entered.empty() && node.type().index < 0 && holdsNodes(to))
-    holdsItself(connection.node); // it may: more is not known
+  if (!state_.selfContaining.empty() && node.type().index < 0 && holdsNodes(to))
+    addCyclic(connection.node); // it may hold itself; more is not known
   const void* const given =
       std::visit([](const auto& alternative) -> const void* { return &alternative; }, value);
   if (!state_.budget.take(valueBytes(to.type, given))) {
@@ -391,8 +410,8 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
                       state_.budget.name(), instance.type().name, from.name));
     return;
   }
-  const Crossing crossing{instance, from, node, to, !state_.entered.empty()};
-  giveAcross(crossing, value, state_.diagnostics);
+  const IsAssignment assignment{instance, from, node, to, !state_.selfContaining.empty()};
+  assignThroughIs(assignment, value, state_.diagnostics);
 }
 
 } // namespace xvrml

@@ -1,6 +1,6 @@
-// expander.h: prototype instances get their copy of the prototype's body (ISO/IEC 14772-1 4.8.3).
-// Used by the loader once a file has been parsed; what an instance would cost is added up before
-// anything is made.
+// expander.h: expands prototype instances: each gets a copy of the prototype's body (ISO/IEC
+// 14772-1 4.8.3). The loader calls it when a file has been parsed. The cost of an instance is added
+// up before anything is made.
 #pragma once
 
 #include <functional>
@@ -12,23 +12,24 @@ namespace xvrml {
 
 class Expander {
  public:
-  // resolve finds the declaration behind an EXTERNPROTO (null, with a message, if it cannot be
-  // found).
+  // Finds the declaration that an EXTERNPROTO refers to. Returns null, with a message, if there is
+  // none.
   using Resolve = std::function<ProtoPtr(ProtoDeclaration&)>;
   Expander(LoadState& state, Resolve resolve) : state_(state), resolve_(std::move(resolve)) {}
 
-  // Expands the instances and those within them; appends the Inline nodes of the copies to inlines.
+  // Expands the instances and the instances within them. Appends the Inline nodes of the copies to
+  // `inlines`.
   void expand(const std::vector<NodeRef>& instances, std::vector<NodeRef>& inlines);
 
  private:
-  // What every copy of a body needs to know, found once.
+  // Data that all copies of a body share, computed once per prototype.
   struct Plan {
     ProtoPtr declaration;
-    std::vector<Node*> nodes; // of the body and what it holds, each once
+    std::vector<Node*> nodes; // nodes of the body and what they hold, each once
     std::unordered_map<const Node*, uint32_t> index;
-    std::vector<bool> shared;              // nothing can ever change it: one for all copies
-    uint64_t expandedNodes = 0, bytes = 0; // with all prototypes within; saturating
-    uint64_t ownBytes = 0;                 // of the nodes copied for each instance
+    std::vector<bool> shared;              // nodes that nothing can change: all copies share them
+    uint64_t expandedNodes = 0, bytes = 0; // including all nested prototypes; saturating
+    uint64_t ownBytes = 0;                 // bytes of the nodes that are copied for each instance
     bool usable = false, computing = false;
   };
   using PlanPtr = std::shared_ptr<Plan>;
@@ -41,8 +42,8 @@ class Expander {
   void expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines);
   void completeFields(ProtoInstance& instance, const ProtoDeclaration& definition,
                       std::vector<NodeRef>& inlines);
-  void
-  holdsItself(const NodeRef& node); // a Script or instance whose fields may hold what it is part of
+  // Records a Script or instance whose fields may hold a node that it is part of.
+  void addCyclic(const NodeRef& node);
   NodeRef copyNode(Node& original);
   void copyFields(const Node& original, Node& copy,
                   const std::unordered_map<const Node*, uint32_t>& index,
@@ -58,19 +59,24 @@ class Expander {
 
   LoadState& state_;
   Resolve resolve_;
+  const FieldInfo* fieldOf(const NodeType& type, std::string_view name);
+
   std::unordered_map<const ProtoDeclaration*, PlanPtr> plans_;
+  // Numbers of the fields of large types by name. A type may end and another begin in its place:
+  // what is found is checked.
+  std::unordered_map<const NodeType*, std::unordered_map<std::string, uint32_t>> fieldsByName_;
   std::vector<NodeRef> todo_;
   uint64_t depth_ = 0;
 };
 
-// Every node that the given ones hold in their fields, themselves first, each once. A loop: graphs
-// may be deep.
+// Appends every node that the roots hold in their fields, each once, the roots first. Not
+// recursive, because graphs may be deep.
 void collectNodes(const std::vector<Node*>& roots, std::vector<Node*>& nodes,
                   std::unordered_map<const Node*, uint32_t>& index);
-// Rough size of a node in memory, with the values of its fields.
+// Returns the estimated size of a node in memory, with the values of its fields.
 uint64_t nodeBytes(Node& node);
-// Rough size of a field's value beyond the storage in its node: elements of lists, long strings,
-// pixels.
+// Returns the estimated size of a field's value outside of its node: elements of lists, long
+// strings, pixels.
 uint64_t valueBytes(FieldType type, const void* storage);
 
 } // namespace xvrml

@@ -1,3 +1,4 @@
+// expansion.cpp: calls `expand` of plug-ins, and rejects expansions that contain their own node.
 #include "graph/expansion.h"
 
 #include <unordered_set>
@@ -7,8 +8,8 @@
 namespace xvrml {
 namespace {
 
-// Is `node` part of what hangs below `top`? Only what a plug-in made is searched: a field's own
-// nodes cannot hold their owner.
+// Returns whether `node` is a descendant of `top`. Only nodes made by the plug-in are searched,
+// because a field's own nodes cannot hold their owner.
 bool holds(Node& top, const Node& node) {
   std::unordered_set<const Node*> seen{&top};
   std::vector<Node*> open{&top};
@@ -28,11 +29,11 @@ bool holds(Node& top, const Node& node) {
 
 NodeRef makeExpansion(Node& node) {
   if (!node.type().expand) return {};
-  const NodeRef keep(&node); // whatever the plug-in does with references
+  const NodeRef keep(&node); // protects the node from what the plug-in does with references
   NodeRef made;
   try {
     made = node.type().expand(node);
-  } catch (...) { return {}; } // a plug-in's trouble is not ours: nothing is drawn
+  } catch (...) { return {}; } // if the plug-in throws, nothing is drawn
   return made && !holds(*made, node) ? made : NodeRef();
 }
 

@@ -1,5 +1,5 @@
-// field_access.h: typed access to the fields of any node through its table; used by the builder,
-// the prototype instancer, the writer and the comparison. [any thread that owns the node]
+// field_access.h: typed access to the fields of any node through its type's table. Used by the
+// builder, the prototype expander, the writer and the comparison. [any thread that owns the node]
 #pragma once
 
 #include <algorithm>
@@ -47,13 +47,14 @@ inline bool holdsNodes(const FieldInfo& field) {
   return holdsValue(field) && (field.type == FieldType::SFNode || field.type == FieldType::MFNode);
 }
 
-// Lists in which a node's place counts keep NULL (Switch.choice, LOD.level); in others it stands
-// for nothing.
+// Returns whether a list keeps NULL, because the position of its nodes matters (Switch.choice,
+// LOD.level). In other lists NULL has no meaning.
 inline bool keepsNull(const FieldInfo& field) {
   return field.name == "choice" || field.name == "level";
 }
 
-// Calls visit(NodeRef&, const FieldInfo&) for each node a node's own fields hold, NULL left out.
+// Calls visit(NodeRef&, const FieldInfo&) for each node that the node's own fields hold, except
+// NULL.
 template <class Visitor> void forEachChild(Node& node, Visitor&& visit) {
   for (const FieldInfo& field : node.type().fields) {
     if (!holdsNodes(field)) continue;

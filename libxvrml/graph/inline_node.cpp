@@ -1,3 +1,4 @@
+// inline_node.cpp: built-in nodes, Script types, and the content of Inlines.
 #include "graph/inline_node.h"
 
 #include "graph/field_access.h"

@@ -1,5 +1,5 @@
-// inline_node.h: how nodes are made while a world is loaded: Inline nodes carry what they loaded,
-// Scripts a table of their own. Used by the builder, the prototype instancer and the loader.
+// inline_node.h: makes nodes while a world is loaded. Inline nodes store their content, Scripts
+// have a type of their own. Used by the builder, the prototype expander and the loader.
 #pragma once
 
 #include "base/budget.h"
@@ -11,14 +11,14 @@ namespace xvrml {
 struct InlineNode : nodes::Inline {
   using nodes::Inline::Inline;
   std::shared_ptr<const Scope> content; // null until it is loaded
-  Share share; // of the world's budget: content that a running world has loaded
+  Share share; // reservation of the world's budget for content that a running world has loaded
 };
 
-// A node of a type of the registry other than Script.
+// Makes a node of a registered type other than Script.
 NodeRef makeStaticNode(const NodeType& type);
-// The table of a Script that has declared nothing of its own yet.
+// Returns the type of a Script that has not declared any field of its own yet.
 std::shared_ptr<NodeType> scriptType(const NodeType& script);
-// Appends a field, exposedField or event to a run-time table; returns it with its offset set.
+// Appends a field, exposedField or event to a run-time type. Returns it with its offset set.
 const FieldInfo& addField(NodeType& type, FieldInfo field);
 
 } // namespace xvrml

@@ -1,4 +1,5 @@
-// nearest.h: "did you mean": the known name that is spelt most like an unknown one. [any thread]
+// nearest.h: "did you mean": finds the known name that is most similar to an unknown one. [any
+// thread]
 #pragma once
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 
 namespace xvrml {
 
-// Edits (insert, delete, replace, letter case counts half) that turn a into b, in halves; names are
-// short.
+// Returns the edit distance of two names in half edits: insert, delete and replace count 2, a
+// change of letter case counts 1. Names are short.
 inline size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = 2 * j;
@@ -36,12 +37,12 @@ template <class T> const std::string& nameOf(const T& item) {
     return item.name;
 }
 
-// "; did you mean 'x'?" or nothing.
+// Returns "; did you mean 'x'?", or "" if no name is similar.
 template <class Range> std::string suggestion(std::string_view name, const Range& known) {
   if (name.size() > 64) return {};
   const std::string* best = nullptr;
-  size_t distance =
-      2 * (name.size() / 3) + 1; // none for a name of one or two letters, but for their case
+  // A name of one or two letters gets no suggestion, except one of different case.
+  size_t distance = 2 * (name.size() / 3) + 1;
   for (const auto& item : known) {
     const std::string& candidate = nameOf(item);
     const size_t d = editDistance(name, candidate);

@@ -1,3 +1,4 @@
+// node_kinds.cpp: follows prototype instances to the type of their first node.
 #include "graph/node_kinds.h"
 
 #include <algorithm>
@@ -12,8 +13,8 @@ const Node* firstNode(const ProtoDeclaration* declaration) {
 
 const NodeType* effectiveType(const Node& node) {
   const Node* current = &node;
-  // Instances of instances; their number is bounded by the depth of prototypes declared before one
-  // another.
+  // Follows instances of instances. Each prototype is declared before the next one uses it, which
+  // bounds their number.
   while (const auto* instance = dynamic_cast<const ProtoInstance*>(current)) {
     current = firstNode(instance->declaration.get());
     if (!current) return nullptr;

@@ -1,5 +1,5 @@
-// node_kinds.h: which nodes a field takes (the node types that the standard prints beside each
-// SFNode and MFNode field). [any thread that owns the nodes]
+// node_kinds.h: checks which nodes a field accepts (the node types that the standard prints beside
+// each SFNode and MFNode field). [any thread that owns the nodes]
 #pragma once
 
 #include <string_view>
@@ -8,12 +8,12 @@
 
 namespace xvrml {
 
-// Returns the node that an instance of a prototype stands for: the first of its body (4.8.3); null
-// if it is not known.
+// Returns the first node of a prototype's body, which stands for an instance (4.8.3); null if it is
+// not known.
 const Node* firstNode(const ProtoDeclaration* declaration);
-// The type that decides where a node may stand: a prototype instance stands for the first node of
-// its body (4.8.3). Null if not known (EXTERNPROTO not loaded).
+// Returns the type that decides where a node is allowed. For a prototype instance it is the type of
+// the first node in its body (4.8.3). Null if it is not known (EXTERNPROTO not loaded).
 const NodeType* effectiveType(const Node& node);
-// Does a type suit a field's nodeTypes?
+// Returns whether a type is one of a field's nodeTypes.
 bool typeAccepted(std::string_view nodeTypes, const NodeType& type);
 } // namespace xvrml

@@ -1,3 +1,4 @@
+// range.cpp: rounds and clamps numbers to the range of their field.
 #include "graph/range.h"
 
 #include <cmath>
@@ -12,7 +13,7 @@
 namespace xvrml {
 namespace {
 
-// Returns true if the bound is a multiple of pi/2 other than 0: files have such angles rounded
+// Returns true if the bound is a multiple of pi/2 other than 0. Files contain such angles rounded
 // (1.571, 1.5708, 6.28319).
 bool isAngleBound(double bound) {
   const double quarters = bound / (std::numbers::pi / 2);
@@ -20,9 +21,9 @@ bool isAngleBound(double bound) {
          std::abs(quarters - std::round(quarters)) < 1e-6;
 }
 
-// Returns how far beyond a bound a number may be and still mean the bound.
+// Returns how far beyond a bound a number may lie and still mean the bound.
 double slackAt(double bound) {
-  constexpr double rounded = 5.1e-4; // half of the third decimal, and what a float adds
+  constexpr double rounded = 5.1e-4; // half of the third decimal, plus the error of a float
   constexpr double single = 1e-6;    // about eight units in the last place of a float
   return isAngleBound(bound) ? rounded : single * std::abs(bound);
 }
@@ -33,13 +34,13 @@ template <class T> bool inside(T number, const FieldRange& range) {
          (range.maximumOpen ? number < maximum : number <= maximum);
 }
 
-// Integers are compared as doubles: infinity is no integer.
+// Compares as doubles, because no integer can represent infinity.
 bool inside(int32_t number, const FieldRange& range) {
   return inside(static_cast<double>(number), range);
 }
 
-// Brings a number that means a bound to that bound, or to the nearest number inside if the range is
-// open there. Returns false if it is outside and means no bound.
+// Moves a number that means a bound to that bound, or to the nearest number inside if the range is
+// open there. Returns false if the number is outside and means no bound.
 template <class T> bool round(T& number, const FieldRange& range) {
   if (inside(number, range)) return true;
   if constexpr (std::is_floating_point_v<T>) {
@@ -74,7 +75,7 @@ template <class T> bool isAlso(T number, const FieldRange& range) {
   return static_cast<double>(number) == range.also;
 }
 
-// The numbers of a value that the range speaks of; rotations are normalised instead.
+// The number of components that a range applies to. Rotations are normalised instead.
 template <class T> struct Numbers;
 template <> struct Numbers<float> { static constexpr int count = 1; };
 template <> struct Numbers<double> { static constexpr int count = 1; };
@@ -106,7 +107,7 @@ template <Numeric T> bool enforce(T& value, const FieldRange& range) {
   return false;
 }
 
-// The numbers of a value as a file has them.
+// Returns the numbers of a value as a file shows them.
 template <Numeric T> std::string textOf(T value) {
   std::string text;
   auto* numbers = first(value);
@@ -114,7 +115,7 @@ template <Numeric T> std::string textOf(T value) {
   return text;
 }
 
-// "pi/2" for what nobody knows as 1.5707963267948966.
+// Returns a bound as text; "pi/2" instead of 1.5707963267948966.
 std::string boundText(double bound) {
   if (!isAngleBound(bound)) return fmt::format("{}", bound);
   const int quarters = int(std::lround(bound / (std::numbers::pi / 2)));

@@ -1,4 +1,4 @@
-// world.cpp: what a loaded world can be asked, and its end. See xvrml/world.h.
+// world.cpp: renderedNode(), and the destruction of a World.
 #include "xvrml/world.h"
 
 #include "base/budget.h"
@@ -8,7 +8,7 @@
 namespace xvrml {
 
 Node* renderedNode(Node* node) {
-  constexpr int deepest = 32; // plug-ins whose nodes stand for nodes of plug-ins
+  constexpr int deepest = 32; // limit for plug-in nodes that expand to plug-in nodes
   for (int expanded = 0; node;) {
     if (node->type().expand) {
       node = ++expanded < deepest ? expansionOf(*node) : nullptr;
@@ -21,8 +21,8 @@ Node* renderedNode(Node* node) {
   return node;
 }
 
-// A Script's field may hold a node that contains the Script: such owners of themselves are let go
-// by hand.
+// Clears the fields of nodes that may own themselves: a Script's field may hold a node that
+// contains the Script.
 World::~World() {
   forgetBudget(*this);
   for (const NodeRef& node : cyclic) {

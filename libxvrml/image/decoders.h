@@ -1,5 +1,5 @@
-// decoders.h: one function a picture format, chosen by image.cpp. Each gives rows from the bottom
-// up or throws std::runtime_error; none prints, exits or leaves anything behind. [any thread]
+// decoders.h: one function per picture format, chosen by image.cpp. Each returns rows from the
+// bottom up or throws std::runtime_error. None prints, ends the process or leaks. [any thread]
 #pragma once
 
 #include <cstdint>
@@ -22,25 +22,24 @@ Image decodePng(std::span<const uint8_t> bytes, const ImageRoom& room);
 Image decodeJpeg(std::span<const uint8_t> bytes, const ImageRoom& room);
 Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room);
 
-inline constexpr uint64_t maximumImageSide = 65536; // what a texture can have
+inline constexpr uint64_t maximumImageSide = 65536; // largest side of a texture
 
-// Throws std::runtime_error for sizes of no pixels, of a side above maximumImageSide or of more
-// pixels than limits.imagePixels. Decoders call it before they allocate anything that grows with
-// the picture.
+// Throws std::runtime_error if the picture has no pixels, a side above maximumImageSide, or more
+// pixels than limits.imagePixels. Decoders call it before they allocate memory for the picture.
 void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const char* format);
-// Does the same, and throws if `components` bytes a pixel, and `working` bytes while the picture is
-// decoded, are more than the room holds.
+// Does the same. Also throws if `components` bytes per pixel, plus `working` bytes during decoding,
+// exceed what `room` allows.
 void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64_t working,
                     const ImageRoom& room, const char* format);
 // Throws std::runtime_error if the file is shorter than any file that holds a picture of this size.
 void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format);
 
-// Rows arrive from the top; the pixels grow with them, so that a header that promises much and a
-// file that holds little cost little.
+// Flips the rows, which are decoded from the top. Pixels are appended row by row, so that a large
+// header with little data costs little.
 void flipRows(Image& image);
 
-// The same for pictures of radiance; their size is refused where a quarter of limits.imagePixels is
-// too little.
+// The same for radiance pictures. checkRadianceSize refuses more pixels than a quarter of
+// limits.imagePixels.
 RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits);
 void checkRadianceSize(int64_t width, int64_t height, const Limits& limits);
 void flipRows(RadianceImage& image);

@@ -1,8 +1,7 @@
-// exr.cpp: OpenEXR pictures that worlds name. Reads the simple half of the format and nothing else:
-// one part, scan lines, without compression, run-length coded or deflated. OpenEXR's own library
-// reads all of it, but its list of vulnerabilities is long and the copies of distributions are old,
-// so files that anybody may have made are kept from it (docs/decisions/0038). The format: "OpenEXR
-// File Layout", openexr.com. [any thread]
+// exr.cpp: decodes simple OpenEXR pictures: one part of scan lines, uncompressed, run-length coded
+// or deflated. OpenEXR's own library reads the whole format. But it has a long list of
+// vulnerabilities, and distributions have old copies, so untrusted files are not passed to it
+// (docs/decisions/0038). The format: "OpenEXR File Layout", openexr.com. [any thread]
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -18,7 +17,7 @@ namespace {
 
 using Bytes = std::span<const uint8_t>;
 
-constexpr size_t mostChannels = 64, mostBlockBytes = size_t(64) << 20;
+constexpr size_t maxChannels = 64, maxBlockBytes = size_t(64) << 20;
 
 [[noreturn]] void refuse(const std::string& why) { throw std::runtime_error("OpenEXR: " + why); }
 
@@ -40,7 +39,7 @@ class Reader {
     const uint64_t low = word();
     return low | uint64_t(word()) << 32;
   }
-  std::string_view text() { // ends with a zero byte
+  std::string_view text() { // text that ends with a zero byte
     const auto begin = bytes_.begin() + ptrdiff_t(at_),
                end = std::find(begin, bytes_.end(), uint8_t(0));
     if (end == bytes_.end() || end - begin > 255) refuse("a name in the header does not end");
@@ -59,7 +58,7 @@ enum class Compression : uint8_t { none = 0, runs = 1, deflatedLine = 2, deflate
 
 struct Channel {
   Samples samples;
-  int colour; // 0 red, 1 green, 2 blue, 3 all of them, -1: no colour
+  int colour; // 0 red, 1 green, 2 blue, 3 all three, -1 not a colour
   size_t bytes() const { return samples == Samples::half ? 2 : 4; }
 };
 
@@ -75,11 +74,11 @@ std::vector<Channel> readChannels(Reader in) {
     const std::string_view name = in.text();
     if (name.empty()) break;
     const uint32_t kind = in.word();
-    in.take(4); // perceptually linear or not, reserved
+    in.take(4); // a flag for perceptual linearity, and reserved bytes
     const int32_t across = in.integer(), down = in.integer();
     if (kind > 2) refuse("a channel of an unknown type");
     if (across != 1 || down != 1) refuse("a channel with fewer samples than pixels");
-    if (channels.size() == mostChannels) refuse(fmt::format("more than {} channels", mostChannels));
+    if (channels.size() == maxChannels) refuse(fmt::format("more than {} channels", maxChannels));
     const int colour = name == "R" ? 0 : name == "G" ? 1 : name == "B" ? 2 : name == "Y" ? 3 : -1;
     channels.push_back({Samples(kind), colour});
   }
@@ -150,11 +149,11 @@ std::vector<uint8_t> expandRuns(Bytes packed, size_t size) {
   return out;
 }
 
-// The lines of a block as they were before compression.
+// Returns the decompressed lines of a block.
 std::vector<uint8_t> unpack(Bytes packed, size_t size, Compression compression) {
   std::vector<uint8_t> bytes;
-  if (packed.size() == size ||
-      compression == Compression::none) { // stored as it is where compression did not pay
+  // A block is stored uncompressed if compression would not make it smaller.
+  if (packed.size() == size || compression == Compression::none) {
     bytes.assign(packed.begin(), packed.end());
   } else if (compression == Compression::runs) {
     bytes = expandRuns(packed, size);
@@ -167,14 +166,14 @@ std::vector<uint8_t> unpack(Bytes packed, size_t size, Compression compression) 
   }
   if (bytes.size() != size) refuse("a block of a wrong size");
   if (packed.size() == size || compression == Compression::none) return bytes;
-  for (size_t i = 1; i < size; i++)
-    bytes[i] = uint8_t(bytes[i - 1] + bytes[i] - 128); // differences
-  std::vector<uint8_t> woven(size);                    // first all even bytes, then the odd ones
-  for (size_t i = 0; i < size; i++) woven[i] = bytes[i % 2 ? (size + 1) / 2 + i / 2 : i / 2];
-  return woven;
+  // Bytes are stored as differences.
+  for (size_t i = 1; i < size; i++) bytes[i] = uint8_t(bytes[i - 1] + bytes[i] - 128);
+  std::vector<uint8_t> interleaved(size); // the even bytes come first, then the odd ones
+  for (size_t i = 0; i < size; i++) interleaved[i] = bytes[i % 2 ? (size + 1) / 2 + i / 2 : i / 2];
+  return interleaved;
 }
 
-// IEEE 754 binary16.
+// Converts IEEE 754 binary16.
 float halfToFloat(uint16_t h) {
   const uint32_t sign = uint32_t(h & 0x8000) << 16, exponent = (h >> 10) & 31, fraction = h & 1023;
   if (exponent == 31) return std::bit_cast<float>(sign | 0x7f800000 | fraction << 13);
@@ -199,15 +198,16 @@ RadianceImage decodeExr(std::span<const uint8_t> bytes, const Limits& limits) {
   const size_t lines = header.compression == Compression::deflated ? 16 : 1;
   size_t lineBytes = 0;
   for (const Channel& c : header.channels) lineBytes += c.bytes() * width;
-  if (lineBytes * lines > mostBlockBytes) refuse("blocks of lines that are too large");
+  if (lineBytes * lines > maxBlockBytes) refuse("blocks of lines that are too large");
   RadianceImage image;
   image.width = int(width);
   image.height = int(height);
   const size_t blocks = (height + lines - 1) / lines;
   std::vector<uint64_t> offsets;
-  for (size_t b = 0; b < blocks; b++) offsets.push_back(in.offset()); // as many as the file holds
-  for (size_t b = 0; b < blocks;
-       b++) { // in whatever order they lie, the table lists them from the top
+  // Not more than the file contains.
+  for (size_t b = 0; b < blocks; b++) offsets.push_back(in.offset());
+  // Blocks may lie in any order; the table lists them from the top.
+  for (size_t b = 0; b < blocks; b++) {
     if (offsets[b] > bytes.size()) refuse("a block beyond the end of the file");
     Reader block(bytes.subspan(size_t(offsets[b])));
     const size_t first = b * lines, count = std::min(lines, height - first),

@@ -1,6 +1,6 @@
-// film.cpp: All compressed pictures are read into memory once: any of them can then be
-// reached from the key picture before it without the seeking of containers, which is inexact, and
-// in the same way on every machine.
+// film.cpp: reads films with ffmpeg. All compressed pictures are read into memory once. Any of them
+// can then be decoded from the key picture before it, in the same way on every machine. Seeking
+// within containers would be inexact.
 #include "image/film.h"
 
 #include <stdexcept>
@@ -29,9 +29,10 @@ namespace {
 
 constexpr uint64_t maximumFilmBytes = 256ull << 20; // compressed
 constexpr size_t maximumPictures = 1'000'000;
-constexpr uint64_t maximumWork = 2'000'000'000; // pixels decoded on the way to one picture
-// What films of VRML worlds are made of; nothing that plays lists, opens other files or reads
-// subtitles.
+// Limit for the pixels decoded on the way to one picture.
+constexpr uint64_t maximumWork = 2'000'000'000;
+// The formats and codecs of films in VRML worlds. Formats that play lists, open other files or read
+// subtitles are left out.
 constexpr char formats[] = "mpeg,mpegvideo,avi,mov,mp4,m4v,gif";
 constexpr AVCodecID codecs[] = {
     AV_CODEC_ID_MPEG1VIDEO, AV_CODEC_ID_MPEG2VIDEO, AV_CODEC_ID_MPEG4,   AV_CODEC_ID_H264,
@@ -54,12 +55,13 @@ template <class T> using Owned = std::unique_ptr<T, Deleter>;
 
 [[noreturn]] void fail(const std::string& why) { throw std::runtime_error(why); }
 
-// A decoder keeps up to 16 pictures at once, of which the smallest file can ask for the largest.
+// Returns the limit for one picture. A decoder keeps up to 16 pictures at once, and even the
+// smallest file can demand the largest size.
 uint64_t maximumPixels(const Limits& limits) {
   return std::min<uint64_t>(limits.imagePixels / 16, INT32_MAX);
 }
 
-// Where the library reads.
+// The file that ffmpeg reads, and its position.
 struct Input {
   const RegularFile& file;
   int64_t at = 0;
@@ -84,11 +86,12 @@ int64_t seekBytes(void* opaque, int64_t offset, int whence) {
   return input.at = from + offset;
 }
 
-int openNothing(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) {
+int refuseOpen(AVFormatContext*, AVIOContext**, const char*, int, AVDictionary**) {
   return AVERROR(EPERM);
 }
 
-// Of MPEG-1 and -2: 1 I, 2 P, 3 B; 0 if the packet holds no picture (ISO/IEC 11172-2 2.4.2.5).
+// Returns the type of an MPEG-1 or MPEG-2 picture: 1 I, 2 P, 3 B; 0 if the packet holds no picture
+// (ISO/IEC 11172-2 2.4.2.5).
 int pictureType(const AVPacket& packet) {
   for (int i = 0; i + 5 < packet.size; ++i) {
     const uint8_t* p = packet.data + i;
@@ -101,12 +104,12 @@ int pictureType(const AVPacket& packet) {
 
 struct FilmData::Impl {
   Owned<AVCodecParameters> parameters;
-  std::vector<Owned<AVPacket>> packets; // in the order of decoding
-  std::vector<size_t> order;            // which picture a packet is, in the order of showing
-  std::vector<bool> key;                // decoding can begin here
-  std::vector<double> starts;           // seconds, by picture, never decreasing, from 0
+  std::vector<Owned<AVPacket>> packets; // in decoding order
+  std::vector<size_t> order;            // index of each packet's picture in display order
+  std::vector<bool> key;                // decoding can begin at this packet
+  std::vector<double> starts; // start of each picture in seconds: begins at 0, never decreases
   double duration = 0;
-  uint64_t bytes = 0; // of the packets
+  uint64_t bytes = 0; // size of the packets
 
   void demux(AVFormatContext& format, AVStream& stream);
   void sortMpeg();
@@ -127,7 +130,7 @@ void FilmData::Impl::demux(AVFormatContext& format, AVStream& stream) {
     if (bytes > maximumFilmBytes || packets.size() >= maximumPictures)
       fail("the film is too large");
     if (av_packet_make_refcounted(packet.get()) < 0) fail("no memory for the film");
-    // The pictures of a GIF are drawn over one another.
+    // Each picture of a GIF is drawn over the one before it.
     key.push_back(packets.empty() || (packet->flags & AV_PKT_FLAG_KEY &&
                                       stream.codecpar->codec_id != AV_CODEC_ID_GIF));
     packets.push_back(std::move(packet));
@@ -136,23 +139,23 @@ void FilmData::Impl::demux(AVFormatContext& format, AVStream& stream) {
   if (packets.empty()) fail("the film has no pictures");
 }
 
-// I and P pictures are shown after the B pictures that follow them in the file.
+// Sorts for display: I and P pictures are shown after the B pictures that follow them in the file.
 void FilmData::Impl::sortMpeg() {
   std::erase_if(packets, [](const auto& p) { return pictureType(*p) == 0; });
   if (packets.empty()) fail("the film has no pictures");
   key.assign(packets.size(), false);
-  size_t shown = 0, held = packets.size();
+  size_t shown = 0, pending = packets.size();
   order.assign(packets.size(), 0);
   for (size_t i = 0; i < packets.size(); ++i) {
     key[i] = i == 0 || pictureType(*packets[i]) == 1;
     if (pictureType(*packets[i]) == 3) {
       order[i] = shown++;
     } else {
-      if (held < packets.size()) order[held] = shown++;
-      held = i;
+      if (pending < packets.size()) order[pending] = shown++;
+      pending = i;
     }
   }
-  if (held < packets.size()) order[held] = shown++;
+  if (pending < packets.size()) order[pending] = shown++;
 }
 
 void FilmData::Impl::sortByTime() {
@@ -167,7 +170,7 @@ void FilmData::Impl::sortByTime() {
   for (size_t i = 0; i < byTime.size(); ++i) order[byTime[i]] = i;
 }
 
-// rate: pictures a second for films without times of their own, else 0.
+// rate: pictures per second, for films without timestamps; otherwise 0.
 void FilmData::Impl::timeBy(const AVStream& stream, double rate) {
   const size_t count = packets.size();
   starts.assign(count, 0);
@@ -209,10 +212,10 @@ std::unique_ptr<FilmData::Impl> load(const RegularFile& file, const Limits& limi
   if (!io || !context) fail("no memory for the film");
   context->pb = io.get();
   context->flags |= AVFMT_FLAG_CUSTOM_IO;
-  context->io_open = openNothing;
+  context->io_open = refuseOpen;
   context->format_whitelist = av_strdup(formats);
   if (avformat_open_input(&context, "", nullptr, nullptr) < 0)
-    fail("the file is no film of a known kind"); // frees context
+    fail("the file is no film of a known kind"); // this has freed the context
   const Owned<AVFormatContext> format(context);
   {
     std::vector<AVDictionary*> options(format->nb_streams, nullptr);
@@ -257,11 +260,11 @@ std::unique_ptr<FilmData::Impl> load(const RegularFile& file, const Limits& limi
 
 } // namespace
 
-// A film that many nodes show is in memory once.
+// Films are cached, so that a film shown by many nodes is in memory once.
 std::shared_ptr<const FilmData> FilmData::read(const std::string& path, const Limits& limits) {
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<const FilmData>> films;
-  av_log_set_level(AV_LOG_QUIET); // a library does not print
+  av_log_set_level(AV_LOG_QUIET); // ffmpeg must not print
   const RegularFile file(path);
   const std::string key = fmt::format("{}|{}|{}", path, file.size(), file.modified());
   const std::lock_guard lock(mutex);
@@ -274,7 +277,8 @@ std::shared_ptr<const FilmData> FilmData::read(const std::string& path, const Li
 
 namespace {
 
-// A fourth component would make the Material's transparency void (clause 4.14).
+// Drops an alpha channel that is opaque everywhere. A fourth component would override the
+// Material's transparency (clause 4.14).
 void dropOpaqueAlpha(Image& image) {
   const size_t count = image.pixels.size() / 4;
   for (size_t i = 0; i < count; ++i)
@@ -293,16 +297,16 @@ struct FilmReader::Impl {
   Owned<AVCodecContext> decoder;
   Owned<SwsContext> converter;
   Owned<AVFrame> frame{av_frame_alloc()};
-  size_t next = 0;     // packet to be decoded next
-  size_t expected = 0; // pictures before are gone
-  bool ended = false;  // the decoder has been told that nothing follows
+  size_t next = 0;     // the packet to decode next
+  size_t expected = 0; // pictures before this one can no longer be received
+  bool ended = false;  // the decoder was told that no packet follows
 
   void seek(size_t picture);
   bool send();
   bool convert(Image& image);
 };
 
-// Goes on from where the decoder stands, if no key picture is nearer.
+// Continues at the decoder's present position, unless a key picture is nearer.
 void FilmReader::Impl::seek(size_t picture) {
   const FilmData::Impl& data = film->impl();
   size_t from = 0;
@@ -315,7 +319,7 @@ void FilmReader::Impl::seek(size_t picture) {
   ended = false;
 }
 
-// Gives the decoder the next packet, or the end. False: it takes no more.
+// Sends the decoder the next packet, or the end of the film. Returns false if it accepts no more.
 bool FilmReader::Impl::send() {
   const FilmData::Impl& data = film->impl();
   if (ended) return false;
@@ -327,7 +331,7 @@ bool FilmReader::Impl::send() {
   if (!packet) return false;
   packet->pts = int64_t(data.order[next++]);
   packet->dts = AV_NOPTS_VALUE;
-  avcodec_send_packet(decoder.get(), packet.get()); // a damaged picture is left out
+  avcodec_send_packet(decoder.get(), packet.get()); // a damaged picture is skipped
   return true;
 }
 
@@ -389,7 +393,7 @@ bool FilmReader::read(size_t picture, Image& image) {
   for (uint64_t work = 0;;) {
     const int result = avcodec_receive_frame(r.decoder.get(), r.frame.get());
     if (result == AVERROR_EOF) return false;
-    if (result < 0) { // it needs the next packet, or what it has is damaged
+    if (result < 0) { // it needs the next packet, or its data is damaged
       if (work > 2 * maximumWork || !r.send()) return false;
       work += each;
       continue;

@@ -1,5 +1,5 @@
-// film.h: films that worlds name (MPEG-1, MPEG-2, AVI, QuickTime and MP4, animated GIF), picture by
-// picture. Decoded by the ffmpeg libraries where the build has them. A Film is for one thread;
+// film.h: reads films of worlds (MPEG-1, MPEG-2, AVI, QuickTime and MP4, animated GIF), picture by
+// picture. The ffmpeg libraries decode them, if the build has them. A FilmReader is for one thread;
 // FilmData may be shared.
 #pragma once
 
@@ -11,17 +11,17 @@
 
 namespace xvrml {
 
-// A film's compressed pictures in memory: what several readers share. Immutable.
+// The compressed pictures of a film in memory, shared by its readers. Immutable.
 class FilmData {
  public:
-  // Throws std::runtime_error saying what is wrong: missing, no film, damaged, too large, or that
-  // this build decodes none. No other file than `path` is opened, whatever the film refers to.
+  // Opens a film. Throws std::runtime_error with the reason: missing, not a film, damaged, too
+  // large, or no decoder in this build. Only `path` is opened, whatever the film refers to.
   static std::shared_ptr<const FilmData> read(const std::string& path, const Limits& limits);
   ~FilmData();
   double duration() const; // seconds, above 0
   size_t pictures() const; // at least 1
-  uint64_t bytes() const;  // of the compressed pictures in memory
-  // The picture that is shown at a time from the beginning (clamped to the film).
+  uint64_t bytes() const;  // size of the compressed pictures in memory
+  // Returns the picture that is shown at a time since the beginning, clamped to the film.
   size_t pictureAt(double seconds) const;
 
   struct Impl;
@@ -32,13 +32,13 @@ class FilmData {
   std::unique_ptr<Impl> impl_;
 };
 
-// Decodes pictures of a film in any order; quickest forward.
+// Decodes pictures of a film in any order; forward is fastest.
 class FilmReader {
  public:
   FilmReader(std::shared_ptr<const FilmData> film, const Limits& limits);
   ~FilmReader();
-  // Rows from the bottom up, 3 components, or 4 if the film has transparency. What cannot be
-  // decoded leaves the image as it was and is false.
+  // Decodes a picture: rows from the bottom up, 3 components, or 4 if the film has transparency.
+  // Returns false, and leaves the image unchanged, if it cannot be decoded.
   bool read(size_t picture, Image& image);
 
  private:
@@ -46,7 +46,7 @@ class FilmReader {
   std::unique_ptr<Impl> impl_;
 };
 
-// Whether this build can decode films at all.
+// Returns whether this build can decode films.
 bool decodesFilms();
 
 } // namespace xvrml

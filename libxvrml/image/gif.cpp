@@ -1,5 +1,5 @@
-// gif.cpp: the first picture of a GIF by giflib, record by record, so that nothing beyond it is
-// read.
+// gif.cpp: decodes the first picture of a GIF with giflib, record by record, so that nothing after
+// it is read.
 #include <gif_lib.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void check(GifFileType* gif, int result) {
   if (result == GIF_ERROR) damaged(GifErrorString(gif->Error));
 }
 
-// Extensions before the picture; the graphics control block names the transparent colour.
+// Reads an extension before the picture. The graphics control block has the transparent colour.
 void readExtension(GifFileType* gif, int& transparent) {
   int code = 0;
   GifByteType* block = nullptr;
@@ -51,7 +51,7 @@ void readExtension(GifFileType* gif, int& transparent) {
   }
 }
 
-// Colour indices of the picture, row by row from the top, whatever the order in the file.
+// Returns the picture's colour indices, row by row from the top. Interlaced rows are put in order.
 std::vector<uint8_t> readIndices(GifFileType* gif) {
   const size_t width = size_t(gif->Image.Width), height = size_t(gif->Image.Height);
   std::vector<uint8_t> inOrder;
@@ -121,10 +121,10 @@ Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room) {
     else
       damaged("no picture in it");
   }
-  // The size of the screen is checked before any pixel is made, that of the picture before any is
-  // read.
+  // The size of the screen is checked before any pixel is made, and the size of the picture before
+  // any pixel is read.
   check(gif.get(), DGifGetImageHeader(gif.get()));
-  if (gif->SWidth <= 0 || gif->SHeight <= 0) { // some writers leave the screen out
+  if (gif->SWidth <= 0 || gif->SHeight <= 0) { // some programs leave the screen size out
     gif->SWidth = gif->Image.Width;
     gif->SHeight = gif->Image.Height;
   }
@@ -134,8 +134,8 @@ Image decodeGif(std::span<const uint8_t> bytes, const ImageRoom& room) {
                  pictureHeight = uint64_t(std::max(gif->Image.Height, 0));
   checkImageSize(pictureWidth, pictureHeight, room.limits, "GIF");
   checkImageSize(width, height, 4, 2 * pictureWidth * pictureHeight, room, "GIF");
-  // A code of 12 bits stands for fewer than 4096 pixels. A screen may be larger than the picture on
-  // it, in reason.
+  // A code of 12 bits stands for fewer than 4096 pixels. A screen may be moderately larger than its
+  // picture.
   checkFileSize(bytes.size(), pictureWidth * pictureHeight / 2731, "GIF");
   constexpr uint64_t freeScreen = 4 << 20;
   if (width * height > freeScreen) checkFileSize(bytes.size(), width * height / 2731, "GIF");

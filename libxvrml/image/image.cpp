@@ -1,4 +1,4 @@
-// image.cpp: reads picture files and finds their format by content.
+// image.cpp: reads picture files, and recognises their format by content.
 #include "image/image.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ void checkImageSize(uint64_t width, uint64_t height, const Limits& limits, const
 void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64_t working,
                     const ImageRoom& room, const char* format) {
   checkImageSize(width, height, room.limits, format);
-  const uint64_t bytes = width * height * components; // below 2^35: see maximumImageSide
+  const uint64_t bytes = width * height * components; // below 2^35 because of maximumImageSide
   if (bytes > room.bytes)
     throw std::runtime_error(fmt::format(
         "{} picture of {} x {} pixels takes {} bytes: all pictures of a world together take at "

@@ -1,4 +1,5 @@
-// image.h: pictures that worlds name: PNG, JPEG, GIF (first frame), by content. [any thread]
+// image.h: reads pictures of worlds: PNG, JPEG, GIF (first frame), recognised by content. [any
+// thread]
 #pragma once
 
 #include <cstdint>
@@ -10,18 +11,20 @@
 
 namespace xvrml {
 
-// What a decoded picture may take, checked before anything of its size is allocated.
+// The memory that a decoded picture may use. It is checked before anything of that size is
+// allocated.
 struct ImageRoom {
   const Limits& limits;
-  uint64_t bytes =
-      ~uint64_t(0); // of the decoded picture: what is left of the total of a world's pictures
-  const Budget* budget = nullptr; // of the world; decoders ask it and take nothing
+  // For the decoded picture: the rest of the total for a world's pictures.
+  uint64_t bytes = ~uint64_t(0);
+  // The world's budget; decoders compare with it and reserve nothing.
+  const Budget* budget = nullptr;
 };
 
-// Decodes a picture to 8 bits a component, rows from the bottom up, components 1 (grey), 2 (grey,
-// alpha), 3, 4 as the file has them (palettes expand; a palette or tRNS transparency gives alpha;
-// 16 bits are rounded). Throws std::runtime_error saying what is wrong (missing, not a picture,
-// damaged, too large for the room).
+// Decode a picture to 8 bits per component, with rows from the bottom up. The components are those
+// of the file: 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA. Palettes are expanded; transparency of a
+// palette or a tRNS chunk becomes alpha; 16 bits are rounded. Throw std::runtime_error with the
+// reason: missing, not a picture, damaged, or too large for the room.
 Image readImage(const std::string& path, const ImageRoom& room);
 Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room);
 inline Image readImage(const std::string& path, const Limits& limits) {

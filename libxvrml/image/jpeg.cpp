@@ -1,10 +1,10 @@
-// jpeg.cpp: JPEG by libjpeg. Its errors return by longjmp, so nothing with a destructor lives in
-// the function that may be left so.
+// jpeg.cpp: decodes JPEG with libjpeg. Its errors return by longjmp, so functions that an error may
+// leave have no objects with destructors.
 #include <cstddef>
 #include <cstdio>
 
 #include <jpeglib.h>
-// after jpeglib.h
+// jerror.h needs jpeglib.h before it.
 #include <jerror.h>
 
 #include <csetjmp>
@@ -36,7 +36,7 @@ JpegReader* readerOf(j_common_ptr jpeg) { return static_cast<JpegReader*>(jpeg->
   std::longjmp(reader->escape, 1);
 }
 
-// The library goes on with grey where data is missing; a damaged picture is refused instead.
+// libjpeg fills missing data with grey; a damaged picture is refused instead.
 void onMessage(j_common_ptr jpeg, int level) {
   if (level >= 0) return;
   int code = jpeg->err->msg_code;
@@ -45,7 +45,7 @@ void onMessage(j_common_ptr jpeg, int level) {
     onError(jpeg);
 }
 
-// A small file can hold a picture of very many scans, each of them as slow as the whole.
+// A small file can contain very many scans, each as slow as the whole picture.
 void onProgress(j_common_ptr jpeg) {
   if (jpeg->is_decompressor && reinterpret_cast<j_decompress_ptr>(jpeg)->input_scan_number > 500) {
     JpegReader* reader = readerOf(jpeg);
@@ -79,7 +79,7 @@ bool start(JpegReader& reader) {
   return true;
 }
 
-// One row into reader.row.
+// Reads one row into reader.row.
 bool readRow(JpegReader& reader) {
   if (setjmp(reader.escape)) return false;
   JSAMPROW row = reader.row.data();
@@ -96,7 +96,7 @@ void appendRow(JpegReader& reader) {
     pixels.insert(pixels.end(), reader.row.begin(), reader.row.end());
     return;
   }
-  // Ink to light; programs by Adobe write it the other way round and say so.
+  // Converts ink to light. Adobe programs store it inverted and mark the file.
   bool inverted = reader.jpeg.saw_Adobe_marker;
   for (size_t x = 0; x + 3 < reader.row.size(); x += 4) {
     auto light = [&](size_t i) {
@@ -113,20 +113,20 @@ Image decodeJpeg(std::span<const uint8_t> bytes, const ImageRoom& room) {
   reader.jpeg.err = jpeg_std_error(&reader.errors);
   reader.errors.error_exit = onError;
   reader.errors.emit_message = onMessage;
-  reader.jpeg.client_data = &reader; // kept by jpeg_create_decompress
+  reader.jpeg.client_data = &reader; // jpeg_create_decompress keeps it
   auto check = [&](bool fine) {
     if (!fine) throw std::runtime_error(std::string("damaged JPEG picture: ") + reader.message);
   };
   check(readHeader(reader, bytes));
   const uint64_t width = reader.jpeg.image_width, height = reader.jpeg.image_height;
-  // Pictures of several scans have all their coefficients in memory, two bytes each.
+  // For pictures with several scans, all coefficients are in memory, two bytes each.
   const bool scans = reader.jpeg.progressive_mode || jpeg_has_multiple_scans(&reader.jpeg);
   const uint64_t working = scans ? 2 * width * height * uint64_t(reader.jpeg.num_components) : 0;
   checkImageSize(width, height, reader.jpeg.jpeg_color_space == JCS_GRAYSCALE ? 1 : 3, working,
                  room, "JPEG");
-  // A block of 8 x 8 pixels takes one bit at least, but for the arithmetic code.
+  // A block of 8 x 8 pixels has at least one bit, except with arithmetic coding.
   if (!reader.jpeg.arith_code) checkFileSize(bytes.size(), width * height / 512, "JPEG");
-  constexpr uint64_t rows = 16 << 20; // what the library needs beside the coefficients
+  constexpr uint64_t rows = 16 << 20; // memory that libjpeg needs besides the coefficients
   reader.jpeg.mem->max_memory_to_use = long(2 * working + rows);
   check(start(reader));
   Image& image = reader.image;
@@ -139,7 +139,7 @@ Image decodeJpeg(std::span<const uint8_t> bytes, const ImageRoom& room) {
     check(readRow(reader));
     appendRow(reader);
   }
-  jpeg_abort_decompress(&reader.jpeg); // an end mark is not needed
+  jpeg_abort_decompress(&reader.jpeg); // a missing end marker is no error
   flipRows(image);
   return std::move(image);
 }

@@ -1,5 +1,5 @@
-// png.cpp: PNG by libpng. Its errors return by longjmp, so nothing with a destructor lives in the
-// function that may be left so.
+// png.cpp: decodes PNG with libpng. Its errors return by longjmp, so functions that an error may
+// leave have no objects with destructors.
 #include <png.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct PngReader {
   std::longjmp(reader->escape, 1);
 }
 
-void onWarning(png_structp, png_const_charp) {} // a bad text chunk does no harm
+void onWarning(png_structp, png_const_charp) {} // a damaged text chunk is harmless
 
 void readBytes(png_structp png, png_bytep to, size_t count) {
   auto* reader = static_cast<PngReader*>(png_get_io_ptr(png));
@@ -40,7 +40,7 @@ void readBytes(png_structp png, png_bytep to, size_t count) {
   reader->position += count;
 }
 
-// Reads what is before the pixels; nothing that grows with the picture is allocated.
+// Reads everything before the pixels. Allocates nothing that grows with the picture.
 bool readHeader(PngReader& reader) {
   if (setjmp(reader.escape)) return false;
   png_structp png = reader.png;
@@ -52,7 +52,7 @@ bool readHeader(PngReader& reader) {
   return true;
 }
 
-// Tells the library how the pixels are wanted. It allocates its rows here.
+// Sets the format of the decoded pixels. libpng allocates its rows here.
 bool start(PngReader& reader) {
   if (setjmp(reader.escape)) return false;
   png_structp png = reader.png;
@@ -63,8 +63,7 @@ bool start(PngReader& reader) {
   return true;
 }
 
-// Reads all rows, the last one of the picture first in memory. What follows the pixels in the file
-// does not matter.
+// Reads all rows, and stores them from the bottom up. Data after the pixels is ignored.
 bool readRows(PngReader& reader, png_bytep pixels, size_t rowBytes, size_t height, int passes) {
   if (setjmp(reader.escape)) return false;
   for (int pass = 0; pass < passes; pass++)
@@ -72,8 +71,7 @@ bool readRows(PngReader& reader, png_bytep pixels, size_t rowBytes, size_t heigh
   return true;
 }
 
-// Returns the bytes a pixel has once it is decoded: palettes become RGB, a tRNS chunk becomes
-// alpha.
+// Returns the components of a decoded pixel: palettes become RGB, and a tRNS chunk becomes alpha.
 uint64_t decodedComponents(const PngReader& reader) {
   const int type = png_get_color_type(reader.png, reader.info);
   const bool alpha =
@@ -96,7 +94,7 @@ Image decodePng(std::span<const uint8_t> bytes, const ImageRoom& room) {
   uint64_t width = png_get_image_width(reader.png, reader.info),
            height = png_get_image_height(reader.png, reader.info);
   checkImageSize(width, height, decodedComponents(reader), 0, room, "PNG");
-  // Deflate packs 1032 to 1 at best: more rows than that cannot be in the file.
+  // Deflate compresses at most 1032 to 1, which bounds the rows that the file can hold.
   checkFileSize(bytes.size(), png_get_rowbytes(reader.png, reader.info) * height / 1032, "PNG");
   check(start(reader));
   Image& image = reader.image;

@@ -1,6 +1,6 @@
-// radiance.cpp: RGBE: G. Ward, "Real Pixels", Graphics Gems II, with the
-// run-length code of later Radiance files. Memory grows with what the file holds, and not with what
-// its header promises.
+// radiance.cpp: decodes Radiance (RGBE) and PFM pictures. RGBE: G. Ward, "Real Pixels", Graphics
+// Gems II, with the run-length code of later Radiance files. Memory grows with the data in the
+// file, not with the size in its header.
 #include "xvrml/radiance.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ class Reader {
   size_t at_ = 0;
 };
 
-// Takes a word off a line and reads it as a number.
+// Removes a word from a line and returns it as a number.
 template <class T> T number(std::string_view& line) {
   const auto space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
   while (!line.empty() && space(line.front())) line.remove_prefix(1);
@@ -71,17 +71,17 @@ RadianceImage decodePfm(Bytes bytes, const Limits& limits) {
   if (in.rest().size() / 4 < count) refuse("it ends too early");
   image.rgb.resize(count);
   std::memcpy(image.rgb.data(), in.rest().data(), count * 4);
-  if (scale > 0) // the other end first
+  if (scale > 0) // big-endian
     for (float& v : image.rgb)
       v = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<uint32_t>(v)));
   return image;
 }
 
-void readRow(Reader& in, size_t width,
-             std::vector<uint8_t>& row) { // four planes, one after the other
+// Reads a row as four planes, one after the other.
+void readRow(Reader& in, size_t width, std::vector<uint8_t>& row) {
   const uint8_t head[4] = {in.next(), in.next(), in.next(), in.next()};
   if (width < 8 || width > 32767 || head[0] != 2 || head[1] != 2 ||
-      size_t(head[2] << 8 | head[3]) != width) { // no runs
+      size_t(head[2] << 8 | head[3]) != width) { // not run-length coded
     for (size_t x = 0; x < width; x++)
       for (size_t c = 0; c < 4; c++) row[c * width + x] = x == 0 ? head[c] : in.next();
     return;

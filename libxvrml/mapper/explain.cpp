@@ -1,5 +1,5 @@
-// explain.cpp: OpenRTMapper::explain(): each object with its path of names and the reason why it is
-// one.
+// explain.cpp: OpenRTMapper::explain(): lists each object with its path of names and the reason for
+// its existence.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ using namespace mapper;
 namespace {
 
 constexpr size_t longestPath = 12;     // names
-constexpr uint64_t bytesOfDraw = 1200; // of a draw call, beside its arrays
+constexpr uint64_t bytesOfDraw = 1200; // a draw call without its arrays
 
 std::string ownName(const Graph& graph, const Item& item) {
   if (item.name != 0) return graph.names[item.name];
@@ -52,7 +52,7 @@ std::string reasonOf(const Node& node, Change kind) {
   return "split: " + (reason.empty() ? std::string("events reach it") : reason);
 }
 
-// The node below a Shape that events reach with such a change.
+// Returns the reason from the node below a Shape that events reach with such a change.
 std::string reasonBelow(Node& node, Change kind) {
   if (reaches(node, kind)) return reasonOf(node, kind);
   for (const FieldInfo& field : node.type().fields) {
@@ -65,30 +65,30 @@ std::string reasonBelow(Node& node, Change kind) {
   return "split: events reach it";
 }
 
-std::string ofItem(const Graph& graph, const Item& item, const Part& part) {
-  switch (item.own) {
-  case Own::shared: return used(graph, part, item.primitives);
-  case Own::wanted: return "split: ORTInstance";
-  case Own::merged: return "merged: ORTStatic";
-  case Own::transform: return reasonOf(*item.node, Change::transform);
-  case Own::children:
+std::string itemReason(const Graph& graph, const Item& item, const Part& part) {
+  switch (item.objectReason) {
+  case ObjectReason::shared: return used(graph, part, item.primitives);
+  case ObjectReason::wanted: return "split: ORTInstance";
+  case ObjectReason::merged: return "merged: ORTStatic";
+  case ObjectReason::transform: return reasonOf(*item.node, Change::transform);
+  case ObjectReason::children:
     return item.awaited ? "split: it is still to be loaded"
                         : reasonOf(*item.node, Change::children);
-  case Own::appearance: return "split: events reach the colour of its lines";
-  case Own::geometry:
+  case ObjectReason::appearance: return "split: events reach the colour of its lines";
+  case ObjectReason::geometry:
     return reasonBelow(*renderedNode(static_cast<nodes::Shape&>(*item.node).geometry.get()),
                        Change::geometry);
-  case Own::none: break;
+  case ObjectReason::none: break;
   }
   return {};
 }
 
-std::string ofPlace(const Graph& graph, const Item& item, const Part& part) {
+std::string placeReason(const Graph& graph, const Item& item, const Part& part) {
   if (!item.node) return fmt::format("merged static geometry of {} shapes", part.shapes);
   if (part.level != none) return fmt::format("split: level {} of an LOD", part.level);
   if (item.kind == Kind::lod) return "split: LOD follows the viewer";
   if (item.kind == Kind::billboard) return "split: Billboard follows the viewer";
-  if (isSplit(item.own)) return ofItem(graph, item, part);
+  if (isSplit(item.objectReason)) return itemReason(graph, item, part);
   return item.scopesLight ? "split: scope of a DirectionalLight" : "";
 }
 
@@ -97,7 +97,7 @@ std::string ofPlace(const Graph& graph, const Item& item, const Part& part) {
 std::vector<ExplainedObject> OpenRTMapper::explain() const {
   Impl& m = *impl_;
   std::vector<ExplainedObject> list;
-  std::vector<ItemId> shapeOf(m.graph.meshes.size(), 0); // the first that uses a mesh
+  std::vector<ItemId> shapeOf(m.graph.meshes.size(), 0); // by mesh: the first shape that uses it
   std::vector<uint32_t> geometries(m.graph.meshes.size(), 0);
   std::vector<uint8_t> counted(m.graph.meshes.size(), 0);
   for (const ItemId id : m.graph.order) {
@@ -108,14 +108,14 @@ std::vector<ExplainedObject> OpenRTMapper::explain() const {
     if (!std::exchange(counted[size_t(item.mesh)], 1)) ++geometries[mesh];
   }
   for (const Part& part : m.objects.parts()) {
-    if (!part.defined || part.of == Part::Of::nothing) continue;
+    if (!part.defined || part.kind == Part::Kind::nothing) continue;
     ExplainedObject object;
     object.triangles = part.triangles;
     object.shapes = part.shapes;
     object.bytes = part.primitives * bytesOfPrimitive + part.drawCalls * bytesOfDraw +
                    part.uses.size() * bytesOfInstance;
     object.instances = part.instances;
-    if (part.of == Part::Of::mesh) {
+    if (part.kind == Part::Kind::mesh) {
       Node& geometry = m.graph.meshes.geometry(part.mesh);
       const ItemId shape = shapeOf[size_t(part.mesh)];
       object.name = (shape == 0 ? "" : pathOf(m.graph, shape) + "/") +
@@ -133,8 +133,8 @@ std::vector<ExplainedObject> OpenRTMapper::explain() const {
     } else {
       const Item& item = m.graph.items[part.item];
       object.name = pathOf(m.graph, part.item);
-      object.reason =
-          part.of == Part::Of::place ? ofPlace(m.graph, item, part) : ofItem(m.graph, item, part);
+      object.reason = part.kind == Part::Kind::place ? placeReason(m.graph, item, part)
+                                                     : itemReason(m.graph, item, part);
     }
     list.push_back(std::move(object));
   }

@@ -1,4 +1,4 @@
-// extent.cpp: Shapes are measured by their vertices; a shared item once, its box then
+// extent.cpp: measures shapes by their vertices. A shared item is measured once; after that its box
 // stands for it.
 #include "mapper/extent.h"
 
@@ -20,14 +20,14 @@ class Measure {
       : graph_(graph), places_(places), boxes_(graph.items.size()) {}
 
   Bounds all() {
-    // Children stand before parents, so a shared item's shared parts have been measured when it is
-    // met.
+    // Children come before parents, so the shared parts inside a shared item have been measured
+    // already.
     for (const ItemId id : graph_.order)
       if (shared(id)) boxes_[id] = below({id, none, Matrix()});
     return below({Graph::root, 0, Matrix()});
   }
 
-  // How far from a point something lies; after all().
+  // Returns the largest distance from a point. Call it after all().
   double reach(const Vector& center) {
     center_ = &center;
     below({Graph::root, 0, Matrix()});
@@ -37,10 +37,10 @@ class Measure {
  private:
   bool shared(ItemId id) const {
     const Item& item = graph_.items[id];
-    return item.own != Own::none && !item.placed && item.parentCount > 1;
+    return item.objectReason != ObjectReason::none && !item.placeDependent && item.parentCount > 1;
   }
 
-  // Of an item's content, without its own matrix.
+  // Returns the bounds of an item's content, without the item's own matrix.
   Bounds below(const Step& first) {
     Bounds bounds;
     std::vector<Step> open{first};
@@ -64,7 +64,8 @@ class Measure {
           growBy(bounds, boxes_[child], inside);
         else
           open.push_back(
-              {child, at, at == none ? inside : compose(inside, places_.turns[size_t(at)])});
+              {child, at,
+               at == none ? inside : compose(inside, places_.billboardRotations[size_t(at)])});
       }
     }
     return bounds;
@@ -84,7 +85,8 @@ class Measure {
   Graph& graph_;
   const Places& places_;
   std::vector<Bounds> boxes_;
-  const Vector* center_ = nullptr; // set: how far it is from there is measured, not the bounds
+  // If set, distances from this point are measured instead of the bounds.
+  const Vector* center_ = nullptr;
   double reach_ = 0;
 };
 

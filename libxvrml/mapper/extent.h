@@ -1,4 +1,5 @@
-// extent.h: the bounds of what is drawn, in double. Pure; called by the mapper once.
+// extent.h: bounds of the drawn world, in double precision. Pure functions, called by the mapper on
+// request.
 #pragma once
 
 #include "mapper/graph/places.h"
@@ -6,10 +7,10 @@
 
 namespace xvrml::mapper {
 
-// World bounds with every billboard and level of detail as the places now have it; for LODs the
-// highest level.
+// Returns the world bounds, with billboards as the places now have them and the highest level of
+// each LOD.
 Bounds boundsOf(Graph& graph, const Places& places);
-// The sphere about the middle of these bounds.
+// Returns the bounding sphere around the centre of `bounds`.
 BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds);
 
 } // namespace xvrml::mapper

@@ -1,5 +1,5 @@
-// mapper.cpp: OpenRTMapper: the order of the steps from a world to rt* calls, frame by frame. See
-// xvrml/openrt.h.
+// mapper.cpp: OpenRTMapper: the steps from a world to rt* calls, frame by frame. The interface is
+// in xvrml/openrt.h.
 #include <algorithm>
 #include <new>
 #include <numbers>
@@ -21,7 +21,7 @@ OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
   summarise(graph, world.diagnostics);
   std::vector<Place> gone;
   places.build(graph, gone);
-  places.follow(graph, camera); // what is below billboards: as seen from the default view
+  places.updateForFrame(graph, camera); // content of billboards is placed for the default view
   rebind();
 }
 
@@ -34,7 +34,7 @@ OpenRTMapper::Impl::~Impl() {
     surfaces.clear();
     custom.clear();
     textures.clear();
-  } catch (const std::bad_alloc&) {} // what is left goes with the context
+  } catch (const std::bad_alloc&) {} // the remaining objects are freed with the context
 }
 
 void OpenRTMapper::Impl::rebind() {
@@ -65,7 +65,7 @@ bool OpenRTMapper::Impl::headlight() const {
 const std::vector<int32_t>& OpenRTMapper::Impl::viewpointPlaces() {
   if (!viewsStale) return viewpointPlaces_;
   viewsStale = false;
-  places.follow(graph, camera);
+  places.updateForFrame(graph, camera);
   viewpointPlaces_.clear();
   viewpoints_ = listViewpoints(graph, places, viewpointPlaces_);
   return viewpointPlaces_;
@@ -78,7 +78,7 @@ const std::vector<ViewpointInfo>& OpenRTMapper::Impl::viewpoints() {
 
 const Bounds& OpenRTMapper::Impl::bounds() {
   if (boundsStale) {
-    places.follow(graph, camera);
+    places.updateForFrame(graph, camera);
     bounds_ = boundsOf(graph, places);
     sphereStale = true;
   }
@@ -96,9 +96,9 @@ const BoundingSphere& OpenRTMapper::Impl::sphere() {
 bool OpenRTMapper::Impl::lightsModel() {
   if (!modelLight || options.headlight != MapOptions::Headlight::automatic || bound.viewpoint)
     return false;
-  if (lightStale) leavesLightOpen_ = leavesLightOpen(graph, bound);
+  if (lightStale) hasUnspecifiedLighting_ = hasUnspecifiedLighting(graph, bound);
   lightStale = false;
-  return leavesLightOpen_;
+  return hasUnspecifiedLighting_;
 }
 
 OpenRTMapper::OpenRTMapper(World& world, const MapOptions& options)
@@ -156,15 +156,15 @@ void OpenRTMapper::map(const CameraSettings& camera) {
   Impl& m = *impl_;
   report(m.world.diagnostics, {}, "before the world was mapped");
   m.camera = camera;
-  m.places.follow(m.graph, camera);
+  m.places.updateForFrame(m.graph, camera);
   Bound around = m.bound;
   if (!m.background) {
     around.background = {};
     around.backgroundPlace = none;
   }
-  m.environment.follow(m.places, around);
-  m.objects.follow();
-  m.lights.follow(m.graph, m.places);
+  m.environment.updateForFrame(m.places, around);
+  m.objects.updateForFrame();
+  m.lights.updateForFrame(m.graph, m.places);
   m.lights.atCamera(m.lightsModel() ? CameraLight::model
                     : m.headlight() ? CameraLight::head
                                     : CameraLight::none,
@@ -179,13 +179,14 @@ void OpenRTMapper::Impl::useCamera(const CameraSettings& settings) {
   rtLoadMatrixd(settings.matrix);
   RTid shader = 0;
   if (auto* node = nodeCast<nodes::ORTShader>(
-          settings.shader)) // its own: other views may have another angle
-    shader =
-        custom.of(*node, RT_CAMERA, node, [&](ShaderSetup& setup, const ShaderClass& shaderClass) {
-          if (shaderClass.has("fovy") && settings.fovy > 0) setup.number("fovy", float(degrees));
-          if (shaderClass.has("height") && settings.fovy == 0)
-            setup.number("height", float(settings.height));
-        });
+          settings.shader)) // a camera shader of its own: other views may have another angle
+    shader = custom.shaderFor(*node, RT_CAMERA, node,
+                              [&](ShaderSetup& setup, const ShaderClass& shaderClass) {
+                                if (shaderClass.has("fovy") && settings.fovy > 0)
+                                  setup.number("fovy", float(degrees));
+                                if (shaderClass.has("height") && settings.fovy == 0)
+                                  setup.number("height", float(settings.height));
+                              });
   if (shader != 0)
     rtUseCamera(shader);
   else if (settings.fovy == 0)

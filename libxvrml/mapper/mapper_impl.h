@@ -1,5 +1,5 @@
-// mapper_impl.h: what an OpenRTMapper is made of. Shared by mapper.cpp (frames), update.cpp
-// (changes) and explain.cpp.
+// mapper_impl.h: the state of an OpenRTMapper. Shared by mapper.cpp (frames), update.cpp (changes)
+// and explain.cpp.
 #pragma once
 
 #include <optional>
@@ -27,38 +27,38 @@ struct OpenRTMapper::Impl {
   mapper::Objects objects;
   mapper::Lights lights;
   mapper::Environment environment;
-  std::optional<mapper::Bound> given; // by bind(); its places may be old
+  std::optional<mapper::Bound> given; // set by bind(); its places may be out of date
   mapper::Bound bound;
-  CameraSettings camera; // of the last frame; before the first the standard's
+  CameraSettings camera; // of the last frame; the standard's default before the first frame
   uint64_t regroupings = 0;
 
   Impl(World& world, const MapOptions& options);
-  ~Impl(); // takes everything out of the context again, if that is still the current one
+  ~Impl(); // removes everything from the context, if that is still current
   CameraSettings cameraAt(int32_t place) const;
   bool headlight() const;
   bool lightsModel();
   void useCamera(const CameraSettings& settings);
   void rebind();
 
-  // Made when asked for, after what they follow from has changed.
+  // Cached values; they are recomputed on request after their inputs have changed.
   const std::vector<ViewpointInfo>& viewpoints();
   const std::vector<int32_t>& viewpointPlaces();
   const Bounds& bounds();
   const BoundingSphere& sphere();
   bool viewsStale = true, boundsStale = true, countsStale = false, namesStale = true;
   bool sphereStale = true, lightStale = true;
-  bool modelLight = false, background = true; // as setModelLight() and setBackground() say
-  std::vector<std::string> names;             // of the shapes, by number
+  bool modelLight = false, background = true; // set by setModelLight() and setBackground()
+  std::vector<std::string> names;             // shape names by number
 
-  // Between frames: update.cpp.
+  // Changes between frames: update.cpp.
   void update(const FieldChanges& changes);
 
  private:
   struct Work;
-  void transformed(Work& work, Node& node);
-  void reshaped(Work& work, Node& node);
-  void relooked(Work& work, Node& node);
-  void relit(Work& work, Node& node);
+  void transformChanged(Work& work, Node& node);
+  void geometryChanged(Work& work, Node& node);
+  void appearanceChanged(Work& work, Node& node);
+  void lightChanged(Work& work, Node& node);
   void newSurfaces(Work& work);
   void textured(Work& work, mapper::ItemId shape);
   void regroup();
@@ -67,7 +67,7 @@ struct OpenRTMapper::Impl {
   std::vector<int32_t> viewpointPlaces_;
   Bounds bounds_;
   BoundingSphere sphere_;
-  bool leavesLightOpen_ = false;
+  bool hasUnspecifiedLighting_ = false;
   size_t surfacesKept_ = 64;
 };
 

@@ -11,7 +11,8 @@
 namespace xvrml::mapper {
 namespace {
 
-constexpr uint64_t smallestCompared = 5; // primitives: less is never worth an instance, see cost.h
+// In primitives; fewer are never worth an instance (cost.h).
+constexpr uint64_t minimumComparedPrimitives = 5;
 
 template <class T> uint64_t hashed(std::span<const T> values, uint64_t seed) {
   return XXH3_64bits_withSeed(values.data(), values.size_bytes(), seed + values.size());
@@ -25,7 +26,7 @@ uint64_t contentHash(const Mesh& m) {
 
 double reachOf(const Mesh& m) {
   float reach = m.kind == Mesh::Kind::sphere ? m.radius : 0;
-  for (const Vec3f& p : m.points) // not by NaN, which fails every comparison
+  for (const Vec3f& p : m.points) // NaN fails every comparison and is ignored
     for (const float v : {p.x, p.y, p.z})
       reach = std::abs(v) > reach && std::isfinite(v) ? std::abs(v) : reach;
   return double(reach);
@@ -118,22 +119,21 @@ void Meshes::setDynamic(int32_t mesh, bool dynamic) {
   if (dynamic)
     leave(mesh);
   else
-    entry.known = false; // listed when it is built again
+    entry.known = false; // grouped when it is built again
 }
 
 const Mesh& Meshes::get(int32_t mesh) {
   Entry& entry = entries_[size_t(mesh)];
   if (entry.mesh) return *entry.mesh;
-  Diagnostics silent; // what is wrong with a geometry was said when it was built first
+  Diagnostics silent; // problems of the geometry were reported by the first build
   Limits limits = world_.options.limits;
-  if (!entry.known)
-    entry.triangles = ration_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
+  if (!entry.known) entry.triangles = quota_.budget().left() / (bytesWhileBuilt + bytesOfPrimitive);
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
-  const std::string name = scarce ? ration_.budget().name() : std::string();
+  const std::string name = scarce ? quota_.budget().name() : std::string();
   MeshOptions options{entry.textured, &limits, entry.said ? &silent : &world_.diagnostics, name};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
-  if (!ration_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
+  if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
   built_.push_back(mesh);
   if (entry.known) return *entry.mesh;
@@ -149,7 +149,7 @@ const Mesh& Meshes::get(int32_t mesh) {
   case Mesh::Kind::sphere: entry.extent.primitives = 1; break;
   }
   if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
-      entry.extent.primitives >= smallestCompared)
+      entry.extent.primitives >= minimumComparedPrimitives)
     join(mesh);
   return *entries_[size_t(mesh)].mesh;
 }
@@ -176,7 +176,7 @@ int32_t Meshes::newGroup(uint64_t hash) {
   return id;
 }
 
-// Equal hashes are only a hint: the arrays are compared.
+// Adds a mesh to its group of equal content. Equal hashes are only a hint; the arrays are compared.
 void Meshes::join(int32_t mesh) {
   Entry& entry = entries_[size_t(mesh)];
   const uint64_t hash = contentHash(*entry.mesh);
@@ -188,7 +188,7 @@ void Meshes::join(int32_t mesh) {
   Group& group = groups_[size_t(id)];
   if (group.first == none_) {
     group.first = mesh;
-  } else { // behind the first
+  } else { // insert after the first
     entry.previous = group.first;
     entry.next = entries_[size_t(group.first)].next;
     if (entry.next != none_) entries_[size_t(entry.next)].previous = mesh;
@@ -225,7 +225,7 @@ Meshes::Extent Meshes::extent(int32_t mesh) {
 void Meshes::release() {
   for (const int32_t mesh : built_) entries_[size_t(mesh)].mesh.reset();
   built_.clear();
-  ration_.clear();
+  quota_.clear();
 }
 
 void growByPoint(Bounds& bounds, const Vector& p) {
@@ -250,7 +250,7 @@ void growByBox(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
 void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
   const Mesh& m = get(mesh);
   if (m.kind == Mesh::Kind::sphere) {
-    // An ellipsoid's extent along a world axis is the length of that row of the linear part.
+    // The extent of an ellipsoid along a world axis is the length of that row of the linear part.
     const Vector center = transformPoint(matrix, Vector(0));
     Vector reach;
     for (int i = 0; i < 3; ++i)
@@ -259,7 +259,7 @@ void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
     growByPoint(bounds, center + reach);
     return;
   }
-  // A Coordinate node may hold points, perhaps very many, that this geometry does not use.
+  // A Coordinate node may hold many points that this geometry does not use.
   if (m.indices.size() < m.points.size()) {
     for (const uint32_t index : m.indices)
       if (index < m.points.size())

@@ -1,5 +1,5 @@
-// meshes.h: the meshes of a world, one per geometry node however many shapes use it, and which of
-// them are equal. Built when first asked for, by the mapper.
+// meshes.h: the meshes of a world: one per geometry node, however many shapes use it. Meshes of
+// equal content form groups. Meshes are built on first use. [the mapper's thread]
 #pragma once
 
 #include <memory>
@@ -15,43 +15,43 @@ namespace xvrml::mapper {
 
 class Meshes {
  public:
-  explicit Meshes(World& world) : world_(world), ration_(world, "meshes") {}
-  // The number of a geometry node's mesh, with one user more. textured: a shape that uses it has a
-  // texture.
+  explicit Meshes(World& world) : world_(world), quota_(world, "meshes") {}
+  // Returns the mesh number of a geometry node and adds a user. textured: the user has a texture.
   int32_t add(Node& geometry, bool textured);
-  void drop(int32_t mesh); // one user less
-  // Numbers that have no user any more. They name nothing else until recycle().
+  void drop(int32_t mesh); // removes one user
+  // Numbers without users. They are not reused before recycle().
   const std::vector<int32_t>& dropped() const { return dropped_; }
   void recycle();
   int32_t find(const Node* geometry) const;
   size_t size() const { return entries_.size(); }
-  // Its shapes have a texture from now on. True if the mesh is another because of that.
+  // Requires texture coordinates from now on. Returns true if an already built mesh has to be
+  // rebuilt.
   bool needTexture(int32_t mesh);
-  // The node has other fields.
+  // Invalidates the mesh because fields of the node have changed.
   void changed(int32_t mesh);
-  // Events reach the geometry: it is never the same as another.
+  // Sets whether events reach the geometry. A dynamic mesh is never grouped with equal ones.
   void setDynamic(int32_t mesh, bool dynamic);
   bool dynamic(int32_t mesh) const { return entries_[size_t(mesh)].dynamic; }
 
   const Mesh& get(int32_t mesh);
   Node& geometry(int32_t mesh) const { return *entries_[size_t(mesh)].geometry; }
-  // What get(mesh) draws; known without keeping the mesh.
+  // Size of a mesh. It stays known after the arrays are released.
   struct Extent {
     Mesh::Kind kind = Mesh::Kind::empty;
     uint64_t primitives = 0;
-    double reach = 0; // largest coordinate
+    double reach = 0; // largest absolute coordinate
   };
   Extent extent(int32_t mesh);
-  // The mesh whose object draws this one too: one with equal content, perhaps itself.
+  // Returns the mesh whose object also draws this one: a mesh with equal content, perhaps itself.
   int32_t equal(int32_t mesh) const;
-  // Shapes that use this mesh or one of equal content.
+  // Returns the number of shapes that use this mesh or one of equal content.
   uint32_t users(int32_t mesh) const;
-  // Grows bounds by the mesh under a matrix.
+  // Grows bounds by the mesh, transformed by `matrix`.
   void grow(Bounds& bounds, int32_t mesh, const Matrix& matrix);
-  // Returns how far from a point the mesh under a matrix reaches; of a sphere that is not round at
-  // least so far.
+  // Returns the largest distance of the transformed mesh from a point. For a sphere scaled
+  // non-uniformly this is an upper bound.
   double reach(int32_t mesh, const Matrix& matrix, const Vector& from);
-  // Forgets the arrays; get() would build them again.
+  // Frees the arrays; get() builds them again.
   void release();
 
  private:
@@ -60,25 +60,26 @@ class Meshes {
     NodeRef geometry;
     std::unique_ptr<Mesh> mesh; // null: not built, or released
     Extent extent;
-    uint64_t triangles = 0; // at most: as the budget was when it was built first
+    uint64_t triangles = 0; // limit, set from the budget left when the mesh was first built
     uint32_t users = 0;
-    int32_t group = none_, next = none_, previous = none_; // those of equal content
+    // The group of equal content, and the neighbours in its list.
+    int32_t group = none_, next = none_, previous = none_;
     bool textured = false, known = false, dynamic = false, said = false;
   };
-  struct Group { // of meshes with equal content
+  struct Group { // meshes with equal content
     uint64_t hash = 0;
     uint32_t users = 0;
-    int32_t first = none_; // member that stands for all
-    int32_t next = none_;  // group of the same hash, or free
+    int32_t first = none_; // the member that stands for all
+    int32_t next = none_;  // next group with the same hash, or next free group
   };
   bool sameContent(int32_t a, int32_t b);
-  void join(int32_t mesh); // those of equal content
+  void join(int32_t mesh); // joins the group of equal content
   void leave(int32_t mesh);
   int32_t newGroup(uint64_t hash);
   void count(int32_t mesh, int32_t users);
 
   World& world_;
-  Ration ration_; // of the meshes that are built now
+  Quota quota_; // for the meshes that are built now
   std::vector<Entry> entries_;
   std::vector<int32_t> free_, dropped_, built_;
   std::unordered_map<const Node*, int32_t> index_;
@@ -87,7 +88,7 @@ class Meshes {
   std::unordered_map<uint64_t, int32_t> byContent_; // first group of each hash
 };
 
-// The mesh with only the vertices that its indices use, in their order.
+// Copies a mesh with only the vertices that its indices use, in their order.
 void compact(const Mesh& mesh, Mesh& out);
 
 void growByPoint(Bounds& bounds, const Vector& point);

@@ -13,8 +13,8 @@
 namespace xvrml::mapper {
 namespace {
 
-// Programs that write VRML, by words of the comments at the top of their files and of WorldInfo,
-// and the axis that is up in what they write. The first word that occurs counts.
+// Programs that write VRML and the up axis they use. They are recognised by words in the first
+// comments of the file or in WorldInfo. The first matching word decides.
 struct Exporter {
   std::string_view word;
   Axis up;
@@ -28,9 +28,10 @@ constexpr Exporter exporters[] = {
     {"white_dune", Axis::y},  {"x3dtovrml97", Axis::y},
 };
 
-constexpr double near = 0.02;   // of an extent: stands on 0, lies about 0
-constexpr double plate = 0.35;  // of the smaller of the other extents: thinner is a plate
-constexpr double plane = 0.001; // of the largest extent: thinner is a figure in a plane
+// Fraction of an extent: a bound this close to 0 is "on 0", a centre is "about 0".
+constexpr double near = 0.02;
+constexpr double plate = 0.35;  // fraction of the smaller other extent: thinner is a plate
+constexpr double plane = 0.001; // fraction of the largest extent: thinner is a planar figure
 
 std::string lowered(std::string_view text) {
   std::string out(text);
@@ -45,12 +46,13 @@ const Exporter* exporterIn(std::string_view text) {
   return nullptr;
 }
 
-bool isFrom(const nodes::Background& sky) {
+bool showsSkyOrGround(const nodes::Background& sky) {
   return !sky.groundColor.empty() || sky.skyColor.size() > 1 || !sky.backUrl.empty() ||
          !sky.frontUrl.empty();
 }
 
-// Joints of OpenHRP and Choreonoid: robots with z up. The Joint of H-Anim has no axis.
+// Returns whether the world has Joints of OpenHRP or Choreonoid: robots with z up. The Joint of
+// H-Anim has no jointAxis field.
 bool hasRobotJoints(const World& world) {
   for (const ProtoPtr& proto : world.scope.prototypes)
     if (proto && proto->type && proto->type->name == "Joint")
@@ -59,14 +61,14 @@ bool hasRobotJoints(const World& world) {
   return false;
 }
 
-// Nodes that VRML itself orients along y, and geometry that hands write and exporters do not. "":
-// there is none.
-std::string writtenAlongY(const World& world, const Graph& graph) {
+// Returns evidence for y up: nodes that VRML itself orients along y, or geometry nodes that people
+// write and exporters do not. Returns "" if there is none.
+std::string evidenceForYUp(const World& world, const Graph& graph) {
   for (const NodeRef& root : world.scope.roots) {
     if (const auto* info = nodeCast<nodes::NavigationInfo>(root);
         info && !info->type.empty() && info->type.front() == "WALK")
       return "NavigationInfo has WALK as its first type";
-    if (const auto* sky = nodeCast<nodes::Background>(root); sky && isFrom(*sky))
+    if (const auto* sky = nodeCast<nodes::Background>(root); sky && showsSkyOrGround(*sky))
       return "Background has a ground or a sky";
   }
   for (const ItemId id : graph.order) {
@@ -83,7 +85,7 @@ std::string writtenAlongY(const World& world, const Graph& graph) {
   return {};
 }
 
-// What the box that everything lies in says. y and z are weighed against each other; x is never up.
+// Guesses from the world's bounding box. It compares y and z; x is never up.
 UpGuess fromBounds(const Bounds& b) {
   double extent[3], middle[3];
   for (int i = 0; i < 3; ++i) {
@@ -130,12 +132,12 @@ UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds) {
     if (const Exporter* one = exporterIn(text)) return written(*one, "WorldInfo");
   }
   if (hasRobotJoints(world)) return {Axis::z, "its prototype Joint has a jointAxis"};
-  if (const std::string why = writtenAlongY(world, graph); !why.empty())
+  if (const std::string why = evidenceForYUp(world, graph); !why.empty())
     return {Axis::y, why, shape.frontal};
   return shape;
 }
 
-bool leavesLightOpen(const Graph& graph, const Bound& bound) {
+bool hasUnspecifiedLighting(const Graph& graph, const Bound& bound) {
   if (bound.navigationInfo || nodeCast<nodes::ORTBackground>(bound.background)) return false;
   for (const ItemId id : graph.order) {
     const Item& item = graph.items[id];
@@ -165,8 +167,8 @@ void upVector(Axis axis, double up[3]) {
   for (int i = 0; i < 3; ++i) up[i] = v[i];
 }
 
-// The front is where an eye stands for which x is to the right: +z of a model with y up, -y of one
-// with z up. Where x is up, z is the front as with y.
+// The front is the side from which x points right: +z for a model with y up, -y for one with z up.
+// With x up the front is +z, as with y up.
 void threeQuarterView(Axis axis, double view[16]) {
   constexpr double side = 35 * std::numbers::pi / 180, above = 25 * std::numbers::pi / 180;
   const Vector top = towards(axis);

@@ -1,6 +1,6 @@
-// model.h: what is shown of a world that does not say how it is to be looked at: which way is up,
-// from where, in which light. Pure functions over the render graph; used by the mapper, on its
-// thread. The rules are in docs/decisions/0040-models.md.
+// model.h: defaults for a model that does not say how it is to be viewed: up axis, viewing
+// direction and lights. Pure functions over the render graph, used by the mapper on its thread. The
+// rules are in docs/decisions/0040-models.md.
 #pragma once
 
 #include "mapper/graph/graph.h"
@@ -9,15 +9,14 @@
 
 namespace xvrml::mapper {
 
-// Guesses the axis that points up from what the file and the shapes are.
+// Guesses the up axis from the file and the shapes.
 UpGuess guessUp(const World& world, const Graph& graph, const Bounds& bounds);
 
-// Returns whether the world brings no light and says nothing about a headlight: no light node, no
-// bound NavigationInfo or ORTBackground, no shape with an ORTAppearance.
-bool leavesLightOpen(const Graph& graph, const Bound& bound);
+// Returns whether the world specifies no lighting: no light node, no bound NavigationInfo or
+// ORTBackground, no shape with an ORTAppearance.
+bool hasUnspecifiedLighting(const Graph& graph, const Bound& bound);
 
-// The three lights of a model, in the coordinate system of the camera, as directions that they
-// shine in.
+// The three lights of a model, in camera coordinates. direction: where the light travels to.
 struct Lamp {
   Vec3f direction;
   float intensity;
@@ -25,7 +24,7 @@ struct Lamp {
 inline constexpr Lamp modelLamps[] = {
     {{0.5f, -0.65f, -0.6f}, 0.75f}, // over the viewer's left shoulder
     {{-0.8f, -0.1f, -0.6f}, 0.25f}, // from the right
-    {{0, 0, -1}, 0.2f},             // from the eye: nothing that is seen is black
+    {{0, 0, -1}, 0.2f},             // from the camera, so that nothing visible is black
 };
 
 } // namespace xvrml::mapper

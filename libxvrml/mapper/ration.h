@@ -1,5 +1,5 @@
-// ration.h: what one part of the mapper draws from the budget of its world (base/budget.h), and the
-// one message when there is nothing left. On the mapper's thread.
+// ration.h: what one part of the mapper takes from the budget of its world (base/budget.h), with
+// one message when nothing is left. [the mapper's thread]
 #pragma once
 
 #include "base/budget.h"
@@ -8,20 +8,20 @@
 
 namespace xvrml::mapper {
 
-class Ration {
+class Quota {
  public:
-  // what: the things that are left out, for the message: "lights".
-  Ration(World& world, const char* what) : world_(world), what_(what), share_(budgetOf(world)) {}
+  // what: the name of the omitted things in the message, such as "lights".
+  Quota(World& world, const char* what) : world_(world), what_(what), share_(budgetOf(world)) {}
 
-  // Takes bytes for something at `where`. False, after one message in the life of this object, if
-  // there are not enough left.
+  // Takes bytes for something at `where`. Returns false if too few are left; the first time it also
+  // reports an error.
   bool take(uint64_t bytes, const SourcePosition& where) {
     if (share_.take(bytes)) return true;
-    if (!said_)
+    if (!reported_)
       world_.diagnostics.error(where, "the world takes more memory than " +
                                           share_.budget()->name() + "; " + what_ +
                                           " from here on are left out");
-    said_ = true;
+    reported_ = true;
     return false;
   }
   void give(uint64_t bytes) { share_.give(bytes); }
@@ -32,7 +32,7 @@ class Ration {
   World& world_;
   const char* what_;
   Share share_;
-  bool said_ = false;
+  bool reported_ = false;
 };
 
 } // namespace xvrml::mapper

@@ -1,5 +1,5 @@
-// rt.h: the mapper's side of OpenRT calls: errors become diagnostics with a place, parameters are
-// set by name. On the thread that holds the context.
+// rt.h: helpers for OpenRT calls: errors become diagnostics with a position, parameters are set by
+// name. [the thread that holds the context]
 #pragma once
 
 #include <algorithm>
@@ -16,22 +16,22 @@
 
 namespace xvrml::mapper {
 
-// Turns everything rtGetError holds into errors at `where`; true if there was none.
+// Reports all pending rtGetError errors at `where`. Returns true if there were none.
 bool report(Diagnostics& diagnostics, const SourcePosition& where, std::string_view what);
 
 inline void load(const Matrix& m) { rtLoadMatrixd(data(m)); }
 
-// A colour of a world as the renderer wants it: linear (IEC 61966-2-1), or as written.
+// Converts a colour of the world for the renderer: to linear (IEC 61966-2-1), or unchanged.
 Color convert(Color c, bool linear);
 
 struct ShaderClass {
-  RTid id = 0;                                        // 0: there is none
+  RTid id = 0;                                        // 0: the class does not exist
   RTenum role = 0;                                    // RT_SURFACE ...
   std::unordered_map<std::string, RTenum> parameters; // RT_PARAM_* by name
   bool has(const char* parameter) const { return parameters.contains(parameter); }
 };
 
-// Shader classes by name, made when first used.
+// Shader classes by name, loaded on first use.
 class ShaderClasses {
  public:
   const ShaderClass& find(const std::string& name, const std::string& library);
@@ -41,14 +41,14 @@ class ShaderClasses {
   std::unordered_map<std::string, ShaderClass> classes_;
 };
 
-// A shader being set up: bound for the life of the object; every setter names a parameter its class
-// declares.
+// Sets the parameters of a shader, which is bound for the lifetime of this object. Every setter
+// takes the name of a parameter that the class declares.
 class ShaderSetup {
  public:
   explicit ShaderSetup(RTid shaderClass) : shader_(rtNewShader(shaderClass)) {
     rtBindShader(shader_);
   }
-  // One that is there already, to be changed. sets: counts the parameters that are set.
+  // Changes an existing shader. sets: counts the parameters that are set.
   ShaderSetup(RTid shader, uint64_t& sets) : shader_(shader), sets_(&sets) {
     rtBindShader(shader_);
   }
@@ -60,7 +60,7 @@ class ShaderSetup {
 
   void integer(const char* name, int v) { rtParameter1i(handle(name), v); }
   void number(const char* name, float v) { rtParameter1f(handle(name), v); }
-  // The nearest value in the field's range: parsers warn of others.
+  // Clamps to the field's range. Parsers have warned about values outside it.
   void number(const char* name, float v, float low,
               float high = std::numeric_limits<float>::max()) {
     number(name, std::clamp(v, low, high));

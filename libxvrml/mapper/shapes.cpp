@@ -1,5 +1,5 @@
-// shapes.cpp: what is written into an open object: instances of the objects below, shapes with
-// their arrays as they are, the matrix, the surface. The other half of Objects.
+// shapes.cpp: writes the content of an open object: instances of the objects below and shapes with
+// their arrays, matrix and surface. Part of class Objects.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,12 +22,13 @@ void Objects::enter(ItemId id, int32_t at, const Matrix& matrix) {
   if (at == none && !item.draws) return;
   if (at != none && places_.all[size_t(at)].split) {
     Place& place = places_.all[size_t(at)];
-    const bool turns = item.kind == Kind::billboard && live_;
+    const bool turnsToViewer = item.kind == Kind::billboard && live_;
     place.base = matrix;
-    place.instance = instantiate(partOfPlace(size_t(at)),
-                                 compose(graph_.below(matrix, item), places_.turns[size_t(at)]), 0,
-                                 item.moves || turns);
-  } else if (at == none && item.own != Own::none) {
+    place.instance =
+        instantiate(partOfPlace(size_t(at)),
+                    compose(graph_.below(matrix, item), places_.billboardRotations[size_t(at)]), 0,
+                    item.moves || turnsToViewer);
+  } else if (at == none && item.objectReason != ObjectReason::none) {
     const RTid instance = instantiate(partOfItem(id), graph_.below(matrix, item), 0, item.moves);
     if (item.moves) keep(id, instance, matrix);
   } else {
@@ -38,7 +39,7 @@ void Objects::enter(ItemId id, int32_t at, const Matrix& matrix) {
 void Objects::expand(const Step& step) {
   const Item& item = graph_.items[step.item];
   if (item.kind == Kind::shape) return writeShape(step.item, step.matrix);
-  const bool oneLevel = item.kind == Kind::lod; // one that has no place of its own: see summarise
+  const bool oneLevel = item.kind == Kind::lod; // an LOD without a place of its own, see summarise
   for (size_t c = oneLevel ? std::min(item.children.size(), size_t(1)) : item.children.size();
        c-- > 0;) {
     const int32_t at = step.place == none
@@ -56,8 +57,8 @@ void Objects::drain() {
   }
 }
 
-// Is something of this extent, placed by this matrix, beyond what float coordinates can say? Tells
-// it, too.
+// Returns whether something of this extent lies beyond the float range under this matrix. If so, it
+// also reports a warning.
 bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& where,
                      const std::string& what) {
   constexpr double most = 1e38;
@@ -66,7 +67,7 @@ bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& w
     const double turned =
         std::abs(matrix.x[0][i]) + std::abs(matrix.x[1][i]) + std::abs(matrix.x[2][i]);
     far = std::max(far, std::abs(matrix.x[3][i]) + turned * reach);
-    if (!(far <= most)) far = std::numeric_limits<double>::infinity(); // NaN too
+    if (!(far <= most)) far = std::numeric_limits<double>::infinity(); // also for NaN
   }
   if (far <= most) {
     Part& part = parts_[size_t(writing_)];
@@ -79,22 +80,26 @@ bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& w
   return true;
 }
 
-// dynamic: events or the camera will move it.
+// dynamic: events or the camera will move the instance.
 RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, bool dynamic) {
   const Part& used = parts_[size_t(id)];
-  const NodeRef node = used.of == Part::Of::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh))
-                                                 : graph_.items[used.item].node;
+  const NodeRef node = used.kind == Part::Kind::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh))
+                                                     : graph_.items[used.item].node;
   const SourcePosition where = node ? node->source : SourcePosition();
   const bool usable = !tooFar(matrix, used.reach, where, node ? node->type().name : "the world");
   if (!usable && !dynamic) return 0;
-  const uint64_t flat = std::max<uint64_t>(used.flat + (used.drawCalls > 0), 1);
-  const uint64_t bytes = multiplySaturating(flat, bytesOfInstance);
-  if (!ration_.take(bytes, where)) return 0;
+  const uint64_t flattenedInstances =
+      std::max<uint64_t>(used.flattenedInstances + (used.drawCalls > 0), 1);
+  const uint64_t records = addSaturating(used.records, used.drawCalls);
+  const uint64_t furtherRecords = records > flattenedInstances ? records - flattenedInstances : 0;
+  const uint64_t bytes = addSaturating(multiplySaturating(flattenedInstances, bytesOfInstance),
+                                       multiplySaturating(furtherRecords, bytesOfRecord));
+  if (!quota_.take(bytes, where)) return 0;
   rtLoadName(number);
   load(usable ? matrix : scaling(Vector(0)));
   const RTid instance = rtInstantiateObject(parts_[size_t(id)].object);
   if (instance == 0) {
-    ration_.give(bytes);
+    quota_.give(bytes);
     report(world_.diagnostics, {}, "a group cannot be placed");
     return 0;
   }
@@ -102,7 +107,8 @@ RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, boo
   Part& part = parts_[size_t(writing_)];
   part.uses.push_back(id);
   part.bytes += bytes;
-  part.flat = addSaturating(part.flat, flat);
+  part.flattenedInstances = addSaturating(part.flattenedInstances, flattenedInstances);
+  part.records = addSaturating(part.records, records);
   ++parts_[size_t(id)].instances;
   ++instances_;
   return instance;
@@ -110,24 +116,24 @@ RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, boo
 
 void Objects::keep(ItemId item, RTid instance, const Matrix& base) {
   if (instance == 0) return;
-  placed_[item].push_back({instance, writing_, base});
+  trackedInstances_[item].push_back({instance, writing_, base});
   parts_[size_t(writing_)].moving.push_back(item);
 }
 
-// What a shape draws has the shape's number as its name, also in an object that holds many shapes
-// or has many instances: the id channel tells them apart.
+// Writes a shape. Its number is the name of everything it draws, so that the id channel tells
+// shapes apart even within a shared object.
 void Objects::writeShape(ItemId id, const Matrix& matrix) {
   const Item& item = graph_.items[id];
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
   if (item.viaMesh) {
     const int32_t part = partOfMesh(graph_.meshes.equal(item.mesh));
     const RTid instance = instantiate(part, matrix, item.number, false);
-    if (instance != 0) rtInstanceShader(instance, surfaces_.of(appearance, false).shader);
+    if (instance != 0) rtInstanceShader(instance, surfaces_.surfaceFor(appearance, false).shader);
     if (item.recolored) keep(id, instance, matrix);
   } else {
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
     if (extent.primitives == 0 || tooFar(matrix, extent.reach, item.node->source, "Shape")) return;
-    const Surface surface = surfaces_.of(appearance, item.lines);
+    const Surface surface = surfaces_.surfaceFor(appearance, item.lines);
     rtLoadName(item.number);
     load(matrix);
     if (!draw(item.mesh, surface, isTextured(appearance))) return;
@@ -136,13 +142,13 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
   report(world_.diagnostics, item.node->source, "Shape");
 }
 
-// False if the world's budget does not allow it.
+// Draws a mesh. Returns false if the world's budget does not allow it.
 bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   const Meshes::Extent extent = graph_.meshes.extent(mesh);
   if (extent.primitives == 0) return true;
   const uint64_t bytes =
       addSaturating(multiplySaturating(extent.primitives, bytesOfPrimitive), bytesOfShape);
-  if (!ration_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
+  if (!quota_.take(bytes, graph_.meshes.geometry(mesh).source)) return false;
   const Mesh& m = graph_.meshes.get(mesh);
   Part& part = parts_[size_t(writing_)];
   part.bytes += bytes;
@@ -155,7 +161,7 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   if (m.kind == Mesh::Kind::sphere) {
     rtSphere(m.radius);
   } else if (m.indices.size() <
-             m.points.size()) { // a Coordinate that several geometries share: each takes its part
+             m.points.size()) { // several geometries share a Coordinate: each takes its part
     Mesh used;
     compact(m, used);
     drawArrays(used, surface, textured);
@@ -171,9 +177,8 @@ void Objects::drawArrays(const Mesh& m, const Surface& surface, bool textured) {
   rtNormalPointer(RT_FLOAT, sizeof(Vec3f), m.normals.empty() ? nullptr : m.normals.data());
   rtTexCoordPointer(2, RT_FLOAT, sizeof(Vec2f),
                     textured && !m.texCoords.empty() ? m.texCoords.data() : nullptr);
-  const bool plain =
-      m.colors.empty() &&
-      m.kind != Mesh::Kind::triangles; // lines and points take the material's emissive colour
+  // Lines and points use emissiveColor.
+  const bool plain = m.colors.empty() && m.kind != Mesh::Kind::triangles;
   if (!m.colors.empty() && !linear_) {
     rtColorPointer(3, RT_FLOAT, sizeof(Color), m.colors.data());
   } else if (!m.colors.empty() || plain) {

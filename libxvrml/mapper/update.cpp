@@ -1,10 +1,10 @@
-// update.cpp: from changed fields to the least that has to be done, by their kind of change. Called
-// by the mapper between frames, on its thread.
+// update.cpp: turns changed fields into the least work that brings the scene up to date. Called by
+// the mapper between frames, on its thread.
 //
-// What events were known to reach has been kept apart when the world was grouped (summary.cpp), so
-// a change touches instances, one object or a shader's parameters. What nothing was known to reach
-// is part of something larger: the first change of it regroups (the engine now says that it is
-// reached), later ones are cheap.
+// Grouping (summary.cpp) keeps everything apart that events are known to reach. So such a change
+// touches instances, one object or a shader's parameters. Anything else is part of something
+// larger: its first change causes a regrouping, because the engine now knows that it is reached.
+// Later changes of it are cheap.
 #include <algorithm>
 #include <unordered_set>
 
@@ -17,11 +17,11 @@ using namespace mapper;
 
 struct OpenRTMapper::Impl::Work {
   bool regroup = false;
-  std::vector<ItemId> rewrite;             // what these items hold is drawn otherwise
-  std::vector<ItemId> replace;             // these items are placed otherwise
-  std::vector<int32_t> meshes;             // these meshes are others
-  std::vector<Node*> appearances;          // with new properties, each once
-  std::unordered_set<const Node*> visited; // by the walk upwards from appearance nodes
+  std::vector<ItemId> rewrite;             // items whose content is drawn differently
+  std::vector<ItemId> replace;             // items that are placed differently
+  std::vector<int32_t> meshes;             // meshes that have changed
+  std::vector<Node*> appearances;          // appearances with new properties, each once
+  std::unordered_set<const Node*> visited; // by the upward walk from appearance nodes
 };
 
 namespace {
@@ -31,10 +31,10 @@ bool isAppearance(const Node& node) {
          node.type().index == nodes::ORTAppearance::typeIndex;
 }
 
-// Upwards through everything that is no group and no shape, prototype instances included: visit
-// says where to go on.
+// Walks up through everything except groups and shapes, including prototype instances. The walk
+// continues above a node if visit returns true for it.
 template <class Visit>
-void climb(Node& first, std::unordered_set<const Node*>& visited, const Visit& visit) {
+void walkHolders(Node& first, std::unordered_set<const Node*>& visited, const Visit& visit) {
   std::vector<Node*> open{&first};
   while (!open.empty()) {
     Node* node = open.back();
@@ -44,10 +44,10 @@ void climb(Node& first, std::unordered_set<const Node*>& visited, const Visit& v
   }
 }
 
-// The shapes that hold a geometry or appearance node.
-template <class Visit> void eachShape(const Graph& graph, Node& part, const Visit& visit) {
+// Visits the shapes that hold a geometry or appearance node.
+template <class Visit> void forEachShape(const Graph& graph, Node& part, const Visit& visit) {
   std::unordered_set<const Node*> visited;
-  climb(part, visited, [&](Node& node) {
+  walkHolders(part, visited, [&](Node& node) {
     const ItemId item = graph.find(&node);
     if (item != 0 && graph.items[item].kind == Kind::shape) visit(item);
     return &node == &part || node.type().index < 0 || node.type().expand;
@@ -60,14 +60,14 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
   Work work;
   work.regroup = graph.planRoots();
   for (const FieldChange& change : changes) {
-    if (!change.node || !change.field) continue; // the roots: planRoots() has looked
+    if (!change.node || !change.field) continue; // the roots: handled by planRoots()
     Node& node = *change.node;
     switch (change.field->change) {
-    case Change::transform: transformed(work, node); break;
-    case Change::geometry: reshaped(work, node); break;
+    case Change::transform: transformChanged(work, node); break;
+    case Change::geometry: geometryChanged(work, node); break;
     case Change::appearance:
-    case Change::shader: relooked(work, node); break;
-    case Change::light: relit(work, node); break;
+    case Change::shader: appearanceChanged(work, node); break;
+    case Change::light: lightChanged(work, node); break;
     case Change::view:
       environment.changed(node);
       viewsStale = true;
@@ -91,12 +91,12 @@ void OpenRTMapper::Impl::update(const FieldChanges& changes) {
   if (!work.replace.empty()) objects.placingChanged(work.replace);
 }
 
-void OpenRTMapper::Impl::transformed(Work& work, Node& node) {
+void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
   const ItemId id = graph.find(&node);
   if (id == 0) return;
-  viewsStale |= graph.items[id].placed;
+  viewsStale |= graph.items[id].placeDependent;
   boundsStale = true;
-  if (graph.items[id].kind == Kind::billboard) return; // turns with every frame
+  if (graph.items[id].kind == Kind::billboard) return; // updated with every frame
   if (!graph.readMatrix(id)) {
     graph.plan(id);
     work.regroup = true;
@@ -112,42 +112,43 @@ void OpenRTMapper::Impl::transformed(Work& work, Node& node) {
   work.replace.push_back(id);
 }
 
-// A geometry node or one that it holds.
-void OpenRTMapper::Impl::reshaped(Work& work, Node& first) {
+// Handles a change of a geometry node or of a node that it holds.
+void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
   std::unordered_set<const Node*> visited;
-  climb(first, visited, [&](Node& node) {
+  walkHolders(first, visited, [&](Node& node) {
     const int32_t mesh = graph.meshes.find(&node);
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());
     const bool expected = graph.meshes.dynamic(mesh);
     graph.meshes.changed(mesh);
     work.meshes.push_back(mesh);
     boundsStale = countsStale = true;
-    eachShape(graph, node, [&](ItemId shape) {
+    forEachShape(graph, node, [&](ItemId shape) {
       const Item& item = graph.items[shape];
       if (!expected && !item.merged) work.regroup = true;
-      if (!expected || item.merged || item.own != Own::none || !item.viaMesh)
+      if (!expected || item.merged || item.objectReason != ObjectReason::none || !item.viaMesh)
         work.rewrite.push_back(shape);
     });
     return false;
   });
 }
 
-// A Shape, an appearance or a node that it holds.
-void OpenRTMapper::Impl::relooked(Work& work, Node& first) {
+// Handles a change of a Shape, of an appearance or of a node that it holds.
+void OpenRTMapper::Impl::appearanceChanged(Work& work, Node& first) {
   if (const ItemId id = graph.find(&first)) {
     if (graph.items[id].kind != Kind::shape) return;
-    lightStale = true; // its appearance may be this renderer's own
+    lightStale = true; // it may have got or lost an ORTAppearance
     if (objects.recolored(id)) return textured(work, id);
     textured(work, id);
     work.rewrite.push_back(id);
-    work.regroup |= !graph.items[id].merged && graph.items[id].own != Own::appearance;
+    work.regroup |=
+        !graph.items[id].merged && graph.items[id].objectReason != ObjectReason::appearance;
     return;
   }
-  if (first.type().is("texture") && !textures.changed(first)) return; // the picture alone
-  climb(first, work.visited, [&](Node& node) {
+  if (first.type().is("texture") && !textures.changed(first)) return; // only the picture changed
+  walkHolders(first, work.visited, [&](Node& node) {
     if (node.type().index == nodes::ORTShader::typeIndex) custom.changed(node);
     if (node.type().index == nodes::ORTLight::typeIndex) lights.changed(node);
-    environment.changed(node); // of an ORTBackground
+    environment.changed(node); // for the shader of an ORTBackground
     if (!isAppearance(node)) return node.type().index < 0 || !planOf(node.type());
     work.appearances.push_back(&node);
     return false;
@@ -158,13 +159,13 @@ void OpenRTMapper::Impl::newSurfaces(Work& work) {
   for (Node* appearance : work.appearances) {
     const Surfaces::Effect effect = surfaces.update(*appearance);
     if (!effect.other && !effect.colored && !effect.textured) continue;
-    eachShape(graph, *appearance, [&](ItemId shape) {
+    forEachShape(graph, *appearance, [&](ItemId shape) {
       const Item& item = graph.items[shape];
       if (effect.textured) textured(work, shape);
       if (item.lines) {
         if (!effect.colored) return;
         work.rewrite.push_back(shape);
-        work.regroup |= !item.merged && item.own == Own::none;
+        work.regroup |= !item.merged && item.objectReason == ObjectReason::none;
       } else if (effect.other ? !objects.recolored(shape) : effect.textured && !item.viaMesh) {
         work.rewrite.push_back(shape);
       }
@@ -172,23 +173,23 @@ void OpenRTMapper::Impl::newSurfaces(Work& work) {
   }
 }
 
-// The shape's mesh has texture coordinates from now on, if its appearance wants them.
+// Adds texture coordinates to the shape's mesh if its appearance needs them.
 void OpenRTMapper::Impl::textured(Work& work, ItemId shape) {
   const Item& item = graph.items[shape];
   if (!isTextured(static_cast<nodes::Shape&>(*item.node).appearance.get()) ||
       !graph.meshes.needTexture(item.mesh))
     return;
   work.meshes.push_back(item.mesh);
-  work.regroup = true; // it is not equal any more to those without
+  work.regroup = true; // it no longer equals meshes without texture coordinates
 }
 
-void OpenRTMapper::Impl::relit(Work& work, Node& node) {
+void OpenRTMapper::Impl::lightChanged(Work& work, Node& node) {
   const ItemId id = graph.find(&node);
-  if (id == 0 || !isLight(graph.items[id].kind))
-    return; // the headlight of a NavigationInfo is read with every frame
+  // The headlight of a NavigationInfo is read every frame.
+  if (id == 0 || !isLight(graph.items[id].kind)) return;
   graph.readLight(id);
   lights.changed(node);
-  if (graph.items[id].on && !graph.items[id].placed) work.regroup = true;
+  if (graph.items[id].on && !graph.items[id].placeDependent) work.regroup = true;
 }
 
 void OpenRTMapper::Impl::regroup() {
@@ -196,7 +197,7 @@ void OpenRTMapper::Impl::regroup() {
   graph.settle();
   const std::vector<ItemId> changed = summarise(graph, world.diagnostics);
   const auto inPlaces = [&](ItemId id) {
-    bool any = graph.items[id].placed;
+    bool any = graph.items[id].placeDependent;
     places.each(id, [&](int32_t) { any = true; });
     return any;
   };
@@ -204,7 +205,7 @@ void OpenRTMapper::Impl::regroup() {
   if (std::any_of(changed.begin(), changed.end(), inPlaces) ||
       std::any_of(graph.replanned().begin(), graph.replanned().end(), inPlaces)) {
     places.build(graph, gone);
-    places.follow(graph, camera);
+    places.updateForFrame(graph, camera);
   }
   objects.contentChanged(graph.replanned());
   objects.contentChanged(changed);

@@ -1,4 +1,4 @@
-// views.cpp: viewpoints and cameras. See views.h.
+// views.cpp: viewpoints and cameras.
 #include "mapper/views.h"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
 }
 
 CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
-  Vec3f position{0, 0, 10}; // clause 6.53
+  Vec3f position{0, 0, 10}; // defaults of clause 6.53
   Rotation orientation;
   float fieldOfView = 0.785398f;
   CameraSettings camera;
@@ -91,8 +91,8 @@ struct Extents {
   double x = 0, y = 0, front = 0;
 };
 
-// How far the corners reach from the centre, in the view's axes, and for a perspective how far away
-// the eye must be.
+// Measures how far the corners reach from the centre along the axes of the view. For a perspective
+// view it also computes the distance of the camera.
 Extents measure(const Bounds& b, const Matrix& view, const Vector& center, double tanX,
                 double tanY) {
   Extents e;

@@ -1,5 +1,5 @@
-// views.h: bindable nodes: viewpoints and cameras, background, fog, navigation. Used by the mapper,
-// on its thread.
+// views.h: bindable nodes: viewpoints and cameras, background, fog, navigation. [the mapper's
+// thread]
 #pragma once
 
 #include <vector>
@@ -13,39 +13,41 @@
 
 namespace xvrml::mapper {
 
-// The nodes that are bound, and the first place of each: `none` where nothing is bound or the node
-// is not drawn at present.
+// The bound nodes and the first place of each. A place is `none` if nothing is bound or the node is
+// not drawn at present.
 struct Bound {
   NodeRef viewpoint, background, fog, navigationInfo;
   int32_t viewpointPlace = none, backgroundPlace = none, fogPlace = none;
 };
-// Of each kind the first in the file, not counting Inlines (clause 4.6.10).
+// Binds the first node of each kind in the file, ignoring Inlines (clause 4.6.10).
 Bound firstBound(const Graph& graph, const Places& places);
 Bound boundTo(const Graph& graph, const Places& places, const BoundNodes& nodes);
 
-// All viewpoints in the order of the file; place: of each, in Places::all.
+// Returns all viewpoints in file order. place: receives the index of each into Places::all.
 std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places,
                                           std::vector<int32_t>& place);
 
-// The camera of a Viewpoint node whose parent stands under a matrix; of the standard's default for
-// null.
+// Returns the camera of a Viewpoint; for null that of the standard's default Viewpoint. parent:
+// world matrix of the node's parent.
 CameraSettings cameraOf(const Node* viewpoint, const Matrix& parent, double aspect);
-// False only if the bound NavigationInfo says so (clause 6.29: the default has a headlight).
+// Returns false only if a bound NavigationInfo turns the headlight off (clause 6.29: the default is
+// on).
 bool hasHeadlight(const Bound& bound);
 
-// Background and Fog as the scene's environment: one shader of the class VRML97Environment
-// (clauses 6.5 and 6.19), or that of an ORTBackground.
+// Sets Background and Fog as the scene's environment: one shader of the class VRML97Environment
+// (clauses 6.5 and 6.19), or the shader of an ORTBackground.
 class Environment {
  public:
   Environment(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
               CustomShaders& custom)
       : world_(world), linear_(linearColor), classes_(classes), textures_(textures),
         custom_(custom) {}
-  // The fields of a node that may be bound have changed.
+  // Notes that fields of the node have changed. It has no effect unless the node is bound.
   void changed(const Node& node) { stale_ |= &node == background_.get() || &node == fog_.get(); }
-  // Sets what is another than before. The places' world matrices must be those of the frame.
-  void follow(const Places& places, const Bound& bound);
-  void clear(); // removes it
+  // Updates the environment if anything has changed. The places' world matrices must be those of
+  // the frame.
+  void updateForFrame(const Places& places, const Bound& bound);
+  void clear(); // removes the environment
   uint64_t parametersSet() const { return sets_; }
 
  private:
@@ -61,7 +63,7 @@ class Environment {
   CustomShaders& custom_;
   NodeRef background_, fog_;
   Matrix matrix_, fogMatrix_;  // of the environment; of the fog's coordinate system
-  RTid shader_ = 0, used_ = 0; // our own; the one that the scene has
+  RTid shader_ = 0, used_ = 0; // our own shader; the shader that the scene uses
   bool stale_ = false;
   uint64_t sets_ = 0;
 };

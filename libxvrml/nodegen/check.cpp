@@ -1,5 +1,5 @@
-// check.cpp: what specifications must hold together, and the fields' attributes that come from
-// abstract types. Runs once, after all files are read and before anything is written.
+// check.cpp: checks the specifications for consistency and copies field attributes from abstract
+// types to nodes. Runs once, after all files are read and before anything is written.
 #include <algorithm>
 #include <set>
 #include <tuple>
@@ -71,8 +71,8 @@ class Checker {
     return nullptr;
   }
 
-  // All abstract types above, nearest first, each once. Parents are few: breadth first over the
-  // names.
+  // Collects all abstract types above a type, nearest first, each once. Breadth-first over the
+  // names, because parents are few.
   void resolveRoles(TypeSpec& type) {
     std::vector<const TypeSpec*> ancestors;
     addParents(type, ancestors, true);
@@ -87,7 +87,8 @@ class Checker {
     for (const TypeSpec* ancestor : ancestors) type.roles.push_back(ancestor->name);
   }
 
-  // Names that are wrong are reported where they stand, once: not again for every type below.
+  // Appends the parents of a type. Wrong names are reported at the type that uses them, not again
+  // for each type derived from it.
   void addParents(const TypeSpec& type, std::vector<const TypeSpec*>& ancestors, bool report) {
     for (const Reference& parent : type.parents) {
       const auto found = types_.find(parent.name);
@@ -105,7 +106,7 @@ class Checker {
         model_.error(field.source, fmt::format("{} has a field {} already", type.name, field.name));
       if (field.name == type.name)
         model_.error(field.source, "a field cannot have the name of its node");
-      // Clause 4.7: an exposedField x is also an eventIn set_x and an eventOut x_changed.
+      // An exposedField x is also an eventIn set_x and an eventOut x_changed (clause 4.7).
       if (field.access != Access::exposedField) continue;
       for (const std::string& event : {"set_" + field.name, field.name + "_changed"}) {
         if (const FieldSpec* other = findField(type, event))
@@ -127,8 +128,8 @@ class Checker {
     }
   }
 
-  // A node prints the whole interface, as the standard does; what the fields of its abstract types
-  // mean is said there once.
+  // Copies attributes from an abstract type. A node's specification lists the whole interface, as
+  // the standard does; the abstract type describes its fields once.
   void inherit(TypeSpec& type, const TypeSpec& role) {
     for (const FieldSpec& above : role.fields) {
       const auto field = std::find_if(type.fields.begin(), type.fields.end(),
@@ -189,8 +190,8 @@ class Checker {
 
   Model& model_;
   std::map<std::string, TypeSpec*, std::less<>> types_;
-  std::set<std::tuple<std::string, uint32_t, uint32_t>>
-      reported_; // places of unknown names, which many nodes may inherit
+  // Positions of unknown names that were reported, because many nodes may inherit them.
+  std::set<std::tuple<std::string, uint32_t, uint32_t>> reported_;
 };
 
 } // namespace

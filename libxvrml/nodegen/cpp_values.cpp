@@ -1,4 +1,4 @@
-// cpp_values.cpp: names and default values in C++ spelling. Pure functions.
+// cpp_values.cpp: names and default values in C++ syntax. Pure functions.
 #include <algorithm>
 #include <array>
 
@@ -9,7 +9,7 @@
 namespace xvrml::nodegen {
 namespace {
 
-// Keywords of C++20, and the names that every generated struct has besides its fields.
+// Keywords of C++20, and the names of members that every generated struct has.
 constexpr auto reserved = std::to_array<std::string_view>(
     {"alignas",      "alignof",      "and",           "and_eq",
      "asm",          "auto",         "bitand",        "bitor",
@@ -37,7 +37,7 @@ constexpr auto reserved = std::to_array<std::string_view>(
      "xor",          "xor_eq"});
 static_assert(std::is_sorted(reserved.begin(), reserved.end()));
 
-// The shortest literal that is exactly the number.
+// Returns the shortest literal that is exactly the number.
 std::string literal(float number) {
   std::string text = fmt::format("{}", number);
   if (text.find_first_of(".e") != std::string::npos) text += 'f';
@@ -92,7 +92,7 @@ std::string cppMember(const FieldSpec& field) {
 std::string cppInitializer(const Value& value) {
   if (value == defaultValue(FieldType(value.index())) &&
       value.index() != size_t(FieldType::SFRotation)) {
-    // Numbers and truth values are written out, as a reader of the header wants to see them.
+    // Default numbers and booleans are written out, because readers of the header want to see them.
     const bool empty =
         isMultiple(FieldType(value.index())) || value.index() == size_t(FieldType::SFNode) ||
         value.index() == size_t(FieldType::SFString) || value.index() == size_t(FieldType::SFImage);

@@ -1,5 +1,5 @@
-// main.cpp: nodegen, the generator of node code. Reads .node files and writes what it is asked for;
-// see docs/nodegen.md.
+// main.cpp: nodegen, the generator of node code. Reads .node files and writes the requested outputs
+// (docs/nodegen.md).
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -66,8 +66,9 @@ bool holds(const std::filesystem::path& path, const std::string& text) {
   return stream && std::string(std::istreambuf_iterator<char>(stream), {}) == text;
 }
 
-// A half-written file would be compiled: it is written beside its place and moved there. One that
-// would be the same is left alone: nothing is compiled anew.
+// Writes a file if its content changes. The text goes to a temporary file that is then renamed,
+// because a half-written file would be compiled. An unchanged file is left alone, so that nothing
+// is rebuilt.
 bool writeFile(const std::filesystem::path& path, const std::string& text) {
   if (holds(path, text)) return true;
   std::error_code error;

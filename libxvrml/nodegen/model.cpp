@@ -1,4 +1,4 @@
-// model.cpp: names of the closed lists, look-up and messages of a Model. See model.h.
+// model.cpp: names of access and change kinds; look-up and messages of a Model.
 #include "nodegen/model.h"
 
 #include <array>

@@ -1,5 +1,5 @@
-// model.h: node specifications in memory: what the reader of .node files fills, the checks complete
-// and the writers print. One Model per run of nodegen, on one thread.
+// model.h: node specifications in memory. The reader of .node files fills the Model, check()
+// completes it and the writers print it. One Model per run of nodegen, on one thread.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace xvrml::nodegen {
 
-// A name used in a specification, and where.
+// A name used in a specification, and its position.
 struct Reference {
   std::string name;
   SourcePosition source;
@@ -25,7 +25,7 @@ struct FieldSpec {
   FieldType type = FieldType::SFBool;
   Access access = Access::field;
   SourcePosition source;
-  Value value;           // default, if the access has one
+  Value value;           // default value, if the access kind has one
   std::string valueText; // as written
   SourcePosition valueSource;
   std::optional<FieldRange> range;
@@ -38,7 +38,8 @@ struct FieldSpec {
   bool hasStorage() const { return access == Access::field || access == Access::exposedField; }
 };
 
-// A node, or an abstract type: a role that nodes play, and what the fields that belong to it mean.
+// A node or an abstract type. An abstract type is a role of nodes, with the meaning of the fields
+// that belong to it.
 struct TypeSpec {
   bool isAbstract = false;
   std::string name;
@@ -48,23 +49,23 @@ struct TypeSpec {
   std::vector<FieldSpec> fields;
   std::string component; // the file's name without folder and extension
   SourcePosition source;
-  std::vector<std::string> roles; // all abstract types it is of, nearest first; set by check()
+  std::vector<std::string> roles; // all abstract types of the node, nearest first; set by check()
 };
 
 // A .node file.
 struct Component {
   std::string name; // the file's name without folder and extension
   std::string title;
-  bool imported = false; // read for its abstract types alone: nothing is written for it
+  bool imported = false; // read only for its abstract types: nothing is written for it
   std::vector<TypeSpec> types;
 };
 
 struct Model {
   std::vector<Component> components;        // in the order of the command line
-  std::map<std::string, std::string> texts; // of the files, by path, for messages
+  std::map<std::string, std::string> texts; // file contents by path, for messages
   Diagnostics diagnostics;
 
-  // Reports with the line it speaks of.
+  // Reports an error with its source line.
   void error(const SourcePosition& source, std::string message);
   const TypeSpec* find(std::string_view name) const;
 };
@@ -74,11 +75,11 @@ std::string_view changeName(Change change);
 bool accessFromName(std::string_view name, Access& access);
 bool changeFromName(std::string_view name, Change& change);
 
-// Reads a file into a new component of the model. False if it cannot be read; what is wrong inside
-// is in model.diagnostics.
+// Reads a file into a new component of the model. Returns false if it cannot be read. Errors in the
+// file are reported in model.diagnostics.
 bool readSpecification(const std::string& path, bool imported, Model& model);
 
-// Resolves abstract types and completes the fields from them; reports what does not fit together.
+// Resolves the abstract types, completes the fields from them, and reports inconsistencies.
 void check(Model& model);
 
 } // namespace xvrml::nodegen

@@ -1,4 +1,4 @@
-// range.cpp: ranges of fields. See range.h.
+// range.cpp: a recursive descent parser for the ranges of fields.
 #include "nodegen/range.h"
 
 #include <charconv>

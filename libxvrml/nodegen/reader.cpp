@@ -1,6 +1,6 @@
-// reader.cpp: .node files into a Model. The words, numbers, strings and values are those of VRML97,
-// so the library's lexer and value parser read them; the notation is explained in docs/nodegen.md.
-// Called by main once per file.
+// reader.cpp: reads .node files into a Model. Words, numbers, strings and values have VRML97
+// syntax, so the library's lexer and value parser read them. The notation is explained in
+// docs/nodegen.md. Called by main once per file.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -22,7 +22,7 @@ bool readFile(const std::string& path, std::string& text) {
   if (!stream) return false;
   try {
     text.assign(std::istreambuf_iterator<char>(stream), {});
-  } catch (const std::ios_base::failure&) { return false; } // a folder, or a bad disk
+  } catch (const std::ios_base::failure&) { return false; } // a folder, or a read error
   return true;
 }
 
@@ -32,8 +32,8 @@ std::string stem(const std::string& path) {
   return name.substr(0, name.find_last_of('.'));
 }
 
-// White space and comments between the words of a value as single blanks.
-std::string squeeze(std::string_view text) {
+// Replaces the white space between the words of a value by single blanks.
+std::string collapseSpace(std::string_view text) {
   std::string result;
   for (const char c : text) {
     const bool space = c == ' ' || c == '\t' || c == '\n' || c == '\r';
@@ -58,13 +58,13 @@ class Reader {
     try {
       expectWord("component", "the component that the file describes");
       component_.title = readText("its title");
-    } catch (const Failed&) {} // the stanzas may be good
+    } catch (const Failed&) {} // the stanzas may still be good
     while (!lexer_.peek().is(TokenKind::end)) {
       try {
         readStanza();
       } catch (const Failed&) { skipStanza(); }
     }
-    take(); // looks at the comments at the end of the file
+    take(); // checks the comments at the end of the file
   }
 
  private:
@@ -123,13 +123,13 @@ class Reader {
     if (isWord(lexer_.peek()) || lexer_.peek().is(TokenKind::braceClose))
       fail(lexer_.peek(), fmt::format("expected the default of {}, found {}", field.name,
                                       describe(lexer_.peek())));
-    lookAtComments(start);
+    checkComments(start);
     if (!values_.parse(field.type, field.value)) throw Failed();
     gap_ = lexer_.cursor();
-    field.valueText = squeeze(std::string_view(start, size_t(gap_ - start)));
+    field.valueText = collapseSpace(std::string_view(start, size_t(gap_ - start)));
   }
 
-  // The range stands in the comment of the field's line, where the standard prints it.
+  // Reads the range from the comment of the field's line, where the standard prints it.
   void readRange(FieldSpec& field, bool isAbstract) {
     const char* p = gap_;
     while (p < lexer_.end() && (*p == ' ' || *p == '\t' || *p == ',')) ++p;
@@ -149,7 +149,7 @@ class Reader {
         field.type == FieldType::SFRotation || field.type == FieldType::MFRotation;
     const std::string problem = parseRange(comment, rotation, field.range.emplace(), offset);
     if (!problem.empty()) failAt(start + offset, problem);
-    field.rangeText = squeeze(comment);
+    field.rangeText = collapseSpace(comment);
     while (field.rangeText.front() == ' ') field.rangeText.erase(0, 1);
   }
 
@@ -206,7 +206,8 @@ class Reader {
                                                accessFromName(token.text, access));
   }
 
-  // Names become names of C++ and Python: letters, digits and underscores.
+  // Reads a name. Names become C++ and Python names, so they have letters, digits and underscores
+  // only.
   void readName(std::string& name, SourcePosition& source, std::string_view what) {
     const Token token = take(TokenKind::identifier, what);
     for (const char c : token.text) {
@@ -227,7 +228,7 @@ class Reader {
     const Token token = take(TokenKind::string, fmt::format("a string: {}", what));
     std::string text = unescape(token.text);
     if (text.empty()) fail(token, fmt::format("expected {}, found an empty string", what));
-    // It becomes a comment in C++ and Python.
+    // The text becomes a comment in C++ and Python.
     const bool control = std::any_of(text.begin(), text.end(),
                                      [](char c) { return static_cast<unsigned char>(c) < ' '; });
     if (control || text.back() == '\\')
@@ -237,7 +238,7 @@ class Reader {
 
   Token take() {
     const Token token = lexer_.peek();
-    lookAtComments(token.at());
+    checkComments(token.at());
     lexer_.next();
     gap_ = token.at() + token.text.size();
     if (token.is(TokenKind::braceOpen)) ++depth_;
@@ -263,9 +264,8 @@ class Reader {
     return true;
   }
 
-  // A range in a comment that belongs to no field would be lost without a word: between two tokens
-  // there is none.
-  void lookAtComments(const char* to) {
+  // Reports a range in a comment that belongs to no field; it would be ignored silently otherwise.
+  void checkComments(const char* to) {
     for (const char* p = gap_; p < to; ++p) {
       if (*p != '#') continue;
       const char* const start = ++p;
@@ -281,7 +281,7 @@ class Reader {
 
   [[noreturn]] void fail(const Token& token, std::string message) {
     if (!token.is(TokenKind::invalid))
-      lexer_.error(token.at(), std::move(message)); // the lexer has reported invalid ones
+      lexer_.error(token.at(), std::move(message)); // invalid tokens were reported by the lexer
     throw Failed();
   }
   [[noreturn]] void failAt(const char* at, std::string message) {
@@ -289,7 +289,8 @@ class Reader {
     throw Failed();
   }
 
-  // After an error: on behind the brace that closes the stanza, or the next one.
+  // Skips the rest of a stanza after an error: continues behind its closing brace, or at the next
+  // stanza.
   void skipStanza() {
     const bool inside = depth_ > 0;
     for (Token token = lexer_.peek(); !token.is(TokenKind::end); token = lexer_.peek()) {
@@ -306,7 +307,7 @@ class Reader {
   const Limits limits_{};
   Lexer lexer_;
   ValueParser values_;
-  const char* gap_; // end of what has been taken: comments from here on have not been looked at
+  const char* gap_; // end of the last token taken; comments after it are not checked yet
   int depth_ = 0;
   Component& component_;
 };

@@ -1,5 +1,5 @@
-// write_cpp.cpp: the generated C++: a header of structs, a source of constant tables per component,
-// and the list of types.
+// write_cpp.cpp: writes the generated C++: a header of structs, one source of constant tables per
+// component, and the list of types.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ std::string writeMember(const FieldSpec& field) {
                      field.text);
 }
 
-// A plug-in's types get their numbers when it is loaded, and have room for what they stand for.
+// A plug-in's types get their index when it is loaded, and each node has room for its expansion.
 constexpr std::string_view pluginMembers =
     "  static int typeIndex;\n  static const NodeType& nodeType();\n"
     "  static const NodeImplementation implementation; // in the plug-in's own source\n"

@@ -9,7 +9,7 @@
 namespace xvrml::nodegen {
 namespace {
 
-// Text in a cell of a Markdown table.
+// Escapes text for a cell of a Markdown table.
 std::string cell(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -42,8 +42,8 @@ std::string referenceOf(const TypeSpec& type) {
   return text + '\n';
 }
 
-// What the binding returns when a field is read and what it takes: any array of the shape, list of
-// rows and so on.
+// The beginning of the Python stub. Each field has the type that the binding returns and the type
+// that it accepts (any array of the shape, a list of rows and so on).
 constexpr std::string_view stubPrologue =
     R"("""Node classes of xvrml. Written by nodegen from the .node files.
 
@@ -85,7 +85,8 @@ MFVec2f = Field[npt.NDArray[np.float32], npt.ArrayLike]
 MFVec3f = Field[npt.NDArray[np.float32], npt.ArrayLike]
 )";
 
-// A field whose name Python keeps for itself has no attribute: it is named in a comment.
+// Returns whether Python reserves the name. Such a field has no attribute; the stub names it in a
+// comment.
 bool isPythonKeyword(std::string_view name) {
   constexpr auto keywords = std::to_array<std::string_view>(
       {"False", "None",     "True",  "and",    "as",   "assert", "async",  "await",    "break",
@@ -104,7 +105,7 @@ std::string docString(std::string_view text) {
   return result;
 }
 
-// What a constructor's keyword takes.
+// Returns the type of a constructor's keyword argument.
 std::string_view written(FieldType type) {
   switch (type) {
   case FieldType::SFBool: return "bool";
@@ -119,7 +120,8 @@ std::string_view written(FieldType type) {
   }
 }
 
-// Fields, then events, which have values in a running world.
+// Returns the stub of one class: first the fields, then the events, which have values in a running
+// world.
 std::string stubOf(const TypeSpec& type) {
   std::string text = fmt::format("\nclass {}(Node):\n    \"\"\"{}\"\"\"\n", type.name,
                                  docString(type.text)),
@@ -134,7 +136,7 @@ std::string stubOf(const TypeSpec& type) {
       if (!events && !keyword)
         keywords += fmt::format(", {}: {} = ...", field.name, written(field.type));
     }
-  if (type.name != "Script") // from files alone
+  if (type.name != "Script") // Scripts come only from files
     text += fmt::format("    def __init__(self{}{}) -> None: ...\n", keywords.empty() ? "" : ", *",
                         keywords);
   return text;

@@ -1,5 +1,5 @@
-// write_skeleton.cpp: the first source of a node's behaviour, which its author then owns: a handler
-// per eventIn, and one place where all events of the node arrive.
+// write_skeleton.cpp: writes the first source file of a node's behaviour, which its author then
+// edits: one handler per eventIn, and one function that receives all events of the node.
 #include <fmt/format.h>
 
 #include "nodegen/writers.h"
@@ -14,7 +14,8 @@ std::string handler(const TypeSpec& type, const FieldSpec& field) {
                      fieldTypeName(field.type));
 }
 
-// What an event does is the engine's business except for what the author adds.
+// Returns the skeleton of a plug-in's node. The engine handles events; the author adds the node's
+// own reaction.
 std::string pluginSkeleton(const TypeSpec& type, const std::string& plugin) {
   std::string events;
   for (const FieldSpec& field : type.fields)

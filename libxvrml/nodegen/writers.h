@@ -1,5 +1,5 @@
-// writers.h: what nodegen writes from a checked Model. Each function returns the text of one file;
-// imported components are left out.
+// writers.h: the files that nodegen writes from a checked Model. Each function returns the text of
+// one file. Imported components are left out.
 #pragma once
 
 #include <string>
@@ -8,24 +8,23 @@
 
 namespace xvrml::nodegen {
 
-// plugin: the plug-in's name; empty: the library's own nodes.
-std::string
-writeHeader(const Model& model,
-            const std::string& plugin); // xvrml/nodes.h, <plugin>_nodes.h: a struct per node
-std::string writeTables(const Component& component,
-                        const std::string& plugin); // nodes_<component>.cpp: its constant tables
-std::string writeList(const Model& model);          // nodes_list.cpp: builtinNodeTypes()
-std::string writeReference(const Model& model);     // Markdown page of all nodes
-std::string writeStub(const Model& model);          // Python stub of the node classes
-std::string writePlugin(const Model& model,
-                        const std::string& plugin); // <plugin>_plugin.cpp: the exported constant
-std::string writeSkeleton(const TypeSpec& type,
-                          const std::string& plugin); // first source of a node's behaviour
+// Returns xvrml/nodes.h or <plugin>_nodes.h: one struct per node. plugin: the plug-in's name; ""
+// for the library's own nodes.
+std::string writeHeader(const Model& model, const std::string& plugin);
+// Returns nodes_<component>.cpp: the constant tables of a component.
+std::string writeTables(const Component& component, const std::string& plugin);
+std::string writeList(const Model& model);      // nodes_list.cpp: builtinNodeTypes()
+std::string writeReference(const Model& model); // Markdown page of all nodes
+std::string writeStub(const Model& model);      // Python stub of the node classes
+// Returns <plugin>_plugin.cpp: the exported constant.
+std::string writePlugin(const Model& model, const std::string& plugin);
+// Returns the first source file of a node's behaviour.
+std::string writeSkeleton(const TypeSpec& type, const std::string& plugin);
 
 // Names and values in C++.
-std::string cppMember(const FieldSpec& field); // the field's name, with _ behind if C++ keeps it
-std::string
-cppInitializer(const Value& value); // what stands between the braces; empty for the neutral value
+std::string cppMember(const FieldSpec& field); // the field's name, followed by _ if C++ reserves it
+// Returns the text between the braces of an initializer; "" for an empty value.
+std::string cppInitializer(const Value& value);
 std::string cppString(std::string_view text); // a string literal
 std::string joinNames(const std::vector<Reference>& names);
 

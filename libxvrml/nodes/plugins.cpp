@@ -1,4 +1,4 @@
-// plugins.cpp: see xvrml/node_plugin.h: finds, checks and registers node plug-ins.
+// plugins.cpp: finds, checks and registers node plug-ins.
 #include "xvrml/node_plugin.h"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ std::string sizesText(const uint32_t (&sizes)[8]) {
   return fmt::format("{}", fmt::join(sizes, " "));
 }
 
-// Why a plug-in cannot be used; empty if nothing speaks against it. Reads nothing behind `size` or
-// a wrong version.
+// Returns the reason why a plug-in cannot be used; "" if it can. Reads no member beyond `size`, and
+// none after a wrong version.
 std::string whyRefused(const NodePlugin& plugin) {
   if (plugin.magic != nodePluginMagic)
     return fmt::format("its {} does not begin as one", nodePluginSymbol);
@@ -51,7 +51,7 @@ std::string whyRefused(const NodePlugin& plugin) {
   return "";
 }
 
-// Types live for ever.
+// Registers a plug-in's node types, which live for ever. Returns false if two have the same name.
 bool registerNodes(const NodePlugin& plugin) {
   std::vector<const NodeType*> types;
   for (uint32_t i = 0; i < plugin.count; ++i) {
@@ -69,7 +69,7 @@ bool registerNodes(const NodePlugin& plugin) {
   return true;
 }
 
-// Empty: loaded.
+// Loads one plug-in. Returns "" or the reason why it is refused.
 std::string loadOne(const std::string& path) {
   try {
     plugin_files::checkFile(path, "node plug-in");

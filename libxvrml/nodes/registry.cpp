@@ -1,6 +1,6 @@
-// registry.cpp: node types by name and by number. The tables come from generated code; later ones,
-// of plug-ins, go the same way. Types are added before they are used and never removed, so what
-// nodeTypes() returned stays valid.  [any thread]
+// registry.cpp: node types by name and by index. The types of the generated tables come first;
+// plug-ins add theirs in the same way. Types are added before they are used and never removed, so
+// that the result of nodeTypes() stays valid.  [any thread]
 #include "nodes/registry.h"
 
 #include <atomic>
@@ -12,7 +12,7 @@
 namespace xvrml {
 namespace {
 
-// Never changed once published: readers need no lock.
+// Immutable once published, so that readers need no lock.
 struct Snapshot {
   std::vector<const NodeType*> types;
   std::unordered_map<std::string_view, const NodeType*> byName;
@@ -21,8 +21,8 @@ struct Snapshot {
 class Registry {
  public:
   static Registry& instance() {
-    static Registry& registry =
-        *new Registry(); // never destroyed: worlds may outlive static objects
+    // Never destroyed: worlds may outlive static objects.
+    static Registry& registry = *new Registry();
     return registry;
   }
 
@@ -49,8 +49,8 @@ class Registry {
   }
 
   std::mutex mutex_;
-  std::vector<std::unique_ptr<const Snapshot>>
-      snapshots_; // earlier ones are kept for those who read them
+  // Earlier snapshots are kept, because other threads may still read them.
+  std::vector<std::unique_ptr<const Snapshot>> snapshots_;
   std::atomic<const Snapshot*> current_;
 };
 

@@ -1,4 +1,4 @@
-// registry.h: how node types get into the registry that nodeTypes() and findNodeType() read.
+// registry.h: adds node types to the registry that nodeTypes() and findNodeType() read.
 #pragma once
 
 #include <span>
@@ -7,12 +7,13 @@
 
 namespace xvrml {
 
-// Adds types whose index is their place behind those there are. False, and nothing added, if an
-// index does not fit or a name is taken. The types must live for ever.  [any thread]
+// Appends types to the registry; the index of each must be its position there. Returns false, and
+// adds nothing, if an index does not fit or a name is taken. The types must live for ever.  [any
+// thread]
 bool addNodeTypes(std::span<const NodeType* const> types);
 
 namespace nodes {
-// Written by nodegen: the types of all .node files, in their order.
+// The types of all .node files, in their order. Written by nodegen.
 std::span<const NodeType* const> builtinNodeTypes();
 } // namespace nodes
 

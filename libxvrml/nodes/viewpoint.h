@@ -1,4 +1,4 @@
-// viewpoint.h: what Viewpoint and ORTViewpoint have in common, for whoever looks through one. [any
+// viewpoint.h: the common fields of Viewpoint and ORTViewpoint, for code that uses either. [any
 // thread]
 #pragma once
 
@@ -8,14 +8,14 @@
 
 namespace xvrml {
 
-// The fields of a node that is a viewpoint; good as long as the node.
+// References to the fields of a viewpoint node; valid as long as the node.
 struct ViewpointFields {
   const Vec3f& position;
   const Rotation& orientation;
   const float& fieldOfView;
   const bool& jump;
   const std::string& description;
-  Node* shader; // as written; null: the stock camera
+  Node* shader; // as written; null: the built-in camera
 };
 
 inline bool isViewpoint(const Node* node) {

@@ -1,5 +1,5 @@
-// builder.cpp: nodes and their fields. See builder.h; names, routes and IS are in
-// builder_names.cpp, prototypes in builder_proto.cpp.
+// builder.cpp: builds nodes and their fields. Names, routes and IS are in builder_names.cpp,
+// prototypes in builder_proto.cpp.
 #include "parse/builder.h"
 
 #include <utility>
@@ -36,7 +36,7 @@ void Builder::rollBack(const Mark& mark) {
     const auto before = name == frame.scope->names.end() ? frame.earlier.end()
                                                          : frame.earlier.find(name->second.get());
     if (before != frame.earlier.end()) {
-      name->second = before->second; // the node that had the name before has it again
+      name->second = before->second; // the former owner gets the name back
       continue;
     }
     frame.lost.insert(frame.defined[i]);
@@ -51,7 +51,7 @@ bool Builder::isScript() const {
   return nodes_.size() > scopes_.back().outerNodes && nodes_.back().scriptType;
 }
 
-// Makes the node of a type, or says why it cannot.
+// Makes a node of a type. Returns false, with a message, if it cannot.
 bool Builder::makeNode(const Token& type, NodeFrame& frame) {
   if (isBeingDeclared(type.text)) {
     lexer_.error(type.at(), fmt::format("prototype {} contains an instance of itself (4.8.3)",
@@ -82,8 +82,8 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
   return true;
 }
 
-// Takes memory from the world's budget. False, after one message, if there is not enough left.
-bool Builder::takes(uint64_t bytes, const Token& at) {
+// Reserves memory from the world's budget. Returns false, after one message, if not enough is left.
+bool Builder::reserveMemory(uint64_t bytes, const Token& at) {
   if (state_.budget.take(bytes)) return true;
   if (!std::exchange(state_.full, true))
     lexer_.error(at.at(),
@@ -99,10 +99,10 @@ bool Builder::openNode(const Token& type, const Token* def) {
   if (state_.world.nodeCount >= limit) {
     lexer_.error(type.at(), fmt::format("more nodes than limit expandedNodes={}; {} is left out",
                                         limit, describe(type)));
-  } else if (!takes((def ? bytesOfName + def->text.size() : 0), type)) {
+  } else if (!reserveMemory((def ? bytesOfName + def->text.size() : 0), type)) {
     made = false;
   } else {
-    made = makeNode(type, frame) && takes(nodeBytes(*frame.node), type);
+    made = makeNode(type, frame) && reserveMemory(nodeBytes(*frame.node), type);
   }
   if (!made) {
     if (def) lostName(*def);
@@ -139,11 +139,12 @@ void Builder::closeNode(bool good) {
   }
   if (!good) return rollBack(frame.mark);
   if (frame.expanded > 1) expanded_.emplace(frame.node.get(), frame.expanded);
-  // A node that is good, but in a wrong place, keeps its names: a later USE may have a right one.
-  // In a prototype's body only if nothing of it is connected to the interface.
+  // A node that is good but in a wrong place keeps its names, because a later USE may put it in a
+  // right one. In a prototype's body it keeps them only if none of its fields is connected to the
+  // interface.
   const Mark now = mark();
   const bool keeps = now.names > frame.mark.names && now.connections == frame.mark.connections;
-  if (!accepts(receivers_.back(), frame.type, *frame.node,
+  if (!accepts(nodeTargets_.back(), frame.type, *frame.node,
                keeps ? "; what DEF names in it can be USEd" : "")) {
     keeps ? keepNames(frame.mark) : rollBack(frame.mark);
   } else if (!place(frame.type, frame.node, frame.expanded)) {
@@ -165,7 +166,7 @@ const NodeType* Builder::typeNamed(std::string_view name) const {
   return proto ? proto->type.get() : findNodeType(name);
 }
 
-bool Builder::wouldTake(size_t receiver, std::string_view name, bool use) const {
+bool Builder::wouldAccept(size_t nodeTarget, std::string_view name, bool use) const {
   const Node* node = nullptr;
   if (use) {
     const auto found = scopes_.back().scope->names.find(name);
@@ -174,29 +175,31 @@ bool Builder::wouldTake(size_t receiver, std::string_view name, bool use) const 
   } else if (const ProtoPtr proto = findPrototype(name)) {
     node = firstNode(proto.get());
   } else {
-    return suits(receivers_[receiver - 1], findNodeType(name));
+    return acceptsType(nodeTargets_[nodeTarget - 1], findNodeType(name));
   }
-  return suits(receivers_[receiver - 1], node ? effectiveType(*node) : nullptr);
+  return acceptsType(nodeTargets_[nodeTarget - 1], node ? effectiveType(*node) : nullptr);
 }
 
-// The types of node that a receiver takes; empty: all.
-std::string_view Builder::wantedBy(const Receiver& receiver) const {
-  if (receiver.kind == Receiver::Kind::roots) return inTemplate() || state_.anyRoots ? "" : "child";
-  return receiver.field ? std::string_view(receiver.field->nodeTypes) : "";
+// Returns the node types that may be added here; "" means all.
+std::string_view Builder::acceptedTypes(const NodeTarget& nodeTarget) const {
+  if (nodeTarget.kind == NodeTarget::Kind::roots)
+    return inTemplate() || state_.anyRoots ? "" : "child";
+  return nodeTarget.field ? std::string_view(nodeTarget.field->nodeTypes) : "";
 }
 
-// A type that is null is an EXTERNPROTO's, known when it is loaded.
-bool Builder::suits(const Receiver& receiver, const NodeType* type) const {
-  const std::string_view wanted = wantedBy(receiver);
+// Returns whether a node of the type may be added. A null type is that of an EXTERNPROTO, which is
+// known only when it is loaded.
+bool Builder::acceptsType(const NodeTarget& nodeTarget, const NodeType* type) const {
+  const std::string_view wanted = acceptedTypes(nodeTarget);
   return !type || wanted.empty() || typeAccepted(wanted, *type);
 }
 
-bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& node,
+bool Builder::accepts(const NodeTarget& nodeTarget, const Token& at, const Node& node,
                       std::string_view remedy) {
   const NodeType* type = effectiveType(node);
-  if (suits(receiver, type)) return true;
-  const bool root = receiver.kind == Receiver::Kind::roots;
-  const std::string_view wanted = wantedBy(receiver);
+  if (acceptsType(nodeTarget, type)) return true;
+  const bool root = nodeTarget.kind == NodeTarget::Kind::roots;
+  const std::string_view wanted = acceptedTypes(nodeTarget);
   const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);
   if (root) {
     lexer_.error(
@@ -205,23 +208,23 @@ bool Builder::accepts(const Receiver& receiver, const Token& at, const Node& nod
                     describe(at), stands, remedy));
   } else {
     lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}{}",
-                                      describe(at), stands, receiver.field->name,
-                                      receiver.holder->type().name, wanted, remedy));
+                                      describe(at), stands, nodeTarget.field->name,
+                                      nodeTarget.holder->type().name, wanted, remedy));
   }
   return false;
 }
 
-// False, after a message, if the node cannot stand where it is written.
+// Adds a node. Returns false, after a message, if it is not accepted where it is written.
 bool Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
-  return accepts(receivers_.back(), at, *node, "") && place(at, node, expanded);
+  return accepts(nodeTargets_.back(), at, *node, "") && place(at, node, expanded);
 }
 
-// False, after a message, if there are too many nodes.
+// Adds an accepted node. Returns false, after a message, if there are too many nodes.
 bool Builder::place(const Token& at, const NodeRef& node, uint64_t expanded) {
-  Receiver& receiver = receivers_.back();
-  const bool root = receiver.kind == Receiver::Kind::roots;
-  uint64_t& sum = root || nodes_.empty() || receiver.holder == nullptr ? scope().expanded
-                                                                       : nodes_.back().expanded;
+  NodeTarget& nodeTarget = nodeTargets_.back();
+  const bool root = nodeTarget.kind == NodeTarget::Kind::roots;
+  uint64_t& sum = root || nodes_.empty() || nodeTarget.holder == nullptr ? scope().expanded
+                                                                         : nodes_.back().expanded;
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (root && saturatingAdd(sum, expanded) > limit) {
     lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit "
@@ -230,22 +233,22 @@ bool Builder::place(const Token& at, const NodeRef& node, uint64_t expanded) {
     return false;
   }
   sum = saturatingAdd(sum, expanded);
-  switch (receiver.kind) {
-  case Receiver::Kind::roots: scope().scope->roots.push_back(node); break;
-  case Receiver::Kind::single: *static_cast<NodeRef*>(receiver.storage) = node; break;
-  case Receiver::Kind::multiple: static_cast<MFNode*>(receiver.storage)->push_back(node); break;
+  switch (nodeTarget.kind) {
+  case NodeTarget::Kind::roots: scope().scope->roots.push_back(node); break;
+  case NodeTarget::Kind::single: *static_cast<NodeRef*>(nodeTarget.storage) = node; break;
+  case NodeTarget::Kind::multiple: static_cast<MFNode*>(nodeTarget.storage)->push_back(node); break;
   }
   return true;
 }
 
 void Builder::nullNode(const Token& token) {
-  const Receiver& receiver = receivers_.back();
-  if (receiver.kind == Receiver::Kind::single)
-    *static_cast<NodeRef*>(receiver.storage) = {};
-  else if (!receiver.field || keepsNull(*receiver.field) ||
-           (receiver.holder && receiver.holder->type().index < 0))
-    static_cast<MFNode*>(receiver.storage)
-        ->emplace_back(); // an interface's value may become such a list
+  const NodeTarget& nodeTarget = nodeTargets_.back();
+  if (nodeTarget.kind == NodeTarget::Kind::single)
+    *static_cast<NodeRef*>(nodeTarget.storage) = {};
+  else if (!nodeTarget.field || keepsNull(*nodeTarget.field) ||
+           // A list in an interface may become the value of a field that keeps NULL.
+           (nodeTarget.holder && nodeTarget.holder->type().index < 0))
+    static_cast<MFNode*>(nodeTarget.storage)->emplace_back();
   else
     lexer_.warn(token.at(), "NULL is no node of a list; it is left out");
 }
@@ -283,15 +286,16 @@ FieldTarget Builder::openField(const Token& name) {
   void* storage = node.storage(*field);
   if (field->type == FieldType::SFNode) {
     *static_cast<NodeRef*>(storage) = {};
-    receivers_.push_back({Receiver::Kind::single, storage, field, &node});
+    nodeTargets_.push_back({NodeTarget::Kind::single, storage, field, &node});
   } else if (field->type == FieldType::MFNode) {
     static_cast<MFNode*>(storage)->clear();
-    receivers_.push_back({Receiver::Kind::multiple, storage, field, &node});
+    nodeTargets_.push_back({NodeTarget::Kind::multiple, storage, field, &node});
   }
   return {true, field->type, storage};
 }
 
-// The lines of a list of strings that has just been read, for the messages of programs in it.
+// Returns the lines of the strings of a list that was just read, for messages about the programs in
+// it.
 std::vector<uint32_t> Builder::linesOfStrings(const char* from) {
   std::vector<uint32_t> lines;
   const char* end = lexer_.cursor();
@@ -311,7 +315,7 @@ void Builder::closeField(bool good) {
     static_cast<ScriptNode&>(*frame.node).urlLines =
         linesOfStrings(frame.fieldAt + field.name.size());
   if (holdsNodes(field)) {
-    receivers_.pop_back();
+    nodeTargets_.pop_back();
   } else if (good && hasNormalizedAxes(field)) {
     Rotation first;
     const size_t outside = normalizeAxes(field.type, frame.node->storage(field), &first);

@@ -1,5 +1,5 @@
-// builder.h: makes the scene graph from what the parser reports: nodes, names, prototypes, routes,
-// with all checks that need to know node types. One builder per file, on the thread that loads.
+// builder.h: builds the scene graph from the parser's calls: nodes, names, prototypes, routes. It
+// makes all checks that depend on node types. One builder per file, on the thread that loads.
 #pragma once
 
 #include <deque>
@@ -15,13 +15,13 @@ namespace xvrml {
 class Builder : public ParseSink {
  public:
   Builder(Lexer& lexer, LoadState& state, ParsedFile& file);
-  void dropUnplacedNames(); // to be called at the end of the file, or of a prototype's body
+  void dropUnplacedNames(); // called at the end of the file or of a prototype's body
   bool openNode(const Token& type, const Token* def) override;
   void closeNode(bool good) override;
   SourcePosition openNodePlace() const override;
   const NodeType* typeNamed(std::string_view name) const override;
-  size_t receiver() const override { return receivers_.size(); }
-  bool wouldTake(size_t receiver, std::string_view name, bool use) const override;
+  size_t nodeTarget() const override { return nodeTargets_.size(); }
+  bool wouldAccept(size_t nodeTarget, std::string_view name, bool use) const override;
   bool isScript() const override;
   void useNode(const Token& name) override;
   void nullNode(const Token& token) override;
@@ -42,23 +42,23 @@ class Builder : public ParseSink {
   void route(const Token& keyword, const RouteNames& names) override;
 
  private:
-  // Sizes of the lists that grow while a node is read: what came in since is taken back if the node
-  // is lost.
+  // Sizes of the lists that grow while a node is read. rollBack() restores them if the node is
+  // lost.
   struct Mark {
     size_t instances, inlines, names, routes, connections;
   };
   struct NodeFrame {
     NodeRef node;
     Token type;
-    std::shared_ptr<NodeType> scriptType; // a Script's own table grows while it is read
+    std::shared_ptr<NodeType> scriptType; // a Script's own type grows while it is read
     Mark mark;
-    uint64_t expanded = 1;               // nodes in it, shared ones counted at each use
+    uint64_t expanded = 1;               // number of nodes in it, shared ones counted at each use
     std::vector<std::string_view> given; // fields read so far
-    const FieldInfo* field = nullptr;    // the one being read
+    const FieldInfo* field = nullptr;    // the field that is being read
     const char* fieldAt = nullptr;
   };
-  // Where complete nodes go.
-  struct Receiver {
+  // The place to which the next complete node is added.
+  struct NodeTarget {
     enum class Kind : uint8_t { roots, single, multiple } kind;
     void* storage;
     const FieldInfo* field; // null: not a field of a node type
@@ -68,25 +68,25 @@ class Builder : public ParseSink {
   struct Declaration {
     FieldInfo field;
     const char* at;
-    bool accepted; // no other declaration has its names
-    bool scoped;   // a prototype's default that is made of nodes: these have names of their own
+    bool accepted; // no other declaration has the same names
+    bool scoped;   // a prototype's default made of nodes, which have a scope of their own
     bool hasValue;
   };
   struct ScopeFrame {
     Scope* scope;
     ProtoPtr proto;                      // null: the file, or a default value
-    std::shared_ptr<NodeType> protoType; // its interface, growing
-    std::unique_ptr<Scope> own;          // a default value's names
+    std::shared_ptr<NodeType> protoType; // its interface, which is still growing
+    std::unique_ptr<Scope> own;          // the scope of a default value
     std::unordered_map<std::string_view, ProtoPtr> types;
     std::unordered_set<std::string_view> lost;
     std::vector<std::string_view> defined;
-    std::unordered_set<std::string_view>
-        placed; // names by which USE or ROUTE has given a node a place
-    // The names within each node that stands in a wrong place, with their nodes.
+    // Names of nodes to which a USE or ROUTE has given a place.
+    std::unordered_set<std::string_view> placed;
+    // For each node in a wrong place: the names within it, and their nodes.
     std::vector<std::vector<std::pair<std::string_view, NodeRef>>> misplaced;
-    std::unordered_map<const Node*, NodeRef> earlier; // that had a node's name before it
+    std::unordered_map<const Node*, NodeRef> earlier; // former owner of a node's name
     uint64_t expanded = 0;
-    size_t outerNodes = 0; // nodes that were open when the scope began
+    size_t outerNodes = 0; // number of nodes that were open when the scope began
   };
 
   Mark mark() const;
@@ -97,14 +97,14 @@ class Builder : public ParseSink {
   bool inTemplate() const { return scopes_.size() > 1; }
   void pushScope(Scope* scope, ProtoPtr proto, std::shared_ptr<NodeType> type);
   void popScope();
-  bool takes(uint64_t bytes, const Token& at);
+  bool reserveMemory(uint64_t bytes, const Token& at);
   bool makeNode(const Token& type, NodeFrame& frame);
   void checkChild(const NodeFrame& frame);
   bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);
   bool place(const Token& at, const NodeRef& node, uint64_t expanded);
-  std::string_view wantedBy(const Receiver& receiver) const;
-  bool suits(const Receiver& receiver, const NodeType* type) const;
-  bool accepts(const Receiver& receiver, const Token& at, const Node& node,
+  std::string_view acceptedTypes(const NodeTarget& nodeTarget) const;
+  bool acceptsType(const NodeTarget& nodeTarget, const NodeType* type) const;
+  bool accepts(const NodeTarget& nodeTarget, const Token& at, const Node& node,
                std::string_view remedy);
   std::vector<uint32_t> linesOfStrings(const char* from);
   uint64_t expandedCount(const Node* node) const;
@@ -119,12 +119,12 @@ class Builder : public ParseSink {
   Lexer& lexer_;
   LoadState& state_;
   ParsedFile& file_;
-  std::deque<ScopeFrame> scopes_; // deques: what they hold stays where it is
+  std::deque<ScopeFrame> scopes_; // deques do not move their elements
   std::deque<Declaration> declarations_;
   std::vector<NodeFrame> nodes_;
-  std::vector<Receiver> receivers_;
-  std::unordered_map<const Node*, uint64_t> expanded_; // where more than 1
-  const NodeType* fullInterface_ = nullptr; // the last one that declares more than the limit
+  std::vector<NodeTarget> nodeTargets_;
+  std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1
+  const NodeType* fullInterface_ = nullptr; // the last type that declares more than the limit
 };
 
 } // namespace xvrml

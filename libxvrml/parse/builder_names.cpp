@@ -1,5 +1,5 @@
-// builder_names.cpp: name spaces of files and prototypes: DEF and USE, routes, IS (ISO/IEC
-// 14772-1 4.4.6, 4.6.2, 4.8.2, 4.10.2). See builder.h.
+// builder_names.cpp: the scopes of files and prototypes: DEF and USE, routes, IS (ISO/IEC 14772-1
+// 4.4.6, 4.6.2, 4.8.2, 4.10.2).
 #include <fmt/format.h>
 
 #include "graph/field_access.h"
@@ -9,15 +9,15 @@
 namespace xvrml {
 namespace {
 
-// Table 4.4: which declarations of a prototype's interface a node's field or event may be connected
-// to.
+// Returns whether a node's field or event may be connected to an interface declaration by IS (Table
+// 4.4).
 bool mayConnect(Access ofNode, Access ofInterface) {
   return ofNode == Access::exposedField || ofNode == ofInterface;
 }
 
-// What a connection that Table 4.4 forbids can still mean: one half of an exposedField. Empty:
-// nothing.
-std::string_view whatIsMeant(Access ofNode, Access ofInterface) {
+// Returns what a connection that Table 4.4 forbids still does: it connects one half of an
+// exposedField. "" if it does nothing.
+std::string_view intendedMeaning(Access ofNode, Access ofInterface) {
   if (ofInterface != Access::exposedField) return {};
   if (ofNode == Access::field)
     return "it takes the value that the instance is given, and no events";
@@ -45,16 +45,16 @@ void Builder::pushScope(Scope* target, ProtoPtr proto, std::shared_ptr<NodeType>
   frame.proto = std::move(proto);
   frame.protoType = std::move(type);
   frame.outerNodes = nodes_.size();
-  receivers_.push_back({Receiver::Kind::roots, nullptr, nullptr, nullptr});
+  nodeTargets_.push_back({NodeTarget::Kind::roots, nullptr, nullptr, nullptr});
 }
 
 void Builder::popScope() {
   dropUnplacedNames();
-  receivers_.pop_back();
+  nodeTargets_.pop_back();
   scopes_.pop_back();
 }
 
-// Remembers the names of a node in a wrong place: they may be used below it.
+// Remembers the names of a node in a wrong place, because they may be USEd further down.
 void Builder::keepNames(const Mark& mark) {
   auto& names = scope().misplaced.emplace_back();
   for (size_t i = mark.names; i < scope().defined.size(); ++i)
@@ -63,9 +63,9 @@ void Builder::keepNames(const Mark& mark) {
       names.emplace_back(scope().defined[i], found->second);
 }
 
-// Drops the names of nodes in wrong places to which no USE and no ROUTE has given a better one:
-// these nodes are in no world, and what is written of the world has no place for them. A node that
-// had the name before has it again.
+// Drops the names of misplaced nodes that no USE and no ROUTE has put in a better place. Such nodes
+// belong to no world, and a written file could not contain them. The former owner of a name gets it
+// back.
 void Builder::dropUnplacedNames() {
   ScopeFrame& frame = scope();
   std::unordered_set<const Node*> dropped;
@@ -104,7 +104,7 @@ bool Builder::isOpen(const Node* node) const {
                      [&](const NodeFrame& frame) { return frame.node.get() == node; });
 }
 
-// The node that a name means here, or null after a message.
+// Returns the node that a name refers to here, or null after a message.
 NodeRef Builder::findName(const Token& name) {
   const auto& names = scope().scope->names;
   const auto found = names.find(name.text);
@@ -121,10 +121,10 @@ NodeRef Builder::findName(const Token& name) {
   return {};
 }
 
-// USE nodeNameId. Only the transformation hierarchy must have no cycle (4.4.4), and what a Script
-// or a prototype instance holds in its fields is no part of it: a node may be used within itself if
-// there is one on the way. Whether a prototype puts the field into its body is found out when it is
-// expanded.
+// USE nodeNameId. Only the transformation hierarchy must have no cycle (4.4.4); the fields of
+// Scripts and prototype instances are not part of it. A node may therefore be USEd within itself if
+// a Script or an instance is in between. Expansion finds out whether a prototype passes the field
+// into its body.
 void Builder::useNode(const Token& name) {
   const NodeRef node = findName(name);
   if (!node) return;
@@ -137,7 +137,7 @@ void Builder::useNode(const Token& name) {
     if (dynamic_cast<DynamicNode*>(frame->node.get())) between = frame->node.get();
     if (frame->node == node) break;
   }
-  if (!between || !receivers_.back().holder) {
+  if (!between || !nodeTargets_.back().holder) {
     lexer_.error(
         name.at(),
         fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.4.4)",
@@ -145,7 +145,7 @@ void Builder::useNode(const Token& name) {
     return;
   }
   if (!deliver(name, node, 0)) return;
-  state_.entered.insert(node.get());
+  state_.selfContaining.insert(node.get());
   state_.cycleHolders.insert(between);
   state_.world.cyclic.emplace_back(between);
 }
@@ -171,7 +171,7 @@ void Builder::route(const Token& keyword, const RouteNames& names) {
                              describe(names.toField), fieldTypeName(in->type)));
     return;
   }
-  if (!takes(bytesOfRoute, keyword)) return;
+  if (!reserveMemory(bytesOfRoute, keyword)) return;
   ++state_.routes;
   scope().placed.insert({names.from.text, names.to.text});
   scope().scope->routes.push_back({from, std::string(names.fromField.text), to,
@@ -188,7 +188,7 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
   const NodeType& type = node.type();
   const FieldInfo* field = type.find(name.text);
   Access access = field ? field->access : Access::eventIn;
-  if (!field) { // set_x and x_changed of an exposedField x stand for its events
+  if (!field) { // set_x and x_changed of an exposedField x refer to its events
     if ((field = type.findEventIn(name.text)))
       access = Access::eventIn;
     else if ((field = type.findEventOut(name.text)))
@@ -222,7 +222,7 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
     return;
   }
   if (!mayConnect(access, declared->access)) {
-    const std::string_view meant = whatIsMeant(access, declared->access);
+    const std::string_view meant = intendedMeaning(access, declared->access);
     lexer_.error(interfaceName.at(),
                  fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
                              accessName(access), describe(name), type.name,

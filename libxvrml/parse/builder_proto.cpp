@@ -1,5 +1,5 @@
-// builder_proto.cpp: PROTO and EXTERNPROTO declarations and the interfaces of Scripts (ISO/IEC
-// 14772-1 4.8, 4.9, 6.40). See builder.h.
+// builder_proto.cpp: PROTO and EXTERNPROTO declarations, and the interfaces of Scripts (ISO/IEC
+// 14772-1 4.8, 4.9, 6.40).
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,8 +10,8 @@
 
 namespace xvrml {
 
-// A prototype's name is known from the end of its declaration to the end of the scope that holds
-// it, prototypes within included.
+// Returns the prototype with this name. A name is valid from the end of its declaration to the end
+// of the enclosing scope, prototypes within it included.
 ProtoPtr Builder::findPrototype(std::string_view name) const {
   for (auto frame = scopes_.rbegin(); frame != scopes_.rend(); ++frame) {
     const auto found = frame->types.find(name);
@@ -26,14 +26,15 @@ bool Builder::isBeingDeclared(std::string_view name) const {
   });
 }
 
-// Where interface declarations go: the Script or the prototype that is open, whichever is inner.
+// Returns the type that gets interface declarations: that of the innermost open Script or
+// prototype.
 NodeType* Builder::declaringType() {
   if (isScript()) return nodes_.back().scriptType.get();
   return scope().protoType.get();
 }
 
-// Names of an interface differ, and an exposedField x takes set_x and x_changed as well (4.7).
-// Writers that spell these out beside it mean no harm if the types agree.
+// Reports a declaration whose name is taken. An exposedField x also occupies set_x and x_changed
+// (4.7). Some exporters declare these as well; that is only a warning if the types agree.
 bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field,
                                    const Token& name) {
   const auto report = [&] {
@@ -89,24 +90,26 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
         fmt::format("{} declares more than limit interfaceFields={}; those from {} on are left out",
                     target.name, limit, describe(name)));
   declaration.accepted = declaration.accepted && !declarationConflicts(target, field, name);
-  if (declaration.accepted) declaration.accepted = takes(bytesOfDeclaration, name);
+  if (declaration.accepted) declaration.accepted = reserveMemory(bytesOfDeclaration, name);
   void* storage = std::visit([](auto& value) -> void* { return &value; }, field.defaultValue);
   const bool nodeValue = type == FieldType::SFNode || type == FieldType::MFNode;
-  const auto kind = type == FieldType::SFNode ? Receiver::Kind::single : Receiver::Kind::multiple;
+  const auto kind =
+      type == FieldType::SFNode ? NodeTarget::Kind::single : NodeTarget::Kind::multiple;
   if (isScript()) {
     auto& script = static_cast<ScriptNode&>(*nodes_.back().node);
     if (declaration.accepted) {
-      const FieldInfo* added = &addField(target, field); // one of the type's fields
+      // A reference to an element of the type's fields.
+      const FieldInfo* added = &addField(target, field);
       if (holdsValue(*added)) {
         script.values.push_back(defaultValue(type));
         storage = script.storage(*added);
       }
     }
-    if (hasValue && nodeValue) receivers_.push_back({kind, storage, nullptr, &script});
+    if (hasValue && nodeValue) nodeTargets_.push_back({kind, storage, nullptr, &script});
   } else if (hasValue && nodeValue) {
     declaration.scoped = true;
     pushScope(nullptr, nullptr, nullptr);
-    receivers_.push_back({kind, storage, nullptr, nullptr});
+    nodeTargets_.push_back({kind, storage, nullptr, nullptr});
   }
   return {true, type, storage};
 }
@@ -116,10 +119,10 @@ void Builder::closeDeclaration(bool good) {
   declarations_.pop_back();
   const bool nodeValue =
       declaration.field.type == FieldType::SFNode || declaration.field.type == FieldType::MFNode;
-  if (declaration.hasValue && nodeValue) receivers_.pop_back();
+  if (declaration.hasValue && nodeValue) nodeTargets_.pop_back();
   if (declaration.scoped) {
-    // Prototypes declared within a default value live with the declaration that has it; their names
-    // stay in the value.
+    // Prototypes declared within a default value live as long as the enclosing declaration. Their
+    // names are known only inside the value.
     std::vector<ProtoPtr> local = std::move(scope().scope->prototypes);
     popScope();
     std::vector<ProtoPtr>& outer = scopes_[scopes_.size() - 2].scope->prototypes;
@@ -130,7 +133,7 @@ void Builder::closeDeclaration(bool good) {
 }
 
 void Builder::openProto(const Token& name) {
-  takes(bytesOfPrototype, name);
+  reserveMemory(bytesOfPrototype, name);
   auto proto = std::make_shared<ProtoDeclaration>();
   auto type = std::make_shared<NodeType>();
   type->name = name.text;
@@ -155,7 +158,8 @@ void Builder::closeProto(bool good) {
         fmt::format("the body of prototype '{}' has no node (4.8.3)", proto->type->name));
   }
   scope().scope->prototypes.push_back(proto);
-  // The key is a view of the type's own name, which lives as long as the frame's pointer to it.
+  // The key is a view of the type's own name, which lives as long as the frame's pointer to the
+  // type.
   scope().types.erase(proto->type->name);
   scope().types.emplace(proto->type->name, proto);
 }

@@ -1,3 +1,4 @@
+// loader.cpp: loads Inlines and EXTERNPROTOs, and limits the size of the whole world.
 #include "parse/loader.h"
 
 #include <filesystem>
@@ -56,7 +57,7 @@ void Loader::load(const Source& source, const std::string& name, bool header) {
   world_.times.load = secondsSince(start) - world_.times.parse;
 }
 
-void Loader::loadLate(InlineNode& node, const std::vector<std::string>& enclosing) {
+void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>& enclosing) {
   for (const std::string& file : enclosing) inlined_[canonical(file)].reading = true;
   loadInline(node, enclosing.size());
 }
@@ -90,7 +91,8 @@ void Loader::loadInline(InlineNode& node, uint64_t depth) {
     state_.diagnostics.warn(node.source, fmt::format("Inline is empty: {}", reasons));
 }
 
-// True if it is settled: loaded, or refused with a message.
+// Loads one URL of an Inline. Returns true if no further URL need be tried: it is loaded, or
+// refused with a message.
 bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t depth,
                             std::string& reason) {
   const Limits& limits = state_.options.limits;
@@ -109,7 +111,7 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
   }
   if (known.content) {
     const bool copy =
-        known.changing && copied_ + known.bytes <= std::min(mostCopied, budget_->left());
+        known.changing && copied_ + known.bytes <= std::min(maxCopiedBytes, budget_->left());
     if (!copy) {
       node.content = known.content;
       return true;
@@ -138,8 +140,8 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
   }
 }
 
-// EXTERNPROTO: the first of its URLs that can be read and has the prototype (4.9.3). Null, with one
-// message, if there is none.
+// Returns the prototype of the first URL of an EXTERNPROTO that can be read and has it (4.9.3).
+// Returns null, with one message, if there is none.
 ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
   if (declaration.resolved || !tried_.insert(&declaration).second) return declaration.resolved;
   const std::string& name = declaration.type->name;
@@ -201,8 +203,8 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
   return nullptr;
 }
 
-// 4.9.2: the interface of an EXTERNPROTO is a subset of the PROTO's. What is not in it leads
-// nowhere; the rest works.
+// Reports declarations that differ from the PROTO: the interface of an EXTERNPROTO must be a subset
+// of it (4.9.2). Such a declaration has no effect; the rest works.
 void Loader::checkInterface(const ProtoDeclaration& wanted, const ProtoDeclaration& found) {
   for (const FieldInfo& field : wanted.type->fields) {
     const FieldInfo* declared = found.type->find(field.name);
@@ -217,9 +219,9 @@ void Loader::checkInterface(const ProtoDeclaration& wanted, const ProtoDeclarati
   }
 }
 
-// With all prototypes and Inlines in place: no root may stand for more nodes than the limit,
-// counting shared ones at each use, nor nest deeper than those who walk the graph can bear. A loop
-// over a stack of its own.
+// Removes roots that are too large once all prototypes and Inlines are in place. A root may not
+// stand for more nodes than the limit, with shared nodes counted at each use. It may not nest
+// deeper than recursive functions can follow. The loop has its own stack.
 void Loader::checkSize(Scope& scope) {
   struct Size {
     uint64_t nodes = 1, depth = 1;
@@ -227,7 +229,7 @@ void Loader::checkSize(Scope& scope) {
   };
   std::unordered_map<Node*, Size> sizes;
   const auto children = [](Node* node, std::vector<Node*>& out) {
-    // What Scripts and instances hold in fields is drawn where a body holds it.
+    // Nodes in the fields of Scripts and instances are only drawn where a body holds them.
     if (node->type().index >= 0)
       forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
     if (const auto* instance = dynamic_cast<ProtoInstance*>(node)) {
@@ -246,7 +248,7 @@ void Loader::checkSize(Scope& scope) {
       if (!size.done) children(node, below);
       bool ready = true;
       if (!size.done && size.nodes == 1 && !below.empty()) {
-        size.nodes = 0; // its children have been asked for
+        size.nodes = 0; // its children have been pushed
         for (Node* child : below) {
           if (!sizes[child].done && child != node) {
             stack.push_back(child);
@@ -292,8 +294,8 @@ void Loader::checkSize(Scope& scope) {
 
 namespace {
 
-// Bytes for nodes that are nested as deep as they may be, in a debug build too; a release build
-// takes 0.6 kB a level.
+// Stack size in bytes for the deepest nesting that is allowed, also in a debug build. A release
+// build uses 0.6 kB per level.
 constexpr size_t deepestStack = size_t(6) << 20;
 
 template <class MakeSource>

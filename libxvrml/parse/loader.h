@@ -1,5 +1,5 @@
-// loader.h: brings a world together from its files: parses, expands prototypes, loads EXTERNPROTOs
-// and Inlines. One loader per world, on the thread that called loadWorld.
+// loader.h: loads a world from its files: parses them, expands prototypes, loads EXTERNPROTOs and
+// Inlines. One loader per world, on the thread that called loadWorld.
 #pragma once
 
 #include <chrono>
@@ -14,19 +14,19 @@ struct InlineNode;
 class Loader {
  public:
   Loader(World& world, const LoadOptions& options);
-  // Throws LoadError if nothing of the file can be used.
+  // Loads the world's own file. Throws LoadError if nothing of it can be used.
   void load(const Source& source, const std::string& name, bool header = true);
-  // The content of an Inline of a world that has been loaded. enclosing: the files it is in, the
-  // innermost last, as many as Inlines are around it and itself. node.content stays null if there
-  // is none.
-  void loadLate(InlineNode& node, const std::vector<std::string>& enclosing);
+  // Loads the content of an Inline of a world that has already been loaded. enclosing: the files
+  // around the Inline, innermost last, one for each enclosing Inline and one for itself.
+  // node.content stays null if nothing could be loaded.
+  void loadDeferredInline(InlineNode& node, const std::vector<std::string>& enclosing);
 
  private:
-  // A file that Inlines name. `content` is null while it is being read.
+  // A file that Inlines load. `content` is null while the file is being read.
   struct InlinedFile {
     std::shared_ptr<const Scope> content;
-    uint64_t bytes = 0;    // rough size in memory
-    bool changing = false; // has routes or scripts: each Inline needs its own
+    uint64_t bytes = 0;    // estimated size in memory
+    bool changing = false; // has routes or Scripts, so each Inline needs its own copy
     bool reading = false;
   };
 
@@ -42,27 +42,28 @@ class Loader {
   void checkSize(Scope& scope);
 
   World& world_;
-  // Bytes of Inlines that are read again, because each place needs nodes of its own. Copies within
-  // copies count at every level, which ends files that double at each level soon; further places
-  // share their nodes.
-  static constexpr uint64_t mostCopied = uint64_t(512) << 20;
+  // Limit for the bytes of Inline files that are read again because each place needs nodes of its
+  // own. Copies within copies count at every level, so that files that double at each level soon
+  // reach the limit. Further places share their nodes.
+  static constexpr uint64_t maxCopiedBytes = uint64_t(512) << 20;
   uint64_t copied_ = 0;
   BudgetPtr budget_;
   LoadState state_;
   Expander expander_;
   std::unordered_map<std::string, InlinedFile> inlined_; // by canonical path
-  std::unordered_map<std::string, std::unique_ptr<ParsedFile>>
-      libraries_; // files that EXTERNPROTOs name
+  // Files that EXTERNPROTOs refer to, by canonical path.
+  std::unordered_map<std::string, std::unique_ptr<ParsedFile>> libraries_;
   std::unordered_set<const ProtoDeclaration*> tried_;
   uint64_t resolving_ = 0;
-  bool composed_ = false; // prototypes or Inlines came in: sizes are not what the parser added up
+  // There are prototype instances or Inlines, so the sizes differ from what the parser added up.
+  bool composed_ = false;
 };
 
-// A text that needs no header (Browser::createVrmlFromString). name: for messages; relative URLs
-// are relative to its folder. budget: of the world that the text becomes part of.
+// Loads a text that needs no header (Browser::createVrmlFromString). name: for messages; relative
+// URLs are relative to its folder. budget: the budget of the world that the text becomes part of.
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
                                     const LoadOptions& options, const BudgetPtr& budget);
-// As loadWorld(), for a world that becomes part of another one.
+// Does the same as loadWorld() for a world that becomes part of another one.
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,
                                      const LoadOptions& options);
 

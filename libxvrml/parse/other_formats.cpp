@@ -1,4 +1,4 @@
-// other_formats.cpp: The signatures are those of each format's specification.
+// other_formats.cpp: the signatures, from the specification of each format.
 #include "parse/other_formats.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace xvrml {
 namespace {
 
-// How much of a text is searched for a word that tells its format.
+// Number of bytes of a text in which a format's keyword is searched.
 constexpr size_t searched = 4096;
 
 bool holds(std::string_view bytes, std::string_view word) {
@@ -29,7 +29,7 @@ bool beginsWithoutCase(std::string_view bytes, std::string_view word) {
          });
 }
 
-// 80 bytes of anything, the number of triangles, 50 bytes each.
+// 80 bytes of any content, the number of triangles, and 50 bytes for each triangle.
 bool isBinaryStl(std::string_view bytes) {
   if (bytes.size() < 84) return false;
   uint32_t count = 0;
@@ -41,7 +41,8 @@ bool isAsciiStl(std::string_view bytes) {
   return bytes.starts_with("solid") && holds(bytes, "facet");
 }
 
-// Lines of vertices ("v 1 2 3") among comments and groups, and nothing else at first.
+// The text begins with vertices ("v 1 2 3") or a material library; only comments and groups may
+// come before.
 bool isObj(std::string_view bytes) {
   bytes = bytes.substr(0, searched);
   for (int line = 0; line < 100 && !bytes.empty(); ++line) {
@@ -61,7 +62,7 @@ bool isGltfText(std::string_view bytes) {
          holds(bytes, "\"version\"");
 }
 
-// 3D Studio's main chunk holds its own length.
+// The main chunk of a 3D Studio file contains its own length.
 bool is3ds(std::string_view bytes) {
   uint32_t length = 0;
   if (bytes.size() < 6 || !bytes.starts_with("MM")) return false;

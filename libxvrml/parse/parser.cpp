@@ -1,6 +1,5 @@
-// parser.cpp: nodes, fields and routes of the VRML97 grammar (ISO/IEC 14772-1 Annex A.2). See
-// parser.h; prototypes and recovery are in parser_proto.cpp, parser_recovery.cpp and
-// parser_skip.cpp.
+// parser.cpp: nodes, fields and routes of the VRML97 grammar (ISO/IEC 14772-1 Annex A.2).
+// Prototypes are in parser_proto.cpp, error recovery in parser_recovery.cpp and parser_skip.cpp.
 #include "parse/parser.h"
 
 #include <algorithm>
@@ -19,11 +18,11 @@ void Parser::vrmlScene() { statements(TokenKind::end); }
 
 // statements ::= statement | statement statements | empty
 void Parser::statements(TokenKind end) {
-  openTaker(Taker::Kind::statements);
+  pushRecoveryPoint(RecoveryPoint::Kind::statements);
   while (!lexer_.peek().is(end) && !lexer_.peek().is(TokenKind::end)) {
     if (!strayInStatements(lexer_.peek(), end) && !statement()) skipToStatement(end);
   }
-  takers_.pop_back();
+  recoveryPoints_.pop_back();
 }
 
 // statement ::= nodeStatement | protoStatement | routeStatement
@@ -44,7 +43,7 @@ bool Parser::nodeStatement() {
     if (!name(def, "a name after DEF")) return false;
     if (!lexer_.peek().is(TokenKind::braceOpen)) return node(&def);
     lexer_.error(def.at(), fmt::format("expected a name after DEF before {}", describe(def)));
-    lexer_.seek(def.at()); // the node is there, only its name is not
+    lexer_.seek(def.at()); // the node exists, only its name is missing
     return node(nullptr);
   }
   if (token.is("USE")) {
@@ -66,7 +65,7 @@ bool Parser::node(const Token* def) {
   if (!opens) {
     if (leaveOutX3d(type) || endsList(type, def)) return false;
     fail(lexer_.peek(), fmt::format("{{ after {}", describe(type)));
-    if (!bodyFollows(type)) return false; // else as if the brace had been there
+    if (!bodyFollows(type)) return false; // else as if the brace were there
   }
   if (depth_ >= nesting_) {
     lexer_.error(type.at(),
@@ -95,8 +94,9 @@ bool Parser::node(const Token* def) {
   return true;
 }
 
-// nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty      (up to and with the closing
-// brace) A text that ends early keeps what was read of its open nodes.
+// nodeBody ::= nodeBodyElement | nodeBodyElement nodeBody | empty
+// Reads up to and including the closing brace. If the text ends early, the open nodes keep what was
+// read.
 bool Parser::nodeBody(const Token& type) {
   while (!isClosing() && !lexer_.accept(TokenKind::braceClose)) {
     if (lexer_.peek().is(TokenKind::end)) {
@@ -108,9 +108,8 @@ bool Parser::nodeBody(const Token& type) {
   return true;
 }
 
-// nodeBodyElement ::= fieldId fieldValue | fieldId IS fieldId | eventInId IS eventInId | eventOutId
-// IS eventOutId
-//                   | routeStatement | protoStatement
+// nodeBodyElement ::= fieldId fieldValue | fieldId IS fieldId | eventInId IS eventInId
+//                   | eventOutId IS eventOutId | routeStatement | protoStatement
 bool Parser::nodeBodyElement() {
   const Token token = lexer_.peek();
   if (!token.is(TokenKind::identifier)) return strayInBody(token);
@@ -139,7 +138,8 @@ bool Parser::field() {
   }
   const bool listOfValues = isMultiple(target.type) && lexer_.peek().is(TokenKind::bracketOpen);
   bool good = fieldValue(target);
-  // A list that the next field follows: the values of it are there, its bracket is not.
+  // If a known field follows, only the closing bracket of the list is missing, and its values are
+  // kept.
   if (!good && listOfValues)
     good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
   sink_.closeField(good);
@@ -163,9 +163,9 @@ bool Parser::nodeValue() {
 // mfnodeValue ::= nodeStatement | [ ] | [ nodeStatements ]
 bool Parser::nodeValues() {
   if (!lexer_.accept(TokenKind::bracketOpen)) return nodeValue();
-  openTaker(Taker::Kind::list);
+  pushRecoveryPoint(RecoveryPoint::Kind::list);
   const bool good = nodesOfList();
-  takers_.pop_back();
+  recoveryPoints_.pop_back();
   return good;
 }
 
@@ -184,8 +184,8 @@ bool Parser::nodesOfList() {
         passBrace(false);
       else if (!token.is(TokenKind::bracketOpen))
         skipToNode();
-    } else if (takers_.back().braces > 0) {
-      --takers_.back().braces;
+    } else if (recoveryPoints_.back().braces > 0) {
+      --recoveryPoints_.back().braces;
       lexer_.next();
     } else {
       return closeListBefore(token);
@@ -206,17 +206,17 @@ bool Parser::routeStatement() {
   return true;
 }
 
-// nodeNameId . eventId; a name with periods of its own (which DEF lets pass with a warning) ends at
-// the last one.
+// nodeNameId . eventId
+// A name with periods of its own, which DEF accepts with a warning, ends at the last period.
 bool Parser::routeEnd(Token& node, Token& field) {
   const Token token = lexer_.nextName();
   if (!token.is(TokenKind::identifier) && !token.is(TokenKind::invalid))
     return fail(token, "NODE.event");
   const size_t period = token.text.rfind('.');
-  if (period == std::string_view::npos) { // white space around the period
+  if (period == std::string_view::npos) { // there is white space around the period
     node = token;
     if (!lexer_.accept(TokenKind::period)) {
-      field = lexer_.peek(); // the period may be glued to what follows
+      field = lexer_.peek(); // the period may be joined to the event's name
       if (!field.is(TokenKind::invalid) || field.text.size() < 2 || field.text[0] != '.')
         return fail(lexer_.peek(), "a period and an event");
       lexer_.nextName();

@@ -1,6 +1,7 @@
-// parser.h: the grammar of VRML97 (ISO/IEC 14772-1 Annex A.2), one function per production, against
-// an abstract sink. Reports what is wrong and goes on at the next node. Recursive by nodes;
-// limits.nesting and maximumNesting bound the stack. [any thread]
+// parser.h: a recursive descent parser for VRML97 (ISO/IEC 14772-1 Annex A.2), one function per
+// production. It reports to an abstract sink. After an error it continues at the next node.
+// Recursion follows the nesting of nodes; limits.nesting and maximumNesting bound the stack. [any
+// thread]
 #pragma once
 
 #include <vector>
@@ -10,7 +11,7 @@
 
 namespace xvrml {
 
-// Whether a token begins a declaration of an interface.
+// Returns whether a token begins a declaration of an interface.
 inline bool declares(const Token& token) {
   return token.is("field") || token.is("eventIn") || token.is("eventOut") ||
          token.is("exposedField");
@@ -18,28 +19,29 @@ inline bool declares(const Token& token) {
 
 class Parser {
  public:
-  // Nodes within nodes that no option can raise: what the thread's stack bears.
+  // Limit for the nesting of nodes that no option can exceed: the thread's stack allows no more.
   static constexpr uint64_t maximumNesting = 2500;
 
-  // budget: what values draw their memory from; null: nothing is counted.
+  // budget: the memory budget of the values; null: memory is not counted.
   Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget = nullptr);
-  // Reads the whole text (the header is a comment to the lexer).
+  // Parses the whole text. The header is a comment to the lexer.
   void vrmlScene();
 
  private:
-  // What takes complete nodes where the text stands: statements of the file or of a prototype's
-  // body, the list of a field, a value in a prototype's interface. An error closes open nodes up to
-  // the innermost of these, never beyond.
-  struct Taker {
+  // A place that holds complete nodes: the statements of a file or of a prototype's body, a list of
+  // nodes, or a value in a prototype's interface. An error closes the open nodes within the
+  // innermost of these places, never beyond it.
+  struct RecoveryPoint {
     enum class Kind : uint8_t { statements, list, interface } kind;
-    size_t nodes;        // that were open when it began
-    size_t receiver;     // the sink's number for it
-    uint64_t braces = 0; // that may come without a partner: one was taken as missing, or an opening
-                         // one was passed over
+    size_t nodes;      // number of nodes that were open when it began
+    size_t nodeTarget; // the sink's number for it
+    // Closing braces to ignore here: the parser has already taken one as missing, or has skipped an
+    // opening brace.
+    uint64_t braces = 0;
   };
 
-  // Each returns false after an error, with the lexer at the same depth of braces as before: the
-  // caller skips to where it knows on.
+  // Each function returns false after an error, with the lexer at the same brace depth as before.
+  // The caller then skips to a token where it can continue.
   void statements(TokenKind end);
   bool statement();
   bool nodeStatement();
@@ -66,8 +68,10 @@ class Parser {
   static bool isX3dStatement(const Token& token);
   bool leaveOutX3d(const Token& keyword);
 
-  // Recovery: decisions in parser_recovery.cpp, what skips text in parser_skip.cpp.
-  void openTaker(Taker::Kind kind) { takers_.push_back({kind, open_.size(), sink_.receiver()}); }
+  // Error recovery: decisions in parser_recovery.cpp, skipping of text in parser_skip.cpp.
+  void pushRecoveryPoint(RecoveryPoint::Kind kind) {
+    recoveryPoints_.push_back({kind, open_.size(), sink_.nodeTarget()});
+  }
   bool isClosing() const { return open_.size() > keep_; }
   void closeNodesBefore(const Token& at, std::string_view what);
   bool nodeInBody(const Token& first);
@@ -94,11 +98,13 @@ class Parser {
   const uint64_t nesting_;
   uint64_t depth_ = 0;
   bool endReported_ = false;
-  std::vector<Taker> takers_;
-  std::vector<Token> open_; // types of the nodes that are being read
-  size_t keep_ = SIZE_MAX; // open nodes that stay open; those within them end where the text stands
-  uint64_t brackets_ =
-      0; // closing ones that may come without a partner: their lists were taken as closed
+  std::vector<RecoveryPoint> recoveryPoints_;
+  std::vector<Token> open_; // types of the open nodes
+  // Number of open nodes that stay open; nodes within them end at the present token. SIZE_MAX: none
+  // ends.
+  size_t keep_ = SIZE_MAX;
+  // Closing brackets to ignore, because their lists were already taken as closed.
+  uint64_t brackets_ = 0;
   bool listEnded_ = false; // a list was taken as closed before the field that follows
 };
 

@@ -1,5 +1,5 @@
-// parser_proto.cpp: prototypes and interface declarations of the VRML97 grammar (Annex A.2), and
-// Script bodies. See parser.h.
+// parser_proto.cpp: prototypes, interface declarations and Script bodies of the VRML97 grammar
+// (Annex A.2).
 #include <fmt/format.h>
 
 #include "parse/parser.h"
@@ -72,14 +72,15 @@ bool Parser::externproto() {
   return good;
 }
 
-// interfaceDeclarations ::= interfaceDeclaration | interfaceDeclaration interfaceDeclarations |
-// empty      (with its brackets)
+// interfaceDeclarations ::= interfaceDeclaration
+//                         | interfaceDeclaration interfaceDeclarations | empty
+// Reads the brackets, too.
 bool Parser::interfaceDeclarations(bool isExtern) {
   if (!lexer_.accept(TokenKind::bracketOpen)) {
     fail(lexer_.peek(), "[ and the interface");
     if (!declares(lexer_.peek())) return false;
   }
-  openTaker(Taker::Kind::interface);
+  pushRecoveryPoint(RecoveryPoint::Kind::interface);
   bool good = true;
   while (good && !lexer_.accept(TokenKind::bracketClose)) {
     const Token token = lexer_.peek();
@@ -92,14 +93,15 @@ bool Parser::interfaceDeclarations(bool isExtern) {
     }
     good = interfaceDeclaration(isExtern);
   }
-  takers_.pop_back();
+  recoveryPoints_.pop_back();
   return good;
 }
 
-// interfaceDeclaration ::= restrictedInterfaceDeclaration | exposedField fieldType fieldId
-// fieldValue restrictedInterfaceDeclaration ::= eventIn fieldType eventInId | eventOut fieldType
-// eventOutId | field fieldType fieldId fieldValue externInterfaceDeclaration: the same without
-// values
+// interfaceDeclaration ::= restrictedInterfaceDeclaration
+//                        | exposedField fieldType fieldId fieldValue
+// restrictedInterfaceDeclaration ::= eventIn fieldType eventInId | eventOut fieldType eventOutId
+//                                  | field fieldType fieldId fieldValue
+// externInterfaceDeclaration: the same without values
 bool Parser::interfaceDeclaration(bool isExtern) {
   const Token keyword = lexer_.peek();
   Access access;
@@ -121,16 +123,16 @@ bool Parser::interfaceDeclaration(bool isExtern) {
   return good;
 }
 
-// scriptBodyElement ::= nodeBodyElement | restrictedInterfaceDeclaration | eventIn fieldType
-// eventInId IS eventInId
-//                     | eventOut fieldType eventOutId IS eventOutId | field fieldType fieldId IS
-//                     fieldId
+// scriptBodyElement ::= nodeBodyElement | restrictedInterfaceDeclaration
+//                     | eventIn fieldType eventInId IS eventInId
+//                     | eventOut fieldType eventOutId IS eventOutId
+//                     | field fieldType fieldId IS fieldId
 bool Parser::scriptBodyElement() {
   const Token keyword = lexer_.next();
   Access access;
   accessFromName(keyword.text, access);
   const bool exposed = access == Access::exposedField;
-  if (exposed) access = Access::field; // the value is what the program needs
+  if (exposed) access = Access::field; // the program needs the value
   FieldType type;
   const Token typeName = lexer_.peek();
   if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) {

@@ -1,5 +1,5 @@
-// parser_recovery.cpp: messages of the parser, and how it goes on where a brace, a bracket or a
-// name is missing or too much. What only skips text is in parser_skip.cpp. See parser.h.
+// parser_recovery.cpp: the parser's messages, and how it continues if a brace, a bracket or a name
+// is missing or superfluous. parser_skip.cpp skips text.
 #include <algorithm>
 #include <utility>
 
@@ -11,11 +11,11 @@ namespace xvrml {
 
 namespace {
 
-// Statements that X3D has and VRML97 has not, and what a world lacks without them. Nothing that is
-// seen depends on most of them.
+// Statements of X3D that VRML97 does not have, and what the world lacks without them. Most of them
+// have no visible effect.
 struct X3dStatement {
   std::string_view keyword;
-  const char* lost; // null: nothing
+  const char* lost; // null: nothing is lost
 };
 constexpr X3dStatement x3dStatements[] = {
     {"PROFILE", nullptr},
@@ -37,7 +37,8 @@ const X3dStatement* x3dStatement(const Token& token) {
 
 bool Parser::isX3dStatement(const Token& token) { return x3dStatement(token) != nullptr; }
 
-// Says so if it is the keyword of a statement of X3D; skipToStatement() leaves the rest of it out.
+// Reports the keyword of an X3D statement. skipToStatement() then skips the rest of it. Returns
+// false for other keywords.
 bool Parser::leaveOutX3d(const Token& keyword) {
   const X3dStatement* statement = x3dStatement(keyword);
   if (!statement) return false;
@@ -51,7 +52,8 @@ bool Parser::leaveOutX3d(const Token& keyword) {
 }
 
 bool Parser::fail(const Token& at, std::string_view expected) {
-  if (at.is(TokenKind::end) && std::exchange(endReported_, true)) return false; // once is enough
+  // The end of the file is reported once.
+  if (at.is(TokenKind::end) && std::exchange(endReported_, true)) return false;
   lexer_.error(at.at(), fmt::format("expected {}, found {}", expected, describe(at)));
   return false;
 }
@@ -62,8 +64,8 @@ void Parser::failAtEnd(const Token& opened) {
   fail(lexer_.peek(), fmt::format("}} of {} opened in line {}", describe(opened), line));
 }
 
-// A name the grammar forbids but files use is taken with a warning: nothing else could be meant
-// where only a name may stand.
+// Reads a name. A name that the grammar forbids but files use is accepted with a warning, because
+// nothing else could be meant here.
 bool Parser::name(Token& out, const char* what) {
   const Token token = lexer_.peek();
   out = lexer_.nextName();
@@ -71,17 +73,18 @@ bool Parser::name(Token& out, const char* what) {
   const bool control = std::any_of(out.text.begin(), out.text.end(),
                                    [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (!out.is(TokenKind::invalid) || control || (!out.text.empty() && out.text[0] == '"')) {
-    lexer_.seek(token.at()); // a brace belongs to whoever counts them
+    lexer_.seek(token.at()); // a brace is left to the caller, which counts braces
     return fail(token, what);
   }
   lexer_.warn(out.at(), fmt::format("{} is not a name as VRML97 spells them (A.3)", describe(out)));
   return true;
 }
 
-// Ends the nodes that are open within what takes nodes here, as if their braces had been there.
+// Closes the nodes that are open within the innermost recovery point, as if their braces were
+// there.
 void Parser::closeNodesBefore(const Token& at, std::string_view what) {
-  Taker& taker = takers_.back();
-  const size_t nodes = open_.size() - taker.nodes;
+  RecoveryPoint& point = recoveryPoints_.back();
+  const size_t nodes = open_.size() - point.nodes;
   const SourcePosition begin = sink_.openNodePlace();
   const std::string more = nodes == 1 ? std::string()
                            : nodes == 2
@@ -92,15 +95,15 @@ void Parser::closeNodesBefore(const Token& at, std::string_view what) {
       fmt::format(
           "'}}' is missing before {}: {}, which begins in line {}, column {}, is not closed{}",
           what, describe(open_.back()), begin.line, begin.column, more));
-  keep_ = taker.nodes;
-  // If it was no brace that was missing but something else, the braces are still to come: within
-  // the list, or where it was ended too early, at the end of all.
-  (at.is(TokenKind::bracketClose) ? takers_.front() : taker).braces += nodes;
+  keep_ = point.nodes;
+  // If something other than braces was missing, the braces still follow: within the list or, if a
+  // list ended too early, at the end of the file.
+  (at.is(TokenKind::bracketClose) ? recoveryPoints_.front() : point).braces += nodes;
 }
 
-// A node of a known type where a field is expected, which begins with this token: the brace before
-// it is missing, unless what takes nodes here cannot hold it. False, with the token consumed, if it
-// is something else.
+// Handles a node of a known type where a field is expected; `first` is its first token. The brace
+// before it counts as missing if the recovery point would accept the node; otherwise the node is
+// left out. Returns false, with the token consumed, if no node follows.
 bool Parser::nodeInBody(const Token& first) {
   if (sink_.hasField(first.text)) return false;
   lexer_.seek(first.at());
@@ -119,8 +122,8 @@ bool Parser::nodeInBody(const Token& first) {
     lexer_.next();
     return false;
   }
-  if (takers_.back().kind != Taker::Kind::interface &&
-      sink_.wouldTake(takers_.back().receiver, named.text, use)) {
+  if (recoveryPoints_.back().kind != RecoveryPoint::Kind::interface &&
+      sink_.wouldAccept(recoveryPoints_.back().nodeTarget, named.text, use)) {
     closeNodesBefore(first, fmt::format("the node {}", describe(named)));
     return true;
   }
@@ -137,7 +140,7 @@ bool Parser::nodeInBody(const Token& first) {
   return true;
 }
 
-// Whether a node of a known type begins with the next token. Reads on and comes back.
+// Returns whether a node of a known type begins with the next token. Reads ahead and seeks back.
 bool Parser::nodeAhead(Token& type) {
   const char* const start = lexer_.peek().at();
   type = lexer_.next();
@@ -151,7 +154,8 @@ bool Parser::nodeAhead(Token& type) {
   return ahead;
 }
 
-// Whether a body follows whose opening brace is missing: a field of the type, or the closing brace.
+// Returns whether a body without its opening brace follows: a field of the type, or the closing
+// brace.
 bool Parser::bodyFollows(const Token& type) {
   const NodeType* known = sink_.typeNamed(type.text);
   const Token next = lexer_.peek();
@@ -159,39 +163,40 @@ bool Parser::bodyFollows(const Token& type) {
                    (next.is(TokenKind::identifier) && known->find(next.text)));
 }
 
-// Whether a list of nodes ends before this token, which stands where a node may: it is the next
-// field of the node that has the list. The lexer then stands at the token again.
+// Returns whether a list of nodes ends before this token, because it is the next field of the node
+// that has the list. The lexer is then at the token again.
 bool Parser::endsList(const Token& token, bool hasDef) {
-  const Taker& taker = takers_.back();
-  if (hasDef || taker.kind != Taker::Kind::list || open_.size() != taker.nodes) return false;
+  const RecoveryPoint& point = recoveryPoints_.back();
+  if (hasDef || point.kind != RecoveryPoint::Kind::list || open_.size() != point.nodes)
+    return false;
   if (!sink_.hasField(token.text) || sink_.typeNamed(token.text)) return false;
   lexer_.error(token.at(), fmt::format("']' is missing before {}", describe(token)));
   lexer_.seek(token.at());
   return listEnded_ = true;
 }
 
-// A closing brace in a list of nodes: the list ends before it.
+// Handles a closing brace in a list of nodes: the list ends before it.
 bool Parser::closeListBefore(const Token& brace) {
-  const Taker& around = takers_[takers_.size() - 2];
-  if (around.kind == Taker::Kind::interface && around.nodes == open_.size())
-    return fail(brace, "a node or ]"); // no node's list
+  const RecoveryPoint& around = recoveryPoints_[recoveryPoints_.size() - 2];
+  if (around.kind == RecoveryPoint::Kind::interface && around.nodes == open_.size())
+    return fail(brace, "a node or ]"); // a list that belongs to no node
   const SourcePosition begin = sink_.openNodePlace();
   lexer_.error(
       brace.at(),
       fmt::format("']' is missing before the '}}' of {}, which begins in line {}, column {}",
                   describe(open_.back()), begin.line, begin.column));
-  ++takers_.front().braces;
-  ++brackets_; // if it was this brace that was too many
+  ++recoveryPoints_.front().braces;
+  ++brackets_; // in case this brace is superfluous
   return true;
 }
 
-// What cannot begin a field. Braces and brackets are put right; after anything else the node is
-// left out.
+// Handles a token that cannot begin a field. Braces and brackets are corrected; after any other
+// token the node is left out.
 bool Parser::strayInBody(const Token& token) {
   if (token.is(TokenKind::bracketClose)) {
-    if (takers_.back().kind != Taker::Kind::statements) {
+    if (recoveryPoints_.back().kind != RecoveryPoint::Kind::statements) {
       closeNodesBefore(token, "']'");
-      ++brackets_; // if it was this bracket that was too many
+      ++brackets_; // in case this bracket is superfluous
       return true;
     }
     if (brackets_ > 0)
@@ -208,12 +213,12 @@ bool Parser::strayInBody(const Token& token) {
   return true;
 }
 
-// Passes over a brace or bracket that can begin no statement. False if the token is something else.
+// Skips a brace or bracket that cannot begin a statement. Returns false for other tokens.
 bool Parser::strayInStatements(const Token& token, TokenKind end) {
   constexpr auto expected = "a node, DEF, USE, PROTO, EXTERNPROTO or ROUTE";
   if (token.is(TokenKind::braceClose) && end != TokenKind::braceClose) {
-    if (takers_.back().braces > 0)
-      --takers_.back().braces;
+    if (recoveryPoints_.back().braces > 0)
+      --recoveryPoints_.back().braces;
     else
       fail(token, expected);
     lexer_.next();
@@ -230,8 +235,8 @@ bool Parser::strayInStatements(const Token& token, TokenKind end) {
   return true;
 }
 
-// Behind a brace that opens nothing: it alone is passed over if what follows can stand here without
-// it, else all that it holds.
+// Called after a brace that opens nothing. If the next token makes sense here, only the brace is
+// skipped; otherwise the whole block.
 void Parser::passBrace(bool inNode) {
   const Token next = lexer_.peek();
   Token type;
@@ -244,7 +249,7 @@ void Parser::passBrace(bool inNode) {
   else
     here = here || next.is("USE") || (next.is(TokenKind::identifier) && nodeAhead(type));
   if (!here) return skipBlock();
-  ++takers_.back().braces;
+  ++recoveryPoints_.back().braces;
 }
 
 } // namespace xvrml

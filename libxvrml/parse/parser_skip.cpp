@@ -1,6 +1,5 @@
-// parser_skip.cpp: where the parser goes on after an error that leaves something out, and which
-// names are lost. All loops, no recursion: a million open braces are skipped like any other text.
-// See parser.h.
+// parser_skip.cpp: skips text after an error, and notes which names are lost. All functions are
+// loops without recursion, so that a million open braces are skipped like any other text.
 #include <string>
 
 #include "parse/parser.h"
@@ -9,14 +8,14 @@ namespace xvrml {
 
 namespace {
 
-// Whether a field's value may end with such a token. Words are left out: they may be the name of a
-// field, too.
+// Returns whether a field's value may end with such a token. Identifiers do not count, because they
+// may be the name of a field.
 bool endsValue(TokenKind kind) {
   return kind == TokenKind::braceClose || kind == TokenKind::bracketClose ||
          kind == TokenKind::number || kind == TokenKind::string;
 }
 
-// The last token of what skipOne() passes over.
+// Returns the kind of the last token that skipOne() skips.
 TokenKind lastOf(TokenKind first) {
   if (first == TokenKind::braceOpen) return TokenKind::braceClose;
   return first == TokenKind::bracketOpen ? TokenKind::bracketClose : first;
@@ -24,25 +23,29 @@ TokenKind lastOf(TokenKind first) {
 
 } // namespace
 
-// Names defined in what is skipped: later uses of them are not errors of their own.
+// Notes names defined in skipped text, so that later uses of them are not reported as errors.
 void Parser::noteLost(const Token& token) {
   if (!token.is("DEF")) return;
   const Token lost = lexer_.peek();
   if (lost.is(TokenKind::identifier)) sink_.lostName(lost);
 }
 
-// From inside a block to behind its closing brace; kind: as in skipNested().
+// Skips from inside a block to behind its closing brace. kind: see skipNested().
 void Parser::skipBlock(char kind) {
-  if (!skipNested(kind, takers_.back().kind != Taker::Kind::statements)) fail(lexer_.peek(), "}");
+  if (!skipNested(kind, recoveryPoints_.back().kind != RecoveryPoint::Kind::statements))
+    fail(lexer_.peek(), "}");
 }
 
-// From behind an opening brace or bracket to behind its partner. opened: { the body of a node, s
-// that of a prototype, [ a list. What is missing within is found out as in text that is read: the
-// end of the file, a bracket of a list around it (inList), a node where only a field may stand, and
-// a brace before a bracket's partner end it, and stay to be read. False at the end of the file.
+// Skips from behind an opening brace or bracket to behind its partner. opened: { the body of a
+// node, s the body of a prototype, [ a list. Missing tokens are detected as in text that is parsed.
+// These end the block, and are not consumed:
+// - the end of the file, where the result is false;
+// - a closing bracket of an enclosing list (inList);
+// - a node where only a field is allowed;
+// - a closing brace before a bracket's partner.
 bool Parser::skipNested(char opened, bool inList) {
   std::string open(1, opened);
-  uint64_t lists = opened == '[', bodies = opened == 's'; // of [ and of s among them
+  uint64_t lists = opened == '[', bodies = opened == 's'; // number of [ and of s in `open`
   const auto pop = [&] {
     lists -= open.back() == '[';
     bodies -= open.back() == 's';
@@ -78,7 +81,7 @@ bool Parser::skipNested(char opened, bool inList) {
       if (open.back() != '{' || !endsValue(previous) || !nodeAhead(type)) break;
       if (lists + bodies > 0)
         while (open.back() == '{') pop();
-      else if (sink_.wouldTake(takers_.back().receiver, type.text, false))
+      else if (sink_.wouldAccept(recoveryPoints_.back().nodeTarget, type.text, false))
         return true;
       break;
     default: break;
@@ -90,10 +93,10 @@ bool Parser::skipNested(char opened, bool inList) {
   return true;
 }
 
-// The value of a field nobody knows: up to the next field of the node that is known, the end of the
-// node, or a node that cannot be a part of the value.
+// Skips the value of an unknown field: up to the next known field of the node, the end of the node,
+// or a node that cannot be part of the value.
 void Parser::skipField() {
-  const bool inList = takers_.back().kind != Taker::Kind::statements;
+  const bool inList = recoveryPoints_.back().kind != RecoveryPoint::Kind::statements;
   TokenKind previous = TokenKind::invalid;
   for (;;) {
     const Token token = lexer_.peek();
@@ -112,10 +115,10 @@ void Parser::skipField() {
   }
 }
 
-// A declaration in a Script whose type nobody knows: up to the next declaration or field of the
-// Script, or its end. The rest of the Script still runs.
+// Skips a declaration of unknown type in a Script: up to the Script's next declaration or field, or
+// its end. The rest of the Script still runs.
 void Parser::skipDeclaration() {
-  const bool inList = takers_.back().kind != Taker::Kind::statements;
+  const bool inList = recoveryPoints_.back().kind != RecoveryPoint::Kind::statements;
   for (;;) {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::end) || token.is(TokenKind::braceClose)) return;
@@ -125,9 +128,9 @@ void Parser::skipDeclaration() {
   }
 }
 
-// After an error in a prototype's interface: behind its body, which opens with the first brace that
-// follows a bracket outside of any node of a default value. A node that follows a bracket shows
-// that there is no body.
+// Skips a prototype after an error in its interface. Its body begins with the first brace that
+// follows a bracket outside of any node of a default value. If a node follows a bracket, there is
+// no body.
 void Parser::skipProto() {
   TokenKind previous = TokenKind::invalid;
   for (;;) {
@@ -146,16 +149,16 @@ void Parser::skipProto() {
   }
 }
 
-// One token, or all that its brace or bracket holds.
+// Skips one token, or the whole block that it opens.
 void Parser::skipOne() {
   const Token token = lexer_.next();
   if (token.is(TokenKind::braceOpen))
-    skipNested('{', takers_.back().kind != Taker::Kind::statements);
+    skipNested('{', recoveryPoints_.back().kind != RecoveryPoint::Kind::statements);
   if (token.is(TokenKind::bracketOpen)) skipNested('[', true);
   noteLost(token);
 }
 
-// After an error in a list of nodes: to the next node of it or to what may end it.
+// Skips to the next node of a list after an error, or to a token that may end the list.
 void Parser::skipToNode() {
   for (;;) {
     const Token token = lexer_.peek();
@@ -172,7 +175,7 @@ void Parser::skipToNode() {
   }
 }
 
-// To what looks like the start of a statement; blocks on the way are skipped whole.
+// Skips to a token that may begin a statement. Blocks on the way are skipped as a whole.
 void Parser::skipToStatement(TokenKind end) {
   bool afterBracket = false; // a brace then opens the body of a prototype
   for (;;) {

@@ -1,3 +1,4 @@
+// set_field.cpp: sets a field and forwards the value through IS connections into prototype bodies.
 #include "xvrml/set_field.h"
 
 #include "base/budget.h"
@@ -10,15 +11,16 @@
 namespace xvrml {
 namespace {
 
-// An Inline has got another url.
+// Loads the content of an Inline whose url has changed.
 void loadAgain(World& world, InlineNode& node) {
   if (!world.options.loadInlines) return;
-  const std::shared_ptr<const Scope> old =
-      std::exchange(node.content, nullptr); // ends when nothing refers to it here
+  // Destroyed here if nothing else refers to it.
+  const std::shared_ptr<const Scope> old = std::exchange(node.content, nullptr);
   node.share.clear();
   const BudgetPtr budget = budgetOf(world);
   const uint64_t before = budget->used();
-  Loader(world, world.options).loadLate(node, {node.source.file ? *node.source.file : world.path});
+  Loader(world, world.options)
+      .loadDeferredInline(node, {node.source.file ? *node.source.file : world.path});
   if (const uint64_t after = budget->used(); after > before)
     node.share.adopt(budget, after - before);
 }
@@ -43,9 +45,10 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
           to->type != from->type)
         continue;
       if (isMultiple(to->type)) leaveToViews(*connection.node, *to);
-      giveAcross({*instance, *from, *connection.node, *to, true}, instance->get(*from),
-                 world.diagnostics);
-      if (NodeRef* standsFor = connection.node->expansion()) *standsFor = {}; // it is asked again
+      assignThroughIs({*instance, *from, *connection.node, *to, true}, instance->get(*from),
+                      world.diagnostics);
+      // The expansion is made again on demand.
+      if (NodeRef* standsFor = connection.node->expansion()) *standsFor = {};
       open.emplace_back(connection.node.get(), to);
     }
   }

@@ -1,3 +1,4 @@
+// source.cpp: reads, maps and unpacks files, and checks their header.
 #include "parse/source.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace {
   throw LoadError{{Severity::error, name, line, line, std::move(message), {}, 0}};
 }
 
-// Refuses a file of a format that is known and not VRML97.
+// Refuses a file of a known format other than VRML97.
 [[noreturn]] void refuseOther(const std::string& name, std::string_view bytes) {
   const OtherFormat& format = *otherFormat(bytes);
   refuse(name, fmt::format("is {}, not a VRML97 world: {}", format.name, format.remedy));
@@ -37,12 +38,12 @@ struct Descriptor {
   }
 };
 
-void readAll(int descriptor, const std::string& name, const Limits& limits, HeldText& bytes) {
+void readAll(int descriptor, const std::string& name, const Limits& limits, TextBuffer& bytes) {
   for (;;) {
     const size_t had = bytes.text().size();
     constexpr size_t step = 1 << 20;
     char* const room = bytes.grow(step);
-    if (!room) refuse(name, "its text " + bytes.tooMuch());
+    if (!room) refuse(name, "its text " + bytes.overLimitText());
     const ssize_t got = ::read(descriptor, room, step);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) refuse(name, fmt::format("cannot be read: {}", std::strerror(errno)));
@@ -53,9 +54,10 @@ void readAll(int descriptor, const std::string& name, const Limits& limits, Held
   }
 }
 
-// Inflates all gzip members; refuses damage only if nothing came out: a cut file shows what it has.
+// Inflates all gzip members. Damaged data is refused only if nothing came out; a truncated file
+// shows what it has.
 void inflateAll(std::string_view packed, const std::string& name, const Limits& limits,
-                std::string& damage, HeldText& out) {
+                std::string& damage, TextBuffer& out) {
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 16) != Z_OK) refuse(name, "no memory to unpack it");
   struct End {
@@ -68,7 +70,7 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
   size_t used = 0;
   int status = Z_OK;
   while (status != Z_STREAM_END || used < packed.size()) {
-    if (status == Z_STREAM_END) { // another member, or padding
+    if (status == Z_STREAM_END) { // another member follows, or padding
       if (packed.size() - used < 2 || packed.substr(used, 2) != "\x1f\x8b" ||
           inflateReset(&stream) != Z_OK)
         break;
@@ -76,7 +78,7 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
     const size_t had = out.text().size();
     const size_t step = std::min<size_t>(std::max<size_t>(1 << 16, had / 4), 64 << 20);
     char* const room = out.grow(step);
-    if (!room) refuse(name, "its unpacked text " + out.tooMuch());
+    if (!room) refuse(name, "its unpacked text " + out.overLimitText());
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + used));
     stream.avail_in = static_cast<uInt>(std::min<size_t>(packed.size() - used, 1u << 30));
     const uInt offered = stream.avail_in;
@@ -111,7 +113,8 @@ std::string_view firstLine(std::string_view text) {
   return text.substr(0, text.find_first_of("\r\n"));
 }
 
-// Does a text without a header look like VRML97? A node, or one of the statements' keywords.
+// Returns whether a text without a header looks like VRML97: it begins with a node or the keyword
+// of a statement.
 bool looksLikeVrml(std::string_view text) {
   Diagnostics none;
   none.limit = 0;
@@ -125,7 +128,7 @@ bool looksLikeVrml(std::string_view text) {
 
 } // namespace
 
-char* HeldText::grow(size_t more) {
+char* TextBuffer::grow(size_t more) {
   if (const size_t wanted = size_ + more; wanted > share_.bytes()) {
     const uint64_t extra = wanted - share_.bytes();
     if (!share_.take(extra)) return nullptr;
@@ -140,7 +143,7 @@ char* HeldText::grow(size_t more) {
   return bytes_.get() + size_;
 }
 
-void HeldText::fit() {
+void TextBuffer::fit() {
   if (size_ == 0 || size_ == share_.bytes()) return;
   char* const bytes = static_cast<char*>(std::realloc(bytes_.get(), size_));
   if (!bytes) return;
@@ -149,7 +152,7 @@ void HeldText::fit() {
   share_.give(share_.bytes() - size_);
 }
 
-std::string HeldText::tooMuch() const {
+std::string TextBuffer::overLimitText() const {
   return "takes, with all that the world holds, more than " +
          (share_.budget() ? share_.budget()->name() : std::string());
 }
@@ -157,8 +160,8 @@ std::string HeldText::tooMuch() const {
 Source Source::open(const std::string& path, const Limits& limits, const BudgetPtr& budget) {
   Source source(budget);
   if (path == "-") {
-    readAll(STDIN_FILENO, "-", limits, source.held_);
-    source.text_ = source.held_.text();
+    readAll(STDIN_FILENO, "-", limits, source.buffer_);
+    source.text_ = source.buffer_.text();
   } else {
     Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
@@ -179,8 +182,8 @@ Source Source::open(const std::string& path, const Limits& limits, const BudgetP
         madvise(mapping, size, MADV_SEQUENTIAL);
         source.text_ = {static_cast<const char*>(mapping), size};
       } else {
-        readAll(file.number, path, limits, source.held_);
-        source.text_ = source.held_.text();
+        readAll(file.number, path, limits, source.buffer_);
+        source.text_ = source.buffer_.text();
       }
     }
   }
@@ -201,16 +204,16 @@ Source Source::fromMemory(std::string_view bytes, const std::string& name, const
 
 void Source::unpack(const std::string& name, const Limits& limits, const BudgetPtr& budget) {
   if (isGzip(text_)) {
-    HeldText unpacked(budget);
+    TextBuffer unpacked(budget);
     inflateAll(text_, name, limits, damage_, unpacked);
-    held_ = std::move(unpacked); // what was packed is not needed any more
-    text_ = held_.text();
+    buffer_ = std::move(unpacked); // the packed data is not needed any more
+    text_ = buffer_.text();
   }
   if ((byteOrderMark_ = text_.starts_with("\xef\xbb\xbf"))) text_.remove_prefix(3);
 }
 
 Source::Source(Source&& other) noexcept
-    : text_(other.text_), held_(std::move(other.held_)), damage_(std::move(other.damage_)),
+    : text_(other.text_), buffer_(std::move(other.buffer_)), damage_(std::move(other.damage_)),
       mapping_(std::exchange(other.mapping_, nullptr)), mappedBytes_(other.mappedBytes_),
       byteOrderMark_(other.byteOrderMark_) {}
 
@@ -232,7 +235,7 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
   if (byteOrderMark_)
     warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
   if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
-  // The first lines that say something: blank lines and other comments before the header happen.
+  // Search the first lines with content: blank lines and other comments may precede the header.
   std::string_view rest = text_;
   for (int line = 1; line <= 10 && !rest.empty(); ++line) {
     const std::string_view current = firstLine(rest);
@@ -266,8 +269,8 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
 
 namespace {
 
-// The deleter of a file's name: what is known of the file goes with the name that all its nodes
-// hold.
+// The deleter of a file's name. It stores the file's comments, so that they live as long as the
+// name, which all nodes of the file share.
 struct NameDeleter {
   std::string comments;
   void operator()(const std::string* name) const { delete name; }

@@ -1,6 +1,6 @@
-// url.cpp: where the URLs of a world lead: relative ones to files beside the file that holds them
-// (ISO/IEC 14772-1 4.5.3), absolute ones only if asked for, the network nowhere. Pure but for a
-// look at the disk; any thread; used by the loader and the mapper.
+// url.cpp: resolves the URLs of a world. Relative URLs lead to files beside the file that holds
+// them (ISO/IEC 14772-1 4.5.3), absolute ones only if allowed; nothing is fetched from the network.
+// Used by the loader and the mapper. Pure except for file look-ups. [any thread]
 #include <algorithm>
 #include <filesystem>
 
@@ -19,7 +19,7 @@ int hexDigit(char c) {
   return -1;
 }
 
-// RFC 3986 2.1. False for %00, which no file name can hold.
+// Decodes %XX (RFC 3986 2.1). Returns false for %00, which no file name can contain.
 bool percentDecode(std::string_view text, std::string& out) {
   out.clear();
   for (size_t i = 0; i < text.size(); ++i) {
@@ -90,11 +90,11 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
   std::string decoded;
   if (!percentDecode(path, decoded) || path.find('\0') != path.npos) return refuse("%00 in a path");
   std::string literal(path);
-  std::replace(decoded.begin(), decoded.end(), '\\', '/'); // written on Windows
+  std::replace(decoded.begin(), decoded.end(), '\\', '/'); // a path written on Windows
   if (decoded.starts_with('/')) absolute = true;
   if (absolute && !options.allowAbsolute)
     return refuse("absolute paths are not followed unless allowed");
-  if (decoded.empty()) { // "#name": the file itself
+  if (decoded.empty()) { // "#name" refers to the file itself
     if (baseFile == "-") return refuse("standard input cannot be read twice");
     result.path = baseFile;
     return result;
@@ -103,9 +103,9 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
   const std::string folder =
       absolute || slash == baseFile.npos ? "" : std::string(baseFile.substr(0, slash + 1));
   result.path = folder + decoded;
-  if (result.path == "-") result.path = "./-"; // a file, not standard input
+  if (result.path == "-") result.path = "./-"; // a file of that name, not standard input
   if (exists(result.path)) return result;
-  // A file whose very name holds %20 or a backslash, or one with a query.
+  // The file name itself may contain %20 or a backslash, or the URL may have a query.
   if (exists(folder + literal))
     result.path = folder + literal;
   else if (const size_t query = decoded.find('?');
@@ -132,7 +132,7 @@ bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::strin
     return false;
   }
   if (!head.ends_with(";base64")) {
-    for (size_t i = 0; i < body.size(); ++i) { // %00 is a byte like any other here
+    for (size_t i = 0; i < body.size(); ++i) { // here %00 is a byte like any other
       const int high = body[i] == '%' && i + 2 < body.size() ? hexDigit(body[i + 1]) : -1;
       const int low = high >= 0 ? hexDigit(body[i + 2]) : -1;
       out.bytes += low >= 0 ? char(high * 16 + low) : body[i];

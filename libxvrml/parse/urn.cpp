@@ -1,3 +1,4 @@
+// urn.cpp: makes prototypes that wrap built-in nodes.
 #include "parse/urn.h"
 
 #include "graph/inline_node.h"

@@ -1,5 +1,5 @@
-// urn.h: EXTERNPROTOs that name a node of this browser (ISO/IEC 14772-1 4.9.3, RFC 2141). Used by
-// the loader, on its thread.
+// urn.h: EXTERNPROTOs whose urn: URL names a node type of this browser (ISO/IEC 14772-1 4.9.3, RFC
+// 2141). Used by the loader, on its thread.
 #pragma once
 
 #include <string_view>
@@ -8,9 +8,9 @@
 
 namespace xvrml {
 
-// "urn:anything:NAME", NAME being a node type of this browser: a prototype whose body is one such
-// node, with all its fields as its interface; accesses as the EXTERNPROTO declares them where an
-// exposedField allows it. Null if the URL names none.
+// Returns the prototype for "urn:anything:NAME", where NAME is a node type of this browser; null if
+// the URL names none. The prototype's body is one such node, and its interface has all its fields.
+// An exposedField has the access that the EXTERNPROTO declares.
 ProtoPtr builtinPrototype(std::string_view url, const NodeType& wanted);
 
 } // namespace xvrml

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The engines of each file, loaded once in a process and never forgotten.
+// The engines of each file. They are loaded once per process and kept for ever.
 struct Libraries {
   std::mutex mutex;
   std::map<std::string, std::vector<XsEngine>, std::less<>> byPath;

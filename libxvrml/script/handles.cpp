@@ -4,7 +4,7 @@
 
 namespace xvrml {
 
-XsNode Handles::give(Node* node) {
+XsNode Handles::handleOf(Node* node) {
   if (!node) return 0;
   if (node == own_) return ownNumber_;
   if (const auto known = numbers_.find(node); known != numbers_.end()) {
@@ -39,14 +39,15 @@ bool Handles::release(XsNode number) {
   const auto found = entries_.find(number);
   if (found == entries_.end() || found->second.retained == 0) return false;
   if (found->second.retained == 1 && !found->second.lent) {
-    lent_.push_back(number); // goes with the call
+    lent_.push_back(number); // it ends with the call
     found->second.lent = true;
   }
   --found->second.retained;
   return true;
 }
 
-// Nodes may end here, and tell the world so; nothing of this table is used meanwhile.
+// Drops handles. Nodes may be destroyed here and notify the world, so the table must not be in use
+// meanwhile.
 void Handles::endCall() {
   std::vector<NodeRef> gone;
   for (const XsNode number : std::exchange(lent_, {})) {

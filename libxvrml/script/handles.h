@@ -1,7 +1,7 @@
-// handles.h: the nodes that a Script knows, as numbers. A number is good while the engine's
-// function runs in which it was given out, longer if it is retained; a Script's own node has a
-// number that is always good and holds no reference. One table per Script; numbers are never used
-// twice. [the browser's thread]
+// handles.h: the handles (numbers) under which a Script knows nodes. A handle is valid during the
+// engine function in which it was given out, or longer if it is retained. The handle of the
+// Script's own node is always valid and holds no reference. One table per Script; numbers are never
+// reused. [the browser's thread]
 #pragma once
 
 #include <unordered_map>
@@ -16,12 +16,12 @@ class Handles {
   Handles(Node* own, XsNode ownNumber, XsNode& lastNumber)
       : own_(own), ownNumber_(ownNumber), last_(lastNumber) {}
 
-  // 0 for NULL, and when the Script has too many.
-  XsNode give(Node* node);
-  Node* find(XsNode number) const; // null if it is not known
+  // Returns the handle of a node. Returns 0 for NULL, and if the Script has too many handles.
+  XsNode handleOf(Node* node);
+  Node* find(XsNode number) const; // returns null if the handle is unknown
   bool retain(XsNode number);
   bool release(XsNode number);
-  void endCall(); // forgets what has not been retained
+  void endCall(); // drops the handles that have not been retained
   void clear();
   void setOwn(Node* own) { own_ = own; }
   size_t size() const { return entries_.size(); }
@@ -32,7 +32,7 @@ class Handles {
   struct Entry {
     NodeRef node;
     uint64_t retained = 0;
-    bool lent = false; // in lent_
+    bool lent = false; // it is in lent_
   };
   Node* own_;
   const XsNode ownNumber_;

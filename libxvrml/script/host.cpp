@@ -1,4 +1,4 @@
-// host.cpp: the life of Scripts: begin, events, end. See host.h.
+// host.cpp: the life of Scripts: begin, events, end.
 #include "script/host.h"
 
 #include <algorithm>
@@ -42,27 +42,28 @@ ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world,
 ScriptHost::~ScriptHost() {
   engine_.scripts = nullptr;
   ending_ = closing_ = true;
-  constexpr double grace = 0.25; // nobody waits longer for a window to close
+  constexpr double grace = 0.25; // in seconds; the user waits no longer for a window to close
   patience_ = options_.scriptPatience > 0 ? grace : 0;
-  endBy_ = wire::Clock::now() + std::chrono::milliseconds(
-                                    int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
+  shutdownDeadline_ =
+      wire::Clock::now() +
+      std::chrono::milliseconds(int64_t(1000 * std::clamp(options_.scriptSeconds, grace, 1e6)));
   try {
     finish();
-  } catch (const std::bad_alloc&) {} // the others end all the same
+  } catch (const std::bad_alloc&) {} // the other Scripts are still ended
   for (auto& [order, script] : scripts_) {
     try {
-      shutDownAhead(order);
-    } catch (const std::bad_alloc&) {} // at its own turn, then
+      shutDownEarly(order);
+    } catch (const std::bad_alloc&) {} // it is shut down at its own turn instead
     stop(*script);
   }
   processes_.reset();
-  scripts_.clear(); // handles may be the last to hold nodes, and nodes Scripts: nothing of them
-                    // runs any more
+  // Handles may hold the last reference to nodes, and nodes to Scripts. None of them runs any more.
+  scripts_.clear();
 }
 
 const XsHost* ScriptHost::table() const { return table_.get(); }
 
-// The nodes a Script with directOutput refers to can be changed by it in any way (6.40).
+// Marks the nodes that a Script with directOutput refers to: it can change them in any way (6.40).
 void ScriptHost::markReach(Script& script) {
   forEachChild(*script.node, [&](NodeRef& child, const FieldInfo& field) {
     for (const FieldInfo& in : child->type().fields)
@@ -71,11 +72,11 @@ void ScriptHost::markReach(Script& script) {
   });
 }
 
-// Where there is no memory for what shutdown() asks, the interpreter is destroyed all the same.
+// Ends a Script. If shutdown() runs out of memory, the interpreter is destroyed all the same.
 void ScriptHost::stop(Script& script) {
   script.waiting.clear();
-  script.expected = script.owed = false;
-  if (std::exchange(script.ahead, false)) --sentAhead_;
+  script.startPending = script.eventsProcessedDue = false;
+  if (std::exchange(script.startedEarly, false)) --earlyStarts_;
   if (!script.engine) return;
   const bool ending = ending_;
   if (script.process) {
@@ -89,7 +90,7 @@ void ScriptHost::stop(Script& script) {
   }
   ending_ = true;
   try {
-    if (!spent()) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
+    if (!isTimeUsedUp()) plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
   } catch (const std::bad_alloc&) {}
   ending_ = ending;
   script.engine->destroy(script.interpreter);
@@ -107,7 +108,7 @@ void ScriptHost::enter(Script& script) {
 XsResult ScriptHost::leave(Script& script, const char* function, XsResult result) {
   if (!script.process) {
     const auto taken = std::chrono::steady_clock::now() - script.since;
-    spend(taken, std::chrono::duration<double>(taken).count());
+    chargeTime(taken, std::chrono::duration<double>(taken).count());
   }
   if (script.stopped || result == XS_STOPPED) {
     script.stopped = true;
@@ -123,7 +124,7 @@ XsResult ScriptHost::leave(Script& script, const char* function, XsResult result
   return script.stopped && !script.wasStopped ? XS_STOPPED : result;
 }
 
-// A function that takes nothing but the time; engines may lack it.
+// Calls a function that takes only the time. Engines may lack it.
 XsResult ScriptHost::plainCall(Script& script, wire::Op op, Function function) {
   if (!(script.engine->*function)) return XS_OK;
   if (script.process) {
@@ -136,7 +137,7 @@ XsResult ScriptHost::plainCall(Script& script, wire::Op op, Function function) {
 
 void ScriptHost::flush(Script& script) {
   for (Script::Output& output : std::exchange(script.outputs, {})) {
-    if (ending_ || script.ghost) continue;
+    if (ending_ || script.nodeCopy) continue;
     if (output.to)
       engine_.post(*output.to, *output.field, std::move(output.value));
     else
@@ -145,7 +146,7 @@ void ScriptHost::flush(Script& script) {
 }
 
 void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& value) {
-  if (spent()) stopAll();
+  if (isTimeUsedUp()) stopAll();
   const Key key = liveOf(node)->order;
   const auto found = scripts_.find(key);
   if (found == scripts_.end()) return;
@@ -154,15 +155,15 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
     stop(script);
     script.stopped = false;
     script.nextUrl = 0;
-    script.expected = true;
+    script.startPending = true;
     std::erase(ticking_, key);
     due_.erase(key);
     node.urlLines.clear();
-    beginning_.push_back(key);
-    engine_.scriptsBegin();
+    startQueue_.push_back(key);
+    engine_.requestScriptStart();
     return;
   }
-  if (!Script::isOwn(in) || script.stopped || (!script.engine && !script.expected)) return;
+  if (!Script::isOwn(in) || script.stopped || (!script.engine && !script.startPending)) return;
   const bool atOnce = script.flag(XS_MUST_EVALUATE) && script.waiting.empty() && script.ready();
   bool& waits = due_[key];
   if (atOnce) return deliver(script, in, value);
@@ -170,8 +171,8 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
   queue(script, in, value);
 }
 
-// While a function of the Script takes its time in its process, events come with every tick: they
-// must not become ever more.
+// Queues an event. While a function of the Script is running in its process, every tick adds
+// events, so the queue is limited.
 void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) {
   constexpr size_t mostEvents = 1000;
   constexpr uint64_t mostBytes = 64 << 20;
@@ -179,7 +180,7 @@ void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) 
   const uint64_t bytes = bytesOf(value);
   script.waiting.push_back({&in, value, bytes});
   script.waitingBytes += bytes;
-  if (script.ready()) return; // they leave in this cascade
+  if (script.ready()) return; // they are delivered in this cascade
   while (script.waiting.size() > mostEvents ||
          (script.waitingBytes > mostBytes && script.waiting.size() > 1)) {
     script.waitingBytes -= script.waiting.front().bytes;
@@ -204,15 +205,15 @@ void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value
     return;
   }
   call(script, "event", [&] {
-    const XsEvent told{sizeof(XsEvent), index, in.name.c_str(), lent, engine_.now()};
-    return script.engine->event(script.interpreter, &told);
+    const XsEvent delivered{sizeof(XsEvent), index, in.name.c_str(), lent, engine_.now()};
+    return script.engine->event(script.interpreter, &delivered);
   });
 }
 
-// mustEvaluate FALSE: events wait until nothing else is left to do in the cascade; they keep their
-// order.
+// Delivers waiting events. With mustEvaluate FALSE events wait until nothing else is left to do in
+// the cascade; they keep their order.
 bool ScriptHost::eventsProcessed() {
-  if (spent()) stopAll();
+  if (isTimeUsedUp()) stopAll();
   if (due_.empty()) return false;
   for (const auto& [key, waits] : std::exchange(due_, {})) {
     const auto found = scripts_.find(key);
@@ -223,16 +224,17 @@ bool ScriptHost::eventsProcessed() {
 }
 
 void ScriptHost::drain(Key key, Script& script) {
-  for (size_t left = script.waiting.size(); left > 0 && script.ready() && !spent(); --left) {
-    const Script::Waiting event = std::move(script.waiting.front());
+  for (size_t left = script.waiting.size(); left > 0 && script.ready() && !isTimeUsedUp(); --left) {
+    const Script::QueuedEvent event = std::move(script.waiting.front());
     script.waiting.pop_front();
     script.waitingBytes -= event.bytes;
     deliver(script, *event.in, event.value);
   }
-  script.owed = script.busy() || script.expected; // then when it has returned
-  if (script.owed) return;
-  if (!script.waiting.empty() && script.ready()) due_[key] = true; // it has been started anew
-  if (script.ready() && !spent())
+  // Wait for a running call or a pending start; eventsProcessed is called afterwards.
+  script.eventsProcessedDue = script.busy() || script.startPending;
+  if (script.eventsProcessedDue) return;
+  if (!script.waiting.empty() && script.ready()) due_[key] = true; // the Script was restarted
+  if (script.ready() && !isTimeUsedUp())
     plainCall(script, wire::Op::eventsProcessed, &XsEngine::eventsProcessed);
 }
 
@@ -244,21 +246,21 @@ void ScriptHost::drop() {
 
 void ScriptHost::tick() {
   patience_ = options_.scriptPatience;
-  if (spent()) stopAll();
+  if (isTimeUsedUp()) stopAll();
   const double passed = engine_.now() - lastTick_.value_or(engine_.now());
   used_ = std::max(0.0, used_ - passed * run_.worldScriptSeconds);
   waited_ = std::max(0.0, waited_ - passed * mostWaiting * run_.worldScriptSeconds);
   lastTick_ = engine_.now();
-  if (processes_) serveLate();
+  if (processes_) serveRunningCalls();
   for (const Key key : std::vector<Key>(ticking_)) {
     const auto found = scripts_.find(key);
-    if (found != scripts_.end() && found->second->ready() && !spent())
+    if (found != scripts_.end() && found->second->ready() && !isTimeUsedUp())
       plainCall(*found->second, wire::Op::tick, &XsEngine::tick);
   }
 }
 
-// The node is being destroyed, in the middle of whatever let go of it: a copy keeps its fields
-// until shutdown can be called.
+// Handles the destruction of a node, which may happen anywhere. A copy keeps its fields until
+// shutdown can be called.
 void ScriptHost::end(ScriptNode& node) noexcept {
   const auto found = scripts_.find(liveOf(node)->order);
   if (found == scripts_.end()) return;
@@ -267,20 +269,20 @@ void ScriptHost::end(ScriptNode& node) noexcept {
   due_.erase(found->first);
   scripts_.erase(found);
   try {
-    auto* ghost = new ScriptNode(node.typePtr);
-    script->ghost = NodeRef(ghost);
-    ghost->values = std::move(node.values);
-    node.values =
-        std::vector<Value>(ghost->values.size()); // those who read them meanwhile find some
+    auto* nodeCopy = new ScriptNode(node.typePtr);
+    script->nodeCopy = NodeRef(nodeCopy);
+    nodeCopy->values = std::move(node.values);
+    // Readers still find values meanwhile.
+    node.values = std::vector<Value>(nodeCopy->values.size());
     for (const FieldInfo& field : node.type().fields)
       if (holdsValue(field)) node.values[field.offset] = defaultValue(field.type);
-    ghost->source = node.source;
-    ghost->defName = node.defName;
-    script->node = ghost;
-    script->handles.setOwn(ghost);
+    nodeCopy->source = node.source;
+    nodeCopy->defName = node.defName;
+    script->node = nodeCopy;
+    script->handles.setOwn(nodeCopy);
     script->waiting.clear();
     ended_.push_back(std::move(script));
-  } catch (const std::bad_alloc&) { // no shutdown then
+  } catch (const std::bad_alloc&) { // shutdown is not called then
     bySelf_.erase(script->self);
     if (script->process)
       detach(*script);
@@ -307,22 +309,22 @@ Script* ScriptHost::find(XsNode self) {
 bool ScriptHost::overBudget(Script& script, uint64_t steps) {
   script.steps = saturatingAdd(script.steps, steps);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - script.since;
-  const bool late =
-      !script.process && taken.count() > options_.scriptSeconds; // a process has a clock of its own
+  // A process has its own clock.
+  const bool late = !script.process && taken.count() > options_.scriptSeconds;
   if (script.steps > options_.scriptSteps || late) script.stopped = true;
   return script.stopped;
 }
 
 void ScriptHost::log(Script& script, int severity, uint32_t line, const std::string& text) {
-  constexpr size_t most = 100; // errors of one Script, and as many other messages
+  constexpr size_t most = 100; // errors per Script, and as many other messages
   script.failed = script.failed || severity >= 3;
   if (severity <= 0 && options_.print) return options_.print(text);
-  std::unordered_set<std::string>& told = severity >= 3 ? script.failures : script.told;
+  std::unordered_set<std::string>& reported = severity >= 3 ? script.failures : script.reported;
   const size_t apart = severity <= 0
-                           ? told.size()
-                           : 0; // each line that is printed counts, what is wrong is told once
-  if (told.size() > most ||
-      !told.insert(fmt::format("{} {} {}", line, apart, text.substr(0, 2000))).second)
+                           ? reported.size()
+                           : 0; // every printed line counts; errors and warnings are logged once
+  if (reported.size() > most ||
+      !reported.insert(fmt::format("{} {} {}", line, apart, text.substr(0, 2000))).second)
     return;
   Diagnostic d;
   d.severity = severity <= 1 ? Severity::note : severity == 2 ? Severity::warning : Severity::error;
@@ -331,9 +333,10 @@ void ScriptHost::log(Script& script, int severity, uint32_t line, const std::str
   d.line = line > 0 ? place.line + line - 1 : place.line;
   d.column = line > 0 ? 0 : place.column;
   const std::string& name = script.node->defName;
-  d.message = told.size() > most ? "Script: more messages than can be read; the rest is left out"
-                                 : fmt::format("Script{}{}: {}", name.empty() ? "" : " ", name,
-                                               text.substr(0, 2000));
+  d.message =
+      reported.size() > most
+          ? "Script: more messages than can be read; the rest is left out"
+          : fmt::format("Script{}{}: {}", name.empty() ? "" : " ", name, text.substr(0, 2000));
   world_.diagnostics.add(std::move(d));
 }
 

@@ -1,7 +1,7 @@
-// host.h: runs the Script nodes of a world (ISO/IEC 14772-1 4.12): finds their engines, brings them
-// events, takes theirs. The engine of events calls it; scripts call the world through the table of
-// functions in host_table.cpp. Owned by the Browser, ends before the engine of events. [the
-// browser's thread]
+// host.h: runs the Script nodes of a world (ISO/IEC 14772-1 4.12): finds their engines, delivers
+// events to them and takes their outputs. The event engine calls it; scripts call the world through
+// the function table in host_table.cpp. The Browser owns it; it is destroyed before the event
+// engine. [the browser's thread]
 #pragma once
 
 #include <chrono>
@@ -17,17 +17,17 @@
 
 namespace xvrml {
 
-// A Script node that has an interpreter, or will have one at its turn.
+// A Script node that has an interpreter, or will get one at its turn.
 struct Script {
   Script(ScriptNode& node, XsNode self, XsNode& lastNumber)
       : node(&node), self(self), handles(&node, self, lastNumber) {}
 
-  struct Waiting { // an event that has not been brought yet
+  struct QueuedEvent { // an event that has not been delivered yet
     const FieldInfo* in;
     Value value;
     uint64_t bytes;
   };
-  struct Output { // what the running function has sent, for when it returns
+  struct Output { // sent by the running function; passed on when it returns
     NodeRef to;   // null: from an eventOut of the Script itself
     const FieldInfo* field;
     Value value;
@@ -36,55 +36,58 @@ struct Script {
     return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate";
   }
   bool flag(uint32_t bit) const { return info.flags & bit; }
-  // A call is under way in its process, its own or another one's: events wait.
+  // Returns whether a call is running in its process, for this Script or another one. Events wait
+  // meanwhile.
   bool busy() const { return process && process->busy(); }
   bool ready() const { return engine && !stopped && !busy(); }
 
-  ScriptNode* node; // part of the world; after it has been destroyed `ghost`
-  NodeRef ghost;    // keeps the fields of a node that is no more, for shutdown()
+  ScriptNode* node; // in the world; after its destruction `nodeCopy`
+  NodeRef nodeCopy; // copy of a destroyed node's fields, for shutdown()
   const XsNode self;
-  const XsEngine* engine = nullptr; // null: no program that could be run
+  const XsEngine* engine = nullptr; // null: no runnable program
   XsInterpreter interpreter = 0;
-  SourcePosition start; // of the program
+  SourcePosition start; // position of the program text
   std::string scheme, origin, text;
   XsScriptInfo info{};
   std::vector<XsField> fields;
 
-  // Its interpreter in another process (script/remote)
-  ProcessRef process;  // null: it is in this one
-  uint32_t number = 0; // of the interpreter there
-  wire::Op pending{};  // the function that is running there; 0: none
-  bool ahead = false; // that is `create`, and the Script's turn to start has not come: nobody looks
-                      // after it yet
-  bool expected = false; // will be started, again or for the first time: events wait
+  // For an interpreter in another process (script/remote):
+  ProcessRef process;  // null: the interpreter is in this process
+  uint32_t number = 0; // the interpreter's number in that process
+  wire::Op pending{};  // the function running there; 0: none
+  // A `create` was sent before the Script's turn to start; nothing serves it yet.
+  bool startedEarly = false;
+  bool startPending = false; // it will be started (again); events wait
   int restarts = 0;
-  bool owed = false; // eventsProcessed, when the call under way has returned
+  // eventsProcessed must be called when the current call has returned.
+  bool eventsProcessedDue = false;
   size_t nextUrl = 0;
   uint64_t waitingBytes = 0, dropped = 0;
 
-  bool wasStopped = false; // when the running function was called
-  bool stopped = false;    // used up its time: no more calls but shutdown and destroy
+  bool wasStopped = false; // value of `stopped` when the running function was called
+  bool stopped = false;    // out of time: no more calls except shutdown and destroy
   bool failed = false;     // the running function has logged an error
-  uint64_t steps = 0;      // of the running function
+  uint64_t steps = 0;      // used by the running function
   std::chrono::steady_clock::time_point since;
 
   Handles handles;
-  LentValue lent; // what XsHost gave out last
+  LentValue lent; // the last value given out through XsHost
   std::string lentText, error;
-  std::deque<Waiting> waiting;
+  std::deque<QueuedEvent> waiting;
   std::vector<Output> outputs;
-  std::unordered_set<std::string> told; // what it has printed, and warnings, each of them once
-  std::unordered_set<std::string>
-      failures;         // errors, each once: what a Script prints cannot hide them
-  bool counted = false; // in ScriptCounts::started, which restarts leave as it is
+  // Printed texts and warnings that were logged, each once.
+  std::unordered_set<std::string> reported;
+  // Logged errors, each once. They are separate, so that printed texts cannot hide them.
+  std::unordered_set<std::string> failures;
+  bool counted = false; // counted in ScriptCounts::started, which ignores restarts
 };
 
 class ScriptHost : public ScriptRunner {
  public:
-  struct Table; // the XsHost that scripts get, with the way back to this
+  struct Table; // the XsHost of the scripts, with a reference to this host
   ScriptHost(Browser& browser, Engine& engine, World& world, const BrowserOptions& options,
              const RunOptions& run);
-  ~ScriptHost() override; // shuts all down
+  ~ScriptHost() override; // shuts down all Scripts
   ScriptHost(const ScriptHost&) = delete;
   ScriptHost& operator=(const ScriptHost&) = delete;
 
@@ -99,30 +102,31 @@ class ScriptHost : public ScriptRunner {
 
   size_t running() const { return scripts_.size(); }
   ScriptCounts counts() const;
-  // Returns the node whose function is running; null if none is.
+  // Returns the node whose function is running; null if there is none.
   const Node* runningNode() const { return running_ ? running_->node : nullptr; }
 
  private:
   friend struct HostTable;
   using Key = uint32_t; // order of the nodes in the world
 
-  // Answers of calls beside those of XsResult
-  static constexpr auto later =
-      XsResult(0x7ffffff0); // the function is still running in its process; see tick
-  static constexpr auto again =
-      XsResult(0x7ffffff1); // its process was gone before: it is started anew
+  // Results of calls in addition to XsResult.
 
-  // Starting Scripts: host_start.cpp
-  void startAhead();
-  bool sendAhead(Script& script);
+  // The function is still running in its process; tick() serves it.
+  static constexpr auto later = XsResult(0x7ffffff0);
+  // Its process was already dead; the Script is restarted.
+  static constexpr auto again = XsResult(0x7ffffff1);
+
+  // Starting Scripts: host_start.cpp.
+  void startEarly();
+  bool sendCreateEarly(Script& script);
   const XsHost* table() const;
   void start(Script& script);
   void describe(Script& script, ScriptProgram program);
   XsResult makeInterpreter(Script& script, ScriptProgram program);
-  void giveUp(Script& script);
+  void dropInterpreter(Script& script);
   bool created(Script& script, XsResult result);
-  void stop(Script& script); // shutdown and destroy
-  void shutDownAhead(Key from);
+  void stop(Script& script); // calls shutdown and destroy
+  void shutDownEarly(Key from);
   void enter(Script& script);
   XsResult leave(Script& script, const char* function, XsResult result);
   template <class Invoke> XsResult call(Script& script, const char* function, Invoke&& invoke) {
@@ -138,7 +142,7 @@ class ScriptHost : public ScriptRunner {
   void drain(Key key, Script& script);
   void queue(Script& script, const FieldInfo& in, const Value& value);
 
-  // Scripts in processes of their own: host_remote.cpp
+  // Scripts in processes of their own: host_remote.cpp.
   bool isolated(const XsEngine& engine) const;
   ProcessRef chooseProcess(const XsEngine& engine, size_t coming, std::string& why);
   XsResult beginCreate(Script& script, const ProcessRef& process);
@@ -148,22 +152,22 @@ class ScriptHost : public ScriptRunner {
   XsResult serveCall(Script& script, double first, double next, wire::Clock::time_point until);
   XsResult waitFor(Script& script);
   wire::Clock::time_point patienceEnds() const;
-  void lose(Script& script, wire::Op op, bool tooLong);
+  void handleLostProcess(Script& script, wire::Op op, bool tooLong);
   void detach(Script& script);
   void restartAll(const ScriptProcess& gone);
   void restart(Key key, Script& script, const std::string& why);
   void stopRemote(Script& script);
   void discard(const ProcessRef& process, double first, wire::Clock::time_point until);
-  void serveLate();
+  void serveRunningCalls();
 
   void flush(Script& script);
   void deliver(Script& script, const FieldInfo& in, const Value& value);
   Script* find(XsNode self);
   void log(Script& script, int severity, uint32_t line, const std::string& text);
   bool overBudget(Script& script, uint64_t steps);
-  void spend(std::chrono::steady_clock::duration time, double processor);
-  void spendOfAll();
-  bool spent() const {
+  void chargeTime(std::chrono::steady_clock::duration time, double processor);
+  void chargeProcesses();
+  bool isTimeUsedUp() const {
     return options_.scriptPatience <= 0 &&
            (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);
   }
@@ -179,31 +183,32 @@ class ScriptHost : public ScriptRunner {
   std::unique_ptr<Table> table_;
   std::map<Key, std::unique_ptr<Script>> scripts_;
   std::unordered_map<XsNode, Script*> bySelf_;
-  std::deque<Key> beginning_;                  // to be started, in this order
-  size_t ahead_ = 0;                           // how many of them startAhead() has dealt with
-  size_t sentAhead_ = 0;                       // how many are ahead of their turn
-  std::vector<std::unique_ptr<Script>> ended_; // their nodes have been destroyed
-  std::map<Key, bool> due_; // eventsProcessed is due; true: there are events waiting
+  std::deque<Key> startQueue_;                 // start queue, in order
+  size_t earlyHandled_ = 0;                    // how many of the queue startEarly() has handled
+  size_t earlyStarts_ = 0;                     // Scripts whose `create` was sent before their turn
+  std::vector<std::unique_ptr<Script>> ended_; // Scripts whose nodes have been destroyed
+  std::map<Key, bool> due_;                    // eventsProcessed is due; true: events are waiting
   std::vector<Key> ticking_;
-  std::vector<Key> late_;                      // to be started when their processes are not busy
+  std::vector<Key> waitingForProcess_;         // to be started when their processes are idle
   std::unique_ptr<ScriptProcesses> processes_; // null until one is needed
-  std::unordered_set<std::string>
-      unusable_; // engines of which it has been told that they have no process
+  std::unordered_set<std::string> unusable_;   // engines reported to have no process
   wire::Writer message_;
-  uint32_t interpreters_ = 0; // in processes, ever
-  double patience_; // seconds that calls may still wait before the next tick; below 0: hardly any
-  // Of RunOptions::worldScriptSeconds: processor time, so that a busy machine stops no Script that
-  // an idle one lets run. What sleeps uses none: waiting is bounded, too.
+  uint32_t interpreters_ = 0; // number of interpreters ever made in processes
+  // Seconds that calls may still wait before the next tick. Below 0 calls hardly wait.
+  double patience_;
+  // Limits of RunOptions::worldScriptSeconds. They count processor time, so that a busy machine
+  // stops no Script that would run on an idle one. A sleeping Script uses none, so waiting is
+  // limited too.
   static constexpr double mostWaiting = 10;
-  double used_ = 0, waited_ = 0;   // seconds: of the processor, on the wall
-  std::optional<double> lastTick_; // the world's time then
-  bool toldSpent_ = false;
+  double used_ = 0, waited_ = 0;   // in seconds: processor time, wall clock time
+  std::optional<double> lastTick_; // the world's time at the last tick
+  bool limitReported_ = false;
   ScriptCounts counts_;
-  wire::Clock::time_point endBy_ = wire::never;
+  wire::Clock::time_point shutdownDeadline_ = wire::never;
   XsNode lastNumber_ = 0;
   Script* running_ = nullptr;
-  bool ending_ = false;  // outputs go nowhere
-  bool closing_ = false; // the world ends
+  bool ending_ = false;  // outputs are discarded
+  bool closing_ = false; // the world is being destroyed
 };
 
 } // namespace xvrml

@@ -1,6 +1,5 @@
-// host_remote.cpp: Scripts whose interpreters are in other processes: how they are called, waited
-// for, looked after while they take their time, and what becomes of them when their process ends.
-// Part of ScriptHost; see host.h.
+// host_remote.cpp: Scripts whose interpreters are in other processes: calling them, waiting for
+// them, serving long calls, and the end of a process. Part of ScriptHost.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -12,15 +11,16 @@ namespace xvrml {
 namespace {
 
 constexpr double forEver = 1e9;
-// A tick gives all functions that are still running together so much time for what they ask of the
-// host, and each so much to ask for more.
+// The time per tick for requests of all functions still running, and the time to wait for a further
+// request of each.
 constexpr auto tickShare = std::chrono::milliseconds(5);
 constexpr double linger = 0.0002;
 constexpr int mostRestarts = 3;
 
 } // namespace
 
-// Engines that need trust run in trusted worlds only, where nothing is kept from them.
+// Returns whether Scripts of the engine get a process. Engines that need trust run in trusted
+// worlds only, which are not restricted.
 bool ScriptHost::isolated(const XsEngine& engine) const {
   if (engine.flags & XS_NEEDS_TRUST) return false;
   switch (options_.scriptIsolation) {
@@ -41,7 +41,7 @@ ProcessRef ScriptHost::chooseProcess(const XsEngine& engine, size_t coming, std:
 XsResult ScriptHost::createRemote(Script& script) {
   const XsEngine& engine = *script.engine;
   std::string why;
-  const ProcessRef process = chooseProcess(engine, beginning_.size() - ahead_, why);
+  const ProcessRef process = chooseProcess(engine, startQueue_.size() - earlyHandled_, why);
   if (!process) {
     if (unusable_.insert(engine.name).second)
       log(script, 3, 0,
@@ -51,8 +51,8 @@ XsResult ScriptHost::createRemote(Script& script) {
   }
   if (process->busy()) {
     script.engine = nullptr;
-    script.expected = true;
-    late_.push_back(liveOf(*script.node)->order);
+    script.startPending = true;
+    waitingForProcess_.push_back(liveOf(*script.node)->order);
     return again;
   }
   const XsResult result = beginCreate(script, process);
@@ -60,11 +60,11 @@ XsResult ScriptHost::createRemote(Script& script) {
   return result == later ? waitFor(script) : result;
 }
 
-// Sends all that its process needs to make the interpreter, and to go on with initialize if the
-// engine has that.
+// Sends everything needed to make the interpreter, and to continue with initialize if the engine
+// has it.
 XsResult ScriptHost::beginCreate(Script& script, const ProcessRef& process) {
   XsScriptInfo& info = script.info;
-  info.flags &= ~uint32_t(XS_TRUSTED | XS_NETWORK); // they can do nothing there
+  info.flags &= ~uint32_t(XS_TRUSTED | XS_NETWORK); // they have no effect there
   script.process = process;
   script.number = ++interpreters_;
   process->add();
@@ -83,7 +83,7 @@ XsResult ScriptHost::beginCreate(Script& script, const ProcessRef& process) {
 
 // --- Calls ---
 
-// Sends a call. Answers `later`, or `again` if the process is dead: nobody's function was running
+// Sends a call. Returns `later`, or `again` if the process is dead and no function was running
 // there.
 XsResult ScriptHost::beginCall(Script& script, wire::Op op, wire::Writer& message) {
   const ProcessRef process = script.process;
@@ -109,11 +109,11 @@ XsResult ScriptHost::callRemote(Script& script, wire::Op op, wire::Writer& messa
 }
 
 wire::Clock::time_point ScriptHost::patienceEnds() const {
-  if (options_.scriptPatience <= 0) return endBy_;
-  // When it is used up, calls that are answered at once still are.
+  if (options_.scriptPatience <= 0) return shutdownDeadline_;
+  // When it is used up, calls that return at once still complete.
   const double least = patience_ > -options_.scriptPatience ? 0.001 : 0;
   const std::chrono::duration<double> patience(std::clamp(patience_, least, 1e6));
-  return std::min(endBy_,
+  return std::min(shutdownDeadline_,
                   wire::Clock::now() + std::chrono::duration_cast<wire::Clock::duration>(patience));
 }
 
@@ -125,8 +125,8 @@ XsResult ScriptHost::waitFor(Script& script) {
   const auto taken = wire::Clock::now() - start;
   if (options_.scriptPatience > 0) patience_ -= std::chrono::duration<double>(taken).count();
   const double seconds = std::chrono::duration<double>(taken).count();
-  spend(taken,
-        process->dead() ? std::min(seconds, options_.scriptSeconds) : process->takeProcessorTime());
+  chargeTime(taken, process->dead() ? std::min(seconds, options_.scriptSeconds)
+                                    : process->takeProcessorTime());
   return result;
 }
 
@@ -140,27 +140,27 @@ XsResult ScriptHost::serveCall(Script& script, double first, double next,
   if (state == ScriptProcess::State::running) return later;
   const wire::Op op = std::exchange(script.pending, wire::Op{});
   if (state != ScriptProcess::State::returned) {
-    lose(script, op, state == ScriptProcess::State::tooLong);
+    handleLostProcess(script, op, state == ScriptProcess::State::tooLong);
     return XS_STOPPED;
   }
   const XsResult result = process->result();
   script.stopped = script.stopped || process->stopped();
-  const XsResult told = leave(script, wire::functionName(op), result);
-  const bool goesOn = process->busy(); // with initialize
-  if (op == wire::Op::create && result == XS_OK && told != XS_OK) {
+  const XsResult finalResult = leave(script, wire::functionName(op), result);
+  const bool goesOn = process->busy(); // continues with initialize
+  if (op == wire::Op::create && result == XS_OK && finalResult != XS_OK) {
     process->orphaned = goesOn;
     process->discarded.push_back(script.number);
   } else if (goesOn) {
     enter(script);
     script.pending = wire::Op::initialize;
   }
-  return told;
+  return finalResult;
 }
 
 // --- When a process ends ---
 
-// One of its functions has ended it, or has to be ended with it.
-void ScriptHost::lose(Script& script, wire::Op op, bool tooLong) {
+// Handles a process that one of its functions has ended, or that must be ended with the function.
+void ScriptHost::handleLostProcess(Script& script, wire::Op op, bool tooLong) {
   const ProcessRef process = script.process;
   const char* function = wire::functionName(op);
   script.stopped = true;
@@ -175,7 +175,7 @@ void ScriptHost::lose(Script& script, wire::Op op, bool tooLong) {
   restartAll(*process);
 }
 
-// It has nothing to do with its process any more.
+// Detaches a Script from its process.
 void ScriptHost::detach(Script& script) {
   script.process->remove();
   script.process.reset();
@@ -209,9 +209,9 @@ void ScriptHost::restart(Key key, Script& script, const std::string& why) {
   }
   log(script, 2, 1, fmt::format("the process that it runs in {}: it is started anew", why));
   script.nextUrl = 0;
-  script.expected = true;
-  beginning_.push_back(key);
-  engine_.scriptsBegin();
+  script.startPending = true;
+  startQueue_.push_back(key);
+  engine_.requestScriptStart();
 }
 
 // --- When a Script ends ---
@@ -219,9 +219,9 @@ void ScriptHost::restart(Key key, Script& script, const std::string& why) {
 void ScriptHost::stopRemote(Script& script) {
   const bool ending = std::exchange(ending_, true);
   const bool creating = script.pending == wire::Op::create;
-  const bool shutting = script.pending == wire::Op::shutdown; // sent ahead
+  const bool shutting = script.pending == wire::Op::shutdown; // sent early
   if (script.pending != wire::Op{}) waitFor(script);
-  const bool overdue = spent() || (closing_ && wire::Clock::now() >= endBy_);
+  const bool overdue = isTimeUsedUp() || (closing_ && wire::Clock::now() >= shutdownDeadline_);
   if (script.process && !script.busy() && !creating && !shutting && !overdue)
     plainCall(script, wire::Op::shutdown, &XsEngine::shutdown);
   ending_ = ending;
@@ -241,13 +241,13 @@ void ScriptHost::stopRemote(Script& script) {
     processes_->remove(*process);
   else
     discard(process, forEver, patienceEnds());
-  if (beginning_.empty()) processes_->trim();
+  if (startQueue_.empty()) processes_->trim();
 }
 
-// The world ends: a few Scripts of those that follow on `from` begin to shut down, each in a
-// process where nothing else runs.
-void ScriptHost::shutDownAhead(Key from) {
-  if (spent() || wire::Clock::now() >= endBy_) return;
+// Sends shutdown early to a few Scripts after `from` when the world ends, each in a process where
+// nothing else runs.
+void ScriptHost::shutDownEarly(Key from) {
+  if (isTimeUsedUp() || wire::Clock::now() >= shutdownDeadline_) return;
   size_t left = ScriptProcesses::most;
   for (auto next = scripts_.upper_bound(from); next != scripts_.end() && left > 0; ++next, --left) {
     Script& script = *next->second;
@@ -259,11 +259,11 @@ void ScriptHost::shutDownAhead(Key from) {
   }
 }
 
-// Destroys interpreters that nobody uses any more, when nothing else runs in their process.
+// Destroys unused interpreters when nothing else runs in their process.
 void ScriptHost::discard(const ProcessRef& process, double first, wire::Clock::time_point until) {
   for (;;) {
     if (process->busy()) {
-      if (!process->orphaned) return; // somebody waits for that
+      if (!process->orphaned) return; // a Script waits for that call
       Script* const outer = std::exchange(running_, nullptr);
       const ScriptProcess::State state =
           process->serve(first, std::max(first, linger), until, engine_.now());
@@ -282,11 +282,11 @@ void ScriptHost::discard(const ProcessRef& process, double first, wire::Clock::t
 
 // --- With every tick ---
 
-void ScriptHost::serveLate() {
+void ScriptHost::serveRunningCalls() {
   const auto end = wire::Clock::now() + tickShare;
   std::vector<Key> keys;
   for (const auto& [key, script] : scripts_)
-    if (script->pending != wire::Op{} && !script->ahead) keys.push_back(key);
+    if (script->pending != wire::Op{} && !script->startedEarly) keys.push_back(key);
   for (size_t left = keys.size(); left > 0; --left) {
     const Key key = keys[keys.size() - left];
     const auto found = scripts_.find(key);
@@ -301,15 +301,18 @@ void ScriptHost::serveLate() {
   }
   for (const ProcessRef& process : std::vector<ProcessRef>(processes_->all()))
     discard(process, 0, end);
-  if (beginning_.empty()) processes_->trim();
-  for (const auto& [key, script] : scripts_) // that waited for that, or for others in their process
-    if (script->process && !script->busy() && (script->owed || !script->waiting.empty()))
+  if (startQueue_.empty()) processes_->trim();
+  // Scripts that waited for this call, or for others in their process, are due.
+  for (const auto& [key, script] : scripts_)
+    if (script->process && !script->busy() &&
+        (script->eventsProcessedDue || !script->waiting.empty()))
       due_[key] = true;
   const auto idle = [](const ProcessRef& process) { return !process->busy(); };
-  if (late_.empty() || std::none_of(processes_->all().begin(), processes_->all().end(), idle))
+  if (waitingForProcess_.empty() ||
+      std::none_of(processes_->all().begin(), processes_->all().end(), idle))
     return;
-  for (const Key key : std::exchange(late_, {})) beginning_.push_back(key);
-  engine_.scriptsBegin();
+  for (const Key key : std::exchange(waitingForProcess_, {})) startQueue_.push_back(key);
+  engine_.requestScriptStart();
 }
 
 } // namespace xvrml

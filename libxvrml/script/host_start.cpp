@@ -1,5 +1,5 @@
-// host_start.cpp: how Scripts start: one after the other as far as the world can tell, side by side
-// in their processes. Part of ScriptHost; see host.h. [the browser's thread]
+// host_start.cpp: starts Scripts: one after the other as seen by the world, in parallel in their
+// processes. Part of ScriptHost. [the browser's thread]
 #include <algorithm>
 #include <thread>
 
@@ -16,9 +16,9 @@ bool flagOf(const ScriptNode& node, std::string_view name) {
   return field && field->type == FieldType::SFBool && std::get<bool>(node.get(*field));
 }
 
-// Two for each processor: one computes while the browser answers another. More would only take time
-// and memory from each other.
-size_t sideBySide() {
+// Returns how many Scripts start in parallel: two per processor, so that one computes while the
+// browser serves another. More would only compete for time and memory.
+size_t parallelStarts() {
   const size_t processors = std::max(1u, std::thread::hardware_concurrency());
   return std::clamp<size_t>(2 * processors, 4, ScriptProcesses::most);
 }
@@ -30,54 +30,55 @@ void ScriptHost::begin(ScriptNode& node) {
   const XsNode self = ++lastNumber_;
   const auto place = scripts_.emplace(key, std::make_unique<Script>(node, self, lastNumber_)).first;
   bySelf_.emplace(self, place->second.get());
-  beginning_.push_back(key);
+  startQueue_.push_back(key);
   ++counts_.scripts;
 }
 
-// 4.12.3: before any event reaches it.
+// Starts the next Script. It runs before any event reaches the Script (4.12.3).
 bool ScriptHost::initializeNext() {
-  if (spent()) stopAll();
-  if (beginning_.empty()) return false;
-  startAhead();
-  const Key key = beginning_.front();
-  beginning_.pop_front();
-  ahead_ -= std::min<size_t>(ahead_, 1);
+  if (isTimeUsedUp()) stopAll();
+  if (startQueue_.empty()) return false;
+  startEarly();
+  const Key key = startQueue_.front();
+  startQueue_.pop_front();
+  earlyHandled_ -= std::min<size_t>(earlyHandled_, 1);
   if (const auto found = scripts_.find(key); found != scripts_.end()) {
     Script& script = *found->second;
     start(script);
-    if (sentAhead_ > 0) spendOfAll();
-    if (!script.waiting.empty()) due_[key] = true; // events that came meanwhile
+    if (earlyStarts_ > 0) chargeProcesses();
+    if (!script.waiting.empty()) due_[key] = true; // events that have arrived meanwhile
   }
   if (run_.onScriptStart) {
-    ScriptCounts told = counts_;
-    told.waiting = beginning_.size();
-    run_.onScriptStart(told);
+    ScriptCounts current = counts_;
+    current.waiting = startQueue_.size();
+    run_.onScriptStart(current);
   }
   return true;
 }
 
-// A process makes an interpreter and runs initialize() while the browser looks after others. All
-// that a program asks of the browser waits for the Script's turn: the world sees the same calls in
-// the same order as if each had been sent at its turn.
-void ScriptHost::startAhead() {
-  static const size_t most = sideBySide();
-  for (; ahead_ < beginning_.size() && sentAhead_ < most; ++ahead_) {
-    const auto found = scripts_.find(beginning_[ahead_]);
+// Sends `create` early. A process makes an interpreter and runs initialize() while the browser
+// serves others. The program's requests to the browser wait for the Script's turn. So the world
+// sees the same calls in the same order as without early starts.
+void ScriptHost::startEarly() {
+  static const size_t most = parallelStarts();
+  for (; earlyHandled_ < startQueue_.size() && earlyStarts_ < most; ++earlyHandled_) {
+    const auto found = scripts_.find(startQueue_[earlyHandled_]);
     if (found == scripts_.end()) continue;
     Script& script = *found->second;
-    const bool first = !script.engine && !script.stopped && !script.ghost && script.nextUrl == 0;
-    if (first && !sendAhead(script)) return;
+    const bool first = !script.engine && !script.stopped && !script.nodeCopy && script.nextUrl == 0;
+    if (first && !sendCreateEarly(script)) return;
   }
 }
 
-// False if it has to wait for a process. What cannot be sent ahead, or goes wrong, is done again at
-// the Script's turn.
-bool ScriptHost::sendAhead(Script& script) {
+// Returns false if the Script has to wait for a process. A start that cannot be sent early, or
+// fails, is repeated at the Script's turn.
+bool ScriptHost::sendCreateEarly(Script& script) {
   if (options_.scriptIsolation == BrowserOptions::Isolation::never) return true;
   ScriptProgram program = programs_.peek(*script.node, world_.options);
   if (!program.engine || !isolated(*program.engine)) return true;
   std::string why;
-  const ProcessRef process = chooseProcess(*program.engine, beginning_.size() - ahead_ - 1, why);
+  const ProcessRef process =
+      chooseProcess(*program.engine, startQueue_.size() - earlyHandled_ - 1, why);
   if (!process || process->busy()) return !process;
   const size_t url = program.url;
   XsResult result = XS_FAILED;
@@ -85,7 +86,7 @@ bool ScriptHost::sendAhead(Script& script) {
     describe(script, std::move(program));
     result = beginCreate(script, process);
   } catch (...) {
-    giveUp(script);
+    dropInterpreter(script);
     throw;
   }
   if (result != later) {
@@ -94,21 +95,21 @@ bool ScriptHost::sendAhead(Script& script) {
     return true;
   }
   script.nextUrl = url + 1;
-  script.ahead = true;
-  ++sentAhead_;
+  script.startedEarly = true;
+  ++earlyStarts_;
   return true;
 }
 
 void ScriptHost::start(Script& script) {
-  script.expected = false;
-  if (script.ahead) {
-    script.ahead = false;
-    --sentAhead_;
-    programs_.tellRefusals();
+  script.startPending = false;
+  if (script.startedEarly) {
+    script.startedEarly = false;
+    --earlyStarts_;
+    programs_.reportRefusals();
     const XsResult result = waitFor(script);
     if (result == later || created(script, result)) return;
   }
-  while (!script.stopped && !script.engine && !script.ghost) {
+  while (!script.stopped && !script.engine && !script.nodeCopy) {
     ScriptProgram program = programs_.find(*script.node, world_.options, script.nextUrl);
     if (!program.engine) return;
     const size_t url = program.url;
@@ -117,14 +118,14 @@ void ScriptHost::start(Script& script) {
     if (result == later) return;
     if (result == again) {
       script.nextUrl = url;
-      if (script.expected) return;
+      if (script.startPending) return;
     } else if (created(script, result)) {
       return;
     }
   }
 }
 
-// What follows on `create`. False if it failed.
+// Continues after `create`. Returns false if it failed.
 bool ScriptHost::created(Script& script, XsResult result) {
   if (result != XS_OK) {
     if (script.process) detach(script);
@@ -132,22 +133,22 @@ bool ScriptHost::created(Script& script, XsResult result) {
     return false;
   }
   counts_.started += !std::exchange(script.counted, true);
-  const bool initializing =
-      script.pending == wire::Op::initialize; // its process has gone on by itself
-  if (!script.ghost) {
+  // Its process has continued with initialize by itself.
+  const bool initializing = script.pending == wire::Op::initialize;
+  if (!script.nodeCopy) {
     if (script.flag(XS_DIRECT_OUTPUT)) markReach(script);
     if (script.engine->tick) ticking_.push_back(liveOf(*script.node)->order);
   }
   if (initializing) {
     waitFor(script);
-  } else if (!script.ghost &&
-             !spent()) { // else the program has let go of the last that held its own node
+  } else if (!script.nodeCopy &&
+             !isTimeUsedUp()) { // else the program has released the last reference to its own node
     plainCall(script, wire::Op::initialize, &XsEngine::initialize);
   }
   return true;
 }
 
-// Sets all that the engine is told of the Script.
+// Fills in the description of the Script for the engine.
 void ScriptHost::describe(Script& script, ScriptProgram program) {
   script.engine = program.engine;
   script.start = program.start;
@@ -175,8 +176,8 @@ void ScriptHost::describe(Script& script, ScriptProgram program) {
   info.memory = options_.scriptMemory;
 }
 
-// The Script has no interpreter: nobody is to shut it down.
-void ScriptHost::giveUp(Script& script) {
+// Drops the interpreter of a Script, so that it is not shut down.
+void ScriptHost::dropInterpreter(Script& script) {
   if (script.process) detach(script);
   script.engine = nullptr;
 }
@@ -196,25 +197,25 @@ XsResult ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
     return result;
   } catch (...) { // out of memory
     if (made) engine->destroy(script.interpreter);
-    giveUp(script);
+    dropInterpreter(script);
     throw;
   }
 }
 
 ScriptCounts ScriptHost::counts() const {
   ScriptCounts counts = counts_;
-  counts.waiting = beginning_.size() + late_.size();
+  counts.waiting = startQueue_.size() + waitingForProcess_.size();
   for (const auto& [key, script] : scripts_) {
     const bool starting =
         script->pending == wire::Op::create || script->pending == wire::Op::initialize;
-    counts.waiting += starting && !script->ahead;
+    counts.waiting += starting && !script->startedEarly;
   }
   return counts;
 }
 
-// --- What Scripts may take together ---
+// --- Limits of all Scripts together ---
 
-void ScriptHost::spend(std::chrono::steady_clock::duration time, double processor) {
+void ScriptHost::chargeTime(std::chrono::steady_clock::duration time, double processor) {
   const double seconds = std::chrono::duration<double>(time).count();
   used_ += processor;
   waited_ += seconds;
@@ -222,33 +223,34 @@ void ScriptHost::spend(std::chrono::steady_clock::duration time, double processo
   ++counts_.calls;
 }
 
-// Counts what the processes have used whose Scripts start ahead of their turn.
-void ScriptHost::spendOfAll() {
+// Charges the processor time of processes whose Scripts start early.
+void ScriptHost::chargeProcesses() {
   for (const ProcessRef& process : processes_->all()) used_ += process->takeProcessorTime();
 }
 
-// Ends all Scripts: they have used up what the world may take. Not while a function of one runs.
+// Ends all Scripts, because they have used up the world's time. Must not be called while a function
+// of one runs.
 void ScriptHost::stopAll() {
-  const std::unordered_set<Key> beginning(beginning_.begin(), beginning_.end());
+  const std::unordered_set<Key> beginning(startQueue_.begin(), startQueue_.end());
   uint64_t stopped = 0;
   for (const auto& [key, script] : scripts_) {
     if (script->stopped) continue;
-    if (!script->engine && !script->expected && !beginning.contains(key)) continue;
+    if (!script->engine && !script->startPending && !beginning.contains(key)) continue;
     script->stopped = true;
     script->waiting.clear();
     script->outputs.clear();
-    script->expected = script->owed = script->ahead = false;
+    script->startPending = script->eventsProcessedDue = script->startedEarly = false;
     if (script->process) detach(*script);
     ++stopped;
   }
-  beginning_.clear();
-  late_.clear();
+  startQueue_.clear();
+  waitingForProcess_.clear();
   due_.clear();
   ticking_.clear();
-  ahead_ = sentAhead_ = 0;
+  earlyHandled_ = earlyStarts_ = 0;
   if (processes_)
     for (const ProcessRef& process : processes_->all()) process->kill("is not needed any more");
-  if (stopped == 0 || std::exchange(toldSpent_, true)) return;
+  if (stopped == 0 || std::exchange(limitReported_, true)) return;
   const double limit = run_.worldScriptSeconds;
   Diagnostic d;
   d.file = world_.path;

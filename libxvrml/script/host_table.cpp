@@ -1,5 +1,5 @@
-// host_table.cpp: what Scripts may call: every function of XsHost. Nothing they hand over is
-// believed; nothing throws across the border. See xvrml/xscript.h. [the browser's thread]
+// host_table.cpp: the functions of XsHost, which Scripts call. Arguments are not trusted, and no
+// exception crosses the ABI. The interface is in xvrml/xscript.h. [the browser's thread]
 #include "script/host_table.h"
 
 #include <new>
@@ -20,7 +20,7 @@ struct HostTable {
     return why;
   }
 
-  // The Script whose function is running, within its budget; then what is to be done for it.
+  // Finds the Script whose function is running, checks its budget and runs `body`.
   template <class Body> static XsResult enter(Host table, XsNode self, Body&& body) {
     try {
       ScriptHost& host = hostOf(table);
@@ -36,10 +36,10 @@ struct HostTable {
       return script ? refuse(*script, XS_FAILED, error.what()) : XS_FAILED;
     }
   }
-  // The same for functions that change something: not while the Script ends.
+  // Does the same for functions that change something. They are refused while the Script ends.
   template <class Body> static XsResult act(Host table, XsNode self, Body&& body) {
     return enter(table, self, [&](ScriptHost& host, Script& script) {
-      if (host.ending_ || script.ghost)
+      if (host.ending_ || script.nodeCopy)
         return refuse(script, XS_NOT_ALLOWED, "the Script is being shut down");
       return body(host, script);
     });
@@ -219,8 +219,8 @@ struct HostTable {
                  : refuse(script, XS_NO_NODE, fmt::format("no node {}", number));
     });
   }
-  // Also while no function runs: languages with garbage collection let go when they like. What is
-  // let go of waits for a call.
+  // Releases a handle, also while no function runs: garbage collectors release at any time. The
+  // node is dropped at the end of the next call.
   static XsResult release(Host table, XsNode self, XsNode number) {
     Script* script = hostOf(table).find(self);
     try {
@@ -346,7 +346,7 @@ struct HostTable {
     try {
       ScriptHost& host = hostOf(table);
       if (Script* script = host.find(self)) host.log(*script, severity, line, text(host, message));
-    } catch (const std::exception&) {} // no text, or no memory for it
+    } catch (const std::exception&) {} // invalid text, or out of memory
   }
   static XsResult lastError(Host table, XsNode self, XsString* out) {
     Script* script = hostOf(table).find(self);
@@ -367,7 +367,7 @@ struct HostTable {
   static XsNode number(Host table, XsNode self, void* object) {
     Script* script = hostOf(table).find(self);
     return script && script->flag(XS_TRUSTED) && object
-               ? script->handles.give(static_cast<Node*>(object))
+               ? script->handles.handleOf(static_cast<Node*>(object))
                : 0;
   }
 };

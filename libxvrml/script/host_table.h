@@ -1,4 +1,4 @@
-// host_table.h: the table of functions that Scripts get. See host_table.cpp.
+// host_table.h: the function table of Scripts; the functions are in host_table.cpp.
 #pragma once
 
 #include "script/host.h"

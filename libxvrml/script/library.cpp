@@ -1,4 +1,4 @@
-// library.cpp: Part of the library and of xvrml-script-host.
+// library.cpp: loads script plug-ins. Part of the library and of xvrml-script-host.
 #include "script/library.h"
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
-// library.h: one script plug-in: loads its file and checks what it exports. Used by the list of
-// engines and by xvrml-script-host. Any thread.
+// library.h: loads the file of a script plug-in and checks its exports. Used by the list of engines
+// and by xvrml-script-host. [any thread]
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace xvrml {
 
-// The engines of a library, which is never unloaded: interpreters of languages do not bear it.
-// Throws std::runtime_error if it is no good plug-in.
+// Returns the engines of a library. The library is never unloaded, because language interpreters do
+// not tolerate it. Throws std::runtime_error if it is not a valid plug-in.
 std::vector<XsEngine> loadScriptLibrary(const std::string& path);
 
 } // namespace xvrml

@@ -1,4 +1,4 @@
-// plugin_check.cpp: the rules of the script ABI. See plugin_check.h.
+// plugin_check.cpp: the rules of the script ABI.
 #include "script/plugin_check.h"
 
 #include <cstring>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t maximumEngines = 256;
 constexpr size_t maximumNames = 256;
-// An engine reaches at least to its last function that is not optional.
+// An engine's structure reaches at least to its last mandatory function.
 constexpr size_t leastEngine = offsetof(XsEngine, initialize);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -38,7 +38,7 @@ bool isSchemeCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '-' || c == '.';
 }
 
-// A list of names in lower case; returns how many there are.
+// Checks a list of lower-case names and returns its length.
 size_t checkNames(const char* const* names, const char* what, bool scheme,
                   const std::string& where) {
   size_t count = 0;
@@ -63,7 +63,7 @@ XsEngine checkEngine(const XsEngine* theirs, const std::string& path) {
     refuse(path, fmt::format("claims an engine structure of {} bytes; this library knows {} to {}",
                              theirs->size, leastEngine, sizeof(XsEngine)));
   XsEngine ours{};
-  // Whole pointers only: half a function pointer would be a wild one.
+  // Copies whole pointers only: half a function pointer would be wild.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));
   ours.size = sizeof(XsEngine);
   if (!ours.name || !*ours.name) refuse(path, "an engine without a name");

@@ -10,8 +10,8 @@
 namespace xvrml {
 namespace {
 
-// Schemes that say where a file is, not in which language it is written.
-bool isPlace(std::string_view scheme) {
+// Returns whether a scheme names a location of files instead of a language.
+bool isLocation(std::string_view scheme) {
   constexpr std::string_view places[] = {"",    "file",   "http", "https",
                                          "ftp", "gopher", "urn",  "mailto"};
   return scheme.size() == 1 ||
@@ -111,17 +111,17 @@ bool ProgramFinder::dataProgram(std::string_view url, const LoadOptions& options
   return true;
 }
 
-void ProgramFinder::tellMissing(const ScriptNode& script) {
+void ProgramFinder::reportMissing(const ScriptNode& script) {
   for (const auto& [protocol, message] : missing_)
-    if (told_.insert(protocol).second) diagnostics_.warn(script.source, "Script: " + message);
+    if (reported_.insert(protocol).second) diagnostics_.warn(script.source, "Script: " + message);
   if (!reasons_.empty()) diagnostics_.warn(script.source, "Script does nothing: " + reasons_);
 }
 
 ScriptProgram ProgramFinder::find(const ScriptNode& script, const LoadOptions& options,
                                   size_t first) {
   ScriptProgram program = peek(script, options, first);
-  tellRefusals();
-  if (!program.engine) tellMissing(script);
+  reportRefusals();
+  if (!program.engine) reportMissing(script);
   return program;
 }
 
@@ -143,7 +143,7 @@ ScriptProgram ProgramFinder::peek(const ScriptNode& script, const LoadOptions& o
       if (!dataProgram(trimmed, options, program)) continue;
       program.start = {script.source.file,
                        i < script.urlLines.size() ? script.urlLines[i] : script.source.line, 0};
-    } else if (isPlace(scheme)) {
+    } else if (isLocation(scheme)) {
       if (!fileProgram(url, base, options, program)) continue;
     } else {
       program.scheme = std::move(scheme);
@@ -159,7 +159,7 @@ ScriptProgram ProgramFinder::peek(const ScriptNode& script, const LoadOptions& o
   return {};
 }
 
-void ProgramFinder::tellRefusals() {
+void ProgramFinder::reportRefusals() {
   for (const std::string& refusal : engines_.takeRefusals()) diagnostics_.warn({}, refusal);
 }
 

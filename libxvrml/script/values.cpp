@@ -9,7 +9,7 @@ namespace {
 
 XsString view(const std::string& text) { return {text.c_str(), text.size()}; }
 
-// RFC 3629: no overlong forms, no surrogates, at most U+10FFFF.
+// Checks UTF-8 by RFC 3629: no overlong forms, no surrogates, at most U+10FFFF.
 bool isUtf8(std::string_view text) {
   for (size_t i = 0; i < text.size();) {
     const auto byte = [&](size_t k) {
@@ -33,7 +33,7 @@ bool isUtf8(std::string_view text) {
   return true;
 }
 
-// One element from the ABI's array; its type there.
+// Reads one element of the ABI's array; the type of `out` selects the array.
 bool element(const XsValue& v, size_t i, bool& out) {
   out = v.of.ints[i] != 0;
   return true;
@@ -58,7 +58,7 @@ requires(sizeof(T) % sizeof(float) == 0 && std::is_trivially_copyable_v<T>) bool
   return true;
 }
 
-struct Taker {
+struct ValueReader {
   const XsValue& value;
   const Handles& handles;
   const Limits& limits;
@@ -134,7 +134,7 @@ const XsValue& LentValue::lend(Value value, Handles& handles) {
           strings_.push_back(view(v));
           view_.of.strings = strings_.data();
         } else if constexpr (std::is_same_v<T, NodeRef>) {
-          nodes_.push_back(handles.give(v.get()));
+          nodes_.push_back(handles.handleOf(v.get()));
           view_.of.nodes = nodes_.data();
         } else if constexpr (std::is_same_v<T, Image>) {
           image_ = {v.width, v.height, v.components, 0, v.pixels.data()};
@@ -144,7 +144,7 @@ const XsValue& LentValue::lend(Value value, Handles& handles) {
           view_.count = uint32_t(v.size());
           view_.of.strings = strings_.data();
         } else if constexpr (std::is_same_v<T, MFNode>) {
-          for (const NodeRef& node : v) nodes_.push_back(handles.give(node.get()));
+          for (const NodeRef& node : v) nodes_.push_back(handles.handleOf(node.get()));
           view_.count = uint32_t(v.size());
           view_.of.nodes = nodes_.data();
         } else if constexpr (requires { v.size(); }) {
@@ -200,7 +200,7 @@ bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, c
     return false;
   }
   out = defaultValue(wanted);
-  return std::visit([&](auto& v) { return Taker{*value, handles, limits, why}.all(v); }, out);
+  return std::visit([&](auto& v) { return ValueReader{*value, handles, limits, why}.all(v); }, out);
 }
 
 } // namespace xvrml

@@ -1,5 +1,5 @@
-// values.h: field values across the border of the script ABI: the host's Value as typed arrays, and
-// arrays that a Script hands over, checked, as a Value. [the browser's thread]
+// values.h: field values at the script ABI: converts the host's Value to typed arrays, and checked
+// arrays from a Script to a Value. [the browser's thread]
 #pragma once
 
 #include "script/handles.h"
@@ -13,10 +13,10 @@ inline XsAccess xsAccess(Access access) {
   return table[size_t(access)];
 }
 
-// Keeps what an XsValue points to.
+// Holds the data that an XsValue points to.
 class LentValue {
  public:
-  // The value stays as it is until the next call.
+  // Returns a view of the value that is valid until the next call.
   const XsValue& lend(Value value, Handles& handles);
   void clear();
 
@@ -29,8 +29,8 @@ class LentValue {
   XsValue view_{};
 };
 
-// False, and why, if it is not a good value of this type: another type, wrong counts, missing
-// arrays, text that is no UTF-8, nodes that the Script does not know.
+// Checks and converts a value of a Script. Returns false, with the reason, for a wrong type, wrong
+// counts, missing arrays, invalid UTF-8 or unknown nodes.
 bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, const Limits& limits,
                Value& out, std::string& why);
 bool takeText(const XsString& text, const Limits& limits, std::string& out, std::string& why);

@@ -1,3 +1,4 @@
+// value_text.cpp: parses one value with the lexer and the value parser of files.
 #include "xvrml/value_text.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// value_writer.cpp: the text of numbers, tuples, lists and images.
 #include "write/value_writer.h"
 
 #include <charconv>
@@ -39,7 +40,7 @@ void write(std::string& out, const Vec3f& v) { writeTuple(out, {v.x, v.y, v.z});
 void write(std::string& out, const Color& c) { writeTuple(out, {c.r, c.g, c.b}); }
 void write(std::string& out, const Rotation& r) { writeTuple(out, {r.x, r.y, r.z, r.angle}); }
 
-// Tuples are set apart by commas; single numbers need none.
+// Tuples are separated by commas; single numbers need none.
 template <class T> constexpr std::string_view separator = std::is_class_v<T> ? ", " : " ";
 
 template <class T> void writeList(std::string& out, const std::vector<T>& values, size_t indent) {
@@ -104,7 +105,7 @@ void writeValue(std::string& out, FieldType type, const void* storage, size_t in
     if constexpr (std::is_same_v<T, Image>) {
       writeImage(out, value, indent);
     } else if constexpr (std::is_same_v<T, NodeRef> || std::is_same_v<T, MFNode>) {
-      // Nodes are the writer's.
+      // The world's writer writes nodes.
     } else if constexpr (std::is_same_v<T, std::string>) {
       writeString(out, value);
     } else if constexpr (requires { typename T::value_type; }) {

@@ -1,5 +1,5 @@
-// value_writer.h: field values as VRML97 text that reads back equal. Used by the writer. [any
-// thread]
+// value_writer.h: writes field values as VRML97 text that reads back equal. Used by the writer.
+// [any thread]
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace xvrml {
 
-// Numbers in the shortest form that reads back equal; what VRML cannot spell (infinity, not a
-// number) as the nearest it can.
+// Append a number in the shortest form that reads back equal. Infinity and not-a-number, which VRML
+// cannot express, become the nearest number that it can.
 void writeNumber(std::string& out, float number);
 void writeNumber(std::string& out, double number);
 void writeNumber(std::string& out, int32_t number);
 void writeString(std::string& out, std::string_view text); // in quotes
-// A value of any type but SFNode and MFNode. Lists break their lines, which begin with indent
-// blanks.
+// Appends a value of any type except SFNode and MFNode. Long lists are broken into lines that begin
+// with `indent` blanks.
 void writeValue(std::string& out, FieldType type, const void* storage, size_t indent);
 
 } // namespace xvrml

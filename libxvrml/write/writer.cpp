@@ -1,5 +1,5 @@
-// writer.cpp: a world as VRML97 text. What was loaded from other files stays a reference to them;
-// bodies of prototype instances are not written, their declarations are. Pure function of the
+// writer.cpp: writes a world as VRML97 text. Content of other files stays a reference to them.
+// Prototype declarations are written, the bodies of instances are not. A pure function of the
 // world. [the thread that owns the world]
 #include <span>
 #include <unordered_map>
@@ -20,7 +20,7 @@ namespace {
 
 using Connections = std::unordered_map<const Node*, std::vector<const IsConnection*>>;
 
-// A name that parses; a file's own spelling stays if the parser takes it.
+// Returns a name that parses. The file's own spelling stays if the parser accepts it.
 std::string nameText(const std::string& name) {
   if (isIdentifier(name)) return name;
   std::string text;
@@ -29,7 +29,7 @@ std::string nameText(const std::string& name) {
   return text;
 }
 
-// One name space: which nodes of it have been written, and under which names.
+// The names of one scope: which nodes have been written, and under which names.
 class Names {
  public:
   Names(const std::vector<Node*>& roots, const std::vector<Route>& routes) {
@@ -59,14 +59,14 @@ class Names {
       names_.emplace(node, std::move(name));
     }
   }
-  // False if it has been written before.
+  // Marks a node as written. Returns false if it has been written before.
   bool begin(const Node* node) { return written_.insert(node).second; }
   bool isWritten(const Node* node) const { return written_.contains(node); }
   const std::string* find(const Node* node) const {
     const auto found = names_.find(node);
     return found == names_.end() ? nullptr : &found->second;
   }
-  // The name means more than one node, one after the other.
+  // Returns whether the name refers to several nodes, one after the other.
   bool isRepeated(const Node* node) const {
     const std::string* name = find(node);
     return name && repeated_.contains(*name);
@@ -86,8 +86,8 @@ class Writer {
     std::vector<Node*> roots;
     for (const NodeRef& root : scope.roots) roots.push_back(root.get());
     Names names(roots, scope.routes);
-    // Routes stand at the end, but those of repeated names as soon as both nodes do, while the
-    // names mean them.
+    // Routes are written at the end. A route with a repeated name is written as soon as both nodes
+    // exist, while the name still refers to them.
     std::vector<const Route*> early, late;
     for (const Route& route : scope.routes) {
       const bool repeated = names.isRepeated(route.from.get()) || names.isRepeated(route.to.get());
@@ -114,8 +114,8 @@ class Writer {
     text.append(indent_, ' ');
   }
 
-  // Prototypes stand before the first node that is one of theirs, in their order: a name may be
-  // declared again later.
+  // Returns how many prototypes must be written before a root. They keep their order, because a
+  // name may be declared again later.
   static size_t
   lastPrototypeOf(Node* root,
                   const std::unordered_map<const ProtoDeclaration*, size_t>& prototypes) {
@@ -132,7 +132,7 @@ class Writer {
     return last;
   }
 
-  // False if its nodes are not both there yet.
+  // Writes a route. Returns false if one of its nodes has not been written yet.
   bool route(const Route& route, const Names& names) {
     const Node *from = route.from.get(), *to = route.to.get();
     if (!names.isWritten(from) || !names.isWritten(to)) return false;
@@ -199,7 +199,7 @@ class Writer {
     return found == connections->end() ? std::span<const IsConnection* const>() : found->second;
   }
 
-  // set_x IS y: connections that do not bear a field's own name.
+  // Writes connections such as "set_x IS y", which do not use a field's own name.
   void otherConnections(const Node& node, const Connections* connections) {
     for (const IsConnection* connection : connectionsOf(node, connections)) {
       if (node.type().find(connection->field)) continue;
@@ -208,7 +208,7 @@ class Writer {
     }
   }
 
-  // Fields that a Script itself declares.
+  // Returns whether the Script itself declares the field.
   static bool isDeclared(const Node& node, const FieldInfo& field) {
     if (!dynamic_cast<const ScriptNode*>(&node)) return false;
     const NodeType* script = findNodeType("Script");
@@ -296,7 +296,7 @@ class Writer {
 } // namespace
 
 std::string writeWorld(const World& world) {
-  constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level takes about 1 kB
+  constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level uses about 1 kB
   return onStackOf(deepestStack, [&] {
     Writer writer;
     writer.scope(world.scope, nullptr);

@@ -1,5 +1,5 @@
-// blinn_phong.h: the highlight of VRML97 (ISO/IEC 14772-1 clause 4.14) as a lobe that is reciprocal
-// and keeps energy. Shared by Phong and VRML97. Pure functions. [render]
+// blinn_phong.h: the highlight of VRML97 (ISO/IEC 14772-1 clause 4.14) as a reciprocal,
+// energy-conserving lobe. Shared by Phong and VRML97. Pure functions. [render]
 #pragma once
 
 #include <cmath>
@@ -8,18 +8,18 @@
 
 namespace blinn_phong {
 
-// The response (N.H)^n times this reflects all of the light that comes along the normal: its
-// inverse is the integral of (N.H)^n cos over the hemisphere for that direction, (F. Giesen, "Phong
-// Normalization Factor Derivations", 2009). For all others it reflects less.
+// Returns the factor with which the BRDF (N.H)^n reflects all light that arrives along the normal,
+// and less from any other direction. Its inverse is the integral of (N.H)^n cos over the hemisphere
+// (F. Giesen, "Phong Normalization Factor Derivations", 2009).
 inline float normalisation(float exponent) {
   return (exponent + 2) * (exponent + 4) / (8 * rts::pi * (std::exp2(-exponent / 2) + exponent));
 }
-// The fraction of light along the normal that a highlight reflects whose brightest point is
-// `height`, as VRML97 has it: a light's colour is the radiance of a white matt surface.
+// Returns the reflectance, for light along the normal, of a highlight that is as bright at its peak
+// as in VRML97, where a light's colour is the radiance of a white Lambertian surface.
 inline float reflectance(float exponent) { return 1 / (rts::pi * normalisation(exponent)); }
 
-inline constexpr float sharpest =
-    1e6f; // larger exponents: a float's halfway vectors have no more digits
+// Largest exponent: half vectors in float do not resolve sharper highlights.
+inline constexpr float sharpest = 1e6f;
 
 struct Lobe {
   float exponent;
@@ -27,7 +27,7 @@ struct Lobe {
   rts::Color evaluate(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
     const float cosine = rts::dot(direction, normal);
     if (!(cosine > 0) || !(rts::dot(toEye, normal) > 0)) return {};
-    const float value = normalisation(power()) * height(toEye, direction, normal) * cosine;
+    const float value = normalisation(power()) * peakShape(toEye, direction, normal) * cosine;
     return {value, value, value};
   }
   float density(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
@@ -35,10 +35,10 @@ struct Lobe {
     const rts::Vec3 sum = toEye + direction;
     const float cosine = rts::length(sum) / 2; // between either direction and the half vector
     if (!(cosine > 1e-6f)) return 0;
-    return (power() + 1) / (2 * rts::pi) * height(toEye, direction, normal) / (4 * cosine);
+    return (power() + 1) / (2 * rts::pi) * peakShape(toEye, direction, normal) / (4 * cosine);
   }
   rts::Vec3 sample(rts::Vec3 toEye, rts::Vec2 square, rts::Vec3 normal) const {
-    // 1 - cos^2 by expm1 and log: for sharp highlights the cosine is 1 to all digits.
+    // 1 - cos^2 by expm1 and log, because for sharp highlights the cosine rounds to 1.
     const float sine2 = -std::expm1(2 / (power() + 1) * std::log(std::fmax(square.y, 1e-30f)));
     const float sine = std::sqrt(std::fmin(1.0f, std::fmax(0.0f, sine2))),
                 phi = 2 * rts::pi * square.x;
@@ -49,8 +49,8 @@ struct Lobe {
 
  private:
   float power() const { return std::fmin(sharpest, std::fmax(0.0f, exponent)); }
-  // (N.H)^n through the sine, which keeps its digits near the top.
-  float height(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
+  // Returns (N.H)^n, computed from the sine, which is precise near the peak.
+  float peakShape(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
     const rts::Vec3 h = rts::normalize(toEye + direction), across = rts::cross(normal, h);
     if (!(rts::dot(h, normal) > 0)) return 0;
     return std::exp(0.5f * power() * std::log1p(-std::fmin(0.9999999f, rts::dot(across, across))));

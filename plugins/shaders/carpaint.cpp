@@ -1,38 +1,40 @@
 // carpaint.cpp: pigment and metal flakes under a clear coat. Flakes lie in cells of the object's
-// own space: which cells have one and how it leans are numbers from the cell, so they stay where
-// they are while body and eye move.
+// space. A hash of the cell decides whether a flake is visible and how it tilts, so flakes stay in
+// place while object and camera move.
 #include "coat.h"
 #include "microfacet.h"
 #include "pattern.h"
 
 namespace {
 
-// A flake of aluminium that leans towards the lobe's normal, under the coat whose normal is `top`.
-// What the coat lets through is that of both directions at its own normal; that it also bends them
-// only makes flakes seem to lean less. Weight: its tint.
+// The lobe of a tilted aluminium flake, whose normal is the lobe's, under a coat with normal `top`.
+// The coat transmits both directions at its own normal. Their refraction is neglected: it only
+// makes flakes appear less tilted. The weight is the tint.
 struct Flake {
-  microfacet::Rough<microfacet::Conductor> metal;
+  microfacet::MicrofacetLobe<microfacet::Conductor> metal;
   float index;
   rts::Vec3 top;
 
   rts::Color evaluate(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
-    return both(toEye, direction) * metal.evaluate(toEye, direction, normal);
+    return twoWayTransmittance(toEye, direction) * metal.evaluate(toEye, direction, normal);
   }
   float density(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
     return metal.density(toEye, direction, normal);
   }
   rts::Sample sample(rts::Vec3 toEye, rts::Vec2 square, rts::Vec3 normal) const {
     rts::Sample s = metal.sample(toEye, square, normal);
-    s.quotient = both(toEye, s.direction) * s.quotient;
+    s.quotient = twoWayTransmittance(toEye, s.direction) * s.quotient;
     return s;
   }
 
  private:
-  float one(rts::Vec3 v) const {
+  float coatTransmittance(rts::Vec3 v) const {
     const float c = rts::dot(v, top);
-    return c > 0 ? coat::through(std::fmin(1.0f, c), index) : 0.0f;
+    return c > 0 ? coat::transmittance(std::fmin(1.0f, c), index) : 0.0f;
   }
-  float both(rts::Vec3 a, rts::Vec3 b) const { return one(a) * one(b); }
+  float twoWayTransmittance(rts::Vec3 a, rts::Vec3 b) const {
+    return coatTransmittance(a) * coatTransmittance(b);
+  }
 };
 
 constexpr rts::Color aluminiumN{1.35f, 0.96f, 0.62f}, aluminiumK{7.47f, 6.4f, 5.3f};
@@ -55,20 +57,20 @@ struct CarPaint : rts::Surface<CarPaint> {
 
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     rts::Vec3 leaning;
-    const float f = 1 - coat::through(hit.cosine(), index);
+    const float f = 1 - coat::transmittance(hit.cosine(), index);
     if (index > 1.001f) out.reflection({f, f, f});
     if (flakeAt(hit, leaning)) {
       out.normal(leaning);
       out.custom(flakeColor, Flake{{flakeRoughness, {aluminiumN, aluminiumK}}, index, hit.normal});
       out.albedo(flakeColor);
     } else {
-      out.custom(coat::colour(color, index), coat::Matt::of(index));
+      out.custom(coat::colour(color, index), coat::CoatedDiffuse::of(index));
       out.albedo(color);
     }
   }
 
  private:
-  // The flake that lies nearest: each cell has one, somewhere in it.
+  // Finds the nearest flake; each cell has one at a random position.
   bool flakeAt(const rts::Hit& hit, rts::Vec3& leaning) const {
     const rts::Vec3 p = hit.local().position * (1 / float(flakeSize));
     const int32_t x = pattern::cell(p.x - 0.5f), y = pattern::cell(p.y - 0.5f),
@@ -88,13 +90,13 @@ struct CarPaint : rts::Surface<CarPaint> {
       }
     }
     if (!(pattern::unit(pattern::mix(flake + 3)) < flakes)) return false;
-    // Slopes of a rough surface: GGX's tangent from one number, its direction from another.
+    // The tilt is distributed like GGX slopes: one number gives the tangent, another the direction.
     const float u = std::fmin(0.99f, pattern::unit(pattern::mix(flake + 4))),
                 phi = 2 * rts::pi * pattern::unit(pattern::mix(flake + 5));
     const float slope = flakeSpread * std::sqrt(u / (1 - u));
     leaning = rts::normalize(
         rts::Frame(hit.normal).toWorld({slope * std::cos(phi), slope * std::sin(phi), 1}));
-    // Never away from the eye or from the surface's outside.
+    // A flake that faces away from the eye or from the outside is not tilted.
     if (!(rts::dot(leaning, hit.geometric) > 0) || !(rts::dot(leaning, hit.direction) < 0))
       leaning = hit.normal;
     return true;

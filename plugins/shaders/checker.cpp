@@ -1,4 +1,4 @@
-// checker.cpp: a body carved from cubes of two colours.
+// checker.cpp: the surface shader Checker, a solid texture of cubes in two colours. [render]
 #include "coat.h"
 #include "pattern.h"
 
@@ -20,7 +20,8 @@ struct Checker : rts::Surface<Checker> {
 
   uint32_t needs() const { return coating > 1.001f ? RTS_SPECULAR | RTS_GLOSSY : 0; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
-    const rts::Vec3 p = pattern::beneath(hit, std::fmax(size->x, std::fmax(size->y, size->z)));
+    const rts::Vec3 p =
+        pattern::positionBeneath(hit, std::fmax(size->x, std::fmax(size->y, size->z)));
     const int32_t sum = number(p.x, size->x) + number(p.y, size->y) + number(p.z, size->z);
     coat::add(hit, out, sum & 1 ? *odd : *even, coating);
   }

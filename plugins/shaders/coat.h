@@ -1,10 +1,12 @@
-// coat.h: a matt body under a smooth clear coat. Shared by Plastic, CarPaint, Wood, Marble and
+// coat.h: a diffuse base under a smooth clear coat. Shared by Plastic, CarPaint, Wood, Marble and
 // Checker. Pure functions. [render]
 //
-// What enters is scattered evenly and partly thrown back again from below the boundary; all of
-// these reflections are summed: f = T(in) T(out) albedo / (pi n^2 (1 - albedo Fi)), T = 1 - F, Fi
-// the mean reflectance from within. With 1 - Fi = (1 - Fo) / n^2, Fo that from outside, a white
-// body reflects exactly what the coat lets through: energy is kept.
+// Light that enters is scattered diffusely and partly reflected back from below the boundary. All
+// inter-reflections are summed:
+//   f = T(in) T(out) albedo / (pi n^2 (1 - albedo Fi))
+// T = 1 - F is the transmittance of the boundary, Fi its mean reflectance from inside, Fo from
+// outside. Since 1 - Fi = (1 - Fo) / n^2, a white base reflects exactly the light that the coat
+// transmits, so energy is conserved.
 #pragma once
 
 #include <cmath>
@@ -13,8 +15,9 @@
 
 namespace coat {
 
-// Mean of Fresnel's reflectance over the hemisphere of a medium of index n > 1, seen from outside:
-// R. Dunkle, "Thermal Radiation Characteristics of Surfaces", 1963, after J. Walsh (1926).
+// Returns the cosine-weighted mean of the Fresnel reflectance over the hemisphere, from outside a
+// medium of index n > 1 (R. Dunkle, "Thermal Radiation Characteristics of Surfaces", 1963, after J.
+// Walsh, 1926).
 inline double meanReflectance(double n) {
   if (!(n > 1.001)) return 0;
   const double n2 = n * n, n4 = n2 * n2, a = n2 + 1, b = n4 - 1;
@@ -23,43 +26,44 @@ inline double meanReflectance(double n) {
          2 * n2 * n * (n2 + 2 * n - 1) / (a * b) + 8 * n4 * (n4 + 1) / (a * b * b) * std::log(n);
 }
 
-inline float through(float cosine, float index) {
+inline float transmittance(float cosine, float index) {
   return index > 1.001f ? static_cast<float>(1 - rts::fresnel(cosine, 1 / double(index))) : 1.0f;
 }
 
-// Directions by Lambert's cosine: what all lobes of matt bodies share.
-inline float cosineDensity(rts::Vec3 direction, rts::Vec3 normal) {
+// Cosine-weighted sampling, shared by the lobes of diffuse bases.
+inline float cosinePdf(rts::Vec3 direction, rts::Vec3 normal) {
   return std::fmax(0.0f, rts::dot(direction, normal)) / rts::pi;
 }
-inline rts::Vec3 cosineDirection(rts::Vec2 square, rts::Vec3 normal) {
+inline rts::Vec3 sampleCosine(rts::Vec2 square, rts::Vec3 normal) {
   const float r = std::sqrt(square.x), phi = 2 * rts::pi * square.y;
   return rts::Frame(normal).toWorld(
       {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::fmax(0.0f, 1 - square.x))});
 }
 
-// Weight: `colour` of the albedo.
-struct Matt {
+// The lobe of a diffuse base under a smooth coat. Its weight is colour(albedo, index).
+struct CoatedDiffuse {
   float index, scale;
 
-  static Matt of(float index) {
+  static CoatedDiffuse of(float index) {
     return {index, static_cast<float>(1 / (1 - meanReflectance(index)))};
   }
   rts::Color evaluate(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
     const float in = rts::dot(direction, normal), out = std::fmax(0.0f, rts::dot(toEye, normal));
     if (!(in > 0)) return {};
-    const float value = scale * through(std::fmin(1.0f, in), index) *
-                        through(std::fmin(1.0f, out), index) * in / rts::pi;
+    const float value = scale * transmittance(std::fmin(1.0f, in), index) *
+                        transmittance(std::fmin(1.0f, out), index) * in / rts::pi;
     return {value, value, value};
   }
   float density(rts::Vec3, rts::Vec3 direction, rts::Vec3 normal) const {
-    return cosineDensity(direction, normal);
+    return cosinePdf(direction, normal);
   }
   rts::Vec3 sample(rts::Vec3, rts::Vec2 square, rts::Vec3 normal) const {
-    return cosineDirection(square, normal);
+    return sampleCosine(square, normal);
   }
 };
 
-// What is left of light that is thrown back and forth below the coat, against a white body's.
+// Returns the reflectance of the base including inter-reflections below the coat, relative to that
+// of a white base. inner: mean reflectance of the boundary from inside.
 inline float colour(float albedo, double inner) {
   const double a = std::fmin(1.0, std::fmax(0.0, double(albedo)));
   return static_cast<float>(a * (1 - inner) / (1 - a * inner));
@@ -69,13 +73,13 @@ inline rts::Color colour(rts::Color albedo, float index) {
   return {colour(albedo.r, inner), colour(albedo.g, inner), colour(albedo.b, inner)};
 }
 
-// A matt body of an albedo under a smooth coat of an index of refraction; up to 1: no coat.
+// Adds a diffuse base under a smooth coat with this index of refraction; up to 1: no coat.
 inline void add(const rts::Hit& hit, rts::Closures& out, rts::Color albedo, float index) {
   out.albedo(albedo);
   if (!(index > 1.001f)) return out.diffuse(albedo);
-  const float f = 1 - through(hit.cosine(), index);
+  const float f = 1 - transmittance(hit.cosine(), index);
   out.reflection({f, f, f});
-  out.custom(colour(albedo, index), Matt::of(index));
+  out.custom(colour(albedo, index), CoatedDiffuse::of(index));
 }
 
 } // namespace coat

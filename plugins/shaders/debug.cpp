@@ -1,5 +1,5 @@
-// debug.cpp: shows what a shader sees of a hit as a colour, whatever the light. For people who look
-// for mistakes in geometry; also the example of a shader written with openrts.hpp.
+// debug.cpp: the surface shader Debug, which shows an attribute of the hit as a colour, independent
+// of lights. It helps to find errors in geometry, and is an example of a shader with openrts.hpp.
 #include "openrt/openrts.hpp"
 #include "pattern.h"
 
@@ -27,12 +27,12 @@ struct Debug : rts::Surface<Debug> {
   }
 
  private:
-  // -1..1 becomes 0..1.
+  // Maps components from -1..1 to 0..1.
   static rts::Color ofNormal(rts::Vec3 n) {
     return {0.5f + 0.5f * n.x, 0.5f + 0.5f * n.y, 0.5f + 0.5f * n.z};
   }
   static float fraction(float x) { return x - std::floor(x); }
-  // Any number a colour of its own; 0 black.
+  // Returns a different colour for every number; 0 is black.
   static rts::Color ofId(uint32_t id) {
     const uint32_t h = pattern::mix(id);
     return id == 0 ? rts::Color{}

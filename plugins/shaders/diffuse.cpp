@@ -1,4 +1,4 @@
-// diffuse.cpp: a matt surface, with or without light of its own.
+// diffuse.cpp: the surface shader Diffuse, a Lambertian surface that may emit light. [render]
 #include "openrt/openrts.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
-// environmentmap.cpp: light from all around as one picture: columns of equal longitude, rows of
-// equal latitude. In the local space +y is up; the middle of the picture lies towards -z, its right
-// half towards +x. Thread tag [render].
+// environmentmap.cpp: the environment EnvironmentMap, an equirectangular environment map: columns
+// of equal longitude, rows of equal latitude. In local space +y is up; the middle of the picture is
+// towards -z, its right half towards +x. [render]
 #include <cstddef>
 
 #include "openrt/openrts.h"

@@ -1,5 +1,5 @@
-// glass.cpp: a clear solid body with a smooth surface. Its faces point outwards: what is met from
-// behind is met inside.
+// glass.cpp: the surface shader Glass, a clear solid body with a smooth surface. Its faces point
+// outwards, so a hit on a back face is inside the body. [render]
 #include "openrt/openrts.hpp"
 
 namespace {
@@ -36,12 +36,11 @@ struct Glass : rts::Surface<Glass> {
             priority};
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
-    out.dielectric(tint, hit.back()
-                             ? float(index)
-                             : 1 / float(index)); // where media are known the indices are theirs
+    // An engine that knows media uses their indices instead.
+    out.dielectric(tint, hit.back() ? float(index) : 1 / float(index));
     out.albedo({1, 1, 1});
   }
-  // Light on the straight way through: what a surface met head on lets pass.
+  // Shadow rays pass straight through, with the transmittance of normal incidence.
   rts::Color transmit(const rts::Hit&) const {
     if (shadow) return {};
     const float r = (float(index) - 1) / (float(index) + 1);
@@ -49,9 +48,9 @@ struct Glass : rts::Surface<Glass> {
   }
 
  private:
-  // Cauchy's equation n = A + B / w^2 through the index of the d line and that of the lines F and
-  // C, by which E. Abbe's number is defined; at the dominant wavelengths (micrometres) of the
-  // primaries of sRGB.
+  // Returns the index at a wavelength (micrometres) by Cauchy's equation n = A + B / w^2. It is
+  // fitted to the index at the d line and to the Abbe number, which is defined by the F and C
+  // lines. Called with the dominant wavelengths of the sRGB primaries.
   float indexAt(float wavelength, float given) const {
     if (given > 0) return given;
     if (!(abbe > 0)) return index;

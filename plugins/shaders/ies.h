@@ -1,6 +1,6 @@
-// ies.h: measured luminaires: the text of ANSI/IES LM-63 files (1986, 1991, 1995, 2002, 2019) of
-// photometric type C, and the intensity in a direction. The text comes from anywhere: sizes are
-// bounded, every fault has a message. Pure functions.
+// ies.h: reads the text of ANSI/IES LM-63 files (1986, 1991, 1995, 2002, 2019) of photometric type
+// C, and returns the intensity of the luminaire in a direction. The text is untrusted: sizes are
+// bounded, and every error has a message. Pure functions.
 #pragma once
 
 #include <algorithm>
@@ -12,28 +12,32 @@
 
 namespace ies {
 
-constexpr size_t maxAngles = 4096, maxValues = size_t(1) << 20; // of one kind; of all directions
+// Limits of the angles of one kind and of all intensities.
+constexpr size_t maxAngles = 4096, maxValues = size_t(1) << 20;
 
 class Photometry {
  public:
-  // Degrees; vertical 0: straight down, horizontal within the symmetric part that the file gives.
+  // In degrees. Vertical 0 is straight down; horizontal angles cover the part that the file
+  // contains.
   std::vector<float> vertical, horizontal;
   std::vector<float> candela; // by horizontal, then by vertical angle, all factors applied
 
-  // Interpolated; 0 beyond the vertical angles that were measured.
+  // Returns the interpolated intensity in candela; 0 outside the measured vertical angles.
   float intensity(double down, double around) const {
     if (down < double(vertical.front()) || down > double(vertical.back())) return 0;
-    const Place v = placeOf(vertical, down), h = placeOf(horizontal, folded(around));
+    const Interpolation v = interpolationAt(vertical, down),
+                        h = interpolationAt(horizontal, foldToMeasured(around));
     const auto at = [&](size_t column, size_t row) {
       return double(candela[column * vertical.size() + row]);
     };
     const auto along = [&](size_t column) {
-      return at(column, v.first) * (1 - v.share) + at(column, v.second) * v.share;
+      return at(column, v.first) * (1 - v.weight) + at(column, v.second) * v.weight;
     };
-    return float(along(h.first) * (1 - h.share) + along(h.second) * h.share);
+    return float(along(h.first) * (1 - h.weight) + along(h.second) * h.weight);
   }
   float largest() const { return *std::max_element(candela.begin(), candela.end()); }
-  // Integral over all directions, by the middle of fine cells.
+  // Returns the luminous flux: the integral over all directions, by the midpoint rule on fine
+  // cells.
   double flux() const {
     constexpr int rows = 360, columns = 144;
     double sum = 0;
@@ -46,27 +50,28 @@ class Photometry {
   }
 
  private:
-  struct Place {
+  struct Interpolation {
     size_t first, second;
-    double share;
+    double weight;
   };
-  // Beyond the last angle it goes on to the first one, a whole turn later.
-  static Place placeOf(const std::vector<float>& angles, double at) {
+  // Finds the two angles around `at`. Beyond the last angle it interpolates to the first one, a
+  // full turn later.
+  static Interpolation interpolationAt(const std::vector<float>& angles, double at) {
     if (angles.size() == 1) return {0, 0, 0};
     const size_t last = angles.size() - 1;
     if (at >= double(angles[last])) {
       const double gap = double(angles[0]) + 360 - double(angles[last]);
       return gap > 0 && at > double(angles[last])
-                 ? Place{last, 0, (at - double(angles[last])) / gap}
-                 : Place{last, last, 0};
+                 ? Interpolation{last, 0, (at - double(angles[last])) / gap}
+                 : Interpolation{last, last, 0};
     }
     const auto above = std::upper_bound(angles.begin(), angles.end(), float(at), std::less<>());
     const size_t i = std::clamp<size_t>(size_t(above - angles.begin()), 1, last);
     const double low = double(angles[i - 1]), high = double(angles[i]);
     return {i - 1, i, std::clamp((at - low) / (high - low), 0.0, 1.0)};
   }
-  // A horizontal angle within what was measured: the rest is its mirror image.
-  double folded(double around) const {
+  // Maps a horizontal angle to the measured range; the rest is symmetric to it.
+  double foldToMeasured(double around) const {
     around = std::fmod(around, 360.0);
     if (around < 0) around += 360;
     const double first = double(horizontal.front()), last = double(horizontal.back());
@@ -79,7 +84,7 @@ class Photometry {
   }
 };
 
-// Reads one number after the other, over line ends.
+// Reads numbers one after the other, across line ends.
 class Reader {
  public:
   Reader(std::string_view text, int line) : rest_(text), line_(line) {}
@@ -117,12 +122,12 @@ inline bool rising(const std::vector<float>& angles) {
                             [](float a, float b) { return !(a < b); }) == angles.end();
 }
 
-// Null, or what is wrong; line: of the text, where.
+// Parses a file. Returns null, or an error message; `line` is then the line of the error.
 inline const char* parse(std::string_view text, Photometry& out, int& line) {
   line = 1;
   if (text.empty()) return "no profile: give the text of an IES LM-63 file";
-  // Up to the line TILT=...: keywords, which are not needed. Only the oldest two kinds have a
-  // factor where later ones have 1.
+  // Skips the keywords before the line TILT=... Only the two oldest formats (1986, 1991) have a
+  // second factor; later formats have 1 in its place.
   const bool factorLater = text.substr(0, 5) != "IESNA" && text.substr(0, 4) != "IES:"
                                ? true
                                : text.substr(0, 7) == "IESNA91";
@@ -145,8 +150,9 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
            "hangs";
   if (tilt != "NONE") return "TILT names a file; only TILT=NONE is supported";
   Reader reader(text, line + 1);
-  double head[13]; // lamps, lumens, multiplier, angles, type, units, size, ballast and its later
-                   // factor, watts
+  // Lamps, lumens, multiplier, numbers of vertical and horizontal angles, type, units, three sizes,
+  // ballast factor, ballast-lamp factor, watts.
+  double head[13];
   for (double& value : head) {
     const bool good = reader.number(value);
     line = reader.line();

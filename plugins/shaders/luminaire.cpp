@@ -1,4 +1,5 @@
-// luminaire.cpp: a lamp as it was measured: intensity by direction from the text of an IES file.
+// luminaire.cpp: the light Luminaire, a measured lamp: its intensity by direction comes from the
+// text of an IES file. [render]
 #include <cstdio>
 #include <new>
 
@@ -22,9 +23,9 @@ struct Luminaire : rts::LightSource<Luminaire> {
       {1, 0, 0},
       "towards horizontal angle 0; angles grow counter-clockwise seen from above"};
 
-  // Made by prepare.
+  // Computed by prepare.
   const ies::Photometry* photometry;
-  rts::Vec3 down, zero, ninety; // unit, at right angles
+  rts::Vec3 down, zero, ninety; // orthonormal axes of the photometric angles
   float flux;
   char message[200];
 
@@ -39,7 +40,7 @@ struct Luminaire : rts::LightSource<Luminaire> {
     } catch (const std::bad_alloc&) { problem = "out of memory"; }
     if (problem) {
       std::snprintf(message, sizeof message, "profile, line %d: %s", line, problem);
-      release(); // of a set of values that is refused the host forgets
+      release(); // frees the memory even if the host does not call release() after a refusal
       return message;
     }
     down = rts::normalize(direction);
@@ -58,7 +59,7 @@ struct Luminaire : rts::LightSource<Luminaire> {
     photometry = nullptr;
   }
 
-  // A colour is the radiance of a white surface that faces the light: irradiance over pi.
+  // A light's colour is the radiance of a white Lambertian surface that faces it: irradiance / pi.
   rts::Illumination illuminate(rts::Vec3 point) const {
     const rts::Vec3 way = point - *location;
     const double d = rts::dot(way, down), x = rts::dot(way, zero), y = rts::dot(way, ninety);

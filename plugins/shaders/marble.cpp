@@ -1,5 +1,5 @@
-// marble.cpp: a body carved from marble: veins that turbulence bends. K. Perlin, "An Image
-// Synthesizer", SIGGRAPH 1985.
+// marble.cpp: the surface shader Marble, a solid texture of veins distorted by turbulence (K.
+// Perlin, "An Image Synthesizer", SIGGRAPH 1985). [render]
 #include "coat.h"
 #include "pattern.h"
 
@@ -19,7 +19,8 @@ struct Marble : rts::Surface<Marble> {
 
   uint32_t needs() const { return polish > 1.001f ? RTS_SPECULAR | RTS_GLOSSY : 0; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
-    coat::add(hit, out, colour(pattern::beneath(hit, veins > 0 ? 1 / float(veins) : 1)), polish);
+    coat::add(hit, out, colour(pattern::positionBeneath(hit, veins > 0 ? 1 / float(veins) : 1)),
+              polish);
   }
 
  private:
@@ -28,7 +29,7 @@ struct Marble : rts::Surface<Marble> {
     const rts::Vec3 p = float(veins) * place;
     const float at = rts::dot(p, d) + turbulence * pattern::turbulence(0.7f * p, 5);
     const float wave = 0.5f + 0.5f * std::cos(2 * rts::pi * (at - std::floor(at)));
-    return pattern::between(stone, vein, std::pow(wave, float(sharpness)));
+    return pattern::lerp(stone, vein, std::pow(wave, float(sharpness)));
   }
 };
 

@@ -1,4 +1,5 @@
-// metal.cpp: metal by its complex index of refraction, polished or rough.
+// metal.cpp: the surface shader Metal, a conductor with a complex index of refraction, polished or
+// rough. [render]
 #include "microfacet.h"
 
 namespace {
@@ -13,13 +14,13 @@ struct Metal : rts::Surface<Metal> {
       "roughness", 0, "width of the distribution of slopes (alpha of GGX); 0: polished", 0, 1};
 
   uint32_t needs() const {
-    return roughness > microfacet::smoothest ? RTS_GLOSSY : RTS_SPECULAR | RTS_NO_SCATTER;
+    return roughness > microfacet::minAlpha ? RTS_GLOSSY : RTS_SPECULAR | RTS_NO_SCATTER;
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const microfacet::Conductor metal{n, k};
     const rts::Color f = metal(hit.cosine());
-    if (roughness > microfacet::smoothest)
-      out.custom({1, 1, 1}, microfacet::Rough<microfacet::Conductor>{roughness, metal});
+    if (roughness > microfacet::minAlpha)
+      out.custom({1, 1, 1}, microfacet::MicrofacetLobe<microfacet::Conductor>{roughness, metal});
     else
       out.reflection(f);
     out.albedo(f);

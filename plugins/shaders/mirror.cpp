@@ -1,4 +1,5 @@
-// mirror.cpp: a mirror of one reflectance whatever the angle.
+// mirror.cpp: the surface shader Mirror, a mirror with the same reflectance at every angle.
+// [render]
 #include "openrt/openrts.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
-// pattern.h: numbers from places, for patterns that are carved from bodies: hashes of cells,
-// gradient noise. Shared by Wood, Marble, Checker and CarPaint. Pure functions of the place, the
-// same on every machine; any float is allowed. [render]
+// pattern.h: functions for solid textures: hashes of grid cells and gradient noise. Shared by Wood,
+// Marble, Checker and CarPaint. Pure functions of the position that return the same values on every
+// machine and accept any float. [render]
 #pragma once
 
 #include <cmath>
@@ -10,12 +10,13 @@
 
 namespace pattern {
 
-// The cell that a coordinate lies in. Beyond 2^24 cells a float has no places within them.
+// Returns the cell of a coordinate. Beyond 2^24 it returns 0, because a float cannot resolve
+// positions within a cell there.
 inline int32_t cell(float x) {
   return std::fabs(x) < 16777216.0f ? static_cast<int32_t>(std::floor(x)) : 0;
 }
 
-// Mixes three whole numbers into one: the finaliser of A. Appleby's MurmurHash3 after each.
+// mix() is the finaliser of A. Appleby's MurmurHash3. hash() applies it after each coordinate.
 inline uint32_t mix(uint32_t h) {
   h = (h ^ (h >> 16)) * 0x85ebca6bu;
   h = (h ^ (h >> 13)) * 0xc2b2ae35u;
@@ -28,12 +29,13 @@ inline uint32_t hash(int32_t x, int32_t y, int32_t z, uint32_t seed = 0) {
 }
 inline float unit(uint32_t h) { return static_cast<float>(h >> 8) * 0x1p-24f; } // 0 <= unit < 1
 
-// Gradient noise, -1..1, 0 at whole coordinates: K. Perlin, "Improving Noise", SIGGRAPH 2002.
+// Returns gradient noise, -1..1, 0 at integer coordinates (K. Perlin, "Improving Noise", SIGGRAPH
+// 2002).
 inline float noise(rts::Vec3 p) {
   const int32_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
   const rts::Vec3 f{p.x - float(x), p.y - float(y), p.z - float(z)};
   if (!(f.x >= 0 && f.x <= 1 && f.y >= 0 && f.y <= 1 && f.z >= 0 && f.z <= 1))
-    return 0; // too far out
+    return 0; // the coordinates are too large or not finite
   const auto fade = [](float t) { return t * t * t * (t * (t * 6 - 15) + 10); };
   const auto slope = [&](int32_t i, int32_t j, int32_t k) {
     const uint32_t h = hash(x + i, y + j, z + k) & 15;
@@ -50,25 +52,25 @@ inline float noise(rts::Vec3 p) {
   return mixed(w, layer(0), layer(1));
 }
 
-// Octaves of noise, each half as strong and twice as fine.
+// Returns the sum of octaves of |noise|, each with half the amplitude and twice the frequency.
 inline float turbulence(rts::Vec3 p, int octaves) {
   float sum = 0, strength = 1;
   for (int i = 0; i < octaves; i++) {
     sum += strength * std::fabs(noise(p));
     strength *= 0.5f;
     p = 2 * p +
-        rts::Vec3{17.3f, 5.1f, 9.7f}; // whole coordinates must not coincide: noise is 0 there
+        rts::Vec3{17.3f, 5.1f, 9.7f}; // offset, so that the zeros of the octaves do not coincide
   }
   return sum;
 }
 
-inline rts::Color between(rts::Color a, rts::Color b, float t) {
+inline rts::Color lerp(rts::Color a, rts::Color b, float t) {
   return a + (b - a) * std::fmin(1.0f, std::fmax(0.0f, t));
 }
 
-// The place of a hit in its object, a thousandth of a cell beneath the surface: a face in the plane
-// between two cells has one of them.
-inline rts::Vec3 beneath(const rts::Hit& hit, float cellSize) {
+// Returns the position of a hit in its object, moved a thousandth of a cell below the surface. So a
+// face in the plane between two cells always has the same cell.
+inline rts::Vec3 positionBeneath(const rts::Hit& hit, float cellSize) {
   const rts::Hit::Local local = hit.local();
   return local.position - rts::normalize(local.normal) * (1e-3f * cellSize);
 }

@@ -1,5 +1,5 @@
-// phong.cpp: a matt surface with a highlight. It looks like VRML97's, but may be used where light
-// goes from surface to surface.
+// phong.cpp: the surface shader Phong, a Lambertian surface with a highlight. It looks like
+// VRML97's material but conserves energy, so it suits global illumination. [render]
 #include "blinn_phong.h"
 
 namespace {

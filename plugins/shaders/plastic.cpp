@@ -1,4 +1,5 @@
-// plastic.cpp: a coloured body under a clear boundary, smooth or rough.
+// plastic.cpp: the surface shader Plastic, a coloured diffuse base under a clear boundary, smooth
+// or rough. [render]
 #include <algorithm>
 #include <array>
 
@@ -7,25 +8,27 @@
 
 namespace {
 
-constexpr int knots =
-    14; // of the table of what a rough boundary lets through, evenly over the root of the cosine
+// Entries of the table of a rough boundary's transmittance, evenly spaced in the root of the
+// cosine.
+constexpr int tableSize = 14;
 
-struct Boundary { // one facet of it
+// Fresnel term of a clear boundary.
+struct Boundary {
   float index;
   rts::Color operator()(float cosine) const {
-    const float f = 1 - coat::through(cosine, index);
+    const float f = 1 - coat::transmittance(cosine, index);
     return {f, f, f};
   }
 };
 
-struct Node { // of Gauss and Legendre's rule over 0..1
+struct Node { // of a Gauss-Legendre quadrature over 0..1
   double place, weight;
 };
 template <int n> std::array<Node, n> gauss() {
   std::array<Node, n> nodes;
   for (int i = 0; i < n; i++) {
     double z = std::cos(3.14159265358979324 * (i + 0.75) / (n + 0.5)), slope = 1;
-    for (int step = 0; step < 8; step++) { // Newton's, on the Legendre polynomial of degree n
+    for (int step = 0; step < 8; step++) { // Newton's method on the Legendre polynomial of degree n
       double p = 1, before = 0;
       for (int k = 0; k < n; k++) {
         const double next = ((2 * k + 1) * z * p - k * before) / (k + 1);
@@ -40,31 +43,32 @@ template <int n> std::array<Node, n> gauss() {
   return nodes;
 }
 
-// The body under a rough boundary, with T from a table: f = T(in) T(out) / (pi mean T), white. The
-// same rule for both directions.
-struct RoughMatt {
-  float mean, table[knots];
+// The lobe of a white base under a rough boundary: f = T(in) T(out) / (pi mean T), with the
+// transmittance T from a table. It is symmetric in both directions.
+struct RoughCoatedDiffuse {
+  float mean, table[tableSize];
 
-  // T by the cubic polynomial through the four knots around the root of the cosine.
-  static float at(const float (&table)[knots], float root) {
-    const float x = std::fmin(1.0f, std::fmax(0.0f, root)) * (knots - 1);
-    const int i = std::min(std::max(static_cast<int>(x) - 1, 0), knots - 4);
+  // Returns T by cubic interpolation of the four table entries around the root of the cosine.
+  static float at(const float (&table)[tableSize], float root) {
+    const float x = std::fmin(1.0f, std::fmax(0.0f, root)) * (tableSize - 1);
+    const int i = std::min(std::max(static_cast<int>(x) - 1, 0), tableSize - 4);
     const float a = x - float(i), b = a - 1, c = a - 2, d = a - 3;
     const float* t = table + i;
     return (d * (b * c * t[0] * -1 + 3 * a * c * t[1]) + a * b * (c * t[3] - 3 * d * t[2])) / 6;
   }
-  float through(float cosine) const { return at(table, std::sqrt(std::fmax(0.0f, cosine))); }
+  float transmittance(float cosine) const { return at(table, std::sqrt(std::fmax(0.0f, cosine))); }
   rts::Color evaluate(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
     const float in = rts::dot(direction, normal);
     if (!(in > 0)) return {};
-    const float value = through(in) * through(rts::dot(toEye, normal)) * in / (rts::pi * mean);
+    const float value =
+        transmittance(in) * transmittance(rts::dot(toEye, normal)) * in / (rts::pi * mean);
     return {value, value, value};
   }
   float density(rts::Vec3, rts::Vec3 direction, rts::Vec3 normal) const {
-    return coat::cosineDensity(direction, normal);
+    return coat::cosinePdf(direction, normal);
   }
   rts::Vec3 sample(rts::Vec3, rts::Vec2 square, rts::Vec3 normal) const {
-    return coat::cosineDirection(square, normal);
+    return coat::sampleCosine(square, normal);
   }
 };
 
@@ -84,23 +88,25 @@ struct Plastic : rts::Surface<Plastic> {
     if (!(index > 1.001f)) return 0;
     return rough() ? RTS_GLOSSY : RTS_SPECULAR | RTS_GLOSSY;
   }
-  // What the rough boundary does not reflect goes to the body, also what facets throw at each
-  // other: a white body under it reflects all light, to about 3e-4.
+  // Tabulates 1 - albedo of the rough boundary. The base gets all light that the boundary does not
+  // reflect, including light reflected between facets. So a white base reflects all light, with an
+  // error of about 3e-4.
   const char* prepare() {
     if (!rough()) return nullptr;
-    const microfacet::Rough<Boundary> boundary{roughness, {index}};
-    for (int j = 0; j < knots; j++) {
-      const float root = std::fmax(1e-2f, float(j) / (knots - 1)), z = root * root;
-      const float reflectance = reflected(boundary, {std::sqrt(std::fmax(0.0f, 1 - z * z)), 0, z});
+    const microfacet::MicrofacetLobe<Boundary> boundary{roughness, {index}};
+    for (int j = 0; j < tableSize; j++) {
+      const float root = std::fmax(1e-2f, float(j) / (tableSize - 1)), z = root * root;
+      const float reflectance = albedoOf(boundary, {std::sqrt(std::fmax(0.0f, 1 - z * z)), 0, z});
       body_.table[j] = std::fmin(1.0f, std::fmax(0.0f, 1 - reflectance));
     }
-    double mean =
-        0; // of 2 c T(c) dc = 4 r^3 T dr, r the root; a polynomial of degree 6 between two knots
-    for (int j = 0; j + 1 < knots; j++)
+    // The integral of 2 c T(c) dc = 4 r^3 T dr, with r the root of c: a polynomial of degree 6
+    // between two table entries.
+    double mean = 0;
+    for (int j = 0; j + 1 < tableSize; j++)
       for (const Node& node : gauss<4>()) {
-        const double r = (j + node.place) / (knots - 1);
-        mean += node.weight / (knots - 1) * 4 * r * r * r *
-                double(RoughMatt::at(body_.table, float(r)));
+        const double r = (j + node.place) / (tableSize - 1);
+        mean += node.weight / (tableSize - 1) * 4 * r * r * r *
+                double(RoughCoatedDiffuse::at(body_.table, float(r)));
       }
     body_.mean = static_cast<float>(mean);
     return nullptr;
@@ -111,14 +117,14 @@ struct Plastic : rts::Surface<Plastic> {
         *color * rts::Color{t.x, t.y, t.z} * rts::Color{hit.color.x, hit.color.y, hit.color.z};
     if (!rough() || !(body_.mean > 0)) return coat::add(hit, out, albedo, index);
     out.albedo(albedo);
-    out.custom({1, 1, 1}, microfacet::Rough<Boundary>{roughness, {index}});
+    out.custom({1, 1, 1}, microfacet::MicrofacetLobe<Boundary>{roughness, {index}});
     out.custom(coat::colour(albedo, index), body_);
   }
 
  private:
-  bool rough() const { return roughness > microfacet::smoothest && index > 1.001f; }
-  static float reflected(const microfacet::Rough<Boundary>& boundary, rts::Vec3 o) {
-    constexpr int around = 40; // half of the circle: the other half is the same
+  bool rough() const { return roughness > microfacet::minAlpha && index > 1.001f; }
+  static float albedoOf(const microfacet::MicrofacetLobe<Boundary>& boundary, rts::Vec3 o) {
+    constexpr int around = 40; // samples of half of the circle; the other half is symmetric
     double sum = 0;
     for (const Node& node : gauss<40>())
       for (int a = 0; a < around; a++) {
@@ -128,7 +134,7 @@ struct Plastic : rts::Surface<Plastic> {
       }
     return static_cast<float>(sum);
   }
-  RoughMatt body_; // made by prepare
+  RoughCoatedDiffuse body_; // computed by prepare
 };
 
 } // namespace

@@ -1,14 +1,14 @@
-// reflector.cpp: the inside of a headlamp: metal under a thin clear lacquer, nearly polished,
-// dusty.
+// reflector.cpp: the surface shader Reflector for the inside of headlamps: almost polished metal
+// under a thin clear lacquer, with dust. [render]
 #include "microfacet.h"
 
 namespace {
 
-// Metal below a layer that light crosses back and forth without loss; the reflections are summed,
-// phases are not.
+// Fresnel term of metal below a lossless clear layer. All inter-reflections are summed, without
+// interference.
 struct Lacquered {
   rts::Color n, k;
-  float index; // of the layer; up to 1: none
+  float index; // of the layer; up to 1: no layer
 
   rts::Color operator()(float cosine) const {
     if (!(index > 1)) return microfacet::Conductor{n, k}(cosine);
@@ -42,15 +42,15 @@ struct Reflector : rts::Surface<Reflector> {
       "dustColor", {0.3f, 0.27f, 0.22f}, "fraction of light that dust scatters, 0..1", 0, 1};
 
   uint32_t needs() const {
-    if (roughness > microfacet::smoothest) return RTS_GLOSSY;
+    if (roughness > microfacet::minAlpha) return RTS_GLOSSY;
     return dust > 0 ? RTS_SPECULAR : RTS_SPECULAR | RTS_NO_SCATTER;
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const Lacquered metal{n, k, lacquer};
     const rts::Color clean = metal(hit.cosine());
     const float bare = 1 - dust;
-    if (roughness > microfacet::smoothest)
-      out.custom({bare, bare, bare}, microfacet::Rough<Lacquered>{roughness, metal});
+    if (roughness > microfacet::minAlpha)
+      out.custom({bare, bare, bare}, microfacet::MicrofacetLobe<Lacquered>{roughness, metal});
     else
       out.reflection(bare * clean);
     if (dust > 0) out.diffuse(float(dust) * *dustColor);

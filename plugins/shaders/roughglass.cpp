@@ -1,5 +1,5 @@
-// roughglass.cpp: ground or frosted glass: a clear body whose surface is rough. Faces point
-// outwards.
+// roughglass.cpp: the surface shader RoughGlass for ground or frosted glass: a clear body with a
+// rough surface, whose faces point outwards. [render]
 #include "openrt/openrts.hpp"
 
 namespace {

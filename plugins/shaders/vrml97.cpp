@@ -1,6 +1,6 @@
-// vrml97.cpp: the stock plug-in: the surface of ISO/IEC 14772-1 clause 4.14, its three lights,
-// background with fog, and the cameras. It sees openrt/openrts.h only; the classes are in the
-// folder vrml97. Loaded by the shader registry.
+// vrml97.cpp: the stock plug-in: the surface of ISO/IEC 14772-1 clause 4.14, the standard's three
+// lights, background and fog, and the cameras. The classes are in the folder vrml97; they use only
+// the headers of openrt/openrts.h. Loaded by the shader registry.
 #include "vrml97/classes.h"
 
 namespace {

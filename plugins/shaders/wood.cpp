@@ -1,4 +1,4 @@
-// wood.cpp: a body carved from wood: rings about an axis, and its grain.
+// wood.cpp: the surface shader Wood, a solid texture of rings about an axis, with grain. [render]
 #include "coat.h"
 #include "pattern.h"
 
@@ -19,7 +19,8 @@ struct Wood : rts::Surface<Wood> {
 
   uint32_t needs() const { return varnish > 1.001f ? RTS_SPECULAR | RTS_GLOSSY : 0; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
-    coat::add(hit, out, colour(pattern::beneath(hit, rings > 0 ? 1 / float(rings) : 1)), varnish);
+    coat::add(hit, out, colour(pattern::positionBeneath(hit, rings > 0 ? 1 / float(rings) : 1)),
+              varnish);
   }
 
  private:
@@ -28,15 +29,15 @@ struct Wood : rts::Surface<Wood> {
     const rts::Vec3 p = float(rings) * (place - *pith);
     const rts::Vec3 local = rts::Frame(a).toLocal(p);
     const float across = std::sqrt(local.x * local.x + local.y * local.y);
-    // Slow along the trunk: fibres run with it.
+    // The pattern changes slowly along the trunk, as fibres run along it.
     const float ring =
         across + wobble * pattern::turbulence({0.3f * local.x, 0.3f * local.y, 0.05f * local.z}, 3);
     const float phase = ring - std::floor(ring);
-    // Early wood turns into late wood slowly, and ends at once.
+    // Early wood changes gradually to late wood; the ring then ends abruptly.
     const float late =
         std::fabs(phase) < 2 ? phase * phase * (phase < 0.9f ? 1 : 10 * (1 - phase)) : 0;
     const float fine = 0.5f + 0.5f * pattern::noise({12 * local.x, 12 * local.y, 0.6f * local.z});
-    const rts::Color plain = pattern::between(light, dark, late);
+    const rts::Color plain = pattern::lerp(light, dark, late);
     return plain * (1 - 0.5f * grain * fine);
   }
 };

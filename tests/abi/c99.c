@@ -1,5 +1,5 @@
-/* c99.c: both public C headers in one C99 program without extensions: they compile, link and agree
- * with each other. */
+/* c99.c: uses both public C headers in one C99 program without extensions, to show that they
+ * compile, link and agree with each other. */
 #include <openrt/openrt.h>
 #include <openrt/openrts.h>
 

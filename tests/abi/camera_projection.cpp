@@ -1,6 +1,6 @@
-// camera_projection.cpp: every stock camera's `project` undoes its `generate`, and its weight is
-// what openrts.h says: pixels covered per unit of area, at the point, of a surface that faces the
-// eye; by finite differences of the projection itself.
+// camera_projection.cpp: for every stock camera, `project` inverts `generate`. Its weight must be
+// as openrts.h defines it: pixels covered per unit of area at the point, for a surface that faces
+// the eye. The weight is checked by finite differences of the projection.
 #include <cmath>
 #include <string>
 
@@ -28,7 +28,7 @@ Point cross(Point a, Point b) {
 double length(Point a) { return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
 
 const float size[2] = {320, 200};
-const float lens[2] = {0.3f, 0.8f}; // where rays pass the lens, of cameras that have one
+const float lens[2] = {0.3f, 0.8f}; // sample on the lens, for cameras that have one
 
 struct LensHost : FakeHost {
   LensHost() {
@@ -109,13 +109,13 @@ TEST(CameraProjection, UndoesGenerate) {
         EXPECT_NEAR(at.x, x, 2e-4 * size[0]) << c.name << " " << t;
         EXPECT_NEAR(at.y, y, 2e-4 * size[1]) << c.name << " " << t;
         EXPECT_GT(at.weight, 0) << c.name;
-        const double far = at.parallel ? 1 : t; // towards the very place that the ray came from
+        const double far = at.parallel ? 1 : t; // towards the point where the ray started
         EXPECT_NEAR(length(at.toEye + d * far), 0, 2e-6 * (far + length(o))) << c.name;
       }
   }
 }
 
-// A small square that faces the eye, by central differences of the projection: its pixels over its
+// Projects a small square that faces the eye by central differences, and divides its pixels by its
 // area.
 TEST(CameraProjection, WeightIsPixelsPerUnitOfAreaThatFacesTheEye) {
   for (const Case& c : cases) {
@@ -131,7 +131,7 @@ TEST(CameraProjection, WeightIsPixelsPerUnitOfAreaThatFacesTheEye) {
         const Point eye = here.toEye * (1 / length(here.toEye));
         const Point side = cross(eye, std::fabs(eye.x) < 0.7 ? Point{1, 0, 0} : Point{0, 1, 0});
         const Point u = side * (1 / length(side)), v = cross(eye, u);
-        const double step = 3 / std::sqrt(here.weight); // 3 pixels
+        const double step = 3 / std::sqrt(here.weight); // a step of 3 pixels
         const Projected a = project(kind, p, at + u * step), b = project(kind, p, at + u * -step);
         const Projected e = project(kind, p, at + v * step), f = project(kind, p, at + v * -step);
         const double area =
@@ -146,7 +146,7 @@ TEST(CameraProjection, NothingOutsideThePictureOrBehind) {
   for (const Case& c : cases) {
     const RtsClass& kind = camera(c.name);
     const ParamBlock p = parameters(c);
-    if (std::string(c.name) == "Panorama") { // nothing is behind it
+    if (std::string(c.name) == "Panorama") { // a panorama has nothing behind it
       EXPECT_GT(project(kind, p, {0.01, 0, 1}).weight, 0);
       EXPECT_EQ(project(kind, p, {0, 1, 0}).weight, 0);
       EXPECT_EQ(project(kind, p, {0, 0, 0}).weight, 0);
@@ -160,7 +160,7 @@ TEST(CameraProjection, NothingOutsideThePictureOrBehind) {
   }
 }
 
-// Rays through a lens meet in the plane that is in focus, and cover the opening evenly.
+// Rays through a lens meet in the plane of focus and cover the aperture evenly.
 TEST(Lens, RaysMeetInThePlaneInFocus) {
   ParamBlock p(camera("ThinLens"));
   p.set("focus", {4.0f});
@@ -204,7 +204,7 @@ TEST(Lens, PolygonsAreFilledEvenly) {
       rays.direction[k] = lanes[3 + k].data();
     }
     camera("ThinLens").generate(&host, host.batch(), p.get(), 4096, xy, size, &rays);
-    // Second moments of a disk and of a regular polygon with n corners about the middle, radius 2.
+    // Second moments about the centre of a disk and of a regular polygon with n corners, radius 2.
     const double expected = blades == 0 ? 2.0 : 4 * (2 + std::cos(2 * M_PI / blades)) / 6;
     double sum = 0, middle = 0;
     for (size_t i = 0; i < 4096; i++) {

@@ -1,6 +1,6 @@
-// chi_square.h: directions counted in 80 x 160 bins of the sphere, against a density: Pearson's
-// test, bins of fewer than 5 expected pooled (the rules of pbrt's and Mitsuba's tests of
-// reflection).
+// chi_square.h: Pearson's chi-square test of sampled directions against a pdf. Directions are
+// counted in 80 x 160 bins of the sphere. Bins with fewer than 5 expected samples are pooled (the
+// rules of pbrt's and Mitsuba's BSDF tests).
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,9 @@
 
 namespace openrt::test {
 
-// The probability that a chi-square variable exceeds x: 1 - P(k / 2, x / 2), by the series or the
-// continued fraction of the incomplete gamma function (M. Abramowitz, I. Stegun, 6.5.29, 6.5.31).
+// Returns the probability that a chi-square variable exceeds x: 1 - P(k / 2, x / 2), by the series
+// or the continued fraction of the incomplete gamma function (M. Abramowitz, I. Stegun, 6.5.29,
+// 6.5.31).
 inline double chiSquareTail(double x, double degrees) {
   const double a = degrees / 2, y = x / 2;
   if (!(y > 0)) return 1;
@@ -38,15 +39,14 @@ inline double chiSquareTail(double x, double degrees) {
 }
 
 struct Expected {
-  std::vector<double> bins; // integral of the density
+  std::vector<double> bins; // integral of the pdf over each bin
   double total = 0;
 };
 
 class SphereHistogram {
  public:
-  static constexpr int across = 80,
-                       around =
-                           160; // equal steps of the angle from the axis, which crowds bins there
+  // equal steps of the polar angle, which makes the bins small near the axis
+  static constexpr int across = 80, around = 160;
   explicit SphereHistogram(rts::Vec3 axis) : frame_(axis), seen_(across * around) {}
 
   void count(rts::Vec3 direction) {
@@ -68,7 +68,8 @@ class SphereHistogram {
       }
     return e;
   }
-  // lost: samples that gave no direction.
+  // Returns the tail probability of the counted directions. lost: number of samples without a
+  // direction.
   double chiSquareTail(const Expected& expected, double samples, double lost) const {
     std::vector<size_t> order(seen_.size());
     std::iota(order.begin(), order.end(), size_t(0));
@@ -79,7 +80,7 @@ class SphereHistogram {
     const double given = samples - lost, scale = expected.total > 0 ? given / expected.total : 0;
     for (const size_t b : order) {
       const double e = expected.bins[b] * scale;
-      if (e == 0 && seen_[b] > 0) return 0; // a direction that cannot be
+      if (e == 0 && seen_[b] > 0) return 0; // the pdf says that this direction is impossible
       pooledSeen += seen_[b];
       pooled += e;
       if (pooled < 5) continue;
@@ -94,12 +95,12 @@ class SphereHistogram {
   struct Bin {
     double theta, height, phi, width;
   };
-  // Midpoints of n x n parts.
+  // Midpoint rule with n x n parts.
   double rule(const std::function<double(rts::Vec3)>& density, const Bin& b, int n) const {
     double sum = 0;
     for (int i = 0; i < n; i++) {
       const double t = b.theta + b.height * (i + .5) / n, s = std::sin(t);
-      // The area of each part is exact: the density alone is approximated.
+      // The area of each part is exact; only the pdf is approximated.
       const double area =
           (std::cos(b.theta + b.height * i / n) - std::cos(b.theta + b.height * (i + 1) / n)) *
           b.width / n;

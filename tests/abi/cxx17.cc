@@ -1,4 +1,5 @@
-// cxx17.cc: the shader SDK's C header alone, in C++17: a class table as a plug-in author would write it.
+// cxx17.cc: uses the shader SDK's C header alone, in C++17, with a class table as a plug-in author
+// would write it.
 #include <openrt/openrts.h>
 
 #include <cstddef>
@@ -8,11 +9,13 @@ namespace {
 struct Parameters {
   float color[3];
 };
-const RtsParam parameters[] = {{"color", RTS_COLOR, offsetof(Parameters, color), {1, 1, 1}, 0, 1, "the colour"}};
+const RtsParam parameters[] = {
+    {"color", RTS_COLOR, offsetof(Parameters, color), {1, 1, 1}, 0, 1, "the colour"}};
 
 void shade(const RtsHost*, RtsBatch*, const RtsHits* hits, RtsShading* out) {
   for (uint32_t i = 0; i < hits->count; i++)
-    for (int k = 0; k < 3; k++) out->radiance[k][i] = static_cast<const Parameters*>(hits->params[i])->color[k];
+    for (int k = 0; k < 3; k++)
+      out->radiance[k][i] = static_cast<const Parameters*>(hits->params[i])->color[k];
 }
 
 RtsClass makeClass() {

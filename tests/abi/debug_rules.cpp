@@ -1,5 +1,5 @@
-// debug_rules.cpp: backend=debug:NAME. Each rule speaks at its misuse, once, and is silent where
-// the same is done right.
+// debug_rules.cpp: backend=debug:NAME. Each rule reports its misuse once and is silent about
+// correct use.
 #include "small_scene.h"
 
 namespace {
@@ -19,7 +19,7 @@ class DebugRules : public SmallScene {
     return object;
   }
   RTid placed() { return rtInstantiateObject(square()); }
-  // The rule has spoken once so far, with this in its text.
+  // Checks that the rule has reported once so far, with this text.
   void expect(const char* rule, const char* part) {
     picture(1);
     picture(1);
@@ -46,7 +46,7 @@ TEST_F(DebugRules, SilentWhereNothingIsWrong) {
   rtEnable(RT_CULL_FACE);
   rtSphere(0.25f);
   rtEndObject();
-  rtScaled(-1, 1, 1); // mirrored: still right
+  rtScaled(-1, 1, 1); // mirrored, which is valid
   rtInstantiateObject(sphere);
   rtLoadIdentity();
   expectSilence();

@@ -1,6 +1,6 @@
-// fake_host.h: the smallest host a shader can run in, for tests of plug-ins without a renderer:
-// constant textures, lights given as numbers, lobes, scratch memory, rays that meet a floor, and a
-// record of what the shader asked for.
+// fake_host.h: the smallest host that a shader can run in, for tests of plug-ins without a
+// renderer. It has constant textures, lights given as numbers, lobes, scratch memory, rays that hit
+// a floor, and a record of what the shader requested.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace openrt::test {
 
-// 64-byte aligned floats, padded to whole lanes by copies of the last value.
+// 64-byte aligned floats. The last value is repeated up to a whole number of lanes.
 class Lanes {
  public:
   explicit Lanes(uint32_t n = 0, float value = 0) { assign(std::vector<float>(n, value)); }
@@ -40,29 +40,30 @@ struct FakeTexture {
 };
 
 struct FakeLight {
-  float toLight[3]; // unit
+  float toLight[3]; // unit vector
   float color[3] = {1, 1, 1};
   float ambient[3] = {0, 0, 0};
-  float visible = 1; // what shadow() multiplies with
+  float visible = 1; // factor that shadow() applies to the light
 };
 
-// A lobe that a shader has asked for, with its memory.
+// A lobe that the shader has added, with its memory.
 struct FakeLobe {
   RtsLobe table{};
   std::array<Lanes, 8 + RTS_MAX_LOBE_FLOATS> memory;
 };
 
 struct FakeHost : RtsHost {
-  std::vector<FakeTexture> textures; // texture k + 1
+  std::vector<FakeTexture> textures; // textures[k] is texture k + 1
   std::vector<FakeLight> shining;
   uint32_t shadowCalls = 0, shadowLanes = 0, sampleCalls = 0, messages = 0;
   std::deque<Lanes> memory;
   std::array<Lanes, 9> light;
   std::deque<FakeLobe> lobes;
-  uint32_t hitCount = 1;         // of the batch; the fake's functions of hits answer for so many
-  float normal[3] = {0, 0, 1};   // of new lobes
-  float floor = -1;              // z of what rays meet: radiance .25 .5 .75 with alpha 1, name 7
-  std::vector<uint32_t> askedBy; // RtsRequest.hit of all rays
+  uint32_t hitCount = 1;       // hits in the batch; the fake hit functions answer for this many
+  float normal[3] = {0, 0, 1}; // normal of new lobes
+  // z of the plane that rays hit; the hit has radiance .25 .5 .75, alpha 1 and name 7
+  float floor = -1;
+  std::vector<uint32_t> askedBy; // RtsRequest.hit of each ray so far
   uint32_t randomCalls = 0;
 
   FakeHost();
@@ -89,7 +90,8 @@ inline RtsLobe* FakeHost::newLobe(RtsLobeKind kind, const RtsLobeFunctions* func
   return &lobe.table;
 }
 
-// Rays of a request meet the plane z = floor; from hits they start at the origin.
+// Returns the distance at which a ray meets the plane z = floor. Rays from hits start at the
+// origin.
 inline float fakeDistance(const FakeHost& host, const RtsRequest* rays, uint32_t i) {
   const float z = rays->origin[0] ? rays->origin[2][i] : 0, d = rays->direction[2][i];
   const float t = d < 0 ? (host.floor - z) / d : INFINITY;
@@ -128,7 +130,8 @@ inline void addRays(RtsHost& host) {
   };
 }
 
-// Facts about hits: numbers that tell lanes and arrays apart.
+// Adds the functions about hits. Their values differ by lane and array, so that tests notice a
+// mix-up.
 inline void addFacts(RtsHost& host) {
   host.random = [](RtsBatch* b, uint32_t pair, float* const square[2]) {
     fake(b).randomCalls++;
@@ -190,7 +193,7 @@ inline FakeHost::FakeHost() : RtsHost{} {
       for (float* color : light->color) color[k] *= host.shining[i].visible;
     }
   };
-  // u moves the red component, so that tests see which coordinates arrive.
+  // The red component depends on u, so that tests see which texture coordinates arrive.
   sample = [](RtsBatch* b, RtsTexture texture, uint32_t n, const float* const uv[2],
               float* const rgba[4]) {
     FakeHost& host = fake(b);
@@ -205,7 +208,8 @@ inline FakeHost::FakeHost() : RtsHost{} {
     return texture == 0 ? 0u : static_cast<const FakeHost*>(h)->textures[texture - 1].components;
   };
   scratch = [](RtsBatch* b, uint32_t n) {
-    fake(b).memory.emplace_back(n, 1e30f); // not initialised means: nothing to rely on
+    // uninitialised memory: shaders must not rely on its content
+    fake(b).memory.emplace_back(n, 1e30f);
     return fake(b).memory.back().data();
   };
   log = [](const RtsHost* h, int, const char*) {
@@ -222,7 +226,7 @@ inline FakeHost::FakeHost() : RtsHost{} {
   addFacts(*this);
 }
 
-// A parameter struct with a class's defaults.
+// A parameter block filled with the defaults of a shader class.
 class ParamBlock {
  public:
   explicit ParamBlock(const RtsClass& shaderClass)
@@ -247,9 +251,8 @@ class ParamBlock {
       std::memcpy(data() + p.offset, v.data(), floats(p.type) * sizeof(float));
     }
   }
-  void setInt(const char* name, int v) {
-    write<int32_t>(find(name).offset, v);
-  } // integers and textures
+  // Sets an integer or a texture.
+  void setInt(const char* name, int v) { write<int32_t>(find(name).offset, v); }
   const void* get() const { return bytes_.data(); }
   void* get() { return bytes_.data(); }
 

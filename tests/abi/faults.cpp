@@ -1,4 +1,4 @@
-// faults.cpp: shaders that go wrong are named: NaN in their answers, crashes.
+// faults.cpp: the log names shaders that go wrong: NaN in their results, crashes.
 #include <csignal>
 #include <cstring>
 
@@ -36,7 +36,7 @@ TEST_F(Faults, NaNInRadianceIsZeroCountedAndNamedOnceAFrame) {
   EXPECT_EQ(log.count("shader Nan of faulty answered with NaN or infinity"), 1u);
   EXPECT_TRUE(log.has("(8 points)"));
   picture(4);
-  EXPECT_EQ(log.count("shader Nan of faulty"), 2u); // once more: another frame
+  EXPECT_EQ(log.count("shader Nan of faulty"), 2u); // another frame reports again
 }
 
 TEST_F(Faults, ALobeThatIsNotFiniteHasNoWeight) {
@@ -68,14 +68,14 @@ void nameTheShader(int number) {
   raise(number);
 }
 
-// What a process says that renders with the shader, and how it ends.
+// Returns the output of a process that renders with the shader, and how it ends.
 void crashWith(const char* className, int transport, const std::string& config, std::string& text,
                int& status) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const pid_t child = fork();
   ASSERT_GE(child, 0);
-  if (child == 0) { // nothing of the test framework runs here
+  if (child == 0) { // the child runs no code of the test framework
     dup2(ends[1], STDOUT_FILENO);
     signal(SIGSEGV, nameTheShader);
     rtNewContext(config.c_str());
@@ -123,7 +123,7 @@ TEST_F(Faults, NaNInALobeOfItsOwnIsCounted) {
   const std::vector<float> pixels = picture(2);
   EXPECT_EQ(pixels[0], 0.0f);
   EXPECT_NEAR(pixels[1], 0.5 * 0.25 * 3.14159265,
-              1e-6); // the light gives white paper a radiance of 1: an irradiance of pi
+              1e-6); // the light gives a white diffuse surface a radiance of 1: an irradiance of pi
   EXPECT_GT(stats().shaderFaults, 0u);
   EXPECT_EQ(log.count("shader BadLobe of faulty"), 1u);
 }
@@ -144,7 +144,7 @@ TEST_F(Diagnosed, TraitsThatKeepSilent) {
   EXPECT_EQ(
       log.count("shader SilentGloss of faulty has glossy lobes, but its traits lack RTS_GLOSSY"),
       1u);
-  EXPECT_FALSE(log.has("SilentLamp of faulty has emission")); // hidden by the others
+  EXPECT_FALSE(log.has("SilentLamp of faulty has emission")); // occluded by the others
 }
 
 TEST_F(Diagnosed, ScatteringThatTraitsExclude) {

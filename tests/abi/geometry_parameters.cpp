@@ -1,4 +1,4 @@
-// geometry_parameters.cpp: values of shader parameters by vertex and by triangle, through to the
+// geometry_parameters.cpp: shader parameters by vertex and by triangle, from the API to the
 // picture.
 #include <cstdio>
 #include <fstream>
@@ -29,7 +29,7 @@ class GeometryParameters : public SmallScene {
   int show = -1, color = -1, weight = -1, pair = -1, triple = -1, quad = -1, matrix = -1;
 };
 
-// The triangle (-1,-1) (1,-1) (-1,1): at pixel x, y of n the corners have these weights.
+// Returns the barycentric weights at pixel x, y of n for the triangle (-1,-1) (1,-1) (-1,1).
 void weights(int x, int y, int n, double w[3]) {
   const double u = (x + 0.5) / n, v = 1 - (y + 0.5) / n;
   w[0] = 1 - u - v;
@@ -83,7 +83,7 @@ TEST_F(GeometryParameters, ByTriangleItIsConstantAndOfTheVertexThatCompletesIt) 
   const std::vector<float> pixels = picture(4);
   for (int y = 0; y < 4; y++)
     for (int x = 0; x < 4; x++) {
-      if (x == y) continue; // on the edge between them
+      if (x == y) continue; // on the edge between the two triangles
       const float expected = x < y ? 5.0f : 8.0f;
       for (int k = 0; k < 3; k++)
         EXPECT_EQ(pixels[size_t(4) * (y * 4 + x) + k], expected + float(k)) << x << " " << y;
@@ -115,7 +115,7 @@ TEST_F(GeometryParameters, EveryTypeArrives) {
 TEST_F(GeometryParameters, UntilTheFirstCallTheShadersOwnValueHolds) {
   rtParameter3f(color, 0.5f, 0.25f, 0);
   rtFrameBuffer(1, 1, RT_RGBA);
-  rtRender(); // the shader's value is committed: it holds all the same
+  rtRender(); // the shader's value is committed; the geometry's value still holds
   const RTid object = rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
   rtVertex3f(-1, -1, 0);
@@ -126,7 +126,7 @@ TEST_F(GeometryParameters, UntilTheFirstCallTheShadersOwnValueHolds) {
   rtVertex3f(1, 1, 0);
   rtVertex3f(-1, 1, 0);
   rtEnd();
-  rtBegin(RT_TRIANGLES); // a later list of the object goes on with what was set
+  rtBegin(RT_TRIANGLES); // a later list of the object keeps the values that were set
   rtVertex3f(-1, -1, 1);
   rtVertex3f(-0.5f, -1, 1);
   rtVertex3f(-1, -0.5f, 1);
@@ -147,9 +147,9 @@ TEST_F(GeometryParameters, ArraysByVertexAndByTriangle) {
                  {{0, 0, 0}, 0},
                  {{1, 0, 0}, 0},
                  {{1, 1, 0}, 0},
-                 {{0, 1, 0}, 0}}; // the first is not used
+                 {{0, 1, 0}, 0}}; // the first vertex is unused
   const float triples[3][3] = {{1, 2, 3}, {-1, -1, -1}, {4, 5, 6}};
-  const uint32_t indices[9] = {1, 2, 3, 1, 1, 2, 1, 3, 4}; // the middle one is degenerate
+  const uint32_t indices[9] = {1, 2, 3, 1, 1, 2, 1, 3, 4}; // the second triangle is degenerate
   rtVertexPointer(3, RT_FLOAT, 0, points);
   rtParameterPointer(color, sizeof colors[0], colors[0].color);
   rtParameterPointer(triple, 0, triples[0]);
@@ -168,7 +168,8 @@ TEST_F(GeometryParameters, ArraysByVertexAndByTriangle) {
   const std::vector<float> byTriangle = picture(n);
   EXPECT_EQ(byTriangle[4 * (6 * n + 5)], 1.0f);
   EXPECT_EQ(byTriangle[4 * (1 * n + 2)], 4.0f);
-  // Turned off again, and with a shader of another class bound: the shader's own values.
+  // The shader's own values apply after the pointer is turned off, and with a shader of another
+  // class bound.
   rtParameterPointer(color, 0, nullptr);
   rtParameter1i(show, 0);
   rtBeginObject(object);
@@ -188,12 +189,11 @@ TEST_F(GeometryParameters, AreOfTheClassAlone) {
   EXPECT_EQ(picture(1)[0], 1.0f);
   const RTid same = shader("Varying", "varying"), other = shader("Everything", "everything");
   rtInstanceShader(instance, same);
-  EXPECT_EQ(picture(1)[0], 1.0f); // of the same class: the values hold
+  EXPECT_EQ(picture(1)[0], 1.0f); // a shader of the same class: the values hold
   rtInstanceShader(instance, other);
   EXPECT_NEAR(picture(1)[0], 0.05f, 1e-6);
   rtInstanceShader(instance, 0);
-  rtDeleteShader(
-      id); // the geometry falls back to the default surface: nothing of the values is left
+  rtDeleteShader(id); // the geometry falls back to the default surface, which ignores the values
   rtDefaultShader(other);
   EXPECT_NEAR(picture(1)[0], 0.05f, 1e-6);
 }
@@ -235,10 +235,10 @@ TEST_F(GeometryParameters, LinesAndNestedAndMovedObjectsHaveThemToo) {
   const double m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1};
   rtInstanceMatrix(place, m);
   picture(16);
-  rtInstanceMatrix(place, m); // the same: nothing changes
+  rtInstanceMatrix(place, m); // the same matrix: nothing changes
   EXPECT_NEAR(picture(16)[4 * (8 * 16 + 4)], 4.5 / 8, 1e-6);
   EXPECT_LE(stats().objectBuilds,
-            before.objectBuilds + 2); // it became dynamic; the parameters cost nothing more
+            before.objectBuilds + 2); // it became dynamic; the parameters add no builds
 }
 
 TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
@@ -260,8 +260,8 @@ TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
   }
   EXPECT_EQ(picture(1)[0], 0.25f);
   const RTstats first = stats();
-  rtParameter3f(color, 1, 1,
-                1); // the shader's own value: nothing is built, and the geometry keeps its own
+  // Changing the shader's own value builds nothing, and the geometry keeps its values.
+  rtParameter3f(color, 1, 1, 1);
   EXPECT_EQ(picture(1)[0], 0.25f);
   EXPECT_EQ(stats().objectBuilds, first.objectBuilds);
   EXPECT_EQ(stats().topLevelBuilds, first.topLevelBuilds);
@@ -269,7 +269,7 @@ TEST_F(GeometryParameters, EditsCostWhatTheyChange) {
   EXPECT_EQ(picture(1)[0], 0.125f);
   EXPECT_EQ(stats().objectBuilds, first.objectBuilds);
   rtParameter1i(show, 0);
-  define(objects[0], 0.75f); // other values: this object alone
+  define(objects[0], 0.75f); // other values build only this object
   EXPECT_EQ(picture(1)[0], 0.75f);
   EXPECT_EQ(stats().objectBuilds, first.objectBuilds + 1);
 }

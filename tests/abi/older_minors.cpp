@@ -1,4 +1,4 @@
-// older_minors.cpp: plug-ins made for ABI 1.0 and 1.1 draw as ever.
+// older_minors.cpp: plug-ins built for ABI 1.0 and 1.1 still render the same.
 #include "small_scene.h"
 
 namespace {
@@ -35,7 +35,7 @@ TEST_F(SmallScene, AMirrorOfAbi11IsFollowed) {
   rtEndObject();
   rtInstantiateObject(object);
   rtTranslated(0, 0, 20);
-  shader("Example", "minor_0"); // shines by itself, behind the camera
+  shader("Example", "minor_0"); // emissive, behind the camera
   const RTid lamp = rtBeginObject(0);
   rtBegin(RT_QUADS);
   squareVertices();

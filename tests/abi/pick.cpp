@@ -1,5 +1,5 @@
-// pick.cpp: rtPick is the camera's ray: the same as a ray query along it, and what the picture
-// shows.
+// pick.cpp: rtPick uses the camera's ray: the result equals a ray query along it and matches the
+// picture.
 #include <memory>
 
 #include "small_scene.h"

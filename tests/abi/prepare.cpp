@@ -1,6 +1,6 @@
-// prepare.cpp: shaders that work something out of their parameters: once for each new set, undone
-// when it goes, and what happens to values that a class refuses. Through the C API, with the
-// plug-in prepared.cc.
+// prepare.cpp: shaders with prepare(): it is called once for each new set of parameters and undone
+// when the set goes. Also the values that a class refuses. Uses the C API and the plug-in
+// prepared.cc.
 #include <dlfcn.h>
 
 #include <string>

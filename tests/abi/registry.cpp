@@ -1,5 +1,5 @@
-// registry.cpp: what the shader registry finds, loads and refuses. The libraries come from
-// tests/abi/plugins.
+// registry.cpp: which shader libraries the registry finds, loads and refuses. The libraries come
+// from tests/abi/plugins.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -87,11 +87,12 @@ TEST(Registry, LoadsAGoodPluginOnce) {
 TEST(Registry, AnOlderClassLacksTheNewerFunctions) {
   const ShaderRegistry registry({plugins});
   const RtsClass& example = registry.find("Example", "older_class");
-  EXPECT_LT(example.size, sizeof(RtsClass)); // as it states, which tells its version
+  // The size that the class states, which identifies its version.
+  EXPECT_LT(example.size, sizeof(RtsClass));
   EXPECT_NE(example.traits, nullptr);
   EXPECT_NE(example.shade, nullptr);
   EXPECT_EQ(example.transmit,
-            nullptr); // there in the plug-in's memory, but beyond the size it states
+            nullptr); // present in the plug-in's memory, but beyond the stated size
   EXPECT_EQ(example.generate, nullptr);
 }
 
@@ -101,7 +102,7 @@ TEST(Registry, OlderMinorsEndWhereTheirStructuresEnded) {
     const RtsClass& c = registry.find("Example", library);
     EXPECT_NE(c.shade, nullptr);
     EXPECT_NE(c.transmit, nullptr);
-    EXPECT_EQ(c.frequency, nullptr) << library; // there is something in the plug-in's memory
+    EXPECT_EQ(c.frequency, nullptr) << library; // the plug-in's memory has something there
     EXPECT_EQ(c.prepare, nullptr) << library;
     EXPECT_EQ(c.radiance, nullptr) << library;
   }
@@ -114,7 +115,7 @@ TEST(Registry, HalfAPointerIsNone) {
   EXPECT_EQ(c.transmit, nullptr);
 }
 
-// The places of what older headers had, in bytes on 64-bit machines: they never move.
+// The offsets of members that older headers had, in bytes on 64-bit machines. They never change.
 TEST(Abi, StructuresGrowAtTheirEndsAlone) {
   if (sizeof(void*) != 8) GTEST_SKIP();
   EXPECT_EQ(offsetof(RtsClass, traits), 40u);
@@ -211,7 +212,8 @@ TEST(Registry, RefusesWhatAGroupOrSomebodyAboveMayReplace) {
           "everything.so is refused: others may write to it");
   refused("the sticky bit does not keep others from adding files", 0755, 01777, 0644,
           "others may write to it");
-  const gid_t group = 12345; // nobody's own; only root can give a file away
+  // A group that no user has as primary group; only root can give a file away.
+  const gid_t group = 12345;
   if (::geteuid() == 0) {
     for (const fs::path& place : {above, folder, file})
       ASSERT_EQ(::chown(place.c_str(), gid_t(-1), group), 0);
@@ -225,12 +227,12 @@ TEST(Registry, RefusesWhatAGroupOrSomebodyAboveMayReplace) {
   }
   ASSERT_EQ(::chmod(above.c_str(), 01777) | ::chmod(folder.c_str(), 0755) |
                 ::chmod(file.c_str(), 0644),
-            0); // as /tmp
+            0); // like /tmp
   EXPECT_EQ(refusal(registry, "Everything", "everything"), "");
   fs::remove_all(above);
 }
 
-// Only root can give files away, and take another user's place.
+// Only root can give files away and act as another user.
 TEST(Registry, RefusesWhatBelongsToAnotherUserOrLiesInHisFolder) {
   if (::geteuid() != 0) GTEST_SKIP() << "needs root";
   constexpr uid_t other = 12345, user = 12346;
@@ -251,7 +253,8 @@ TEST(Registry, RefusesWhatBelongsToAnotherUserOrLiesInHisFolder) {
     const std::string forUser = plugin_files::objection(file.string());
     ASSERT_EQ(::seteuid(0), 0);
     EXPECT_NE(forUser.find(belongs), text.npos) << place << ": " << forUser;
-    ASSERT_EQ(::chown(place.c_str(), user, user), 0); // the user's own, which is nothing to root
+    // The user's own folder, which root does not trust.
+    ASSERT_EQ(::chown(place.c_str(), user, user), 0);
     ASSERT_EQ(::seteuid(user), 0);
     EXPECT_EQ(plugin_files::objection(file.string()), "");
     ASSERT_EQ(::seteuid(0), 0);

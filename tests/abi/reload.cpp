@@ -1,5 +1,5 @@
-// reload.cpp: shader libraries loaded anew while a program runs: the file in the folder is replaced
-// by another version.
+// reload.cpp: shader libraries reloaded while a program runs, after the file in the folder was
+// replaced by another version.
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -37,7 +37,7 @@ class Reload : public SmallScene {
     SmallScene::TearDown();
     fs::remove_all(folder);
   }
-  // As a linker does it: another file in the place of the old one.
+  // Replaces the file like a linker: a new file takes the old one's place.
   void put(const std::function<void(const fs::path&)>& write) {
     const fs::path fresh = folder / "fresh";
     write(fresh);
@@ -67,13 +67,13 @@ TEST_F(Reload, TheNewFunctionsHaveTheValuesOfTheOldNames) {
   EXPECT_NEAR(picture(1)[0], 0.375f, 1e-6);
   install(2);
   EXPECT_EQ(rtReloadShaders(), 1);
-  const std::vector<float> pixel =
-      picture(1); // gain 2 x the colour that was set + the new default of the new type
+  // Gain 2 x the colour that was set + the default of the parameter whose type changed.
+  const std::vector<float> pixel = picture(1);
   EXPECT_NEAR(pixel[0], 1.0f, 1e-6);
   EXPECT_NEAR(pixel[1], 1.5f, 1e-6);
   EXPECT_NEAR(pixel[2], 2.5f, 1e-6);
-  // Handles stay, names are looked up anew, and what is gone is there without a name and without
-  // effect.
+  // Handles stay valid and names are looked up again. A removed parameter keeps its handle without
+  // a name and without effect.
   EXPECT_EQ(rtParameterHandle("color"), color);
   rtParameter3f(color, 0, 0, 0);
   rtParameter1f(gone, 5);
@@ -93,7 +93,7 @@ TEST_F(Reload, TheNewFunctionsHaveTheValuesOfTheOldNames) {
   EXPECT_EQ(count, 5);
   rtGetParameterInfo(rtNewShaderClass("Versioned", "version"), gone, &info);
   EXPECT_STREQ(info.name, "");
-  // And back again.
+  // Back to the first version.
   install(1);
   EXPECT_EQ(rtReloadShaders(), 1);
   EXPECT_EQ(rtParameterHandle("gone"), gone);
@@ -132,7 +132,7 @@ TEST_F(Reload, AFrameInFlightKeepsTheOldOne) {
   rtFrameBuffer(n, n, RT_RGBA);
   rtSwapBuffers();
   install(2);
-  EXPECT_EQ(rtReloadShaders(), 1); // while it renders
+  EXPECT_EQ(rtReloadShaders(), 1); // while a frame renders
   rtQuality(RT_SAMPLES_PER_PIXEL, 1);
   rtSwapBuffers();
   const std::vector<float> before = read(n);
@@ -149,11 +149,11 @@ TEST_F(Reload, AnotherContextHasTheFileThatIsThere) {
   install(2);
   const RTcontext other = rtNewContext(("threads=1 shaderpath=\"" + folders() + "\"").c_str());
   rtBindShader(rtNewShader(rtNewShaderClass("Versioned", "version")));
-  EXPECT_EQ(rtReloadShaders(), 0); // it is the newest
+  EXPECT_EQ(rtReloadShaders(), 0); // it is up to date
   EXPECT_GE(rtParameterHandle("gain"), 0);
   rtDeleteContext(other);
   rtMakeCurrent(context);
-  EXPECT_NEAR(picture(1)[0], 0.1f, 1e-6); // this one goes on with what it has
+  EXPECT_NEAR(picture(1)[0], 0.1f, 1e-6); // this context continues with what it has
   EXPECT_EQ(rtReloadShaders(), 1);
 }
 

@@ -1,5 +1,5 @@
-// shader_helper.cpp: openrts.hpp: the tables it makes of small classes, and what its loops hand to
-// them and back. Also the plug-in Debug, which is written with it.
+// shader_helper.cpp: openrts.hpp: the tables that it builds from small classes, and the data that
+// its loops pass to them and back. Also the plug-in Debug, which is written with it.
 #include "openrt/openrts.hpp"
 
 #include <gtest/gtest.h>
@@ -108,7 +108,7 @@ TEST(ShaderHelper, TraitsFollowFromTheFunctions) {
   EXPECT_EQ(helperClass("Lamp").traits(&host, nullptr), 0u);
 }
 
-// Hits whose every array holds a number of its own.
+// Hits in which every array holds a different number.
 struct NumberedHits {
   explicit NumberedHits(uint32_t n, const void* params)
       : flags(n + RTS_LANES, 0), pointers(n + RTS_LANES, params) {
@@ -241,7 +241,7 @@ TEST(DebugShader, ShowsNormalsCoordinatesAndSides) {
     }
     FakeHost host;
     c.shade(&host, host.batch(), &in.hits, &shading);
-    const float half = show < 2 ? .005f : 0; // lane 1 of normals adds half of .01
+    const float half = show < 2 ? .005f : 0; // lane 1 of the normals adds half of .01
     EXPECT_NEAR(out[0][1], r + half, 1e-5) << show;
     EXPECT_NEAR(out[1][1], g + half, 1e-5) << show;
     EXPECT_NEAR(out[2][1], b + half, 1e-5) << show;

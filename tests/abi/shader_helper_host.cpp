@@ -1,6 +1,6 @@
-// shader_helper_host.cpp: openrts.hpp since ABI 1.2: lobes of a class's own, media, rays and facts
-// of a hit, frequencies, prepare, extents, projections, transports; and that all of it is harmless
-// on a host that is older.
+// shader_helper_host.cpp: the features of openrts.hpp since ABI 1.2: custom lobes, media, rays and
+// facts about a hit, frequencies, prepare, extents, projections, transports. All of them must be
+// harmless on an older host.
 #include "openrt/openrts.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace openrt::test {
 namespace {
 
-// Light from a lobe of floats that tells what it was given.
+// A custom lobe whose light encodes its arguments.
 struct Echo {
   float a, b;
   rts::Color evaluate(rts::Vec3 toEye, rts::Vec3 direction, rts::Vec3 normal) const {
@@ -21,7 +21,7 @@ struct Echo {
     return {normal, {square.x, square.y, a}, 4};
   }
 };
-struct Plain { // no floats, and a sample that is a direction alone
+struct Plain { // no floats, and its sample() gives only a direction
   static constexpr bool transmits = true;
   rts::Color evaluate(rts::Vec3, rts::Vec3, rts::Vec3) const { return {1, 2, 3}; }
   float density(rts::Vec3, rts::Vec3, rts::Vec3) const { return 2; }
@@ -47,11 +47,11 @@ struct Everything : rts::Surface<Everything> {
     if (hit.lane % 2) out.normal({0, .6f, .8f});
     out.custom({.5f, .5f, .5f}, Echo{width, doubled});
     out.custom({.25f, .25f, .25f}, Plain{});
-    out.custom({.125f, .125f, .125f}, Echo{7, 8}); // another of the same kind
+    out.custom({.125f, .125f, .125f}, Echo{7, 8}); // another one of the same kind
   }
 };
 
-// What a hit is told, as radiance.
+// Returns the facts about a hit as radiance.
 struct Asking : rts::Surface<Asking> {
   static constexpr uint32_t needs = RTS_GLOBAL;
   rts::Param<int32_t> what{"what", 0, "which question"};
@@ -106,12 +106,12 @@ struct Follow : rts::Transport<Follow> {
   }
 };
 
-template <class T> const RtsClass& classOf() { // once, as RTS_PLUGIN does
+template <class T> const RtsClass& classOf() { // once per class, as RTS_PLUGIN does
   static const RtsClass* const c = rts::detail::classOf<T>("a class");
   return *c;
 }
 
-// A batch of hits at the origin, seen from above, and room for answers.
+// A batch of hits at the origin, seen from above, with space for results.
 struct Batch {
   explicit Batch(const RtsClass& shaderClass, uint32_t n) : params(shaderClass) {
     for (size_t k = 0; k < 19; k++) in[k] = Lanes(n, k == 5 ? -1.f : k == 8 || k == 11 ? 1.f : 0.f);
@@ -157,7 +157,7 @@ TEST(ShaderHelper12, LobesOfOnesOwn) {
   EXPECT_EQ(lobe(1).kind, RTS_LOBE_ROUGH_DIELECTRIC);
   EXPECT_EQ(lobe(1).parameter[0][3], 1.25f);
   EXPECT_EQ(lobe(1).parameter[1][3], .25f);
-  EXPECT_EQ(lobe(0).normal[2][1], 1); // the normal counts for what follows
+  EXPECT_EQ(lobe(0).normal[2][1], 1); // the normal applies to lobes added later
   EXPECT_EQ(lobe(2).normal[2][1], .8f);
   EXPECT_EQ(lobe(2).normal[2][2], 1);
   EXPECT_EQ(lobe(2).data[1][5], 1);
@@ -187,7 +187,7 @@ TEST(ShaderHelper12, LobesOfOnesOwn) {
   EXPECT_FLOAT_EQ(values[0][1], .5f);
   EXPECT_FLOAT_EQ(density[0], 4);
   lobe(3).functions->sample(&lobe(3), &b.hits, 2, hit, square, chosen, value, density);
-  EXPECT_FLOAT_EQ(values[2][0], 1.5f); // the value over the density, worked out
+  EXPECT_FLOAT_EQ(values[2][0], 1.5f); // the value divided by the pdf
   EXPECT_FLOAT_EQ(density[0], 2);
 }
 
@@ -235,7 +235,8 @@ void expectTold(const Told& t, bool old = false) {
   }
 }
 
-TEST(ShaderHelper12, HitsSendRaysAndAsk) { // lane 2 of 20, by what fake_host.h says
+// Lane 2 of 20, with the values of fake_host.h.
+TEST(ShaderHelper12, HitsSendRaysAndAsk) {
   expectTold({0, {.25f, .5f, .75f}, {0, 0, 0}});
   expectTold({1, {1, 1, 1}, {0, 0, 0}});
   expectTold({2, {-1, 4, 7}, {0, 1, 0}});

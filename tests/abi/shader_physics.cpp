@@ -1,7 +1,7 @@
-// shader_physics.cpp: what every surface of the stock must keep, whatever its parameters: energy,
-// reciprocity, densities that belong to what is sampled (chi-square), finite numbers everywhere
-// (accuracy catalogue A1, "BRDF checks"). The surfaces run as plug-ins in the fake host; the
-// engine's own kinds of lobes answer through render/surface/lobes.h.
+// shader_physics.cpp: properties of every stock surface for all parameters: energy conservation,
+// reciprocity, pdfs that match the sampling (chi-square), and finite numbers everywhere (accuracy
+// catalogue A1, "BRDF checks"). The surfaces run as plug-ins in the fake host. The engine's own
+// lobes are evaluated through render/surface/lobes.h.
 #include <cfloat>
 #include <cmath>
 #include <numeric>
@@ -16,7 +16,7 @@
 namespace openrt::test {
 namespace {
 
-// Lobes of the engine that no surface of the stock has.
+// Lobes of the engine that no stock surface uses.
 struct Glossy : rts::Surface<Glossy> {
   rts::Param<float> alpha{"alpha", .3f, "width"},
       eta{"eta", 0, "index outside over inside; 0: every facet reflects all"};
@@ -34,7 +34,7 @@ struct Case {
   const char* name;
   const char* shader;
   std::vector<Setting> settings;
-  bool white = false; // reflects all light that it gets
+  bool white = false; // the surface reflects all light
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
@@ -106,9 +106,9 @@ class ShaderPhysics : public testing::TestWithParam<Case> {
   SurfaceAtOneHit surface{classNamed(GetParam().shader), GetParam().settings};
 };
 
-// All light that a white surrounding sends to the eye: of the lobes that know one direction their
-// weights, of the others the integral of their values, by their own samples. What has crossed the
-// boundary was compressed by eta^2: that is undone.
+// Returns the light that a white environment reflects to the eye. Lobes with a single direction
+// contribute their weight. The others contribute the integral of their values, estimated with their
+// own samples. Light that crossed the boundary was scaled by eta^2; this is undone.
 rts::Color furnace(const std::vector<LobeAtHit>& lobes, int side) {
   rts::Color all;
   for (const LobeAtHit& lobe : lobes) {
@@ -120,8 +120,8 @@ rts::Color furnace(const std::vector<LobeAtHit>& lobes, int side) {
     const float eta = lobe.kind() == RTS_LOBE_ROUGH_DIELECTRIC ? lobe.lobe->parameter[0][0] : 1;
     for (int a = 0; a < side; a++)
       for (int b = 0; b < side; b++) {
-        // Shifted by an irrational part of a cell: a choice by further digits must not meet the
-        // grid.
+        // Shifted by an irrational part of a cell, so that a choice by further digits does not
+        // align with the grid.
         const float u = (float(a) + .5f) / float(side),
                     v = (float(b) + std::fmod(.618034f * float(a * side + b), 1.f)) / float(side);
         const rts::Sample s = lobe.sample({u, v});
@@ -149,8 +149,8 @@ TEST_P(ShaderPhysics, ReflectsNoMoreThanItGets) {
   }
 }
 
-// The response f = weight x value / cosine is the same for the way back. Light through boundaries
-// obeys another law (scaled by the square of the index) and is tested where the engine's lobes are.
+// f = weight x value / cosine is reciprocal. Light through boundaries obeys another law (scaled by
+// the square of the index) and is tested with the engine's lobes.
 TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
   Random random(7);
   int compared = 0;
@@ -180,7 +180,7 @@ TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
     for (size_t l = 0; l < there.size(); l++) {
       const rts::Vec3 n = there[l].normal;
       if (rts::length(n - back[l].normal) > 0 || rts::dot(a, n) < .01f || rts::dot(b, n) < .01f)
-        continue; // a flake behind
+        continue; // a flake that faces away
       compared++;
       const float f = there[l].f.g, g = back[l].f.g;
       ASSERT_NEAR(f, g, 1e-5f * std::fmax(std::fmax(f, g), 1e-3f))
@@ -192,10 +192,10 @@ TEST_P(ShaderPhysics, TheWayBackIsTheSame) {
 
 const float viewAngles[] = {0, 35, 70, 85};
 
-TEST_P(ShaderPhysics,
-       SamplesFallAsTheirDensitySays) { // chi-square over 80 x 160 bins of the sphere
-  const double level =
-      1 - std::pow(1 - .01, 1.0 / (double(cases.size()) * 8)); // Sidak: 1 % for all together
+// Chi-square test with 80 x 160 bins of the sphere.
+TEST_P(ShaderPhysics, SamplesFallAsTheirDensitySays) {
+  // Sidak correction: 1 % for all tests together
+  const double level = 1 - std::pow(1 - .01, 1.0 / (double(cases.size()) * 8));
   int tested = 0;
   for (const float angle : viewAngles) {
     const std::vector<LobeAtHit> lobes = surface.lobes(towards(angle, 20), places[0]);
@@ -241,7 +241,7 @@ TEST_P(ShaderPhysics, QuotientsAreValuesOverDensities) {
         if (!(s.density > 0)) continue;
         EXPECT_NEAR(rts::length(s.direction), 1, 1e-5);
         if (std::fabs(rts::dot(s.direction, lobe.normal())) < 1e-3f)
-          continue; // the cosine's own rounding
+          continue; // rounding of the cosine dominates
         float density = 0;
         const rts::Color value = lobe.value(s.direction, &density);
         ASSERT_NEAR(density, s.density, 5e-3f * s.density) << angle << " degrees, sample " << k;
@@ -279,7 +279,7 @@ TEST_P(ShaderPhysics, EverythingIsFinite) {
       }
 }
 
-// Between polished and rough, where densities are of the order of 1e7.
+// Between polished and rough, where pdfs are of the order of 1e7.
 TEST(Facets, NearlyPolishedIsFinite) {
   for (const char* shader : {"Metal", "Plastic", "Reflector", "RoughGlass"})
     for (const float roughness : {0.f, 1e-30f, 1e-4f, 1.01e-4f, 1e-3f}) {
@@ -289,7 +289,7 @@ TEST(Facets, NearlyPolishedIsFinite) {
         EXPECT_TRUE(all.g >= 0 && all.g <= 1 + 1e-3f)
             << shader << " " << roughness << " at " << angle << ": " << all.g;
       }
-      // As good as polished: what a polished one reflects.
+      // Nearly polished must equal polished.
       SurfaceAtOneHit polished(shader, {{"roughness", {0}}});
       const float smooth = furnace(polished.lobes(towards(45)), 16).g,
                   nearly = furnace(surface.lobes(towards(45)), 16).g;
@@ -297,9 +297,9 @@ TEST(Facets, NearlyPolishedIsFinite) {
     }
 }
 
-// Light that crosses a rough boundary: f(a, b) / n_a^2 is the same both ways (E. Veach, "Robust
-// Monte Carlo Methods for Light Transport Simulation", 1997, 5.2), whether seen from outside or
-// from inside.
+// For light that crosses a rough boundary f(a, b) / n_a^2 is the same in both directions (E. Veach,
+// "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 5.2), seen from outside or
+// inside.
 TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
   for (const float roughness : {.1f, .4f, 1.f}) {
     SurfaceAtOneHit surface("RoughGlass", {{"roughness", {roughness}}});
@@ -311,14 +311,14 @@ TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
                     s = std::sqrt(1 - z * z);
         return rts::Vec3{s * std::cos(phi), s * std::sin(phi), z};
       };
-      const rts::Vec3 out = direction(), in = direction(); // each on its own side
+      const rts::Vec3 out = direction(), in = direction(); // on opposite sides
       const auto mirrored = [](rts::Vec3 v) { return rts::Vec3{v.x, v.y, -v.z}; };
       const float there = surface.lobes(out)[0].value(mirrored(in)).g / in.z;
       const float back = surface.lobes(in, {}, true)[0].value(mirrored(out)).g / out.z;
       if (there == 0 && back == 0) continue;
       compared++;
       const float f = there, g = back / (1.5f * 1.5f);
-      // Floats of narrow lobes: a rounded facet's normal is off by some 1e-7, which the
+      // Floats of narrow lobes: the rounding of a microfacet's normal is about 1e-7, which the
       // distribution magnifies by 1 / roughness.
       ASSERT_NEAR(f, g, (1e-5f + 2e-6f / roughness) * std::fmax(std::fmax(f, g), 1e-2f))
           << roughness << " pair " << k;
@@ -327,10 +327,10 @@ TEST(RoughBoundary, TheWayBackIsTheSameScaledByTheIndices) {
   }
 }
 
-// The facets that are seen from a direction cover just what is seen of the surface: the weak white
-// furnace of E. Heitz (JCGT 3(2), 2014, eq. 53), with facets that reflect all, before any of their
-// light is hidden: the integral of D G1 / (4 cos o) over all mirror images, also those below the
-// horizon.
+// The microfacets visible from a direction cover exactly the visible surface. This is the weak
+// white furnace of E. Heitz (JCGT 3(2), 2014, eq. 53): with facets that reflect everything, before
+// masking of the reflected light, the integral of D G1 / (4 cos o) over all mirror directions is 1,
+// including those below the horizon.
 TEST(Facets, WeakWhiteFurnace) {
   for (const float alpha : {.02f, .1f, .3f, .6f, 1.f})
     for (const float angle : {0.f, 30.f, 60.f, 80.f, 89.f}) {
@@ -338,8 +338,8 @@ TEST(Facets, WeakWhiteFurnace) {
       const rts::Vec3 o = towards(angle);
       double sum = 0;
       const int across = 2000, around = 128;
-      for (int i = 0; i < across; i++) { // tangents of the facets' angles by their distribution u,
-                                         // crowded towards steep ones
+      // Tangents of the facets' angles, distributed by u, which crowds them towards steep ones.
+      for (int i = 0; i < across; i++) {
         const double w = 1 - (i + .5) / across, tangent = alpha * std::sqrt((1 - w * w) / (w * w));
         const double c = 1 / std::sqrt(1 + tangent * tangent);
         const double s = tangent * c;
@@ -349,7 +349,8 @@ TEST(Facets, WeakWhiteFurnace) {
           const rts::Vec3 h{float(s * std::cos(phi)), float(s * std::sin(phi)), float(c)};
           const double seen = std::max(0.f, rts::dot(o, h));
           ring += ggx.seen(o, h) * 4 * seen /
-                  (ggx.facets(h) * c); // density of the mirror images, over that of these points
+                  // Pdf of the mirror directions divided by that of these points.
+                  (ggx.facets(h) * c);
         }
         sum += ring * 2 * w / around / across;
       }
@@ -357,8 +358,8 @@ TEST(Facets, WeakWhiteFurnace) {
     }
 }
 
-// ISO/IEC 14772-1's highlight is kept as it looks: with the light in the mirror direction both give
-// OS, here times N.L.
+// The highlight of ISO/IEC 14772-1 keeps its brightness: with the light in the mirror direction
+// both give OS, here times N.L.
 TEST(Vrml97Lobes, AHighlightIsAsBrightAsTheStandardSays) {
   for (const float shininess : {0.f, .02f, .2f, 1.f}) {
     SurfaceAtOneHit surface("VRML97", {{"diffuseColor", {0, 0, 0}},

@@ -1,5 +1,5 @@
-// small_scene.h: a context with the test plug-ins and the stock shaders, one ray down -z a pixel,
-// and what it logs. Through the public C API only.
+// small_scene.h: a context with the test plug-ins and the stock shaders. It shoots one ray down -z
+// per pixel and keeps what the library logs. Uses only the public C API.
 #pragma once
 
 #include <cmath>
@@ -35,7 +35,7 @@ class SmallScene : public testing::Test {
     rtLogCallback(Log::take, &log);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
     rtTranslated(0, 0, 10);
-    rtOrtho(2); // the square from -1 to 1
+    rtOrtho(2); // the view covers the square from -1 to 1
     rtLoadIdentity();
   }
   void TearDown() override {
@@ -48,7 +48,7 @@ class SmallScene : public testing::Test {
     rtBindShader(id);
     return id;
   }
-  // The picture, n x n pixels of rgba from the top left corner.
+  // Returns the picture: n x n RGBA pixels from the top left corner.
   std::vector<float> picture(int n) {
     rtFrameBuffer(n, n, RT_RGBA);
     rtRender();

@@ -1,6 +1,6 @@
-// surface_at_one_hit.h: a surface shader of a plug-in, with parameters, at one hit of the plane z =
-// 0: which lobes it has there, and how these answer light. For tests of energy, reciprocity and
-// sampling that hold for every shader.
+// surface_at_one_hit.h: runs a surface shader of a plug-in, with parameters, at one hit of the
+// plane z = 0. Tests ask which lobes it adds there and evaluate and sample them. Used for tests of
+// energy, reciprocity and sampling that hold for every shader.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct Setting {
   std::vector<float> values;
 };
 
-// What lobe number k of a hit does; the hit stays with the SurfaceAtOneHit that made it.
+// One lobe of a hit. The hit is owned by the SurfaceAtOneHit that made it.
 struct LobeAtHit {
   const RtsLobe* lobe;
   const RtsHits* hits;
@@ -30,7 +30,7 @@ struct LobeAtHit {
   rts::Vec3 normal() const { return {lobe->normal[0][0], lobe->normal[1][0], lobe->normal[2][0]}; }
   bool scatters() const { return scatteringOf(*lobe) != nullptr; }
 
-  // Response times cosine, without the weight, and the density of `sample`.
+  // Returns the BSDF times cosine, without the lobe's weight, and the pdf of `sample`.
   rts::Color value(rts::Vec3 direction, float* density = nullptr) const {
     const uint32_t hit = 0;
     float out[4] = {};
@@ -74,8 +74,8 @@ class SurfaceAtOneHit {
   SurfaceAtOneHit(const SurfaceAtOneHit&) = delete;
   SurfaceAtOneHit& operator=(const SurfaceAtOneHit&) = delete;
 
-  // The lobes for a direction to the eye; valid until the next call. place: in the frame of the
-  // object.
+  // Returns the lobes for a direction to the eye; valid until the next call. place: position in the
+  // frame of the object.
   std::vector<LobeAtHit> lobes(rts::Vec3 toEye, rts::Vec3 place = {}, bool back = false) {
     host_.lobes.clear();
     host_.memory.clear();
@@ -143,13 +143,13 @@ class SurfaceAtOneHit {
   rts::Vec3 place_;
 };
 
-// A direction of the upper hemisphere from degrees.
+// Returns a direction of the upper hemisphere for angles in degrees.
 inline rts::Vec3 towards(double fromNormal, double around = 0) {
   const double t = fromNormal * M_PI / 180, p = around * M_PI / 180;
   return {float(std::sin(t) * std::cos(p)), float(std::sin(t) * std::sin(p)), float(std::cos(t))};
 }
 
-// A small generator of independent numbers: M. O'Neill, "PCG", 2014.
+// A small generator of independent random numbers (M. O'Neill, "PCG", 2014).
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed * 2 + 1) { operator()(); }

@@ -1,6 +1,6 @@
-// vrml97_places.cpp: the lights, cameras and the environment of the stock plug-in in a fake host,
-// against values worked out in double from ISO/IEC 14772-1 clauses 4.14, 6.5, 6.16, 6.19, 6.33
-// and 6.41.
+// vrml97_places.cpp: the lights, cameras and environment of the stock plug-in in a fake host,
+// against values computed in double from ISO/IEC 14772-1 clauses 4.14, 6.5, 6.16, 6.19, 6.33 and
+// 6.41.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -118,7 +118,7 @@ TEST(Vrml97Lights, SpotFallsOffBetweenItsAngles) { // V6
   ParamBlock p = block("VRML97SpotLight");
   p.set("beamWidth", {.3f});
   p.set("cutOffAngle", {.6f});
-  p.set("direction", {0, 0, -5}); // any length
+  p.set("direction", {0, 0, -5}); // any length is allowed
   for (const auto& [angle, wanted] : {std::pair{.45, .5},
                                       {.3, 1.0},
                                       {.6, 0.0},
@@ -182,7 +182,7 @@ std::vector<Colour> miss(const ParamBlock& p, std::vector<Vec> directions,
   return out;
 }
 
-// The direction at an angle from the zenith.
+// Returns the direction at an angle from the zenith.
 Vec zenith(double angle, double around = 0.7) {
   return {float(std::sin(angle) * std::cos(around)), float(std::cos(angle)),
           float(std::sin(angle) * std::sin(around))};
@@ -230,18 +230,19 @@ TEST(Vrml97Background, GroundCoversUpToItsLastAngle) {
 TEST(Vrml97Background, AnglesOutOfOrderOrRangeAreHarmless) {
   ParamBlock p(stock("VRML97Environment"));
   p.set("skyColor", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
-  p.set("skyAngle", {2, 1, 77, 5, NAN}); // more angles than colours, falling, too large
+  // More angles than colours, a decreasing angle, one that is too large.
+  p.set("skyAngle", {2, 1, 77, 5, NAN});
   for (double a = 0; a <= 3.2; a += .05)
     for (const Colour& c : miss(p, {zenith(a)})) {
       EXPECT_TRUE(c.r >= 0 && c.r <= 1 && c.g >= 0 && c.g <= 1 && c.b >= 0 && c.b <= 1) << a;
       EXPECT_EQ(c.a, 1);
     }
   EXPECT_NEAR(miss(p, {zenith(1)})[0].r, .5,
-              1e-6); // towards the second colour at 2; the third starts there too
+              1e-6); // interpolates towards the second colour at 2, where the third one starts, too
 }
 
 TEST(Vrml97Background, PicturesLieWhereTheHeadTurns) {
-  // The fake host's red grows by 10 u + 100 v: s and t of each face, read back from it.
+  // The fake host's red channel grows by 10 u + 100 v, which shows s and t of each face.
   const struct {
     const char* name;
     Vec direction;

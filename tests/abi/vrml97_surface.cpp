@@ -1,6 +1,6 @@
-// vrml97_surface.cpp: the surface of the stock plug-in, loaded as a plug-in, run in a fake host:
-// both tables of ISO/IEC 14772-1 clause 4.14.3, the lighting equation, traits and transmission.
-// Values of the equation are worked out in double.
+// vrml97_surface.cpp: the surface of the stock plug-in, loaded as a plug-in and run in a fake host:
+// both tables of ISO/IEC 14772-1 clause 4.14.3, the lighting equation, traits and transmission. The
+// expected values are computed in double.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@ void expectRgb(Rgb got, Rgb wanted, double relative = 1e-5) {
   EXPECT_NEAR(got.b, wanted.b, relative * std::max(1e-3f, std::fabs(wanted.b)));
 }
 
-// One batch of hits of a surface in the plane z = 0, seen from +z, each lane with parameters of its
-// own.
+// One batch of hits of a surface in the plane z = 0, seen from +z. Each lane has its own
+// parameters.
 struct Hits {
   explicit Hits(std::vector<const void*> parameters)
       : count(static_cast<uint32_t>(parameters.size())), params(std::move(parameters)) {
@@ -187,14 +187,14 @@ TEST(Vrml97Surface, ShininessZeroIsOneOnTheLitSide) {
   FakeHost host;
   host.shining = {lightAt(89)};
   Hits hits({p.get()});
-  hits.direction[0][0] =
-      0.999f; // seen so flat from the other side that N.H is below 0: the power of 0 is still 1
+  // Seen from such a flat angle on the other side that N.H is below 0: 0 to the power of 0 is still
+  // 1.
+  hits.direction[0][0] = 0.999f;
   hits.direction[2][0] = 0.04f;
   expectRgb(shade(host, hits).light(), {1, 1, 1});
 }
 
-// Rows of tables 4.5 and 4.6 of the standard: what the diffuse colour (or the unlit colour) and A
-// become.
+// Rows of tables 4.5 and 4.6 of the standard: the resulting diffuse (or unlit) colour and A.
 struct Row {
   int components;
   bool coloured, lit;
@@ -309,7 +309,7 @@ TEST(Vrml97Surface, ShadowRaysOnlyWhereTheyMatter) {
   host.shining = {lightAt(10)};
   host.shining[0].visible = 0.5f;
   Hits hits({lit.get(), black.get(), unlit.get(), lit.get()});
-  hits.normal[2][3] = -1; // turned away from the light
+  hits.normal[2][3] = -1; // facing away from the light
   Answer a = shade(host, hits);
   EXPECT_EQ(host.shadowLanes, 1u);
   EXPECT_NEAR(a.light(0).r, 0.4 * std::cos(10 * degree), 1e-6);

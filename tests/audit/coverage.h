@@ -1,7 +1,7 @@
-// coverage.h: how often the error bars of pictures hold: small scenes of each kind of difficulty,
-// rendered with many seeds and compared with a long render of another seed and with each other.
-// Through the public C API only. For the numeric tests (few seeds) and the program `audit` (many).
-// One context, on the calling thread.
+// coverage.h: measures how often the error bars of pictures hold. Small scenes, one for each kind
+// of difficulty, are rendered with many seeds. The pictures are compared with a long render of
+// another seed and with each other. Uses only the public C API. Called by the numeric tests (few
+// seeds) and by the program `audit` (many seeds). One context, on the calling thread.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +16,29 @@ namespace audit {
 struct Scenario {
   std::string name, text;
   int transport; // RT_TRANSPORT_*
-  int samples;   // a pixel
-  int reference; // samples of the long render; 0: `exact` instead
+  int samples;   // samples per pixel
+  int reference; // samples per pixel of the reference render; 0: compare with `exact`
   double exact;
-  double trusted;     // share of the pixels that the intervals must be trusted at, at least
-  const char* reason; // why not more: ""
-  void (*draw)();     // into the current context
+  double trusted;     // smallest accepted fraction of pixels with trusted intervals
+  const char* reason; // why `trusted` is below 1; "" if it is not
+  void (*draw)();     // draws the scene into the current context
 };
-const std::vector<Scenario>& scenarios();      // all
-const std::vector<Scenario>& firstScenes();    // may set limits
-const std::vector<Scenario>& trainingScenes(); // may set limits
-const std::vector<Scenario>& judgingScenes();  // may only judge
+const std::vector<Scenario>& scenarios(); // all scenes of the three lists below
+// Limits and rules of the library may be chosen from the results of these two lists.
+const std::vector<Scenario>& firstScenes();
+const std::vector<Scenario>& trainingScenes();
+// Test set: no limit or rule of the library may be chosen from its results.
+const std::vector<Scenario>& judgingScenes();
 
 using Coverage = picture::Coverage;
 
-// One scene, for pictures of several numbers of samples: what is true of it is made once.
+// Judges one scene at several sample counts. The reference is rendered once.
 class Judge {
  public:
-  // In the current context, whose quality other than samples, transport and seed is left as it is.
-  // edge: pixels.
+  // Renders the reference in the current context. Sets samples, transport and seed; the other
+  // quality settings stay. edge: width and height in pixels.
   Judge(const Scenario& scenario, int edge);
-  // Renders with seeds 1 .. seeds.
+  // Renders with the seeds 1 to `seeds`.
   Coverage measure(int samples, int seeds);
 
  private:
@@ -44,7 +46,7 @@ class Judge {
   const int edge_;
   picture::Reference reference_;
 };
-Coverage measure(const Scenario& scenario, int seeds,
-                 int edge = 16); // with the scene's own number of samples
+// Measures with the scenario's own number of samples.
+Coverage measure(const Scenario& scenario, int seeds, int edge = 16);
 
 } // namespace audit

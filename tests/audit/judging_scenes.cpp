@@ -1,6 +1,6 @@
-// judging_scenes.cpp: hard scenes of the audit that may only judge: no limit and no rule of
-// libopenrt/render was chosen or changed because of what they show. Those that may set limits are
-// in scenes.cpp and training_scenes.cpp.
+// judging_scenes.cpp: hard scenes that serve as the audit's test set. No limit or rule of
+// libopenrt/render was chosen or changed because of their results. The scenes that may be used for
+// that are in scenes.cpp and training_scenes.cpp.
 #include <cmath>
 
 #include "audit/coverage.h"
@@ -9,7 +9,7 @@
 namespace audit {
 namespace {
 
-// A lamp of a ten-thousandth in a room with a glass before it.
+// A lamp with a radius of a ten-thousandth in a room, with a glass in front of it.
 void drawBulb() {
   const RTid white = paint(.7f, .7f, .7f);
   roomOf(white, white, paint(.6f, .2f, .1f), white, white);
@@ -19,7 +19,7 @@ void drawBulb() {
   eyeAt(0, 0, 3.4, 40);
 }
 
-// Plates of rough metal in which four lamps of different size are mirrored.
+// Plates of rough metal that reflect four lamps of different size.
 void drawPlates() {
   static const float roughness[] = {.02f, .08f, .2f, .4f};
   for (int i = 0; i < 4; i++) {
@@ -38,7 +38,7 @@ void drawPlates() {
   eyeAt(0, .2, 4.5, 40);
 }
 
-// A sky with a sun that is half a degree wide, a pool of glass, a mirror and trees.
+// A sky with a sun half a degree wide, a glass pool, a mirror and trees.
 void drawNoon() {
   const float colors[] = {40000, 39000, 36000, .3f, .5f, .9f, .8f, .8f, .7f},
               angle[] = {.0046f, 1.4f};
@@ -56,7 +56,7 @@ void drawNoon() {
   eyeAt(.5, 1.4, 4, 38);
 }
 
-// A bottle of glass that absorbs, lit from behind; fog in the distance.
+// A bottle of absorbing glass, lit from behind, and fog in the distance.
 void drawAbsorbing() {
   const RTid amber = shaderOf("RoughGlass");
   colored(amber, "absorption", .3f, 1.2f, 4);
@@ -79,7 +79,7 @@ void drawAbsorbing() {
   eyeAt(0, .4, 4, 40);
 }
 
-// Twigs and lights seen through a lens wide open.
+// Twigs and lights seen through a wide-open lens.
 void drawTwigs() {
   const float dusk[] = {.02f, .03f, .06f};
   sky(1, dusk, nullptr, 0, 0);
@@ -96,7 +96,7 @@ void drawTwigs() {
   lensAt(0, 0, 5, 34, .12f, 4.5f);
 }
 
-// A passage with three bends: each turn leaves a fiftieth of the light.
+// A passage with three bends. Each bend leaves a fiftieth of the light.
 void drawPassage() {
   const RTid white = paint(.75f, .75f, .75f), tan = paint(.6f, .5f, .4f);
   rtPushMatrix();
@@ -110,11 +110,11 @@ void drawPassage() {
   eyeAt(.85, .1, 2.8, 50);
 }
 
-// Sunlight through a keyhole: a dark room, a small bright patch, what it lights.
+// Sunlight through a keyhole: a dark room with a small bright patch and the light it reflects.
 void drawKeyhole() {
   const RTid white = paint(.6f, .6f, .6f);
   roomOf(white, white, white, paint(.2f, .3f, .6f), white);
-  rtPushMatrix(); // the wall in front, of four parts about a hole
+  rtPushMatrix(); // the front wall: four parts around a hole
   for (int i = 0; i < 4; i++) {
     rtPushMatrix();
     rtRotated(90 * i, 0, 0, 1);
@@ -132,7 +132,7 @@ void drawKeyhole() {
   eyeAt(.7, .3, .85, 75);
 }
 
-// A ring of polished metal on a table: the bright curves inside it.
+// A ring of polished metal on a table, with the bright curves inside it.
 void drawRing() {
   floorAt(0, paint(.6f, .55f, .5f), 6);
   const RTid gold = shaderOf("Metal");

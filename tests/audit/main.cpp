@@ -1,7 +1,9 @@
-// main.cpp: `audit [SEEDS [EDGE [NAME]]]`: do the error bars hold? For each scene with 64 and with
-// 512 samples: the share of pixels that are trusted, the coverage of their 95 % intervals with its
-// own interval, its 5th percentile over tiles, and how many pictures were off by errorMean +-
-// errorMeanInterval. Then which promises hold. Exit code 1 where one does not.
+// main.cpp: `audit [SEEDS [EDGE [NAME]]]` checks whether the error bars hold. For each scene, with
+// 64 and with 512 samples, it prints:
+// * the fraction of pixels that are trusted;
+// * the coverage of their 95 % intervals, with its own interval, and its 5th percentile over tiles;
+// * how many pictures were off by errorMean +- errorMeanInterval. It then lists which promises
+//   hold. The exit code is 1 if one does not.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,7 +14,7 @@
 
 namespace {
 
-struct Held { // of a promise: how many scenes
+struct Held { // a promise, and in how many scenes it held
   const char* promise;
   int held = 0, all = 0;
   std::string not_;
@@ -28,7 +30,7 @@ Held coverage{"of the trusted intervals 93 to 97 % hold", 0, 0, {}},
     whole{"the picture is off by errorMean +- errorMeanInterval in 90 % of the pictures", 0, 0, {}},
     safe{"it is off by at most their sum in 95 % of the pictures", 0, 0, {}};
 
-// Share of so many is at least p, or less by chance (three standard errors).
+// Returns whether a fraction of `count` is at least p, allowing three standard errors of noise.
 bool atLeast(double share, double p, double count) {
   return share + 3 * std::sqrt(p * (1 - p) / count) >= p;
 }

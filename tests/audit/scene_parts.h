@@ -1,5 +1,5 @@
-// scene_parts.h: what the scenes of the audit are made of, through the public C API into the
-// current context. Matrices are the current one's. One thread.
+// scene_parts.h: building blocks of the audit's scenes. They call the public C API in the current
+// context, under the current matrix. [one thread]
 #pragma once
 
 #include "openrt/openrt.h"
@@ -7,7 +7,7 @@
 namespace audit {
 
 RTid diffuse(float emission, float reflectance);
-RTid paint(float r, float g, float b); // diffuse, of a colour
+RTid paint(float r, float g, float b); // diffuse shader
 RTid shaderOf(const char* shaderClass);
 void colored(RTid shader, const char* parameter, float r, float g, float b);
 void set(RTid shader, const char* parameter, float value);
@@ -18,16 +18,17 @@ RTid ball(RTid shader, float radius);
 void put(RTid object, double x, double y, double z, double turn);          // turn: degrees about +y
 void lampAbove(double x, double y, double z, double half, float radiance); // faces -y
 void floorAt(double y, RTid shader, double half);                          // faces +y
-void roomOf(RTid floor, RTid ceiling, RTid left, RTid right,
-            RTid back); // of half-width 1 about the origin, open to +z
+// A box of half-width 1 about the origin, open towards +z.
+void roomOf(RTid floor, RTid ceiling, RTid left, RTid right, RTid back);
 void sky(int colors, const float* color, const float* angle, double tilt,
          float turnOfAxis); // tilt: degrees about (1, 0, turnOfAxis)
 
-void lookDown(double height); // from far above on a square of this height about the origin
+// the camera looks from far above at a square of this height about the origin
+void lookDown(double height);
 void eyeAt(double x, double y, double z, double degrees);
-// Through a lens that is sharp at a distance.
+// A camera with a thin lens, focused at a distance.
 void lensAt(double x, double y, double z, double degrees, float radius, float focus);
 
-double chance(unsigned number, unsigned which); // of [0, 1): the same in every run
+double chance(unsigned number, unsigned which); // random number in [0, 1), the same in every run
 
 } // namespace audit

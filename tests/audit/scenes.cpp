@@ -1,6 +1,6 @@
-// scenes.cpp: the first scenes of the audit: each kind of difficulty once, small, through the
-// public C API. They may set limits, as those of training_scenes.cpp may, and those of
-// judging_scenes.cpp may not.
+// scenes.cpp: the first scenes of the audit, small ones, one for each kind of difficulty, drawn
+// through the public C API. Limits of the library may be chosen from their results, as from those
+// of training_scenes.cpp, but not from those of judging_scenes.cpp.
 #include <cmath>
 
 #include "audit/coverage.h"
@@ -11,7 +11,7 @@
 namespace audit {
 namespace {
 
-// Stripes at an angle, a few pixels wide: pixels with edges, and some without.
+// Slanted stripes, a few pixels wide: some pixels have edges, others have none.
 void drawEdges() {
   const RTid white = diffuse(1, 0), grey = diffuse(.25f, 0);
   square(grey, 20);
@@ -26,7 +26,7 @@ void drawEdges() {
   lookDown(2);
 }
 
-// A closed box that glows: radiance .5 / (1 - .5) = 1 everywhere.
+// A closed box that emits light: the radiance is .5 / (1 - .5) = 1 everywhere.
 void drawFurnace() {
   const RTid wall = diffuse(.5f, .5f);
   for (int i = 0; i < 6; i++) {
@@ -44,7 +44,7 @@ void drawFurnace() {
   rtPopMatrix();
 }
 
-// A lamp that faces a floor; the camera looks past it.
+// A lamp that faces a floor. The camera looks past the lamp.
 void lampOver(double half, double height, float radiance) {
   square(diffuse(0, .5f), 10);
   rtPushMatrix();
@@ -62,7 +62,7 @@ void drawLamp() { lampOver(1, 1, 1); }
 void drawSmallLamp() { lampOver(.15, 1, 40); }
 void drawTinyLamp() { lampOver(.03, 1, 1000); }
 
-// A room with a lamp in its ceiling: light between coloured walls, edges, shadows.
+// A room with a lamp in its ceiling: interreflection between coloured walls, edges, shadows.
 void drawRoom() {
   const RTid white = diffuse(0, .7f), dark = diffuse(0, .2f), lamp = diffuse(8, 0);
   roomOf(white, white, dark, dark, white);
@@ -94,7 +94,8 @@ void drawCornell() {
   eyeAt(0, 0, 3.8, 37);
 }
 
-// A glass ball on a floor under a lamp: its caustic is found by paths that happen to meet the lamp.
+// A glass ball on a floor under a lamp. Its caustic is found only by paths that hit the lamp by
+// chance.
 void drawGlassBall() {
   floorAt(-1, paint(.6f, .6f, .5f), 6);
   lampAbove(.8, 3, -.5, .6, 10);
@@ -102,7 +103,7 @@ void drawGlassBall() {
   eyeAt(1.5, 1.6, 4, 38);
 }
 
-// Many instances of two objects in rows, under a sky and a lamp.
+// Many instances of two objects in rows, under an environment light and a lamp.
 void drawClutter() {
   const RTid env = rtNewShader(rtNewShaderClass("VRML97Environment", nullptr));
   const float sky[] = {.5f, .7f, 1, .9f, .9f, .8f}, angle[] = {1.57f};
@@ -123,7 +124,7 @@ void drawClutter() {
   eyeAt(2.5, 2.2, 3.5, 40);
 }
 
-// A floor with a chequered picture, seen flat, under a lamp.
+// A floor with a chequered texture, seen at a grazing angle, under a lamp.
 void drawTexture() {
   RTid texture = 0;
   rtGenTextures(1, &texture);
@@ -150,7 +151,7 @@ void drawTexture() {
   eyeAt(.7, 1.2, 4, 45);
 }
 
-// Fifty small lamps over things that hide them from each other.
+// Fifty small lamps over objects that occlude them from each other.
 void drawManyLamps() {
   floorAt(0, paint(.6f, .6f, .6f), 10);
   const RTid post = box(paint(.3f, .4f, .5f), .08, .6, .08);
@@ -162,7 +163,7 @@ void drawManyLamps() {
   eyeAt(1, 2, 4.2, 45);
 }
 
-// A dim sky with a small bright sun in it, away from the zenith.
+// A dim environment with a small bright sun, away from the zenith.
 void drawSun() {
   const RTid env = rtNewShader(rtNewShaderClass("VRML97Environment", nullptr));
   const float sky[] = {600, 580, 500, .2f, .3f, .5f, .3f, .3f, .3f}, angle[] = {.04f, 3};
@@ -180,15 +181,15 @@ void drawSun() {
   eyeAt(.5, 2, 4, 40);
 }
 
-// A mirror ball and a wall of glass in a lit room: light that goes by way of mirrors.
+// A mirror ball and a glass wall in a lit room: light paths via mirrors.
 void drawMirrors() {
   drawCornell();
   put(ball(rtNewShader(rtNewShaderClass("Mirror", nullptr)), .3f), .3, -.1, .3, 0);
   put(box(rtNewShader(rtNewShaderClass("Glass", nullptr)), .5, .5, .03), -.3, -.3, .6, 20);
 }
 
-// A small lamp behind a pane: lamps are not aimed at through glass, so that one path in four
-// hundred meets it.
+// A small lamp behind a pane. Lamps are not sampled through glass, so only one path in four hundred
+// hits it.
 void drawPane() {
   square(diffuse(0, .8f), 10);
   const RTid glass = rtNewShader(rtNewShaderClass("Glass", nullptr));

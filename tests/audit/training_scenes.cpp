@@ -1,6 +1,6 @@
-// training_scenes.cpp: hard scenes of the audit that may set limits: the rules of
-// libopenrt/render/film/error.cpp and error_map.cpp were made while looking at these, and at those
-// of scenes.cpp. Those of judging_scenes.cpp were not.
+// training_scenes.cpp: hard scenes of the audit from which limits may be chosen. The rules of
+// libopenrt/render/film/error.cpp and error_map.cpp were developed with these scenes and those of
+// scenes.cpp, and without those of judging_scenes.cpp.
 #include <cmath>
 
 #include "audit/coverage.h"
@@ -9,8 +9,8 @@
 namespace audit {
 namespace {
 
-// A small lamp behind a thick ball of glass that lights a floor: few paths meet it, and the floor
-// has little other light.
+// A small lamp behind a thick glass ball lights a floor. Few paths hit the lamp, and the floor has
+// little other light.
 void drawCaustic() {
   floorAt(-1, paint(.5f, .5f, .5f), 5);
   put(ball(shaderOf("Glass"), .6f), 0, 0, 0, 0);
@@ -19,8 +19,8 @@ void drawCaustic() {
   eyeAt(2.2, 1.8, 2.6, 42);
 }
 
-// A lamp one thousandth above a floor: of what is seen the near end is lit a thousand million times
-// as much as the far one.
+// A lamp one thousandth above a floor. The near end of the visible floor is lit a thousand million
+// times as brightly as the far end.
 void drawDecades() {
   square(diffuse(0, .6f), 10);
   rtPushMatrix();
@@ -31,7 +31,7 @@ void drawDecades() {
   lookDown(1);
 }
 
-// Four layers of small leaves before a bright sky, all of them smaller than a pixel or two.
+// Four layers of small leaves in front of a bright sky, all smaller than a pixel or two.
 void drawLeaves() {
   const float bright[] = {1.5f, 1.6f, 2};
   sky(1, bright, nullptr, 0, 0);
@@ -46,7 +46,7 @@ void drawLeaves() {
   eyeAt(0, 0, 3, 34);
 }
 
-// Five hundred lamps of very different strength over boxes.
+// Five hundred lamps of very different power over boxes.
 void drawFiveHundred() {
   floorAt(0, paint(.6f, .6f, .6f), 10);
   const RTid post = box(paint(.5f, .4f, .3f), .1, .4, .1);
@@ -59,7 +59,7 @@ void drawFiveHundred() {
   eyeAt(1, 2, 4.2, 45);
 }
 
-// Glowing and lit balls far before and behind what the lens is sharp at, on black.
+// Emissive and lit balls far in front of and behind the plane of focus, on black.
 void drawFocus() {
   for (unsigned i = 0; i < 12; i++) {
     const RTid shader = i % 3 == 0 ? diffuse(float(1 + i), 0) : paint(.8f, .3f, .2f);
@@ -70,7 +70,7 @@ void drawFocus() {
   lensAt(0, 0, 6, 30, .25f, 6);
 }
 
-// Bright stripes seen through a wedge of glass of strong dispersion.
+// Bright stripes seen through a glass wedge of strong dispersion.
 void drawDispersion() {
   const RTid glass = shaderOf("Glass");
   set(glass, "abbe", 20);
@@ -89,7 +89,7 @@ void drawDispersion() {
   eyeAt(.4, .5, 4, 36);
 }
 
-// A closed room that is lit through a slit in its ceiling.
+// A closed room lit through a slit in its ceiling.
 void drawSlit() {
   const RTid white = paint(.7f, .7f, .7f), red = paint(.6f, .1f, .1f);
   rtPushMatrix();
@@ -100,7 +100,7 @@ void drawSlit() {
   square(white, 1);
   rtPopMatrix();
   const RTid lid =
-      box(white, .96, .02, 1.4); // hides the lamp; light comes by way of the ceiling and the side
+      box(white, .96, .02, 1.4); // hides the lamp; light arrives via the ceiling and the side
   put(lid, -.1, .6, 0, 0);
   lampAbove(-.3, .9, 0, .3, 30);
   eyeAt(.2, -.2, 1.3, 70);

@@ -1,6 +1,6 @@
-// cluster_model.h: what the simulator of a cluster (cluster_sim.cpp) is made of besides the real
-// master: links with a bandwidth and a latency, machines that sleep instead of rendering, a picture
-// whose places cost different amounts. Time is virtual; that of the master alone is measured.
+// cluster_model.h: the models that the cluster simulator (cluster_sim.cpp) puts around the real
+// master: links with a bandwidth and a latency, workers that sleep instead of rendering, and a
+// picture whose tiles differ in cost. Time is virtual; only the master's time is measured.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +26,10 @@ namespace sim {
 using namespace openrt;
 using namespace openrt::cluster;
 
-// What a sample costs where, relative to the mean of the picture: cells, row by row.
+// Cost of a sample relative to the mean of the picture, by cell, row by row.
 class CostMap {
  public:
-  // A file: width, height, then the cells' seconds (any unit), as numbers of text; lines that begin
+  // Reads a text file: width, height, then the seconds of each cell (any unit). Lines that begin
   // with # are comments.
   explicit CostMap(const std::string& file) {
     std::ifstream in(file);
@@ -52,8 +52,9 @@ class CostMap {
     for (double& c : cells_) c = number();
     normalise();
   }
-  // A third of the picture is background at a tenth of the cost; the rest is log-normal (sigma
-  // 0.5), with eight hot spots of ten times the cost, a fortieth of the picture's width in radius.
+  // Makes a picture. A third of it is background at a tenth of the cost. The rest is log-normal
+  // (sigma 0.5), with eight hot spots of ten times the cost; their radius is a fortieth of the
+  // picture's width.
   CostMap() : width_(120), height_(68), cells_(size_t(width_) * height_) {
     std::mt19937 random(7);
     std::vector<std::pair<double, double>> spots;
@@ -73,7 +74,7 @@ class CostMap {
       }
     normalise();
   }
-  // Mean of the cells that a tile of a picture of this size touches, by where its pixels lie.
+  // Returns the mean cost of the cells that a tile touches, weighted by where its pixels lie.
   double of(const Tile& tile, uint32_t width, uint32_t height) const {
     constexpr int steps = 8;
     double sum = 0;
@@ -97,7 +98,7 @@ class CostMap {
   std::vector<double> cells_;
 };
 
-// One thing after the other, each taking its time.
+// A server that does one thing after the other; each takes its time.
 struct Server {
   double free = 0, busy = 0;
   double take(double now, double seconds) {
@@ -134,8 +135,8 @@ class Events {
   uint64_t next_ = 0;
 };
 
-// Results as bytes: sums of random pixels, encoded as a worker does; the same for all tiles of a
-// size, but for their leases.
+// Result messages. They hold sums of random pixels, encoded as a worker does. All tiles of one size
+// share the same sums and differ only in their lease.
 class Results {
  public:
   explicit Results(const edit::FrameSettingsT& frame) : frame_(frame) {}

@@ -1,8 +1,7 @@
 // cluster_sim.cpp: bench_cluster_sim drives the real master (scheduler, protocol, decoding,
-// merging) with up to 4,096 workers that only sleep, over modelled links, and prints how long a
-// frame takes and what limits it (docs/cluster-scaling.md). The network's and the workers' time is
-// virtual; the master's own is what it takes here, on one thread, and is added to the virtual
-// clock.
+// merging) with up to 4,096 workers that only sleep, over modelled links. It prints the time per
+// frame and what limits it (docs/cluster-scaling.md). The time of the network and the workers is
+// virtual. The master's time is measured on one thread and added to the virtual clock.
 #include <cstdlib>
 #include <map>
 
@@ -23,8 +22,8 @@ std::string limitOf(const Simulation::Outcome& o) {
   return o.end > o.gaps ? "end of frame" : std::string("bursts, ") + most.second;
 }
 
-// Shares of the workers' time: what they do (efficiency), wait for at a frame's beginning, in it
-// and at its end, do in vain.
+// Prints fractions of the workers' time: useful work (efficiency), waiting at a frame's start,
+// during it and at its end, and wasted work.
 void print(const Options& o) {
   const CostMap costs = o.costs.empty() ? CostMap() : CostMap(o.costs);
   std::printf(

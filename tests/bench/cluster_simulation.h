@@ -1,6 +1,6 @@
-// cluster_simulation.h: a cluster of which the master is real and all else is a model
-// (cluster_model.h): links, workers that sleep, the threads that merge. Of bench_cluster_sim
-// (cluster_sim.cpp); one thread's.
+// cluster_simulation.h: simulates a cluster. The master is real; links, workers (which sleep) and
+// the threads that merge results are models (cluster_model.h). Used by bench_cluster_sim
+// (cluster_sim.cpp). [one thread]
 #pragma once
 
 #include <time.h>
@@ -18,22 +18,22 @@ namespace sim {
 struct Options {
   std::vector<uint32_t> workers{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
   uint32_t threads = 16, width = 1920, height = 1080, samples = 1024, tile = 0, frames = 3;
-  double work = 2048;     // seconds of one thread for a frame
-  double network = 10e9;  // bits a second, of the master
-  double link = 10e9;     // of a worker
+  double work = 2048;     // thread seconds per frame
+  double network = 10e9;  // bits per second of the master's network card
+  double link = 10e9;     // bits per second of a worker's link
   double latency = 50e-6; // seconds, one way
-  double perMessage = 2e-6,
-         perByte = 0; // seconds that the master's socket thread takes (--curve: encrypting, too)
-  double receive = 2.5e-6, send = 1e-6, copy = 5e-10,
-         handOver = 5e-7; // of the master's thread: ZeroMQ's calls for a message,
-                          // for a byte of it; a result that is given to others
-  uint32_t mergers =
-      4;              // threads of the master that unpack and merge results; 0: its thread does it
-  double prepare = 0; // seconds for a scene
-  double noise = 0;   // what a job costs differs from the frame before: sigma of its logarithm
-  double slow = 0;    // share of workers that are four times slower
-  bool ideal = false; // the master takes no time: what is lost is the schedule's
-  bool pipelined = false; // the next frame is begun with the last
+  // seconds of the master's socket thread per message and per byte (--curve: with encryption)
+  double perMessage = 2e-6, perByte = 0;
+  // Seconds of the master's thread: ZeroMQ's calls per message received and sent, copying per byte,
+  // and handing a result to another thread.
+  double receive = 2.5e-6, send = 1e-6, copy = 5e-10, handOver = 5e-7;
+  // Threads of the master that unpack and merge results; 0: the master's thread does it.
+  uint32_t mergers = 4;
+  double prepare = 0;     // seconds to prepare a scene
+  double noise = 0;       // change of a job's cost from frame to frame: sigma of its logarithm
+  double slow = 0;        // fraction of workers that are four times slower
+  bool ideal = false;     // the master takes no time, so only the schedule costs efficiency
+  bool pipelined = false; // the next frame starts together with the current one
   std::string costs;
   SchedulerOptions schedule;
 };
@@ -44,7 +44,8 @@ inline double cpuSeconds() {
   return double(t.tv_sec) + double(t.tv_nsec) * 1e-9;
 }
 
-// Of looking at this clock, which is a system call: the real master does not.
+// Returns the seconds that one reading of this clock takes. It is a system call, which the real
+// master does not make.
 inline double costOfClock() {
   std::vector<double> times;
   for (int i = 0; i < 10001; i++) times.push_back(cpuSeconds());
@@ -62,7 +63,7 @@ class Simulation {
       cost_.push_back(costs.of(grid_.at(i), o.width, o.height));
     double sum = 0;
     for (uint32_t i = 0; i < grid_.count(); i++) sum += cost_[i] * double(grid_.at(i).pixels());
-    for (double& c : cost_) c *= o.work / sum / o.samples; // seconds of a pixel's sample
+    for (double& c : cost_) c *= o.work / sum / o.samples; // seconds per sample of a pixel
     MasterOptions options;
     options.schedule = o.schedule;
     options.self = hello();
@@ -93,15 +94,16 @@ class Simulation {
   struct Outcome {
     double frame = 0, efficiency = 0, master = 0, merging = 0, network = 0, socket = 0, in = 0,
            out = 0, jobs = 0, perJob = 0;
-    double first = 0;                    // frame, of which nobody knew what it costs
-    double begin = 0, gaps = 0, end = 0; // shares of the workers' time that nothing is done in
+    double first = 0;                    // seconds of the first frame, whose costs nobody knew
+    double begin = 0, gaps = 0, end = 0; // idle fractions of the workers' time
     uint64_t again = 0;
   };
   Outcome run() {
-    while (joined_ < workers_.size() || !events_.empty()) events_.step(); // all are there
+    // Runs until every worker has joined.
+    while (joined_ < workers_.size() || !events_.empty()) events_.step();
     firstCommit_ = events_.now;
     commit();
-    if (o_.pipelined) commit(); // there is always a next one
+    if (o_.pipelined) commit(); // keep one frame queued
     Outcome outcome;
     double began = 0;
     while (finished_ < o_.frames && !events_.empty()) {
@@ -139,7 +141,7 @@ class Simulation {
   }
 
  private:
-  struct Item { // of a worker's queue
+  struct Item { // an entry of a worker's queue
     LeasedJob job;
     Epoch epoch = 0;
     bool scene = false;
@@ -153,13 +155,13 @@ class Simulation {
     double seconds = 0, until = 0;
   };
   struct Machine {
-    double speed = 1; // times slower
+    double speed = 1; // slowdown factor
     uint64_t session = 0;
     bool preparing = false;
     Epoch dropped = 0;
     std::deque<Item> queue;
-    std::vector<double> idle;            // since when, of each thread without a job
-    std::map<uint64_t, Running> running; // by number
+    std::vector<double> idle;            // for each thread without a job, when it became idle
+    std::map<uint64_t, Running> running; // by job number
     Server in, out;                      // its link
   };
   struct Counts {
@@ -168,8 +170,8 @@ class Simulation {
   };
   using Call = std::function<void(double now)>;
 
-  // The first frame finds out what it costs; where frames overlap the next ones profit from that it
-  // takes long.
+  // Returns how many frames are left out of the measurement. The first frame learns the costs. With
+  // overlapping frames the next ones profit from its length.
   uint32_t unmeasured() const { return o_.pipelined ? 3 : 1; }
 
   static edit::FrameSettingsT settingsOf(const Options& o) {
@@ -205,8 +207,8 @@ class Simulation {
     atMaster([this, epoch, commit](double now) { master_->commit(epoch, commit, true, now); });
   }
 
-  // The master's thread: calls wait for it; it takes what has come, and then hands out, as the
-  // backend's thread does.
+  // Queues a call for the master's thread. The thread handles all that has arrived and then issues
+  // jobs, as the backend's thread does.
   void atMaster(Call call) {
     inbox_.push_back(std::move(call));
     if (!awake_) wakeMaster(events_.now);
@@ -219,7 +221,7 @@ class Simulation {
     });
   }
   void turn() {
-    constexpr size_t most = 256; // messages before anything is handed out
+    constexpr size_t most = 256; // messages handled before jobs are issued
     turnBegan_ = events_.now;
     turnCpu_ = cpuSeconds();
     paused_ = 0;
@@ -240,8 +242,8 @@ class Simulation {
     else if (std::isfinite(next))
       sleep(std::max(next, masterFree_));
   }
-  // The threads that merge: what they do is done here at once, and takes them the time that it
-  // takes here.
+  // The threads that merge. The work is done here immediately and takes the simulated thread as
+  // long as it took here.
   void merge() {
     while (mergersBusy_ < o_.mergers && !merging_.empty()) {
       const Merging next = std::move(merging_.front());
@@ -283,7 +285,7 @@ class Simulation {
   }
 
   static size_t sizeOf(const Frames& frames) {
-    size_t bytes = 66; // of TCP/IP and Ethernet
+    size_t bytes = 66; // headers of TCP/IP and Ethernet
     for (const auto& f : frames) bytes += f.size() + 9;
     return bytes + bytes / 1460 * 66;
   }
@@ -302,7 +304,8 @@ class Simulation {
     paused_ += cpuSeconds() - begin;
     return true;
   }
-  // A worker's message: its link, the way, the master's network card, its socket thread.
+  // Sends a worker's message: through its link, the network, the master's network card and the
+  // master's socket thread.
   void toMaster(uint32_t w, size_t bytes, Call call) {
     const double size = double(bytes), left = workers_[w].out.take(events_.now, size * 8 / o_.link);
     events_.at(left + o_.latency, [this, size, call = std::move(call)] {
@@ -376,8 +379,8 @@ class Simulation {
       events_.at(events_.now + seconds, [this, w, number] { finished(w, number); });
     }
   }
-  // A thread that has been idle gets something to do. When a frame ends in between: what is before
-  // is its end, what is behind is the beginning of the next one.
+  // An idle thread gets work. If a frame ended in between, the idle time before that belongs to the
+  // end of the frame and the time after it to the start of the next.
   void use(Machine& m, double now) {
     const double since = std::max(m.idle.back(), idleFrom_);
     m.idle.pop_back();
@@ -390,8 +393,8 @@ class Simulation {
       idleBegin_ += (now - *end) / m.speed;
     }
   }
-  // A job that nobody wants any more: its thread looks up after each bounce, a wave is a leaf of
-  // samples.
+  // Abandons a job that is no longer needed. A worker's thread checks for this after each bounce; a
+  // wave is a leaf of samples.
   void giveUp(uint32_t w, uint64_t number, const Running& running) {
     constexpr double leaf = 32, bounces = 4;
     const double until =
@@ -402,7 +405,7 @@ class Simulation {
   void finished(uint32_t w, uint64_t number) {
     Machine& m = workers_[w];
     const auto found = m.running.find(number);
-    if (found == m.running.end()) return; // it was given up
+    if (found == m.running.end()) return; // it was abandoned
     const Item item = found->second.item;
     const double seconds = found->second.seconds;
     m.running.erase(found);
@@ -411,14 +414,15 @@ class Simulation {
       jobs_++;
       work_ += seconds;
       const size_t pixels = grid_.at(item.job.job.number).pixels();
-      size_t& bytes = resultBytes_[{
-          pixels, item.job.job.count}]; // what is in it is made when it is looked at: less is kept
+      // Results are built when the master reads them, to keep less in memory.
+      size_t& bytes =
+          resultBytes_[{pixels, item.job.job.count}];
       if (bytes == 0)
         bytes = sizeOf(results_.make(m.session, item.epoch, item.job, pixels, seconds));
       toMaster(w, bytes, [this, w, item, pixels, seconds](double now) {
         const double began = cpuSeconds() - clockCost_;
         Frames frames = results_.make(workers_[w].session, item.epoch, item.job, pixels, seconds);
-        paused_ += cpuSeconds() - began; // nobody's time
+        paused_ += cpuSeconds() - began; // excluded from every measured time
         paused_ -= o_.receive + double(sizeOf(frames)) * o_.copy;
         master_->message(w + 1, std::move(frames), now);
       });
@@ -430,7 +434,7 @@ class Simulation {
   const edit::FrameSettingsT settings_;
   const TileGrid grid_;
   Results results_;
-  std::vector<double> cost_; // by tile: seconds of a pixel's sample
+  std::vector<double> cost_; // seconds per sample of a pixel, by tile
   std::unique_ptr<Master> master_;
   std::vector<Machine> workers_;
   Events events_;
@@ -443,7 +447,7 @@ class Simulation {
   uint32_t joined_ = 0, finished_ = 0;
   Epoch lastEpoch_ = 0, oldest_ = 1;
   double lastEnd_ = 0;
-  std::vector<double> ends_; // of frames
+  std::vector<double> ends_; // when each frame ended
   double firstCommit_ = 0;
   std::deque<Merging> merging_;
   uint32_t mergersBusy_ = 0;

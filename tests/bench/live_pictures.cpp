@@ -1,11 +1,12 @@
-// What vv's window does, without a window: frames a second while the viewer moves, the sizes that
-// this takes, how long a change of the camera takes to be seen, and what progressive refinement
-// costs. Worlds: the arguments, or a few of examples/scenes.
+// live_pictures.cpp: does what vv's window does, without a window. Measures frames per second
+// during motion, the picture sizes that this takes, the delay until a change of the camera is
+// visible, and the cost of progressive refinement. Worlds: the arguments, or a few of
+// examples/scenes.
 //
 //   bench_live [--size=WxH] [--fps=N] [--threads=N] [--seconds=N] [WORLD...]
 //
-// On a cluster, frames that overlap and one at a time by turns, in the window's way and at the full
-// size as often as it goes:
+// On a cluster it alternates between overlapping frames and one frame at a time, both paced like
+// the window and at full size as often as possible:
 //
 //   bench_live --workers=HOST:PORT,... [--local-threads=N] ...
 #include <algorithm>
@@ -57,7 +58,7 @@ Options read(int argc, char** argv) {
       continue;
     }
     if (std::sscanf(a.c_str(), "--threads=%d", &o.threads) == 1 || a.starts_with("--benchmark_"))
-      continue; // make bench's
+      continue; // an option of `make bench`
     o.worlds.push_back(a);
   }
   if (o.worlds.empty())
@@ -87,8 +88,8 @@ class Looking {
     }
   }
 
-  // The viewer turns to and fro. One picture follows the other; each shows where the viewer is when
-  // it is begun.
+  // The viewer turns back and forth. Frames follow each other; each shows the viewer's position at
+  // its start.
   void move() {
     vv::Pacing pacing(options_.fps);
     std::vector<double> intervals, latencies;
@@ -109,7 +110,7 @@ class Looking {
       const double frameTime = 1 / options_.fps;
       if (now - last < frameTime)
         std::this_thread::sleep_for(std::chrono::duration<double>(frameTime - (now - last)));
-      if (asked > options_.seconds / 4) { // when it has settled
+      if (asked > options_.seconds / 4) { // when the rate has settled
         intervals.push_back(std::max(now - last, frameTime));
         latencies.push_back(now - asked);
         sizes.push_back(size);
@@ -128,10 +129,12 @@ class Looking {
                1000 * overhead / double(sizes.size()), changes(sizes) + 1);
   }
 
-  // As a window on a cluster does it. paced: not more often than fps, and sizes that allow for it.
+  // Measures as a window on a cluster works. paced: at most fps frames per second, in sizes that
+  // allow it.
   void follow(bool overlapping, bool paced) {
     vv::Pacing pacing(options_.fps);
-    const double refined = finish(whole(16)).seconds; // as has been seen before anything moves
+    // A refined picture, as the user has seen before moving.
+    const double refined = finish(whole(16)).seconds;
     pacing.took({options_.width, options_.height, 16}, refined, refined, 0, 16);
     const double period = paced ? 1 / options_.fps : 0, settled = options_.seconds / 4;
     std::vector<double> ends, pixels, seconds;
@@ -174,7 +177,7 @@ class Looking {
                sum(pixels) / double(pixels.size()), 1000 * sum(seconds) / double(seconds.size()));
   }
 
-  // How long a frame goes on that is no longer wanted.
+  // Measures how long a cancelled frame still runs.
   void giveUp() {
     double most = 0, all = 0;
     constexpr int times = 10;
@@ -193,7 +196,7 @@ class Looking {
     fmt::print("  given up    in {:.1f} ms (longest {:.1f})\n", 1000 * all / times, 1000 * most);
   }
 
-  // The first whole picture of a still viewer, and what rounds cost.
+  // Measures the first whole picture of a still viewer and the cost of progressive rounds.
   void refine() {
     LivePicture picture;
     finish(whole(1));
@@ -257,7 +260,8 @@ class Looking {
     if (const std::string wrong = live_.takeFailure(); !wrong.empty()) fmt::print("  {}\n", wrong);
     return picture;
   }
-  // Seconds of all processors together: others may be using them.
+  // Returns the processor seconds of all threads together, because other processes may use the
+  // processors.
   double cost(int samples, bool progressive) {
     live_.change([&](RenderSettings& s) { s.progressive = progressive; });
     const std::clock_t begin = std::clock();

@@ -1,6 +1,6 @@
-// mapper_edits.cpp: what a change of a running world costs in the mapper, by kind and by the number
-// of objects: the null backend, so that neither acceleration structures nor pictures are counted. A
-// move must cost the same beside 10 objects and beside 10,000.
+// mapper_edits.cpp: the mapper's cost of a change in a running world, by kind of change and number
+// of objects. The null backend keeps acceleration structures and rendering out of the measurement.
+// A move must cost the same next to 10 objects and next to 10,000.
 #include <memory>
 #include <string>
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace xvrml;
 
-// n moving objects, a material, a coordinate and a switch that events reach.
+// Returns n moving objects, and a material, a coordinate and a switch that events reach.
 std::string body(int64_t n) {
   std::string text =
       "#VRML V2.0 utf8\nViewpoint { position 0 0 200 }\nDEF I PositionInterpolator { }\n";
@@ -73,7 +73,7 @@ struct Running {
 template <class Send> void edit(benchmark::State& state, const Send& send) {
   Running running(state.range(0));
   int i = 0;
-  send(running, i++); // what is promoted is promoted here
+  send(running, i++); // promotions happen here, before the measurement
   running.show();
   const MapStats before = running.mapper->stats();
   for (auto _ : state) {
@@ -110,7 +110,7 @@ void Light(benchmark::State& state) {
 void SwitchOver(benchmark::State& state) {
   edit(state, [](Running& r, int i) { r.send("S", "set_whichChoice", int32_t(i % 2)); });
 }
-void FromNothing(benchmark::State& state) { // what every change would cost without update()
+void FromNothing(benchmark::State& state) { // the cost of every change without update()
   Running running(state.range(0));
   for (auto _ : state) {
     running.mapper.reset();
@@ -127,7 +127,7 @@ BENCHMARK(Light)->Arg(10)->Arg(10'000);
 BENCHMARK(SwitchOver)->Arg(10)->Arg(10'000);
 BENCHMARK(FromNothing)->Arg(10)->Arg(10'000)->Unit(benchmark::kMillisecond);
 
-// With the local backend and a frame of one pixel: what a move costs in all.
+// With the local backend and a frame of one pixel: the total cost of a move.
 void MoveOneAndRender(benchmark::State& state) {
   Running running(state.range(0), "threads=1");
   int i = 0;

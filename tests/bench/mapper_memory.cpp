@@ -1,6 +1,6 @@
-// mapper_memory.cpp: what grouping and instancing are worth: frames of 20,000 small static shapes
-// merged and each an object of its own; memory of a forest of 10,000 USEs beside what it would be
-// written out.
+// mapper_memory.cpp: the gain of grouping and instancing. Renders frames of 20,000 small static
+// shapes, merged and as one object each. Compares the memory of a forest of 10,000 USEs with that
+// of the same forest written out.
 #include <cmath>
 #include <fstream>
 #include <malloc.h>
@@ -19,7 +19,7 @@ namespace {
 using namespace xvrml;
 
 double residentBytes() {
-  malloc_trim(0); // what earlier benchmarks left
+  malloc_trim(0); // releases memory of earlier benchmarks
   std::ifstream file("/proc/self/statm");
   double size = 0, resident = 0;
   file >> size >> resident;
@@ -29,7 +29,8 @@ double residentBytes() {
 struct Still {
   RTcontext context;
   std::unique_ptr<World> world;
-  std::unique_ptr<Engine> engine; // it runs: what its routes reach stands alone
+  // Set while the world runs: shapes reached by its routes are objects of their own.
+  std::unique_ptr<Engine> engine;
   std::unique_ptr<OpenRTMapper> mapper;
 
   Still(const std::string& body, const char* config, int width, int height)
@@ -51,7 +52,8 @@ struct Still {
 };
 
 // 20,000 pyramids in a square: merged into one object; each an object of its own (ORTInstance),
-// which the backend may merge again; each moved by a ROUTE, which it may not.
+// which the backend may merge again; or each moved by a ROUTE, so that the backend may not merge
+// them.
 enum Grouping { merged, objects, moving };
 
 std::string town(int64_t grouping) {
@@ -96,7 +98,7 @@ BENCHMARK(Town)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-// A tree of 10,082 triangles; n of them.
+// A tree of 10,082 triangles, and n USEs of it.
 std::string forest(int n) {
   std::string body = "Viewpoint { position 0 400 4000 orientation 1 0 0 -0.1 }\nDEF Tree Group { "
                      "children Shape { geometry ElevationGrid { "
@@ -110,8 +112,8 @@ std::string forest(int n) {
   return body;
 }
 
-// Memory of the whole process above what it was; written out it would be the triangles times what
-// one takes in the first tree.
+// Memory of the whole process beyond its start. For the written-out forest it is the number of
+// triangles times the memory per triangle of the first tree.
 void Forest(benchmark::State& state) {
   const int n = int(state.range(0));
   const double before = residentBytes();
@@ -127,7 +129,7 @@ void Forest(benchmark::State& state) {
 }
 BENCHMARK(Forest)->Arg(1)->Arg(100)->Arg(10'000)->Unit(benchmark::kMillisecond)->Iterations(3);
 
-// Many separate shapes: bytes each, from the file's text to the picture.
+// Many separate shapes: bytes per shape, from the file's text to the picture.
 void Shapes(benchmark::State& state) {
   const int n = int(state.range(0));
   std::string body;

@@ -1,4 +1,4 @@
-// openrt_api.cpp: what the API itself costs, with the null backend: begin/end in vertices per
+// openrt_api.cpp: the cost of the API itself, with the null backend: rtBegin/rtEnd in vertices per
 // second, arrays against a bare memcpy of the same bytes, commits of moved instances.
 #include <cstring>
 #include <vector>
@@ -26,8 +26,8 @@ void countVertices(benchmark::State& state, size_t vertices) {
   state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(vertices));
 }
 
-// One list of many triangles. Argument: attributes (0 none, 1 a normal, 2 normal, texture
-// coordinate and colour).
+// One list of many triangles. Argument: attributes (0 none, 1 normal, 2 normal, texture coordinate
+// and colour).
 void beginEnd(benchmark::State& state) {
   constexpr size_t vertices = 3 * 200000;
   const NullContext context;
@@ -51,7 +51,7 @@ void beginEnd(benchmark::State& state) {
 }
 BENCHMARK(beginEnd)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
 
-// A list for each triangle: merged into one geometry.
+// One list per triangle: merged into one geometry.
 void beginEndPerTriangle(benchmark::State& state) {
   constexpr size_t triangles = 200000;
   const NullContext context;
@@ -122,7 +122,7 @@ void drawArrays(benchmark::State& state) {
 }
 BENCHMARK(drawArrays)->Unit(benchmark::kMillisecond);
 
-// The bytes of drawElements copied once into fresh memory: the limit.
+// Copies the bytes of drawElements once into fresh memory: the upper limit.
 void bareCopy(benchmark::State& state) {
   const Mesh mesh(636);
   for (auto _ : state) {
@@ -137,7 +137,7 @@ void bareCopy(benchmark::State& state) {
 }
 BENCHMARK(bareCopy)->Unit(benchmark::kMillisecond);
 
-// Moving one, or every one, of 10,000 instances and committing.
+// Moves one, or every one, of 10,000 instances and commits.
 void moveInstances(benchmark::State& state) {
   const NullContext context;
   const RTid object = rtBeginObject(0);

@@ -1,6 +1,6 @@
-// What an edit costs: rtRender of a picture of one pixel after it, in a scene of so many dynamic
-// objects beside a static terrain of 20,000 triangles. The counters say what was built a step. And
-// the memory of a forest of instances.
+// openrt_edits.cpp: the cost of an edit, measured as rtRender of a one-pixel picture after it. The
+// scene has a number of dynamic objects next to a static terrain of 20,000 triangles. Counters show
+// the builds per step. Also the memory of a forest of instances.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -53,8 +53,8 @@ RTstats stats() {
 
 class EditScene {
  public:
-  // same: all dynamic instances are of one object of 128 triangles; else each has its own, with a
-  // shader of its own.
+  // same: all dynamic instances share one object of 128 triangles. Otherwise each has its own
+  // object and shader.
   EditScene(int64_t count, bool same) : context_(rtNewContext("threads=2")) {
     rtFrameBuffer(1, 1, RT_RGBA);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
@@ -158,8 +158,8 @@ void addAndDelete(benchmark::State& state) {
     place(s.instances.back(), i % 40, 3, 0);
   });
 }
-void buildAll(benchmark::State& state) { // the camera leaves the cell of the grid of origins:
-                                         // everything static is rounded anew
+// The camera leaves its cell of the grid of origins, so all static geometry is rounded again.
+void buildAll(benchmark::State& state) {
   edit(state, true, [](EditScene&, int i) { look(i % 2 ? 3000 : 0); });
 }
 

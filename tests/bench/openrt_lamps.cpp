@@ -1,7 +1,8 @@
-// Error over time of light from lamps, by path tracing through the C API: relMSE (mean of (I - R)^2
-// / (R^2 + 0.01) over pixels and colours) at 16 samples a pixel against a picture of many, and its
-// product with the CPU seconds of a frame: lower is better, and independent of the number of
-// samples as long as the square of errors falls as their number grows. One thread.
+// openrt_lamps.cpp: error over time of light from lamps, by path tracing through the C API, on one
+// thread. relMSE is the mean of (I - R)^2 / (R^2 + 0.01) over pixels and colours at 16 samples per
+// pixel, against a reference with many samples. The benchmark reports relMSE and its product with
+// the CPU seconds of a frame. Lower is better. The product is independent of the number of samples
+// as long as the squared error is inversely proportional to it.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -97,7 +98,7 @@ void ring() {
   });
 }
 
-// Four tubes of light close to the walls.
+// Four light tubes close to the walls.
 void tubes() {
   room();
   for (const float x : {-.97f, -.3f, .3f, .97f})

@@ -1,7 +1,8 @@
-// The case "direct": 808,000 triangles, one point light, hard shadows, 640x480: the wavefront
-// through the API and the VRML97 shader plug-in against a loop of raw Embree on the same rays (one
-// camera ray and one shadow ray at a time, shading inlined, default mode and robust mode). The
-// counter `ratio` of the API's line is measured in the same run: raw time over ours.
+// openrt_rays.cpp: the case "direct": 808,000 triangles, one point light, hard shadows, 640x480.
+// Compares the wavefront through the API and the VRML97 shader plug-in with a loop of raw Embree on
+// the same rays: one camera ray and one shadow ray at a time, inlined shading, default mode and
+// robust mode. The counter `ratio` of the API's line is measured in the same run: raw time divided
+// by ours.
 #include <benchmark/benchmark.h>
 
 #include <atomic>
@@ -144,8 +145,8 @@ double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Small dynamic objects: beside the view, or under the terrain where the rays pass their boxes but
-// do not meet them.
+// Small dynamic objects, beside the view or under the terrain. There rays pass their boxes without
+// hitting them.
 void drawDynamic(int count, bool inView) {
   rtBindShader(0);
   const RTid ball = rtBeginObject(0);
@@ -170,7 +171,7 @@ void direct(benchmark::State& state, int threads, bool robust, int dynamic = 0,
   rtNewContext(("threads=" + std::to_string(threads)).c_str());
   drawScene();
   if (dynamic) drawDynamic(dynamic, inView);
-  rtRender(); // builds
+  rtRender(); // builds the acceleration structures
   double rawTime = 0, ourTime = 0;
   for (auto _ : state) {
     const double a = seconds();

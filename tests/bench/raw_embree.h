@@ -1,5 +1,5 @@
-// raw_embree.h: one ray at a time through Embree 3 or 4, in its default manner: what the benchmarks
-// measure the project against.
+// raw_embree.h: traces one ray at a time with Embree 3 or 4 and default settings. The benchmarks
+// compare the project with this.
 #pragma once
 
 #if __has_include(<embree3/rtcore.h>) // the order of cmake/Dependencies.cmake

@@ -1,6 +1,6 @@
 // raw_rays.cpp: a loop of raw Embree over rays, one rtcIntersect1 each, as a library for
-// tools/bench_rays.py: what ray queries from Python are measured against. Results are written as
-// cast_rays gives them.
+// tools/bench_rays.py. Ray queries from Python are compared with it. Results have the layout of
+// cast_rays.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -45,7 +45,7 @@ raw_scene(const float* vertices, size_t n, const uint32_t* triangles, size_t m, 
   return raw;
 }
 
-// rays: 6 floats each. Returns the seconds it took.
+// rays: 6 floats each. Returns the elapsed seconds.
 __attribute__((visibility("default"))) double raw_cast(const void* scene, const float* rays,
                                                        size_t count, int threads, float* t,
                                                        uint32_t* primitive, float* uv,

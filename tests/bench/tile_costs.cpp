@@ -1,7 +1,7 @@
-// tile_costs.cpp: bench_tile_costs RECORDING [SAMPLES]: what each tile of a recording's last frame
-// costs one thread, in microseconds of a pixel's sample, as bench_cluster_sim reads it
-// (costs=FILE), on standard output. Processor time, so that it may be taken on a machine that does
-// other things as well.
+// tile_costs.cpp: bench_tile_costs RECORDING [SAMPLES] measures what each tile of a recording's
+// last frame costs one thread, in microseconds per sample of a pixel. It writes the file that
+// bench_cluster_sim reads (costs=FILE) to standard output. It uses processor time, so the machine
+// may be busy with other things.
 #include <time.h>
 
 #include <atomic>
@@ -38,7 +38,7 @@ void print(const char* recording, uint32_t samples) {
   scene->frame.tile = edge;
   scene->frame.samples = samples;
   scene->frame.progressive = false;
-  FrameWork work(scene->frame, FrameFacts{true, false}, 1); // light from lamps is no tile's
+  FrameWork work(scene->frame, FrameFacts{true, false}, 1); // light from lamps belongs to no tile
   JobRunner runner(scene);
   const std::atomic<bool> never{false};
   JobResult result;

@@ -1,6 +1,6 @@
 // xvrml_ecmascript.cpp: the ECMAScript engine in the browser's process: events into a trivial
-// Script, a Script that reads and writes each of 10,000 points, arrays of numbers, starts, and
-// memory of one interpreter (counter `bytes`). An item is an event, a point, a number, a Script.
+// Script, a Script that reads and writes each of 10,000 points, arrays of numbers, starts, and the
+// memory of one interpreter (counter `bytes`). An item is an event, a point, a number or a Script.
 // See docs/benchmarks.md.
 #include <string>
 
@@ -20,7 +20,7 @@ struct Bench {
                 BrowserOptions{.scriptPath = XVRML_SCRIPTS,
                                .scriptSeconds = 60,
                                .scriptIsolation = BrowserOptions::Isolation::never}) {}
-  // One event into S.in an iteration.
+  // Sends one event into S.in per iteration.
   void run(benchmark::State& state, int64_t items) {
     const NodeRef node = browser.node("S");
     float value = 0;
@@ -71,7 +71,7 @@ void mfVec3f(benchmark::State& state) {
                "o[i] = new SFVec3f(q.x, q.y + v, q.z) } out = o }"))
       .run(state, pointCount);
 }
-// The slow way: field and eventOut are asked for at each element.
+// The slow way: field and eventOut are looked up for each element.
 void mfVec3fElements(benchmark::State& state) {
   Bench(script("field MFVec3f p [" + points(pointCount) + "] eventOut MFVec3f out",
                "function go(v) { for (var i = 0; i < p.length; i++) out[i] = new SFVec3f(p[i].x, "
@@ -93,7 +93,7 @@ void mfFloat(benchmark::State& state) {
                            numberCount)))
       .run(state, numberCount);
 }
-// A long list that arrives, one number of which is read.
+// A long list arrives and one of its numbers is read.
 void tableLookup(benchmark::State& state) {
   Bench(script("eventOut SFFloat out field MFFloat f []",
                fmt::format(

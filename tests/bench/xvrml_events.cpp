@@ -1,6 +1,6 @@
-// xvrml_events.cpp: events per second through 100,000 routes: in a chain, from one to all, from all
-// to one, and in a chain through the borders of prototypes. An item is an event that has arrived.
-// Target: 5 million a second in chains (docs/benchmarks.md).
+// xvrml_events.cpp: events per second through 100,000 routes: in a chain, from one node to all,
+// from all to one, and in a chain through prototype instances. An item is an event delivered.
+// Target: 5 million per second in chains (docs/benchmarks.md).
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -18,7 +18,7 @@ struct Bench {
   explicit Bench(const std::string& vrml)
       : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "bench.wrl"),
                 BrowserOptions{.maximumEvents = 10'000'000}) {}
-  // One event into node `first` an iteration; perIteration arrivals follow.
+  // Sends one event into node `first` per iteration; perIteration deliveries follow.
   void run(benchmark::State& state, std::string_view first, std::string_view field,
            int64_t perIteration) {
     const NodeRef node = browser.node(first);
@@ -33,7 +33,7 @@ struct Bench {
   Browser browser;
 };
 
-// Lights have SFFloat exposedFields that send on what they are set to.
+// Lights have SFFloat exposedFields, which forward the values they are set to.
 std::string lights(int count) {
   std::string out;
   for (int i = 0; i <= count; ++i) out += fmt::format("DEF M{} PointLight {{ }}\n", i);
@@ -54,7 +54,7 @@ void fanOut(benchmark::State& state) {
   Bench(world).run(state, fmt::format("M{}", routes), "intensity", routes + 1);
 }
 
-// One to all and all to one: the last node gets an event of each.
+// From one node to all and from all to one: the last node gets an event of each.
 void fanIn(benchmark::State& state) {
   std::string world = lights(routes / 2 + 1);
   const int last = routes / 2 + 1, source = routes / 2;
@@ -65,7 +65,7 @@ void fanIn(benchmark::State& state) {
   Bench(world).run(state, fmt::format("M{}", source), "intensity", routes + 1);
 }
 
-// Each step is an instance: into its body, to a light there, and out.
+// Each step is an instance: into its body, to a light in it, and out.
 void prototypes(benchmark::State& state) {
   constexpr int instances = routes / 4;
   std::string world = "PROTO P [ exposedField SFFloat x 1 ] { PointLight { intensity IS x } }\n";

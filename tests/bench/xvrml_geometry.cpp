@@ -1,6 +1,6 @@
-// xvrml_geometry.cpp: from an IndexedFaceSet of 800,000 triangles to a mesh: flat triangles in
-// place run at the memory's speed; creases and colours of faces take time in proportion to the
-// faces.
+// xvrml_geometry.cpp: building a mesh from an IndexedFaceSet of 800,000 triangles. Flat triangles
+// used in place are limited by memory bandwidth. Creases and face colours take time proportional to
+// the faces.
 #include <cmath>
 #include <memory>
 

@@ -1,5 +1,5 @@
-// xvrml_parser.cpp: how fast worlds are read, against a bare scan for numbers by std::from_chars
-// over the same bytes in the same run, which does nothing else: the target is two thirds of it, or
+// xvrml_parser.cpp: the speed of reading worlds, compared in the same run with a bare
+// std::from_chars scan for numbers over the same bytes. The target is two thirds of that speed, or
 // 200 MB/s (docs/benchmarks.md).
 #include <charconv>
 #include <cmath>
@@ -37,7 +37,7 @@ const std::string& bigFaceSet() {
   return text;
 }
 
-// Many small nodes: 50,000 Transforms of a Shape that is USEd.
+// Many small nodes: 50,000 Transforms that USE one Shape.
 const std::string& manyNodes() {
   static const std::string text = [] {
     std::string out = "#VRML V2.0 utf8\nDEF S Shape { geometry Box { } }\n";

@@ -1,6 +1,6 @@
-// xvrml_picking.cpp: what a motion of the pointer costs: a ray among 10,000 shapes of one group,
-// among 10,000 in a tree of groups, into one mesh of half a million triangles; and a ray after one
-// of the shapes has moved.
+// xvrml_picking.cpp: the cost of a pointer motion: a ray among 10,000 shapes of one group, among
+// 10,000 in a tree of groups, and into one mesh of half a million triangles; and a ray after one of
+// the shapes has moved.
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -27,7 +27,7 @@ void shoot(Browser& browser, benchmark::State& state, bool moves) {
   const NodeRef moved = browser.node("T50_50");
   const double first[3] = {0, 0, 10};
   PickHit warm;
-  browser.pick(first, direction, {}, warm); // boxes and meshes are made once
+  browser.pick(first, direction, {}, warm); // builds boxes and meshes once
   int i = 0, hits = 0;
   for (auto _ : state) {
     ++i;

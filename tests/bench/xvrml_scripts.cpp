@@ -1,6 +1,6 @@
-// xvrml_scripts.cpp: what a Script costs here and in a process of its own: an event that it
-// answers, what it asks of the host beyond that, and the start of worlds with many. Programs are
-// those of the test engine. (docs/benchmarks.md)
+// xvrml_scripts.cpp: the cost of a Script in this process and in a process of its own: an event
+// that it answers, further calls to the host, and the start of worlds with many Scripts. The
+// programs are those of the test engine. (docs/benchmarks.md)
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -20,7 +20,7 @@ BrowserOptions options(bool process) {
   return options;
 }
 
-// One event in, `reads` readings of a node's field.
+// One event in, and `reads` reads of a node's field.
 void events(benchmark::State& state, bool process, int reads) {
   std::string program = "test:";
   for (int i = 0; i < reads; ++i) program += "in: find to translation\n";

@@ -160,8 +160,9 @@ Picture expected(const Look& look, double time) {
     World world;
     world.look(look);
     rtRender();
-    if (time != 0) { // what moves is dynamic from then on, and differs in last bits from what was
-                     // always there
+    // Moving objects are dynamic from then on. Their pixels differ in the last bits from objects
+    // that were always there.
+    if (time != 0) {
       world.move(time);
       rtRender();
     }

@@ -1,5 +1,6 @@
-// support.h: for tests of the cluster: a scene that asks for everything that travels, its pictures
-// as bytes, and worker processes on loopback that can be stopped, killed and started again.
+// support.h: helpers for tests of the cluster: a scene that uses everything the protocol transfers,
+// its pictures as bytes, and worker processes on loopback that can be stopped, killed and
+// restarted.
 #pragma once
 
 #include <chrono>
@@ -20,7 +21,7 @@ using namespace std::chrono_literals;
 inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
                                         RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
 
-struct Look { // of a frame
+struct Look { // settings of a frame
   int width = 61, height = 45;
   int samples = 4;
   uint32_t channels = allChannels;
@@ -30,7 +31,8 @@ struct Look { // of a frame
   double targetError = 0;
 };
 
-// A context that is current as long as the object lives; at its end no error may be left over.
+// A context that is current as long as the object lives. The destructor checks that no error is
+// pending.
 class Context {
  public:
   explicit Context(const std::string& config);
@@ -38,18 +40,19 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
   RTcontext handle = nullptr;
-  std::vector<std::string> log; // what the library has said; read it when nothing is in flight
+  // Lines the library has logged. Read it only while no frame is in flight.
+  std::vector<std::string> log;
   bool said(const std::string& part) const;
 };
 
-// Things of several materials under a lamp, some moving, on a floor of many triangles.
+// Objects of several materials under a lamp, some of them moving, on a floor of many triangles.
 class World {
  public:
-  World(); // in the current context
+  World(); // into the current context
   void look(const Look& look);
-  void move(double time); // edits of an animation: matrices, a parameter, the camera, now and then
-                          // geometry
-  void slow(int depth);   // paths of many bounces between mirrors: a frame that takes its time
+  // Makes the edits of an animation: matrices, a parameter, the camera, sometimes geometry.
+  void move(double time);
+  void slow(int depth); // makes a frame slow: paths of many bounces between mirrors
 
  private:
   RTid surface_ = 0, lamp_ = 0, ball_ = 0, shape_ = 0;
@@ -59,26 +62,26 @@ class World {
 
 using Picture = std::vector<float>; // all channels of a frame, one after the other
 Picture pixels(const Look& look);
-// The frame of a World by one thread here.
+// Renders the frame of a World locally with one thread.
 Picture expected(const Look& look, double time = 0);
-// How many values differ; 0: the same bytes.
+// Returns how many values differ; 0: the pictures are identical.
 size_t different(const Picture& a, const Picture& b);
 
 RTstats statistics();
 std::vector<RTworker> workers();
 
-// openrt-worker on a free port of this machine.
+// An openrt-worker process on a free port of this machine.
 class Worker {
  public:
   explicit Worker(std::vector<std::string> options = {}, int threads = 1);
-  ~Worker(); // killed
+  ~Worker(); // kills the process
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
   void signal(int number) const; // SIGKILL, SIGSTOP, SIGCONT
-  void kill();                   // at once, and reaped
-  void start();                  // again, on the same port
-  int wait();                    // for it to end by itself; its exit code, -1 if it was killed
+  void kill();                   // kills the process immediately and reaps it
+  void start();                  // starts a new process on the same port
+  int wait(); // waits for the process's end; returns its exit code, or -1 if it was killed
   pid_t process() const { return pid_; }
 
  private:
@@ -87,13 +90,13 @@ class Worker {
   pid_t pid_ = -1;
 };
 int freePort();
-// Addresses of workers as an option of a context.
+// Returns the context option that lists the addresses of the workers.
 template <class Workers> std::string calling(const Workers& workers) {
   std::string list;
   for (const auto& worker : workers) list += (list.empty() ? "workers=" : ",") + worker->address();
   return list;
 }
-// Until it is so; false: not within so many seconds.
+// Polls until the condition holds. Returns false on a timeout.
 template <class F> bool until(const F& condition, double seconds = 20) {
   for (const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
        ;) {

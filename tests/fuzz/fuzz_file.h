@@ -1,5 +1,5 @@
-// fuzz_file.h: the fuzzer's bytes as a file that has a path, for readers that open files
-// themselves. It lies in memory.
+// fuzz_file.h: makes the fuzzer's bytes available under a file path, for readers that open files
+// themselves. The file lies in memory.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// fuzz_input.h: what a fuzzer's bytes are taken for: small numbers, often the same ones, so that
-// messages fit together; zeros once the bytes have come to an end.
+// fuzz_input.h: reads values from the fuzzer's bytes: small numbers that often repeat, so that
+// messages fit together. Once the bytes are used up it returns zeros.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class FuzzInput {
     left_ = left_.subspan(size);
     return value;
   }
-  // Mostly a small one.
+  // Returns a number, usually a small one.
   uint64_t number() {
     const uint8_t b = byte();
     return b < 250 ? b % 25 : raw<uint64_t>();

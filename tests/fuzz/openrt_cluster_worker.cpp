@@ -21,7 +21,7 @@ std::shared_ptr<Array> arrayOf(size_t i) {
   return array;
 }
 
-struct Game final : Machine {
+struct Game final : JobExecutor {
   FuzzInput in;
   edit::FrameSettingsT frame;
   std::deque<std::pair<Epoch, edit::FrameSettingsT>> toPrepare; // asked of the machine

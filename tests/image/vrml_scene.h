@@ -1,5 +1,5 @@
-// vrml_scene.h: renders a few lines of VRML for tests: one context, one world, colours as written,
-// no curve.
+// vrml_scene.h: renders a few lines of VRML for tests, with one context and one world. Colours are
+// as written in the world, without a tone curve.
 #pragma once
 
 #include <memory>
@@ -48,7 +48,7 @@ class Scene {
   }
   Scene(const Scene&) = delete;
 
-  // A camera that looks along -z of its frame from a place, with a vertical angle of view.
+  // Returns a camera at a position that looks along -z, with a vertical field of view.
   static CameraSettings at(double x, double y, double z, double fovy) {
     CameraSettings camera{};
     for (int i = 0; i < 4; ++i) camera.matrix[5 * i] = 1;
@@ -87,8 +87,8 @@ class Scene {
   RTcontext context_ = nullptr;
 };
 
-// What a camera at (0 0 z) sees straight ahead, through an angle too small for the place in the
-// pixel to matter.
+// Returns the pixel that a camera at (0 0 z) sees straight ahead. The field of view is so small
+// that the position in the pixel does not matter.
 inline Pixel ahead(const std::string& body, double z = 10, const SceneOptions& options = {}) {
   Scene scene(body, options);
   const Pixel pixel = scene.render(Scene::at(0, 0, z, 1e-5))[0];
@@ -98,7 +98,7 @@ inline Pixel ahead(const std::string& body, double z = 10, const SceneOptions& o
 
 inline const std::string dark = "NavigationInfo { headlight FALSE }\n";
 
-// A square of side 2 at z = 0 that faces +z.
+// Returns a square of side 2 at z = 0 that faces +z.
 inline std::string square(const std::string& appearance, const std::string& more = "",
                           double half = 1) {
   const std::string h = std::to_string(half);

@@ -1,4 +1,4 @@
-// Backs that are culled: they are not there, whatever lies in the same place.
+// backs.cpp: culled back faces are not there, whatever else lies in the same place.
 #include <vector>
 
 #include "numeric/support.h"
@@ -15,8 +15,8 @@ class Backs : public Scene {
         .set("diffuseColor", {0, 0, 0});
     return s;
   }
-  // Two triangles that are slightly askew, so that rounding decides which of two in the same place
-  // is met.
+  // Two triangles that are slightly askew, so that rounding decides which of two coincident ones is
+  // hit.
   static void quad(RTid shader, bool reversed) {
     rtBindShader(shader);
     const float a[3] = {-3.1f, -2.7f, 0.13f}, b[3] = {3.3f, -2.9f, -0.29f},
@@ -78,7 +78,7 @@ TEST_F(Backs, manyBacksOneAfterTheOtherAreLookedThrough) {
   quad(last, false);
   rtEndObject();
   rtInstantiateObject(object);
-  rtQuality(RT_MAX_DEPTH, 0); // backs cost no depth
+  rtQuality(RT_MAX_DEPTH, 0); // back faces do not count as path vertices
   expectAll(picture(32), {0, 0, 1});
 }
 
@@ -86,7 +86,7 @@ TEST_F(Backs, instancesAreLookedThroughToo) {
   const Shader back = glowing({1, 0, 0}), last = glowing({0, 0, 1});
   const RTid one = rtBeginObject(0);
   rtEnable(RT_CULL_FACE);
-  for (int i = 0; i < 30000; i++) quad(back, true); // too many to be copied
+  for (int i = 0; i < 30000; i++) quad(back, true); // too many to be baked
   rtEndObject();
   for (int i = 0; i < 3; i++) {
     rtPushMatrix();
@@ -128,7 +128,7 @@ TEST_F(Backs, anEyeWithinThePlaneOfAFace) {
   EXPECT_EQ(pixels[4 * (13 * 16 + 8) + 1], 1); // below: the ground
 }
 
-// VRML's solid bodies have culled backs; one of glass has an inside all the same.
+// VRML's solid bodies have culled back faces. A glass body has an inside all the same.
 TEST_F(Backs, bodiesOfGlassKeepTheirBacks) {
   Shader glass("Glass");
   glass.set("absorption", {0.1, 0.5, 2}).set("index", {1.0});
@@ -153,7 +153,7 @@ TEST_F(Backs, bodiesOfGlassKeepTheirBacks) {
   }
   EXPECT_EQ(pictures[0], pictures[1]);
   expectClose(pictures[1][4 * 36 + 1], std::exp(-0.5),
-              1e-2); // nearly head on, and the ray ends beyond the slab
+              1e-2); // near normal incidence, and the ray ends behind the slab
 }
 
 } // namespace

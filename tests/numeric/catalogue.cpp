@@ -1,6 +1,5 @@
-// catalogue.cpp: A listener of the test program; tools/accuracy.py makes the
-// tables of docs/accuracy.md of its lines, which begin with "accuracy" and have their parts between
-// tabs.
+// catalogue.cpp: a listener of the test program. tools/accuracy.py makes the tables of
+// docs/accuracy.md from its lines, which begin with "accuracy" and have tabs between their fields.
 #include "numeric/catalogue.h"
 
 #include <chrono>
@@ -19,8 +18,8 @@ struct Current {
 };
 Current current;
 
-// Ids of tests that do not begin with theirs. accuracy.md of the design, part A; V: the lighting of
-// VRML97.
+// Ids of tests whose names do not begin with the id. They come from part A of the design's
+// accuracy.md; V stands for the lighting of VRML97.
 const std::map<std::string, const char*> ids = {
     {"Watertight.NoRandomRayLeavesAClosedBall", "N3"},
     {"Watertight.FewRaysAimedAtVerticesLeave", "N4"},
@@ -48,7 +47,8 @@ const std::map<std::string, const char*> ids = {
     {"ErrorBars.ATargetIsReachedWithoutBias", "A4"},
 };
 
-// "Lobes.D1ASlab..." has D1; of "Offsets/Watertight.Name/0" Watertight.Name counts.
+// Returns the id: D1 for "Lobes.D1ASlab...". "Offsets/Watertight.Name/0" is looked up as
+// "Watertight.Name".
 std::string idOf(const testing::TestInfo& test) {
   std::string suite = test.test_suite_name(), name = test.name();
   if (const size_t slash = suite.rfind('/'); slash != suite.npos) suite.erase(0, slash + 1);

@@ -1,6 +1,6 @@
-// catalogue.h: the accuracy catalogue's line of each test: id, expected, got, tolerance, pass,
-// time, rays. Comparisons of the tests are noted here; of each test the one that came nearest to
-// its tolerance is printed when it ends. [one thread]
+// catalogue.h: prints the accuracy catalogue's line of each test: id, expected, got, tolerance,
+// pass, time, rays. The tests' comparisons are recorded here. At the end of each test the one
+// closest to its tolerance is printed. [one thread]
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace numeric {
 void noteComparison(double got, double expected, double tolerance);
 void noteRays(uint64_t rays);
 
-// What EXPECT_NEAR asks, noted.
+// Checks what EXPECT_NEAR checks and records the comparison.
 inline testing::AssertionResult nearAndNoted(const char* a, const char* b, const char* c,
                                              double got, double expected, double tolerance) {
   noteComparison(got, expected, tolerance);

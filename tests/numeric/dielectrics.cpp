@@ -1,6 +1,5 @@
-// dielectrics.cpp: bodies of glass and water, one within, beside or across another, their
-// absorption and dispersion, against closed forms (accuracy catalogue D4, D6, D11, D19), through
-// the C API.
+// dielectrics.cpp: bodies of glass and water, one inside, beside or across another, with absorption
+// and dispersion, against closed forms (accuracy catalogue D4, D6, D11, D19). Uses the C API.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -33,10 +32,9 @@ class Dielectrics : public Scene {
   }
 };
 
-double reflectance(double from, double to) {
-  return std::pow((from - to) / (from + to), 2);
-} // head on
-// Of plane boundaries one behind another, with all reflections between them.
+// Returns the Fresnel reflectance at normal incidence.
+double reflectance(double from, double to) { return std::pow((from - to) / (from + to), 2); }
+// Returns the transmittance of a stack of plane boundaries, including all reflections between them.
 double through(std::initializer_list<double> reflectances) {
   double sum = 0;
   for (const double r : reflectances) sum += r / (1 - r);
@@ -60,13 +58,13 @@ TEST_F(Dielectrics, D4FiftyOpticalDepthsAreDark) {
   placeAt(-1, square(glowing(1)));
   const Rgba pixel = look(0, 0, 100);
   EXPECT_GE(pixel.g, 0);
-  EXPECT_LT(pixel.g, 1e-6); // the cut: e^-50 would be 1.9e-22
+  EXPECT_LT(pixel.g, 1e-6); // paths are cut off: e^-50 would be 1.9e-22
 }
 
 class NestedDielectrics : public Dielectrics, public testing::WithParamInterface<bool> {
  protected:
-  // A layer of glass on one of water with a lamp below; how far the glass reaches into the water.
-  // Made in either order.
+  // A layer of glass on a layer of water with a lamp below. overlap: how far the glass reaches into
+  // the water. Made in either order.
   void layers(double overlap, int glassPriority, int waterPriority) {
     const Shader crown = glass(1.5, glassPriority), water = glass(1.33, waterPriority);
     if (GetParam()) slab(1, 0, water);
@@ -110,8 +108,8 @@ TEST_P(NestedDielectrics, D11ASharedFaceHasItsPlaceAtAnyDistance) {
   expectGrey(render(), through({airGlass, glassWater, waterAir}), 2e-5);
 }
 
-TEST_P(NestedDielectrics,
-       D11AGapIsAir) { // light that interferes is not followed: two boundaries more
+// Interference is not simulated; the gap adds two boundaries.
+TEST_P(NestedDielectrics, D11AGapIsAir) {
   layers(-1e-3, 1, 0);
   expectGrey(look(), through({airGlass, airGlass, waterAir, waterAir}), 2e-5);
 }
@@ -139,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(EitherOrder, NestedDielectrics, testing::Bool(), [](con
   return info.param ? "WaterMadeFirst" : "GlassMadeFirst";
 });
 
-// A slab under a white sky is as white as the sky from every angle: what is reflected and what goes
-// through add up.
+// A slab under a white sky is as white as the sky from every angle, because reflectance and
+// transmittance add up to 1.
 TEST_F(Dielectrics, D19EverythingIsReflectedOrGoesThrough) {
   environment(1);
   const RTid crown = glass(1.5), face = square(crown, 1e4);
@@ -159,8 +157,8 @@ TEST_F(Dielectrics, D19EverythingIsReflectedOrGoesThrough) {
   }
 }
 
-// A white floor under a clear pane under a white sky is white: what shadow rays find through the
-// pane and what paths find must not both count.
+// A white floor under a clear pane under a white sky is white. Light must not count twice, once
+// through shadow rays and once through paths.
 TEST_F(Dielectrics, G1LightThroughAPaneCountsOnce) {
   environment(1);
   slab(1, .5, glass(1.5));
@@ -169,11 +167,11 @@ TEST_F(Dielectrics, G1LightThroughAPaneCountsOnce) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_MAX_DEPTH, 200);
   rtQuality(RT_SAMPLES_PER_PIXEL, 8192);
-  EXPECT_NEAR(look(0, 0, .25).g, 1,
-              .02); // seen from below the pane, whose edges are ten units away
+  // Seen from below the pane, whose edges are ten units away.
+  EXPECT_NEAR(look(0, 0, .25).g, 1, .02);
 }
 
-// Where the ray through a prism meets planes far below tells by how much it was turned.
+// The points where the ray through a prism hits planes far below show its deviation.
 class Prism : public Dielectrics {
  protected:
   static constexpr double apex = 60, degree = pi / 180;
@@ -182,7 +180,7 @@ class Prism : public Dielectrics {
     rtBindShader(shader);
     const double c = std::cos(apex / 2 * degree), s = std::sin(apex / 2 * degree);
     rtBegin(RT_QUADS);
-    for (const double side : {1., -1.}) { // two faces that meet along the y axis
+    for (const double side : {1., -1.}) { // two faces that share an edge on the y axis
       rtNormal3f(float(s), 0, float(side * c));
       for (const auto& corner : {std::array{0., -1.}, {0., 1.}, {10., 1.}, {10., -1.}})
         rtVertex3d(-c * corner[0], 5 * side * corner[1], side * s * corner[0]);
@@ -192,11 +190,12 @@ class Prism : public Dielectrics {
     rtBindShader(0);
     rtPushMatrix();
     rtRotated(incidence - apex / 2, 0, 1, 0);
-    rtTranslated(4, 0, 0); // the ray along the z axis meets the middle of a face
+    rtTranslated(4, 0, 0); // the ray along the z axis hits the middle of a face
     place(object);
     rtPopMatrix();
   }
-  // Turned by how many degrees, about as many as expected, from the colour's place on two planes.
+  // Returns the deviation in degrees from the colour's position on two planes. expected: roughly
+  // the expected deviation.
   static double deviation(int colour, double expected) {
     double x[2];
     const double depth[2] = {40, 80};
@@ -207,8 +206,9 @@ class Prism : public Dielectrics {
 
  private:
   static constexpr double scale = 1024;
-  // Debug shows the fraction of each coordinate in a colour: the plane is turned so that x is the
-  // one that this colour shows. It is small: light that goes other ways misses it.
+  // Returns x at a depth. The Debug shader shows the fraction of each coordinate in a colour
+  // channel, so the plane is turned to show x in this channel. The plane is small, so that other
+  // light paths miss it.
   static double placeAt(double depth, int colour, double about) {
     Shader ruler("Debug");
     ruler.setInt("show", 11).set("scale", {scale});
@@ -226,7 +226,7 @@ class Prism : public Dielectrics {
       rtEnd();
       rtEndObject();
       rtBindShader(0);
-      double m[16] = {}; // this colour's axis along x, the next along y
+      double m[16] = {}; // this channel's axis along x, the next along y
       m[4 * colour] = m[4 * ((colour + 1) % 3) + 1] = m[4 * ((colour + 2) % 3) + 2] = m[15] = 1;
       rtPushMatrix();
       rtTranslated(-scale / 2, 0, -depth - 1);
@@ -242,7 +242,7 @@ class Prism : public Dielectrics {
   }
 };
 
-// Turned by a prism of an index, for light that meets it at an angle.
+// Returns the deviation by a prism of this index for light at this angle of incidence.
 double turned(double index, double incidence, double apex = 60) {
   const double degree = pi / 180, inside = std::asin(std::sin(incidence * degree) / index);
   return incidence + std::asin(index * std::sin(apex * degree - inside)) / degree - apex;

@@ -1,5 +1,5 @@
-// edit_memory.cpp: edits leave nothing behind: after many of them the ray kernels hold what they
-// held after the first.
+// edit_memory.cpp: edits leave no memory behind. After many edits the acceleration structures hold
+// as much as after the first.
 #include "numeric/support.h"
 
 namespace numeric {

@@ -1,6 +1,7 @@
-// edit_sequences.cpp: a picture is a function of the committed scene and its hints, not of how the
-// scene came to be: random sequences of edits, rendered after each, against the last state made at
-// once, byte for byte; and against the same without hints, where only roundings differ.
+// edit_sequences.cpp: a picture is a function of the committed scene and its hints and does not
+// depend on the edits that led there. Random sequences of edits are rendered after each step. The
+// last picture is compared byte for byte with the last state made at once. It is also compared with
+// the same scene without hints, where only rounding differs.
 #include <cstring>
 #include <random>
 
@@ -20,7 +21,7 @@ struct Place {
   RTid id = 0, light = 0;
 };
 struct Thing {   // an object
-  int shape = 0; // number of the definition of a leaf, -1: a group
+  int shape = 0; // index of a leaf's definition; -1: a group
   bool dynamic = false;
   std::vector<Place> children;
   RTid id = 0;
@@ -61,8 +62,8 @@ class EditSequences : public testing::TestWithParam<int> {
     return p;
   }
 
-  // Definitions of leaves: triangles, a sphere, lines, many triangles (shared ones become
-  // instances), and mixtures.
+  // Defines a leaf: triangles, a sphere, lines, many triangles (which become instances if shared),
+  // or a mixture.
   static void draw(const World& w, int shape) {
     std::mt19937 r{unsigned(shape)};
     const auto number = [&r] { return float(r() >> 8) / float(1 << 23) - 1; };
@@ -132,7 +133,7 @@ class EditSequences : public testing::TestWithParam<int> {
     rtPerspective(45);
     rtPopMatrix();
   }
-  // Everything in a new context, which becomes current.
+  // Draws everything in a new context, which becomes current.
   static RTcontext emit(World& w, bool hints, int threads) {
     const RTcontext context = rtNewContext(("threads=" + std::to_string(threads)).c_str());
     rtFrameBuffer(width, height, RT_RGBA);
@@ -146,7 +147,7 @@ class EditSequences : public testing::TestWithParam<int> {
                    .set("ambientIntensity", {.3}));
     for (Thing& t : w.things) {
       t.id = 0;
-      if (t.dynamic && hints) { // a hint holds from the next definition on
+      if (t.dynamic && hints) { // a hint takes effect at the next definition
         rtGenObjects(1, &t.id);
         rtObjectHint(t.id, RT_DYNAMIC);
       }
@@ -188,7 +189,7 @@ class EditSequences : public testing::TestWithParam<int> {
     }
     for (int i = 0; i < 10; i++) w.places.push_back(randomPlace(below(w.things.size()), 5));
     for (int i = 0; i < 3; i++)
-      w.places.push_back(randomPlace(0, 5)); // these share an instance's structure
+      w.places.push_back(randomPlace(0, 5)); // these share one acceleration structure
     w.places[1].scopedLight = below(2);
     if (!w.things[7].children.empty()) w.things[7].children[0].scopedLight = below(2);
   }
@@ -271,7 +272,7 @@ class EditSequences : public testing::TestWithParam<int> {
 
 TEST_P(EditSequences, TheLastPictureIsThatOfTheLastState) {
   World w;
-  const RTcontext first = rtNewContext("backend=null"); // matrices need one
+  const RTcontext first = rtNewContext("backend=null"); // matrices need a current context
   start(w);
   rtDeleteContext(first);
   const RTcontext context = emit(w, true, 1 + GetParam() % 2);
@@ -291,8 +292,8 @@ TEST_P(EditSequences, TheLastPictureIsThatOfTheLastState) {
   rtDeleteContext(rtGetCurrent());
 
   emit(again, false, 1);
-  EXPECT_LE(different(rendered(), last),
-            width * height / 100); // samples on edges fall to either side
+  // Samples on edges may fall to either side.
+  EXPECT_LE(different(rendered(), last), width * height / 100);
   rtDeleteContext(rtGetCurrent());
 }
 

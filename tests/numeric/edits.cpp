@@ -1,6 +1,6 @@
-// edits.cpp: what an edit costs, counted in acceleration structures built, and that it shows:
-// against closed forms, and against the same scene made static. Sequences of edits against scenes
-// made at once: edit_sequences.cpp.
+// edits.cpp: edits build as few acceleration structures as expected, and their effect is visible:
+// against closed forms and against the same scene made static. edit_sequences.cpp compares
+// sequences of edits with scenes made at once.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -19,7 +19,7 @@ class Edits : public Scene {
     Scene::SetUp();
     use(tilted(0));
   }
-  // Renders, and returns what was built for it.
+  // Renders and returns the number of acceleration structures built.
   struct Built {
     uint64_t objects, topLevels;
     bool operator==(const Built&) const = default;
@@ -42,7 +42,7 @@ class Edits : public Scene {
     return id;
   }
   static void move(RTid instance, const Matrix& m) { rtInstanceMatrix(instance, m.m); }
-  // Three squares side by side; the one in the middle is looked at.
+  // Three squares side by side; the camera looks at the middle one.
   RTid threeSquares(RTenum hint) {
     const RTid s = square(Shader("VRML97"), 1);
     placeAt(s, at(-4));
@@ -73,7 +73,8 @@ TEST_F(Edits, AStaticInstanceBecomesDynamicOnce) {
   expectGrey(look(), .8);
   built();
   move(instance, at(0, 3));
-  EXPECT_EQ(built(), (Built{2, 1})); // the static scene without it, and it
+  // The static scene without the square, and the square's own structure.
+  EXPECT_EQ(built(), (Built{2, 1}));
   expectGrey(look(0, 3), .8);
   built();
   move(instance, at(0, 6));
@@ -96,7 +97,7 @@ TEST_F(Edits, RedefiningADynamicObjectBuildsItAlone) {
     rtEnd();
     rtEndObject();
   };
-  redefine(1); // the hint holds from here on
+  redefine(1); // the hint takes effect here
   built();
   expectGrey(look(5.5, 8), 0);
   built();
@@ -168,7 +169,7 @@ TEST_F(Edits, DynamicCopiesShareOneStructure) {
   EXPECT_EQ(built().objects, 0u);
 }
 
-// A dynamic instance in an object that stands in several places, one of them dynamic itself.
+// A dynamic instance in an object that is instantiated several times, once dynamically.
 TEST_F(Edits, NestedDynamicInstances) {
   const RTid s = square(Shader("VRML97"), 1);
   const RTid group = rtBeginObject(0);
@@ -243,7 +244,7 @@ TEST_F(Edits, RayQueriesSeeTheLastCommit) {
   EXPECT_NE(cast(4, 0).instance, instance);
 }
 
-// While a frame is in flight its scene stays as it was.
+// The scene of a frame in flight does not change.
 TEST_F(Edits, FramesInFlightKeepTheirScene) {
   const RTid instance = threeSquares(RT_DYNAMIC);
   rtTranslated(0, 0, 20);
@@ -275,7 +276,7 @@ TEST_F(Edits, ScopedLightsStayWithDynamicInstances) {
   expectGrey(look(3, 4), .8);
 }
 
-// Lines are pixels wide wherever they move and the camera goes.
+// Lines keep their width in pixels wherever they and the camera move.
 TEST_F(Edits, LinesMoveWithTheirInstance) {
   const RTid object = rtBeginObject(0);
   rtBindShader(Shader("VRML97").setInt("lit", 0));
@@ -288,7 +289,8 @@ TEST_F(Edits, LinesMoveWithTheirInstance) {
   rtBindShader(0);
   const RTid instance = placeAt(object, at(0), RT_DYNAMIC);
   place(square(Shader("VRML97").set("diffuseColor", {0, 0, 0}), 20));
-  const auto bright = [](double y) { // pixels of a picture of height 8 around y that show the line
+  // Number of pixels around y that show the line, in a picture of height 8.
+  const auto bright = [](double y) {
     rtTranslated(0, y, 20);
     rtOrtho(8);
     rtLoadIdentity();

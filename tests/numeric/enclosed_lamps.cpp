@@ -1,6 +1,6 @@
-// enclosed_lamps.cpp: RT_TRANSPORT_LIGHT with lights without extent behind glass and mirrors: their
-// attenuation is that of the whole way to the first surface that scatters. Glass of index 1 is not
-// seen, so the picture is that of straight shadow rays.
+// enclosed_lamps.cpp: RT_TRANSPORT_LIGHT with point lights behind glass and mirrors. The
+// attenuation counts the whole way to the first surface that scatters. Glass of index 1 is
+// invisible, so the picture must equal the one with straight shadow rays.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ class EnclosedLamps : public Scene {
     Scene::SetUp();
     rtPushMatrix();
     rtLoadIdentity();
-    rtTranslated(0, 0, 1.4); // under the ball, down on the floor
+    rtTranslated(0, 0, 1.4); // under the ball, towards the floor
     rtPerspective(100);
     rtPopMatrix();
   }
@@ -41,7 +41,7 @@ class EnclosedLamps : public Scene {
     rtBindShader(0);
     return placeAt(z, object);
   }
-  // Of the picture that a transport makes.
+  // Returns the picture's mean for a transport.
   static double meanOf(RTenum transport) {
     rtQuality(RT_TRANSPORT, transport);
     rtQuality(RT_SAMPLES_PER_PIXEL, transport == RT_TRANSPORT_LIGHT ? 512 : 64);
@@ -91,15 +91,15 @@ INSTANTIATE_TEST_SUITE_P(All, EnclosedLampsOnFloors,
                            return std::string(of.param.name);
                          });
 
-TEST_F(EnclosedLamps, ABallBetweenTheLampAndTheFloor) { // one part of the light passes it
+TEST_F(EnclosedLamps, ABallBetweenTheLampAndTheFloor) { // part of the light passes through the ball
   place(square(floor(false), 3));
   ball(.15, lampAt - .4);
   use(lamp(false, {1, 0, 0}));
   expectAsThroughAir();
 }
 
-// A light without shadows shines straight through the glass: what reaches the floor by way of the
-// glass must not come on top.
+// A light without shadows shines straight through the glass. Light that reaches the floor through
+// the glass must not be added to that.
 TEST_F(EnclosedLamps, ALightWithoutShadowsCountsOnce) {
   place(square(floor(false), 3));
   use(lamp(false, {1, 0, 0}).setInt("shadows", 0));
@@ -113,13 +113,13 @@ TEST_F(EnclosedLamps, ShellsInShellsAndALampInAScaledSpace) {
   for (const double radius : {.05, .2, .45}) ball(radius);
   rtPushMatrix();
   rtTranslated(0, 0, lampAt);
-  rtScaled(3, 3, 3); // distances are those of the lamp's own space
+  rtScaled(3, 3, 3); // the attenuation uses distances in the lamp's own space
   use(Shader("VRML97PointLight").set("attenuation", {.1, .5, 2}));
   rtPopMatrix();
   expectAsThroughAir();
 }
 
-// What a floor sends on to the wall knows nothing of the lamp's distance any more.
+// Light that a floor scatters to the wall no longer depends on the distance to the lamp.
 TEST_F(EnclosedLamps, ScatteredLightKeepsItsAttenuation) {
   place(square(floor(false), 3));
   rtPushMatrix();
@@ -139,7 +139,8 @@ TEST_F(EnclosedLamps, NothingIsLitBeyondTheRadiusOfTheLamp) {
   EXPECT_EQ(meanOf(RT_TRANSPORT_LIGHT), 0);
 }
 
-TEST_F(EnclosedLamps, AMeasuredLuminaireInGlass) { // it falls with the square of the distance
+// The illuminance falls with the square of the distance.
+TEST_F(EnclosedLamps, AMeasuredLuminaireInGlass) {
   place(square(floor(false), 3));
   Shader s("Luminaire");
   s.set("location", {0, 0, lampAt});
@@ -153,8 +154,8 @@ TEST_F(EnclosedLamps, AMeasuredLuminaireInGlass) { // it falls with the square o
   expectAsThroughAir();
 }
 
-// A mirror under the lamp lights a ceiling as the lamp's image would, with the attenuation at the
-// distance of the image.
+// A mirror under the lamp lights a ceiling like the lamp's mirror image, attenuated by the distance
+// of the image.
 TEST_F(EnclosedLamps, AMirrorShowsTheLampAtItsImage) {
   constexpr double ceilingAt = 2, height = 1.5, reflectance = .8, x = .7, reach = .5;
   const double attenuation[3] = {.2, .4, .1};
@@ -183,9 +184,9 @@ TEST_F(EnclosedLamps, AMirrorShowsTheLampAtItsImage) {
       mirrored += reflectance * from(px, py, ceilingAt + height) / (n * n);
     }
   rtQuality(RT_MAX_DEPTH, 2);
-  const double before = meanOf(RT_TRANSPORT_PATH); // with light that goes from ceiling to ceiling
+  const double before = meanOf(RT_TRANSPORT_PATH); // includes interreflection on the ceiling
   EXPECT_NEAR(meanOf(RT_TRANSPORT_LIGHT) - before, mirrored, .04 * mirrored);
-  ball(.1, height);           // all of the light is now followed from the lamp
+  ball(.1, height);           // all light is now traced from the lamp
   rtQuality(RT_MAX_DEPTH, 3); // ball, mirror, ceiling
   EXPECT_NEAR(meanOf(RT_TRANSPORT_LIGHT), direct + mirrored, .04 * (direct + mirrored));
 }

@@ -1,6 +1,6 @@
-// frames.cpp: places on lamps and directions are chosen in a frame built about an axis. Where such
-// a frame jumped, a line of the picture had several times the error of the rest: the error must be
-// even.
+// frames.cpp: points on lamps and directions are sampled in a frame built around an axis. Where
+// such a frame jumped, a line of the picture had several times the error of the rest. These tests
+// check that the error is even.
 #include <algorithm>
 #include <vector>
 
@@ -38,7 +38,7 @@ class Frames : public Scene {
     rtOrtho(height);
     rtPopMatrix();
   }
-  // Standard deviation of each pixel over the mean, from pictures of several seeds.
+  // Returns each pixel's standard deviation divided by its mean, from pictures of several seeds.
   static std::vector<double> deviations() {
     std::vector<double> sum(edge * edge), squares(edge * edge), out;
     for (int seed = 1; seed <= seeds; seed++) {
@@ -56,7 +56,7 @@ class Frames : public Scene {
     }
     return out;
   }
-  // Root mean square by row of the picture; no row may stand out.
+  // Compares the root mean square of the picture's rows; no row may stand out.
   static void expectEvenRows(const std::vector<double>& deviation) {
     std::vector<double> rows;
     for (int y = 0; y < edge; y++) {
@@ -71,7 +71,7 @@ class Frames : public Scene {
   }
 };
 
-// A ball beside a wall that holds the axis z: the middle row of the wall is at the ball's z.
+// A ball beside a wall that contains the z axis: the middle row of the wall is at the ball's z.
 TEST_F(Frames, ABallBesideAWall) {
   rtPushMatrix();
   rtRotated(90, 0, 1, 0);
@@ -85,7 +85,7 @@ TEST_F(Frames, ABallBesideAWall) {
   expectEvenRows(deviations());
 }
 
-// A smooth ball under a sky whose colour changes: the middle row has normals without a z.
+// A smooth ball under an environment of varying colour: in the middle row the normals have z = 0.
 TEST_F(Frames, ASmoothBallUnderASky) {
   ball(matt(.5), 1);
   Shader sky("VRML97Environment");
@@ -95,7 +95,8 @@ TEST_F(Frames, ASmoothBallUnderASky) {
   expectEvenRows(deviations());
 }
 
-// A floor whose normal is horizontal but for rounding: its frame must not depend on the last digit.
+// A floor whose normal is horizontal except for rounding. Its frame must not depend on the last
+// digit.
 TEST_F(Frames, AWallThatIsTurnedByNothing) {
   for (const double turn : {1e-9, -1e-9}) {
     rtPushMatrix();
@@ -107,7 +108,7 @@ TEST_F(Frames, AWallThatIsTurnedByNothing) {
   Shader sky("VRML97Environment");
   rtUseEnvironment(
       sky.setList("skyColor", {.2f, .2f, .2f, 1, 1, 1, 3, 3, 3}).setList("skyAngle", {1.2f, 2.4f}));
-  camera({3, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1); // the middle row is where the two walls meet
+  camera({3, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1); // the walls meet in the middle row
   expectEvenRows(deviations());
 }
 

@@ -1,5 +1,4 @@
-// global_light.cpp: light between surfaces against closed forms: G5, G6, G7 of the accuracy
-// catalogue.
+// global_light.cpp: interreflection against closed forms: G5, G6, G7 of the accuracy catalogue.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -7,8 +6,8 @@ namespace {
 
 class GlobalLight : public Scene {
  protected:
-  // The six faces of a cube of edge 1 about the origin, facing inwards; the first, at -z, has a
-  // shader of its own.
+  // The six faces of a unit cube around the origin, facing inwards. The first, at -z, has a shader
+  // of its own.
   static void cube(RTid first, RTid others) {
     for (int i = 0; i < 6; i++) {
       rtPushMatrix();
@@ -26,8 +25,8 @@ class GlobalLight : public Scene {
   }
 };
 
-TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of which roulette sees all
-                                                      // but the first terms
+// Le / (1 - rho). Russian roulette affects all terms but the first.
+TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) {
   const Shader wall =
       Shader("Diffuse").set("emission", {.05, .05, .05}).set("reflectance", {.95, .95, .95});
   cube(wall, wall);
@@ -51,7 +50,8 @@ TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) { // Le / (1 - rho), of whic
   EXPECT_LT(error, .01);
 }
 
-TEST_F(GlobalLight, G6RadiosityOfACube) { // the sum is exact: what is sent out is what is taken up
+// The sum is exact: the power emitted equals the power absorbed.
+TEST_F(GlobalLight, G6RadiosityOfACube) {
   cube(Shader("Diffuse").set("emission", {1, 1, 1}).set("reflectance", {.5, .5, .5}),
        Shader("Diffuse").set("reflectance", {.5, .5, .5}));
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
@@ -66,7 +66,7 @@ TEST_F(GlobalLight, G6RadiosityOfACube) { // the sum is exact: what is sent out 
     sum += face[i] = mean(picture(8));
   }
   EXPECT_NEAR(sum, 2, 4e-3);
-  // A solve with 16x16 patches a face, towards many; with one radiosity for each face: 1.0909,
+  // From a solver with 16x16 patches per face. With one radiosity per face the values are 1.0909,
   // .1817, .1818.
   EXPECT_NEAR(face[0], 1.1055, .01 * 1.1055);
   EXPECT_NEAR(face[2], .1700, .02 * .1700);
@@ -86,7 +86,7 @@ TEST_F(GlobalLight, G7ADiffuseSphereWithTheLightAtTheEye) {
   rtOrtho(2);
   rtPopMatrix();
   rtQuality(RT_SAMPLES_PER_PIXEL, 64);
-  EXPECT_NEAR(mean(picture(32)) / (pi / 4), 2. / 3, 1e-3 * 2 / 3); // of the disc
+  EXPECT_NEAR(mean(picture(32)) / (pi / 4), 2. / 3, 1e-3 * 2 / 3); // over the disc
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// hard_cases.cpp: geometry where single precision is hard put to it: N5, N9, N10, N11, N14, N15,
-// N21, N22 of the accuracy catalogue.
+// hard_cases.cpp: geometry at the limits of single precision: N5, N9, N10, N11, N14, N15, N21, N22
+// of the accuracy catalogue.
 #include <cstring>
 #include <limits>
 #include <random>
@@ -23,9 +23,8 @@ class HardCases : public Scene {
   }
 };
 
-TEST_F(
-    HardCases,
-    N5AHorizonAtGrazingAngles) { // a plane of 1e4 from one above it: it ends 1e-4 below the horizon
+// A plane of 1e4, seen from a height of 1, ends 1e-4 below the horizon.
+TEST_F(HardCases, N5AHorizonAtGrazingAngles) {
   rtPushMatrix();
   rtRotated(-90, 1, 0, 0);
   place(square(glow(1, 1, 1), 1e4));
@@ -112,7 +111,7 @@ TEST_F(HardCases, N11LongThinStripsAreClosed) {
   EXPECT_EQ(missed(rays), 0u);
 }
 
-// Corners and normals of a ball of 24 x 12 faces.
+// The corners and normals of a ball of 24 x 12 faces.
 RTid coarseBall(RTid shader) {
   const RTid object = rtBeginObject(0);
   rtBindShader(shader);
@@ -154,13 +153,13 @@ TEST_F(HardCases, N14ATerminatorOfSmoothNormals) {
   rtDeleteInstance(exact);
   place(coarseBall(white));
   const std::vector<float> coarse = picture(32);
-  EXPECT_NEAR(mean(coarse), mean(truth), .03 * mean(truth)); // of which 1.5 % are the silhouette's
+  EXPECT_NEAR(mean(coarse), mean(truth), .03 * mean(truth)); // the silhouette accounts for 1.5 %
   for (size_t i = 0; i < truth.size(); i += 4) {
     const double x = (double(i / 4 % 32) + .5) / 16 - 1, y = 1 - (double(i / 4 / 32) + .5) / 16,
                  z2 = 1 - x * x - y * y;
     if (z2 < .25) continue;
     const double cosine = (x + .2 * std::sqrt(z2)) / std::sqrt(1.04);
-    if (cosine < -.28) { // more than one facet behind the terminator
+    if (cosine < -.28) { // more than one facet beyond the terminator
       EXPECT_EQ(coarse[i], 0) << x << ' ' << y;
     }
     if (cosine > .28) { EXPECT_NEAR(coarse[i], truth[i], .08) << x << ' ' << y; }
@@ -177,7 +176,7 @@ TEST_F(HardCases, N15NormalsOfNoLengthStandForTheFace) {
   rtVertex3d(1, 1, 0);
   rtVertex3d(-1, 1, 0);
   rtEnd();
-  rtBegin(RT_TRIANGLES); // to nothing between two corners
+  rtBegin(RT_TRIANGLES); // narrows to zero width between two corners
   rtNormal3f(0, 0, 1);
   rtVertex3d(2, -1, 0);
   rtNormal3f(0, 0, -1);
@@ -202,7 +201,7 @@ TEST_F(HardCases, N21EyesInOddPlacesSeeNumbers) {
   place(square(Shader("Glass"), 3));
   for (const double fov : {.001 * 180 / pi, 60., 3.1 * 180 / pi})
     for (const double z :
-         {0., 1., .5, -1e-7}) { // in the middle, on the surface, inside, in the plane
+         {0., 1., .5, -1e-7}) { // at the centre, on the surface, inside, in the plane
       rtPushMatrix();
       rtTranslated(0, 0, z);
       rtPerspective(fov);

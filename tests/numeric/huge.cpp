@@ -1,5 +1,5 @@
-// huge.cpp: things of sizes that single precision cannot hold beside each other: the ground as a
-// sphere under an eye at a man's height, and a thing so far away that nobody sees it, which must
+// huge.cpp: objects whose sizes do not fit together in single precision: the ground as a huge
+// sphere under an eye at human height, and an object so far away that it is invisible and must
 // change nothing.
 #include <limits>
 
@@ -12,7 +12,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 class Huge : public Scene {
  protected:
-  // A sphere that touches the plane y = 0 from below at the origin; squashed: its height is a
+  // A sphere that touches the plane y = 0 from below at the origin. squashed: its height is a
   // quarter of its width.
   static RTid ground(double radius, bool squashed, RTid shader) {
     rtPushMatrix();
@@ -28,11 +28,12 @@ class Huge : public Scene {
     rtPopMatrix();
     return instance;
   }
-  // Where a ray from (x, y, 0) meets it, by the half of the equation that keeps its digits.
+  // Returns where a ray from (x, y, 0) hits the sphere, by the root of the quadratic equation that
+  // does not cancel.
   static double meets(double radius, bool squashed, Vec from, Vec d) {
     const long double s = squashed ? 4 : 1, r = static_cast<long double>(radius);
     const long double o[3] = {from.x, s * from.y, from.z},
-                      v[3] = {d.x, s * d.y, d.z}; // about the point of contact
+                      v[3] = {d.x, s * d.y, d.z}; // relative to the point of contact
     const long double a = v[0] * v[0] + v[1] * v[1] + v[2] * v[2],
                       b = o[0] * v[0] + (o[1] + r) * v[1] + o[2] * v[2];
     const long double c = o[0] * o[0] + o[1] * o[1] + o[2] * o[2] + 2 * r * o[1],
@@ -112,7 +113,7 @@ TEST_F(Huge, WhatStandsOnAHugeSphereCastsItsShadow) {
   }
 }
 
-// A picture of small and of large things, with and without something at the end of the world.
+// A picture of small and large objects, with and without an object extremely far away.
 TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
   const Shader white("VRML97");
   use(tilted(30));
@@ -129,7 +130,7 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
       rtBindShader(0);
       place(object);
     } else {
-      rtRotated(37 * i, 1, .5, .2); // each has a shade of its own
+      rtRotated(37 * i, 1, .5, .2); // each has its own grey
       place(square(white, size / 2));
     }
     rtPopMatrix();
@@ -142,8 +143,8 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
   const std::vector<float> alone = picture(48);
   EXPECT_GT(mean(alone), .02);
   for (const double far : {1e6, 1e12, 1e16, 1e19, 1e20, 1e25}) {
-    const RTid object =
-        rtBeginObject(0); // its place is part of the object: an instance there would be refused
+    // The position is part of the object, because an instance so far away would be refused.
+    const RTid object = rtBeginObject(0);
     rtTranslated(0, far, 0);
     rtBindShader(white);
     rtSphere(1);
@@ -162,8 +163,9 @@ TEST_F(Huge, WhatIsFarAwayChangesNothingElse) {
   }
 }
 
-// A lamp over a floor so large that rays step farther off it than the lamp is away: said once, with
-// the distance that is needed. Not where there is room, nor of a lamp that touches the floor.
+// A lamp above a floor so large that the ray offset exceeds the distance to the lamp. The library
+// warns once and names the distance needed. It does not warn where there is room, nor about a lamp
+// that touches the floor.
 TEST_F(Huge, ALampTooNearToBeSeenIsWarnedOf) {
   static std::vector<std::string> said;
   said.clear();

@@ -1,6 +1,6 @@
-// invariance.cpp: the same scene somewhere else or of another size gives the same picture: N1, N2
-// and G10 of the accuracy catalogue. Lights measure in their own space, so their attenuation grows
-// with the scene.
+// invariance.cpp: the same scene, moved or scaled, gives the same picture: N1, N2 and G10 of the
+// accuracy catalogue. Lights measure distances in their own space, so their attenuation scales with
+// the scene.
 #include <algorithm>
 #include <functional>
 
@@ -13,8 +13,8 @@ class Invariance : public Scene {
  protected:
   static constexpr int size = 32;
 
-  // Floor, a tilted square with a shadow, a sphere, a near lamp, fog; everything under the current
-  // matrix.
+  // Renders a floor, a tilted square with a shadow, a sphere, a near lamp and fog, all under the
+  // current matrix.
   static std::vector<float> picture(const std::function<void()>& placement) {
     std::vector<RTid> made;
     rtLoadIdentity();
@@ -51,8 +51,8 @@ class Invariance : public Scene {
     return pixels;
   }
 
-  // Pixels that differ by more than the tolerance. A sample on a silhouette or a shadow's edge may
-  // fall to the other side.
+  // Returns the number of pixels that differ by more than the tolerance. A sample at the edge of a
+  // silhouette or shadow may fall to the other side.
   static int different(const std::vector<float>& a, const std::vector<float>& b, double relative) {
     int count = 0;
     for (size_t i = 0; i < a.size(); i += 4) {

@@ -1,6 +1,6 @@
-// lamps.cpp: light of emitting shapes, of many lights and inside spheres, by path tracing, against
-// closed forms (accuracy catalogue R4 to R12, G3, G9, form factors), through the C API. A white
-// surface under irradiance E shows E / pi: the form factor of the lamp, if that has radiance 1.
+// lamps.cpp: light of emissive shapes, of many lights and inside spheres, by path tracing, against
+// closed forms (accuracy catalogue R4 to R12, G3, G9, form factors). Uses the C API. A white
+// surface under irradiance E shows E / pi, which is the lamp's form factor if its radiance is 1.
 #include "numeric/support.h"
 
 #include <cstdio>
@@ -17,8 +17,8 @@ Vec cross(Vec a, Vec b) {
 double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 double length(Vec a) { return std::sqrt(dot(a, a)); }
 
-// R7: Lambert's formula for a polygon seen from the origin by a surface that faces z, all of it
-// above; over pi.
+// R7: Lambert's formula, divided by pi, for a polygon seen from the origin by a surface that faces
+// z. The whole polygon is above the surface.
 double polygon(const std::vector<Vec>& v) {
   double sum = 0;
   for (size_t i = 0; i < v.size(); i++) {
@@ -28,7 +28,7 @@ double polygon(const std::vector<Vec>& v) {
   return std::fabs(sum) / (2 * pi);
 }
 
-// Cut off below a plane: what is left has dot(normal, p) >= offset.
+// Clips a polygon; the rest has dot(normal, p) >= offset.
 std::vector<Vec> clip(const std::vector<Vec>& v, Vec normal, double offset) {
   std::vector<Vec> out;
   for (size_t i = 0; i < v.size(); i++) {
@@ -62,7 +62,7 @@ class Lamps : public Scene {
     return s;
   }
   static RTid floor(double half = 100) { return place(square(matt(1), half)); }
-  // A fan about the first corner.
+  // A fan around the first corner.
   static RTid lamp(const std::vector<Vec>& v, double radiance = 1, bool culled = false) {
     const RTid object = rtBeginObject(0);
     if (culled) rtEnable(RT_CULL_FACE);
@@ -84,7 +84,7 @@ class Lamps : public Scene {
     rtBindShader(0);
     return place(object);
   }
-  // A disc of the area pi r^2 in so many triangles that its outline does not matter.
+  // A disc of area pi r^2 with so many triangles that its outline does not matter.
   static std::vector<Vec> disc(double r, double z) {
     constexpr int n = 512;
     const double out = r * std::sqrt(2 * pi / n / std::sin(2 * pi / n));
@@ -93,9 +93,8 @@ class Lamps : public Scene {
       v.push_back({out * std::cos(2 * pi * i / n), out * std::sin(2 * pi * i / n), z});
     return v;
   }
-  static double lit(double x = 0) {
-    return look(x, 0, .001).g;
-  } // from below what hangs over the floor
+  // Returns the colour of the floor, seen from below the lamps over it.
+  static double lit(double x = 0) { return look(x, 0, .001).g; }
   static void expectQ(const char* id, double got, double expected, double tolerance) {
     std::printf("%-10s expected %.8f got %.8f tolerance %.1e\n", id, expected, got, tolerance);
     EXPECT_NEAR(got, expected, tolerance * std::max(expected, .1)) << id;
@@ -138,15 +137,15 @@ TEST_F(Lamps, R6ASphere) {
   }
 }
 
-TEST_F(Lamps, R6AnEllipsoidIsSeenAsItsOutline) { // a cone that touches it: a disc of radius a c /
-                                                 // sqrt(d^2 - c^2), seen from d
+// The tangent cone from the point is that of a disc of radius a c / sqrt(d^2 - c^2) at distance d.
+TEST_F(Lamps, R6AnEllipsoidIsSeenAsItsOutline) {
   floor();
   rtPushMatrix();
   rtTranslated(0, 0, 3);
   rtScaled(2, 2, .5);
   ball(matt(0, 1), 1);
   rtPopMatrix();
-  const double tangent = 2 / std::sqrt(9 - .25); // of the cone's half angle
+  const double tangent = 2 / std::sqrt(9 - .25); // tangent of the cone's half angle
   expectQ("R6 flat", lit(), tangent * tangent / (1 + tangent * tangent), 1e-3);
 }
 
@@ -166,7 +165,7 @@ TEST_F(Lamps, R8APolygonBehindAnEdge) {
   floor();
   lamp(rectangle(.5, 1));
   rtPushMatrix();
-  rtTranslated(100.1, 0, .5); // hides what has x > .2 in the lamp's plane
+  rtTranslated(100.1, 0, .5); // occludes the part with x > .2 in the lamp's plane
   place(square(matt(0), 100));
   rtPopMatrix();
   expectQ("R8", lit(), polygon(clip(rectangle(.5, 1), {-1, 0, 0}, -.2)), 2e-3);
@@ -239,7 +238,8 @@ TEST_F(Lamps, R12ManyEqualLightsAreOneOfTheirPower) {
     std::vector<RTid> ids;
     for (int i = 0; i < n; i++) ids.push_back(use(light));
     const double d2 = 1.25;
-    expectQ("R12", lit(), 2 / d2 / std::sqrt(d2), 1e-5); // of one place each choice is exact
+    // All lights are in one place, so each choice is exact.
+    expectQ("R12", lit(), 2 / d2 / std::sqrt(d2), 1e-5);
     for (const RTid id : ids) rtRemoveLight(id);
   }
 }
@@ -280,7 +280,8 @@ TEST_F(Lamps, R12ALampInManyPiecesIsOneLamp) {
   }
 }
 
-TEST_F(Lamps, TwoLampsInOnePlaceAreOne) { // of which the kernel sees one
+// A ray reports only one of two coincident hits.
+TEST_F(Lamps, TwoLampsInOnePlaceAreOne) {
   floor();
   const RTid object = rtBeginObject(0);
   rtBindShader(matt(0, 1));
@@ -295,8 +296,8 @@ TEST_F(Lamps, TwoLampsInOnePlaceAreOne) { // of which the kernel sees one
   expectQ("in one place", lit(), .75227469 / pi, 2e-3);
 }
 
-TEST_F(Lamps, LampsThatAreMirroredAndTurned) { // one-sided by culling; the sides must be told apart
-                                               // as the kernel does
+// One-sided by culling. Light sampling must choose the same side as ray intersection.
+TEST_F(Lamps, LampsThatAreMirroredAndTurned) {
   floor();
   for (const double flip : {1., -1.}) {
     const RTid object = rtBeginObject(0);
@@ -377,15 +378,15 @@ TEST_F(Lamps, FormFactorOfDiscs) {
   expectQ("discs", f * 2.01 * 2.01 / pi, .38196601, 2e-3);
 }
 
-// The eye is inside; the whole sphere sees the source. G3: of the total the indirect part is the
-// same everywhere.
+// The eye is inside, and the whole sphere sees the source. G3: the indirect part is the same
+// everywhere.
 TEST_F(Lamps, G3AnIntegratingSphere) {
   rtQuality(RT_MAX_DEPTH, 60);
   rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
   constexpr double rho = .5, radius = 4;
   ball(matt(rho), radius);
   for (const double off : {0., 2.}) {
-    const double c = 32; // colour of the light: intensity over pi
+    const double c = 32; // the light's colour: intensity over pi
     const RTid source = use(point({off, 0, 0}, {0, 0, 1}).set("intensity", {c}));
     const double direct = rho * c / (radius * radius + off * off) * radius /
                           std::sqrt(radius * radius + off * off); // seen at (0,0,-4)
@@ -395,7 +396,8 @@ TEST_F(Lamps, G3AnIntegratingSphere) {
   }
 }
 
-// G9: light that comes from the one to the other by way of a room is the same in both directions.
+// G9: reciprocity. Light that travels from lamp to sensor via a room is the same after the two are
+// exchanged.
 TEST_F(Lamps, G9LampAndSensorChangePlaces) {
   rtQuality(RT_MAX_DEPTH, 5);
   rtQuality(RT_SAMPLES_PER_PIXEL, 2048);
@@ -406,7 +408,7 @@ TEST_F(Lamps, G9LampAndSensorChangePlaces) {
     rtPushMatrix();
     rtTranslated(0, 0, .6);
     rtRotated(90, 0, 1, 0);
-    rtTranslated(.35, 0, 0); // from z = 0 to .5: lamp and sensor do not see each other
+    rtTranslated(.35, 0, 0); // from z = 0 to .5: hides lamp and sensor from each other
     placed.push_back(place(square(matt(.3), .25)));
     rtPopMatrix();
     rtPushMatrix();
@@ -417,7 +419,7 @@ TEST_F(Lamps, G9LampAndSensorChangePlaces) {
       const bool sensor = i == turn;
       rtPushMatrix();
       rtTranslated(i ? .8 : -.5, 0, i ? .3 : .1);
-      const RTid object = rtBeginObject(0); // a sensor has one side, so has the lamp
+      const RTid object = rtBeginObject(0); // the sensor has one side, so the lamp has one, too
       rtEnable(RT_CULL_FACE);
       rtBindShader(matt(.5, sensor ? 0 : 10));
       rtBegin(RT_QUADS);
@@ -429,7 +431,7 @@ TEST_F(Lamps, G9LampAndSensorChangePlaces) {
       placed.push_back(place(object));
       rtPopMatrix();
     }
-    seen[turn] = mean(8, [&] { // over the whole sensor
+    seen[turn] = mean(8, [&] { // averaged over the whole sensor
       rtPushMatrix();
       rtLoadIdentity();
       rtTranslated(turn ? .8 : -.5, 0, turn ? .31 : .11);

@@ -1,5 +1,5 @@
-// ledger.cpp: what pictures leave out on purpose, and say so: RTstats.cutByDepth, cutByEnergy,
-// clipped, unreachedLights, wrongHits. N18 of the accuracy catalogue, and the checks of slivers
+// ledger.cpp: what pictures leave out on purpose and report: RTstats.cutByDepth, cutByEnergy,
+// clipped, unreachedLights, wrongHits. N18 of the accuracy catalogue, and the checks for slivers
 // (N6).
 #include "numeric/support.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 class Ledger : public Scene {
  protected:
-  // A mirror that looks at another: every image is followed.
+  // Two mirrors that face each other; every image is followed.
   static void mirrors(double reflectance) {
     const Shader mirror =
         Shader("Mirror").set("reflectance", {reflectance, reflectance, reflectance});
@@ -37,7 +37,7 @@ TEST_F(Ledger, WhatTheEnergyCutCuts) {
   mirrors(.5);
   rtQualityf(RT_ENERGY_CUT, .01);
   between();
-  expectClose(stats().cutByEnergy, 3 * std::pow(.5, 7)); // the first below .01
+  expectClose(stats().cutByEnergy, 3 * std::pow(.5, 7)); // the first power of .5 below .01
   EXPECT_EQ(stats().cutByDepth, 0);
   rtQualityf(RT_ENERGY_CUT, 0);
   rtQuality(RT_MAX_DEPTH, 20);
@@ -59,8 +59,8 @@ TEST_F(Ledger, N18ClampingSaysWhatItTakesAway) {
   expectClose(stats().clipped, 3);
 }
 
-TEST_F(Ledger, N18WhatIsClippedIsWhatIsMissing) { // of a noisy picture: clamped and not clamped see
-                                                  // the same paths
+// A noisy picture. With and without clamping the paths are the same.
+TEST_F(Ledger, N18WhatIsClippedIsWhatIsMissing) {
   const Shader floor("Diffuse");
   place(square(floor));
   Shader lamp("Diffuse");
@@ -110,8 +110,8 @@ TEST_F(Ledger, LightsThatPathsCannotReachThroughGlass) {
   rtDeleteInstance(pane);
 }
 
-// Triangles 10 units long and 1e-4 high in odd directions, met at grazing angles 2 % beside their
-// end: single precision finds some.
+// Triangles 10 units long and 1e-4 high in odd directions. Rays pass 2 % beside their end at
+// grazing angles, where single precision reports some hits.
 TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
   constexpr int triangles = 200, each = 20;
   uint32_t state = 1;
@@ -166,8 +166,8 @@ TEST_F(Ledger, N6WrongHitsOnSliversAreRejectedAndCounted) {
   }
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(stats().wrongHits, 0u) << "nothing was rejected";
-  EXPECT_GT(found,
-            triangles * each / 4u); // a ray in floats may pass beside what is 1e-4 high: measured
+  // Rays in floats may miss a triangle 1e-4 high; the share is measured.
+  EXPECT_GT(found, triangles * each / 4u);
   printf("slivers: %.3f of the rays found, %llu wrong hits rejected\n",
          double(found) / (triangles * each), static_cast<unsigned long long>(stats().wrongHits));
 }

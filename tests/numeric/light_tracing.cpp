@@ -1,5 +1,5 @@
-// light_tracing.cpp: RT_TRANSPORT_LIGHT: what lamps send by way of mirrors and lenses, against
-// closed forms and path tracing.
+// light_tracing.cpp: RT_TRANSPORT_LIGHT: light that arrives via mirrors and lenses, against closed
+// forms and path tracing.
 #include <cmath>
 #include <vector>
 
@@ -43,8 +43,8 @@ class LightTracing : public Scene {
   }
 };
 
-// A lamp over a mirror lights a ceiling as the lamp and its image would. The camera looks at a part
-// of the ceiling, aside of both.
+// A lamp over a mirror lights a ceiling as the lamp and its mirror image would. The camera looks at
+// a part of the ceiling beside both.
 TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   const double half = .05, lampAt = 1, ceilingAt = 2, reflectance = .8, radiance = 100, x = .7;
   Shader mirror("Mirror");
@@ -53,8 +53,9 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   at(0, 0, lampAt, square(diffuse(radiance, 0), half), true);
   at(0, 0, ceilingAt, square(diffuse(0, .5), 10), true);
   cameraAt(x, 0, 1.2, x, 0, ceilingAt, 50);
-  rtQuality(RT_MAX_DEPTH, 2); // ceiling, mirror, lamp: no light from ceiling to ceiling
-  // Irradiance of a square source at a height h over (px, py), small against h.
+  // path: ceiling, mirror, lamp; excludes interreflection on the ceiling
+  rtQuality(RT_MAX_DEPTH, 2);
+  // Returns the irradiance at (px, py) from a square source at height h, small compared with h.
   const auto from = [&](double px, double py, double h) {
     const double d2 = px * px + py * py + h * h;
     return radiance * 4 * half * half * h * h / (d2 * d2);
@@ -74,7 +75,7 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
 }
 
-// Wherever a path goes, one of the two makes it: the picture is that of path tracing.
+// Each path is found by exactly one of the two methods, so the picture agrees with path tracing.
 TEST_F(LightTracing, ACausticHasTheLightThatPathTracingFinds) {
   at(0, 0, 0, square(diffuse(0, .7), 3));
   const RTid ball = rtBeginObject(0);

@@ -78,14 +78,14 @@ TEST_F(Lighting, V6DefaultSpotIsAHardCone) {
 TEST_F(Lighting, V8DistanceIsTheLightsOwn) {
   rtPushMatrix();
   rtScaled(2, 2, 2);
-  use(point({0, 0, 1}, {0, 0, 1})); // 2 away in the world, 1 in its own space
+  use(point({0, 0, 1}, {0, 0, 1})); // distance 2 in the world, 1 in the light's own space
   rtPopMatrix();
   expectGrey(look(), .8);
 }
 
 TEST_F(Lighting, V8ConeAndDistanceUnderNonUniformScale) {
-  // Scaled by 3 along z: the point (1, 0, 0) lies at local (1, 0, -1) from the light, 45 degrees
-  // off its axis, at sqrt 2.
+  // Scaled by 3 along z, the point (1, 0, 0) lies at (1, 0, -1) in the light's space: 45 degrees
+  // off its axis, at distance sqrt 2.
   Shader spot("VRML97SpotLight");
   spot.set("attenuation", {0, 0, 1})
       .set("beamWidth", {.5})
@@ -179,9 +179,8 @@ TEST_F(Lighting, ALightInTheSurfaceIsANumber) {
   EXPECT_TRUE(std::isfinite(look().r));
 }
 
-TEST_F(
-    Scene,
-    V5Highlights) { // the half vector is at half the light's angle, as the view is along the normal
+// The half vector is at half the light's angle, because the view is along the normal.
+TEST_F(Scene, V5Highlights) {
   const struct {
     double half, shininess, expected;
   } points[] = {{10, .2, .675768}, {10, 1, .140925}, {5, .2, .907010}, {0, 1, 1}};

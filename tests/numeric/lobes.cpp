@@ -1,5 +1,5 @@
-// lobes.cpp: surfaces described by lobes against closed forms: mirrors, glass, metal, furnaces
-// (accuracy catalogue D1 to D15, G1, G2, G4), through the C API.
+// lobes.cpp: surfaces described by lobes, against closed forms: mirrors, glass, metal, furnaces
+// (accuracy catalogue D1 to D15, G1, G2, G4). Uses the C API.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -9,7 +9,7 @@ class Lobes : public Scene {
  protected:
   void SetUp() override {
     Scene::SetUp();
-    rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED); // what emits would ask for path tracing
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED); // emissive surfaces would select path tracing
   }
   static Shader glowing(double radiance, double reflectance = 0) {
     Shader s("Diffuse");
@@ -29,7 +29,7 @@ class Lobes : public Scene {
   }
 };
 
-constexpr double R = .04; // of glass, index 1.5, met head on
+constexpr double R = .04; // reflectance of glass of index 1.5 at normal incidence
 
 TEST_F(Lobes, DiffuseAnswersLightsAsLambertSays) {
   Shader s("Diffuse");
@@ -42,7 +42,7 @@ TEST_F(Lobes, DiffuseAnswersLightsAsLambertSays) {
 TEST_F(Lobes, D1ASlabLetsThroughAllInnerReflections) {
   slab(2, 1, Shader("Glass"));
   placeAt(0, square(glowing(1)));
-  expectGrey(look(), (1 - R) / (1 + R), 1e-4); // the tree is cut at 1/4096 of the light
+  expectGrey(look(), (1 - R) / (1 + R), 1e-4); // the ray tree is cut off at 1/4096 of the light
 }
 
 TEST_F(Lobes, D1ASlabReflectsTheRest) {
@@ -92,8 +92,8 @@ TEST_F(Lobes, MetalReflectsByItsComplexIndex) {
   }
 }
 
-// D13: the eye looks into a corner of 90 / n degrees; here two mirrors face each other and the sky
-// is seen past the edge of the upper one: each image of it is dimmer by the reflectance.
+// D13: the eye looks into a corner of 90 / n degrees. Here two mirrors face each other and the sky
+// is seen past the edge of the upper one. Each image of it is dimmer by the reflectance.
 TEST_F(Lobes, D13EveryImageIsDimmerByTheReflectance) {
   Shader mirror("Mirror");
   environment(1);
@@ -102,9 +102,9 @@ TEST_F(Lobes, D13EveryImageIsDimmerByTheReflectance) {
   rtTranslated(0, 0, 1);
   rtRotated(180, 1, 0, 0);
   rtTranslated(-10, 0, 0);
-  place(square(mirror, 10)); // from x = 0 to 20 seen from below: turned about x
+  place(square(mirror, 10)); // from x = 0 to 20, seen from below: turned about x
   rtPopMatrix();
-  // Down at 45 degrees: each mirror is met every 2 units of x.
+  // Downwards at 45 degrees, the ray hits each mirror every 2 units of x.
   rtPushMatrix();
   rtLoadIdentity();
   rtLookAt(-.4, 0, .5, -.9, 0, 0, 0, 1, 0);
@@ -112,7 +112,7 @@ TEST_F(Lobes, D13EveryImageIsDimmerByTheReflectance) {
   rtPopMatrix();
   const Rgba pixel = render();
   expectGrey(pixel, std::pow(.9, 21),
-             1e-5); // ten pairs, and the lower one once more on the way out
+             1e-5); // ten pairs, and the lower mirror once more on the way out
 }
 
 TEST_F(Lobes, AMirrorShowsTheSkyTimesItsReflectance) {
@@ -125,17 +125,16 @@ TEST_F(Lobes, AMirrorShowsTheSkyTimesItsReflectance) {
   EXPECT_EQ(pixel.a, 1);
 }
 
-TEST_F(
-    Lobes,
-    AStackOfPanesHasItsClosedForm) { // D15: N boundaries, all orders: T = (1 - R) / (1 + (N - 1) R)
+// D15: N boundaries, all orders of reflection: T = (1 - R) / (1 + (N - 1) R)
+TEST_F(Lobes, AStackOfPanesHasItsClosedForm) {
   rtQuality(RT_MAX_DEPTH, 200);
   for (int pane = 0; pane < 3; ++pane) slab(2 + pane, 1.5 + pane, Shader("Glass"));
   placeAt(0, square(glowing(1)));
   expectGrey(look(), (1 - R) / (1 + 5 * R), 1e-3);
 }
 
-TEST_F(Lobes,
-       GlassIsInvisibleInAFurnace) { // G1: what is reflected and what is refracted add up to all
+// G1: reflectance and transmittance add up to 1.
+TEST_F(Lobes, GlassIsInvisibleInAFurnace) {
   Shader glass("Glass");
   const RTid ball = rtBeginObject(0);
   rtBindShader(glass);
@@ -158,7 +157,7 @@ TEST_F(Lobes, G2AndG4AClosedFurnaceByPathTracing) {
   place(box);
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_SAMPLES_PER_PIXEL, 64);
-  for (int bounces : {0, 1, 2}) { // before Russian roulette: every path sees the same
+  for (int bounces : {0, 1, 2}) { // before Russian roulette starts: every path is the same
     rtQuality(RT_MAX_DEPTH, bounces);
     expectGrey(look(), emission * (1 - std::pow(albedo, bounces + 1)) / (1 - albedo));
   }
@@ -179,7 +178,7 @@ class AreaLights : public Lobes {
     white.set("reflectance", {1, 1, 1});
     place(square(white, 100));
   }
-  static double lit(double x = 0) { return look(x, 0, .001).g; } // from below the light
+  static double lit(double x = 0) { return look(x, 0, .001).g; } // seen from below the light
 };
 
 TEST_F(AreaLights, R10ARectangleAboveThePoint) {
@@ -217,8 +216,7 @@ TEST_F(AreaLights, R7ATriangle) {
 TEST_F(AreaLights, TwoLightsOfUnequalPowerAddUp) {
   placeAt(1, square(glowing(1), .5), true);
   placeAt(2, square(glowing(30), .01), true);
-  const double small =
-      30 * .02 * .02 / 4; // far away: area over the square of the distance, over pi
+  const double small = 30 * .02 * .02 / 4; // far away: area over squared distance, divided by pi
   EXPECT_NEAR(lit(), .75227469 / pi, 1e-3 + small / pi) << "the nearer one hides the other";
 }
 
@@ -254,9 +252,8 @@ TEST_F(AreaLights, G1AWhitePlaneUnderAWhiteSkyIsWhite) {
   EXPECT_NEAR(lit(), 1, 1e-3);
 }
 
-TEST_F(
-    AreaLights,
-    ThePartsThatEitherWayFindsAddUpWhateverTheSize) { // both halves of multiple importance sampling
+// Both strategies of multiple importance sampling.
+TEST_F(AreaLights, ThePartsThatEitherWayFindsAddUpWhateverTheSize) {
   for (const double half : {.05, .5, 5.}) {
     const RTid lamp = square(glowing(1), half);
     rtPushMatrix();

@@ -1,4 +1,4 @@
-// luminaire.cpp: stock classes Luminaire and EnvironmentMap against closed forms, through the C
+// luminaire.cpp: the stock classes Luminaire and EnvironmentMap against closed forms. Uses the C
 // API.
 #include "numeric/support.h"
 
@@ -14,7 +14,8 @@ class StockLights : public Scene {
     place(square(white, 100));
   }
   static Shader
-  luminaire(const std::string& candela) { // vertical 0, 60, 120; horizontal 0, 90, 180, 270
+  // Vertical angles 0, 60, 120; horizontal angles 0, 90, 180, 270.
+  luminaire(const std::string& candela) {
     Shader s("Luminaire");
     const std::string text =
         "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 4 1 2 0 0 0\n1 1 100\n0 60 120\n0 90 180 270\n" +
@@ -32,7 +33,8 @@ TEST_F(StockLights, ALuminaireOfOneIntensityIsAPointLight) {
   Shader s = luminaire(even);
   s.set("location", {0, 0, 2});
   use(s);
-  for (const double x : {0., 1., 3.}) { // R1: I h / d^3; a white surface shows a pi-th of it
+  // R1: irradiance I h / d^3; a white surface shows 1/pi of it
+  for (const double x : {0., 1., 3.}) {
     const double d = std::sqrt(4 + x * x);
     expectGrey(look(x), 100 * 2 / (d * d * d) / pi);
   }
@@ -70,7 +72,7 @@ TEST_F(StockLights, ATextThatIsNoProfileIsNotRenderedAndSaidSo) {
   expectGrey(look(), 0);
   EXPECT_NE(said.find("Luminaire"), std::string::npos) << said;
   EXPECT_NE(said.find("line 2: TILT=INCLUDE"), std::string::npos) << said;
-  rtBindShader(s); // another value and it is there
+  rtBindShader(s); // with another value the light is there again
   rtParameterString(rtParameterHandle("profile"),
                     "IESNA91\nTILT=NONE\n1 1 1 1 1 1 1 0 0 0 1 1 1 0 0 3.14159265");
   rtBindShader(0);
@@ -81,11 +83,11 @@ TEST_F(StockLights, ATextThatIsNoProfileIsNotRenderedAndSaidSo) {
   expectGrey(look(), 1);
 }
 
-// A small bright spot in a dark picture of the sky, found by sampling.
+// A small bright spot in a dark environment map, found by importance sampling.
 TEST_F(StockLights, ASmallSunInAPictureOfTheSky) {
   constexpr int width = 1024, height = 512;
-  // 45 degrees from +z: below +y by 45 degrees, at -z turned by half a turn; rows run from the
-  // bottom up.
+  // The direction is 45 degrees from +z and 45 degrees below +y. It lies at -z turned by half a
+  // turn; rows run from the bottom up.
   constexpr int row = 383, column = 0;
   std::vector<float> texels(size_t(width) * height * 3, 0.0f);
   for (int k = 0; k < 3; k++) texels[size_t(3 * (row * width + column) + k)] = 1e5f;
@@ -97,7 +99,7 @@ TEST_F(StockLights, ASmallSunInAPictureOfTheSky) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_MAX_DEPTH, 1);
   rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
-  // Bilinear look-up makes a tent of it, as heavy as one texel. theta: from +y; phi: from -z
+  // Bilinear lookup turns the texel into a tent of the same energy. theta: from +y; phi: from -z
   // towards +x.
   const double theta = pi * (1 - (row + .5) / height), phi = 2 * pi * ((column + .5) / width - .5);
   const double solidAngle = 2 * pi / width * pi / height * std::sin(theta);
@@ -119,7 +121,7 @@ TEST_F(StockLights, APictureOfTheSkyIsTurnedAndScaled) {
   rtTexImage2D(3, width, height, RT_FLOAT, texels.data());
   Shader s("EnvironmentMap");
   s.setTexture("texture", picture).set("intensity", {2});
-  const auto towards = [&](double angle) { // clockwise from -z as seen from above
+  const auto towards = [&](double angle) { // clockwise from -z, seen from above
     rtUseEnvironment(s);
     rtPushMatrix();
     rtLoadIdentity();
@@ -147,7 +149,7 @@ TEST_F(StockLights, TheSkyIsReadAnewWhenItChangesAndOnlyThen) {
     const float r = float(radiance);
     sky.setList("skyColor", {r, r, r});
     expectGrey(look(0, 0, .001), radiance, 2e-2);
-    expectGrey(look(1, 0, .001), radiance, 2e-2); // the camera alone has moved
+    expectGrey(look(1, 0, .001), radiance, 2e-2); // only the camera has moved
   }
 }
 

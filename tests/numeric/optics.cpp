@@ -1,6 +1,6 @@
-// optics.cpp: where rays go that glass and mirrors turn: D5, D7, D9, D14 of the accuracy catalogue.
-// What is behind tells by its colour where it was met: a square whose corners have the numbers of
-// their places.
+// optics.cpp: directions of rays refracted and reflected by glass and mirrors: D5, D7, D9, D14 of
+// the accuracy catalogue. The colour of the target behind shows where the ray hit it: the target's
+// corners encode their positions.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -12,9 +12,10 @@ class Optics : public Scene {
   void SetUp() override {
     Scene::SetUp();
     rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED);
-    rtQuality(RT_MAX_DEPTH, 2); // two boundaries and what is behind them: no reflection from inside
+    rtQuality(RT_MAX_DEPTH, 2); // two boundaries and the target: excludes internal reflections
   }
-  // In the plane z, facing up: red is x / 16 + 1/2 and blue one, of what arrives there.
+  // A target in the plane z that faces up. Red is x / 16 + 1/2 and blue is 1, each times the
+  // transmittance.
   static RTid target(double z) {
     const RTid object = rtBeginObject(0);
     Shader plain("VRML97");
@@ -30,7 +31,7 @@ class Optics : public Scene {
     rtBindShader(0);
     return placeAt(z, object);
   }
-  // x of the place that the ray down through (x, 0) arrives at in the plane z.
+  // Returns x of the point where the ray down through (x, 0) hits the plane z.
   static double arrives(double x, double z) {
     const RTid placed = target(z);
     const Rgba seen = look(x, 0, 20);
@@ -41,8 +42,8 @@ class Optics : public Scene {
 };
 
 TEST_F(Optics, D5ASlabShiftsAndDoesNotTurn) {
-  const double expected[3][2] = {
-      {30, .193814}, {45, .329142}, {60, .512472}}; // per thickness, across the ray
+  // Angle, and sideways shift divided by the thickness.
+  const double expected[3][2] = {{30, .193814}, {45, .329142}, {60, .512472}};
   const RTid face = square(Shader("Glass"), 6);
   for (const auto& e : expected) {
     RTid faces[2];
@@ -86,8 +87,8 @@ TEST_F(Optics, D9WhatIsInWaterSeemsNearer) {
   rtOrtho(1e-6);
   rtPopMatrix();
   const Rgba seen = render();
-  const double x =
-      (double(seen.r) / double(seen.b) - .5) * 2 * half; // the ray would meet the surface at x = 0
+  // The undeviated ray would hit the surface at x = 0.
+  const double x = (double(seen.r) / double(seen.b) - .5) * 2 * half;
   EXPECT_NEAR(std::fabs(x) / (depth * std::tan(angle)), 1 / 1.5, 2e-4);
   rtDeleteInstance(placed);
 }
@@ -103,7 +104,7 @@ TEST_F(Optics, D14ACornerOfMirrorsSendsBack) {
     rtPopMatrix();
   }
   rtQuality(RT_MAX_DEPTH, 5);
-  Shader sky("VRML97Environment"); // its colour is the angle from the zenith
+  Shader sky("VRML97Environment"); // its colour encodes the angle from the zenith
   sky.setList("skyColor", {0, 0, 1, 1, 0, 1}).setList("skyAngle", {float(pi)});
   rtUseEnvironment(sky);
   for (const Vec& eye : {Vec{3, 4, 5}, Vec{2, 5, 3}, Vec{4, 3, 1.5}}) {

@@ -1,5 +1,5 @@
-// picture.cpp: what lies where in a picture: orientation, the channels beside colour, the
-// background around the eye.
+// picture.cpp: positions in a picture: orientation, the channels besides colour, the background
+// around the eye.
 #include <limits>
 
 #include "numeric/support.h"
@@ -41,7 +41,8 @@ TEST_F(Picture, FirstRowIsTheTopAndFirstColumnTheLeft) {
   for (const bool perspective : {false, true}) {
     eye(0, 0, 2);
     if (perspective)
-      rtPerspective(2 * std::atan(.4) * 180 / pi); // 1.6 high and 3.2 wide at the squares
+      // The view is 1.6 high and 3.2 wide at the squares.
+      rtPerspective(2 * std::atan(.4) * 180 / pi);
     else
       rtOrtho(1.6);
     const std::vector<float> p = shoot(RT_RGBA, 4);
@@ -56,7 +57,8 @@ TEST_F(Picture, FirstRowIsTheTopAndFirstColumnTheLeft) {
 TEST_F(Picture, DepthRunsAlongTheViewAxis) {
   place(square(glow({1, 1, 1}), 1));
   eye(0, 0, 3);
-  rtPerspective(30); // 1.6 high at the square, 3.2 wide: the outer columns miss it
+  // The view is 1.6 high at the square and 3.2 wide, so the outer columns miss it.
+  rtPerspective(30);
   const std::vector<float> depth = shoot(RT_DEPTH, 1);
   for (int y = 0; y < height; y++)
     for (int x = 0; x < width; x++) {
@@ -116,7 +118,7 @@ TEST_F(Picture, SpheresAreExact) {
   EXPECT_EQ(look(1.4143, 1.4143).a, 0);
 }
 
-// The background seen along the axis of a camera turned by a matrix.
+// Returns the background seen along the axis of a camera turned by a matrix.
 class Background : public Scene {
  protected:
   static Rgba towards(Vec d) {
@@ -148,7 +150,7 @@ TEST_F(Background, TurnsWithItsMatrixButDoesNotMove) {
   air.setList("skyColor", {0, 0, 0, 1, 0, 0}).setList("skyAngle", {float(pi)});
   rtPushMatrix();
   rtTranslated(1000, 2000, 3000);
-  rtRotated(90, 0, 0, 1); // its zenith is now -x
+  rtRotated(90, 0, 0, 1); // its zenith now points to -x
   rtUseEnvironment(air);
   rtPopMatrix();
   expectColor(towards({-1, 0, 0}), {0, 0, 0});

@@ -1,5 +1,5 @@
-// placement.cpp: light scopes and nested instances under matrices of every kind: what is lit, and
-// where normals point, against matrices composed in double here.
+// placement.cpp: light scopes and nested instances under matrices of every kind. Tests check which
+// surfaces are lit and where normals point, against matrices composed in double precision here.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -67,7 +67,7 @@ TEST_F(Placement, LightsMoveWithTheirMatrix) {
   expectGrey(look(), .4);
 }
 
-struct Matrix { // 3x3, rows
+struct Matrix { // 3x3, row-major
   double m[3][3];
 };
 
@@ -80,7 +80,7 @@ Matrix operator*(const Matrix& a, const Matrix& b) {
 }
 
 Matrix scaling(double x, double y, double z) { return {{{x, 0, 0}, {0, y, 0}, {0, 0, z}}}; }
-Matrix turning(double degrees) { // about y, as rtRotate
+Matrix turning(double degrees) { // rotation about y, as by rtRotate
   const double t = degrees * pi / 180, c = std::cos(t), s = std::sin(t);
   return {{{c, 0, s}, {0, 1, 0}, {-s, 0, c}}};
 }
@@ -89,8 +89,8 @@ Vec cross(Vec a, Vec b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Unit normal of the image of the plane with normal n: the cofactor matrix, which is the inverse
-// transpose times the determinant.
+// Returns the unit normal of the image of the plane with normal n, by the cofactor matrix (the
+// inverse transpose times the determinant).
 Vec normalUnder(const Matrix& a, Vec n) {
   const auto row = [&](int i) { return Vec{a.m[i][0], a.m[i][1], a.m[i][2]}; };
   const Vec c0 = cross(row(1), row(2)), c1 = cross(row(2), row(0)), c2 = cross(row(0), row(1));
@@ -101,8 +101,8 @@ Vec normalUnder(const Matrix& a, Vec n) {
   return {v.x / l, v.y / l, v.z / l};
 }
 
-// A square through the origin with normal (1, 0, 2), turned as (2, 0, -1) and y; with or without
-// normals of its own.
+// A square through the origin with normal (1, 0, 2), spanned by (2, 0, -1) and y; with or without
+// vertex normals.
 RTid slope(RTid shader, bool normals) {
   const RTid object = rtBeginObject(0);
   rtBindShader(shader);
@@ -175,14 +175,14 @@ TEST_F(Placement, AThousandNestedTurns) { // N12
   }
   place(object);
   use(tilted(0));
-  const double half = std::pow(growth, 1000); // one whole turn, so the square is upright again
+  const double half = std::pow(growth, 1000); // one full turn, so the square is upright again
   expectGrey(look(half * .99999, half * .99999), .8);
   expectGrey(look(half * 1.00001, 0), 0);
   expectGrey(look(0, half * 1.00001), 0);
 }
 
-// A sphere that scales to an ellipsoid is an instance inside, however it is placed: queries give
-// its normal in the world.
+// A sphere that is scaled to an ellipsoid becomes an instance internally. Queries must give its
+// normal in world space for every placement.
 TEST_F(Placement, NormalsOfEllipsoidsInQueries) {
   const RTid ball = rtBeginObject(0);
   rtSphere(1);

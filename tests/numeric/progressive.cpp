@@ -1,6 +1,6 @@
-// progressive.cpp: RT_PROGRESSIVE shows the whole picture early and ends with the bytes of the
-// frame that is made in one go: for any number of threads, samples and channels, with pilots,
-// replicates and paths from lamps.
+// progressive.cpp: RT_PROGRESSIVE shows the whole picture early and ends with the same bytes as the
+// frame rendered in one go. Tested for several numbers of threads, samples and channels, with
+// pilots, replicates and paths from lamps.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -58,8 +58,8 @@ class Progressive : public testing::Test {
     rtPopMatrix();
   }
 
-  // A floor of two faces in the same place, a lamp, a mirror, a ball of glass: rays that split, go
-  // on and meet ties.
+  // A floor of two coincident faces, a lamp, a mirror and a glass ball, so that paths split,
+  // continue and hit ties.
   static void scene() {
     rtLoadIdentity();
     at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.8, .3, .2}), 4), -90);
@@ -162,8 +162,7 @@ TEST_F(Progressive, PathsFromLampsHaveTheBytesOfOneGo) {
                    .channels = everyChannel});
 }
 
-// Snapshots of a frame that would take minutes: all of it is there, and there is more of it by and
-// by.
+// Snapshots of a frame that would take minutes show the whole picture, with more and more samples.
 TEST_F(Progressive, TheWholePictureIsSeenEarly) {
   for (const int transport : {RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
     open(2);
@@ -176,11 +175,12 @@ TEST_F(Progressive, TheWholePictureIsSeenEarly) {
     rtSwapBuffers();
     std::vector<float> samples(size_t(s.width) * size_t(s.height)), rgba(4 * samples.size());
     float least = 0;
-    while (least < 4) { // hangs if the picture is made tile by tile
+    while (least < 4) { // never ends if the picture is rendered tile by tile
       ASSERT_EQ(rtSnapshot(context_, RT_SAMPLES, samples.data(), samples.size()), 1);
       const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
       EXPECT_GE(*low, least);
-      EXPECT_LE(*high, std::max(4 * *low, 2.0f)); // a round, and the next that is begun meanwhile
+      // One complete round, and the next one in progress.
+      EXPECT_LE(*high, std::max(4 * *low, 2.0f));
       least = *low;
     }
     EXPECT_EQ(rtSnapshot(context_, RT_RGBA, rgba.data(), rgba.size()), 1);
@@ -188,16 +188,16 @@ TEST_F(Progressive, TheWholePictureIsSeenEarly) {
     rtCancel(context_);
     rtFrameBuffer(1, 1, RT_RGBA);
     rtQuality(RT_SAMPLES_PER_PIXEL, 1);
-    rtSwapBuffers(); // the frame above is finished now
+    rtSwapBuffers(); // the frame above is complete now
     rtReadPixels(RT_SAMPLES, samples.data(), samples.size());
     EXPECT_GE(*std::min_element(samples.begin(), samples.end()),
-              least); // what was seen is not lost
+              least); // samples already shown are not lost
     rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
     for (size_t i = 0; i < rgba.size(); i++) ASSERT_TRUE(std::isfinite(rgba[i]));
   }
 }
 
-// With one sample a picture is made in one go; the next ones are in rounds again.
+// With one sample a picture is rendered in one go. The next frames are progressive again.
 TEST_F(Progressive, MayBeSwitchedBetweenFrames) {
   open(2);
   const Settings s{.samples = 33}, one{.samples = 1};

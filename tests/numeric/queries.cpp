@@ -1,5 +1,6 @@
-// queries.cpp: every hit of a ray and the nearest surface point, against sums over all triangles in
-// double precision: baked, instanced under matrices that shear, moving; spheres and ellipsoids.
+// queries.cpp: all hits of a ray and the nearest surface point, against brute force over all
+// triangles in double precision. The triangles are baked, instanced under shear matrices, or
+// moving. Also spheres and ellipsoids.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -39,7 +40,8 @@ class Queries : public Scene {
     return {size * unit_(random_), size * unit_(random_), size * unit_(random_)};
   }
 
-  // An object of `count` triangles under a matrix; rounded as the API rounds.
+  // Adds an object of `count` triangles under a matrix; coordinates are rounded as the API rounds
+  // them.
   void add(size_t count, const std::array<double, 16>& m, bool moving, uint64_t user) {
     std::vector<float> points(9 * count);
     for (size_t t = 0; t < count; t++) {
@@ -78,8 +80,8 @@ class Queries : public Scene {
   }
 };
 
-double distanceTo(const Triangle& t,
-                  const Vec& p) { // by halving the triangle's parameters: slow and simple
+// Returns the distance by bisecting the triangle's parameters: slow and simple.
+double distanceTo(const Triangle& t, const Vec& p) {
   double best = 1e30;
   const int steps = 60;
   for (int i = 0; i <= steps; i++)
@@ -121,7 +123,8 @@ TEST_F(Queries, AllHitsAreThoseOfEveryTriangle) {
                    at = dot(b, cross(s, a)) / det;
       expected += u >= 0 && v >= 0 && u + v <= 1 && at >= 0;
     }
-    wrong += expected != counts[i]; // edges
+    // Rays through edges may be counted differently.
+    wrong += expected != counts[i];
     for (size_t k = first[i] + 1; k < first[i + 1]; k++) EXPECT_LE(all[k - 1].t, all[k].t);
     if (counts[i] == 0) {
       EXPECT_TRUE(std::isinf(nearest[i].t));

@@ -1,5 +1,5 @@
-// rays.cpp: ray queries where numbers are hard: watertight surfaces (N3 of the accuracy catalogue)
-// and the guards that keep hostile rays and matrices from the ray kernel, which would end the
+// rays.cpp: numerically hard ray queries: watertight surfaces (N3 of the accuracy catalogue), and
+// the checks that keep invalid rays and matrices away from Embree, where they would end the
 // process.
 #include <cstdint>
 #include <limits>
@@ -15,14 +15,13 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 using Rays = Scene;
 
-// A closed sphere about (offset, offset, offset) whose triangles share their vertices: 39,600 of
-// them.
+// A closed sphere around (offset, offset, offset). Its 39,600 triangles share their vertices.
 struct Ball {
   std::vector<double> points;
   std::vector<uint32_t> corners;
 
   explicit Ball(double offset, double radius = 2) {
-    constexpr uint32_t around = 200, rings = 99; // between the poles
+    constexpr uint32_t around = 200, rings = 99; // rings between the poles
     const auto add = [&](double x, double y, double z) {
       for (double v : {x, y, z}) points.push_back(offset + radius * v);
     };
@@ -65,7 +64,7 @@ size_t misses(const std::vector<RTray>& rays) {
 
 class Watertight : public Scene, public testing::WithParamInterface<double> {
  protected:
-  // A place within half a unit of the middle.
+  // Returns a point within half a unit of the centre.
   Vec inside() {
     const double offset = GetParam();
     return {offset + place_(random_), offset + place_(random_), offset + place_(random_)};
@@ -91,8 +90,8 @@ TEST_P(Watertight, NoRandomRayLeavesAClosedBall) { // N3
   EXPECT_EQ(misses(rays), 0u);
 }
 
-// Rays aimed exactly at vertices and at edges. Robust traversal still lets about one in a hundred
-// through at vertices (accuracy catalogue A3); the shares are recorded, and bounded so that a
+// Rays aimed exactly at vertices and edges. Robust traversal still lets about one in a hundred
+// through at vertices (accuracy catalogue A3). The shares are recorded and bounded, so that a
 // change of mode or builder is noticed.
 TEST_P(Watertight, FewRaysAimedAtVerticesLeave) {
   const Ball ball(GetParam());
@@ -100,7 +99,7 @@ TEST_P(Watertight, FewRaysAimedAtVerticesLeave) {
   rtRender();
   std::vector<RTray> atVertices, atEdges;
   const auto vertex = [&](uint32_t k) {
-    // As the scene stores it: rounded to float.
+    // Rounded to float, as the scene stores it.
     return Vec{float(ball.points[3 * k]), float(ball.points[3 * k + 1]),
                float(ball.points[3 * k + 2])};
   };
@@ -199,7 +198,7 @@ std::vector<RTray> hostileRays() {
     rays.back().tfar = bad;
   }
   rays.push_back(good);
-  rays.back().direction[2] = 0; // no direction at all
+  rays.back().direction[2] = 0; // the zero vector
   return rays;
 }
 
@@ -234,7 +233,7 @@ TEST_F(Rays, MatricesThatAreNotFiniteAreRefused) {
       EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE)) << k;
     }
   use(tilted(0));
-  expectGrey(look(), .8); // nothing changed
+  expectGrey(look(), .8); // the picture has not changed
 }
 
 TEST_F(Rays, SingularInstancesDrawNothing) {
@@ -280,7 +279,7 @@ TEST_F(Rays, FarAwayThingsNeitherShowNorHarm) {
     rtTranslated(far, far, -far);
     const RTid instance = place(plane);
     rtPopMatrix();
-    rtGetError(); // a matrix that no float can hold may be refused
+    rtGetError(); // a matrix that does not fit in floats may be refused
     EXPECT_EQ(look().a, 0) << far;
     if (instance) rtDeleteInstance(instance);
   }
@@ -301,7 +300,7 @@ TEST_F(Rays, CamerasInOddPlacesMakePictures) {
     EXPECT_TRUE(std::isfinite(render().r)) << z;
   }
   rtPushMatrix();
-  rtScaled(0, 0, 0); // a camera without directions
+  rtScaled(0, 0, 0); // a singular camera matrix
   rtOrtho(1);
   rtPopMatrix();
   rtGetError();

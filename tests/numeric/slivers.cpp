@@ -1,6 +1,7 @@
-// slivers.cpp: closed boxes and tubes up to a million times longer than wide, in odd directions:
-// from inside, no ray leaves; what it meets is where it is by long double; and placed as a dynamic
-// instance the same box answers the same, but for rounding.
+// slivers.cpp: closed boxes and tubes up to a million times longer than wide, in odd directions.
+// * No ray from inside leaves.
+// * Hit points agree with long double.
+// * The same box as a dynamic instance gives the same answers up to rounding.
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -12,7 +13,7 @@ namespace numeric {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr double ulp = 0x1p-24; // of 1, half of it: the rounding of a float
+constexpr double ulp = 0x1p-24; // half an ulp of 1: the rounding error of a float
 
 using Matrix = std::array<double, 16>;
 
@@ -44,7 +45,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-// A rotation about a random axis by a random angle and a move.
+// A rotation about a random axis by a random angle, and a translation.
 Matrix turned(Random& random, double far) {
   const Vec z = random.direction(), x = unit(cross(z, random.direction())), y = cross(z, x);
   const Vec t = random.direction() * far;
@@ -82,12 +83,12 @@ RTid boxObject(const Box& box) {
   return object;
 }
 
-// How far a place is inside a box: of its own frame, the smallest distance to a face.
+// Returns how deep a point is inside a box: the smallest distance to a face, in the box's frame.
 double depth(const Box& box, Vec p) {
   return std::min(
       {box.half.x - std::fabs(p.x), box.half.y - std::fabs(p.y), box.half.z - std::fabs(p.z)});
 }
-// Of a box: where the ray from inside ends; grazing: the sine of the angle with the face.
+// Returns where a ray from inside leaves the box. grazing: sine of the angle with the face.
 double leaves(const Box& box, Vec from, Vec d, double& grazing) {
   const double o[3] = {from.x, from.y, from.z}, v[3] = {d.x, d.y, d.z},
                h[3] = {box.half.x, box.half.y, box.half.z};
@@ -105,11 +106,11 @@ double leaves(const Box& box, Vec from, Vec d, double& grazing) {
 
 class Slivers : public Scene {
  protected:
-  // From inside the box of this matrix, in the world: to all sides, along its length, and grazing a
-  // face at 1 to 1e-7.
+  // A ray in world space from inside a box: in all directions, along its length, or grazing a face
+  // at 1 to 1e-7.
   struct Shot {
     RTray ray;
-    Vec from, direction; // as rounded, in the frame of the box
+    Vec from, direction; // after rounding, in the frame of the box
     double depth;
   };
   static std::vector<Shot> shots(const Box& box, const Matrix& m, Random& random, size_t count) {
@@ -123,7 +124,7 @@ class Slivers : public Scene {
       }
       Vec to{q[0], q[1], q[2]};
       if (i % 3 == 0) to = Vec{p[0], p[1], p[2]} + random.direction();
-      if (i % 3 == 1) { // a face, met at the far end of a long way
+      if (i % 3 == 1) { // a face hit at the far end of a long way
         const int face = int(random(0, 3)), along = (face + 1 + int(random(0, 2))) % 3;
         const double sine = std::pow(10, random(-7, 0)), way = h[along] * random(.1, 1.5);
         const double towards = random.sign(), side = random.sign();
@@ -144,7 +145,7 @@ class Slivers : public Scene {
     }
     return judged(box, m, rays);
   }
-  // Reads the rays back: what was rounded counts.
+  // Converts the rays back to the box's frame after they were rounded to float.
   static std::vector<Shot> judged(const Box& box, const Matrix& m, const std::vector<RTray>& rays) {
     std::vector<Shot> out;
     for (const RTray& r : rays) {
@@ -172,8 +173,8 @@ class Slivers : public Scene {
 
 constexpr double ratios[] = {1, 10, 100, 200, 300, 1e3, 4e3, 1e4, 1e5, 1e6};
 
-// A box of ratio:1:1 and one of ratio:ratio:1, each turned three times, once near the origin and
-// twice away from it.
+// Calls f for a box of ratio:1:1 and one of ratio:ratio:1. Each is turned three times: once near
+// the origin, twice far from it.
 template <class F> void forBoxes(const F& f) {
   uint32_t seed = 1;
   for (const double ratio : ratios)
@@ -207,22 +208,22 @@ TEST_F(Slivers, NoRayLeavesAClosedBox) {
       rtOccludedRays(count, rays.data(), occluded.data());
       size_t inside = 0, left = 0, open = 0;
       for (size_t i = 0; i < count; i++) {
-        if (all[i].depth < 40 * ulp * 3 * ratio) continue; // its own rounding may put it outside
+        if (all[i].depth < 40 * ulp * 3 * ratio) continue; // rounding may move this origin outside
         inside++;
         left += !std::isfinite(hits[i].t);
         open += !occluded[i];
       }
       EXPECT_EQ(left, 0u) << what << (dynamic ? " dynamic" : "") << " of " << inside;
       EXPECT_EQ(open, 0u) << what << (dynamic ? " dynamic" : "") << " of " << inside;
-      EXPECT_TRUE(inside > count / 2 || ratio > 1e4) << what; // longer ones: the next test
+      EXPECT_TRUE(inside > count / 2 || ratio > 1e4) << what; // the next test has the longer boxes
       rtDeleteInstance(instance);
       rtDeleteObject(object);
     }
   });
 }
 
-// Whether a place is inside the closed box whose corners are floats, by more than a thousandth of
-// its width.
+// Returns whether a point is inside the closed box whose corners are floats, by more than a
+// thousandth of its width.
 bool isInside(const Box& box, const Matrix& m, Vec p) {
   const std::vector<float> points = box.points();
   const auto corner = [&](uint32_t i) {
@@ -240,8 +241,8 @@ bool isInside(const Box& box, const Matrix& m, Vec p) {
   return true;
 }
 
-// A box of 1e6:1:1 is hardly wider than its corners' last bits: the box that floats make of it is
-// the one that is closed.
+// A box of 1e6:1:1 is hardly wider than an ulp of its corners. The test uses the closed box that
+// the rounded corners form.
 TEST_F(Slivers, NoRayLeavesTheBoxOfItsRoundedCorners) {
   constexpr size_t count = 6000;
   uint32_t seed = 100;
@@ -273,8 +274,8 @@ TEST_F(Slivers, NoRayLeavesTheBoxOfItsRoundedCorners) {
       }
 }
 
-// The distance along a ray may differ by what the places of vertices and rays are rounded by, over
-// the sine of the grazing angle.
+// The distance along a ray may differ by the rounding of vertices and rays, divided by the sine of
+// the grazing angle.
 TEST_F(Slivers, StaticAndDynamicBoxesDifferInTheLastBits) {
   constexpr size_t count = 6000;
   forBoxes([&](const Box& box, const Matrix& m, Random& random, double ratio,
@@ -302,7 +303,7 @@ TEST_F(Slivers, StaticAndDynamicBoxesDifferInTheLastBits) {
       const double expected = leaves(box, all[i].from, all[i].direction, grazing);
       for (const auto& hits : found) {
         const double t = double(hits[i].t);
-        // Where rounding lets it meet the next face instead, the place is still on the box.
+        // If rounding makes the ray hit the next face instead, the point must still lie on the box.
         const Vec at = all[i].from + all[i].direction * t;
         const double off =
             std::min(std::fabs(t - expected) * grazing, std::fabs(numeric::depth(box, at)));
@@ -314,7 +315,7 @@ TEST_F(Slivers, StaticAndDynamicBoxesDifferInTheLastBits) {
   });
 }
 
-// Queries of all surfaces and of the nearest point see slivers as nearest hits do.
+// Queries of all hits and of the nearest point find slivers as closest-hit queries do.
 TEST_F(Slivers, AllQueriesSeeThem) {
   Random random(5);
   for (const bool dynamic : {false, true}) {
@@ -346,17 +347,18 @@ TEST_F(Slivers, AllQueriesSeeThem) {
     rtClosestPoints(rays.size(), points.data(), infinity, nearest.data());
     for (size_t i = 0; i < rays.size(); i++) {
       EXPECT_EQ(counts[i], 1u) << i;
-      EXPECT_NEAR(double(nearest[i].distance), away[i], 4e-3) << i; // floats at 5,000
+      // The spacing of floats at 5,000.
+      EXPECT_NEAR(double(nearest[i].distance), away[i], 4e-3) << i;
       EXPECT_EQ(nearest[i].instance, instance);
     }
     rtDeleteInstance(instance);
   }
 }
 
-// One triangle, its corners as given (no matrix, the camera at the origin): what is hit follows
-// from the numbers alone.
+// One triangle with its corners as given (no matrix, the camera at the origin). The exact hit
+// follows from the numbers alone.
 struct Truth {
-  long double t = 0, u = 0, v = 0, margin = -1; // the smallest weight
+  long double t = 0, u = 0, v = 0, margin = -1; // margin: the smallest barycentric weight
 };
 Truth truth(const float* corner, const RTray& ray) {
   long double p[3][3], d[3], w[3], sum = 0;

@@ -1,6 +1,6 @@
-// stock_shaders.cpp: the surfaces of the stock in the renderer: white furnaces against closed forms
-// (catalogue G1, G2), VRML97 by path tracing, patterns that are carved from objects, what Debug
-// tells. Through the C API.
+// stock_shaders.cpp: the stock surface shaders in the renderer: white furnaces against closed forms
+// (catalogue G1, G2), VRML97 by path tracing, solid patterns, and the output of Debug. Uses the C
+// API.
 #include <complex>
 
 #include "numeric/support.h"
@@ -15,7 +15,8 @@ class StockShaders : public Scene {
     sky.setList("skyColor", {1, 1, 1});
     rtUseEnvironment(sky);
   }
-  // Radiance that a plane sends straight up under a white sky: its albedo for that direction.
+  // Returns the radiance that a plane sends straight up under a white sky: its albedo for that
+  // direction.
   static Rgba furnace(RTid shader, int samples = 16384) {
     const RTid plane = place(square(shader));
     whiteSky();
@@ -59,8 +60,8 @@ TEST_F(StockShaders, G1PhongReflectsBothOfItsParts) {
              2e-3); // scaled
 }
 
-// One reflection at GGX facets of a metal, seen along the normal: F D G / 4, with Smith's shadowing
-// of the light alone.
+// Returns F D G / 4 for a single reflection at the GGX microfacets of a metal, seen along the
+// normal. Smith's shadowing applies to the light direction only.
 double roughMetal(double alpha, double n, double k, double angle) {
   const double c = std::cos(angle / 2), s2 = 1 - c * c;
   const double distribution = alpha * alpha / (pi * std::pow(s2 + alpha * alpha * c * c, 2));
@@ -86,8 +87,8 @@ TEST_F(StockShaders, G1RoughMetalReflectsWhatItsFacetsDo) {
   }
 }
 
-// Places on the lamp and directions from the facets are weighed against each other: their sum is
-// the integral over the lamp.
+// Light sampling and BSDF sampling are combined by MIS. Their sum must be the integral over the
+// lamp.
 TEST_F(StockShaders, RoughMetalUnderARectangularLamp) {
   const double n = .96, k = 6.69;
   for (const double alpha : {.1, .3, .8}) {
@@ -105,21 +106,21 @@ TEST_F(StockShaders, RoughMetalUnderARectangularLamp) {
       for (int j = 0; j < steps; j++) {
         const double x = .2 + .6 * (i + .5) / steps, y = -.3 + .6 * (j + .5) / steps,
                      r2 = x * x + y * y + 1;
-        const double cosine = 1 / std::sqrt(r2); // at the lamp
+        const double cosine = 1 / std::sqrt(r2); // cosine at the lamp
         expected += roughMetal(alpha, n, k, std::acos(cosine)) * cosine / r2 * .36 / steps / steps;
       }
     rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
     rtQuality(RT_MAX_DEPTH, 1);
     rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
     EXPECT_NEAR(look(0, 0, .001).g, expected, 1e-2 * expected)
-        << alpha; // three standard errors of the narrowest
+        << alpha; // three standard errors for the smallest lobe
     rtDeleteInstance(plane);
     rtDeleteInstance(lamp);
   }
 }
 
-TEST_F(StockShaders,
-       RoughGlassLosesOnlyWhatFacetsHide) { // both sides of one boundary, below it the same sky
+// Both sides of one boundary, with the same sky below.
+TEST_F(StockShaders, RoughGlassLosesOnlyWhatFacetsHide) {
   const Rgba pixel = furnace(Shader("RoughGlass").set("index", {1.0001}).set("roughness", {.3}));
   expectGrey(pixel, 1, 5e-3);
 }
@@ -174,7 +175,7 @@ TEST_F(StockShaders, PatternsBelongToTheObject) {
   rtPopMatrix();
   for (int x = -3; x <= 3; x++)
     for (int y = -3; y <= 3;
-         y++) { // cubes of two units each; the board lies just within the layer below
+         y++) { // cubes of two units each; the board lies just inside the layer below
       const double got = look(100.5 + 2 * (x + .5), 2 * (y + .5)).g;
       EXPECT_EQ(got, (x + y - 1) % 2 == 0 ? 1 : 0) << x << " " << y;
     }

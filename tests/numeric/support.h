@@ -1,5 +1,5 @@
-// support.h: scenes for tests against closed forms, through the public C API only. Class D of the
-// accuracy catalogue: one sample, no randomness in the value, relative tolerance 1e-5.
+// support.h: scenes for tests against closed forms. Uses only the public C API. The tests are class
+// D of the accuracy catalogue: one sample, no randomness in the value, relative tolerance 1e-5.
 #pragma once
 
 #include <array>
@@ -25,7 +25,8 @@ struct Rgba {
   float r = 0, g = 0, b = 0, a = 0;
 };
 
-// |got - expected| / max(expected, floor) as the catalogue asks.
+// Expects |got - expected| / max(expected, floor) to be within the tolerance, as the catalogue
+// defines it.
 inline void expectClose(double got, double expected, double relative = 1e-5, double floor = 1e-2) {
   EXPECT_NEAR(got, expected, relative * std::max(std::fabs(expected), floor));
 }
@@ -40,7 +41,7 @@ inline void expectColor(const Rgba& got, Vec expected, double relative = 1e-5) {
   expectClose(got.b, expected.z, relative);
 }
 
-// A shader of a stock class, or of a library, with parameters.
+// A shader with parameters, of a stock class or a library.
 class Shader {
  public:
   explicit Shader(const char* name, const char* library = nullptr)
@@ -89,7 +90,7 @@ class Shader {
   RTid id_;
 };
 
-// A fixture with a context of its own that must stay free of errors.
+// A fixture with a context of its own. It fails if an error is pending at the end.
 class Scene : public testing::Test {
  protected:
   void SetUp() override {
@@ -100,14 +101,15 @@ class Scene : public testing::Test {
     rtLoadIdentity();
   }
   void TearDown() override {
-    const RTstats last = stats(); // of the last frame
+    const RTstats last = stats(); // statistics of the last frame
     noteRays(last.cameraRays + last.shadowRays + last.secondaryRays);
     const RTenum error = rtGetError();
     EXPECT_EQ(error, RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
     rtDeleteContext(context_);
   }
 
-  // A square in the plane z = 0 that faces +z; with a colour for every vertex if one is given.
+  // Defines a square in the plane z = 0 that faces +z; with a colour per vertex if `color` is
+  // given.
   static RTid square(RTid shader, double half = 10, const Vec* color = nullptr) {
     const RTid object = rtBeginObject(0);
     rtBindShader(shader);
@@ -124,9 +126,9 @@ class Scene : public testing::Test {
     rtBindShader(0);
     return object;
   }
-  // The object in the scene, under the current matrix.
+  // Instantiates the object under the current matrix.
   static RTid place(RTid object) { return rtInstantiateObject(object); }
-  // Places an object at height z: its side that faces up stays so, or faces down.
+  // Places an object at height z, facing up or turned to face down.
   static RTid placeAt(double z, RTid object, bool down = false) {
     rtPushMatrix();
     rtTranslated(0, 0, z);
@@ -142,8 +144,8 @@ class Scene : public testing::Test {
     s.set("direction", {direction.x, direction.y, direction.z});
     return s;
   }
-  // White light whose direction makes an angle with the axis -z, in the plane y = 0, coming from
-  // +x.
+  // A white directional light. Its direction makes an angle with the axis -z in the plane y = 0,
+  // and it comes from +x.
   static Shader tilted(double degrees) {
     const double t = degrees * pi / 180;
     return directional({-std::sin(t), 0, -std::cos(t)});
@@ -154,8 +156,8 @@ class Scene : public testing::Test {
     return s;
   }
 
-  // What one ray straight down -z sees that passes through (x, y); the view is too narrow for its
-  // place to matter.
+  // Returns what one ray straight down -z through (x, y) sees. The view is so narrow that the
+  // position in it does not matter.
   static Rgba look(double x = 0, double y = 0, double height = 20) {
     static constexpr double narrow = 1e-6;
     rtPushMatrix();
@@ -165,7 +167,7 @@ class Scene : public testing::Test {
     rtPopMatrix();
     return render();
   }
-  // The same from a point at a distance above (0, 0, 0).
+  // Returns what a ray from a point at a distance above (0, 0, 0) sees.
   static Rgba lookFrom(double distance) {
     rtPushMatrix();
     rtLoadIdentity();
@@ -182,7 +184,7 @@ class Scene : public testing::Test {
     return pixel;
   }
 
-  // A square picture, rgba by pixel.
+  // Renders a square picture; returns its RGBA pixels.
   static std::vector<float> picture(int edge) {
     rtFrameBuffer(edge, edge, RT_RGBA);
     rtRender();
@@ -190,7 +192,7 @@ class Scene : public testing::Test {
     rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
     return rgba;
   }
-  // Of its first colour.
+  // Returns the mean of the red channel.
   static double mean(const std::vector<float>& rgba) {
     double sum = 0;
     for (size_t i = 0; i < rgba.size(); i += 4) sum += double(rgba[i]);

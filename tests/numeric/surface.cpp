@@ -1,5 +1,5 @@
-// surface.cpp: what a pixel shows of materials, textures, fog and transparency: V7, V9 and V10 of
-// the accuracy catalogue, and shadows, through the C API and the renderer.
+// surface.cpp: a pixel's value for materials, textures, fog and transparency: V7, V9 and V10 of the
+// accuracy catalogue, and shadows. Uses the C API and the renderer.
 #include "numeric/support.h"
 
 namespace numeric {
@@ -14,7 +14,7 @@ TEST_F(Surface, V7FogOverALitSurface) {
   air.set("fogRange", {10}).set("fogColor", {1, 1, 1});
   rtUseEnvironment(air);
   const double lit = .8;
-  expectGrey(lookFrom(4), lit); // no kind of fog chosen
+  expectGrey(lookFrom(4), lit); // no fog type chosen
   air.setInt("fogType", 1);
   expectGrey(lookFrom(4), .6 * lit + .4);
   for (const double d : {10., 11.}) expectGrey(lookFrom(d), 1);
@@ -169,7 +169,7 @@ TEST_F(Surface, ShadowsStopTheDirectPart) {
   place(plane);
   rtPushMatrix();
   rtTranslated(4, 0,
-               4); // between the light and (0, 0, 0) but not between that point and the camera
+               4); // between the light and (0, 0, 0), but not between that point and the camera
   rtScaled(.1, .1, .1);
   const RTid blocker = place(plane);
   rtPopMatrix();
@@ -190,7 +190,7 @@ TEST_F(Surface, ShadowsStopTheDirectPart) {
 TEST_F(Surface, ShadowsEndAtThePointLight) {
   place(square(Shader("VRML97")));
   rtPushMatrix();
-  rtTranslated(0, 0, 8); // behind the light, seen from the surface; the camera is between
+  rtTranslated(0, 0, 8); // behind the light as seen from the surface; the camera is in between
   place(square(Shader("VRML97")));
   rtPopMatrix();
   use(point({0, 0, 4}, {1, 0, 0}));
@@ -229,7 +229,7 @@ TEST_F(Surface, LinesAreNeitherLitNorTextured) {
 TEST_F(Surface, PlugInsAreFoundByTheNameOfTheirClass) {
   for (const char* library : {static_cast<const char*>(nullptr), "debug"}) {
     const RTid instance = place(square(Shader("Debug", library).setInt("show", 2)));
-    use(tilted(0)); // no matter
+    use(tilted(0)); // does not change the result
     expectColor(look(-5, 2.5), {.25, .625, 0});
     rtDeleteInstance(instance);
   }
@@ -252,7 +252,7 @@ TEST_F(Surface, ParametersActOnWhatIsAlreadyThere) {
   s.set("diffuseColor", {.1, .2, .3});
   expectColor(look(), {.1, .2, .3});
   s.set("transparency",
-        {.5}); // now it needs another kind of shadow ray, and the path goes on behind it
+        {.5}); // it now needs another kind of shadow ray, and the path continues behind it
   Rgba pixel = look();
   expectColor(pixel, {.05, .1, .15});
   expectClose(pixel.a, .5);

@@ -1,6 +1,6 @@
 // transports.cpp: the automatic choice of a transport, row by row of its table
-// (render/path/transport.cpp), and what each transport says it leaves out: a picture of the chosen
-// one agrees with path tracing, and one that leaves out light is darker.
+// (render/path/transport.cpp), and the light that each transport reports to leave out. A picture of
+// the chosen transport agrees with path tracing; one that leaves out light is darker.
 #include <functional>
 #include <vector>
 
@@ -20,13 +20,14 @@ struct Row {
   std::function<void()> world;
   RTenum chosen;
   uint32_t chosenLeaves, whittedLeaves, directLeaves; // RT_LEAVES_*
-  RTenum reference = path; // the chosen one's picture has the same mean; 0: surfaces that answer by
-                           // themselves have a rule of their own
+  // The transport whose picture has the same mean; 0: surfaces with `shade` follow a rule of their
+  // own.
+  RTenum reference = path;
 };
 void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
 
 class Transports : public Scene, public testing::WithParamInterface<Row> {
- public: // what worlds are made of
+ public: // building blocks of the scenes
   static Shader diffuse(double reflectance, double radiance = 0) {
     Shader s("Diffuse");
     return s.set("reflectance", {reflectance, reflectance, reflectance})
@@ -39,7 +40,7 @@ class Transports : public Scene, public testing::WithParamInterface<Row> {
   static Shader unlit() {
     return Shader("VRML97").setInt("lit", 0).set("emissiveColor", {.5, .5, .5});
   }
-  // A floor with a wall on it: light goes from one to the other.
+  // A floor with a wall on it, so that light reflects from one to the other.
   static void room(const Shader& shader) {
     const RTid face = square(shader, 2);
     place(face);
@@ -49,8 +50,8 @@ class Transports : public Scene, public testing::WithParamInterface<Row> {
     place(face);
     rtPopMatrix();
   }
-  static void tilted(const Shader& shader,
-                     double z = 1) { // beside the middle, seen and seeing the floor
+  // Off centre; it sees the floor and is seen from it.
+  static void tilted(const Shader& shader, double z = 1) {
     rtPushMatrix();
     rtTranslated(.7, 0, z);
     rtRotated(-40, 0, 1, 0);
@@ -68,7 +69,7 @@ class Transports : public Scene, public testing::WithParamInterface<Row> {
     place(object);
     rtPopMatrix();
   }
-  static void lamp(const Shader& shader) { // faces down, out of sight of the camera
+  static void lamp(const Shader& shader) { // faces down, out of the camera's view
     rtPushMatrix();
     rtTranslated(0, 0, 3);
     rtRotated(180, 1, 0, 0);
@@ -115,7 +116,7 @@ TEST_P(Transports, TheChoiceLeavesNothingOutThatPathsFind) {
   if (row.reference) {
     const double reference = mean(row.reference, 1024, 2);
     expectClose(chosen, reference,
-                row.chosen <= whitted ? 2e-3 : 2e-2); // whitted: the samples' places alone differ
+                row.chosen <= whitted ? 2e-3 : 2e-2); // Whitted: only the sample positions differ
     const double plain = mean(whitted, 256, 1);
     EXPECT_EQ(stats().transportLeavesOut, row.whittedLeaves);
     if (row.whittedLeaves)
@@ -239,7 +240,7 @@ const Row rows[] = {
        T::point();
      },
      light, caustics, between, images | between, light},
-    {"DiffuseAndGlassUnderABackground", // nothing that light could be followed from
+    {"DiffuseAndGlassUnderABackground", // no light source to trace light from
      [] {
        T::room(T::diffuse(.5));
        T::ball(T::glass());
@@ -253,7 +254,7 @@ const Row rows[] = {
        T::point();
      },
      whitted, between, between, images | between, 0},
-    {"GlassAndAnEmitter", // an absorbing ball: nothing scatters
+    {"GlassAndAnEmitter", // an absorbing ball scatters nothing
      [] {
        T::ball(T::glass().set("absorption", {1, 2, 3}));
        T::room(T::diffuse(0, 1));
@@ -281,7 +282,7 @@ INSTANTIATE_TEST_SUITE_P(Table, Transports, testing::ValuesIn(rows),
 
 class Unlisted : public Scene {};
 
-// Values of a geometry may make a surface scatter that does not by its shader's own.
+// Geometry parameters may make a surface scatter that would not with its shader's own values.
 TEST_F(Unlisted, ValuesOfAGeometryMayScatter) {
   const Shader black = Transports::diffuse(0);
   const RTid object = rtBeginObject(0);
@@ -303,7 +304,7 @@ TEST_F(Unlisted, ValuesOfAGeometryMayScatter) {
   EXPECT_EQ(stats().transport, path);
 }
 
-// The choice follows the scene from picture to picture.
+// The choice is made again for each frame.
 TEST_F(Unlisted, AScenesChangeChangesTheChoice) {
   place(square(Transports::diffuse(.5)));
   look();
@@ -326,7 +327,7 @@ TEST_F(Unlisted, AScenesChangeChangesTheChoice) {
   EXPECT_EQ(stats().transport, whitted);
 }
 
-// A sun between the places of the coarse look is found.
+// The search finds a small sun between the positions of the coarse scan.
 TEST_F(Unlisted, ASmallSunIsSeen) {
   constexpr int width = 512, height = 256;
   std::vector<float> texels(size_t(3 * width * height), 0.0f);

@@ -1,6 +1,6 @@
-// looking_host.h: a host of Scripts that looks at every byte that a helper process hands over, and
-// calls that are answered by whatever a test likes to say in the helper's place. Used by the unit
-// tests and the fuzz target of the messages.
+// looking_host.h: a script host that reads every byte a helper process sends, and calls that are
+// answered by bytes a test chooses instead of the helper's. Used by the unit tests and the fuzz
+// target of the messages.
 #pragma once
 
 #include <cstring>
@@ -14,7 +14,7 @@
 
 namespace xvrml {
 
-// Functions of a host that look at all they are given.
+// Host functions that read all their arguments.
 struct Looking : XsHost {
   static inline uint64_t sum = 0;
   static void look(const char* text) { sum += text ? std::strlen(text) : 1; }
@@ -106,7 +106,7 @@ struct Looking : XsHost {
     log = [](const XsHost*, XsNode, int32_t, uint32_t, XsString s) { look(s); };
   }
 };
-// What a call comes to if the helper says this and closes the socket.
+// Returns the state of a call when the helper answers with these bytes and closes the socket.
 inline ScriptProcess::State callThatGets(const std::string& bytes, std::string* death = nullptr) {
   static const Looking host;
   int ends[2];

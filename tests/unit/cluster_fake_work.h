@@ -1,5 +1,5 @@
-// cluster_fake_work.h: work of a frame without a picture, and workers without machines: what tests
-// of the scheduler drive. Every sample of every tile is counted, so that one that is taken twice or
+// cluster_fake_work.h: the work of a frame without a picture, and workers without processes, for
+// tests of the scheduler. Every sample of every tile is counted, so that a sample merged twice or
 // never is noticed.
 #pragma once
 
@@ -62,12 +62,13 @@ class FakeWork final : public JobSource {
   }
   bool over() const { return done_ == uint64_t(samples_) * taken_.size(); }
 
+  // Issues only the first `samples` samples of each tile from now on.
   void round(uint32_t samples) {
     until = samples;
     tile_ = 0;
-  } // so many are given out as yet
+  }
 
-  uint32_t given = 0; // back
+  uint32_t given = 0; // jobs that were given back
 
  private:
   uint32_t at(size_t tile) const { return order_.empty() ? uint32_t(tile) : order_[tile]; }
@@ -81,7 +82,7 @@ class FakeWork final : public JobSource {
   double undone_ = 0;
 };
 
-// A scheduler, frames of fake work, and what was handed out.
+// A scheduler, frames of fake work, and the jobs issued.
 struct Bench {
   explicit Bench(const SchedulerOptions& options = {}) : s(options) {}
   Scheduler s;
@@ -98,7 +99,7 @@ struct Bench {
     for (uint32_t i = 0; i < count; i++) s.join(first + i, threads, here, now);
     prepare();
   }
-  // All who are to prepare something have done so at once. Their numbers.
+  // Lets every worker that has to prepare finish at once. Returns their ids.
   std::vector<WorkerId> prepare() {
     std::vector<WorkerId> moved;
     WorkerId w;

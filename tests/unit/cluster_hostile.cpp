@@ -1,6 +1,6 @@
-// cluster_hostile.cpp: a side that has a key and bad intentions: it asks for more than can be done,
-// does not read, says the same for ever. It is let go, and takes neither memory nor the log from
-// the others.
+// cluster_hostile.cpp: a peer that has a key and attacks: it requests more than can be done, does
+// not read, or repeats a message forever. It is disconnected, and the others lose neither memory
+// nor log space to it.
 #include "backend/cluster/master/master.h"
 #include "backend/cluster/master/outbox.h"
 #include "backend/cluster/worker/worker.h"
@@ -13,7 +13,7 @@ using namespace openrt::cluster;
 
 namespace {
 
-struct NoMachine final : Machine { // never answers
+struct NoMachine final : JobExecutor { // a JobExecutor that never answers
   void scene(Epoch, std::shared_ptr<const Commit>, bool, bool) override {}
   void prepare(Epoch) override {}
   void work(Epoch, std::span<const LeasedJob>) override {}
@@ -24,7 +24,7 @@ struct LoneWorker {
   NoMachine machine;
   std::vector<std::string> closed, badOnes;
   std::vector<double> beats;
-  size_t needed = 0; // arrays
+  size_t needed = 0; // number of arrays requested
   Worker worker;
   LoneWorker()
       : worker({.self = {.threads = 1}, .cacheBytes = 1000},
@@ -91,7 +91,7 @@ TEST(Hostile, moreScenesThanCanBeMade) {
   for (Epoch epoch = 1; epoch <= limits::scenesAtOnce; epoch++) w.tell(emptyScene(epoch));
   EXPECT_TRUE(w.closed.empty());
   EXPECT_TRUE(w.worker.serving());
-  w.worker.ready(1, {}); // one is made, and one has room
+  w.worker.ready(1, {}); // the worker is ready for frame 1, so it has room for another scene
   w.tell(emptyScene(limits::scenesAtOnce + 1));
   EXPECT_TRUE(w.closed.empty());
   w.tell(emptyScene(limits::scenesAtOnce + 2));
@@ -104,7 +104,7 @@ TEST(Hostile, manyArraysTakeNoMemoryUntilTheyCome) {
   LoneWorker w;
   message::Scene scene = emptyScene(1);
   for (uint64_t i = 1; i <= 200000; i++) scene.arrays.push_back({i, 1000, {i, i}});
-  w.tell(std::move(scene)); // a stream of zstd for each would be 20 GB
+  w.tell(std::move(scene)); // one zstd stream per scene would need 20 GB
   EXPECT_EQ(w.needed, 200000u);
   EXPECT_FALSE(ArrayStream({1, 1}, limits::arrayBytes).begun());
 }
@@ -117,7 +117,7 @@ TEST(Hostile, piecesOfManyArraysAtOnce) {
     const auto bytes = someBytes(pieceBytes + 1, i + 1);
     const Hash hash = hashOf(bytes);
     scene.arrays.push_back({i + 1, bytes.size(), hash});
-    pieces.push_back(pieceOf(hash, bytes.size(), packArray(bytes), 0)); // the first of two
+    pieces.push_back(pieceOf(hash, bytes.size(), packArray(bytes), 0)); // the first of two chunks
   }
   w.tell(std::move(scene));
   for (const auto& piece : pieces) w.tell(piece);
@@ -128,13 +128,13 @@ TEST(Hostile, piecesOfManyArraysAtOnce) {
 TEST(Hostile, epochsThatWrapAround) {
   LoneWorker w;
   w.tell(emptyScene(1));
-  w.worker.left(1, "gone", 0); // numbers of the next session begin above
+  w.worker.left(1, "gone", 0); // the numbers of the next session start above
   w.worker.joined(1, "somewhere", 0);
   w.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
   w.tell(message::Prepare{~Epoch(0)});
   w.tell(message::Jobs{~Epoch(0), {}});
   EXPECT_EQ(w.badOnes.size(), 2u);
-  w.tell(message::Drop{~Epoch(0)}); // of all there is
+  w.tell(message::Drop{~Epoch(0)}); // drops every epoch there is
   EXPECT_EQ(w.badOnes.size(), 2u);
 }
 

@@ -1,4 +1,4 @@
-// Key files: who may read them, what is refused, that none is ever lost.
+// cluster_keys.cpp: key files: who may read them, which are refused, and that no key is ever lost.
 #include <fstream>
 
 #include <sys/stat.h>

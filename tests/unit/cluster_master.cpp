@@ -1,8 +1,8 @@
-// cluster_master.cpp: the master against workers that are made here: they speak the protocol and
-// make up their samples by a formula. Links deliver in their order, but nobody knows whose turn it
-// is; workers are lost, come late, stand still, send everything twice or send nonsense. Whatever
-// happens, the picture is the same bytes. Time is a number, chance has a seed.
-// Longer than 500 lines because the tests share one rig.
+// cluster_master.cpp: tests the master against fake workers that speak the protocol and compute
+// their samples by a formula. Each link delivers in order, but the links take turns at random.
+// Workers are lost, join late, stall, send everything twice or send garbage. The picture must
+// always have the same bytes. Time is a number and randomness has a seed. Longer than 500 lines
+// because the tests share one rig.
 #include <cstring>
 #include <deque>
 #include <random>
@@ -35,7 +35,7 @@ message::Hello greeting() {
   return hello;
 }
 
-// What of a frame a job makes: a formula of pixel, sample and seed.
+// Returns the result of a job: a formula of pixel, sample and seed.
 JobResult samplesOf(const edit::FrameSettingsT& frame, const Job& job, const Tile& tile) {
   JobResult result;
   startSums(result.sums, size_t(tile.x1 - tile.x0) * (tile.y1 - tile.y0), gatheringOf(frame));
@@ -56,7 +56,7 @@ JobResult samplesOf(const edit::FrameSettingsT& frame, const Job& job, const Til
   return result;
 }
 
-// A worker as the protocol knows it: one that keeps the scene, and jobs to do.
+// A worker as the protocol sees it: it keeps the scene and a queue of jobs.
 struct FakeWorker {
   Peer peer = 0;
   uint64_t session = 0;
@@ -65,14 +65,14 @@ struct FakeWorker {
   std::map<Hash, ArrayPtr> arrays;
   std::set<Hash> asked;
   std::map<Hash, std::pair<uint64_t, std::vector<std::byte>>> arriving;
-  std::deque<message::Scene> scenes; // not applied yet
+  std::deque<message::Scene> scenes; // received and not yet applied
   Scene scene;
   std::unique_ptr<CommitValidator> validator = std::make_unique<CommitValidator>(nullptr);
   Epoch epoch = 0;
   std::map<Epoch, edit::FrameSettingsT> frames;
   bool gone = false, still = false, twice = false, nonsense = false, cut = false;
   std::string refused;
-  uint64_t arrayBytes = 0; // that came
+  uint64_t arrayBytes = 0; // bytes of arrays received
 
   void say(message::Body&& body) {
     Frames frames = encode(session, std::move(body));
@@ -92,7 +92,8 @@ struct FakeWorker {
         if (!arrays.contains(name.hash) && asked.insert(name.hash).second)
           need.arrays.push_back(name.hash);
       scenes.push_back(std::move(*given));
-      const bool wasTwice = std::exchange(twice, false); // that would be nonsense
+      // Sending this message twice would be a protocol error.
+      const bool wasTwice = std::exchange(twice, false);
       say(std::move(need));
       twice = wasTwice;
     }
@@ -181,7 +182,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
     };
     options.local.logUser = &log;
     elsewhere.clear();
-    if (GetParam() > 2) // threads that merge
+    if (GetParam() > 2) // merge on other threads
       options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
         elsewhere.push_back({std::move(heavy), std::move(then)});
       };
@@ -196,7 +197,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
   FakeWorker& worker(Peer peer) { return *workers.at(peer - 1); }
   bool post(Peer peer, Frames&& frames) {
     if (worker(peer).gone) return false;
-    if (worker(peer).toWorker.size() > 5) return false; // its queue is full
+    if (worker(peer).toWorker.size() > 5) return false; // the worker's queue is full
     worker(peer).toWorker.push_back(std::move(frames));
     return true;
   }
@@ -215,7 +216,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
     master->left(lost.peer, "silence", now);
   }
 
-  // One thing happens, somewhere.
+  // Makes one random event happen.
   void step() {
     now += .0005 * double(1 + below(4));
     if (!elsewhere.empty() && below(2)) mergeOne();
@@ -243,7 +244,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
     master->advance(now);
   }
 
-  // Some result goes one step on: into the picture, or the master hears of it.
+  // Advances a random result by one step: it is merged, or the master is told that it was.
   void mergeOne() {
     const size_t i = below(elsewhere.size());
     if (elsewhere[i].first) return std::exchange(elsewhere[i].first, nullptr)();
@@ -252,7 +253,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
     then(now);
   }
 
-  // A scene of a few objects with arrays, and settings.
+  // Returns a scene of a few objects with arrays, and settings.
   std::shared_ptr<Commit> edits(int frame) {
     auto commit = std::make_shared<Commit>();
     const auto add = [&](auto edit) {
@@ -277,7 +278,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
       geometry->matrix = matrix();
       geometry->width = 1;
       const float points[9] = {0, 0, float(frame / 3), 1, 0, 0,
-                               0, 1, float(g)}; // some frames have the same ones
+                               0, 1, float(g)}; // some frames share the same arrays
       const uint32_t corners[3] = {0, 1, 2};
       const auto base = ArrayId(10 * frame + 4 * g + 1);
       geometry->points = array(base, points, sizeof points);
@@ -297,7 +298,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
     commit->edits.render = true;
     return commit;
   }
-  // The picture of a frame by one who does it all.
+  // Returns the picture of a frame rendered without a cluster.
   std::vector<float> alone(int number) {
     edit::FrameSettingsT frame;
     const auto commit = edits(number);
@@ -334,7 +335,8 @@ class ClusterMaster : public testing::TestWithParam<int> {
   std::vector<std::string> log;
   std::vector<std::unique_ptr<FakeWorker>> workers;
   std::vector<std::pair<std::function<void()>, MasterOptions::Then>>
-      elsewhere; // null: it is in the picture
+      // The function is null once the result is in the picture.
+      elsewhere;
   std::unique_ptr<Master> master;
 };
 
@@ -390,8 +392,8 @@ TEST_P(ClusterMaster, AnArrayIsSentOnceToEach) {
   join();
   for (Epoch epoch = 1; epoch <= 6; epoch++) master->commit(epoch, edits(int(epoch)), true, now);
   ASSERT_TRUE(runUntil([&] { return over(6); }));
-  // Points of 0, 1, 2 (frames 1 and 2, 3 to 5, 6) for two geometries, and the corners; but a worker
-  // may have left frames out.
+  // Points of 0, 1, 2 (frames 1 and 2, 3 to 5, 6) for two geometries, and the corners. A worker may
+  // have skipped frames.
   for (const auto& each : workers) EXPECT_LE(each->arrayBytes, 3 * 2 * 36 + 12u);
 }
 
@@ -411,7 +413,7 @@ TEST_P(ClusterMaster, WhoDiffersIsRefused) {
       << mixed.refused;
   EXPECT_NE(newer.refused.find("protocol"), std::string::npos);
   EXPECT_EQ(good.refused, "");
-  FakeWorker& liar = join(); // has found another number of triangles
+  FakeWorker& liar = join(); // reports another number of triangles
   liar.nonsense = true;
   master->commit(2, edits(2), true, now);
   ASSERT_TRUE(
@@ -505,7 +507,7 @@ TEST_P(ClusterMaster, RequiredWorkersAreWaitedForAWhile) {
   join();
   master->commit(1, edits(1), true, now);
   for (int i = 0; i < 500; i++) step();
-  EXPECT_EQ(master->totals().jobsRemote, 0u); // one is not enough
+  EXPECT_EQ(master->totals().jobsRemote, 0u); // one worker is fewer than required
   join();
   ASSERT_TRUE(runUntil([&] { return over(1); }));
   expectSame(1);

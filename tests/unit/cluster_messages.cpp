@@ -1,5 +1,5 @@
-// Messages: each comes back as it was; what is cut, changed, too large or contradicts itself is
-// refused.
+// cluster_messages.cpp: every message survives encoding and decoding. Messages that are truncated,
+// altered, too large or inconsistent are refused.
 #include <cmath>
 #include <cstring>
 
@@ -12,7 +12,7 @@ using namespace openrt::cluster;
 
 namespace {
 
-// One of each, with all that it can hold.
+// Returns one message of each kind with all its fields set.
 std::vector<message::Body> oneOfEach() {
   message::Ready ready{5, {true, false}, RT_TRANSPORT_PATH, {}};
   ready.stats.size = sizeof ready.stats;
@@ -99,7 +99,7 @@ TEST(Messages, anyByteMayBeWrong) {
         for (const uint8_t value : {0x00, 0x01, 0x7f, 0x80, 0xff}) {
           Frames changed = whole;
           changed[frame][at] = std::byte(value);
-          problem(std::move(changed)); // no crash, nothing huge
+          problem(std::move(changed)); // must neither crash nor allocate much
         }
   }
 }
@@ -235,10 +235,10 @@ TEST(Arrays, piecesThatDoNotFit) {
   auto junk = piece(0);
   junk.data = someBytes(pieceBytes, 5);
   EXPECT_NE(ArrayStream(hash, bytes.size()).put(junk), "");
-  // More than it says: the packed one is of a larger array.
+  // Too large: the packed array holds more bytes than stated.
   const auto larger = packArray(std::vector<std::byte>(1 << 20));
   EXPECT_NE(ArrayStream(hash, 1000).put({hash, 1000, larger.size(), 0, larger}), "");
-  // Less than it says, and something else than it says.
+  // Too small, and not the array that was stated.
   const std::vector<std::byte> zeros(1000);
   ArrayStream less(hash, 2000), other(hash, 1000);
   const auto small = packArray(zeros);
@@ -255,7 +255,7 @@ TEST(Arrays, theCacheKeepsWhatIsInUseAndThrowsAwayTheOldest) {
   ArrayPtr used = make();
   cache.put({0, 1}, used);
   for (uint64_t i = 2; i <= 4; i++) cache.put({0, i}, make());
-  EXPECT_NE(cache.find({0, 2}, 1000), nullptr); // now 3 is the oldest
+  EXPECT_NE(cache.find({0, 2}, 1000), nullptr); // now array 3 is the oldest
   EXPECT_EQ(cache.find({0, 2}, 999), nullptr);
   cache.trim();
   EXPECT_EQ(cache.bytes(), 2000u);

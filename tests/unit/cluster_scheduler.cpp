@@ -1,4 +1,4 @@
-// Every rule of scheduler.h, one test each. Time is a number; nobody waits.
+// cluster_scheduler.cpp: one test for each rule of scheduler.h. Time is a number; no test waits.
 // Longer than 500 lines because the tests share one rig.
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST(Scheduler, threeJobsForEachThreadAreInFlight) {
   EXPECT_TRUE(b.done(b.out[0]));
   const auto more = b.handOut();
   ASSERT_EQ(more.size(), 1u);
-  EXPECT_EQ(more[0].worker, b.out[0].worker); // on demand
+  EXPECT_EQ(more[0].worker, b.out[0].worker); // the worker that returned a job gets the next one
 }
 
 TEST(Scheduler, littleWorkIsSharedEvenly) {
@@ -39,7 +39,8 @@ TEST(Scheduler, littleWorkIsSharedEvenly) {
   EXPECT_EQ(byWorker(b.handOut()), (std::map<WorkerId, uint32_t>{{1, 2}, {2, 2}, {3, 2}, {4, 2}}));
 }
 
-TEST(Scheduler, thoseWhoAreStillPreparingAreWaitedFor) { // the first one ready does not take all
+// The worker that is ready first does not take all jobs.
+TEST(Scheduler, thoseWhoAreStillPreparingAreWaitedFor) {
   Bench b;
   b.frame(1, 8);
   for (WorkerId w = 1; w <= 4; w++) b.s.join(w, 2, false, 0);
@@ -51,7 +52,7 @@ TEST(Scheduler, aSlowLinkHasMoreInFlightUpToFour) {
   Bench b;
   b.frame(1, 100000);
   b.workers(1, 2, 4);
-  for (const Handout& h : b.handOut()) { // of 10 ms each; those of worker 2 come 20 ms later
+  for (const Handout& h : b.handOut()) { // jobs of 10 ms; results of worker 2 arrive 20 ms later
     b.now = h.worker == 2 ? 0.05 : 0.01;
     b.done(h, 0.01);
   }
@@ -62,13 +63,13 @@ TEST(Scheduler, aSlowLinkHasMoreInFlightUpToFour) {
   EXPECT_NEAR(b.s.tally(2).latency, 0.04, 1e-9);
 }
 
-TEST(Scheduler,
-     cheapJobsCountTogether) { // 20 microseconds each: three for a thread would be nothing
+// At 20 microseconds each, three jobs per thread would be nothing.
+TEST(Scheduler, cheapJobsCountTogether) {
   Bench b;
   b.frame(1, 100000);
   b.workers(1, 1, 2);
   for (const Handout& h : b.handOut()) b.done(h, 20e-6);
-  EXPECT_EQ(b.handOut().size(), 2u * 3 * 64); // a bundle has 64 at most
+  EXPECT_EQ(b.handOut().size(), 2u * 3 * 64); // a bundle holds at most 64 jobs
 }
 
 TEST(Scheduler, samplesAreDividedByCostAndFinerTowardsTheEnd) {
@@ -87,7 +88,7 @@ TEST(Scheduler, samplesAreDividedByCostAndFinerTowardsTheEnd) {
     queue.insert(queue.end(), more.begin(), more.end());
   }
   EXPECT_TRUE(b.work[1]->over());
-  EXPECT_EQ(sizes.front(), 32u);                                  // nothing was known
+  EXPECT_EQ(sizes.front(), 32u); // nothing is known about the cost yet
   EXPECT_EQ(*std::max_element(sizes.begin(), sizes.end()), 512u); // 0.25 s
   EXPECT_EQ(sizes.back(), 32u);                                   // 8 ms
 }
@@ -118,7 +119,7 @@ TEST(Scheduler, splitByTilesDividesNoSamplesAndBySamplesAlways) {
     EXPECT_EQ(h.job.job.count, 1024u);
     if (h.job.job.number == 0) ofFirstTile.insert(h.worker);
   }
-  EXPECT_EQ(ofFirstTile.size(), 4u); // all share each tile
+  EXPECT_EQ(ofFirstTile.size(), 4u); // all workers share each tile
 }
 
 TEST(Scheduler, aLateJobIsHandedOutAgainToAnIdleWorkerThreeTimesAtMost) {
@@ -142,7 +143,7 @@ TEST(Scheduler, aLateJobIsHandedOutAgainToAnIdleWorkerThreeTimesAtMost) {
     ASSERT_EQ(again.size(), 1u);
     EXPECT_TRUE(again[0].again);
     EXPECT_EQ(again[0].job.job, all[0].job.job);
-    EXPECT_TRUE(has.insert(again[0].worker).second); // somebody else each time
+    EXPECT_TRUE(has.insert(again[0].worker).second); // another worker each time
   }
   b.now += 100;
   EXPECT_TRUE(b.handOut().empty());
@@ -164,15 +165,16 @@ TEST(Scheduler, whatWaitsBehindOtherJobsIsLateLater) {
     const auto h = b.handOut();
     b.done(b.out[i], 1);
   }
-  b.workers(2, 1, 1); // comes later, sees the queue
+  b.workers(2, 1, 1); // joins later and sees the queue
   b.work[1]->round(0);
   const double began = b.now;
   b.now = began + 2.2;
   auto again = b.handOut();
-  EXPECT_EQ(again.size(), 0u); // the first of its two had one before it when it was handed out
+  // The first of its two jobs had another one before it in the queue when it was issued.
+  EXPECT_EQ(again.size(), 0u);
   b.now = began + 7;
   again = b.handOut();
-  EXPECT_EQ(again.size(), 1u); // an idle thread takes one, not all
+  EXPECT_EQ(again.size(), 1u); // an idle thread takes one of them, not all
 }
 
 TEST(Scheduler, aLostWorkersJobsAreGivenOutBeforeOthers) {
@@ -182,7 +184,7 @@ TEST(Scheduler, aLostWorkersJobsAreGivenOutBeforeOthers) {
   const auto all = b.handOut();
   b.s.leave(1, b.now);
   EXPECT_EQ(b.work[1]->given, 6u);
-  EXPECT_EQ(b.s.tally(1).lost, 0u); // it is forgotten
+  EXPECT_EQ(b.s.tally(1).lost, 0u); // the worker is forgotten
   for (const Handout& h : all)
     EXPECT_EQ(b.s.find(h.worker, 1, h.job.lease) == nullptr, h.worker == 1);
   b.workers(3, 1, 2);
@@ -191,7 +193,7 @@ TEST(Scheduler, aLostWorkersJobsAreGivenOutBeforeOthers) {
     if (h.worker == 1) lost.insert(h.job.job.number);
   for (const Handout& h : b.handOut()) taken.insert(h.job.job.number);
   EXPECT_EQ(taken, lost);
-  EXPECT_FALSE(b.done(all[0])); // what the lost one still sends
+  EXPECT_FALSE(b.done(all[0])); // a result that the lost worker still sends
 }
 
 TEST(Scheduler, aCopyOfALostWorkersJobIsEnough) {
@@ -204,7 +206,7 @@ TEST(Scheduler, aCopyOfALostWorkersJobIsEnough) {
   b.now = 10;
   ASSERT_EQ(b.handOut().size(), 1u);
   b.s.leave(all[0].worker, b.now);
-  EXPECT_EQ(b.work[1]->given, 0u); // the other one has it
+  EXPECT_EQ(b.work[1]->given, 0u); // the other worker has a copy of it
   EXPECT_TRUE(b.done(b.out.back()));
   EXPECT_TRUE(b.work[1]->over());
 }
@@ -249,13 +251,13 @@ TEST(Scheduler, whoCannotPrepareAFrameMayTryTheNext) {
 }
 
 TEST(Scheduler, aWorkerThatLetsAllWaitGetsLess) {
-  Bench b({.mostAgain = 3});
+  Bench b({.maxCopies = 3});
   FakeWork& work = b.frame(1, 100000);
   work.round(16);
   b.workers(1, 2, 8);
-  for (const Handout& h : b.handOut()) // only the second one answers
+  for (const Handout& h : b.handOut()) // only the second worker answers
     if (h.worker == 2) b.done(h, 0.01);
-  work.round(0); // nothing new: the second one gets what is late
+  work.round(0); // no new jobs: the second worker gets copies of the late ones
   for (int i = 0; i < 40; i++) {
     b.now += 1;
     for (const Handout& h : b.handOut())
@@ -265,7 +267,7 @@ TEST(Scheduler, aWorkerThatLetsAllWaitGetsLess) {
   EXPECT_EQ(b.s.reissued(), 24u);
   work.round(16);
   for (const Handout& h : b.out)
-    if (h.worker == 1) { // it wakes up with one result
+    if (h.worker == 1) { // the first worker wakes up and sends one result
       b.done(h, 0.01);
       break;
     }
@@ -278,7 +280,8 @@ TEST(Scheduler, unknownLeasesAreDropped) {
   b.workers(1, 2, 1);
   const auto all = b.handOut();
   EXPECT_FALSE(b.s.done(3, 1, all[0].job.lease, 1, 1));
-  EXPECT_FALSE(b.s.done(3 - all[0].worker, 1, all[0].job.lease, 1, 1)); // another one's
+  // The lease belongs to the other worker.
+  EXPECT_FALSE(b.s.done(3 - all[0].worker, 1, all[0].job.lease, 1, 1));
   EXPECT_FALSE(b.s.done(all[0].worker, 2, all[0].job.lease, 1, 1));
   EXPECT_FALSE(b.s.done(all[0].worker, 1, 12345, 1, 1));
   EXPECT_TRUE(b.done(all[0]));
@@ -296,15 +299,16 @@ TEST(Scheduler, theNextFrameIsHandedOutBeforeTheLastJobComesHome) {
   const auto first = b.handOut();
   EXPECT_EQ(byWorker(first), (std::map<WorkerId, uint32_t>{{1, 4}, {2, 4}}));
   for (const Handout& h : first) EXPECT_EQ(h.epoch, 1u);
-  EXPECT_EQ(b.prepare(), std::vector<WorkerId>{1}); // the last one stays, for what may be lost
+  // Worker 2 stays with frame 1 in case jobs are lost.
+  EXPECT_EQ(b.prepare(), std::vector<WorkerId>{1});
   const auto second = b.handOut();
   EXPECT_FALSE(second.empty());
   for (const Handout& h : second)
     EXPECT_EQ(std::pair(h.worker, h.epoch), (std::pair<WorkerId, Epoch>(1, 2)));
   for (const Handout& h : first)
-    EXPECT_FALSE(h.worker == 1 &&
-                 b.done(h)); // ready() has come before: it was not to work on the first any more
-  EXPECT_TRUE(b.handOut().empty()); // as much is left as worker 2 has
+    // Worker 1 called ready() before, so it no longer works on frame 1.
+    EXPECT_FALSE(h.worker == 1 && b.done(h));
+  EXPECT_TRUE(b.handOut().empty()); // as many jobs are left as worker 2 already has
   for (const Handout& h : first) b.done(h);
   EXPECT_EQ(byWorker(b.handOut()), (std::map<WorkerId, uint32_t>{{2, 4}}));
 }
@@ -323,8 +327,8 @@ TEST(Scheduler, theOneHereStaysAtTheOldestUnfinishedFrame) {
     moved.insert(w);
     EXPECT_EQ(e, 2u);
   }
-  EXPECT_EQ(moved,
-            (std::set<WorkerId>{1, 2})); // their jobs of the first frame come before they are ready
+  // Their jobs of the first frame finish before they are ready.
+  EXPECT_EQ(moved, (std::set<WorkerId>{1, 2}));
   for (const Handout& h : b.out) EXPECT_TRUE(b.done(h));
   b.s.end(1);
   EXPECT_EQ(b.prepare(), std::vector<WorkerId>{9});
@@ -343,7 +347,7 @@ TEST(Scheduler, aReserveWorksOnlyIfNobodyElseCan) {
   EXPECT_EQ(byWorker(b.handOut()), (std::map<WorkerId, uint32_t>{{9, 6}}));
   b.workers(2, 1, 2);
   for (const Handout& h : b.handOut()) EXPECT_EQ(h.worker, 2u);
-  b.done(b.out[6]); // of the reserve's
+  b.done(b.out[6]); // a job of the reserve
   EXPECT_TRUE(b.handOut().empty());
 }
 
@@ -354,7 +358,7 @@ TEST(Scheduler, aReserveHelpsIfNothingComesOfTheOthers) {
   b.s.join(1, 2, false, 0);
   WorkerId w;
   Epoch e;
-  EXPECT_TRUE(b.s.move(0, w, e) && w == 1); // and is not heard of again
+  EXPECT_TRUE(b.s.move(0, w, e) && w == 1); // worker 1 is not heard of again
   EXPECT_EQ(b.s.wake(b.now), 10);
   b.now = 9.9;
   EXPECT_TRUE(b.prepare().empty());
@@ -414,7 +418,7 @@ TEST(Scheduler, framesAreOneWorkersEach) {
   for (const Handout& h : b.handOut()) who[h.epoch].insert(h.worker);
   EXPECT_EQ(who.size(), 4u); // the fifth frame waits
   for (const auto& [epoch, workers] : who) EXPECT_EQ(workers.size(), 1u);
-  // The one of frame 1 is done: it takes the fifth.
+  // The worker of frame 1 is done and takes frame 5.
   for (size_t i = 0; i < b.out.size(); i++)
     if (b.out[i].epoch == 1) {
       b.done(b.out[i]);
@@ -431,7 +435,7 @@ TEST(Scheduler, othersHelpAtTheEndOfFrames) {
   b.frame(1, 4);
   b.frame(2, 1000);
   b.workers(1, 2, 1);
-  for (size_t i = 0; i < 20; i++) { // costs are known, and much is left of the second frame
+  for (size_t i = 0; i < 20; i++) { // costs are known, and much of the second frame is left
     b.handOut();
     if (i < b.out.size() && b.out[i].epoch == 1) b.done(b.out[i], 1);
   }
@@ -471,7 +475,7 @@ TEST(Scheduler, automaticMakesFramesWhenPreparingCostsMost) {
     ASSERT_TRUE(b.work[1]->over());
     b.s.end(1);
     for (e = 2; e < 8; e++) b.s.announce(e, b.now);
-    EXPECT_EQ(b.s.split(2), Split::automatic); // few were in flight
+    EXPECT_EQ(b.s.split(2), Split::automatic); // few frames were in flight
     EXPECT_EQ(b.s.split(7), prepare > 1 ? Split::frames : Split::automatic);
   }
 }
@@ -489,7 +493,8 @@ TEST(Scheduler, aCancelledFrameIsForgotten) {
   EXPECT_EQ(b.handOut().size(), 12u);
 }
 
-TEST(Scheduler, roundsThatWaitAreNotTheEnd) { // progressive frames, pilots
+// Rounds: progressive frames, pilots.
+TEST(Scheduler, roundsThatWaitAreNotTheEnd) {
   Bench b;
   b.frame(1, 4, 64, 64).round(32);
   b.frame(2, 100);

@@ -1,5 +1,5 @@
-// What the scheduler makes of what it knows: which tiles come first, how long jobs are, how many of
-// them wait.
+// cluster_scheduler_order.cpp: how the scheduler uses measured costs: the order of tiles, the
+// length of jobs, and the number of queued jobs.
 #include <gtest/gtest.h>
 
 #include "unit/cluster_fake_work.h"
@@ -9,7 +9,7 @@ using namespace openrt::cluster;
 
 namespace {
 
-// Frame 1, in which tile n takes so many seconds, is done; frame 2 begins.
+// Finishes frame 1, in which tile n takes seconds[n], and begins frame 2.
 void afterAFrameOf(Bench& b, const std::vector<double>& seconds, uint32_t threads,
                    uint32_t samples = 1024) {
   b.frame(1, uint32_t(seconds.size()), 64, samples);
@@ -34,8 +34,8 @@ TEST(SchedulerOrder, whatCostsMostIsDoneFirst) {
   EXPECT_EQ(order, (std::vector<uint32_t>{2, 4, 0, 5, 3, 1}));
 }
 
-TEST(SchedulerOrder,
-     cheapTilesAreNotLeftForTheEnd) { // they are shorter than the master has time for
+// Their jobs would be shorter than the master has time for.
+TEST(SchedulerOrder, cheapTilesAreNotLeftForTheEnd) {
   Bench b;
   b.s.pace(0.01);
   std::vector<double> seconds(40, .001);
@@ -50,11 +50,11 @@ TEST(SchedulerOrder,
   ASSERT_EQ(order.size(), 40u);
   for (size_t i = 34; i < 40; i++) EXPECT_EQ(order[i] % 2, 0u) << i;
   for (size_t i = 0, cheap = 0; i < 20; i++)
-    EXPECT_LE(cheap += order[i] % 2, i); // nor for the beginning
+    EXPECT_LE(cheap += order[i] % 2, i); // they are not all at the beginning either
 }
 
 TEST(SchedulerOrder, noMoreJobsThanThereIsTimeFor) {
-  const auto smallest = [&](double pace) { // samples
+  const auto smallest = [&](double pace) { // samples in the smallest job
     Bench b;
     b.s.pace(pace);
     afterAFrameOf(b, std::vector<double>(64, .25), 512);
@@ -67,10 +67,12 @@ TEST(SchedulerOrder, noMoreJobsThanThereIsTimeFor) {
     return least;
   };
   EXPECT_EQ(smallest(1e-6), 32u);
-  EXPECT_EQ(smallest(1e-4), 256u); // 62 ms; a job for each of 512 threads takes the master 51 ms
+  // 62 ms; issuing one job to each of 512 threads takes the master 51 ms
+  EXPECT_EQ(smallest(1e-4), 256u);
 }
 
-TEST(SchedulerOrder, longJobsNeedNoQueue) { // what waits behind others could be done elsewhere
+// A job queued behind others could be done by another worker.
+TEST(SchedulerOrder, longJobsNeedNoQueue) {
   Bench b;
   afterAFrameOf(b, std::vector<double>(400, .2), 16, 32);
   EXPECT_EQ(b.handOut().size(), 16u + 4u);

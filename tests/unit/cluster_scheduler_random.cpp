@@ -1,6 +1,6 @@
-// Whatever happens in whatever order: each sample of each frame is taken exactly once, every frame
-// ends, nobody has more than it may, and no lease is left over. What happens is a list of numbers
-// that rapidcheck makes, and makes short if a rule breaks.
+// cluster_scheduler_random.cpp: random event sequences. Each sample of each frame is merged exactly
+// once, every frame ends, no worker has more jobs than allowed, and no lease is left over.
+// rapidcheck generates the events as a list of numbers and shrinks it when a rule breaks.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -14,7 +14,7 @@ using namespace openrt::cluster;
 
 namespace {
 
-// One run: workers come and go, results come late, twice, never or broken.
+// One run: workers join and leave; results come late, twice, never or broken.
 struct Turmoil {
   explicit Turmoil(Split split) : b({.split = split, .shortest = 0}) {}
   struct Machine {
@@ -23,7 +23,7 @@ struct Turmoil {
   };
   Bench b;
   std::map<WorkerId, Machine> machines;
-  std::map<Lease, Handout> out; // with a machine, as far as it knows
+  std::map<Lease, Handout> out; // held by a worker, as far as the worker knows
   std::vector<Handout> past;
   WorkerId lastWorker = 0;
   Epoch lastEpoch = 0;
@@ -38,7 +38,7 @@ struct Turmoil {
   void leave(WorkerId w) {
     b.s.leave(w, b.now);
     machines.erase(w);
-    std::erase_if(out, [&](const auto& entry) { // some of what it sent still comes
+    std::erase_if(out, [&](const auto& entry) { // some of its results still arrive
       if (entry.second.worker == w) past.push_back(entry.second);
       return entry.second.worker == w;
     });
@@ -106,7 +106,7 @@ struct Turmoil {
     if (what == 2) begin();
     if (what >= 3 && what <= 5 && !machines.empty()) prepared(pick(machines, which)->first);
     if (what >= 6 && what <= 12 && !out.empty()) deliver(Handout(pick(out, which)->second), amount);
-    if (what == 13 && !past.empty()) { // again, or of one that was lost
+    if (what == 13 && !past.empty()) { // a repeated result, or one of a lost lease
       const Handout h = past[which % past.size()];
       const bool again = b.s.done(h.worker, h.epoch, h.job.lease, amount, b.now);
       RC_ASSERT(!again);
@@ -131,7 +131,7 @@ struct Turmoil {
   void finish() {
     begin();
     aMasterHere = false;
-    join(2, true); // one that does all it is asked to
+    join(2, true); // a worker that does all its jobs
     for (int i = 0; i < 20000 && !b.work.empty(); i++) {
       settle();
       b.now += 0.01;
@@ -142,8 +142,8 @@ struct Turmoil {
     for (const auto& [id, m] : machines) RC_ASSERT(b.s.tally(id).out == 0);
   }
 
-  // None of those that are there does anything any more, except the worker here: no frame waits
-  // longer than the rule says.
+  // The other workers stop doing anything; only the worker in this process continues. No frame may
+  // wait longer than the rule says.
   void finishAlone(bool reserve) {
     begin();
     const WorkerId here = ++lastWorker;

@@ -1,5 +1,6 @@
-// A whole worker in a thread of this process, and a master of a few lines over a real wire: scenes,
-// arrays, jobs and results go across, and the picture is that of the local backend.
+// cluster_serve.cpp: a complete worker in a thread of this process and a small master, connected by
+// a real wire. Scenes, arrays, jobs and results are transferred, and the picture must equal the
+// local backend's.
 #include "backend/cluster/worker/serve.h"
 
 #include <atomic>
@@ -45,7 +46,7 @@ class Service {
   std::thread thread_;
 };
 
-// Says and hears one thing after the other.
+// A master that sends one message at a time and waits for the answer.
 struct Master {
   Wire wire;
   Packer packer;
@@ -62,7 +63,7 @@ struct Master {
     say(message::Welcome{protocolVersion, session, 0.1f, 60});
   }
   void say(message::Body&& body) { EXPECT_TRUE(wire.send(peer, encode(session, std::move(body)))); }
-  // The next message, which must be of this kind.
+  // Returns the next message, which must be of this kind.
   template <class T> T next() {
     for (const double end = steadyNow() + 120; steadyNow() < end;) {
       Event event = wire.receive(0.1);
@@ -180,7 +181,7 @@ TEST_F(Serve, aWorkerThatCallsWithKeysAndEndsWithItsMaster) {
   const KeyRing keys = freshKeys(folder, "key");
   std::string address;
   {
-    const Wire first(listening(keys)); // a port that is free
+    const Wire first(listening(keys)); // finds a free port
     address = first.address();
   }
   const Service service(shaders, to(address, keys), true);

@@ -1,6 +1,6 @@
-// cluster_useless.cpp: every way in which a worker can be useless, against a whole master over real
-// wires: the rule of docs/cluster.md is that no picture waits longer than 10 seconds without
-// progress. The pictures are those of one thread.
+// cluster_useless.cpp: every way in which a worker can be useless, against a complete master over
+// real wires. By docs/cluster.md no picture waits longer than 10 seconds without progress. The
+// pictures must be those of a single thread.
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -25,29 +25,29 @@ using namespace openrt::cluster;
 namespace {
 
 constexpr double promised = 10; // seconds without progress (docs/cluster.md)
-constexpr double slack = 15;    // of a busy machine
+constexpr double slack = 15;    // extra seconds for a busy machine
 constexpr uint32_t frames = 2;
 
 enum class Way {
-  nobody,          // nothing listens there
-  deaf,            // the system takes the connection, the process does not read: it was stopped
-  mute,            // lives, and says no Hello
-  otherVersion,    // of the program
-  otherProtocol,   // of the messages
-  otherChip,       // of the machine: another instruction set
-  takesNoScene,    // beats, and never says what it lacks of a scene
-  neverReady,      // has all, and never says Ready
-  refuses,         // cannot prepare a scene: a shader library is another one
-  refusesLater,    // says Ready, then that it cannot
-  beatsOnly,       // is ready, takes jobs, and never answers
-  dies,            // is ready, and goes down with the first jobs; comes again
-  comesAndGoes,    // joins and leaves a few times a second
-  answersNonsense, // bytes that are no result
-  answersOthers,   // results of jobs that it was not given
-  sendsNonsense,   // messages that only a master sends
-  sendsNoise,      // no messages at all
-  readyForEver,    // says Ready again and again
-  liesAboutScene,  // has found other triangles
+  nobody,        // nothing listens at the address
+  deaf,          // the system accepts the connection, but the process is stopped and does not read
+  mute,          // connected, but sends no Hello
+  otherVersion,  // another version of the program
+  otherProtocol, // another version of the protocol
+  otherChip,     // a machine with another instruction set
+  takesNoScene,  // sends heartbeats, but never says which arrays of a scene it needs
+  neverReady,    // has all arrays, but never sends Ready
+  refuses,       // cannot prepare the scene, because a shader library differs
+  refusesLater,  // sends Ready, then that it cannot prepare the scene
+  beatsOnly,     // ready, takes jobs, sends heartbeats and never a result
+  dies,          // ready, crashes at the first jobs, and joins again
+  comesAndGoes,  // joins and leaves several times a second
+  answersNonsense, // sends bytes that are not a result
+  answersOthers,   // sends results of jobs that it was not given
+  sendsNonsense,   // sends messages that only a master sends
+  sendsNoise,      // sends bytes that are no messages
+  readyForEver,    // sends Ready again and again
+  liesAboutScene,  // reports a different number of triangles
 };
 const std::map<Way, const char*> names = {{Way::nobody, "nobody"},
                                           {Way::deaf, "deaf"},
@@ -69,7 +69,7 @@ const std::map<Way, const char*> names = {{Way::nobody, "nobody"},
                                           {Way::readyForEver, "readyForEver"},
                                           {Way::liesAboutScene, "liesAboutScene"}};
 
-// What is the same for all: two pictures, and what a worker that can prepare them says of them.
+// The two pictures of all tests, and the Ready messages of a worker that can prepare them.
 struct Pictures final : WorkerSink {
   Pictures() {
     BackendOptions options;
@@ -128,7 +128,7 @@ const Pictures& pictures() {
   return all;
 }
 
-// A worker of no use, in a thread of its own.
+// A useless worker in a thread of its own.
 class Useless {
  public:
   explicit Useless(Way way) : way_(way) {
@@ -158,7 +158,7 @@ class Useless {
  private:
   void run() {
     while (!stop_) {
-      if (!wire_) { // the port is free a moment after the last one has died
+      if (!wire_) { // the port becomes free a moment after the previous worker has ended
         try {
           wire_.emplace(WireOptions{{}, address_, {}});
         } catch (const std::exception&) {
@@ -211,7 +211,8 @@ class Useless {
   }
   void ready() {
     const auto found = pictures().prepared.find(epoch_);
-    if (found == pictures().prepared.end()) return; // scenes of a session that began in the middle
+    // The scene is of a session that began in the middle.
+    if (found == pictures().prepared.end()) return;
     message::Ready m;
     m.epoch = epoch_;
     m.facts = found->second.facts;
@@ -255,13 +256,14 @@ class Useless {
 
 struct Outcome {
   std::string said;    // the log
-  std::string failure; // what wait() threw
-  double longest = 0;  // seconds without progress
-  bool right = true;   // the bytes
-  double last = 0;     // seconds of the last picture
+  std::string failure; // message of the exception of wait()
+  double longest = 0;  // longest time in seconds without progress
+  bool right = true;   // whether the pictures have the expected bytes
+  double last = 0;     // seconds that the last picture took
 };
 
-// Two pictures with these workers. One that waits for ever is given up after a while.
+// Renders two pictures with these workers. A picture that would wait forever is cancelled after a
+// while.
 Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
   std::vector<std::unique_ptr<Useless>> workers;
   for (const Way way : ways)
@@ -296,7 +298,7 @@ Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
           before = is;
           out.longest = std::max(out.longest, steadyNow() - since);
           if (steadyNow() - since > promised + 2 * slack)
-            backend->cancel(); // it would wait for ever
+            backend->cancel(); // it would wait forever
         }
       });
       try {
@@ -312,7 +314,7 @@ Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
   return out;
 }
 
-// All at the same time: nearly all of it is waiting.
+// Runs all cases at the same time, because they spend nearly all of it waiting.
 std::map<Way, Outcome> renderAll(const ClusterOptions& cluster) {
   pictures();
   std::map<Way, std::future<Outcome>> running;
@@ -372,9 +374,8 @@ TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
   }
 }
 
-TEST(
-    Useless,
-    manyThatOnlyBeatDoNotSwallowAJob) { // a job is handed out a few times, and all of these keep it
+// A job is issued to several workers, and all of them keep it.
+TEST(Useless, manyThatOnlyBeatDoNotSwallowAJob) {
   for (const uint32_t local : {0u, 1u}) {
     ClusterOptions cluster;
     cluster.local = local;

@@ -1,5 +1,5 @@
-// The wire: who is let in and who is not, what is too large, beats, losses. Real sockets on the
-// loopback; events, not times.
+// cluster_wire.cpp: the wire: who is admitted and who is refused, oversized messages, heartbeats,
+// lost connections. Real sockets on loopback; the tests wait for events instead of times.
 #include <thread>
 
 #include <netinet/in.h>
@@ -15,7 +15,7 @@ using Kind = Event::Kind;
 
 namespace {
 
-// A peer that knows nothing of the Wire: a bare socket, and seals.
+// A peer without the Wire class: a bare socket, and message seals.
 class Bare {
  public:
   explicit Bare(const Wire& other) : socket_(context_, zmq::socket_type::dealer) {
@@ -51,7 +51,8 @@ class Bare {
 Frames beat() { return encode(0, message::Beat{1, false}); }
 Frames hello() { return encode(0, message::Hello{.library = "bare", .threads = 3}); }
 
-// Why one that calls with these keys is refused, in the words of the two sides.
+// Returns why a peer that connects with these keys is refused, as reported by the server and by the
+// client.
 std::pair<std::string, std::string> refusals(const KeyRing& server, const KeyRing& client,
                                              const std::string& serverKey = "") {
   Wires wires;
@@ -153,7 +154,7 @@ TEST(Addresses, namesAreLookedUpWithoutWaiting) {
   EXPECT_EQ(here->port, 80);
   EXPECT_FALSE(found("no-such-host.invalid", why));
   EXPECT_NE(why, "");
-  const Lookup abandoned(Address::parse("another.invalid")); // its end does not wait either
+  const Lookup abandoned(Address::parse("another.invalid")); // the destructor does not wait either
 }
 
 TEST(Wire, localSocketsAndIpv6) {
@@ -334,7 +335,7 @@ TEST(Wire, threeMessagesThatAreNoneCloseThePeer) {
     bare.send(junk);
     bare.send(junk);
     bare.send(hello());
-    EXPECT_NE(wires.next(door, Kind::message).peer, 0u); // two are forgiven
+    EXPECT_NE(wires.next(door, Kind::message).peer, 0u); // two bad messages are tolerated
     bare.send(junk);
     EXPECT_NE(wires.next(door, Kind::left).text.find("three messages"), std::string::npos);
     bare.send(hello());
@@ -369,7 +370,7 @@ TEST(Wire, headersThatAreCut) {
   Bare bare(door);
   Frames whole = hello();
   bare.send(whole);
-  bare.send(whole); // twice the same: both arrive, what they mean is not the wire's
+  bare.send(whole); // the same message twice: both arrive, because the wire does not interpret them
   EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
   EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
   for (int i = 0; i < 3; i++) {
@@ -406,8 +407,7 @@ TEST(Wire, whatIsLostRepeatedOrDamagedOnTheWayEndsThePeer) {
   }
 }
 
-// A length that was damaged: the connection waits for a frame that never ends, and beats go into
-// it.
+// A damaged length: the connection waits for a frame that never ends and swallows the heartbeats.
 TEST(Wire, beatsInAFrameThatNeverEndsAreSilence) {
   Wires wires;
   WireOptions options = listening();
@@ -437,7 +437,7 @@ TEST(Wire, beatsInAFrameThatNeverEndsAreSilence) {
     put(head + std::string(reinterpret_cast<const char*>(frames[i].data()), frames[i].size()));
   }
   EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
-  put(std::string("\x02\0\0\0\0\x03\0\0\0", 9)); // 48 MiB are to come
+  put(std::string("\x02\0\0\0\0\x03\0\0\0", 9)); // announces 48 MiB
   for (const double end = steadyNow() + 30; !wires.has(door, Kind::left) && steadyNow() < end;
        wires.serve()) {
     put(std::string(100, 'b'));
@@ -455,7 +455,7 @@ TEST(Wire, aFullQueueSaysSoAndKeepsTheFrames) {
   const message::Piece piece{{1, 2}, 1 << 20, 1 << 20, 0, someBytes(1 << 20)};
   Frames frames;
   uint32_t sent = 0;
-  for (bool taken = true; taken && sent < 10000; sent += taken) { // nobody reads
+  for (bool taken = true; taken && sent < 10000; sent += taken) { // the peer does not read
     frames = encode(1, message::Piece(piece));
     taken = caller.send(there, std::move(frames));
   }

@@ -1,5 +1,4 @@
-// cluster_wires.h: several wires in one thread, served in turn, and what has happened to each of
-// them so far.
+// cluster_wires.h: several wires in one thread, served in turn, and the events of each so far.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +17,7 @@
 
 namespace openrt::cluster {
 
-// A folder that is gone at the end.
+// A folder that the destructor removes.
 struct Folder {
   std::string path;
   Folder() {
@@ -34,8 +33,8 @@ inline KeyRing freshKeys(const Folder& folder, const std::string& name) {
   return readKeys(folder / name);
 }
 
-// Patient: machines that are busy are no failure. What is silent is not gone for long, so that
-// nobody is lost by the way.
+// Returns options with long timeouts, so that a busy machine is no failure and no silent peer is
+// dropped during a test.
 inline WireOptions patient(WireOptions options) {
   options.heartbeat = 0.05;
   options.silence = 60;
@@ -63,8 +62,8 @@ class Wires {
       for (Event e; (e = side.wire->receive(0.002)).kind != Event::Kind::nothing;)
         side.events.push_back(std::move(e));
   }
-  // The next event of a kind that has happened to a wire, which is taken out; `nothing` after a
-  // long time.
+  // Waits for the next event of a kind on a wire, removes it and returns it. Returns `nothing`
+  // after a long time.
   Event next(const Wire& wire, Event::Kind kind, double patience = 30) {
     for (const double end = steadyNow() + patience;;) {
       std::vector<Event>& events = of(wire).events;
@@ -78,7 +77,7 @@ class Wires {
       serve();
     }
   }
-  // Whether it has happened so far.
+  // Returns whether such an event has arrived.
   bool has(const Wire& wire, Event::Kind kind) {
     for (const Event& e : of(wire).events)
       if (e.kind == kind) return true;
@@ -104,7 +103,7 @@ inline Message read(Event&& event) {
   return message;
 }
 
-// What a function throws; empty: nothing.
+// Returns the message of the exception that a function throws; empty if it throws none.
 template <class F> std::string thrown(const F& f) {
   try {
     f();

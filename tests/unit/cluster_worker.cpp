@@ -1,5 +1,5 @@
-// A worker's session, driven by hand: a master that is the test, a machine that only writes down
-// what it is told.
+// cluster_worker.cpp: a worker's session. The test plays the master; the executor only records its
+// calls.
 #include "backend/cluster/worker/worker.h"
 
 #include "backend/record/edits_bytes.h"
@@ -12,7 +12,7 @@ using namespace openrt::cluster;
 
 namespace {
 
-struct FakeMachine final : Machine {
+struct FakeMachine final : JobExecutor {
   std::vector<std::string> told;
   std::shared_ptr<const Commit> commit;
   std::vector<LeasedJob> jobs;
@@ -52,7 +52,7 @@ struct Rig {
     tell(message::Welcome{protocolVersion, session, 0.1f, 0.5f}, session, peer);
     said.clear();
   }
-  // The only message since the last time, of a kind.
+  // Returns the only message since the last call; it must be of this kind.
   template <class T> T answer() {
     EXPECT_EQ(said.size(), 1u);
     const T* found = said.empty() ? nullptr : std::get_if<T>(&said[0].second.body);
@@ -68,7 +68,7 @@ Array& filled(Array& array, uint8_t value) {
   return array;
 }
 
-// A frame of 8 x 8 pixels, and a texture of 2 x 2 texels that is an array.
+// A frame of 8 x 8 pixels and a texture of 2 x 2 texels, sent as an array.
 struct TinyScene {
   std::shared_ptr<Array> texels = std::make_shared<Array>(16);
   message::Scene message;
@@ -115,7 +115,7 @@ LeasedJob job(Lease lease, uint32_t tile = 0) {
   return {lease, {Job::Kind::samples, false, tile, 0, 4, {}}};
 }
 
-// A worker that has a scene, ready for jobs.
+// Gives the worker a scene and makes it ready for jobs.
 void makeReady(Rig& rig, Epoch epoch = 1, Epoch machines = 1) {
   const TinyScene scene(epoch);
   rig.tell(scene.message);
@@ -154,7 +154,7 @@ TEST(Worker, oneMasterAtATime) {
   ASSERT_EQ(rig.closed.size(), 1u);
   EXPECT_EQ(rig.closed[0].first, 2u);
   EXPECT_NE(rig.closed[0].second.find("busy"), std::string::npos);
-  rig.tell(message::Welcome{protocolVersion, 9, 0.1f, 0.5f}, 9, 2); // nobody listens to it
+  rig.tell(message::Welcome{protocolVersion, 9, 0.1f, 0.5f}, 9, 2); // no handler accepts it
   EXPECT_TRUE(rig.said.empty());
   rig.worker.left(1, "gone", 0);
   rig.worker.joined(3, "elsewhere", 0);
@@ -197,7 +197,7 @@ TEST(Worker, anArrayThatItHasIsNotSentAgain) {
   rig.tell(again.message);
   EXPECT_TRUE(rig.answer<message::Need>().arrays.empty());
   EXPECT_EQ(rig.machine.all(), Told{"scene 2 whole prepare"});
-  // Nor by the next master.
+  // The next master's message is not accepted either.
   rig.worker.left(1, "gone", 0);
   EXPECT_EQ(rig.machine.all(), Told{"drop 2"});
   rig.greet(8, 2);
@@ -238,7 +238,7 @@ TEST(Worker, editsThatBreakARuleAreRefusedUntilAWholeSceneComes) {
   Rig rig;
   rig.greet();
   TinyScene bad(1);
-  bad.message.arrays.clear(); // the texture names an array that does not travel
+  bad.message.arrays.clear(); // the texture names an array that is not sent
   rig.tell(bad.message);
   ASSERT_EQ(rig.said.size(), 2u);
   EXPECT_EQ(std::get<message::Failed>(rig.said[1].second.body).epoch, 1u);
@@ -283,8 +283,8 @@ TEST(Worker, librariesAreComparedByTheirHash) {
   const std::string differs = scene(3, "vrml97", {1, 2});
   EXPECT_NE(differs.find("vrml97"), std::string::npos);
   EXPECT_NE(differs.find(hex({1, 2})), std::string::npos);
-  const size_t at =
-      differs.find("has hash ") + 9; // what it has is said, so that people can compare
+  // The message names the hash it has, so that people can compare.
+  const size_t at = differs.find("has hash ") + 9;
   const std::string own = differs.substr(at, 32);
   const Hash hash{std::stoull(own.substr(16), nullptr, 16),
                   std::stoull(own.substr(0, 16), nullptr, 16)};
@@ -332,7 +332,7 @@ TEST(Worker, whatIsDroppedIsNotSent) {
   EXPECT_EQ(rig.machine.all(), (Told{"work 1 1", "drop 1"}));
   rig.worker.done(1, job(1), {});
   EXPECT_TRUE(rig.said.empty());
-  rig.tell(message::Jobs{1, {job(2)}}); // was on its way
+  rig.tell(message::Jobs{1, {job(2)}}); // was already on its way
   EXPECT_EQ(rig.machine.all(), Told{});
   EXPECT_TRUE(rig.badOnes.empty());
 }
@@ -353,7 +353,7 @@ TEST(Worker, whatComesOfAFormerMastersWorkIsNotTheNextOnes) {
 TEST(Worker, messagesOfAnotherSessionAreNotHeard) {
   Rig rig;
   rig.greet();
-  rig.tell(TinyScene(1).message, 6); // replayed, or late
+  rig.tell(TinyScene(1).message, 6); // replayed or late
   rig.tell(TinyScene(1).message, 0);
   rig.tell(TinyScene(1).message, 7, 2);
   EXPECT_TRUE(rig.said.empty());
@@ -373,8 +373,8 @@ TEST(Worker, nonsenseIsCounted) {
   Rig rig;
   rig.greet();
   rig.tell(message::Need{1, {}});
-  rig.tell(message::Hello{.threads = 1}); // what only workers say
-  rig.tell(TinyScene(1).piece());         // that nobody asked for
+  rig.tell(message::Hello{.threads = 1}); // a message that only workers send
+  rig.tell(TinyScene(1).piece());         // a chunk that was not requested
   rig.tell(message::Prepare{1});
   rig.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
   EXPECT_EQ(rig.badOnes.size(), 5u);

@@ -1,5 +1,5 @@
-// cluster_worker_core.cpp: a machine that does jobs: in what order commits, jobs and questions take
-// effect, what it says of failures, and that its pictures are those of the local backend.
+// cluster_worker_core.cpp: the executor of a worker: the order in which commits, jobs and queries
+// take effect, how it reports failures, and that its pictures equal the local backend's.
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -16,7 +16,7 @@ using test::Commits;
 class Sink final : public WorkerSink {
  public:
   struct Said {
-    std::string what; // ready, failed, done
+    std::string what; // ready, failed or done
     Epoch epoch = 0;
     Lease lease = 0;
   };
@@ -36,7 +36,7 @@ class Sink final : public WorkerSink {
     if (work) work->take(job.job, std::move(result));
   }
 
-  // Waits until so much was said; false: it takes for ever.
+  // Waits until `count` calls have arrived; returns false on a timeout.
   bool wait(size_t count) {
     std::unique_lock lock(mutex);
     return came.wait_for(lock, std::chrono::seconds(60), [&] { return said.size() >= count; });
@@ -54,9 +54,9 @@ class Sink final : public WorkerSink {
   FrameWork* work = nullptr;
 
  private:
-  struct Busy { // one call at a time
+  struct Busy { // checks that one call is made at a time
     explicit Busy(Sink& s) : sink(s), lock(s.mutex, std::try_to_lock) {
-      if (!lock.owns_lock()) lock.lock(); // the test reads
+      if (!lock.owns_lock()) lock.lock(); // keeps calls out while the test reads
     }
     ~Busy() { sink.came.notify_all(); }
     Sink& sink;
@@ -71,7 +71,7 @@ class WorkerCoreTest : public testing::Test {
     options.shaders = &shaders;
   }
 
-  // A room, and commits that change it: the camera, a frame of other settings.
+  // A room, and commits that change it: the camera, and a frame with other settings.
   static Commits commits(const test::Settings& settings) {
     return test::drawn([&] {
       test::drawRoom();
@@ -81,7 +81,7 @@ class WorkerCoreTest : public testing::Test {
       rtRender();
     });
   }
-  // All of an epoch's frame, by this core alone.
+  // Renders all of an epoch's frame with this core alone.
   std::vector<float> picture(WorkerCore& core, Epoch epoch, Lease& lease) {
     FrameWork work(sink.last.frame, sink.last.facts, core.threads());
     {
@@ -141,10 +141,10 @@ TEST_F(WorkerCoreTest, ItsPicturesAreThoseOfTheLocalBackend) {
   ASSERT_TRUE(sink.wait(before + 1));
   EXPECT_EQ(sink.all().back().what, "ready");
   EXPECT_EQ(picture(core, 2, lease), expected(all, 2));
-  // Forgotten: the first scene again.
+  // After forget(), the first scene again.
   core.scene(3, all[0], true, false);
   core.prepare(3);
-  core.prepare(3); // once is enough
+  core.prepare(3); // calling it once is enough
   core.ask([](Backend&) {});
   EXPECT_EQ(sink.all().back().epoch, 3u);
   EXPECT_EQ(picture(core, 3, lease), expected(all, 1));
@@ -173,14 +173,14 @@ TEST_F(WorkerCoreTest, DroppedJobsAreNotDone) {
   core.scene(1, all[0], true, true);
   std::vector<LeasedJob> jobs;
   for (uint32_t i = 0; i < 16; i++)
-    jobs.push_back({i + 1, Job{.number = i, .count = 65536}}); // for hours
+    jobs.push_back({i + 1, Job{.number = i, .count = 65536}}); // would take hours
   core.work(1, jobs);
   ASSERT_TRUE(sink.wait(1));
   core.drop(1);
   core.scene(2, all[1], false, true);
   ASSERT_TRUE(sink.wait(2));
   EXPECT_EQ(sink.all()[1].what, "ready");
-  core.work(2, jobs); // the end gives up what runs
+  core.work(2, jobs); // the destructor cancels running jobs
 }
 
 TEST_F(WorkerCoreTest, QuestionsSeeWhatWasAskedBefore) {
@@ -200,7 +200,7 @@ TEST_F(WorkerCoreTest, FailuresAreSaid) {
   const Commits all = commits({.samples = 4});
   WorkerCore core(options, sink);
   core.work(7, std::vector<LeasedJob>{{1, Job{.count = 4}},
-                                      {2, Job{.count = 4}}}); // of a scene that it has not
+                                      {2, Job{.count = 4}}}); // of a scene that it does not have
   ASSERT_TRUE(sink.wait(1));
   core.scene(8, all[0], true, true);
   core.work(8, std::vector<LeasedJob>{{3, Job{.number = 10000, .count = 4}}});

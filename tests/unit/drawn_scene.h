@@ -1,5 +1,5 @@
-// drawn_scene.h: small scenes drawn through the C API, as the commits that backends get, and
-// prepared for rendering. For tests of what goes on behind the API.
+// drawn_scene.h: small scenes drawn through the C API, as the commits that backends receive, and
+// prepared for rendering. For tests of the code behind the API.
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ class KeepingBackend final : public Backend {
   std::shared_ptr<Commits> commits_;
 };
 
-// What `draw` commits: one for each rtRender() in it.
+// Returns what `draw` commits: one commit for each rtRender() in it.
 inline Commits drawn(const std::function<void()>& draw) {
   auto commits = std::make_shared<Commits>();
   const RTcontext context = adoptContext(
@@ -106,8 +106,8 @@ inline void lookFrom(double x, double y, double z) {
   rtPopMatrix();
 }
 
-// A floor of two faces in the same place, a lamp, a mirror, a ball of glass: rays that split, go on
-// and meet ties.
+// Draws a floor of two coincident faces, a lamp, a mirror and a glass ball, so that paths split,
+// continue and hit ties.
 inline void drawRoom() {
   rtLoadIdentity();
   at(0, -1, 0, square(colored("Diffuse", "reflectance", {.8f, .3f, .2f}), 4), -90);

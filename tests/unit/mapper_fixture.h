@@ -1,4 +1,4 @@
-// mapper_fixture.h: a running world, its engine and its mapper in a context of their own.
+// mapper_fixture.h: a running world, its engine and its mapper, in a context of their own.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace xvrml::test {
 
-// Calls made by a frame.
+// API calls made for a frame.
 struct Cost {
   uint64_t defined = 0, moved = 0, parameters = 0, textures = 0, regroupings = 0, lights = 0;
   bool operator==(const Cost&) const = default;
@@ -57,13 +57,13 @@ class MapRunning : public testing::Test {
   void send(const std::string& name, const std::string& in, Value value) {
     EXPECT_TRUE(engine_->dispatch(node(name), in, std::move(value))) << name << "." << in;
   }
-  // One root node from text, part of the world's engine when it is sent somewhere.
+  // Parses one root node. It belongs to the world's engine once it is sent somewhere.
   NodeRef make(const std::string& text) {
     scraps_.push_back(loadWorldFromMemory("#VRML V2.0 utf8\n" + text, "scrap.wrl"));
     return scraps_.back()->scope.roots.at(0);
   }
 
-  // Maps what has changed and renders; the scene as the engine has it.
+  // Applies the changes to the scene, renders, and returns the scene's statistics.
   RTstats frame() {
     mapper_->update(engine_->takeChanges());
     mapper_->map(mapper_->viewpointCamera(0));
@@ -76,7 +76,7 @@ class MapRunning : public testing::Test {
     return stats;
   }
 
-  // Of the frame that shows what was sent before.
+  // Returns the cost of the frame that shows the events sent before.
   Cost cost() {
     const MapStats before = mapper_->stats();
     last_ = frame();
@@ -86,7 +86,7 @@ class MapRunning : public testing::Test {
             s.regroupings - before.regroupings,       s.lightsChanged - before.lightsChanged};
   }
 
-  // What the objects are, in an order that does not depend on when they were made.
+  // Describes the objects in an order that does not depend on when they were made.
   static std::vector<std::string> structure(const OpenRTMapper& mapper) {
     std::vector<std::string> lines;
     for (const ExplainedObject& o : mapper.explain())
@@ -107,12 +107,12 @@ class MapRunning : public testing::Test {
     for (int i = 0; i < times; ++i) result += text;
     return result;
   }
-  // An ElevationGrid of 2 n^2 triangles.
+  // Returns an ElevationGrid of 2 n^2 triangles.
   static std::string grid(int n) {
     return "ElevationGrid { xDimension " + std::to_string(n + 1) + " zDimension " +
            std::to_string(n + 1) + " height [" + repeat("0 ", (n + 1) * (n + 1)) + "] }";
   }
-  // A set of two triangles of its own.
+  // Returns a shape of two triangles.
   static std::string square(const std::string& name, const std::string& more = "") {
     return "DEF " + name + " IndexedFaceSet { coord DEF " + name +
            "C Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } " +
@@ -125,7 +125,7 @@ class MapRunning : public testing::Test {
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<OpenRTMapper> mapper_;
   std::vector<ExplainedObject> list_;
-  RTstats last_{}; // after cost()
+  RTstats last_{}; // statistics after cost()
 };
 
 } // namespace xvrml::test

@@ -1,5 +1,5 @@
-// What becomes an object of its own and why: what events reach, what is used often, what is equal,
-// what an author asks for.
+// mapper_grouping.cpp: which shapes become objects of their own and why: reachable by events, used
+// often, identical, or requested by the author.
 #include "mapper/graph/cost.h"
 #include "unit/mapper_fixture.h"
 
@@ -140,8 +140,8 @@ TEST_F(MapGrouping, HintsAreOrdinaryGroups) {
   EXPECT_EQ(frame().triangles, 12u);
 }
 
-// 10,000 USEs of a tree: the instances cost memory, the triangles do not. No acceleration
-// structure: the null backend.
+// A tree with 10,000 USEs: only the instances cost memory. The null backend builds no acceleration
+// structure.
 TEST(MapForest, IsOneObjectWithInstances) {
   RTcontext context = rtNewContext("backend=null");
   std::string body = "DEF Tree Group { children Shape { geometry ElevationGrid { xDimension 72 "

@@ -1,6 +1,6 @@
-// What the objects and the picture are must not depend on how the world came to be as it is: a
-// world mapped once and changed many times is compared with the same world mapped from nothing,
-// after each of many random changes.
+// mapper_history.cpp: objects and picture must not depend on the world's history. A world that was
+// mapped once and then changed many times is compared, after each of many random changes, with the
+// same world mapped from scratch.
 #include <cstring>
 #include <random>
 

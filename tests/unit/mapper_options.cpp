@@ -1,4 +1,5 @@
-// Options of ORTShader nodes: types, several in a string, and what is said about bad ones.
+// mapper_options.cpp: options of ORTShader nodes: types, several options in a string, and messages
+// about bad ones.
 #include <gtest/gtest.h>
 
 #include "mapper/shading/shader_options.h"

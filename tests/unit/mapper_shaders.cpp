@@ -1,5 +1,6 @@
-// Shader plug-ins from a world: ORTAppearance with texture, ORTLight, ORTViewpoint, ORTBackground,
-// and what changes of them do. Pictures of one ray say which shader was asked.
+// mapper_shaders.cpp: shader plug-ins used by a world: ORTAppearance with texture, ORTLight,
+// ORTViewpoint, ORTBackground, and the effect of changing them. Pictures of one ray show which
+// shader was called.
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -12,7 +13,7 @@ namespace {
 
 class MapShaders : public MapRunning {
  protected:
-  // What the middle of the bound view shows; one sample, one pixel.
+  // Returns the pixel in the middle of the bound view; one sample.
   std::array<float, 4> seen() {
     mapper_->update(engine_->takeChanges());
     mapper_->map(mapper_->viewpointCamera(0));
@@ -28,7 +29,7 @@ class MapShaders : public MapRunning {
     for (const Diagnostic& d : world_->diagnostics.list()) ADD_FAILURE() << d.text();
   }
   static constexpr const char* dark = "NavigationInfo { headlight FALSE }\n";
-  // A square that fills the view.
+  // Returns a square that fills the view.
   static std::string square(const std::string& appearance) {
     return "Shape { appearance " + appearance +
            " geometry IndexedFaceSet { coord Coordinate { point [ -9 -9 0, 9 -9 0, 9 9 0, -9 9 0 ] "
@@ -50,7 +51,7 @@ TEST_F(MapShaders, AnAppearancesTextureGoesToTheShader) {
   EXPECT_EQ(rgba[1], 0);
   silent();
   node("A").set(*node("A").type().find("texture"),
-                NodeRef()); // and without it the shader is white again
+                NodeRef()); // without the texture the shader is white again
   send("A", "set_texture", NodeRef());
   EXPECT_GT(seen()[1], 0.1f);
 }
@@ -93,7 +94,7 @@ TEST_F(MapShaders, LightsByShader) {
   send("S", "set_options", MFString{"color color 0 3 0"});
   EXPECT_FLOAT_EQ(seen()[1], 3);
   send("S", "set_name",
-       std::string("VRML97DirectionalLight")); // another class: its direction is along -z
+       std::string("VRML97DirectionalLight")); // another class whose direction is along -z
   EXPECT_FLOAT_EQ(seen()[1], 3);
   send("L", "set_on", false);
   EXPECT_FLOAT_EQ(seen()[1], 0);
@@ -136,14 +137,14 @@ TEST_F(MapShaders, ViewpointsByShader) {
   EXPECT_GT(seen()[2], 0.99f) << "along +y";
   send("S", "set_name", std::string("Panorama"));
   seen();
-  send("V", "set_shader", NodeRef()); // as a Viewpoint
+  send("V", "set_shader", NodeRef()); // now without a shader, as a Viewpoint
   EXPECT_GT(seen()[2], 0.9f);
   silent();
 }
 
 TEST_F(MapShaders, TheAngleOfViewIsTheViewpoints) {
   const auto width =
-      [&](const std::string& view) { // what the middle of the picture's right edge shows
+      [&](const std::string& view) { // returns the pixel in the middle of the picture's right edge
         load(dark + std::string("Background { skyColor [ 0 0 1, 1 0 0 ] skyAngle 1.5707963 }\n") +
              view);
         mapper_->map(mapper_->viewpointCamera(0));

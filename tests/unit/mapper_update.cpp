@@ -1,5 +1,5 @@
-// What a change costs, by its kind: counted in calls, never in time. Each test says what is
-// touched; all else must stay.
+// mapper_update.cpp: the cost of each kind of change, counted in calls and never in time. Each test
+// states what the change touches; everything else must stay.
 #include <cmath>
 
 #include "unit/mapper_fixture.h"
@@ -11,7 +11,7 @@ namespace {
 
 class MapUpdate : public MapRunning {
  protected:
-  // Something of everything, static, beside what a test moves.
+  // A world with a bit of everything, static, next to what a test moves.
   static std::string rest() {
     return "Shape { appearance Appearance { material DEF M Material { } } geometry " + grid(4) +
            " }\nDEF Tree Group { children Shape { geometry " + grid(30) + " } }\n" +
@@ -23,8 +23,8 @@ class MapUpdate : public MapRunning {
     return "DEF Clock TimeSensor { }\nDEF I PositionInterpolator { }\nROUTE I.value_changed TO " +
            to + "\n";
   }
-  // What the second of two changes costs: the first may have promoted what nothing was known to
-  // reach.
+  // Returns the cost of the second of two changes. The first may have promoted nodes that no event
+  // was known to reach.
   Cost twice(const std::string& name, const std::string& in, Value first, Value second) {
     send(name, in, std::move(first));
     cost();
@@ -309,7 +309,7 @@ TEST_F(MapUpdate, AGeometryAfterTheOther) {
   for (int n = 2; n < 9; ++n) {
     const NodeRef scrap = make("Shape { geometry " + grid(n) + " }");
     send("S", "set_geometry", static_cast<nodes::Shape&>(*scrap).geometry);
-    scraps_.clear(); // the mesh before is gone for good
+    scraps_.clear(); // releases the previous mesh
     EXPECT_EQ(frame().triangles, without + 2 * uint64_t(n * n));
   }
 }

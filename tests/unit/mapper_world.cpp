@@ -1,5 +1,5 @@
-// What the mapper makes of worlds, seen through its results and the engine: viewpoints, bounds,
-// names, sharing, levels.
+// mapper_world.cpp: how the mapper maps worlds, seen through its results and the engine:
+// viewpoints, bounds, names, sharing, levels of detail.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -61,7 +61,7 @@ std::string repeat(const std::string& text, int times) {
   return result;
 }
 
-// An ElevationGrid of 2 n^2 triangles.
+// Returns an ElevationGrid of 2 n^2 triangles.
 std::string grid(int n) {
   return "ElevationGrid { xDimension " + std::to_string(n + 1) + " zDimension " +
          std::to_string(n + 1) + " height [" + repeat("0 ", (n + 1) * (n + 1)) + "] }";
@@ -217,7 +217,7 @@ TEST_F(MapWorld, LightsThatAreOffAreNotThere) {
   EXPECT_EQ(engine().lights, 1u);
 }
 
-// 2^30 spheres: shared subtrees stay shared, counts saturate or are exact, nothing is expanded.
+// 2^30 spheres: shared subtrees stay shared, counts are exact or saturate, nothing is expanded.
 TEST_F(MapWorld, DoublingChainsAreNotExpanded) {
   std::string body = "DEF G0 Shape { geometry " + grid(1) + " }\n";
   for (int i = 1; i <= 23; ++i)
@@ -244,7 +244,7 @@ TEST_F(MapWorld, DeepNestingIsSafe) {
   world_ = loadWorldFromMemory("#VRML V2.0 utf8\n" + shallow, "test.wrl", options);
   mapper_ = std::make_unique<OpenRTMapper>(*world_, MapOptions());
   EXPECT_NEAR(mapper_->bounds().maximum[2], 491, 1e-6);
-  // Deeper than any file may be: each group names the one before.
+  // Deeper than a file may be: each group refers to the one before by name.
   std::string chain = "Switch { whichChoice -1 choice [ DEF N0 Shape { geometry Box { } }\n";
   for (int i = 1; i <= depth; ++i)
     chain += "DEF N" + std::to_string(i) + " Transform { translation 0 0 1 children USE N" +
@@ -278,10 +278,10 @@ TEST_F(MapWorld, LevelsAreMeasuredInTheirOwnSystem) {
                               "] level [ Shape { geometry " +
                               grid(2) + " } Shape { geometry Box { } } ] } }");
   CameraSettings camera = mapper.viewpointCamera(0);
-  camera.matrix[14] = 20; // local distance 1
+  camera.matrix[14] = 20; // distance 1 in local units
   mapper.map(camera);
   EXPECT_EQ(engine().triangles, 8u);
-  camera.matrix[14] = 30; // local distance 2
+  camera.matrix[14] = 30; // distance 2 in local units
   mapper.map(camera);
   EXPECT_EQ(engine().triangles, 12u);
 }

@@ -1,4 +1,4 @@
-// mesh_checks.h: makes nodes and measures meshes for the tests of libxvrml/geometry.
+// mesh_checks.h: creates nodes and measures meshes for the tests of libxvrml/geometry.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 
 namespace xvrml::test {
 
-// A node of a generated type, alive as long as this.
+// A node of a generated type that lives as long as this object.
 template <class T> class Made {
  public:
   explicit Made(const char* type) {
@@ -68,7 +68,7 @@ template <class T> Built build(Made<T>& node, bool textured = false, const Limit
   return built;
 }
 
-// What every mesh must keep, whatever the node says.
+// Checks the invariants of every mesh, whatever the node contains.
 inline void expectSound(const Mesh& mesh) {
   auto finite = [](auto... v) { return (std::isfinite(v) && ...); };
   if (mesh.kind == Mesh::Kind::empty) {
@@ -118,7 +118,7 @@ inline D3 areaVector(const Mesh& mesh, size_t triangle) {
   return {n[0] / 2, n[1] / 2, n[2] / 2};
 }
 
-// Positive where the triangles of a closed mesh face outwards.
+// Returns the volume; positive if the triangles of a closed mesh face outwards.
 inline double signedVolume(const Mesh& mesh) {
   double sum = 0;
   for (size_t t = 0; t < mesh.indices.size() / 3; t++)
@@ -135,7 +135,8 @@ inline double area(const Mesh& mesh) {
   return sum;
 }
 
-// Edges, by place, that are not met by as many edges the other way: 0 for a watertight mesh.
+// Returns the number of edges (by position) that do not have as many edges in the other direction:
+// 0 for a watertight mesh.
 inline size_t openEdges(const Mesh& mesh) {
   std::map<D3, int> names;
   auto name = [&](size_t corner) {
@@ -153,7 +154,7 @@ inline size_t openEdges(const Mesh& mesh) {
   return open;
 }
 
-// True if given normals are on the front side of their triangles.
+// Returns true if the given normals are on the front side of their triangles.
 inline bool normalsFaceFront(const Mesh& mesh) {
   for (size_t t = 0; t < mesh.indices.size() / 3; t++)
     for (size_t e = 0; e < 3; e++) {

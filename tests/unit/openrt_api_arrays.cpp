@@ -1,5 +1,5 @@
-// openrt_api_arrays.cpp: rtDrawArrays and rtDrawElements: layouts, types, what is checked and what
-// is copied.
+// openrt_api_arrays.cpp: rtDrawArrays and rtDrawElements: layouts, types, and which values are
+// checked and copied.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -37,7 +37,7 @@ TEST_F(Arrays, DrawArraysCopiesPackedFloats) {
   std::memcpy(copy, square, sizeof(copy));
   rtVertexPointer(3, RT_FLOAT, 0, copy);
   rtDrawArrays(RT_QUADS, 0, 4);
-  std::fill(copy, copy + 12, 99.0f); // the call has copied
+  std::fill(copy, copy + 12, 99.0f); // the call has made a copy
   const edit::GeometryT& g = only();
   EXPECT_EQ(contents<float>(*last, g.points), Floats(square, square + 12));
   EXPECT_EQ(contents<uint32_t>(*last, g.indices), (Indices{0, 1, 2, 0, 2, 3}));
@@ -97,7 +97,7 @@ TEST_F(Arrays, DegeneratePrimitivesAreDropped) {
   RTstats stats;
   stats.size = sizeof(stats);
   rtGetStats(&stats);
-  EXPECT_EQ(stats.degenerate, 3u); // two, and the one the backend claims
+  EXPECT_EQ(stats.degenerate, 3u); // two, plus the one that the backend reports
 }
 
 TEST_F(Arrays, NothingDrawnMakesNoGeometry) {
@@ -164,7 +164,7 @@ TEST_F(Arrays, BadCallsAreErrorsAndDrawNothing) {
   const double wide[9] = {0, 0, 0, 1, 0, 0, 0, 1e39, 0},
                notANumber[9] = {0, 0, 0, 1, 0, 0, 0, std::nan(""), 0};
   rtVertexPointer(3, RT_FLOAT, 0, square);
-  EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 3)); // no object
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 3)); // outside an object
   rtBeginObject(0);
   EXPECT_FAILS(RT_INVALID_ENUM, rtDrawArrays(2, 0, 3));
   EXPECT_FAILS(RT_INVALID_VALUE, rtDrawElements(RT_TRIANGLES, 3, indices, 4));
@@ -174,7 +174,8 @@ TEST_F(Arrays, BadCallsAreErrorsAndDrawNothing) {
   rtVertexPointer(3, RT_FLOAT, 0, infinite);
   EXPECT_FAILS(RT_INVALID_VALUE, rtDrawArrays(RT_TRIANGLES, 0, 3));
   rtVertexPointer(3, RT_FLOAT, 0, nullptr);
-  EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 3)); // the vertex array is off
+  // The vertex array is disabled.
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 3));
   for (const double* points : {wide, notANumber}) {
     rtVertexPointer(3, RT_DOUBLE, 0, points);
     EXPECT_FAILS(RT_INVALID_VALUE, rtDrawArrays(RT_TRIANGLES, 0, 3));
@@ -208,7 +209,8 @@ TEST_F(Arrays, PointersAreChecked) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtVertexPointer(3, RT_FLOAT, 8, square));
   EXPECT_FAILS(RT_INVALID_VALUE, rtVertexPointer(3, RT_DOUBLE, 12, square));
   rtBeginObject(0);
-  EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 3)); // none of them took hold
+  // None of the calls had an effect.
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 3));
   rtEndObject();
 }
 

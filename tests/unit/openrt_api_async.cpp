@@ -1,5 +1,5 @@
-// openrt_api_async.cpp: frames in flight, with the backend that renders: cancel in each phase and
-// from another thread, progress, snapshots, and edits that reach only the next frame.
+// openrt_api_async.cpp: frames in flight on the rendering backend: cancelling in each phase and
+// from another thread, progress, snapshots, and edits that affect only the next frame.
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -43,7 +43,7 @@ class Async : public testing::Test {
     EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
     rtDeleteContext(context);
   }
-  // More work than a test waits for: it must be cancelled.
+  // Sets up more work than a test can wait for; the frame must be cancelled.
   void endless() {
     rtQuality(RT_SAMPLES_PER_PIXEL, 65536);
     rtFrameBuffer(2048, 2048, RT_RGBA | RT_DEPTH | RT_SAMPLES);
@@ -63,7 +63,8 @@ TEST_F(Async, SwapBuffersIsOneFrameLate) {
   rtSwapBuffers();
   float pixel[4];
   rtReadPixels(RT_RGBA, pixel, 4);
-  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_OPERATION)); // the first is in flight: none is finished
+  // The first frame is in flight and none is finished.
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_OPERATION));
   rtParameter3f(emissive, 0.25f, 0, 0);
   rtSwapBuffers();
   for (float r : red()) ASSERT_EQ(r, 0.5f);
@@ -74,8 +75,8 @@ TEST_F(Async, SwapBuffersIsOneFrameLate) {
 TEST_F(Async, EditsInFlightReachTheNextFrameAlone) {
   rtQuality(RT_SAMPLES_PER_PIXEL, 64);
   rtSwapBuffers();
-  rtParameter3f(emissive, 1, 0,
-                0); // parameters, matrices, geometry, deletion: all while it renders
+  // Changes parameters, matrices, geometry and deletes objects, all while the frame renders.
+  rtParameter3f(emissive, 1, 0, 0);
   const double away[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 100, 0, 0, 1};
   rtInstanceMatrix(instance, away);
   rtBeginObject(object);
@@ -85,7 +86,7 @@ TEST_F(Async, EditsInFlightReachTheNextFrameAlone) {
   rtFrameBuffer(8, 8, RT_RGBA);
   rtQuality(RT_SAMPLES_PER_PIXEL, 1);
   rtSwapBuffers();
-  for (float r : red()) ASSERT_NEAR(r, 0.5f, 1e-6f); // also its size is the former one's
+  for (float r : red()) ASSERT_NEAR(r, 0.5f, 1e-6f); // the size, too, is that of the previous frame
   rtSwapBuffers();
   std::vector<float> rgba(4 * 8 * 8, 5.0f);
   rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
@@ -99,7 +100,7 @@ TEST_F(Async, CancelWithoutAFrameDoesNothing) {
   rtCancel(context); // after the frame
   for (float r : red()) ASSERT_EQ(r, 0.5f);
   rtSwapBuffers();
-  rtSwapBuffers(); // a cancel from before a frame does not reach it
+  rtSwapBuffers(); // a cancellation before a frame does not affect it
   for (float r : red()) ASSERT_EQ(r, 0.5f);
 }
 
@@ -108,10 +109,10 @@ TEST_F(Async, CancelInFlightEndsIt) {
   rtSwapBuffers();
   EXPECT_LT(rtProgress(context), 1.0f);
   rtCancel(context);
-  rtCancel(context); // twice is once
+  rtCancel(context); // cancelling twice is like once
   rtFrameBuffer(width, height, RT_RGBA);
   rtQuality(RT_SAMPLES_PER_PIXEL, 1);
-  rtSwapBuffers(); // comes back soon: the endless frame ends with the tiles it has
+  rtSwapBuffers(); // returns soon: the endless frame ends with its finished tiles
   std::vector<float> samples(size_t(2048) * 2048);
   rtReadPixels(RT_SAMPLES, samples.data(), samples.size());
   size_t none = 0;
@@ -150,8 +151,10 @@ TEST_F(Async, ASnapshotHoldsWhatIsFinished) {
   EXPECT_GT(rtProgress(context), 0.0f);
   EXPECT_EQ(rtSnapshot(context, RT_RGBA, rgba.data(), rgba.size()), 1);
   EXPECT_EQ(rtSnapshot(context, RT_DEPTH, depth.data(), depth.size()), 1);
-  EXPECT_EQ(rtSnapshot(context, RT_NORMAL, depth.data(), depth.size()), 0); // no such channel
-  EXPECT_EQ(rtSnapshot(context, RT_RGBA, rgba.data(), rgba.size() - 1), 0); // no room
+  // The frame has no such channel.
+  EXPECT_EQ(rtSnapshot(context, RT_NORMAL, depth.data(), depth.size()), 0);
+  // The buffer is too small.
+  EXPECT_EQ(rtSnapshot(context, RT_RGBA, rgba.data(), rgba.size() - 1), 0);
   size_t finished = 0;
   for (size_t i = 0; i < depth.size(); i++) {
     ASSERT_TRUE(std::isinf(depth[i]) || std::fabs(depth[i] - 5) < 1e-4f) << depth[i];
@@ -160,8 +163,8 @@ TEST_F(Async, ASnapshotHoldsWhatIsFinished) {
   }
   EXPECT_GT(finished, 0u);
   rtCancel(context);
-  rtSwapBuffers(); // the frame that is in flight now is like it: cancelled by the deletion of the
-                   // context
+  // The frame in flight now is endless, too; deleting the context cancels it.
+  rtSwapBuffers();
 }
 
 TEST_F(Async, DeletingTheContextEndsItsFrame) {
@@ -170,7 +173,7 @@ TEST_F(Async, DeletingTheContextEndsItsFrame) {
   rtDeleteContext(context);
   EXPECT_EQ(rtGetCurrent(), nullptr);
   rtCancel(context);
-  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE)); // its handle names nothing any more
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE)); // the handle is no longer valid
   EXPECT_EQ(rtProgress(context), 0.0f);
   EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
   context = nullptr;

@@ -1,7 +1,7 @@
-// openrt_api_every_call.cpp: every function of openrt.h in every state and with every kind of
-// argument in which it must fail: the error's number, the function's name in its text, and nothing
-// changed. The tables are compared with the header: a function that is missing in them fails.
-// Longer than 500 lines because it has one test for each call of the API.
+// openrt_api_every_call.cpp: calls every function of openrt.h in every state and with every kind of
+// argument in which it must fail. Each call must set the right error code, name the function in the
+// message, and change nothing. The tables are compared with the header: a function missing from
+// them fails the test. Longer than 500 lines because it has one test for each call of the API.
 #include <cfloat>
 #include <cmath>
 #include <fstream>
@@ -59,7 +59,7 @@ double matrix[16];
 RTstats statistics;
 RTworker worker;
 
-// With right arguments. Without a context all of them fail.
+// Calls with valid arguments. Without a context all of them fail.
 const Named needContext[] = {
     CALL(rtErrorCallback, nullptr, nullptr),
     CALL(rtLogCallback, nullptr, nullptr),
@@ -162,7 +162,7 @@ const Named needContext[] = {
     CALL(rtCastRays, 1, &ray, &hit),
     CALL(rtOccludedRays, 1, &ray, bytes),
 };
-// These need none.
+// Functions that need no context.
 const char* const anywhere[] = {
     "rtGetError",     "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent",
     "rtGetCurrent",   "rtDeleteContext",   "rtInit",       "rtExit",
@@ -186,10 +186,10 @@ struct Wrong {
 #define ENUM RT_INVALID_ENUM
 #define PARAMETER RT_INVALID_PARAMETER
 
-// The surface shader of the class Everything is bound, in definitions too; in lists it is one of
-// the class Varying.
+// Calls that must fail. The surface shader of the class Everything is bound, also in definitions;
+// in lists a shader of the class Varying is bound.
 const Wrong wrong[] = {
-    // Definitions and lists that are not open, or are.
+    // Definitions and lists that are not open, or are open.
     WRONG(OPERATION, Outside, rtBegin, RT_TRIANGLES), WRONG(ENUM, Definition, rtBegin, 99),
     WRONG(OPERATION, List, rtBegin, RT_TRIANGLES), WRONG(OPERATION, Outside, rtEnd),
     WRONG(OPERATION, Definition, rtEnd), WRONG(OPERATION, Outside, rtEndObject),
@@ -307,9 +307,10 @@ const Wrong wrong[] = {
     WRONG(VALUE, List, rtParameter3f, w.color, 2, 0, 0),
     WRONG(VALUE, List, rtParameter3f, w.color, nan, 0, 0),
     WRONG(PARAMETER, List, rtParameter2f, w.color, 0, 0),
-    WRONG(OPERATION, List, rtParameter1f, w.whole, 0), // of the whole shader
+    WRONG(OPERATION, List, rtParameter1f, w.whole, 0), // belongs to the whole shader
     WRONG(OPERATION, List, rtParameter1i, 0, 0), WRONG(PARAMETER, List, rtParameter1f, 99, 0),
-    WRONG(OPERATION, Outside, rtParameterPointer, w.number, 0, three), // of the whole shader
+    // Belongs to the whole shader.
+    WRONG(OPERATION, Outside, rtParameterPointer, w.number, 0, three),
     WRONG(PARAMETER, Outside, rtParameterPointer, -1, 0, three),
     WRONG(PARAMETER, Outside, rtParameterPointer, w.count, 0, three),
     WRONG(OPERATION, List, rtParameterPointer, w.color, 0, three),
@@ -389,7 +390,7 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtSnapshot, w.context, RT_RGBA, nullptr, 64),
     WRONG(OPERATION, Outside, rtExit), // without rtInit
 };
-// They cannot fail but for want of a context, or cannot fail at all.
+// Functions that fail only without a context, or never.
 const char* const infallible[] = {"rtErrorCallback", "rtLogCallback",     "rtLoadName",
                                   "rtPushMatrix",    "rtLoadIdentity",    "rtGetError",
                                   "rtGetCurrent",    "rtGetErrorMessage", "rtInit",
@@ -470,7 +471,7 @@ TEST_F(EveryCall, WrongArgumentsAndStatesAreErrorsThatChangeNothing) {
     }
     if (each.state != Outside) {
       rtEndObject();
-      const Commit& c = commit(); // what the definition would be without the call
+      const Commit& c = commit(); // the definition as it would be without the call
       const auto& geometries = edits<edit::ObjectT>(c).at(0)->geometries;
       EXPECT_EQ(geometries.size(), each.state == List ? 1u : 0u);
       for (const auto& g : geometries) {
@@ -481,7 +482,7 @@ TEST_F(EveryCall, WrongArgumentsAndStatesAreErrorsThatChangeNothing) {
       rtDeleteObject(object);
     }
     const Commit& after = commit();
-    EXPECT_EQ(after.edits.edits.size(), each.state == Outside ? 0u : 1u); // the deletion alone
+    EXPECT_EQ(after.edits.edits.size(), each.state == Outside ? 0u : 1u); // only the deletion
   }
 }
 

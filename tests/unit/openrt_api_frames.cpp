@@ -1,5 +1,5 @@
-// openrt_api_frames.cpp: frame settings, the course of frames, reading, statistics and queries;
-// order of the edits.
+// openrt_api_frames.cpp: frame settings, the sequence of frames, reading pixels, statistics and
+// queries; the order of edits.
 #include <cmath>
 #include <cstring>
 
@@ -149,7 +149,7 @@ TEST_F(Frames, QueriesAskTheLastCommittedScene) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtOccludedRays(1, &ray, nullptr));
 }
 
-// The order that scene_state.h promises, whatever the order of the calls.
+// Edits come in the order that scene_state.h promises, whatever the order of the calls.
 TEST_F(Frames, EditsComeInTheirOrder) {
   const RTid classes[2] = {rtNewShaderClass("Lamp", "everything"),
                            rtNewShaderClass("Plain", "everything")};
@@ -178,7 +178,7 @@ TEST_F(Frames, EditsComeInTheirOrder) {
   rtDeleteShader(oldShader);
   rtDeleteObject(oldObject);
   rtRemoveLight(oldLight);
-  EXPECT_FAILS(RT_INVALID_ID, rtDeleteInstance(oldInstance)); // went with its object
+  EXPECT_FAILS(RT_INVALID_ID, rtDeleteInstance(oldInstance)); // deleted together with its object
 
   using edit::Any;
   const std::vector<Any> rank = {Any::DeleteLight,  Any::DeleteInstance, Any::Texture,
@@ -188,16 +188,16 @@ TEST_F(Frames, EditsComeInTheirOrder) {
                                  Any::DeleteObject, Any::DeleteShader,   Any::DeleteTexture};
   std::vector<size_t> seen;
   for (const auto& entry : commit().edits.edits) {
-    const Any type =
-        entry->any.type == Any::Parameter ? Any::Shader : entry->any.type; // follow their shader
+    // Parameters follow their shader.
+    const Any type = entry->any.type == Any::Parameter ? Any::Shader : entry->any.type;
     seen.push_back(size_t(std::find(rank.begin(), rank.end(), type) - rank.begin()));
   }
   EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
   seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  EXPECT_EQ(seen.size(), rank.size()); // each kind is there
+  EXPECT_EQ(seen.size(), rank.size()); // each kind occurs
 }
 
-// Where frames can overlap the next is started before the last is waited for.
+// Where frames can overlap, the next frame is started before the API waits for the last one.
 TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
   const auto course = [&] { return std::exchange(captured->course, ""); };
   const auto finished = [&] {
@@ -228,17 +228,17 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
   rtSwapBuffers();
   EXPECT_EQ(course(), "asasasw");
   EXPECT_EQ(finished(), 4u);
-  rtReadPixels(RT_RGBA, pixels, 32); // of the former size
+  rtReadPixels(RT_RGBA, pixels, 32); // of the previous size
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_FAILS(RT_INVALID_VALUE, rtReadPixels(RT_RGBA, pixels, 32));
-  rtRender(); // gives up those that are left
+  rtRender(); // cancels the frames that are left
   EXPECT_EQ(course(), "wcwwasw");
   EXPECT_EQ(finished(), 8u);
   EXPECT_EQ(rtFinishFrame(), 0);
 }
 
-// The backend does not know yet of a frame that is being handed over; a cancellation of that time
-// reaches it all the same.
+// While a frame is being handed over, the backend does not know it yet. A cancellation at that time
+// reaches the frame all the same.
 TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
   const auto course = [&](const char* cancelIn, void (*call)()) {
     captured->cancelIn = cancelIn;
@@ -247,16 +247,16 @@ TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
     return captured->course;
   };
   EXPECT_EQ(course("a", rtRender), "acscw");
-  EXPECT_EQ(course("", rtRender), "asw"); // and only that one
+  EXPECT_EQ(course("", rtRender), "asw"); // and only that frame
   EXPECT_EQ(course("s", rtRender), "asccw");
   EXPECT_EQ(course("", rtSwapBuffers), "as");
   EXPECT_EQ(course("a", rtSwapBuffers), "wacsc");
-  EXPECT_EQ(course("w", rtSwapBuffers),
-            "wcas"); // while the frame before is waited for: that one ends, the next is whole
+  // Cancelled while the API waits for the previous frame: that one ends, the next is complete.
+  EXPECT_EQ(course("w", rtSwapBuffers), "wcas");
   rtCancel(handle);
   EXPECT_EQ(course("", rtSwapBuffers), "was");
-  EXPECT_EQ(course("w", rtRender),
-            "cwcascwc"); // rtRender gives up the frame before, and is given up itself
+  // rtRender cancels the previous frame and is cancelled itself.
+  EXPECT_EQ(course("w", rtRender), "cwcascwc");
   captured->pipelines = true;
   EXPECT_EQ(course("", rtSwapBuffers), "as");
   EXPECT_EQ(course("s", rtSwapBuffers), "asccw");
@@ -286,7 +286,7 @@ TEST_F(Frames, WorkersAreWrittenAsFarAsThereIsRoom) {
   EXPECT_EQ(rtGetWorkers(rtGetCurrent(), workers, 3), 2u);
   EXPECT_TRUE(workers[1].threads == 4 && workers[1].size == sizeof(RTworker) &&
               workers[2].size == 0);
-  struct Older { // a program that was built when there was less to tell
+  struct Older { // the struct of a program built with an older header
     size_t size;
     char name[64];
     uint32_t threads;

@@ -1,5 +1,5 @@
 // openrt_api_geometry_parameters.cpp: rtParameter* between rtBegin and rtEnd and
-// rtParameterPointer, as the backend gets them.
+// rtParameterPointer, as the backend receives them.
 #include "unit/openrt_api_support.h"
 
 namespace {
@@ -82,22 +82,22 @@ TEST_F(OwnParameters, OneThatIsNewStartsAnotherGeometry) {
   rtEnd();
   rtBegin(RT_TRIANGLES);
   triangle();
-  rtParameter1f(weight, 8); // in the middle: what came before has the shader's own value
+  rtParameter1f(weight, 8); // set between vertices: earlier vertices have the shader's own value
   triangle();
   rtParameter3f(color, 1, 0, 0);
   rtNormal3f(0, 0, 1);
   triangle();
   rtEnd();
-  rtBindShader(0); // another shader: nothing of it
+  rtBindShader(0); // none of the values apply to another shader
   rtBegin(RT_TRIANGLES);
   triangle();
   rtEnd();
-  rtBindShader(shader); // and back: what was set holds in the object
+  rtBindShader(shader); // back to the first shader: its values hold within the object
   rtBegin(RT_TRIANGLES);
   triangle();
   rtEnd();
   rtEndObject();
-  rtBeginObject(0); // not in the next
+  rtBeginObject(0); // they do not hold in the next object
   rtBegin(RT_TRIANGLES);
   triangle();
   rtEnd();
@@ -109,7 +109,7 @@ TEST_F(OwnParameters, OneThatIsNewStartsAnotherGeometry) {
   EXPECT_EQ(valuesOf(c, *g[1], weight), (Floats{7, 7, 7, 8, 8, 8, 8, 8, 8}));
   const Floats colors = valuesOf(c, *g[1], color);
   ASSERT_EQ(colors.size(), 27u);
-  EXPECT_EQ(colors[0], 0.25f); // the class's default
+  EXPECT_EQ(colors[0], 0.25f); // the default of the class
   EXPECT_EQ(colors[18], 1.0f);
   EXPECT_EQ(contents<float>(c, g[1]->normals).size(), 27u);
   EXPECT_TRUE(g[2]->shader == 0 && g[2]->parameters.empty());
@@ -121,7 +121,7 @@ TEST_F(OwnParameters, ByTriangleTheyAreOfTheVertexThatCompletesIt) {
   struct {
     RTenum mode;
     int vertices;
-    Floats expected; // number of the completing vertex
+    Floats expected; // by number of the completing vertex
   } const cases[] = {{RT_TRIANGLES, 6, {2, 5}},
                      {RT_TRIANGLE_STRIP, 5, {2, 3, 4}},
                      {RT_TRIANGLE_FAN, 5, {2, 3, 4}},
@@ -136,7 +136,7 @@ TEST_F(OwnParameters, ByTriangleTheyAreOfTheVertexThatCompletesIt) {
     rtBegin(each.mode);
     for (int i = 0; i < each.vertices; i++) {
       rtParameter2f(pair, float(i), 0);
-      const double turn = 0.7 * i; // convex, and no three on a line
+      const double turn = 0.7 * i; // convex, with no three points on a line
       rtVertex3d(float(std::cos(turn)), float(std::sin(turn)), 0);
     }
     rtEnd();
@@ -174,9 +174,9 @@ TEST_F(OwnParameters, PointersAreReadByTheDrawCalls) {
   rtParameterPointer(weight, 0, weights);
   rtParameterPointer(pair, sizeof pairs[0], pairs[0]);
   rtBeginObject(0);
-  rtDrawArrays(RT_TRIANGLES, 1, 3); // from the second vertex on, the first triangle of the call
+  rtDrawArrays(RT_TRIANGLES, 1, 3); // skips the first vertex; it is the first triangle of the call
   rtBindShader(rtNewShader(rtNewShaderClass("Everything", "everything")));
-  rtDrawArrays(RT_TRIANGLES, 0, 3); // of another class
+  rtDrawArrays(RT_TRIANGLES, 0, 3); // a shader of another class
   rtBindShader(rtNewShader(rtNewShaderClass("Varying", "varying")));
   rtDrawArrays(RT_TRIANGLE_STRIP, 0, 4); // another shader of the class
   rtEndObject();
@@ -203,7 +203,7 @@ TEST_F(OwnParameters, BadValuesOfArraysAreErrorsWhereTheyAreUsed) {
   ASSERT_EQ(geometries(c).size(), 1u);
   const Floats values = valuesOf(c, *geometries(c)[0], color);
   ASSERT_EQ(values.size(), 12u);
-  EXPECT_EQ(values[9], 0.25f); // nobody uses it: the default
+  EXPECT_EQ(values[9], 0.25f); // unused by any vertex: the default
 }
 
 TEST_F(OwnParameters, OfAShaderThatIsDeletedAreDropped) {
@@ -223,7 +223,7 @@ TEST_F(OwnParameters, TheShaderOfTheListIsMeant) {
   rtBeginObject(0);
   rtBegin(RT_TRIANGLES);
   rtBindShader(other);
-  rtParameter1f(weight, 5); // Varying's, which the list has latched
+  rtParameter1f(weight, 5); // a parameter of Varying, which the list has latched
   triangle();
   rtEnd();
   rtBindShader(0);

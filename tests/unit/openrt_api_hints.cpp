@@ -1,6 +1,6 @@
-// openrt_api_hints.cpp: what is static and what is dynamic travels in the edits: as hinted, and by
-// itself once something that was committed moves or is redefined. Later backends and recordings see
-// the same state.
+// openrt_api_hints.cpp: the edits carry what is static and what is dynamic: by hint, and
+// automatically once a committed object or instance is moved or redefined. Backends created later
+// and recordings see the same state.
 #include "unit/openrt_api_support.h"
 
 namespace {
@@ -12,7 +12,7 @@ class Hints : public ApiTest {
  protected:
   const double matrix[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 2, 3, 1};
 
-  // The flags that the next commit's edits carry, in order.
+  // Returns the flags in the next commit's edits, in order.
   std::vector<bool> instanceFlags() {
     std::vector<bool> flags;
     for (const auto* e : edits<edit::InstanceT>(commit())) flags.push_back(e->dynamic);
@@ -92,7 +92,7 @@ TEST_F(Hints, AHintHolds) {
   EXPECT_TRUE(edits<edit::ObjectT>(c).at(0)->dynamic);
   rtInstanceHint(instance, RT_STATIC);
   EXPECT_EQ(instanceFlags(), Flags{false});
-  rtInstanceMatrix(instance, matrix); // moved after all
+  rtInstanceMatrix(instance, matrix); // it is moved although hinted static
   EXPECT_EQ(instanceFlags(), Flags{true});
 }
 

@@ -49,7 +49,8 @@ TEST_F(ApiTest, QuarterTurnsAreExact) {
   expectMatrix(identity);
 }
 
-// 1000 nested rotations of 0.36 degrees and scales of 1.001: one turn, and 1.001^1000.
+// Applies 1000 nested rotations of 0.36 degrees and scales of 1.001: one full turn, and a scale of
+// 1.001^1000.
 TEST_F(ApiTest, ALongProductStaysAccurate) {
   for (int i = 0; i < 1000; i++) {
     rtPushMatrix();
@@ -103,7 +104,7 @@ TEST_F(ApiTest, LookAtIsTheInverseOfGluLookAt) {
   rtLookAt(1, 2, 3, 1, 2, -7, 0, 1, 0); // looks down -z
   expectMatrix({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}, 1e-15);
   rtLoadIdentity();
-  rtLookAt(0, 0, 0, 5, 0, 0, 0, 0, 2); // looks down +x, z up: right is -y
+  rtLookAt(0, 0, 0, 5, 0, 0, 0, 0, 2); // looks down +x with z up, so right is -y
   expectMatrix({0, -1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0, 0, 0, 1}, 1e-15);
 }
 
@@ -138,7 +139,7 @@ TEST_F(ApiTest, BadMatricesAreErrorsAndChangeNothing) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtLookAt(infinity, 0, 0, 0, 5, 0, 0, 0, 1));
   EXPECT_FAILS(RT_INVALID_VALUE, rtGetMatrixd(nullptr));
   EXPECT_EQ(currentMatrix(), before);
-  rtScaled(0, 0, 0); // flat is allowed: what is drawn under it is not there
+  rtScaled(0, 0, 0); // a flat matrix is allowed; objects drawn under it are invisible
   EXPECT_RT_ERROR(RT_NO_ERROR);
 }
 

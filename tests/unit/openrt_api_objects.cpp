@@ -1,4 +1,4 @@
-// openrt_api_objects.cpp: objects, instances, nesting, deletion, and what edits a commit carries.
+// openrt_api_objects.cpp: objects, instances, nesting, deletion, and the edits in a commit.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ using namespace openrt::test;
 
 class Objects : public ApiTest {
  protected:
-  // An object that contains these.
+  // Defines an object that contains these objects.
   RTid groupOf(std::initializer_list<RTid> objects, RTid id = 0) {
     const RTid group = rtBeginObject(id);
     for (RTid object : objects) lastChild = rtInstantiateObject(object);
@@ -79,7 +79,7 @@ TEST_F(Objects, RedefiningReplacesGeometryAndChildren) {
   rtBeginObject(group);
   rtSphere(1);
   const RTid fresh = rtInstantiateObject(leaf);
-  rtInstanceMatrix(old, matrix); // until the definition ends the old one holds
+  rtInstanceMatrix(old, matrix); // the old instance exists until the definition ends
   EXPECT_RT_ERROR(RT_NO_ERROR);
   rtEndObject();
   EXPECT_FAILS(RT_INVALID_ID, rtInstanceMatrix(old, matrix));
@@ -118,8 +118,8 @@ TEST_F(Objects, NoObjectContainsItself) {
   commit();
 }
 
-// a contains b becomes b contains a, within one commit: the deletion comes first, so no edit makes
-// a cycle.
+// "a contains b" becomes "b contains a" within one commit. The deletion comes first, so no edit
+// creates a cycle.
 TEST_F(Objects, NestingMayBeTurnedRound) {
   const RTid b = triangleObject(), a = groupOf({b});
   commit();
@@ -164,7 +164,7 @@ TEST_F(Objects, WhatWasNeverCommittedLeavesNoTrace) {
   rtDeleteInstance(instance);
   rtDeleteObject(object);
   const Commit& c = commit();
-  EXPECT_EQ(c.edits.edits.size(), 1u); // the frame settings
+  EXPECT_EQ(c.edits.edits.size(), 1u); // only the frame settings
   EXPECT_TRUE(c.arrays.empty());
 }
 
@@ -231,7 +231,7 @@ TEST_F(Objects, ABadMatrixLeavesTheInstanceAlone) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtInstanceMatrix(instance, nullptr));
   EXPECT_TRUE(commit().edits.edits.empty());
   bad[15] = 1;
-  bad[0] = 0; // singular: drawn as nothing
+  bad[0] = 0; // singular: nothing is drawn
   rtInstanceMatrix(instance, bad);
   EXPECT_EQ(commit().edits.edits.size(), 1u);
 }

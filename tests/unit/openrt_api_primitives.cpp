@@ -1,5 +1,5 @@
-// openrt_api_primitives.cpp: begin/end: modes, what is latched, merging, positions in double,
-// degenerate and bad input.
+// openrt_api_primitives.cpp: rtBegin and rtEnd: modes, latched attributes, merging, positions in
+// double, degenerate and bad input.
 #include <cmath>
 #include <limits>
 
@@ -36,7 +36,7 @@ class Primitives : public ApiTest {
     RTstats stats;
     stats.size = sizeof(stats);
     rtGetStats(&stats);
-    return stats.degenerate - 1; // the capturing backend claims one
+    return stats.degenerate - 1; // the capturing backend adds one
   }
   const Commit* last = nullptr;
 };
@@ -64,7 +64,8 @@ INSTANTIATE_TEST_SUITE_P(
     Api, Modes,
     testing::Values(
         ModeCase{RT_POINTS, 3, edit::Primitive::Points, {0, 1, 2}},
-        ModeCase{RT_LINES, 5, edit::Primitive::Lines, {0, 1, 2, 3}}, // the fifth has no partner
+        // The fifth vertex has no partner.
+        ModeCase{RT_LINES, 5, edit::Primitive::Lines, {0, 1, 2, 3}},
         ModeCase{RT_LINE_STRIP, 4, edit::Primitive::Lines, {0, 1, 1, 2, 2, 3}},
         ModeCase{RT_TRIANGLES, 7, edit::Primitive::Triangles, {0, 1, 2, 3, 4, 5}},
         ModeCase{RT_TRIANGLE_STRIP, 5, edit::Primitive::Triangles, {0, 1, 2, 2, 1, 3, 2, 3, 4}},
@@ -135,7 +136,7 @@ TEST_F(Primitives, AnAttributeThatComesLateLeavesEarlierVerticesUnset) {
   rtVertex3f(1, 0, 1);
   rtVertex3f(0, 1, 1);
   rtEnd();
-  rtBegin(RT_TRIANGLES); // joins: the same attributes
+  rtBegin(RT_TRIANGLES); // merged with the list before, which has the same attributes
   curve(3);
   rtEnd();
   const edit::ObjectT& object = end();
@@ -223,7 +224,7 @@ TEST_F(Primitives, EachChangeOfStateStartsAGeometry) {
   rtLineWidth(2);
   list(RT_LINE_STRIP);
   rtPointSize(9);
-  list(RT_LINE_STRIP); // means nothing to lines
+  list(RT_LINE_STRIP); // does not apply to lines
   rtColor3f(1, 1, 1);
   list(RT_LINE_STRIP);
   EXPECT_EQ(end().geometries.size(), 8u);
@@ -234,7 +235,7 @@ TEST_F(Primitives, DegenerateOnesAreDroppedAndCounted) {
   rtBegin(RT_TRIANGLES);
   rtVertex3f(0, 0, 0);
   rtVertex3f(1, 0, 0);
-  rtVertex3f(1, 0, 0); // two corners in one place
+  rtVertex3f(1, 0, 0); // two corners coincide
   rtVertex3f(0, 0, 0);
   rtVertex3f(1, 2, 3);
   rtVertex3f(3, 6, 9); // collinear
@@ -243,7 +244,7 @@ TEST_F(Primitives, DegenerateOnesAreDroppedAndCounted) {
   rtVertex3f(0.7f, 0.7f, 0.7f);
   rtVertex3f(0, 0, 0);
   rtVertex3f(1, 0, 0);
-  rtVertex3f(0.5f, 1e-30f, 0); // thin, but there
+  rtVertex3f(0.5f, 1e-30f, 0); // thin, but not degenerate
   rtVertex3f(5, 5, 5);
   rtVertex3f(5, 5, 5);
   rtVertex3f(5, 5, 5);
@@ -319,7 +320,7 @@ TEST_F(Primitives, BracketsMustBalance) {
   EXPECT_FAILS(RT_INVALID_OPERATION, rtDrawArrays(RT_TRIANGLES, 0, 0));
   rtEnd();
   const edit::GeometryT& g = only();
-  EXPECT_EQ(contents<uint32_t>(*last, g.indices), (Indices{0, 1, 2})); // what failed left nothing
+  EXPECT_EQ(contents<uint32_t>(*last, g.indices), (Indices{0, 1, 2})); // failed calls left nothing
 }
 
 TEST_F(Primitives, SizesAndCapabilities) {
@@ -346,7 +347,7 @@ TEST_F(Primitives, Spheres) {
   EXPECT_EQ(g.points + g.indices, 0u);
 }
 
-// World positions: origin (in the matrix) plus points, in double.
+// Returns world positions in double: the origin (in the matrix) plus the points.
 std::vector<double> positions(const Commit& c, const edit::GeometryT& g) {
   const std::vector<double> m = matrixOf(*g.matrix);
   const std::vector<float> points = contents<float>(c, g.points);
@@ -368,7 +369,7 @@ TEST_F(Primitives, DoublesThatFloatHoldsAreKeptAsTheyAre) {
   EXPECT_EQ(matrixOf(*g.matrix)[12], 0.0);
 }
 
-// A room on the Earth's surface: float alone would round to half a metre.
+// A room on the Earth's surface, where float would round to half a metre.
 TEST_F(Primitives, DoublesFarFromTheOriginStayApart) {
   const double x = 6378137.123456789, y = -1234567.987654321, z = 42.000000001;
   rtBeginObject(0);
@@ -381,7 +382,7 @@ TEST_F(Primitives, DoublesFarFromTheOriginStayApart) {
   const std::vector<double> world = positions(*last, g);
   const std::vector<double> expected{x, y, z, x + 0.001, y, z, x, y + 0.002, z};
   for (int i = 0; i < 9; i++) EXPECT_NEAR(world[i], expected[i], 1e-9) << i;
-  EXPECT_NEAR(world[3] - world[0], 0.001, 2e-9); // what double itself resolves there
+  EXPECT_NEAR(world[3] - world[0], 0.001, 2e-9); // the resolution of double there
 }
 
 TEST_F(Primitives, ShortFractionsFarOutAreExact) {
@@ -409,7 +410,7 @@ TEST_F(Primitives, NeighboursInDoubleMergeAndDistantOnesDoNot) {
   };
   for (int i = 0; i < 10; i++) triangle(1e7 + 0.3 + i);
   triangle(2e7 + 0.3);
-  rtBegin(RT_TRIANGLES); // in float: keeps its own origin
+  rtBegin(RT_TRIANGLES); // given in float, so it keeps its own origin
   curve(3);
   rtEnd();
   const edit::ObjectT& object = end();
@@ -447,7 +448,7 @@ TEST_F(Primitives, TheMatrixGoesBeforeTheOrigin) {
   const edit::GeometryT& g = only();
   const std::vector<double> m = matrixOf(*g.matrix);
   const std::vector<float> p = contents<float>(*last, g.points);
-  EXPECT_NEAR(m[1] * p[0] + m[5] * p[1] + m[13], 1e8 + 0.1, 1e-7); // x turned into y
+  EXPECT_NEAR(m[1] * p[0] + m[5] * p[1] + m[13], 1e8 + 0.1, 1e-7); // x rotated to y
   EXPECT_NEAR(m[0] * p[0] + m[4] * p[1] + m[12], 0, 1e-7);
 }
 

@@ -106,7 +106,7 @@ TEST_F(Shaders, OnlyWhatChangedIsSent) {
 }
 
 TEST_F(Shaders, BadParametersAreErrorsAndChangeNothing) {
-  EXPECT_FAILS(RT_INVALID_OPERATION, rtParameter1f(1, 0)); // nothing bound
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtParameter1f(1, 0)); // no shader is bound
   EXPECT_FAILS(RT_INVALID_OPERATION, rtParameterHandle("strength"));
   bind();
   commit();
@@ -117,8 +117,8 @@ TEST_F(Shaders, BadParametersAreErrorsAndChangeNothing) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtParameterHandle(nullptr));
   EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter1f(-1, 0));
   EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter1f(10, 0));
-  EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter1f(0, 0)); // an int
-  EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter1i(1, 0)); // a float
+  EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter1f(0, 0)); // the parameter is an int
+  EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter1i(1, 0)); // the parameter is a float
   EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter2f(3, 0, 0));
   EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter3f(2, 0, 0, 0));
   EXPECT_FAILS(RT_INVALID_PARAMETER, rtParameter4f(5, 0, 0, 0, 0));
@@ -225,7 +225,7 @@ TEST_F(Shaders, StockCameras) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtOrtho(INFINITY));
   rtPushMatrix();
   rtScaled(1, 0, 1);
-  EXPECT_FAILS(RT_INVALID_VALUE, rtPerspective(40)); // flat
+  EXPECT_FAILS(RT_INVALID_VALUE, rtPerspective(40)); // singular matrix
   rtPopMatrix();
   rtPerspective(40);
   const Commit& first = commit();
@@ -259,7 +259,7 @@ TEST_F(Shaders, DeletingAShaderEndsItsRoles) {
   rtDeleteShader(lamp);
   rtDeleteShader(eye);
   EXPECT_FAILS(RT_INVALID_ID, rtBindShader(surface));
-  EXPECT_FAILS(RT_INVALID_OPERATION, rtParameterHandle("x")); // it was bound
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtParameterHandle("x")); // the deleted shader was bound
   EXPECT_FAILS(RT_INVALID_ID, rtRemoveLight(light));
   EXPECT_FAILS(RT_INVALID_ID, rtDeleteShader(surface));
   const Commit& c = commit();
@@ -332,7 +332,7 @@ TEST_F(Textures, FloatImages) {
 
 TEST_F(Textures, BadCallsAreErrors) {
   EXPECT_FAILS(RT_INVALID_OPERATION,
-               rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, bytes)); // nothing bound
+               rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, bytes)); // no texture is bound
   EXPECT_FAILS(RT_INVALID_OPERATION, rtTexParameteri(RT_TEXTURE_SRGB, 1));
   EXPECT_FAILS(RT_INVALID_ID, rtBindTexture(4711));
   EXPECT_FAILS(RT_INVALID_ID, rtDeleteTexture(0));
@@ -356,7 +356,8 @@ TEST_F(Textures, BadCallsAreErrors) {
   rtTexImage2D(1, 1, 1, RT_UNSIGNED_BYTE, bytes);
   commit();
   rtDeleteTexture(texture);
-  EXPECT_FAILS(RT_INVALID_OPERATION, rtTexParameteri(RT_TEXTURE_SRGB, 1)); // it was bound
+  // The deleted texture was bound.
+  EXPECT_FAILS(RT_INVALID_OPERATION, rtTexParameteri(RT_TEXTURE_SRGB, 1));
   EXPECT_EQ(edits<edit::DeleteTextureT>(commit()).size(), 1u);
 }
 

@@ -1,6 +1,6 @@
-// openrt_api_support.h: a backend that keeps the commits it gets, and checks each as the reader of
-// recordings would; a fixture with a context on it; small helpers to look into commits. Used by the
-// tests of the C API.
+// openrt_api_support.h: a backend that keeps the commits it receives and validates each like the
+// reader of recordings, a fixture with a context on that backend, and helpers to look into commits.
+// Used by the tests of the C API.
 #pragma once
 
 #include <memory>
@@ -25,8 +25,8 @@ struct Captured {
   std::vector<std::shared_ptr<const Commit>> commits;
   int starts = 0, waits = 0, cancels = 0;
   bool failNextApply = false, failNextWait = false, pipelines = false;
-  std::string course;   // of the frames: a apply, s start, w wait, c cancel
-  std::string cancelIn; // calls of these letters in which somebody cancels
+  std::string course;   // backend calls so far: a apply, s start, w wait, c cancel
+  std::string cancelIn; // letters of the calls during which rtCancel() is called
 };
 
 class CaptureBackend final : public Backend {
@@ -90,7 +90,7 @@ class CaptureBackend final : public Backend {
   std::shared_ptr<Captured> captured_;
 };
 
-// A context whose commits can be looked at. At the end no error may be left over.
+// A context whose commits can be inspected. TearDown() checks that no error is pending.
 class ApiTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -108,7 +108,7 @@ class ApiTest : public testing::Test {
     EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
   }
 
-  // Commits and returns what the backend got.
+  // Commits and returns what the backend received.
   const Commit& commit() {
     const size_t before = captured->commits.size();
     rtRender();
@@ -121,7 +121,7 @@ class ApiTest : public testing::Test {
   RTcontext handle = nullptr;
 };
 
-// The edits of one kind in a commit, in order: edits<edit::InstanceT>(commit).
+// Returns the edits of one kind in a commit, in order: edits<edit::InstanceT>(commit).
 template <class T> std::vector<const T*> edits(const Commit& commit) {
   std::vector<const T*> result;
   for (const auto& entry : commit.edits.edits)
@@ -148,12 +148,11 @@ inline std::vector<double> currentMatrix() {
   return m;
 }
 
-// The error now pending, and its text without the number of digits that a test should not depend
-// on.
+// Checks the code of the pending error.
 #define EXPECT_RT_ERROR(code)                                                                      \
   do { EXPECT_EQ(rtGetError(), RTenum(code)) << rtGetErrorMessage(); } while (0)
 
-// A call that must fail with this error.
+// Checks that a call fails with this error.
 #define EXPECT_FAILS(code, call)                                                                   \
   do {                                                                                             \
     EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << "before " #call ": " << rtGetErrorMessage();   \

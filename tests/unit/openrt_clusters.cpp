@@ -1,5 +1,5 @@
-// openrt_clusters.cpp: a scene cut at what is dynamic: parts, sockets, clusters; what a commit says
-// it changed.
+// openrt_clusters.cpp: cutting a scene at its dynamic parts into parts, sockets and clusters, and
+// the changes that each commit reports.
 #include <gtest/gtest.h>
 
 #include "scene/flatten.h"
@@ -71,8 +71,8 @@ TEST(Clusters, CopiesOfOneObjectAreOnePart) {
   EXPECT_EQ(flat.clusters[2].path.instance, 11u);
 }
 
-// A dynamic instance in an object with two instances, one of them dynamic: a cluster for every
-// path.
+// A dynamic instance in an object with two instances, one of them dynamic, makes a cluster for
+// every path.
 TEST(Clusters, OneForEveryPath) {
   Scene scene;
   apply(scene, object(1, true), object(2, true), instance(10, 2, 1, 1, true),
@@ -82,7 +82,7 @@ TEST(Clusters, OneForEveryPath) {
   Ids places;
   for (const Cluster& c : flat.clusters) places.push_back(uint32_t(c.world.m[12]));
   EXPECT_EQ(places, (Ids{0, 11, 20, 21}));
-  // The outer one moves, and hides, the one below it.
+  // The outer instance moves, and the one below it is hidden.
   EXPECT_EQ(apply(scene, instance(12, 0, 2, 30, true)).moved, Ids{12});
   EXPECT_EQ(replace(scene, flat, {12}), (Ids{2, 3}));
   EXPECT_EQ(flat.clusters[3].world.m[12], 31);
@@ -154,7 +154,7 @@ TEST(Changes, AreNamed) {
   EXPECT_FALSE(c.structure);
   EXPECT_EQ(c.redefined, Ids{1});
   EXPECT_TRUE(apply(scene, object(1, true, true), instance(12, 1, 1, 0)).structure);
-  EXPECT_TRUE(apply(scene, object(1, true, true)).structure); // it had an instance in it
+  EXPECT_TRUE(apply(scene, object(1, true, true)).structure); // the object had an instance in it
 }
 
 TEST(Changes, ListsOfChildrenFollow) {

@@ -1,4 +1,4 @@
-// openrt_film.cpp: sums of samples, channels, and the picture of a frame that is not finished.
+// openrt_film.cpp: sums of samples, channels, and the picture of an unfinished frame.
 #include <gtest/gtest.h>
 
 #include <cmath>

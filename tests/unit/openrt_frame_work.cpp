@@ -1,6 +1,5 @@
-// openrt_frame_work.cpp: a frame's work done by hand: in any order, in pieces of any size, given
-// back, done twice, sent as bytes. The picture is always the same bytes, and those of the local
-// backend's threads.
+// openrt_frame_work.cpp: a frame's jobs done by hand: in any order, in chunks of any size, given
+// back, done twice, or sent as bytes. The picture always has the same bytes as the local backend's.
 #include <cstring>
 #include <map>
 #include <numeric>
@@ -42,13 +41,13 @@ bool sameBytes(const Picture& a, const Picture& b) {
 
 const std::atomic<bool> never{false};
 
-struct Way {         // in which the work is done
-  uint32_t seed = 0; // 0: one job after the other, as it comes
+struct Way {         // how the jobs are done
+  uint32_t seed = 0; // 0: in order, one job after the other
   uint32_t atOnce = 20;
   bool progressive = false;
 };
 
-// Plays a frame to its end.
+// Runs a frame to its end.
 class Player {
  public:
   Player(const std::shared_ptr<const RenderScene>& scene, const Way& way)
@@ -97,11 +96,11 @@ class Player {
     if (what == 0) return work_->giveBack(job);
     JobResult result;
     EXPECT_TRUE(runner_.run(job, never, result));
-    if (what == 1) { // lost, given back, and here after all
+    if (what == 1) { // lost, given back, and then the result arrives after all
       work_->giveBack(job);
       if (random_() % 2) work_->giveBack(job);
     }
-    if (what == 2) { // from far away
+    if (what == 2) { // the result was sent by another machine
       JobResult far;
       const Tile tile = job.kind == Job::Kind::samples ? work_->tile(job.number) : Tile{};
       EXPECT_TRUE(decodeResult(frame_, job, tile, encodeResult(frame_, job, result), far));
@@ -110,7 +109,7 @@ class Player {
     JobResult again = result;
     EXPECT_TRUE(work_->take(job, std::move(result)));
     if (what < 4) {
-      EXPECT_FALSE(work_->take(job, std::move(again))); // done twice
+      EXPECT_FALSE(work_->take(job, std::move(again))); // the same job twice
     }
     if (what == 4) work_->giveBack(job);
   }
@@ -235,7 +234,7 @@ TEST(FrameWorkByHand, TilesComeInTheOrderThatIsAskedFor) {
     }
   EXPECT_EQ(work.upcoming(), work.tiles());
   work.giveBack(job);
-  EXPECT_EQ(work.upcoming(), work.tiles()); // it is no tile's turn
+  EXPECT_EQ(work.upcoming(), work.tiles()); // no tile is next
 }
 
 TEST(FrameWorkByHand, RoundsOverlap) {
@@ -249,7 +248,8 @@ TEST(FrameWorkByHand, RoundsOverlap) {
     ASSERT_EQ(work.next(jobs[i]), FrameWork::Next::job);
     EXPECT_EQ(jobs[i].first, i < work.tiles() ? 0u : 1u);
   }
-  EXPECT_EQ(work.next(jobs.back()), FrameWork::Next::wait); // not a third before the first is there
+  // No third round before the first is complete.
+  EXPECT_EQ(work.next(jobs.back()), FrameWork::Next::wait);
   bool changed = false;
   work.onChange([&] { changed = true; });
   for (uint32_t i = 0; i < work.tiles(); i++) {

@@ -1,4 +1,4 @@
-// Measured luminaires: the text of IES files read, its symmetries, and texts that are none.
+// openrt_ies.cpp: reading IES files of measured luminaires, their symmetries, and invalid texts.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -65,7 +65,7 @@ TEST(Ies, Symmetries) {
   EXPECT_NEAR(whole.intensity(0, 225), 35, 1e-4);
   EXPECT_NEAR(whole.intensity(0, 315), 25, 1e-4);
   const ies::Photometry open =
-      good(file(head, one + "4" + two + "0 90 180 270  10 20 30 40")); // 360 is left out
+      good(file(head, one + "4" + two + "0 90 180 270  10 20 30 40")); // the angle 360 is left out
   EXPECT_NEAR(open.intensity(0, 315), 25, 1e-4);
   const ies::Photometry across = good(file(head, one + "3" + two + "90 180 270  10 20 30"));
   EXPECT_NEAR(across.intensity(0, 45), 15, 1e-4);
@@ -105,7 +105,8 @@ TEST(Ies, WhatIsWrongIsSaid) {
   EXPECT_NE(bad(file(head, "1 1 x")).find("description"), std::string::npos);
 }
 
-TEST(Ies, NoTextEndsBadly) { // every beginning of a good file, and every byte of it changed
+// Tries every prefix of a good file, and every byte of it changed.
+TEST(Ies, NoTextEndsBadly) {
   const std::string text =
       file(head, "1 1 1 3 3 1 1 0 0 0 1 1 1 0 45 90 0 90 180 1 2 3 4 5 6 7 8 9");
   for (size_t i = 0; i < text.size(); i++) {

@@ -1,5 +1,5 @@
-// The choice among many lights: probabilities that add up, that are those of the choice, near the
-// light that arrives, and that are never 0 where light does arrive.
+// openrt_light_tree.cpp: light selection. The selection probabilities sum to 1, match the sampling,
+// are roughly proportional to the light that arrives, and are never 0 where light arrives.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ LightBounds pointLight(float x, float y, float z, float intensity) {
   return b;
 }
 
-// A small square patch: one normal, lit on its side only.
+// A small square patch with one normal that emits on its front side only.
 LightBounds patch(std::mt19937& random, float size) {
   std::uniform_real_distribution<float> unit(-1, 1);
   LightBounds b;
@@ -62,14 +62,15 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
   std::mt19937 random(1);
   std::vector<LightBounds> lights;
   for (int i = 0; i < 300; i++) lights.push_back(patch(random, .05f));
-  lights[17].intensity = 0; // sends out nothing
+  lights[17].intensity = 0; // emits nothing
   LightTree tree;
   tree.build(lights);
   for (int place = 0; place < 20; place++) {
     std::uniform_real_distribution<float> unit(-1, 1);
     const float p[3] = {5 * unit(random), 5 * unit(random), 5 * unit(random)}, n[3] = {0, 1, 0};
     const float* normal = place % 2 ? n : nullptr;
-    // A branch none of whose lights reaches the place ends a choice that its box had let in.
+    // The sum may be below 1. If the box of a branch may light the point and none of its lights
+    // does, the choice ends without a light.
     EXPECT_LE(sumOf(tree, lights.size(), p, normal), 1 + 1e-5);
     EXPECT_GT(sumOf(tree, lights.size(), p, normal), .3);
     EXPECT_EQ(tree.probability(p, normal, 17), 0);
@@ -81,8 +82,8 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
       count[c.light]++;
       ASSERT_FLOAT_EQ(c.probability, tree.probability(p, normal, c.light));
     }
-    for (uint32_t i = 0; i < lights.size();
-         i++) // even steps of pick: exact but for one step at either end
+    // The numbers are evenly spaced, so counts are exact except for one at either end.
+    for (uint32_t i = 0; i < lights.size(); i++)
       ASSERT_NEAR(count[i], double(tree.probability(p, normal, i)) * draws, 1.01);
   }
 }
@@ -96,10 +97,10 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
       LightBounds b = patch(random, i % 3 ? .3f : 0.0f);
       if (i % 4 == 0) b.bothSides = true;
       if (i % 5 == 0) b.reach = 3;
-      if (i % 7 == 0) {
+      if (i % 7 == 0) { // a spot light
         b.cosineBeyond = 1;
         b.cosineNormals = .7f;
-      } // a spot light
+      }
       lights.push_back(b);
     }
     LightTree tree;
@@ -112,7 +113,7 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
         length += n[k] * n[k];
       }
       for (float& x : n) x /= std::sqrt(length);
-      for (uint32_t i = 0; i < lights.size(); i++) { // from a place within its box
+      for (uint32_t i = 0; i < lights.size(); i++) { // from a point inside its box
         const LightBounds& b = lights[i];
         double way[3], square = 0, leaving = 0, facing = 0;
         for (int k = 0; k < 3; k++) {
@@ -140,7 +141,8 @@ TEST(LightTree, TheBrightestAndNearestAreTheLikeliest) {
   double expected = 0;
   for (int i = 0; i < 1000; i++) expected += 1 / (1 + double(i - 500) * (i - 500));
   const float p[3] = {500, 1, 0};
-  for (const uint32_t i : {500u, 499u, 490u, 600u, 0u}) { // within a factor of what arrives
+  // Within a factor of the light that arrives.
+  for (const uint32_t i : {500u, 499u, 490u, 600u, 0u}) {
     const double share = 1 / (1 + (double(i) - 500) * (double(i) - 500)) / expected;
     EXPECT_GT(double(tree.probability(p, nullptr, i)), share / 6) << i;
   }
@@ -160,8 +162,8 @@ TEST(LightTree, NoLightWhereNoneReaches) {
   EXPECT_TRUE(tree.empty());
 }
 
-TEST(LightTree,
-     LightsOfAnyPlaceMakeAShallowTree) { // each step takes one light off: halved from some depth on
+// Each level would split off one light; from some depth on the tree splits in halves.
+TEST(LightTree, LightsOfAnyPlaceMakeAShallowTree) {
   std::vector<LightBounds> lights;
   float x = 1e-30f;
   for (int i = 0; i < 200; i++, x *= 2)

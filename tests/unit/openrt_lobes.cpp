@@ -1,5 +1,4 @@
-// openrt_lobes.cpp: the engine's lobes that scatter: sampling, values and densities belong
-// together.
+// openrt_lobes.cpp: the engine's scattering lobes: samples, values and pdfs must be consistent.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +13,7 @@ namespace {
 
 using namespace openrt;
 
-// One hit with one lobe, the normal along z, seen from an angle of `degrees`.
+// One hit with one lobe, the normal along z, seen at `degrees` from it.
 struct Bench {
   float weight[3] = {1, 1, 1}, normal[3] = {0, 0, 1}, parameter[2] = {0, 0}, direction[3];
   RtsLobe lobe{};
@@ -37,7 +36,7 @@ struct Bench {
     for (int k = 0; k < 2; k++) lobe.parameter[k] = &parameter[k];
     hits.count = 1;
   }
-  // Mean of what is sampled, and the share of samples that have a direction.
+  // Returns the mean of the sampled weights and the fraction of samples that have a direction.
   std::pair<double, double> sampled(uint32_t edge) {
     const uint32_t n = edge * edge;
     std::vector<float> u(n), v(n);
@@ -59,7 +58,7 @@ struct Bench {
       const float d[3] = {samples.direction[0][i], samples.direction[1][i],
                           samples.direction[2][i]};
       EXPECT_NEAR(dot3(d, d), 1, 1e-5);
-      // Evaluated again from the rounded direction: near a narrow lobe's axis digits are lost.
+      // Evaluated again for the rounded direction; near the axis of a narrow lobe digits are lost.
       EXPECT_NEAR(answers.density[i] / samples.density[i], 1, 2e-3) << i;
       EXPECT_NEAR(answers.value[0][i], samples.value[0][i] * samples.density[i],
                   3e-3 * answers.value[0][i] + 1e-6)
@@ -67,8 +66,8 @@ struct Bench {
     }
     return {sum / n, some / n};
   }
-  // Integrals of value and density over the sphere of directions, by the midpoint rule in cos and
-  // angle.
+  // Returns the integrals of value and pdf over the sphere of directions, by the midpoint rule in
+  // theta and phi.
   std::pair<double, double> integrated(uint32_t rows) {
     const uint32_t columns = rows;
     double value = 0, density = 0;
@@ -76,7 +75,7 @@ struct Bench {
       std::vector<float> d[3];
       for (auto& a : d) a.resize(columns);
       const std::vector<uint32_t> hit(columns, 0);
-      // Theta in equal steps: narrow lobes lie at small angles or near the horizon.
+      // Equal steps of theta: narrow lobes lie at small angles or near the horizon.
       const double theta = M_PI * (row + .5) / rows, s = std::sin(theta);
       for (uint32_t c = 0; c < columns; c++) {
         const double phi = 2 * M_PI * (c + .5) / columns;
@@ -128,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"RoughInto", RTS_LOBE_ROUGH_DIELECTRIC, 1 / 1.5f, .8f}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// Seen from both ends a reflection has the same value per cosine.
+// Reciprocity: exchanging the directions keeps the value divided by the cosine.
 TEST(Lobes, GlossyIsReciprocal) {
   Bench one(RTS_LOBE_GLOSSY, .4f, 1 / 1.5f, 20), other(RTS_LOBE_GLOSSY, .4f, 1 / 1.5f, 65);
   const uint32_t hit = 0;

@@ -1,4 +1,4 @@
-// openrt_picture_error.cpp: what a picture as a whole is off by, from made-up pixels whose errors
+// openrt_picture_error.cpp: the error of a picture as a whole, for synthetic pixels whose errors
 // are known.
 #include <gtest/gtest.h>
 
@@ -19,11 +19,11 @@ constexpr uint32_t edge = 16, pixels = edge * edge, perPixel = 64;
 const Replicates sixteen{0, 2};
 
 struct Outcome {
-  int inside = 0, above = 0; // pictures that were off by what is said, by more
+  int inside = 0, above = 0; // pictures off by at most the stated error, and by more
   double said = 0, was = 0;
 };
 
-// Pictures of white pixels whose samples have a mean of `truth(pixel)`.
+// Makes pictures of white pixels whose samples have a mean of `truth(pixel)`.
 template <class Sample> Outcome pictures(int count, Sample sample, double (*truth)(uint32_t)) {
   Outcome out;
   std::mt19937 random(7);
@@ -72,7 +72,7 @@ TEST(PictureError, ofNormalNoise) {
   expectHeld(pictures(60, sample, [](uint32_t) { return 1.0; }), 60, .03);
 }
 
-// One sample in so many is bright, over a floor that is lit evenly.
+// One sample in so many is bright, over an evenly lit floor.
 TEST(PictureError, ofLightThatOnePixelInAFewHasMet) {
   for (const double chance : {.02, .005, .001}) {
     const auto sample = [=](std::mt19937& r, uint32_t) {
@@ -112,7 +112,8 @@ TEST(PictureError, ofWhatIsCompletelyUnknownAnythingIsSaid) {
   EXPECT_DOUBLE_EQ(e.interval, .5);
 }
 
-TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) { // equal samples of random paths
+// Equal samples on random paths.
+TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) {
   std::vector<PixelNoise> noise(256);
   for (PixelNoise& p : noise) {
     p.finished = p.random = true;
@@ -127,8 +128,8 @@ TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) { // equal samples o
   EXPECT_LT(e.mean + e.interval, .01);
 }
 
-TEST(PictureError,
-     pixelsInDoubtHoldAnEdgeOrNone) { // a tenth of them does, and then they are wrong altogether
+// A tenth of them does; those pixels are then entirely wrong.
+TEST(PictureError, pixelsInDoubtHoldAnEdgeOrNone) {
   std::vector<PixelNoise> noise(256);
   for (PixelNoise& p : noise) {
     p.finished = true;
@@ -138,7 +139,7 @@ TEST(PictureError,
   const std::vector<float> doubted(256, .1f);
   const PictureError e = pictureError(16, noise, doubted);
   EXPECT_NEAR(e.mean, .1, 1e-6);
-  EXPECT_GE(e.interval, .1); // none may do
+  EXPECT_GE(e.interval, .1); // there may be none
   EXPECT_LT(e.interval, .15);
 }
 
@@ -148,26 +149,28 @@ TEST(PictureError, whatNoPathHasMetIsBoundByTheRuleOfThree) {
   EXPECT_EQ(missed(), 0);
   const float grey[] = {.1f, .1f, .1f}, bright[] = {40, 40, 40}, dim[] = {20, 20, 20};
   for (int i = 0; i < 100; i++)
-    ledger.chance.send(grey, 50); // .3 of radiance 50 for each of 100 rays in 1000 samples
-  ledger.chance.meet(dim, 50);
-  EXPECT_NEAR(missed(), 2.996 * .3 * 50 / 1000, 5e-4);
-  ledger.chance.meet(bright, 50); // one has met it: at most 4.74 should have, with 95 %
-  EXPECT_NEAR(missed(), 3.744 * .3 * 50 / 1000, 5e-4);
-  for (int i = 0; i < 31; i++) ledger.chance.meet(bright, 50); // the samples tell
+    ledger.chance.send(grey, 150); // .3 of radiance 50 for each of 100 rays in 1000 samples
+  ledger.chance.meet(dim, 150);
+  EXPECT_NEAR(missed(), 2.996 * .1 * 150 / 1000, 5e-4);
+  // One path has hit it: with 95 % confidence at most 4.74 are expected.
+  ledger.chance.meet(bright, 150);
+  EXPECT_NEAR(missed(), 3.744 * .1 * 150 / 1000, 5e-4);
+  // Enough hits: the samples show the light.
+  for (int i = 0; i < 31; i++) ledger.chance.meet(bright, 150);
   EXPECT_EQ(missed(), 0);
-  ledger.chanceSky.send(grey, 10);             // of another kind of rays none has
-  EXPECT_NEAR(missed(), .3 * 10 / 1000, 1e-3); // not more than all of them
+  ledger.chanceSky.send(grey, 30);             // no ray of another kind has hit anything
+  EXPECT_NEAR(missed(), .1 * 30 / 1000, 1e-3); // at most all of them
   Ledger tile;
-  tile.chanceSky.send(grey, 10);
-  EXPECT_NEAR(tile.missedByChance(ledger, 10), .3 * 10 / 10, 1e-3);
+  tile.chanceSky.send(grey, 30);
+  EXPECT_NEAR(tile.missedByChance(ledger, 10), .1 * 30 / 10, 1e-3);
 }
 
-TEST(PictureError,
-     theShapeOfPureJumps) { // E|K - a| / (sqrt(2/pi) E sqrt(K)) of Poisson's K, summed by hand
+// E|K - a| / (sqrt(2/pi) E sqrt(K)) for a Poisson variable K, summed by hand.
+TEST(PictureError, theShapeOfPureJumps) {
   EXPECT_NEAR(tailShape(0, 1).factor, .7358 / (.79788 * .7733), .003);
   EXPECT_NEAR(tailShape(0, .01).factor, 2 / .79788, .03);
   EXPECT_NEAR(tailShape(0, .01).missing, .5, .01);
   EXPECT_NEAR(tailShape(0, 20).factor, 1, .01);
   EXPECT_NEAR(tailShape(0, 20).missing, 0, 1e-4);
-  EXPECT_NEAR(tailShape(1000, .1).factor, 1, .01); // next to no jumps
+  EXPECT_NEAR(tailShape(1000, .1).factor, 1, .01); // almost no jumps
 }

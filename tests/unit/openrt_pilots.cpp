@@ -1,4 +1,4 @@
-// openrt_pilots.cpp: how many samples tiles take, from made-up pilots.
+// openrt_pilots.cpp: the number of samples per tile, from synthetic pilots.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -62,8 +62,8 @@ void expect(const Pilots::Verdict& v, uint32_t samples, bool pilot) {
 
 } // namespace
 
-TEST_F(PilotsOf, NoiseFallsByTheRootOfTheSamples) { // with a tenth less than the target, in steps
-                                                    // of a quarter of an octave
+// Aims a tenth below the target, in steps of a quarter of an octave.
+TEST_F(PilotsOf, NoiseFallsByTheRootOfTheSamples) {
   const auto v = judgeAll(error(.08f, true, false), error(.24f, true, false));
   expect(v[0], 32, false);
   expect(v[1], 256, false); // 32 * (.24 / .09)^2 = 228
@@ -75,7 +75,7 @@ TEST_F(PilotsOf, WhatIsFarFromThePilotIsAskedAgain) {
   const auto v = judgeAll(error(.5f, true, false), error(.01f, true, false)); // 988
   expect(v[0], 64, true);
   expect(v[1], 32, false);
-  frame_.samples = 512; // all that is allowed: no need to ask
+  frame_.samples = 512; // the maximum: no further pilot is needed
   expect(judgeAll(error(.5f, true, false), error(.01f, true, false))[0], 512, false);
 }
 
@@ -83,7 +83,7 @@ TEST_F(PilotsOf, WhoDoesNotTrustItselfIsAskedAgainWithMore) {
   const auto v = judgeAll(error(.05f, false, false), error(.01f, true, false));
   expect(v[0], 64, true);
   expect(v[1], 32, false);
-  // Half of what the tile beside it does not know is more than a quarter of the target.
+  // Half the uncertainty of the neighbouring tile is more than a quarter of the target.
   expect(judgeAll(error(.08f, false, false), error(.01f, true, false))[1], 64, true);
 }
 
@@ -110,17 +110,16 @@ TEST_F(PilotsOf, UnderATimeLimitTheFirstOneDecides) {
   expect(judgeAll(error(.5f, true, false), error(.01f, true, false), true)[0], 1024, false);
 }
 
-TEST_F(PilotsOf,
-       ConstantPixelsBesideAnEdgeCount) { // those at the border, and between the tiles: their bound
-                                          // falls as 1 / samples
+// Those at the border and between the tiles; their bound falls as 1 / samples.
+TEST_F(PilotsOf, ConstantPixelsBesideAnEdgeCount) {
   Pilots pilots(frame_, TileGrid(frame_), false);
   std::vector<PixelError> black(64, error(0, true, true, 0));
   note(pilots, 0, black[0]);
   note(pilots, 1, error(0, true, true, 1));
   const auto v = pilots.judgeAll();
   expect(v[0], 64, true);
-  expect(v[1], 32, false); // by 3 / N * 3 / 3.03
-  // Of the black ones the 28 at the rim are in doubt, by 3 / N * 3 / .03 each: 1456 samples.
+  expect(v[1], 32, false); // reduces 3 / N by 3 / 3.03
+  // 28 of the black pixels, at the rim, are in doubt by 3 / N * 3 / .03 each: 1456 samples.
   expect(pilots.judge(0, pixels(black), 256), 1536, false);
 }
 
@@ -130,7 +129,7 @@ TEST_F(PilotsOf, PathsFromLampsDoNotGoAwayBySamples) {
   PixelError e = error(.1f, true, false);
   const PilotPixel p = pilotPixel(e, &light);
   EXPECT_NEAR(p.light, .211f, .001f);
-  frame_.targetError = .05f; // cannot be reached: samples until they add a tenth
+  frame_.targetError = .05f; // cannot be reached: samples are added until they contribute a tenth
   Pilots pilots(frame_, TileGrid(frame_), false);
   const std::vector<PilotPixel> all(64, p);
   const std::vector<PixelError> errors(64, e);

@@ -1,7 +1,7 @@
-// openrt_recording.cpp: recordings: what is written is read back the same, and whatever else a file
-// holds is refused with the place of the fault. The faults are put into a good recording, with its
-// checksums made right again where they would hide them.
-// Longer than 500 lines because the tests share one format of edits.
+// openrt_recording.cpp: recordings are read back as written, and any other content of a file is
+// refused with the position of the fault. The faults are put into a good recording, whose checksums
+// are then corrected where they would hide the fault. Longer than 500 lines because the tests share
+// one format of edits.
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -33,7 +33,7 @@ readerOf(const Bytes& bytes, const ShaderRegistry* shaders = nullptr, RecordingL
   return std::make_unique<RecordingReader>(file, "recording", shaders, limits);
 }
 
-// The message with which a recording is refused; empty if it is not.
+// Returns the message with which a recording is refused; empty if it is accepted.
 std::string refusal(const Bytes& bytes, const ShaderRegistry* shaders = nullptr,
                     RecordingLimits limits = {}) {
   try {
@@ -156,7 +156,7 @@ struct Example {
 class Recording : public testing::Test {
  protected:
   const ShaderRegistry shaders{{std::string(OPENRT_TEST_PLUGINS)}};
-  // What the reader says of the example after a change.
+  // Returns the reader's message about the example after a change.
   std::string after(const std::function<void(Example&)>& change) {
     Example example;
     change(example);
@@ -220,14 +220,14 @@ TEST_F(Recording, AFullDiskIsAnIoError) {
 TEST_F(Recording, EveryTruncationIsNoticed) {
   const Bytes whole = Example().file();
   for (size_t size = 0; size < whole.size(); size++) {
-    if (size == sizeof(recording::FileHeader)) continue; // a recording of nothing
+    if (size == sizeof(recording::FileHeader)) continue; // a recording without frames
     const std::string text =
         refusal(Bytes(whole.begin(), whole.begin() + ptrdiff_t(size)), &shaders);
     EXPECT_NE(text.find("the file ends in the middle"), text.npos) << size << ": " << text;
   }
 }
 
-// The framing of zstd has bits that mean nothing; what is not refused must at least be read as it
+// zstd frames have bits without meaning. A change that is not refused must at least be read as it
 // was written.
 TEST_F(Recording, NoFlippedBitChangesWhatIsRead) {
   const Example example;
@@ -248,7 +248,7 @@ TEST_F(Recording, NoFlippedBitChangesWhatIsRead) {
               std::vector<uint8_t>(example.texels, example.texels + 4))
         << "bit " << i;
   }
-  EXPECT_LE(harmless, 12); // a few in the frame of each array
+  EXPECT_LE(harmless, 12); // a few in the zstd frame of each array
 }
 
 TEST_F(Recording, LimitsHold) {
@@ -262,7 +262,7 @@ TEST_F(Recording, LimitsHold) {
             std::string::npos);
 }
 
-// A small file that claims a terabyte must not make anybody take a terabyte.
+// A small file that claims a terabyte must not cause an allocation of a terabyte.
 TEST_F(Recording, ClaimedSizesAreNotBelieved) {
   Bytes bytes = header();
   recording::ChunkHeader h{recording::ChunkKind::Array, 0, 1, uint64_t(1) << 40, 64, 0};
@@ -289,7 +289,7 @@ TEST_F(Recording, AnArrayShorterThanItsClaim) {
   EXPECT_NE(refusal(bytes).find("shorter than it claims"), std::string::npos);
 }
 
-// Many edits that name one table in the buffer: small in the file, boundless once unpacked.
+// Many edits that refer to one table of the buffer: small in the file, unbounded once unpacked.
 TEST_F(Recording, SharedTablesAreRefused) {
   flatbuffers::FlatBufferBuilder builder;
   const std::vector<float> floats(10000, 1.0f);
@@ -424,7 +424,7 @@ INSTANTIATE_TEST_SUITE_P(
               "an empty edit"}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// Parameters of a geometry: the colours of Varying are its points, which lie within 0 .. 1.
+// Geometry parameters: the colours of Varying are its points, which lie within 0 .. 1.
 void giveParameter(Example& e, uint32_t index = 2, bool perVertex = true, uint64_t values = 1) {
   e.surfaceClass.name = "Varying";
   e.surfaceClass.library = "varying";
@@ -507,7 +507,7 @@ TEST_F(Recording, ParametersOfGeometryAreChecked) {
     else
       EXPECT_EQ(text, "") << c.what;
   }
-  Example unknown; // without class tables: sizes and numbers alone
+  Example unknown; // without class tables: only sizes and numbers are checked
   giveParameter(unknown);
   EXPECT_EQ(refusal(unknown.file()), "");
   unknown.geometry.parameters[0]->values = 2;

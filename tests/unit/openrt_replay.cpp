@@ -1,6 +1,6 @@
-// openrt_replay.cpp: a scene that changes over several frames, recorded while the local backend
-// renders it, and the program openrt-replay on the recording: every frame has the same bytes. Its
-// exit codes.
+// openrt_replay.cpp: a scene that changes over several frames is recorded while the local backend
+// renders it. The program openrt-replay must produce the same bytes for every frame. Also its exit
+// codes.
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -72,7 +72,7 @@ bool same(const Picture& a, const Picture& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-// Renders four frames; between them things move, change their colour, are redefined and deleted.
+// Renders four frames. Between them objects are moved, recoloured, redefined and deleted.
 std::vector<Picture> recordFrames(const fs::path& recording) {
   const RTcontext context =
       rtNewContext(("threads=2 record=\"" + recording.string() + "\"").c_str());

@@ -1,5 +1,5 @@
-// openrt_result_codec.cpp: results of jobs as bytes: exactly what was put in comes out, and
-// whatever else comes is refused.
+// openrt_result_codec.cpp: encoding of job results. Decoding returns exactly what was encoded and
+// refuses anything else.
 #include <cstring>
 #include <limits>
 #include <random>
@@ -25,8 +25,7 @@ edit::FrameSettingsT frameOf(uint32_t channels) {
   return frame;
 }
 
-// Sums with everything that may be difficult in them: what a frame of these channels gathers,
-// nothing else.
+// Makes sums with all difficult values, for exactly the channels of the frame.
 JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t seed) {
   std::mt19937 random(seed);
   const auto number = [&]() -> double {
@@ -38,7 +37,7 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
     case 4: return 1e-40;  // denormal as a float
     case 5: return 1e300;
     case 6: return 0.5;
-    case 7: return std::bit_cast<double>(0x7ff4deadbeef0001u); // signalling, with a payload
+    case 7: return std::bit_cast<double>(0x7ff4deadbeef0001u); // signalling NaN with a payload
     default: return std::ldexp(double(random()), -20) + std::ldexp(double(random()), -60);
     }
   };
@@ -82,8 +81,8 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
   return result;
 }
 
-bool sameBytes(const std::vector<PixelSums>& a,
-               const std::vector<PixelSums>& b) { // field by field: between them is nothing
+// Field by field: there is no padding between them.
+bool sameBytes(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b) {
   if (a.size() != b.size()) return false;
   for (size_t i = 0; i < a.size(); i++)
     if (std::memcmp(&a[i], &b[i], offsetof(PixelSums, random)) != 0 || a[i].random != b[i].random)
@@ -99,7 +98,7 @@ TEST(ResultCodec, EveryCombinationOfChannelsComesBackExactly) {
     const JobResult in = resultOf(frame, job, channels);
     const std::vector<std::byte> bytes = encodeResult(frame, job, in);
     JobResult out;
-    out.light.resize(5); // of a job before
+    out.light.resize(5); // left over from an earlier job
     ASSERT_TRUE(decodeResult(frame, job, tile, bytes, out)) << channels;
     ASSERT_TRUE(sameBytes(in.sums, out.sums)) << channels;
     ASSERT_EQ(std::memcmp(&in.ledger, &out.ledger, sizeof(Ledger)), 0);
@@ -157,7 +156,7 @@ TEST(ResultCodec, WhatIsCutOrTooLongIsRefused) {
     for (size_t size = 0; size < bytes.size(); size += 1 + size / 50) {
       const bool whole = job.kind == Job::Kind::light && size >= 72 && (size - 72) % 12 == 0;
       EXPECT_EQ(decodeResult(frame, job, tile, std::span(bytes).first(size), out), whole)
-          << size; // light may end in zeros
+          << size; // the light sums may end in zeros
     }
     std::vector<std::byte> longer = bytes;
     longer.push_back(std::byte(0));
@@ -165,7 +164,7 @@ TEST(ResultCodec, WhatIsCutOrTooLongIsRefused) {
     EXPECT_FALSE(decodeResult(frame, job, tile, std::vector<std::byte>(bytes.size()), out) &&
                  job.kind == Job::Kind::light);
   }
-  // Of another tile, of another frame.
+  // A result of another tile or another frame.
   const std::vector<std::byte> bytes = encodeResult(frame, samples, in);
   EXPECT_FALSE(decodeResult(frame, samples, {0, 0, 16, 16}, bytes, out));
   EXPECT_FALSE(decodeResult(frameOf(RT_RGBA), samples, tile, bytes, out));

@@ -1,4 +1,5 @@
-// The (0,2) property itself: a wrong scramble looks right and gains nothing.
+// openrt_sampler.cpp: the (0,2) property itself. A wrong scramble looks right but loses the
+// advantage.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -10,7 +11,7 @@ using namespace openrt;
 
 namespace {
 
-// Every elementary interval of area 2^-m holds exactly one of 2^m points.
+// Returns whether every elementary interval of area 2^-m holds exactly one of 2^m points.
 bool isNet(uint32_t pixel, uint32_t pair, uint32_t seed, int m, uint32_t first) {
   for (int a = 0; a <= m; a++) {
     std::set<int> cells;
@@ -58,7 +59,7 @@ TEST(Sampler, pixelsAndSeedsAndPairsDiffer) {
 
 TEST(Sampler, integratesASmoothFunctionFasterThanRandomPoints) {
   double worst = 0;
-  for (uint32_t pixel = 0; pixel < 64; pixel++) { // x*y over the unit square: 1/4
+  for (uint32_t pixel = 0; pixel < 64; pixel++) { // integral of x*y over the unit square: 1/4
     double sum = 0;
     for (uint32_t i = 0; i < 256; i++) {
       float x, y;
@@ -67,5 +68,5 @@ TEST(Sampler, integratesASmoothFunctionFasterThanRandomPoints) {
     }
     worst = std::max(worst, std::abs(sum / 256 - 0.25));
   }
-  EXPECT_LT(worst, 0.002); // random points: a standard error of 0.0138
+  EXPECT_LT(worst, 0.002); // random points would have a standard error of 0.0138
 }

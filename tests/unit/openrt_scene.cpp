@@ -1,4 +1,4 @@
-// Commits to scene, nested instances to placements.
+// openrt_scene.cpp: from commits to a scene, from nested instances to placements.
 #include <gtest/gtest.h>
 
 #include "scene/flatten.h"

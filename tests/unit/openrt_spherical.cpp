@@ -1,5 +1,5 @@
-// Directions spread over triangles and ellipsoids: solid angles against closed forms, even spread
-// (chi-square), densities that integrate to one, hard cases.
+// openrt_spherical.cpp: sampling of directions towards triangles and ellipsoids: solid angles
+// against closed forms, uniformity (chi-square), pdfs that integrate to one, hard cases.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ const Corners half{{{100, 0, 1e-6f}, {-100, 100, 1e-6f}, {-100, -100, 1e-6f}}};
 const Corners sliver{{{-5, 0, 1}, {5, 0, 1}, {0, 1e-4f, 1}}};
 const Corners small{{{1e-3f, 0, 10}, {0, 1e-3f, 10}, {-1e-3f, -1e-3f, 10}}};
 
-// Projects a direction to the triangle's plane: its barycentric coordinates.
+// Projects a direction onto the triangle's plane; returns its barycentric coordinates.
 void barycentric(const Corners& t, const double d[3], double w[3]) {
   double m[3][3];
   for (int c = 0; c < 3; c++)
@@ -45,7 +45,8 @@ void barycentric(const Corners& t, const double d[3], double w[3]) {
   for (int c = 0; c < 3; c++) w[c] /= sum;
 }
 
-// Chi-square of counts against expectations; few expected are left out. 4 sigma of the statistic.
+// Checks the chi-square statistic of counts within 4 sigma. Bins with few expected counts are left
+// out.
 void expectEven(const std::vector<double>& got, const std::vector<double>& expected) {
   double statistic = 0, cells = 0;
   for (size_t i = 0; i < got.size(); i++) {
@@ -57,8 +58,8 @@ void expectEven(const std::vector<double>& got, const std::vector<double>& expec
   EXPECT_LT(statistic, cells + 4 * std::sqrt(2 * cells));
 }
 
-// Counts in 6 x 6 bands of two barycentric coordinates, against the density integrated by a fine
-// grid on the plane.
+// Counts samples in 6 x 6 bands of two barycentric coordinates and compares with the pdf integrated
+// on a fine grid of the plane.
 void spread(const Corners& t) {
   const SphericalTriangle s(t.at, origin);
   constexpr int bands = 6, samples = 40000, fine = 240;
@@ -90,8 +91,7 @@ void spread(const Corners& t) {
           square += p[k] * p[k];
         }
         const double weight =
-            1 / (square *
-                 std::sqrt(square)); // the plane's distance and the area are the same everywhere
+            1 / (square * std::sqrt(square)); // distance to the plane and area are constant
         total += weight;
         const int a = std::min(bands - 1, int(w[0] * bands)),
                   b = std::min(bands - 1, int(w[1] * bands));
@@ -104,14 +104,13 @@ void spread(const Corners& t) {
 TEST(Spherical, SolidAnglesHaveTheirClosedForms) {
   EXPECT_NEAR(SphericalTriangle(octant.at, origin).solidAngle(), M_PI / 2, 1e-14);
   EXPECT_NEAR(SphericalTriangle(half.at, origin).solidAngle(), 2 * M_PI, 1e-6);
-  for (const double s :
-       {1e-3, 1e-5, 1e-7, 1e-9}) { // far away: area over the square of the distance
+  for (const double s : {1e-3, 1e-5, 1e-7, 1e-9}) { // far away: area over squared distance
     const float e = float(s);
     const float corner[3][3] = {{-e, -e, 1}, {2 * e, -e, 1}, {-e, 2 * e, 1}};
     const double area = 4.5 * double(e) * double(e);
     EXPECT_NEAR(SphericalTriangle(corner, origin).solidAngle() / area, 1, 4 * s * s + 1e-12) << s;
   }
-  // Eight octants of a cube's halves make the sphere, whatever the point in it.
+  // The eight octants cover the sphere from any point inside.
   const float v[8][3] = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1},
                          {-1, -1, 1},  {1, -1, 1},  {-1, 1, 1},  {1, 1, 1}};
   const int face[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
@@ -147,7 +146,8 @@ TEST(Spherical, TrianglesAreCoveredEvenly) {
   for (const Corners* t : {&tilted, &octant, &sliver, &small}) spread(*t);
 }
 
-TEST(Spherical, AHemisphereIsCoveredEvenly) { // R10: the point lies just below the light
+// R10: the point lies just below the light.
+TEST(Spherical, AHemisphereIsCoveredEvenly) {
   const SphericalTriangle t(half.at, origin);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -168,7 +168,7 @@ TEST(Spherical, FarTrianglesAreSpreadByArea) {
     const SphericalTriangle t(corner, origin);
     ASSERT_TRUE(t.far() || e > .1f);
     double sum = 0;
-    for (uint32_t i = 0; i < 4096; i++) { // the mean of 1 / density is the solid angle
+    for (uint32_t i = 0; i < 4096; i++) { // the mean of 1 / pdf is the solid angle
       float u, v;
       PairSampler(1, 2, 3)(i, u, v);
       double d[3], distance;
@@ -179,11 +179,11 @@ TEST(Spherical, FarTrianglesAreSpreadByArea) {
   }
 }
 
-// Noise of the irradiance from a square lamp: by solid angle against by area, at one sample. Over
-// the centre, over a corner, and near.
+// Compares the noise of the irradiance from a square lamp at one sample, sampled by solid angle and
+// by area: below the centre, below a corner, and near.
 TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
   const double places[3][3] = {
-      {0, 0, 1}, {.5, .5, .5}, {0, 0, .1}}; // of the eye from the lamp's middle
+      {0, 0, 1}, {.5, .5, .5}, {0, 0, .1}}; // position of the eye relative to the lamp's centre
   double ratio[3];
   for (int p = 0; p < 3; p++) {
     double sums[2][2] = {};
@@ -209,8 +209,8 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
         way[k] = w[0] * corner[0][k] + w[1] * corner[1][k] + w[2] * corner[2][k];
         square += way[k] * way[k];
       }
-      const double e = way[2] * way[2] /
-                       (square * square); // area 1 x both cosines over the square of the distance
+      const double e =
+          way[2] * way[2] / (square * square); // area 1 x both cosines over squared distance
       sums[1][0] += e;
       sums[1][1] += e * e;
     }
@@ -225,10 +225,10 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
   EXPECT_GT(ratio[2], 10);
 }
 
-// Both ways of seeing a direction agree with the share of directions that meet the ellipsoid.
+// Checks that sampled points lie on the ellipsoid and that the mean of 1 / pdf is the solid angle.
 void ellipsoid(const float toRender[3][4], const float eye[3], double expectedSolidAngle) {
   float toLocal[3][4];
-  for (int i = 0; i < 3; i++) { // diagonal maps
+  for (int i = 0; i < 3; i++) { // diagonal matrices
     for (int k = 0; k < 3; k++) toLocal[i][k] = i == k ? 1 / toRender[i][i] : 0;
     toLocal[i][3] = -toRender[i][3] / toRender[i][i];
   }
@@ -257,10 +257,11 @@ TEST(Spherical, SpheresAndEllipsoidsAreCoveredEvenly) {
   const float at3[3] = {0, 0, 3}, far[3] = {0, 0, 1e4f};
   ellipsoid(unit, at3, 2 * M_PI * (1 - std::sqrt(8.0) / 3));
   ellipsoid(unit, far, M_PI * 1e-8);
-  // A disc-like ellipsoid seen along its short axis, from far away: the solid angle of a disc with
+  // A flat ellipsoid seen along its short axis, from far away, has the solid angle of a disc with
   // the tangent cone's radius.
   const float flat[3][4] = {{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, .5f, 0}}, above[3] = {0, 0, 3};
-  const double tangent = 2 / std::sqrt(9 - .25); // of the cone's half angle: r / sqrt(h^2 - c^2)
+  // Tangent of the cone's half angle: r / sqrt(h^2 - c^2).
+  const double tangent = 2 / std::sqrt(9 - .25);
   ellipsoid(flat, above, 2 * M_PI * (1 - 1 / std::sqrt(1 + tangent * tangent)));
 }
 
@@ -277,7 +278,8 @@ TEST(Spherical, InsideASphereThereIsNothingToChoose) {
   }
 }
 
-// Right-handed and orthonormal everywhere, and continuous but near one direction.
+// Checks that the frame is right-handed and orthonormal everywhere, and continuous except near one
+// direction.
 template <class T> void checkFrames(double tolerance) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -313,7 +315,7 @@ template <class T> void checkFrames(double tolerance) {
 TEST(Frame, IsRightHandedOrthonormalAndContinuous) {
   checkFrames<double>(1e-13);
   checkFrames<float>(6e-6);
-  // Also along the direction in which it jumps.
+  // Also along the direction where it jumps.
   const double pole[3] = {0.6649982694690716, 0.11246117974981107, -0.7383290490373657};
   for (const double off : {0.0, 1e-12, 1e-7, 1e-5, 1e-3, .05, .1, .15}) {
     float n[3] = {float(pole[0] + off), float(pole[1]), float(pole[2])}, s[3], t[3];

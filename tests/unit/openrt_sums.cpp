@@ -1,5 +1,5 @@
-// openrt_sums.cpp: sums of samples that merge block by block: what comes out, and that it does not
-// depend on how samples were divided.
+// openrt_sums.cpp: sums of samples that are merged block by block: their values, and that these do
+// not depend on how the samples were divided.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -14,7 +14,8 @@ namespace {
 constexpr Gathering everything{true, true, true};
 using Samples = std::vector<std::array<float, 3>>;
 
-// The first is darker than all others, so that sums of differences from it have one sign.
+// The first sample is darker than all others, so that the sums of differences from it have one
+// sign.
 Samples samplesOf(uint32_t count, uint32_t seed) {
   std::mt19937 random(seed);
   std::lognormal_distribution<float> value(0, 1);
@@ -33,7 +34,7 @@ void add(PixelSums& sums, const std::array<float, 3>& sample) {
   }
 }
 
-// As the wavefront gathers a leaf.
+// Sums a leaf as the wavefront does.
 SumBlock leafOf(const Samples& samples, uint32_t first, uint32_t count,
                 const Replicates& replicates) {
   SumBlock block{first, count, std::vector<PixelSums>(1), {}};
@@ -146,7 +147,8 @@ TEST(Sums, AnyOrderOfBlocksGivesTheSameBytes) {
   }
 }
 
-TEST(Sums, EqualSamplesHaveNoVariance) { // exactly: constant pixels are told by it
+// Exactly zero, because that identifies constant pixels.
+TEST(Sums, EqualSamplesHaveNoVariance) {
   const Samples samples(256, {.3f, .7f, .1f});
   const PixelSums merged = mergedInOrder(leavesOf(samples, {0, 4}), {0, 4}).sums[0];
   for (int k = 0; k < 3; k++) EXPECT_EQ(merged.delta2[k], 0);

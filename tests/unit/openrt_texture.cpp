@@ -1,4 +1,4 @@
-// openrt_texture.cpp: look-up of texels against values worked out by hand.
+// openrt_texture.cpp: texture lookups against values worked out by hand.
 #include "shading/texture.h"
 
 #include <cmath>
@@ -101,7 +101,8 @@ TEST(OpenrtTexture, NearestTakesOneTexel) {
   EXPECT_EQ(at(t, 0.51f, 0.1f).r, 1);
   EXPECT_EQ(at(t, 0.99f, 0.99f).r, 3);
   EXPECT_EQ(at(t, 1.01f, 0.1f).r, 0);
-  EXPECT_EQ(at(t, -1e-9f, 0.1f).r, 1); // 1 - 1e-9 rounds to 1, which is still the last texel
+  // 1 - 1e-9 rounds to 1, which still belongs to the last texel
+  EXPECT_EQ(at(t, -1e-9f, 0.1f).r, 1);
 }
 
 TEST(OpenrtTexture, BytesAreDecodedBeforeTheyAreMixed) {

@@ -1,5 +1,5 @@
-// How many threads a process should use: texts of control groups and batch systems, the smallest
-// limit wins.
+// openrt_threads.cpp: how many threads a process should use: limits of control groups and batch
+// systems; the smallest wins.
 #include <gtest/gtest.h>
 
 #include "render/frame/threads.h"

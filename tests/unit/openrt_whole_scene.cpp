@@ -1,6 +1,10 @@
-// openrt_whole_scene.cpp: a scene written as one commit is the scene: after random edits through
-// the API the tables are equal, the commit keeps all rules, later edits hold on both, and a backend
-// that saw only it makes the same bytes as one that saw everything.
+// openrt_whole_scene.cpp: a scene written as one commit equals the scene. After random edits
+// through the API:
+// * the tables are equal;
+// * the commit obeys all rules;
+// * later edits work on both;
+// * a backend that received only this commit renders the same bytes as one that received every
+//   edit.
 #include <cstring>
 #include <random>
 
@@ -51,7 +55,8 @@ template <class T> bool same(const std::map<uint32_t, T>& a, const std::map<uint
   });
 }
 
-class Comparer { // geometry names shaders that may be deleted by now: those name nothing
+// Compares two scenes. Geometry may refer to shaders that were deleted; such references are equal.
+class Comparer {
  public:
   Comparer(const Scene& a, const Scene& b) : a_(a), b_(b) {}
   void expectEqual() const {
@@ -162,7 +167,7 @@ class WholeScene : public ApiTest, public testing::WithParamInterface<int> {
       rtTexImage2D(3, 4, 3, RT_UNSIGNED_BYTE, texels.data());
     }
     rtTexParameteri(RT_TEXTURE_MAG_FILTER,
-                    random() % 2 ? RT_NEAREST : RT_LINEAR); // of texels that are there already, too
+                    random() % 2 ? RT_NEAREST : RT_LINEAR); // also affects existing texels
   }
   void parameters(RTid shader) {
     if (!shader || shader == varying) return;
@@ -295,7 +300,7 @@ TEST_P(WholeScene, IsTheSceneHoweverItCameToBe) {
       late.apply(*edits);
       joining->apply(edits);
     }
-    if (step % 7 == 5) { // somebody joins
+    if (step % 7 == 5) { // another backend joins
       const auto whole = wholeScene(seen);
       validator = std::make_unique<CommitValidator>(&captured->shaders);
       ASSERT_NO_THROW(validator->check(*whole));

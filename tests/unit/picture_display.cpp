@@ -1,4 +1,5 @@
-// Display bytes are those of the curve of IEC 61966-2-1, however they are found.
+// picture_display.cpp: display bytes follow the curve of IEC 61966-2-1, whichever way they are
+// computed.
 #include <gtest/gtest.h>
 
 #include <bit>

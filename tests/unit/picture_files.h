@@ -9,29 +9,29 @@
 namespace xvrml::test {
 
 using Bytes = std::vector<uint8_t>;
-// Sample of a picture: column, row from the top, component.
+// Returns a sample of a picture: column, row from the top, component.
 using Sample = std::function<uint16_t(int x, int y, int c)>;
 
 struct PngKind {
-  int colorType; // of libpng
+  int colorType; // libpng's colour type
   int bitDepth = 8;
   bool interlaced = false;
-  std::vector<uint8_t> paletteAlpha; // tRNS of a palette
-  int transparentGrey = -1;          // tRNS of a grey picture
+  std::vector<uint8_t> paletteAlpha; // tRNS chunk of a palette
+  int transparentGrey = -1;          // tRNS chunk of a grey picture
 };
-// Palette pictures: entry i is (i, 2 i, 3 i).
+// Makes a PNG file. Palette pictures have the entries (i, 2 i, 3 i).
 Bytes makePng(int width, int height, const PngKind& kind, const Sample& sample);
 
-Bytes makeJpeg(int width, int height, int components, bool progressive,
-               const Sample& sample); // 4: CMYK as Adobe writes it
+// components 4: CMYK as Adobe writes it
+Bytes makeJpeg(int width, int height, int components, bool progressive, const Sample& sample);
 
 struct GifFrame {
   int left = 0, top = 0, width = 0, height = 0;
   bool interlaced = false;
   int transparent = -1;
-  bool ownPalette = false; // entry i is (255 - i, 0, 0)
+  bool ownPalette = false; // local palette, entry i is (255 - i, 0, 0)
 };
-// Palette: entry i is (i, 2 i, 3 i) of 64.
+// Makes a GIF file. The global palette has 64 entries; entry i is (i, 2 i, 3 i).
 Bytes makeGif(int width, int height, const std::vector<GifFrame>& frames, const Sample& sample);
 
 } // namespace xvrml::test

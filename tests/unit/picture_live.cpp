@@ -1,5 +1,5 @@
-// Live pictures: they are the pictures of Renderer, come without waiting, can be given up, and
-// leave the world alone while light is traced.
+// picture_live.cpp: live pictures equal those of Renderer, arrive without waiting, can be
+// cancelled, and do not block the world during rendering.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -70,7 +70,7 @@ RenderResult still(xvrml::Browser& browser, RenderSettings settings, const LiveF
   return Renderer(browser, settings).render(frame.view);
 }
 
-// A frame that takes as long as it is let.
+// A frame that runs until it is cancelled.
 LiveFrame longFrame() { return frameOf(512, 384, 65536); }
 
 uint8_t redAt(const LivePicture& picture, double x, double y) {
@@ -132,7 +132,7 @@ TEST(Live, theFrameInFlightIsSeenAndEndsEarly) {
   live.start(longFrame());
   LivePicture picture;
   while (!live.look(picture) || picture.covered < 1)
-    nap(); // hangs if the whole picture does not come early
+    nap(); // never ends if the whole picture does not come early
   EXPECT_FALSE(picture.finished);
   EXPECT_LT(picture.samples, 60000);
   EXPECT_EQ(live.state(), State::rendering);
@@ -147,7 +147,7 @@ TEST(Live, theFrameInFlightIsSeenAndEndsEarly) {
   }
   Picture all;
   EXPECT_TRUE(live.copy(all));
-  EXPECT_EQ(all.planes.size(), 1u); // rgba alone was asked for
+  EXPECT_EQ(all.planes.size(), 1u); // only rgba was requested
   finish(live, frameOf());
 }
 
@@ -184,10 +184,10 @@ TEST(Live, pixelsWithoutSamplesShowThePictureBefore) {
   EXPECT_EQ(picture.width, 1600);
   EXPECT_EQ(picture.rgb.size(), size_t(1600 * 1200 * 3));
   for (size_t i = 0; i < picture.rgb.size(); i += 3)
-    ASSERT_GT(picture.rgb[i + 2], 0) << i; // nothing here is without blue
+    ASSERT_GT(picture.rgb[i + 2], 0) << i; // every pixel of this scene has some blue
 }
 
-// What happens to the world while light is traced is in the next picture, not in this one.
+// Changes to the world during rendering show in the next picture, not in this one.
 TEST(Live, theWorldIsFreeWhileRendering) {
   const auto browser = browserOf();
   LiveRenderer live(*browser, settingsOf());
@@ -233,7 +233,7 @@ TEST(Live, aGivenViewerIsWhereItIsLookedFrom) {
   for (size_t i = 3; i < nothing.rgb.size(); ++i) ASSERT_EQ(nothing.rgb[i], nothing.rgb[i % 3]);
 }
 
-// Until the promised error is reached, with as many samples as that takes.
+// Refines until the target error is reached, with as many samples as that takes.
 TEST(Live, aTargetErrorEndsTheRefinement) {
   const auto browser = browserOf(), other = browserOf();
   RenderSettings settings = settingsOf();
@@ -271,8 +271,8 @@ TEST(Live, anotherWorldIsShownAfterTheFirst) {
   EXPECT_EQ(empty.map.shapes, 0u);
 }
 
-// Threads, files, memory: all is given back. mallinfo2 counts bytes, so that nothing depends on the
-// rest of the machine.
+// Threads, files and memory are all released. mallinfo2 counts bytes, so the result does not depend
+// on the rest of the machine.
 TEST(Live, framesLeaveNothingBehind) {
   const auto browser = browserOf();
   LiveRenderer live(*browser, settingsOf());
@@ -302,7 +302,7 @@ TEST(Live, framesLeaveNothingBehind) {
 
 namespace {
 
-// A folder of its own with files that Inlines name; gone with the test.
+// A temporary folder with files that Inlines refer to; removed after the test.
 class LiveInlines : public testing::Test {
  protected:
   void SetUp() override {
@@ -323,8 +323,8 @@ class LiveInlines : public testing::Test {
 
 } // namespace
 
-// Inlines that come while pictures are made cost what they bring; in the end it is the picture of
-// the world read at once.
+// Inlines that load while pictures are made cost only what they add. In the end the picture equals
+// that of the world loaded at once.
 TEST_F(LiveInlines, comeBitByBit) {
   std::string world =
       "Viewpoint { position 0 0 12 }\n"

@@ -1,6 +1,6 @@
-// Live pictures of a cluster: frames overlap, each has its own bytes, size and time; the last one
-// comes home by itself; both in flight are given up together. The cluster is this process alone:
-// nobody answers at its workers' address.
+// picture_live_cluster.cpp: live pictures with overlapping frames. Each frame has its own bytes,
+// size and time; the last one completes by itself; both frames in flight are cancelled together.
+// The cluster consists of this process alone, because nobody answers at its workers' address.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -59,9 +59,8 @@ LiveFrame frameOf(int width = 64, int height = 48, int samples = 4) {
   return frame;
 }
 
-LiveFrame longFrame(int width = 512) {
-  return frameOf(width, 384, 65536);
-} // takes as long as it is let
+// Returns a frame that runs until it is cancelled.
+LiveFrame longFrame(int width = 512) { return frameOf(width, 384, 65536); }
 
 void nap() { std::this_thread::sleep_for(std::chrono::microseconds(200)); }
 
@@ -91,7 +90,7 @@ Picture still(xvrml::Browser& browser, const LiveFrame& frame) {
   return Renderer(browser, settings).render(frame.view).picture;
 }
 
-// Two are in flight.
+// Starts two frames, so that both are in flight.
 void startTwo(LiveRenderer& live, const LiveFrame& first, const LiveFrame& second) {
   live.start(first);
   waitFor(live, State::ready);
@@ -106,7 +105,8 @@ size_t countOf(const char* folder) {
 
 } // namespace
 
-// Each of another place, size and number of samples: nothing of one is in the other.
+// Each frame has another camera position, size and number of samples; nothing of one shows in
+// another.
 TEST(LiveCluster, framesThatOverlapComeInTheirOrderAndAreTheStillOnes) {
   constexpr int frames = 12;
   const auto frame = [](int i) {
@@ -170,13 +170,14 @@ TEST(LiveCluster, oneAfterTheOtherIsAloneAllTheTime) {
   }
 }
 
-// What is in flight alone is seen while it is made, also where another one might follow.
+// A single frame in flight can be watched, even if another one could follow.
 TEST(LiveCluster, theFrameInFlightIsSeen) {
   const auto browser = browserOf();
   LiveRenderer live(*browser, clustered());
   live.start(longFrame());
   LivePicture picture;
-  while (!live.look(picture) || picture.covered < 1) nap(); // hangs if it does not come early
+  // Never ends if the picture does not come early.
+  while (!live.look(picture) || picture.covered < 1) nap();
   EXPECT_EQ(live.state(), State::ready);
   EXPECT_FALSE(picture.ended);
   Picture all;
@@ -192,11 +193,12 @@ TEST(LiveCluster, noMoreThanTwoAreInFlight) {
   EXPECT_THROW(live.start(frameOf()), std::logic_error);
   LivePicture picture;
   for (int i = 0; i < 20; ++i, nap())
-    EXPECT_FALSE(live.look(picture)); // which one it would be is not known
+    // With two frames in flight it is not known which one it would be.
+    EXPECT_FALSE(live.look(picture));
 }
 
-// The older one is given up with the newer. What is finished of it is given; it does not stay in
-// flight, and nor does the next.
+// The older frame is cancelled together with the newer. Its finished part is delivered. Neither
+// frame stays in flight.
 TEST(LiveCluster, cancellingEndsBothAndWhatIsFinishedStays) {
   const auto browser = browserOf(), other = browserOf();
   LiveRenderer live(*browser, clustered());
@@ -215,12 +217,12 @@ TEST(LiveCluster, cancellingEndsBothAndWhatIsFinishedStays) {
   EXPECT_EQ(newer.width, 400);
   EXPECT_FALSE(newer.finished);
   for (size_t i = 0; i < newer.rgb.size(); i += 3)
-    ASSERT_GT(newer.rgb[i + 2], 0) << i; // nothing here is without blue
+    ASSERT_GT(newer.rgb[i + 2], 0) << i; // every pixel of this scene has some blue
   EXPECT_FALSE(live.look(picture));
   EXPECT_EQ(finish(live, frameOf()).rgb, displayBytes(still(*other, frameOf())));
 }
 
-// Whenever it comes: while the world is read, while the frame is begun, and after.
+// Cancels at any time: while the world is read, while the frame is begun, and after.
 TEST(LiveCluster, cancelledAtAnyTimeLeavesTheNextFrameWhole) {
   const auto browser = browserOf(), other = browserOf();
   LiveRenderer live(*browser, clustered());
@@ -232,7 +234,7 @@ TEST(LiveCluster, cancelledAtAnyTimeLeavesTheNextFrameWhole) {
     }
     std::this_thread::sleep_for(std::chrono::microseconds(50 * (i / 2)));
     live.cancel();
-    waitFor(live, State::idle); // hangs if one is not reached
+    waitFor(live, State::idle); // never ends if one frame is not reached
   }
   LivePicture picture;
   while (live.look(picture)) EXPECT_FALSE(picture.finished);
@@ -284,8 +286,8 @@ TEST(LiveCluster, framesLeaveNothingBehind) {
   };
   look(300);
   constexpr int frames = 300;
-  // What grows with the frames grows in every round; a message or a connection under way when the
-  // round ends is none of it.
+  // A leak grows in every round. A message or connection in progress at the end of a round does
+  // not.
   bool grows = true;
   for (int round = 0; round < 3 && grows; ++round) {
     const size_t threads = countOf("/proc/self/task"), files = countOf("/proc/self/fd"),
@@ -293,7 +295,8 @@ TEST(LiveCluster, framesLeaveNothingBehind) {
     look(frames);
     grows = countOf("/proc/self/task") > threads || mallinfo2().uordblks > bytes + 200u * frames ||
             countOf("/proc/self/fd") >
-                files + 2; // the address where nobody answers is tried again and again
+                // The address where nobody answers is tried again and again.
+                files + 2;
   }
   EXPECT_FALSE(grows);
 }

@@ -1,5 +1,5 @@
-// Pacing: the frame rate holds while something moves, sizes do not flicker, and what stands still
-// is rendered whole.
+// window_pacing.cpp: frame pacing. The frame rate holds during motion, picture sizes do not
+// flicker, and a still view is rendered at full quality.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,10 +12,10 @@ using namespace vv;
 
 namespace {
 
-// A machine on which a frame takes so long.
+// A machine with a fixed rendering speed.
 struct Machine {
   double pixel, overhead = 0;
-  double unsteady = 0; // part of the time by which frames differ
+  double unsteady = 0; // relative variation of the time per frame
   int count = 0;
   double seconds(const FrameSize& f) {
     const double wave = 1 + unsteady * ((count++ * 7919 % 13) / 6.0 - 1);
@@ -26,7 +26,7 @@ struct Machine {
 constexpr int width = 800, height = 600;
 constexpr double full = double(width) * height;
 
-// Frames while something moves; the seconds of each.
+// Renders frames during motion; returns the seconds of each.
 std::vector<double> move(Pacing& pacing, Machine& machine, int frames,
                          std::vector<FrameSize>* sizes = nullptr) {
   std::vector<double> out;
@@ -40,8 +40,8 @@ std::vector<double> move(Pacing& pacing, Machine& machine, int frames,
   return out;
 }
 
-// Machines behind a link: they do one frame after the other, and the way there and back takes its
-// time. The next frame is begun with the window's next step, at most `most` are in flight.
+// Machines behind a network link. They render one frame after the other, and the link adds a
+// latency. The next frame is started with the window's next step; at most `most` are in flight.
 struct Link {
   double pixel, latency;
   size_t most = 2;
@@ -49,7 +49,7 @@ struct Link {
   struct Run {
     std::vector<FrameSize> sizes;
     std::vector<double> ends;
-    double rate() const { // of the second half
+    double rate() const { // frames per second in the second half of the run
       const size_t half = ends.size() / 2;
       return double(ends.size() - 1 - half) / (ends.back() - ends[half]);
     }
@@ -108,7 +108,7 @@ TEST(Pacing, theFrameRateHolds) {
       EXPECT_TRUE(seconds.back() <= 1 / fps || least) << fps << ", " << wholePicture;
       const bool most = last.samples == 16;
       EXPECT_TRUE(seconds.back() >= 0.3 / fps || most)
-          << fps << ", " << wholePicture; // time is used
+          << fps << ", " << wholePicture; // the available time is used
     }
 }
 
@@ -129,8 +129,9 @@ TEST(Pacing, sizesAreBounded) {
       EXPECT_GE(side, std::min(whole, 64));
     }
     EXPECT_TRUE(f.width <= (w + 7) / 8 ||
-                std::min(f.width, f.height) <= 64); // no larger than it must be
-    EXPECT_NEAR(double(f.width) / f.height, double(w) / h, .02 * w / h); // of the same shape
+                std::min(f.width, f.height) <= 64); // no larger than necessary
+    // With the same aspect ratio.
+    EXPECT_NEAR(double(f.width) / f.height, double(w) / h, .02 * w / h);
     EXPECT_EQ(f.samples, 1);
   }
 }
@@ -143,7 +144,8 @@ TEST(Pacing, cheapScenesGetMoreSamplesAtFullSize) {
   EXPECT_EQ(sizes.back().width, width);
   EXPECT_GE(sizes.back().samples, 8);
   for (int i = 0; i < 10; ++i)
-    EXPECT_LE(pacing.next(width, height, true, 2).samples, 2); // no more than a still picture
+    // No more samples than for a still picture.
+    EXPECT_LE(pacing.next(width, height, true, 2).samples, 2);
 }
 
 TEST(Pacing, sizesDoNotFlicker) {
@@ -174,7 +176,8 @@ TEST(Pacing, aSceneThatBecomesSlowIsFollowedAtOnceAndBackByAndBy) {
 
 TEST(Pacing, whatWasLearntWhileStillCountsWhenItMoves) {
   Pacing pacing(30);
-  pacing.took({width, height, 64}, 3.0, 3.0, 0, 3); // given up after three samples of a second each
+  // Cancelled after three samples of a second each.
+  pacing.took({width, height, 64}, 3.0, 3.0, 0, 3);
   const FrameSize first = pacing.next(width, height, true, 64);
   EXPECT_LE(first.width * first.height / full, 1 / 25.0);
 }
@@ -204,8 +207,8 @@ TEST(Pacing, framesThatOverlapKeepTheRateAndTheirSize) {
   for (const double latency : {0.0, .001, .004, .01, .02, .03, .04, .06})
     for (double wholePicture = 0.002; wholePicture < 0.5; wholePicture *= 1.13) {
       Pacing pacing(fps);
-      pacing.took({width, height, 64}, 64 * wholePicture, 64 * wholePicture, 0,
-                  64); // a refined one was seen before
+      // A refined picture was shown before.
+      pacing.took({width, height, 64}, 64 * wholePicture, 64 * wholePicture, 0, 64);
       const Link link{wholePicture / full, latency, 2, 0.05};
       const Link::Run run = link.move(pacing, fps, 200);
       EXPECT_LE(run.changes(), 1) << wholePicture << ", " << latency;
@@ -214,7 +217,8 @@ TEST(Pacing, framesThatOverlapKeepTheRateAndTheirSize) {
     }
 }
 
-// One frame at a time has to wait for the link: its pictures are as small as they get, and late.
+// With one frame at a time the window waits for the link: pictures are as small as possible and
+// late.
 TEST(Pacing, aSlowLinkDoesNotMakePicturesSmallWhereFramesOverlap) {
   constexpr double fps = 30, latency = .04, wholePicture = .02;
   const auto run = [&](size_t most) {

@@ -1,5 +1,5 @@
-// xvrml_budget.cpp: the budget of a world (limit worldBytes): what nodes, values, prototypes and
-// scripts take of it, what happens where it ends, and that it comes back.
+// xvrml_budget.cpp: the memory budget of a world (limit worldBytes): what nodes, values, prototypes
+// and scripts charge to it, what happens when it is exhausted, and that memory is returned.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -44,7 +44,7 @@ size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-// Refused by the budget, once, and in a message that names it.
+// Checks that the budget refused something once, with a message that names it.
 void expectRefused(const World& world, uint64_t limit) {
   const std::string name = fmt::format("limit worldBytes={}", limit);
   EXPECT_EQ(count(messages(world), name), 1u) << messages(world);
@@ -85,7 +85,7 @@ TEST(Budget, TheDefaultIsOfTheMachine) {
   EXPECT_GE(budget.limit(), 256u << 20);
   EXPECT_EQ(budgetOf(*parse("Shape { }"))->limit(), defaultWorldBytes());
   LoadOptions options;
-  EXPECT_TRUE(setLimit(options.limits, "copyBytes", 1'000'000)); // the former name
+  EXPECT_TRUE(setLimit(options.limits, "copyBytes", 1'000'000)); // the previous name of the limit
   EXPECT_EQ(budgetOf(*parse("Shape { }", options))->limit(), 1'000'000u);
 }
 
@@ -123,13 +123,13 @@ TEST(Budget, OfPrototypesAndTheirFields) {
   std::string fields;
   for (int i = 0; i < 100; ++i) fields += fmt::format("field SFInt32 f{} 0 ", i);
   const std::string text = "PROTO P [ " + fields + "] { Group { } }\n";
-  const auto world = parse(text + repeated("P { }\n", 1000), of(1'000'000)); // 4 kB each at least
+  const auto world = parse(text + repeated("P { }\n", 1000), of(1'000'000)); // at least 4 kB each
   EXPECT_GE(count(messages(*world), "limit worldBytes=1000000"), 1u) << messages(*world);
   EXPECT_LE(world->nodeCount, 500u);
   EXPECT_EQ(messages(*parse(text + repeated("P { }\n", 10), of(1'000'000))), "");
 }
 
-// One list of numbers, handed to many nodes.
+// One list of numbers used by many nodes.
 TEST(Budget, OfValuesThatPrototypesCopy) {
   const std::string body = repeated("ScalarInterpolator { key IS k }\n", 200);
   const std::string text = "PROTO P [ field MFFloat k [ ] ] { Group { } " + body + "}\nP { k [" +
@@ -151,21 +151,22 @@ TEST(Budget, ComesBackWithTheWorld) {
     budget = budgetOf(*world);
     EXPECT_GT(budget->used(), 10'000u);
   }
-  EXPECT_EQ(budget.use_count(), 1); // the world has let it go
+  EXPECT_EQ(budget.use_count(), 1); // the world has released it
 }
 
-// While the file is read, and no longer.
+// Unpacked text counts only while the file is read.
 TEST(Budget, OfTextThatIsUnpacked) {
   const std::string header = "#VRML V2.0 utf8\n", comment = "#" + std::string(600'000, 'x') + "\n";
   const std::string nodes = repeated("PointLight { }\n", 2000); // 600,000 bytes of nodes
   const auto load = [](const std::string& text) {
     return loadWorldFromMemory(text, "test.wrl", of(1'000'000));
   };
-  EXPECT_EQ(messages(*load(header + comment + nodes)), ""); // a text that others hold
+  // This text is owned by the caller, so it is not counted.
+  EXPECT_EQ(messages(*load(header + comment + nodes)), "");
   EXPECT_EQ(messages(*load(gzipped(header + nodes))), "");
   const auto world = load(gzipped(header + comment + nodes));
   expectRefused(*world, 1'000'000);
-  EXPECT_LT(budgetOf(*world)->used(), 400'000u); // the text has been given back
+  EXPECT_LT(budgetOf(*world)->used(), 400'000u); // the unpacked text has been released
   try {
     load(gzipped(header + comment + comment));
     ADD_FAILURE() << "a text of more bytes than the budget was unpacked";
@@ -175,7 +176,7 @@ TEST(Budget, OfTextThatIsUnpacked) {
   }
 }
 
-// What programs make and drop for hours does not add up.
+// Objects that programs create and drop for hours do not add up.
 TEST(Budget, OfWhatProgramsMakeIsChecked) {
   Browser browser(parse("Group { }", of(1'000'000)));
   const std::string some = repeated("Shape { }\n", 1000);

@@ -1,5 +1,5 @@
-// IndexedFaceSet's colours, normals and texture coordinates: every combination of the flags and
-// index lists of clause 6.23.
+// xvrml_geometry_attributes.cpp: IndexedFaceSet's colours, normals and texture coordinates, for
+// every combination of the flags and index lists of clause 6.23.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -7,8 +7,9 @@ namespace {
 
 using Faces = Made<nodes::IndexedFaceSet>;
 
-// Two squares side by side, six points:  3 4 5
-//                                        0 1 2
+// Two squares side by side with six points:
+//   3 4 5
+//   0 1 2
 Faces twoSquares() {
   Faces node("IndexedFaceSet");
   node->coord = coordinate({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}});
@@ -16,10 +17,11 @@ Faces twoSquares() {
   return node;
 }
 
-// What each corner of the two squares should show: corner k of face f.
+// The value that each corner of the two squares should have: corner k of face f.
 using Corners = std::vector<float>;
 
-// Values numbered by their first component: the mesh's value at each corner of each face.
+// Returns the mesh's value at each corner of each face. Values are identified by their first
+// component.
 template <class Values> Corners shown(const Mesh& mesh, Values valueOf) {
   Corners result;
   const D3 wanted[2][4] = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
@@ -28,7 +30,7 @@ template <class Values> Corners shown(const Mesh& mesh, Values valueOf) {
     for (const D3& place : face) {
       float value = -1;
       for (size_t i = 0; i < mesh.indices.size(); i++) {
-        size_t triangle = i / 3; // of this face?
+        size_t triangle = i / 3; // the next triangle of this face
         double x = (at(mesh, 3 * triangle)[0] + at(mesh, 3 * triangle + 1)[0] +
                     at(mesh, 3 * triangle + 2)[0]) /
                    3;
@@ -51,7 +53,7 @@ MFColor numbered(int n) {
   for (int i = 0; i < n; i++) colors.push_back({float(i), 0, 0});
   return colors;
 }
-MFVec3f tilted(int n) { // unit normals told apart by 100 x
+MFVec3f tilted(int n) { // unit normals whose first component times 100 identifies them
   MFVec3f normals;
   for (int i = 0; i < n; i++)
     normals.push_back({float(i) / 100, 0, std::sqrt(1 - float(i * i) / 10000)});
@@ -67,19 +69,19 @@ struct Case {
 };
 
 const Case cases[] = {
-    {true, {}, 6, {0, 1, 4, 3, 1, 2, 5, 4}, 6}, // coordIndex names them
+    {true, {}, 6, {0, 1, 4, 3, 1, 2, 5, 4}, 6}, // coordIndex selects the values
     {true,
      {5, 4, 3, 2, -1, 4, 1, 0, 3, -1},
      6,
      {5, 4, 3, 2, 4, 1, 0, 3},
-     6}, // their own index, equal where points are shared
+     6}, // their own index, with equal values where points are shared
     {true,
      {0, 1, 2, 3, -1, 4, 5, 6, 7, -1},
      8,
      {0, 1, 2, 3, 4, 5, 6, 7},
-     8},                                             // ... different there: two points double
-    {false, {}, 2, {0, 0, 0, 0, 1, 1, 1, 1}, 8},     // faces in order
-    {false, {3, 2}, 4, {3, 3, 3, 3, 2, 2, 2, 2}, 8}, // faces by index
+     8}, // different values there: two points are duplicated
+    {false, {}, 2, {0, 0, 0, 0, 1, 1, 1, 1}, 8},     // one per face, in order
+    {false, {3, 2}, 4, {3, 3, 3, 3, 2, 2, 2, 2}, 8}, // one per face, by index
     {false, {3, 3}, 4, {3, 3, 3, 3, 3, 3, 3, 3}, 6},
 };
 
@@ -163,7 +165,7 @@ TEST(GeometryAttributes, MissingColoursAreWhite) {
   EXPECT_EQ(reds(built.mesh), (Corners{0.25f, 0.25f, 0.25f, 0.25f, 1, 1, 1, 1}));
   node->colorIndex = {-5};
   EXPECT_EQ(reds(build(node).mesh), (Corners(8, 1)));
-  node->color = color({}); // an empty Color is none
+  node->color = color({}); // an empty Color node counts as none
   EXPECT_TRUE(build(node).mesh.colors.empty());
 }
 
@@ -210,8 +212,8 @@ TEST(GeometryAttributes, NormalsOfAnyLengthBecomeUnit) {
   expectSound(build(node).mesh);
 }
 
-// Default mapping (clause 6.23): S along the longest side, T along the second, ties in the order X,
-// Y, Z.
+// Default mapping (clause 6.23): S along the longest side, T along the second longest; ties in the
+// order X, Y, Z.
 TEST(GeometryAttributes, DefaultTextureMapping) {
   struct Expected {
     Vec3f size;
@@ -223,13 +225,13 @@ TEST(GeometryAttributes, DefaultTextureMapping) {
       {{4, 2, 2}, 0, 1}, {{2, 4, 2}, 1, 0}, {{2, 2, 4}, 2, 0}};
   for (const Expected& e : table) {
     const float size[3] = {e.size.x, e.size.y, e.size.z};
-    Faces node(
-        "IndexedFaceSet"); // the far corner 7 and its neighbours span the box from (10, 20, 30)
+    // The far corner 7 and its neighbours span the box from (10, 20, 30).
+    Faces node("IndexedFaceSet");
     MFVec3f points;
     for (int i = 0; i < 8; i++)
       points.push_back(
           {10 + (i & 1 ? size[0] : 0), 20 + (i & 2 ? size[1] : 0), 30 + (i & 4 ? size[2] : 0)});
-    points.push_back({-99, 99, 99}); // no face uses it
+    points.push_back({-99, 99, 99}); // unused by any face
     node->coord = coordinate(points);
     node->coordIndex = {0, 3, 5, -1, 6, 5, 3, -1, 7, 1, 2, -1, 4, 2, 1};
     EXPECT_TRUE(build(node, false).mesh.texCoords.empty());

@@ -1,6 +1,6 @@
-// Concave faces with corners in one line: every corner is a vertex of the triangles on all its
-// sides, with its own colour, normal and texture coordinate, and no edge passes a vertex by (a
-// T-junction).
+// xvrml_geometry_collinear.cpp: concave faces with collinear corners. Every corner is a vertex of
+// the triangles on all its sides, with its own colour, normal and texture coordinate. No edge runs
+// past a vertex (a T-junction).
 #include <random>
 
 #include "unit/mesh_checks.h"
@@ -14,7 +14,7 @@ using Faces = Made<nodes::IndexedFaceSet>;
 const MFVec3f letterH = {{0, 0, 0}, {1, 0, 0}, {1, 1.2f, 0}, {2, 1.2f, 0}, {2, 0, 0}, {3, 0, 0},
                          {3, 3, 0}, {2, 3, 0}, {2, 1.8f, 0}, {1, 1.8f, 0}, {1, 3, 0}, {0, 3, 0}};
 
-// A comb: teeth of the same height, whose ends and gaps lie in two lines.
+// A comb with teeth of equal height, whose ends and gaps lie on two lines.
 MFVec3f comb(int teeth) {
   MFVec3f points{{0, -1, 0}, {float(2 * teeth), -1, 0}};
   for (int i = teeth; i-- > 0;) {
@@ -26,7 +26,7 @@ MFVec3f comb(int teeth) {
   return points;
 }
 
-// The angle and axis that rounding does not keep in line.
+// Rotates the points by an angle and about an axis that rounding does not keep collinear.
 MFVec3f turned(MFVec3f points, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   for (Vec3f& p : points)
@@ -58,7 +58,7 @@ Faces face(const MFVec3f& points) {
 
 double length(const D3& v) { return std::sqrt(dotProduct(v, v)); }
 
-// Vertices that lie within an edge of a triangle, less than 1e-4 off.
+// Returns the number of vertices inside an edge of a triangle, less than 1e-4 off.
 size_t junctions(const Mesh& mesh) {
   size_t found = 0;
   for (size_t corner = 0; corner < mesh.indices.size(); ++corner) {
@@ -81,7 +81,7 @@ void expectWhole(const MFVec3f& points, double expectedArea) {
   EXPECT_EQ(junctions(mesh), 0u);
   EXPECT_NEAR(area(mesh), expectedArea, 1e-5 * expectedArea);
   EXPECT_EQ(mesh.indices.size() / 3,
-            points.size() - 2); // every triangulation of a polygon has so many
+            points.size() - 2); // every triangulation of a polygon has this many triangles
   std::vector<bool> used(points.size());
   for (const uint32_t vertex : mesh.indices) {
     const auto number = size_t(mesh.colors[vertex].r);
@@ -99,8 +99,8 @@ TEST(GeometryCollinear, AnHKeepsTheCornersOfItsBar) { expectWhole(letterH, 3 + 3
 TEST(GeometryCollinear, HoweverItIsTurned) {
   for (int i = 1; i < 40; ++i) {
     SCOPED_TRACE(i);
-    const double stretch =
-        std::sqrt(1 + 0.3 * 0.3 + 0.2 * 0.2); // area of the tilted plane over that of its view
+    // Ratio of the tilted plane's area to its projection's.
+    const double stretch = std::sqrt(1 + 0.3 * 0.3 + 0.2 * 0.2);
     expectWhole(turned(letterH, i * 0.157), 6.6 * stretch);
   }
 }
@@ -113,7 +113,7 @@ TEST(GeometryCollinear, ACombKeepsAllItsTeeth) {
   }
 }
 
-// Staircases with extra corners on their edges, at random.
+// Random staircases with extra corners on their edges.
 TEST(GeometryCollinear, RandomCornersOnEdgesAreKept) {
   std::mt19937 random(7);
   for (int round = 0; round < 200; ++round) {
@@ -135,7 +135,7 @@ TEST(GeometryCollinear, RandomCornersOnEdgesAreKept) {
       if (i > 1) to(float(i - 1), float(steps - i + 1));
     }
     to(0, float(steps));
-    points.pop_back(); // it was there already
+    points.pop_back(); // the point was there already
     points.push_back({0, float(steps), 0});
     points.erase(std::unique(points.begin(), points.end()), points.end());
     double expected = 0;

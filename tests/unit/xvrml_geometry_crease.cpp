@@ -1,5 +1,5 @@
-// creaseAngle (clause 4.6.3.5): which edges are smooth, and that generated normals are unit, to the
-// front and finite.
+// xvrml_geometry_crease.cpp: creaseAngle (clause 4.6.3.5): which edges are smooth, and that
+// generated normals are finite unit vectors on the front side.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -20,7 +20,7 @@ Faces cube(float creaseAngle) {
   return node;
 }
 
-// Two squares that share the y axis as an edge and meet at `angle` between their normals.
+// Two squares that share an edge on the y axis and have `angle` between their normals.
 Faces folded(float angle, float creaseAngle) {
   Faces node("IndexedFaceSet");
   node->coord = coordinate({{-1, 0, 0},
@@ -65,7 +65,7 @@ TEST(GeometryCrease, TheAngleOfAFoldDecides) {
     expectSound(smooth);
     EXPECT_EQ(sharp.points.size(), 8u) << angle;
     EXPECT_EQ(smooth.points.size(), 6u) << angle;
-    // On the fold the smooth normal halves the angle.
+    // On the fold the smooth normal bisects the angle.
     for (size_t i = 0; i < smooth.points.size(); i++)
       if (smooth.points[i].x == 0 && smooth.points[i].z == 0) {
         EXPECT_NEAR(smooth.normals[i].x, std::sin(angle / 2), 1e-4);
@@ -109,7 +109,7 @@ TEST(GeometryCrease, OppositeFacesFallBackToTheirOwnNormals) {
   EXPECT_TRUE(normalsFaceFront(mesh));
 }
 
-// A fan of very many faces about one point: the cost must stay linear, and the result smooth.
+// A fan of very many faces around one point: the cost must stay linear and the result smooth.
 TEST(GeometryCrease, ManyFacesAtOnePoint) {
   const int n = 100000;
   Faces node("IndexedFaceSet");
@@ -124,15 +124,15 @@ TEST(GeometryCrease, ManyFacesAtOnePoint) {
   expectSound(mesh);
   EXPECT_TRUE(normalsFaceFront(mesh));
   for (size_t i = 0; i < mesh.points.size(); i++)
-    if (mesh.points[i].y == 0) {
+    if (mesh.points[i].y == 0) { // normal of the cone
       EXPECT_NEAR(mesh.normals[i].y, std::sqrt(0.5), 1e-2);
-    } // slope of the cone
+    }
   node->creaseAngle = 4;
   mesh = build(node).mesh;
   for (size_t i = 0; i < mesh.points.size(); i++)
-    if (mesh.points[i].y == 1) {
+    if (mesh.points[i].y == 1) { // the apex: all normals together give the axis
       EXPECT_NEAR(mesh.normals[i].y, 1, 1e-3);
-    } // all together: the axis
+    }
 }
 
 } // namespace

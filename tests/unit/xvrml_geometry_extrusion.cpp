@@ -1,5 +1,5 @@
-// Extrusion (clause 6.18): frames, caps, scale, orientation, closed and degenerate spines, against
-// closed forms.
+// xvrml_geometry_extrusion.cpp: Extrusion (clause 6.18): frames, caps, scale, orientation, closed
+// and degenerate spines, against closed forms.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -8,8 +8,8 @@ namespace {
 using Sweep = Made<nodes::Extrusion>;
 constexpr double pi = std::numbers::pi;
 
-MFVec2f circle(int n, double radius,
-               bool closed = true) { // in the direction of the default crossSection
+// The points run in the direction of the default crossSection.
+MFVec2f circle(int n, double radius, bool closed = true) {
   MFVec2f points;
   for (int i = 0; i < n; i++)
     points.push_back(
@@ -55,19 +55,19 @@ TEST(GeometryExtrusion, StraightSpinesInAnyDirection) {
     }
 }
 
-// Collinear spines: the xz plane is turned as +y is turned to the spine.
+// Collinear spine: the xz plane is rotated by the rotation that takes +y to the spine.
 TEST(GeometryExtrusion, CollinearSpineTurnsTheSectionTheShortWay) {
   Sweep node("Extrusion");
   node->crossSection = {{1, 0}, {0, 1}};
   node->beginCap = node->endCap = false;
   node->spine = {{0, 0, 0}, {5, 0, 0}};
   Mesh mesh = build(node).mesh;
-  EXPECT_NEAR(mesh.points[0].y, -1, 1e-6); // +y to +x takes +x to -y
-  EXPECT_NEAR(mesh.points[1].z, 1, 1e-6);  // and leaves z
+  EXPECT_NEAR(mesh.points[0].y, -1, 1e-6); // taking +y to +x takes +x to -y
+  EXPECT_NEAR(mesh.points[1].z, 1, 1e-6);  // and leaves z unchanged
 }
 
 TEST(GeometryExtrusion, ABentSpineMitresItsCorner) {
-  // An L in the xy plane: at the corner the plane of the section halves the angle.
+  // An L in the xy plane: at the corner the plane of the section bisects the angle.
   Sweep node("Extrusion");
   node->spine = {{0, 0, 0}, {0, 4, 0}, {4, 4, 0}};
   node->crossSection = circle(4, 0.1);
@@ -83,7 +83,7 @@ TEST(GeometryExtrusion, ABentSpineMitresItsCorner) {
 }
 
 TEST(GeometryExtrusion, SpinesThatBendBothWaysDoNotTwist) {
-  Sweep node("Extrusion"); // an S: z axes must not flip where the bend changes its sense
+  Sweep node("Extrusion"); // an S: z axes must not flip where the bend changes its direction
   node->spine.clear();
   for (int i = 0; i <= 40; i++)
     node->spine.push_back({float(std::sin(i * pi / 10)), float(i) * 0.2f, 0});
@@ -92,8 +92,8 @@ TEST(GeometryExtrusion, SpinesThatBendBothWaysDoNotTwist) {
   expectSound(mesh);
   EXPECT_EQ(openEdges(mesh), 0u);
   EXPECT_GT(signedVolume(mesh), 0);
-  for (size_t i = 0; i + 1 < node->spine.size();
-       i++) { // the same section point stays on the same side
+  // The same section point stays on the same side.
+  for (size_t i = 0; i + 1 < node->spine.size(); i++) {
     const Vec3f &a = mesh.points[i * 16 + 4], &b = mesh.points[(i + 1) * 16 + 4];
     EXPECT_NEAR(a.z, b.z, 1e-5);
   }
@@ -113,8 +113,8 @@ TEST(GeometryExtrusion, AClosedRingIsATorus) {
     Mesh mesh = build(node).mesh;
     expectSound(mesh);
     EXPECT_EQ(openEdges(mesh), 0u);
-    // Pappus: area of the section times the way of its centre; the sections stand on the corners of
-    // the spine's polygon.
+    // Pappus: area of the section times the path of its centroid. The sections stand on the corners
+    // of the spine's polygon.
     double expected = polygonArea(section, 0.5) * polygonArea(around, 2) / 2 * 2;
     EXPECT_NEAR(signedVolume(mesh), expected, 0.005 * expected);
     EXPECT_EQ(mesh.points.size(), crease > 0 ? size_t(around * section) : mesh.points.size())
@@ -144,12 +144,12 @@ TEST(GeometryExtrusion, FewerScalesAndOrientationsThanSpinePoints) {
   Sweep node("Extrusion");
   node->spine = {{0, 0, 0}, {0, 1, 0}, {0, 2, 0}, {0, 3, 0}};
   node->scale = {{1, 1}, {2, 2}};
-  Mesh mesh = build(node).mesh; // the last one goes on: a frustum, then a box
+  Mesh mesh = build(node).mesh; // the last scale continues: a frustum, then a box
   EXPECT_NEAR(signedVolume(mesh), (4 + 16 + 8) / 3.0 + 2 * 16, 1e-4);
   node->scale = {};
   node->orientation = {};
   EXPECT_NEAR(signedVolume(build(node).mesh), 12, 1e-5);
-  node->scale = MFVec2f(20, {1, 1}); // more are ignored
+  node->scale = MFVec2f(20, {1, 1}); // additional values are ignored
   EXPECT_NEAR(signedVolume(build(node).mesh), 12, 1e-5);
 }
 
@@ -166,8 +166,8 @@ TEST(GeometryExtrusion, OrientationTurnsAboutTheSpinePoint) {
 }
 
 TEST(GeometryExtrusion, CoincidentSpinePointsMakeASurfaceOfRevolution) {
-  Sweep node(
-      "Extrusion"); // a half circle of radius 1, right of the y axis, turned about y: a sphere
+  // A half circle of radius 1 right of the y axis, rotated about y: a sphere.
+  Sweep node("Extrusion");
   const int turns = 48, arc = 24;
   node->crossSection.clear();
   for (int i = 0; i <= arc; i++)
@@ -175,7 +175,8 @@ TEST(GeometryExtrusion, CoincidentSpinePointsMakeASurfaceOfRevolution) {
   node->crossSection.back().x = 0; // on the axis
   node->spine.assign(turns + 1, {0, 0, 0});
   node->orientation.clear();
-  // The section lies in the xz plane: turned about z by steps it sweeps a sphere about z.
+  // The section lies in the xz plane and is rotated about z in steps, so it sweeps a sphere about
+  // z.
   for (int i = 0; i <= turns; i++)
     node->orientation.push_back({0, 0, 1, i == turns ? 0 : float(2 * pi * i / turns)});
   node->beginCap = node->endCap = false;
@@ -212,7 +213,7 @@ TEST(GeometryExtrusion, ConcaveCapsKeepTheirArea) {
 }
 
 TEST(GeometryExtrusion, OpenSectionsAreClosedByTheirCaps) {
-  Sweep node("Extrusion"); // three sides of the default box; caps take the missing edge
+  Sweep node("Extrusion"); // three sides of the default box; the caps close the missing edge
   node->crossSection.pop_back();
   Mesh mesh = build(node).mesh;
   expectSound(mesh);
@@ -246,7 +247,7 @@ TEST(GeometryExtrusion, TextureOfSidesAndCaps) {
     for (size_t e = 0; e < 3; e++) {
       D3 p = at(mesh, 3 * t + e);
       Vec2f st = mesh.texCoords[mesh.indices[3 * t + e]];
-      if (std::abs(n[1]) > 1e-6) { // caps: the section's larger side, along x, from 0 to 1
+      if (std::abs(n[1]) > 1e-6) { // caps: the larger side of the section, along x, has 0 to 1
         EXPECT_NEAR(st.x, (p[0] + 2) / 4, 1e-6);
         EXPECT_NEAR(st.y, (p[2] + 1) / 4, 1e-6);
       } else { // sides: T by spine point, S by section point
@@ -273,10 +274,10 @@ TEST(GeometryExtrusion, NothingToSweepIsSaid) {
     EXPECT_EQ(built.mesh.kind, Mesh::Kind::empty);
     EXPECT_EQ(built.diagnostics.warnings(), 1u);
   }
-  Sweep point("Extrusion"); // all in one place
+  Sweep point("Extrusion"); // all points coincide
   point->crossSection = {{0, 0}, {0, 0}, {0, 0}};
   EXPECT_EQ(build(point).mesh.kind, Mesh::Kind::empty);
-  Sweep back("Extrusion"); // there and back again
+  Sweep back("Extrusion"); // forward and back again
   back->spine = {{0, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 1, 0}};
   expectSound(build(back).mesh);
   Limits limits;

@@ -1,4 +1,4 @@
-// ElevationGrid (clause 6.17).
+// xvrml_geometry_grid.cpp: ElevationGrid (clause 6.17).
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -27,8 +27,8 @@ TEST(GeometryGrid, IsFlatTowardsPlusY) {
   EXPECT_EQ(built.mesh.points[5], (Vec3f{4, 0.5f, 3}));
 }
 
-// Grid and floor enclose the sum of cells' heights: the surface is watertight and the heights are
-// in the order x, then z.
+// Grid and floor enclose the sum of the cells' heights, which shows that the surface is watertight
+// and heights are ordered by x, then z.
 TEST(GeometryGrid, HeightsRunAlongXFirst) {
   Grid node = grid(2, 3, {0, 1, 2, 3, 4, 5});
   Mesh mesh = build(node).mesh;
@@ -55,7 +55,7 @@ TEST(GeometryGrid, ColoursAndNormalsByVertexOrQuadrilateral) {
   mesh = build(node).mesh;
   expectSound(mesh);
   for (size_t i = 0; i < mesh.points.size(); i++) EXPECT_EQ(mesh.normals[i].z, mesh.colors[i].r);
-  node->normalPerVertex = true; // too few: the faces' own, with a warning
+  node->normalPerVertex = true; // too few: the faces' own normals are used, with a warning
   Built built = build(node);
   expectSound(built.mesh);
   EXPECT_EQ(built.diagnostics.warnings(), 1u);

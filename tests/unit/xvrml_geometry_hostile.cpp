@@ -1,5 +1,6 @@
-// Geometry nodes full of nonsense, from a fixed seed: never a crash, every index in range, every
-// number finite, one warning at most.
+// xvrml_geometry_hostile.cpp: geometry nodes filled with random nonsense from a fixed seed.
+// Building them never crashes; every index is in range, every number finite, and there is at most
+// one warning.
 #include <random>
 
 #include "unit/mesh_checks.h"
@@ -20,7 +21,7 @@ class Chaos {
                                       -3.4e38f, 1e-38f,   1e-45f,    1e20f, 16777216.f, -1e-20f};
       return odd[below(int(std::size(odd)))];
     }
-    if (chance(40)) return float(below(5) - 2); // coincidences
+    if (chance(40)) return float(below(5) - 2); // makes equal values likely
     return float(int32_t(engine_())) / 1e9f;
   }
   Vec3f vector() { return {number(), number(), number()}; }
@@ -82,7 +83,7 @@ TEST(GeometryHostile, IndexedFaceSet) {
     int points = 1 + chaos.below(60);
     Made<nodes::IndexedFaceSet> node("IndexedFaceSet");
     MFVec3f coordinates = chaos.vectors(points);
-    if (chaos.chance(40)) // flat, so that faces cross themselves
+    if (chaos.chance(40)) // flat, so that faces intersect themselves
       for (Vec3f& p : coordinates) p.z = 0;
     node->coord = coordinate(coordinates);
     node->coordIndex = chaos.indices(300, int(coordinates.size()));

@@ -1,4 +1,4 @@
-// IndexedLineSet and PointSet (clauses 6.24, 6.36).
+// xvrml_geometry_lines.cpp: IndexedLineSet and PointSet (clauses 6.24, 6.36).
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {
@@ -13,7 +13,7 @@ Lines lines(MFInt32 index) {
   return node;
 }
 
-using Ends = std::vector<std::pair<float, float>>; // x or red of both ends of each segment
+using Ends = std::vector<std::pair<float, float>>; // x, or red, of both ends of each segment
 template <class F> Ends ends(const Mesh& mesh, F value) {
   Ends result;
   for (size_t i = 0; i + 1 < mesh.indices.size(); i += 2)

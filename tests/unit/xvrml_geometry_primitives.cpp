@@ -1,5 +1,5 @@
-// Box, Cone, Cylinder and Sphere against their closed forms (ISO/IEC 14772-1
-// clauses 6.7, 6.11, 6.14, 6.43).
+// xvrml_geometry_primitives.cpp: Box, Cone, Cylinder and Sphere against their closed forms (ISO/IEC
+// 14772-1 clauses 6.7, 6.11, 6.14, 6.43).
 #include "geometry/bounds.h"
 #include "unit/mesh_checks.h"
 
@@ -26,7 +26,7 @@ TEST(GeometryBox, TexturesAreUprightOnEverySide) {
   Made<nodes::Box> box("Box");
   Mesh mesh = build(box, true).mesh;
   ASSERT_EQ(mesh.texCoords.size(), 24u);
-  // Directions of growing s and t a side, by the side's outward normal (clause 6.7).
+  // The directions in which s and t grow on a side, by the side's outward normal (clause 6.7).
   struct Expected {
     D3 normal, s, t;
   };
@@ -61,7 +61,8 @@ TEST(GeometryBox, WithoutHeightKeepsTwoSides) {
   EXPECT_EQ(build(box).mesh.kind, Mesh::Kind::empty);
 }
 
-// Volume of a prism over the regular polygon of 64 sides: it approaches pi r^2 h from below.
+// Returns the area of a regular polygon of 64 sides relative to its circle. The volume of a prism
+// over it approaches pi r^2 h from below.
 double polygonShare() { return 64 * std::sin(2 * pi / 64) / 2 / pi; }
 
 TEST(GeometryCylinder, IsClosedAndHasTheVolumeOfItsPolygon) {
@@ -99,7 +100,7 @@ TEST(GeometryCylinder, TextureRunsFromTheBackAroundTheLeft) {
   Made<nodes::Cylinder> cylinder("Cylinder");
   cylinder->top = cylinder->bottom = false;
   Mesh mesh = build(cylinder, true).mesh;
-  auto near = [&](float s, float t) { // the point with these texture coordinates
+  auto near = [&](float s, float t) { // returns the point with these texture coordinates
     for (size_t i = 0; i < mesh.points.size(); i++)
       if (mesh.texCoords[i] == Vec2f{s, t}) return mesh.points[i];
     ADD_FAILURE() << "no vertex at " << s << " " << t;
@@ -124,7 +125,7 @@ TEST(GeometryCone, IsClosedAndItsNormalsAreExact) {
   cone->bottom = false;
   Mesh side = build(cone).mesh;
   for (size_t i = 0; i < side.points.size(); i++)
-    EXPECT_NEAR(side.normals[i].y, 0.6, 1e-6); // 3, 4, 5
+    EXPECT_NEAR(side.normals[i].y, 0.6, 1e-6); // a 3-4-5 triangle
 }
 
 TEST(GeometryRound, TextureOfDiscsLooksUprightWhenTiltedTowardsTheViewer) {

@@ -1,5 +1,5 @@
-// Text and FontStyle (clauses 6.22, 6.47): extents, justification, stretching, directions,
-// families, hostile strings.
+// xvrml_geometry_text.cpp: Text and FontStyle (clauses 6.22, 6.47): extents, justification,
+// stretching, directions, families, hostile strings.
 #include <algorithm>
 
 #include "geometry/bounds.h"
@@ -42,7 +42,7 @@ TEST_F(GeometryText, LiesInThePlaneAndIsTwoSided) {
   EXPECT_FALSE(mesh.solid);
   for (const Vec3f& p : mesh.points) EXPECT_EQ(p.z, 0);
   for (size_t t = 0; t < mesh.indices.size() / 3; t++)
-    EXPECT_GT(areaVector(mesh, t)[2], 0); // front towards +z
+    EXPECT_GT(areaVector(mesh, t)[2], 0); // the front faces +z
   EXPECT_EQ(boundsOf(mesh).minimum.x >= -0.1, true);
 }
 
@@ -50,8 +50,9 @@ TEST_F(GeometryText, HolesStayOpen) {
   TextNode o = text({"O"}), dot = text({"I"});
   Mesh ring = build(o).mesh;
   Box3 box = boundsOf(ring);
-  EXPECT_LT(area(ring), 0.7 * width(box) * height(box)); // an ellipse alone would fill pi/4
-  for (size_t t = 0; t < ring.indices.size() / 3; t++) { // nothing over the middle
+  // A solid ellipse would fill pi/4 of its box.
+  EXPECT_LT(area(ring), 0.7 * width(box) * height(box));
+  for (size_t t = 0; t < ring.indices.size() / 3; t++) { // no triangle covers the centre
     D3 n = areaVector(ring, t), a = at(ring, 3 * t),
        m = {(box.minimum.x + box.maximum.x) / 2, (box.minimum.y + box.maximum.y) / 2, 0};
     bool inside = n[2] != 0;
@@ -97,7 +98,7 @@ TEST_F(GeometryText, MajorJustification) {
   };
   Box3 begin = box("BEGIN", true), middle = box("MIDDLE", true), end = box("END", true),
        right = box("BEGIN", false);
-  double bearing = begin.minimum.x; // space beside the letter
+  double bearing = begin.minimum.x; // left side bearing of the letter
   EXPECT_GT(bearing, 0);
   EXPECT_LT(bearing, 0.2);
   EXPECT_NEAR(width(begin), width(end), 1e-5);
@@ -118,19 +119,20 @@ TEST_F(GeometryText, MinorJustification) {
     node->fontStyle = style;
     return boxOf(node);
   };
-  EXPECT_NEAR(box("FIRST").maximum.y - box("BEGIN").maximum.y, 0.93, 0.2); // an ascender
+  // The height of an ascender.
+  EXPECT_NEAR(box("FIRST").maximum.y - box("BEGIN").maximum.y, 0.93, 0.2);
   EXPECT_LT(box("BEGIN").maximum.y, 0);
   EXPECT_GT(box("BEGIN").maximum.y, -0.4);
   EXPECT_NEAR(box("MIDDLE").maximum.y + box("MIDDLE").minimum.y, 0, 0.4);
   EXPECT_GT(box("END").minimum.y, 0);
   EXPECT_LT(box("END").minimum.y, 0.2);
-  EXPECT_GT(box("BEGIN", false).minimum.y, 0); // lines go up: the bottom of the first
+  EXPECT_GT(box("BEGIN", false).minimum.y, 0); // lines go up: the bottom of the first line
   EXPECT_LT(box("END", false).maximum.y, 0);
 }
 
 TEST_F(GeometryText, MaxExtentAndLength) {
   TextNode node = text({"HHHHHHHH", "H"});
-  Style right("FontStyle"); // measured between ends without side bearings mattering much
+  Style right("FontStyle"); // so wide that side bearings hardly matter
   node->fontStyle = right;
   double natural = width(boxOf(node));
   node->maxExtent = float(natural / 2);
@@ -140,7 +142,7 @@ TEST_F(GeometryText, MaxExtentAndLength) {
   node->maxExtent = 0;
   node->length = {float(natural * 3)};
   EXPECT_NEAR(width(boxOf(node)), natural * 3, 0.1 * natural);
-  node->length = {0, float(natural * 3)}; // 0: its own
+  node->length = {0, float(natural * 3)}; // 0: the natural length
   EXPECT_NEAR(width(boxOf(node)), natural * 3, natural);
   node->string = {"HHHHHHHH"};
   EXPECT_NEAR(width(boxOf(node)), natural, 1e-5);
@@ -201,8 +203,8 @@ TEST_F(GeometryText, FamiliesAndStyles) {
     node->fontStyle = fontStyle;
     return width(boxOf(node));
   };
-  // A typewriter's letters are equally wide, others' are not. (Between the left edges of two equal
-  // stems.)
+  // Letters of a TYPEWRITER font are equally wide, those of other fonts are not. Measured between
+  // the left edges of two equal stems.
   EXPECT_NEAR(advance({"TYPEWRITER"}, "PLAIN", "HiiiiH"),
               advance({"TYPEWRITER"}, "PLAIN", "HmmmmH"), 1e-3);
   EXPECT_LT(advance({"SERIF"}, "PLAIN", "HiiiiH"), 0.8 * advance({"SERIF"}, "PLAIN", "HmmmmH"));

@@ -1,5 +1,5 @@
-// PNG, JPEG and GIF against pictures made here; damaged, cut and oversized files end in an
-// exception that says so.
+// xvrml_image_decoders.cpp: PNG, JPEG and GIF against pictures made here. Damaged, truncated and
+// oversized files end in an exception that says so.
 #include <gtest/gtest.h>
 #include <png.h>
 
@@ -31,7 +31,8 @@ std::string refusal(const Bytes& bytes, const Limits& with = limits) {
   return "";
 }
 
-// The component of a pixel counted from the top, as the makers do; images run from the bottom.
+// Returns a component of a pixel with y counted from the top, as in the encoders; rows of images
+// run from the bottom.
 int pixel(const Image& image, int x, int yFromTop, int c) {
   return image
       .pixels[size_t(((image.height - 1 - yFromTop) * image.width + x) * image.components + c)];
@@ -114,7 +115,7 @@ TEST(ImageJpeg, GreyAndColour) {
 }
 
 TEST(ImageJpeg, InksBecomeLight) {
-  // As Adobe writes it: 255 is no ink. Light is paper less ink, less black.
+  // As Adobe writes it, 255 means no ink. Light is paper minus ink, minus black.
   Image image = decode(makeJpeg(16, 16, 4, false, [](int, int, int c) {
     return uint16_t(c == 0 ? 200 : c == 3 ? 128 : 255);
   }));
@@ -148,7 +149,7 @@ TEST(ImageGif, TransparentColourAndFirstFrameOnly) {
       decode(makeGif(8, 4, {{0, 0, 0, 0, false, 7}, {0, 0, 0, 0, false, 3}}, paletteIndex));
   ASSERT_EQ(image.components, 4);
   for (int x = 0; x < 8; x++) EXPECT_EQ(pixel(image, x, 0, 3), x == 7 ? 0 : 255);
-  // A transparent colour that no pixel has makes no alpha.
+  // A transparent colour that no pixel uses adds no alpha.
   EXPECT_EQ(decode(makeGif(4, 1, {{0, 0, 0, 0, false, 60}}, paletteIndex)).components, 3);
 }
 
@@ -172,8 +173,8 @@ std::vector<std::pair<const char*, Bytes>> samples() {
           {"GIF", makeGif(12, 9, {{0, 0, 0, 0, true, 7}}, paletteIndex)}};
 }
 
-// Cut anywhere, a file gives the whole picture (only trailing marks are gone) or an exception with
-// its format's name.
+// A file truncated anywhere gives the whole picture (if only trailing markers are missing) or an
+// exception that names the format.
 TEST(ImageDamage, CutAtEveryByte) {
   for (auto& [format, bytes] : samples()) {
     Image whole = decode(bytes);
@@ -224,14 +225,14 @@ TEST(ImageDamage, PixelLimitIsCheckedFirst) {
     EXPECT_EQ(refusal(bytes, small), "");
     small.imagePixels = 100;
   }
-  // A header of 65535 x 65535 and nothing behind it.
+  // A header of 65535 x 65535 without data.
   Bytes gif = makeGif(2, 2, {{}}, paletteIndex);
   gif[6] = gif[7] = gif[8] = gif[9] = 0xff;
   EXPECT_NE(refusal(gif).find("imagePixels"), std::string::npos);
 }
 
-// A file of less than 100 bytes that promises a large picture. The sum over the chunk is left out:
-// the decoder reads it later.
+// A file of less than 100 bytes that announces a large picture. The chunk's checksum is left out,
+// because the decoder reads it later.
 Bytes pngHeader(uint32_t width, uint32_t height, uint8_t depth, uint8_t type) {
   Bytes bytes = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   const auto chunk = [&](const char* name, const Bytes& content) {
@@ -259,7 +260,7 @@ Bytes pngHeader(uint32_t width, uint32_t height, uint8_t depth, uint8_t type) {
   return bytes;
 }
 
-long mostMemory() { // kB that the process has had
+long mostMemory() { // peak memory of the process in kB
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return usage.ru_maxrss;
@@ -271,14 +272,15 @@ TEST(ImageDamage, HeadersCostNoMemory) {
     for (const uint32_t height : {1u, 16384u})
       for (const uint8_t type : {uint8_t(0), uint8_t(2), uint8_t(6)})
         files.push_back(pngHeader(width, height, 16, type));
-  Bytes jpeg = makeJpeg(16, 16, 3, true, smooth); // progressive: all coefficients are in memory
+  // progressive: all coefficients are kept in memory
+  Bytes jpeg = makeJpeg(16, 16, 3, true, smooth);
   for (size_t i = 0; i + 8 < jpeg.size(); i++)
     if (jpeg[i] == 0xff && jpeg[i + 1] == 0xc2) {
       jpeg[i + 5] = jpeg[i + 7] = 0x40;
       jpeg[i + 6] = jpeg[i + 8] = 0;
     }
   files.push_back(jpeg);
-  Bytes gif = makeGif(2, 2, {{}}, paletteIndex); // a small picture on a large screen
+  Bytes gif = makeGif(2, 2, {{}}, paletteIndex); // a small picture on a large logical screen
   gif[7] = gif[9] = 0x40;
   files.push_back(gif);
   for (size_t i = 0; i < files.size(); i++) {

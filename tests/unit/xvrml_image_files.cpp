@@ -1,5 +1,5 @@
-// xvrml_image_files.cpp: writes the pictures that the image tests read, with the libraries' own
-// encoders.
+// xvrml_image_files.cpp: writes the pictures that the image tests read, with the encoders of the
+// image libraries.
 #include <gif_lib.h>
 #include <png.h>
 

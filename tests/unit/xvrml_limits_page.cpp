@@ -1,4 +1,4 @@
-// xvrml_limits_page.cpp: docs/limits.md says what the table of limits says, row by row.
+// xvrml_limits_page.cpp: docs/limits.md agrees with the table of limits, row by row.
 #include <fmt/format.h>
 #include <fstream>
 #include <gtest/gtest.h>

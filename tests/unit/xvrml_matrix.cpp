@@ -1,4 +1,5 @@
-// Matrices of nodes against closed forms: Transform, TextureTransform, Billboard, angle of view.
+// xvrml_matrix.cpp: matrices of nodes against closed forms: Transform, TextureTransform, Billboard,
+// field of view.
 #include <cmath>
 #include <numbers>
 
@@ -35,7 +36,8 @@ TEST(Matrix, ComposeLetsTheSecondActFirst) {
   expectNear(transformPoint(m, {1, 1, 1}), {12, 2, 2});
 }
 
-// Clause 6.52 gives the closed form P' = T C R SR S -SR -C P; done here step by step on a point.
+// Clause 6.52 gives the closed form P' = T C R SR S -SR -C P; here it is applied step by step to a
+// point.
 TEST(Matrix, TransformIsTheStandardsSequence) {
   TransformFields f;
   f.center = {1, -2, 3};

@@ -1,5 +1,5 @@
-// What messages about values, statements of X3D and missing files say: the value, what was done
-// with it, and why.
+// xvrml_messages.cpp: messages about values, X3D statements and missing files name the value, say
+// how it was handled, and why.
 #include <gtest/gtest.h>
 
 #include "xvrml/browser.h"
@@ -36,7 +36,7 @@ TEST(Messages, AnglesMayBeRounded) {
             Messages{});
   EXPECT_EQ(messagesOf("Viewpoint { fieldOfView 3.14159 }"), Messages{});
   EXPECT_EQ(number("SpotLight { cutOffAngle 1.571 }", "cutOffAngle"), 1.5707964f);
-  // The range is open at pi: the nearest number below it is meant, not the default.
+  // The range excludes pi. The value becomes the largest number below it, not the default.
   EXPECT_LT(number("Viewpoint { fieldOfView 3.1416 }", "fieldOfView"), 3.1415927f);
   EXPECT_GT(number("Viewpoint { fieldOfView 3.1416 }", "fieldOfView"), 3.1415f);
   EXPECT_EQ(messagesOf("SpotLight { cutOffAngle 1.58 }").size(), 1u);

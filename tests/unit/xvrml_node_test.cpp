@@ -1,5 +1,5 @@
-// Nodes in general: references, nodes described at run time, ranges, the registry, names of types,
-// limits and messages.
+// xvrml_node_test.cpp: nodes in general: references, nodes described at run time, ranges, the
+// registry, type names, limits and messages.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -77,11 +77,11 @@ TEST(DynamicNode, HoldsWhatItsTypeDeclares) {
   EXPECT_TRUE(node->set(points, MFVec3f{}));
   EXPECT_TRUE(node->get(points) == Value(MFVec3f()));
   EXPECT_FALSE(node->set(title, 1.0f));
-  EXPECT_FALSE(node->set(*type->find("go"), true)); // an event is not stored
+  EXPECT_FALSE(node->set(*type->find("go"), true)); // events are not stored
   EXPECT_EQ(nodeCast<nodes::Box>(node), nullptr);
   *static_cast<SFString*>(node->storage(title)) = "some";
   EXPECT_TRUE(node->get(title) == Value(std::string("some")));
-  type.reset(); // the node keeps its type
+  type.reset(); // the node keeps its type alive
   EXPECT_EQ(node->type().name, "Thing");
 }
 
@@ -127,8 +127,8 @@ TEST(Range, TheExceptionHoldsForAllNumbersOrNone) {
   EXPECT_FALSE(inRange(size, SFVec3f{0, 1, 1}));
 }
 
-// The float next to pi/2 is above it: whoever writes pi/2 as well as a float can is within
-// (0,pi/2].
+// The float nearest to pi/2 is above it. A file that writes pi/2 as precisely as float allows must
+// be within (0,pi/2].
 TEST(Range, EndsAreRoundedToFloat) {
   const FieldInfo& beam = *findNodeType("SpotLight")->find("beamWidth");
   EXPECT_TRUE(inRange(beam, 1.57079637f));
@@ -139,7 +139,7 @@ TEST(Registry, RefusesWhatDoesNotFit) {
   const size_t before = nodeTypes().size();
   NodeType type = nodes::Box::nodeType();
   const NodeType* const list[] = {&type};
-  type.name = "AnotherBox"; // the index is that of Box
+  type.name = "AnotherBox"; // the index belongs to Box
   EXPECT_FALSE(addNodeTypes(list));
   type.name = "Sphere"; // the name is taken
   type.index = int(before);
@@ -190,10 +190,10 @@ TEST(Diagnostic, TheCaretStandsBelowTheColumn) {
   EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "\t !"}.text()),
             "f:1:3: error: m\n\t !\n\t ^");
   EXPECT_EQ((Diagnostic{Severity::error, "f", 1, 3, "m", "äö!"}.text()),
-            "f:1:3: error: m\näö!\n  ^"); // columns are characters
+            "f:1:3: error: m\näö!\n  ^"); // columns count characters
 }
 
-// Errors and other messages have room of their own: the one cannot hide the other.
+// Errors and other messages have separate quotas, so that one kind cannot hide the other.
 TEST(Diagnostics, CountWhatTheyDrop) {
   Diagnostics diagnostics;
   diagnostics.limit = 2;

@@ -1,6 +1,6 @@
-// The generator, run as a program: what it writes from small specifications, and where and how it
-// refuses bad ones. Expected outputs are made by tests/nodegen/update.sh; a bad specification says
-// in its first lines what is to be reported.
+// xvrml_nodegen_test.cpp: runs the generator as a program and checks its output for small
+// specifications, and where and how it refuses bad ones. tests/nodegen/update.sh makes the expected
+// outputs. The first lines of a bad specification state the expected errors.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -55,7 +55,7 @@ Result nodegen(const std::string& arguments) {
   return run(fmt::format("'{}' {}", NODEGEN_PROGRAM, arguments));
 }
 
-// A folder of its own for each test, removed at its end.
+// A temporary folder for each test, removed at its end.
 class Nodegen : public testing::Test {
  protected:
   void SetUp() override {
@@ -112,7 +112,7 @@ TEST_F(Nodegen, ImportedFilesGiveAbstractTypesOnly) {
       "component \"Mine\"\nPyramid : geometry { \"A pyramid.\" field SFFloat height 2 # (0,inf)\n"
       "  change geometry \"Height.\" }\n");
   const std::string specification = (out / "mine.node").string();
-  EXPECT_EQ(nodegen(specification).code, 4); // geometry is unknown
+  EXPECT_EQ(nodegen(specification).code, 4); // the category geometry is not defined
   std::string imports;
   for (const auto& entry : fs::directory_iterator("libxvrml/nodes"))
     if (entry.path().extension() == ".node") imports += " --import " + entry.path().string();
@@ -148,7 +148,7 @@ TEST_F(Nodegen, WrongUseAndMissingFilesHaveExitCodesOfTheirOwn) {
   const Result missing = nodegen((out / "missing.node").string());
   EXPECT_EQ(missing.code, 3);
   EXPECT_NE(missing.output.find("cannot read"), std::string::npos) << missing.output;
-  EXPECT_EQ(nodegen(out.string()).code, 3); // a folder
+  EXPECT_EQ(nodegen(out.string()).code, 3); // the output file is a folder
   writeFile(out / "file", "");
   EXPECT_EQ(
       nodegen(fmt::format("{}/tiny.node -o {}/file/folder", folder.string(), out.string())).code,
@@ -173,7 +173,7 @@ std::vector<std::string> badSpecifications() {
 
 class BadSpecification : public testing::TestWithParam<std::string> {};
 
-// The lines `# expect line:column: error: message` are all that is reported, in their order.
+// The lines `# expect line:column: error: message` list all errors in their order.
 TEST_P(BadSpecification, IsRefusedAtItsLine) {
   const std::string file = GetParam() + ".node";
   std::istringstream specification(readFile(folder / "bad" / file));

@@ -1,5 +1,5 @@
-// The 54 nodes of ISO/IEC 14772-1:1997 clause 6 and the two of OpenRT, against lists typed from the
-// standard.
+// xvrml_nodes_test.cpp: the 54 nodes of ISO/IEC 14772-1:1997 clause 6 and those of OpenRT, against
+// lists typed from the standard.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,8 @@
 namespace xvrml {
 namespace {
 
-// Clause, node, and how many eventIns, exposedFields, fields and eventOuts its interface has.
+// The clause, the node, and how many eventIns, exposedFields, fields and eventOuts its interface
+// has.
 struct Interface {
   const char* clause;
   const char* name;
@@ -282,7 +283,7 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   EXPECT_EQ(findNodeType("Sound")->find("source")->nodeTypes, "audio");
 }
 
-// Makes a value other than every default, and a different one for each seed.
+// Makes values that differ from every default and from seed to seed.
 struct Maker {
   int seed;
   float number(int i = 0) const { return 100.5f + float(seed) + 0.125f * float(i); }
@@ -292,9 +293,9 @@ struct Maker {
   void operator()(SFImage& v) const { v = {2, 1, 1, {uint8_t(seed), 7}}; }
   void operator()(SFInt32& v) const { v = 1000 + seed; }
   void operator()(SFNode& v) const { v = NodeRef(new nodes::Group); }
-  void operator()(SFRotation& v) const {
+  void operator()(SFRotation& v) const { // the axis has length 1
     v = {std::cos(float(seed)), 0, std::sin(float(seed)), number(3)};
-  } // length 1
+  }
   void operator()(SFString& v) const {
     v = "a string too long for a short one " + std::to_string(seed);
   }
@@ -307,7 +308,7 @@ struct Maker {
   }
 };
 
-// All fields of a node are written, then all read: overlapping or misplaced storage would show.
+// Writes all fields of a node, then reads them all: overlapping or misplaced storage would show.
 TEST(Nodes, EveryFieldKeepsItsValue) {
   for (const NodeType* type : nodeTypes()) {
     const NodeRef node(type->create(*type));
@@ -343,7 +344,7 @@ size_t sizeOf(const FieldInfo& field) {
 }
 
 TEST(Nodes, StorageDoesNotOverlap) {
-  constexpr size_t padding = alignof(Node); // a member may begin in the padding of its base
+  constexpr size_t padding = alignof(Node); // a member may start in the tail padding of its base
   for (const NodeType* type : nodeTypes()) {
     size_t end = sizeof(Node) - padding;
     for (const FieldInfo& field : type->fields) {
@@ -378,7 +379,7 @@ TEST(Nodes, EventsAreFoundUnderAllTheirNames) {
   EXPECT_EQ(transform.findEventOut("set_translation"), nullptr);
   EXPECT_EQ(transform.findEventIn("addChildren"), transform.find("addChildren"));
   EXPECT_EQ(transform.findEventOut("addChildren"), nullptr);
-  EXPECT_EQ(transform.findEventIn("bboxSize"), nullptr); // a field takes no events
+  EXPECT_EQ(transform.findEventIn("bboxSize"), nullptr); // a field receives no events
 
   const NodeType& interpolator = *findNodeType("ScalarInterpolator");
   EXPECT_EQ(interpolator.findEventIn("fraction"), interpolator.find("set_fraction")); // 4.10.2

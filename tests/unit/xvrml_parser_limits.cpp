@@ -1,5 +1,5 @@
-// xvrml_parser_limits.cpp: every limit of reading ends what it bounds with a message that names it,
-// can be raised, and hostile worlds are refused before they cost anything.
+// xvrml_parser_limits.cpp: every limit on reading stops what it bounds, with a message that names
+// the limit, and can be raised. Hostile worlds are refused before they cost anything.
 #include <fmt/format.h>
 
 #include "parse/parser.h"
@@ -83,7 +83,7 @@ TEST(ParserLimits, ExpandedNodesByDefaultsOfPrototypes) {
   EXPECT_LT(world->nodeCount, 1000u);
 }
 
-// Fields doubled from one prototype to the next: the values are shared, their uses are counted.
+// The fields double from one prototype to the next. Values are shared, but each use is counted.
 TEST(ParserLimits, ExpandedNodesByValuesOfPrototypes) {
   std::string text = "PROTO P [ field MFNode c [ ] ] { Group { children [ Group { children IS c } "
                      "Group { children IS c } ] } }\n";
@@ -115,7 +115,7 @@ TEST(ParserLimits, ProtoDepth) {
   EXPECT_EQ(messages(*parse(chain(500), options)), "");
 }
 
-// Nested prototypes must not add up to a depth that those who walk the graph cannot bear.
+// Nested prototypes must not add up to a depth that code walking the graph cannot handle.
 TEST(ParserLimits, DepthThroughPrototypes) {
   std::string text = "PROTO P0 [ ] { Group { } }\n";
   for (int i = 1; i < 10; ++i) {
@@ -175,7 +175,7 @@ TEST(ParserLimits, InlineDoubling) {
   folder.write(
       "30.wrl",
       header +
-          "DEF T Transform { } ROUTE T.translation TO T.scale\n"); // each Inline wants its own copy
+          "DEF T Transform { } ROUTE T.translation TO T.scale\n"); // each Inline needs its own copy
   const auto world = loadWorld(folder.path("0.wrl"));
   EXPECT_TRUE(says(*world, "limit expandedNodes")) << messages(*world);
 }
@@ -232,7 +232,7 @@ TEST(ParserLimits, FileBytes) {
   EXPECT_THROW(loadWorldFromMemory(header + std::string(1000, ' '), "x", options), LoadError);
 }
 
-// Quadratic traps: long lists of what is looked up by name.
+// Quadratic traps: long lists of things that are looked up by name.
 TEST(ParserLimits, ManyOfEverything) {
   std::string text;
   for (int i = 0; i < 20'000; ++i)

@@ -1,5 +1,5 @@
-// xvrml_parser_numbers.cpp: numbers and strings: every spelling, correct rounding, what is refused,
-// and that what the writer writes reads back equal bit for bit.
+// xvrml_parser_numbers.cpp: numbers and strings: every spelling, correct rounding, and what is
+// refused. Everything that the writer writes is read back bit for bit.
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -54,7 +54,7 @@ TEST(ParserNumbers, EverySpellingOfAFloat) {
       {"123456.78", 123456.78f},
       {"0.00000000000000000000000000000000000000000000140129846e0", 1.40129846e-45f}};
   for (const auto& [text, expected] : spellings) {
-    // At the end of the text and well before it: two ways through the reader.
+    // At the end of the text and well before it: the reader has two code paths.
     for (const std::string& tail :
          {std::string(), std::string("                                ")}) {
       const Parsed parsed = parseValue(FieldType::SFFloat, text + tail);
@@ -110,13 +110,14 @@ TEST(ParserNumbers, Integers) {
        {"2147483648", "-2147483649", "0x100000000", "0x", "1.5", "ten", "1e99"}) {
     EXPECT_FALSE(parseValue(FieldType::SFInt32, text).good) << text;
   }
-  const Parsed real = parseValue(FieldType::SFInt32, "3.0"); // some writers do; said, not refused
+  // Some writers do this; the reader reports it and accepts it.
+  const Parsed real = parseValue(FieldType::SFInt32, "3.0");
   EXPECT_TRUE(real.good);
   EXPECT_EQ(std::get<int32_t>(real.value), 3);
   EXPECT_NE(real.message, "");
 }
 
-// The reader agrees with the standard library on decimals of every length, exponents included.
+// The reader agrees with the standard library for decimals of every length, with exponents.
 TEST(ParserNumbers, CorrectlyRounded) {
   std::mt19937_64 random(19);
   for (int i = 0; i < 300'000; ++i) {
@@ -135,7 +136,7 @@ TEST(ParserNumbers, CorrectlyRounded) {
   }
 }
 
-// What lies exactly half way between two floats goes to the even one; a digit more or less decides
+// A number exactly half way between two floats goes to the even one. A digit more or less decides
 // otherwise.
 TEST(ParserNumbers, TiesToEven) {
   EXPECT_EQ(
@@ -184,8 +185,8 @@ TEST(ParserStrings, EscapesAndTheirWriting) {
     ASSERT_TRUE(parsed.good) << text;
     EXPECT_EQ(std::get<std::string>(parsed.value), content);
   }
-  // Only quotes and backslashes are escaped (5.9); other backslashes are themselves, as in old
-  // Windows paths.
+  // Only quotes and backslashes are escaped (5.9). Other backslashes stand for themselves, as in
+  // old Windows paths.
   EXPECT_EQ(std::get<std::string>(parseValue(FieldType::SFString, "\"c:\\textures\\n.gif\"").value),
             "c:\\textures\\n.gif");
   EXPECT_FALSE(parseValue(FieldType::SFString, "\"open").good);
@@ -236,7 +237,7 @@ TEST(ParserPlaces, LinesOfAllKindsAndCharacters) {
     const SourcePosition where = lexer.place(text.data() + text.find(c));
     return std::pair(where.line, where.column);
   };
-  // Forwards and backwards: places are asked for in any order.
+  // Forwards and backwards: positions are requested in any order.
   EXPECT_EQ(place('e'), std::pair(4u, 4u));
   EXPECT_EQ(place('a'), std::pair(1u, 1u));
   EXPECT_EQ(place('c'), std::pair(3u, 1u));

@@ -1,5 +1,4 @@
-// xvrml_parser_recovery.cpp: what is left of a world after an error in it: all but the node that
-// has the error.
+// xvrml_parser_recovery.cpp: an error in a world costs only the node that contains it.
 #include <algorithm>
 
 #include "unit/xvrml_parser_support.h"
@@ -68,7 +67,7 @@ TEST(ParserRecovery, NamesThatWentWithANodeAreNotErrorsAgain) {
   const auto world = parse("Torus { a DEF A Group { } } Group { children USE A } DEF B Transform { "
                            "scale x children DEF C Group { } } USE B USE C "
                            "ROUTE B.translation TO C.translation");
-  EXPECT_EQ(world->diagnostics.errors(), 2u) << messages(*world); // Torus and x
+  EXPECT_EQ(world->diagnostics.errors(), 2u) << messages(*world); // the errors concern Torus and x
   EXPECT_GE(world->diagnostics.warnings(), 3u);
   EXPECT_TRUE(world->scope.names.empty());
   EXPECT_TRUE(world->scope.routes.empty());
@@ -114,10 +113,10 @@ TEST(ParserRecovery, OutOfRangeValuesAreBroughtBack) {
   EXPECT_EQ(nodeCast<nodes::Sphere>(shape->geometry)->radius, 1.0f);
   EXPECT_NEAR(nodeCast<nodes::Viewpoint>(world->scope.roots.at(1))->fieldOfView, 0.785398f, 1e-6);
   EXPECT_EQ(nodeCast<nodes::Transform>(world->scope.roots.at(2))->scale,
-            (Vec3f{-1, 1, 1})); // mirrors exist in real files
+            (Vec3f{-1, 1, 1})); // real files contain mirrors
 }
 
-// A file must not steer the terminal that shows its errors.
+// A file must not be able to control the terminal that shows its errors.
 TEST(ParserRecovery, MessagesHoldNoControlCharacters) {
   const auto world =
       parse("\x1b[31m\x07 \xc2\x9b"

@@ -1,5 +1,5 @@
-// xvrml_parser_source.cpp: bytes and URLs: what is taken for a world, what is refused and how
-// clearly, where URLs lead.
+// xvrml_parser_source.cpp: bytes and URLs: what is accepted as a world, what is refused and how
+// clearly, and how URLs are resolved.
 #include "unit/xvrml_parser_support.h"
 
 namespace {
@@ -34,7 +34,7 @@ TEST(ParserSource, HeadersThatAreNearlyRight) {
   }
 }
 
-// Files that begin as those of a known format are named; of all others the message says what was
+// Files of a known other format are named in the message. For all others the message says what was
 // expected.
 TEST(ParserSource, WhatIsNoWorldIsRefused) {
   const std::pair<std::string, const char*> cases[] = {
@@ -124,7 +124,7 @@ TEST(ParserUrl, WhatIsNotFollowed) {
     EXPECT_NE(resolveUrl(url, "a/w.wrl", {}).error, "") << url;
     EXPECT_EQ(resolveUrl(url, "a/w.wrl", absolute).path, "/etc/passwd") << url;
   }
-  // A name of its own kind: never standard input.
+  // "-" in a URL is a file name and never standard input.
   EXPECT_EQ(resolveUrl("-", "-", {}).path, "./-");
   EXPECT_NE(resolveUrl("#P", "-", {}).error, "");
 }

@@ -31,7 +31,7 @@ inline bool says(const World& world, const std::string& fragment) {
   return messages(world).find(fragment) != std::string::npos;
 }
 
-// A folder of its own that goes with the test.
+// A temporary folder that is removed with the object.
 class Folder {
  public:
   Folder() {
@@ -51,7 +51,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-// The value of a node's field, by name.
+// Returns the value of a node's field, by name.
 template <class T> const T& field(const Node& node, const std::string& name) {
   const FieldInfo* info = node.type().find(name);
   EXPECT_NE(info, nullptr) << name;

@@ -1,6 +1,6 @@
-// Picking in worlds that are edited at random: what is kept of boxes and meshes must not be older
-// than the world. Also that nothing of binding, pointer and navigation minds any order of edits:
-// cameras stay finite.
+// xvrml_picking_edits.cpp: picking in worlds that are edited at random. Cached boxes and meshes
+// must never be older than the world. Binding, pointer and navigation must survive any order of
+// edits, with finite cameras.
 #include <cmath>
 #include <random>
 
@@ -101,7 +101,8 @@ class Editor {
     }
   }
 
-  // A ray from a random place to the middle: the same as by a picker that has kept nothing?
+  // Compares the hit of a random ray towards the centre with that of a new picker without cached
+  // data.
   void compare() {
     Interaction& interaction = interactionOf(browser.events());
     const Vector from(number() / 2, number() / 2, 30), to(number() / 4, number() / 4, 0);
@@ -123,7 +124,7 @@ class Editor {
   int below(int n) { return int(random_() % unsigned(n)); }
   float number() { return float(below(200) - 100) / 10; }
   NodeRef any() { return nodes_[size_t(below(int(nodes_.size())))]; }
-  // Of some random node that has the field.
+  // Sets the field of a random node that has it.
   void set(std::string_view field, const Value& value) {
     for (int i = 0; i < 20; ++i)
       if (browser.set(*any(), field, value)) return;
@@ -135,7 +136,7 @@ class Editor {
   }
 
   std::mt19937 random_;
-  std::vector<NodeRef> nodes_; // before the browser: it ends first
+  std::vector<NodeRef> nodes_; // declared before the browser, which is destroyed first
  public:
   Browser browser;
   int hits = 0;

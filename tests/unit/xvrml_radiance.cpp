@@ -1,5 +1,5 @@
-// Pictures of radiance that worlds name: PFM, Radiance and OpenEXR from bytes made here, and what
-// must be refused.
+// xvrml_radiance.cpp: HDR pictures used by worlds: PFM, Radiance and OpenEXR from bytes made here,
+// and files that must be refused.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -37,8 +37,8 @@ std::string whyNot(const Bytes& bytes, uint64_t imagePixels = 1 << 20) {
   return "";
 }
 
-// What each pixel of a test picture holds, x from the left and y from the top; exact as half and
-// nearly so as RGBE.
+// Returns the value of a pixel of the test picture, x from the left and y from the top. It is exact
+// as half and nearly exact as RGBE.
 float valueAt(int x, int y, int c) {
   return float(1 + x + 8 * y) * (c == 0 ? 1.0f : c == 1 ? 0.5f : 64.0f);
 }
@@ -74,7 +74,7 @@ Bytes makeHdr(int width, int height, bool runs) {
     Bytes planes[4];
     for (int x = 0; x < width; x++) {
       int exponent;
-      std::frexp(valueAt(x, y, 2), &exponent); // the largest
+      std::frexp(valueAt(x, y, 2), &exponent); // blue is the largest component
       for (int c = 0; c < 3; c++)
         planes[c].push_back(uint8_t(std::ldexp(valueAt(x, y, c), 8 - exponent)));
       planes[3].push_back(uint8_t(exponent + 128));
@@ -87,7 +87,7 @@ Bytes makeHdr(int width, int height, bool runs) {
     append(out, Bytes{2, 2, uint8_t(width >> 8), uint8_t(width)});
     for (const Bytes& p : planes) {
       out.push_back(uint8_t(width - 2));
-      out.insert(out.end(), p.begin(), p.end() - 2); // as they are
+      out.insert(out.end(), p.begin(), p.end() - 2); // literal bytes
       out.push_back(130);
       out.push_back(p.back()); // a run of two
     }
@@ -98,14 +98,14 @@ Bytes makeHdr(int width, int height, bool runs) {
 enum { none, rle, zips, zip, piz };
 struct Exr {
   int width = 8, height = 20, compression = none;
-  uint32_t kind = 1; // 0 whole numbers, 1 half, 2 float
+  uint32_t kind = 1; // 0: unsigned integers, 1: half, 2: float
   uint32_t flags = 0;
   bool grey = false, upwards = false;
   int x0 = -3, y0 = 7;
-  std::string more = {}; // channels beside the colours, sorted behind them
+  std::string more = {}; // channels besides the colours, sorted after them
 };
 
-uint16_t halfOf(float v) { // exact for what is asked of it here
+uint16_t halfOf(float v) { // exact for the values used here
   const auto bits = std::bit_cast<uint32_t>(v);
   return uint16_t(((bits >> 23) - 112) << 10 | ((bits >> 13) & 1023));
 }
@@ -262,8 +262,8 @@ TEST(Radiance, AnEndThatComesTooEarlyIsRefusedEverywhere) {
       ASSERT_NE(whyNot({whole.begin(), whole.begin() + ptrdiff_t(size)}), "") << size;
 }
 
-TEST(Radiance, ADamagedByteNeverLeadsAstray) { // under sanitizers; here: a picture of the right
-                                               // size, or a message
+// Run under sanitizers. Here: the result is a picture of the right size, or a message.
+TEST(Radiance, ADamagedByteNeverLeadsAstray) {
   for (const Bytes& whole : {makeHdr(9, 3, true), makeExr({.height = 3, .compression = zip}),
                              makeExr({.width = 3, .height = 3, .compression = rle})})
     for (size_t at = 0; at < whole.size(); at++)

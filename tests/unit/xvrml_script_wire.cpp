@@ -1,5 +1,6 @@
-// The messages between the browser and xvrml-script-host: values come out as they went in; whatever
-// else comes from a helper ends it with a message, and nothing more.
+// xvrml_script_wire.cpp: the messages between the browser and xvrml-script-host. Values survive
+// encoding and decoding. Invalid messages from a helper end the helper with a message and have no
+// other effect.
 #include <cstring>
 #include <random>
 
@@ -76,7 +77,7 @@ TEST(ScriptWire, TextsAndImagesComeOutAsTheyWentIn) {
   }
   EXPECT_EQ(std::memcmp(pictures->of.images[0].pixels, pixels, 6), 0);
   EXPECT_EQ(pictures->of.images[1].pixels, nullptr);
-  EXPECT_EQ(pictures->of.images[3].width, -1); // refused by whoever takes it as a value
+  EXPECT_EQ(pictures->of.images[3].width, -1); // refused by the code that reads it as a value
 }
 
 TEST(ScriptWire, WhatIsNoGoodValueGoesAcrossAsSuch) {
@@ -111,7 +112,7 @@ TEST(ScriptWire, AMessageThatIsTooLongIsNone) {
   EXPECT_TRUE(writer.finish());
 }
 
-// --- A helper that is somebody else's ---
+// --- A hostile helper ---
 
 std::string wireOf(Writer& writer) {
   EXPECT_TRUE(writer.finish());
@@ -163,7 +164,8 @@ TEST(ScriptWire, BadMessagesEndTheHelper) {
   std::string death;
   Writer w;
   const auto bad = [&] { return callThatGets(wireOf(w), &death); };
-  for (const uint16_t op : {0, 1, 7, 20, 62, 40000}) { // none, the browser's own, beyond the last
+  // No operation, one of the browser's own, and values beyond the last.
+  for (const uint16_t op : {0, 1, 7, 20, 62, 40000}) {
     w.begin(Op(op), 1);
     EXPECT_EQ(bad(), ScriptProcess::State::died) << op;
     EXPECT_EQ(death, "broke the protocol");
@@ -171,7 +173,7 @@ TEST(ScriptWire, BadMessagesEndTheHelper) {
   w.begin(Op::host); // send without arguments
   EXPECT_EQ(bad(), ScriptProcess::State::died);
   w.begin(Op::done);
-  w.put(uint64_t(1)); // more than there is to say
+  w.put(uint64_t(1)); // more bytes than the message has
   EXPECT_EQ(bad(), ScriptProcess::State::died);
   std::string length = goodMessages()[0];
   length[3] = 0x7f;
@@ -180,10 +182,10 @@ TEST(ScriptWire, BadMessagesEndTheHelper) {
   EXPECT_EQ(callThatGets("", &death), ScriptProcess::State::died);
   w.begin(Op::done);
   w.header().result = 12345;
-  EXPECT_EQ(bad(), ScriptProcess::State::returned); // as XS_FAILED
+  EXPECT_EQ(bad(), ScriptProcess::State::returned); // handled as XS_FAILED
 }
 
-// Bytes of good messages, changed, left out and repeated; and bytes of nothing at all.
+// Good messages with bytes changed, removed and repeated, and random bytes.
 TEST(ScriptWire, WhateverAHelperSaysNothingBreaks) {
   std::mt19937 random(1);
   const std::vector<std::string> good = goodMessages();

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""API reference pages (reStructuredText, Sphinx's C and C++ domains) of the public headers: api_pages.py ROOT OUT SCRATCH
+"""Writes API reference pages (reStructuredText, Sphinx's C and C++ domains) of the public headers.
 
-Doxygen reads the headers through header_filter.py and writes XML; a page has the order of its header: its parts as sections,
-declarations that share a comment under one description. Called by make_docs.py.
+api_pages.py ROOT OUT SCRATCH
+
+Doxygen reads the headers through header_filter.py and writes XML. A page follows its header: the
+parts are sections, and declarations that share a comment share a description. Called by
+make_docs.py.
 """
 import pathlib
 import re
@@ -59,7 +62,7 @@ def flat(element):
 
 
 class Text:
-    """Doxygen's paragraphs as reStructuredText; names of the API become links."""
+    """Converts Doxygen's paragraphs to reStructuredText; names of the API become links."""
 
     def __init__(self, roles):
         self.roles = roles
@@ -84,7 +87,7 @@ class Text:
         return out
 
     def blocks(self, element):
-        """Lines of all paragraphs below an element."""
+        """Returns the lines of all paragraphs below an element."""
         lines = []
         for para in element.findall("para") if element is not None else []:
             lines += self.paragraph(para)
@@ -115,7 +118,7 @@ class Text:
         return lines
 
     def leaves(self, line):
-        """A line of code as a flat list of elements with text."""
+        """Returns a line of code as a flat list of elements with text."""
         for highlight in line:
             yield _Leaf(highlight.text or "")
             for child in highlight:
@@ -153,7 +156,8 @@ def template_of(member):
 
 
 def signature(member, domain):
-    """The declaration as the domain's directive wants it, without what it does not understand."""
+    """Returns the declaration for the domain's directive, without parts that it does not
+    understand."""
     kind, name = member.get("kind"), flat(member.find("name"))
     type_, arguments = flat(member.find("type")), flat(member.find("argsstring"))
     if kind == "function":
@@ -208,7 +212,7 @@ class Page:
         if kind not in DIRECTIVE or name.startswith("@"):
             return []
         if kind == "typedef" and re.search(rf"^(struct|enum|union) {name}$", flat(member.find("type"))):
-            return []  # C's second name of the same thing
+            return []  # C's second name for the same type
         if kind == "define":
             if name.endswith(("_API", "_EXPORT", "_H", "_HPP")):
                 return []
@@ -220,7 +224,8 @@ class Page:
             macro = name + (f"({', '.join(parameters)})" if parameters else "")
             prefix = f".. c:macro:: {macro}"
             return [prefix, "", *indent(said), ""]
-        if kind == "variable" and re.match(r"union \S*@\d+$", flat(member.find("type"))):  # Doxygen puts its members before it
+        # Doxygen puts its members before it
+        if kind == "variable" and re.match(r"union \S*@\d+$", flat(member.find("type"))):
             return [f"The pointers above are one union, ``{name}``.", ""]
         sign = signature(member, self.domain)
         directive = DIRECTIVE[kind]
@@ -230,14 +235,14 @@ class Page:
         return self.directive(directive, [sign], body)
 
     def sections(self, compound):
-        """Entries (line, lines of the page) of the members of a compound."""
+        """Returns entries (line, lines of the page) for the members of a compound."""
         entries = []
         for section in compound.findall("sectiondef"):
             if section.get("kind", "").startswith(("private", "protected")):
                 continue
             members = [m for m in section.findall("memberdef") if m.get("id") not in self.done and m.get("prot", "public") == "public"]
             if section.get("kind") == "user-defined" and members and all(m.get("kind") in ("function", "variable") for m in members):
-                # one description for all of them
+                # one shared description
                 self.done.update(m.get("id") for m in members)
                 kinds = {m.get("kind") for m in members}
                 directive = DIRECTIVE[kinds.pop()] if len(kinds) == 1 else "function"
@@ -262,7 +267,7 @@ class Page:
         return entries
 
     def by_line(self, members):
-        """Variables that one line declares share its comment."""
+        """Groups variables that one line declares; they share its comment."""
         out = []
         for member in members:
             if out and member.get("kind") == out[-1][0].get("kind") == "variable" and line_of(member) == line_of(out[-1][0]):
@@ -285,7 +290,7 @@ class Page:
         return self.directive({"class": "class", "struct": "struct", "union": "union"}[kind], [sign], body)
 
     def depth_of(self, name):
-        """Is it within another structure (not a name space) of the page?"""
+        """Returns the depth of nesting in other structures (not name spaces) of the page."""
         outer = name.rsplit("::", 1)[0]
         return any(flat(c.find("compoundname")) == outer and c.get("kind") in ("class", "struct") for c in self.compounds.values())
 
@@ -307,7 +312,7 @@ class Page:
         space = next((n for n in sorted(names) if "::" not in n and n in ("rts", "xvrml")), None)
         own = sorted(self.sections(compound), key=lambda e: e[0])
         if space and self.domain == "cpp":
-            # members of the name space that lie in this header
+            # members of the name space that this header declares
             inside = next(c for c in self.compounds.values() if flat(c.find("compoundname")) == space)
             own += [e for e in self.sections_in(inside, path)]
             own.sort(key=lambda e: e[0])
@@ -332,7 +337,7 @@ class Page:
 
 
 def roles_of(compounds, domain):
-    """name -> role, for links in running text."""
+    """Returns name -> role, for links in running text."""
     roles = {}
     if domain != "c":
         return roles

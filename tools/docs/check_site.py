@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Every link and picture of the built site leads somewhere, anchors too: check_site.py FOLDER. Other sites are not asked."""
+"""Checks that every link, anchor and picture of the built site exists: check_site.py FOLDER. Links
+to other sites are not followed."""
 import html.parser
 import pathlib
 import sys

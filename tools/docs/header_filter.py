@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""A public header as Doxygen reads it: header_filter.py HEADER (an INPUT_FILTER; writes to standard output).
+"""Converts a public header for Doxygen: header_filter.py HEADER (an INPUT_FILTER; writes to
+standard output).
 
-The headers say things in plain comments, with the rules of tools/make_man_pages.py: what a comment stands above, up to the next
-comment or blank line, it is about; one behind a declaration is about that; a title that ends in dashes opens a part. Doxygen gets
-the same as its own comments: parts are groups, runs of declarations under one comment are named sections.
+The headers use plain comments, with the rules of tools/make_man_pages.py. A comment describes what
+is below it, up to the next comment or blank line; a trailing comment describes its declaration; a
+title that ends in dashes opens a part. Doxygen gets comments of its own form: parts become groups,
+and runs of declarations under one comment become named sections.
 """
 import pathlib
 import re
@@ -18,7 +20,7 @@ def slug(title):
 
 
 def groups_of(text, name):
-    """(group id, title) of each part of a header."""
+    """Returns (group id, title) of each part of a header."""
     prefix = re.sub(r"\W", "_", name)
     return [(f"{prefix}_{slug(m.group(1))}", m.group(1)) for m in map(SECTION.match, text.split("\n")) if m]
 
@@ -29,7 +31,7 @@ def escape(text):
 
 
 def body(lines):
-    """Text of a comment: items stay, what is indented is literal."""
+    """Returns the text of a comment: list items stay, and indented lines are literal."""
     out, literal, item = [], False, False
     for line in lines:
         bullet = re.match(r"\s*- ", line)
@@ -43,17 +45,17 @@ def body(lines):
 
 
 def plain(block):
-    """The lines of a comment without its frame."""
+    """Returns the lines of a comment without its frame."""
     if block[0].lstrip().startswith("//"):
         return [re.sub(r"^\s*// ?", "", line).rstrip() for line in block]
     lines = re.sub(r"^\s*/\* ?|\s*\*/\s*$", "", "\n".join(block)).split("\n")
-    margin = 3 + len(block[0]) - len(block[0].lstrip())  # of the text behind "/* "
+    margin = 3 + len(block[0]) - len(block[0].lstrip())  # margin of the text after "/* "
     return [re.sub(r"^\s*\* ?", "", line) if re.match(r"\s*\*", line) else line[min(margin, len(line) - len(line.lstrip())):]
             for line in lines]
 
 
 def trailing(line):
-    """Code with a comment behind it, as Doxygen wants to see it; strings hold no comments in headers."""
+    """Converts code with a trailing comment for Doxygen. Strings in headers contain no comments."""
     if line.startswith("}") and "namespace" in line:
         return "}"
     line = re.sub(r"(\S\s*)/\*(?!\*)", r"\1/**<", line, count=1)
@@ -66,7 +68,7 @@ def is_comment(line):
 
 
 def take_comment(lines, i):
-    """End of the comment that begins at line i."""
+    """Returns the end of the comment that begins at line i."""
     if lines[i].lstrip().startswith("//"):
         while i < len(lines) and lines[i].lstrip().startswith("//"):
             i += 1
@@ -77,7 +79,8 @@ def take_comment(lines, i):
 
 
 def run_of(lines, i):
-    """Lines from i on up to a blank line or a comment: what a comment above is about. Nothing with a body counts as a run."""
+    """Returns the lines from i to a blank line or a comment, which the comment above describes. A
+    declaration with a body is not part of a run."""
     end = i
     while end < len(lines) and lines[end].strip() and not is_comment(lines[end]):
         if "{" in lines[end] or lines[end].lstrip().startswith(("#", "}")):
@@ -105,7 +108,7 @@ def filtered(text, name):
             group = f"{prefix}_{slug(section.group(1))}"
             out += [f"/** @defgroup {group} {escape(section.group(1))}", " * @{ */"]
             i += 1
-            if line.startswith("/*") and "*/" not in line:  # the part's own text follows
+            if line.startswith("/*") and "*/" not in line:  # the text of the part follows
                 end = i
                 while "*/" not in lines[end]:
                     end += 1
@@ -130,7 +133,8 @@ def filtered(text, name):
         else:
             out.append(trailing(line))
             i += 1
-            if "/*" in line and "*/" not in line[line.index("/*"):]:  # goes on over further lines
+            # it continues on the next lines
+            if "/*" in line and "*/" not in line[line.index("/*"):]:
                 while "*/" not in lines[i]:
                     out.append(lines[i])
                     i += 1

@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""The documentation as a static site: make_docs.py ROOT BUILD OUT [--strict] [--check]  (`make docs`)
+"""Builds the documentation as a static site (`make docs`).
 
-ROOT: the repository; BUILD: a build of it (programs, generated node reference, Python package); OUT: the folder of the site.
-Pages are those of docs/ and what is made from the sources: the C and C++ API from the headers, nodes from the .node files, shaders
-from what their plug-ins say, options from vv's table, Python from its stubs. Exit code 77: Sphinx or Doxygen is not installed.
---strict: warnings are errors. --check: every link of the site is followed (check_site.py).
+make_docs.py ROOT BUILD OUT [--strict] [--check]
+
+ROOT: the repository; BUILD: a build of it (programs, generated node reference, Python package);
+OUT: the folder of the site. The pages are those of docs/ and generated ones: the C and C++ API from
+the headers, nodes from the .node files, shaders from their plug-ins, options from vv's table,
+Python from its stubs. Exit code 77: Sphinx or Doxygen is not installed. --strict: warnings are
+errors. --check: every link of the site is followed (check_site.py).
 """
 import os
 import pathlib
@@ -15,7 +18,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 PROGRAMS = ["openrt-worker", "openrt-replay", "nodegen"]
-# Headers that texts name, and where they are described.
+# Headers that pages name, and the pages that describe them.
 HEADERS = {"openrt/openrt.h": "openrt", "openrt/openrts.h": "openrts", "openrt/openrts.hpp": "openrts-cpp", "xvrml/xscript.h": "xscript"}
 
 
@@ -38,7 +41,8 @@ class Site:
         self.source = out.parent / "docs-source"
 
     def site_text(self, text, page):
-        """A page of docs/ as Sphinx wants it: names of other pages become links, names of files captions of their blocks."""
+        """Converts a page of docs/ for Sphinx: names of other pages become links, names of files
+        become captions of their blocks."""
         out = []
         for piece in re.split(r"(^```.*?^```\n)", text, flags=re.M | re.S):
             if piece.startswith("```"):
@@ -55,7 +59,8 @@ class Site:
         return f"```{{code-block}} {language}\n:caption: {match.group(2)}\n\n"
 
     def outside(self, match, page):
-        """A link upwards: to another page of docs/ as it is, to a file beside docs/ its text alone."""
+        """Converts a link upwards: a page of docs/ stays a link, a file beside docs/ becomes plain
+        text."""
         target = pathlib.Path(os.path.normpath(self.root / "docs" / page.parent / match.group(2).split("#")[0]))
         if target.is_relative_to(self.root / "docs"):
             return match.group(0)
@@ -64,7 +69,8 @@ class Site:
         return match.group(1)
 
     def linked(self, match, page):
-        """`docs/x.md`: a link with the title of that page; a public header: a link to its reference."""
+        """Converts `docs/x.md` to a link with the title of that page, and a public header to a link
+        to its reference."""
         name = match.group(1)
         up = "../" * (len(page.parts) - 1)
         if re.fullmatch(r"(docs/)?[\w/.-]+\.md", name):
@@ -111,7 +117,7 @@ class Site:
         shutil.copytree(docs / "site/static", self.source / "static")
 
     def present(self, index):
-        """Entries of the contents whose pages this build does not have are left out."""
+        """Removes entries of the contents whose pages this build lacks."""
         def entry(match):
             name = match.group(0)
             return name if any((self.source / (name + end)).exists() for end in (".md", ".rst")) else None

@@ -1,4 +1,4 @@
-"""Pages of command lines from what the programs say of themselves (`--help`); called by make_docs.py."""
+"""Writes pages about command lines from the programs' own `--help`; called by make_docs.py."""
 import re
 import subprocess
 
@@ -12,7 +12,7 @@ def help_of(program):
 
 
 def vv_page(vv):
-    """The options of vv by group, each a target of links and of the search."""
+    """Returns the options of vv by group; each is a target of links and of the search."""
     lines = ["vv", "==", "", "*Made from the table of options of the program.*", "", ".. program:: vv", "", ".. code-block:: text", ""]
     text = help_of(vv).split("\n")
     first = next(i for i, line in enumerate(text) if re.fullmatch(r"[A-Z]\w+", line))
@@ -48,7 +48,7 @@ def vv_page(vv):
 
 
 def programs_page(programs):
-    """The other programs, as they print it."""
+    """Returns the help of the other programs, as they print it."""
     out = ["# Other programs", "", "*What `--help` prints.* `vv` has [a page of its own](vv.rst).", ""]
     for program in programs:
         text = re.sub(r"\S*/(?=" + re.escape(program.name) + r"\b)", "", help_of(program)).strip()

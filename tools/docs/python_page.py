@@ -1,4 +1,5 @@
-"""The Python reference: signatures from the stubs, docstrings from the stubs or from the running package; called by make_docs.py."""
+"""Writes the Python reference: signatures from the stubs, docstrings from the stubs or from the
+running package; called by make_docs.py."""
 import ast
 import importlib
 import inspect
@@ -23,7 +24,7 @@ def doc_of(node, live):
     if not text and live is not None:
         try:
             text = inspect.getdoc(live)
-        except Exception:  # a property that computes
+        except Exception:  # a computed property may raise
             text = None
         if isinstance(live, (int, float, str, tuple, list, dict)):
             text = None
@@ -38,7 +39,7 @@ def decorated(function, name):
 
 
 def body(text, indent):
-    """A docstring as reStructuredText: paragraphs, and lines that are indented as they are."""
+    """Converts a docstring to reStructuredText: paragraphs, and indented lines unchanged."""
     out = []
     for block in re.split(r"\n\s*\n", text):
         lines = block.split("\n")
@@ -94,7 +95,8 @@ def members(nodes, live, indent, inside):
 
 
 def page(package):
-    """One page for the package's stubs, the generated node classes (a reference of their own) left out."""
+    """Returns one page for the package's stubs, without the generated node classes, which have a
+    reference of their own."""
     lines = ["Python", "======", "", "*Made from the package's stubs and docstrings.* :doc:`nodes` lists the fields of every node.", ""]
     for stub in sorted(package.glob("*.pyi"), key=lambda p: (p.name != "__init__.pyi", p.name)):
         if stub.name == "nodes.pyi" or (stub.name.startswith("_") and stub.name != "__init__.pyi"):
@@ -102,7 +104,7 @@ def page(package):
         name = "xvrml" if stub.name == "__init__.pyi" else f"xvrml.{stub.stem}"
         try:
             live = importlib.import_module(name)
-        except Exception:  # not built: signatures alone
+        except Exception:  # the package is not built: only signatures
             live = None
         tree = ast.parse(stub.read_text(encoding="utf-8"))
         lines += [name, "-" * len(name), "", f".. py:module:: {name}", "", *body(doc_of(tree, live), ""), *members(tree.body, live, "", False)]

@@ -1,4 +1,4 @@
-# vrml_lexer.py: colours of VRML97 worlds and of .node files on the site (Pygments).
+# vrml_lexer.py: highlights VRML97 worlds and .node files on the site (Pygments).
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation, String, Whitespace
 

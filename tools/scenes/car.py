@@ -1,5 +1,5 @@
-"""examples/scenes/car.wrz: a coupe in a studio. car_body.py has the skin, car_parts.py wheels, lamps and the rest; this file puts them
-together."""
+"""examples/scenes/car.wrz: a coupe in a studio. car_body.py contains the skin, car_parts.py wheels,
+lamps and the rest; this file assembles them."""
 import math
 
 from scenes.car_body import Greenhouse, Skin, faces_of, hull, surface
@@ -7,12 +7,12 @@ from scenes.parts import HEADER, shader, shape, viewpoint
 
 
 def both(name, look, make):
-    """A part of the right side, and its mirror image; the first has the shader."""
+    """Returns a part of the right side and its mirror image; the first one contains the shader."""
     return f"DEF {name}_Right {shape(look, make(1))}\nDEF {name}_Left {shape('USE ' + look.split()[1], make(-1))}"
 
 
 def pillars(house, side):
-    """What of the greenhouse is painted."""
+    """Returns the painted parts of the greenhouse."""
     rows = list(range(len(house.ROWS)))
     columns = list(range(len(house.columns)))
     points, normals = house.patch(columns, rows)
@@ -24,7 +24,8 @@ def pillars(house, side):
 
 
 def pane(house, band, side=1):
-    """A window: a closed plate of 5 mm. Those in the middle of the car are closed by their mirror images."""
+    """Returns a window: a closed plate of 5 mm. The mirror images close those in the middle of the
+    car."""
     columns = house.column_range(band)
     rows = list(range(house.FIRST, house.LAST + 1))
     outer, out_normals = house.patch(columns, rows, -.0005)
@@ -45,7 +46,7 @@ def pane(house, band, side=1):
     points = outer + inner
     normals = out_normals + [tuple(-c for c in v) for v in in_normals]
     faces += [tuple(i + total for i in f) for f in faces_of(m, n)]
-    # The edge, with points of its own: its normals differ.
+    # The edge has points of its own, because its normals differ.
     loop = [(0, c) for c in range(n)] + [(r, n - 1) for r in range(1, m)] + [(m - 1, c) for c in range(n - 2, -1, -1)] + [(r, 0) for r in range(m - 2, 0, -1)]
     centre = tuple(sum(p[a] for p in outer) / total for a in range(3))
     start = len(points)

@@ -1,10 +1,11 @@
-"""The car's skin: a tensor product of cubic B-splines over a net of a few sections, with holes where wheels and windows are, and the
-greenhouse that stands on it. x points forwards, y up, z to the right; metres. One half; the other is its mirror image."""
+"""The car's skin: a tensor product of cubic B-splines over a net of a few sections, with holes for
+wheels and windows, and the greenhouse on top of it. x points forwards, y up, z to the right; unit:
+metre. It is one half of the car; the other half is its mirror image."""
 import math
 
 from scenes.parts import number
 
-AXLES, HUB, ARCH = (1.37, -1.30), .325, .375  # of the wheels: x, height, radius of the hole
+AXLES, HUB, ARCH = (1.37, -1.30), .325, .375  # wheels: x of both axles, height, radius of the hole
 
 # Sections from nose to tail: x, half width, height of the shoulder, height in the middle, height of the sill.
 SECTIONS = [
@@ -29,7 +30,8 @@ SECTIONS = [
 
 
 def section(half, shoulder, middle, sill):
-    """Control points (z, y) from under the sill to the ridge; the last but one is mirrored beyond it."""
+    """Returns control points (z, y) from below the sill to the ridge; the last but one is mirrored
+    beyond it."""
     side = shoulder - sill
     rise = middle - shoulder
     return [(.70 * half, sill - .005), (.90 * half, sill - .01), (.975 * half, sill + .06 * side), (.995 * half, sill + .28 * side),
@@ -55,7 +57,8 @@ def cross(a, b):
 
 
 def spline(points, u):
-    """A cubic B-spline that starts and ends at its first and last control point; u from 0 to 1."""
+    """Evaluates a cubic B-spline that starts and ends at its first and last control point; u from 0
+    to 1."""
     n = len(points)
     position = min(max(u, 0.0), 1.0) * (n - 1)
     i = min(int(position), n - 2)
@@ -73,7 +76,7 @@ class Skin:
         self.rows, self.columns = len(self.net), len(self.net[0])
 
     def control(self, i, j):
-        """Beyond the ends: straight on; beyond the ridge: the mirror image."""
+        """Extrapolates linearly beyond the ends, and by the mirror image beyond the ridge."""
         if j >= self.columns:
             x, y, z = self.control(i, 2 * (self.columns - 1) - j)
             return (x, y, -z)
@@ -86,7 +89,7 @@ class Skin:
         return self.net[i][j]
 
     def at(self, u, v):
-        """Place and normal, u from nose to tail, v from sill to ridge, both from 0 to 1."""
+        """Returns point and normal; u from nose to tail, v from sill to ridge, both from 0 to 1."""
         pu, pv = u * (self.rows - 1), v * (self.columns - 1)
         i, j = min(int(pu), self.rows - 2), min(int(pv), self.columns - 2)
         bu, bv, su, sv = basis(pu - i), basis(pv - j), slopes(pu - i), slopes(pv - j)
@@ -111,7 +114,8 @@ class Skin:
         return (low + high) / 2
 
     def v_of(self, u, axis, value, start, end):
-        """Where along a section the height (axis 1) or the width (2) has a value; it grows or falls from start to end."""
+        """Returns where along a section the height (axis 1) or the width (2) has a value; the
+        coordinate must be monotonic from start to end."""
         rising = self.at(u, end)[0][axis] > self.at(u, start)[0][axis]
         low, high = start, end
         for _ in range(40):
@@ -123,27 +127,29 @@ class Skin:
         return (low + high) / 2
 
     def deck(self, x, z):
-        """Height of the upper side."""
+        """Returns the height of the upper side."""
         u = self.u_of(x)
         return self.at(u, self.v_of(u, 2, z, .62, 1.0))[0][1]
 
     def side(self, x, y):
-        """Place and normal on the flank."""
+        """Returns point and normal on the flank."""
         u = self.u_of(x)
         return self.at(u, self.v_of(u, 1, y, .1, .68))
 
 
 class Greenhouse:
-    """Roof, pillars and windows: columns from the middle of the windscreen around to that of the rear window, each a spline from the
-    deck to the middle of the roof."""
-    BASE, TOP = (-.40, 1.20, .715, 3.0), (-.30, .53, .535, 2.7)  # of outlines: middle, half length, half width, power
+    """Roof, pillars and windows: columns from the middle of the windscreen around to the middle of
+    the rear window, each a spline from the deck to the middle of the roof."""
+    # outlines: centre, half length, half width, power
+    BASE, TOP = (-.40, 1.20, .715, 3.0), (-.30, .53, .535, 2.7)
     ROOF, CROWN = 1.325, 1.375
-    # Where windows end, at the deck and at the roof: z on the windscreen, x on the sides, z on the rear window.
+    # The ends of the windows at the deck and at the roof: z on the windscreen, x on the sides, z on
+    # the rear window.
     BREAKS = [("z", 0, 0), ("z", .60, .435), ("x", .50, .03), ("x", -.36, -.37), ("x", -.43, -.43), ("x", -1.02, -.63), ("r", .50, .36), ("r", 0, 0)]
     STEPS = [9, 3, 10, 2, 8, 7, 9]
     GLASS = {0, 2, 4, 6}
     ROWS = [0, .015, .06] + [.06 + .50 * i / 7 for i in range(1, 8)] + [.575, .61, .65, .70, .76, .82, .88, .94, 1]
-    FIRST, LAST = 2, 9  # rows between which there is glass
+    FIRST, LAST = 2, 9  # first and last row with glass
 
     def __init__(self, skin):
         self.skin = skin
@@ -206,7 +212,7 @@ class Greenhouse:
         return n if n[1] > -.2 else tuple(-c for c in n)
 
     def patch(self, columns, rows, offset=0.0):
-        """Points, normals of a part; rows are places in ROWS."""
+        """Returns points and normals of a part; its rows are indices into ROWS."""
         points, normals = [], []
         for r in rows:
             for c in columns:
@@ -226,8 +232,8 @@ def faces_of(rows, columns, keep=lambda r, c: True):
 
 
 def surface(points, normals, faces, solid=False, side=1):
-    """An IndexedFaceSet with normals of its own; only the points that are used, faces turned to where the normals point. Side -1:
-    its mirror image."""
+    """Returns an IndexedFaceSet with given normals. It contains only points in use, and its faces
+    are oriented by the normals. Side -1: the mirror image."""
     points, normals = ([(x, y, z * side) for x, y, z in v] for v in (points, normals))
     number_of, used = {}, []
     turned = []
@@ -251,12 +257,13 @@ def surface(points, normals, faces, solid=False, side=1):
 
 
 def hull(skin, house, side, along=90, across=28):
-    """The lower body, without what wheels and cabin need."""
+    """Returns the lower body, with openings for the wheels and the cabin."""
     points, normals = [], []
     for r in range(along + 1):
         for c in range(across + 1):
             u = r / along
-            u = u + .035 * math.sin(4 * math.pi * u) / (2 * math.pi)  # closer where it is round
+            # denser where the shape is round
+            u = u + .035 * math.sin(4 * math.pi * u) / (2 * math.pi)
             p, n = skin.at(u, c / across)
             points.append(p)
             normals.append(n)
@@ -272,7 +279,7 @@ def hull(skin, house, side, along=90, across=28):
     gone = [in_cabin(p) or in_arch(p) for p in points]
     faces = faces_of(along + 1, columns, lambda r, c: not any(gone[i] for i in (
         r * columns + c, r * columns + c + 1, (r + 1) * columns + c + 1, (r + 1) * columns + c)))
-    # What borders on the hole of a wheel is drawn to its edge.
+    # Points beside the hole of a wheel are moved to its edge.
     count = {}
     for face in faces:
         for i in face:

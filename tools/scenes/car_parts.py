@@ -24,7 +24,7 @@ def studio():
 
 
 def oval(a, b, c, power=2.6, columns=18, rows=9):
-    """A cushion: an ellipsoid that is nearly a box."""
+    """Returns a cushion: an ellipsoid that is almost a box."""
     def soft(v):
         return math.copysign(abs(v) ** (2 / power), v)
 
@@ -37,7 +37,7 @@ def oval(a, b, c, power=2.6, columns=18, rows=9):
 
 
 def bead(path, wide, high, closed=False, sides=8):
-    """A bar with an oval section along a path; wide lies level."""
+    """Returns a bar with an oval section along a path; the wide side is horizontal."""
     rows = []
     for i, p in enumerate(path):
         before, after = path[i - 1 if i or closed else i], path[(i + 1) % len(path) if i + 1 < len(path) or closed else i]
@@ -53,7 +53,7 @@ def bead(path, wide, high, closed=False, sides=8):
 
 
 def ribbon(samples, half):
-    """A line on the skin: places with normals."""
+    """Returns a line on the skin; its points have normals."""
     points, normals = [], []
     for i, (p, n) in enumerate(samples):
         q, o = samples[min(i + 1, len(samples) - 1)][0], samples[max(i - 1, 0)][0]
@@ -104,7 +104,7 @@ def wheels():
 
 
 def lamp():
-    """A round headlamp; looks along +z."""
+    """Returns a round headlamp that faces +z."""
     ring = [(.076, .012), (.082, .03), (.092, .03), (.099, .018), (.099, -.12), (.08, -.12), (.076, .012)]
     bowl = [(r, -.030 + r * r / .19) for r in (.014 + .062 * i / 16 for i in range(17))]
     lens = [(0, .034)] + [(.078 * i / 12, .034 - .026 * (i / 12) ** 2) for i in range(1, 13)] + [(.078, .002)] + \
@@ -117,7 +117,8 @@ def lamp():
 
 
 def mirrors(skin):
-    """Two outside, on stalks, and one inside; all turned so that the driver looks back."""
+    """Returns two mirrors outside, on stalks, and one inside; all are aimed so that the driver
+    looks back."""
     eye, result = (-.42, 1.13, -.34), []
     glass = shader("Mirror", "mirror", "3f reflectance .88 .9 .9")
     shell = []
@@ -180,7 +181,7 @@ def cabin(skin, house):
 
 
 def lines(skin):
-    """Gaps of doors, bonnet and boot, drawn on the skin."""
+    """Returns the gaps of doors, bonnet and boot, drawn on the skin."""
     def flank(points):
         return [skin.side(*p) for p in points]
 

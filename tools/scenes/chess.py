@@ -1,24 +1,26 @@
-"""examples/scenes/chess.wrl: a full set on its board. One square is one unit; y = 0 is the top of the squares; rank 1 lies at
-z = 3.5, the file a at x = -3.5. Pieces are moved by chess.tcl through the names that are given here."""
+"""examples/scenes/chess.wrl: a full chess set on its board. A square is one unit; y = 0 is the top
+of the squares; rank 1 is at z = 3.5, the file a at x = -3.5. chess.tcl moves the pieces by the
+names that are given here."""
 import math
 
 from scenes.knight import knight_head
 from scenes.parts import HEADER, aim, arc, at, box, curve, lathe, mesh, shape, tube, viewpoint
 
-FOOT = .004  # of air between the pieces and the board
+FOOT = .004  # gap of air between the pieces and the board
 STEPS = 56
 ORDER = ["rook", "knight", "bishop", "queen", "king", "bishop", "knight", "rook"]
 
 
 def foot(radius):
-    """From the middle of the bottom to the neck of a base: plinth, torus, fillet."""
+    """Returns the profile of a base from the centre of the bottom to the neck: plinth, torus,
+    fillet."""
     return ([(0, FOOT), (radius - .012, FOOT)] + arc(radius - .012, FOOT + .012, .012, .012, -90, 0, 3)
             + [(radius, .055)] + arc(radius - .02, .055, .02, .02, 0, 90, 3)
             + arc(radius - .05, .115, .045, .04, -90, 90, 8) + [(radius - .075, .158)])
 
 
 def collar(radius, low, high):
-    """A disc about the neck, with a round edge."""
+    """Returns the profile of a disc around the neck, with a round edge."""
     r = (high - low) / 2
     return arc(radius - r, low + r, r, r, -90, 90, 6)
 
@@ -51,7 +53,7 @@ def king():
 
 
 def merlons():
-    """Six blocks on the rook's wall; they stand in it a little."""
+    """Returns six blocks on the rook's wall; they overlap it a little."""
     points, faces = [], []
     for k in range(6):
         middle, half, rows = k * math.pi / 3, .36, []
@@ -67,8 +69,8 @@ def merlons():
 
 
 def mitre():
-    """The bishop's head: an ellipsoid, drawn out to a tip, with a slanting cut in front. Rows are circles of latitude about the
-    cut's own axis, so that its edges are rows."""
+    """Returns the bishop's head: an ellipsoid with a pointed tip and a slanting cut in front. The
+    rows are circles of latitude about the cut's own axis, so that the cut's edges are rows."""
     columns, lean = 40, .7
     rows = []
     latitudes = [(-math.pi / 2 + math.pi * i / 18, 1) for i in range(1, 18)]
@@ -94,7 +96,7 @@ def mitre():
 
 
 def cross():
-    """The king's: its foot stands in his crown."""
+    """Returns the king's cross, whose foot is inside the crown."""
     w, arm, low, high, middle, thick = .026, .085, 1.52, 1.72, 1.64, .024
     outline = [(-w, low), (w, low), (w * .8, middle - .03), (arm, middle - .045), (arm, middle + .045), (w * .8, middle + .03), (w * 1.35, high),
                (-w * 1.35, high), (-w * .8, middle + .03), (-arm, middle + .045), (-arm, middle - .045), (-w * .8, middle - .03)]
@@ -116,7 +118,7 @@ def cross():
 
 
 def pieces(colour, name):
-    """The six shapes of a colour; geometry is shared by both."""
+    """Returns the six shapes of a colour; both colours share the geometry."""
     first = colour == "White"
     look = f"USE {colour}"
 
@@ -129,7 +131,8 @@ def pieces(colour, name):
     def group(kind, *nodes):
         return f"DEF {colour}_{kind} Group {{ children [\n  " + "\n  ".join(nodes) + " ] }"
 
-    ball = f"DEF {colour}_Bead " + shape(look, "DEF Bead Sphere { radius .036 }" if first else "USE Bead")  # first on a bishop
+    # first defined on a bishop
+    ball = f"DEF {colour}_Bead " + shape(look, "DEF Bead Sphere { radius .036 }" if first else "USE Bead")
     beads = [at((.192 * math.cos(a), 1.352, .192 * math.sin(a)), f"USE {colour}_Bead") for a in (2 * math.pi * i / 9 for i in range(9))]
     return {
         "pawn": group("Pawn", turned("Pawn", pawn)),
@@ -236,7 +239,7 @@ def bevelled(half, bevel):
 
 
 def frame():
-    """Four mitred bars with a rounded edge, and the wood under the squares."""
+    """Returns four mitred bars with a rounded edge, and the wood below the squares."""
     inner, outer = 4.0, 4.62
     section = [(inner, -.3), (outer, -.3)] + arc(outer - .06, -.04, .06, .06, 0, 90, 4) + [(inner + .05, .02), (inner + .03, 0), (inner, -.01)]
     rows = [[(r * sx, y, r * sz) for sx, sz in ((1, 1), (1, -1), (-1, -1), (-1, 1))] for r, y in section]

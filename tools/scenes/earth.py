@@ -1,5 +1,6 @@
-"""A map of the world for the globe, drawn by hand for this repository: outlines in degrees (longitude, latitude), coloured by
-latitude, with meridians and parallels; an 8-bit PNG of equal degrees."""
+"""A map of the world for the globe, drawn by hand for this repository: outlines in degrees
+(longitude, latitude), coloured by latitude, with meridians and parallels; an 8-bit PNG in
+equirectangular projection."""
 import math
 import struct
 import zlib
@@ -69,7 +70,7 @@ def fill(rows, outlines, value):
                     rows[y][x] = value
 
 
-STEPS = 48  # shades of land between the poles and the equator
+STEPS = 48  # number of shades of land between the poles and the equator
 BANDS = [(0, (58, 110, 52)), (10, (84, 128, 58)), (18, (190, 160, 92)), (28, (206, 172, 104)), (38, (140, 150, 78)), (50, (96, 130, 70)),
          (60, (84, 112, 74)), (68, (150, 160, 140)), (74, (228, 232, 232)), (90, (244, 246, 248))]
 
@@ -90,7 +91,7 @@ def earth(width=1024):
     ocean = [(24, 70, 116), (32, 84, 132), (44, 100, 148), (90, 140, 176), (16, 40, 62)]  # deep, middle, shore, lines, coast
     palette = ocean + [shade(90 * i / (STEPS - 1)) for i in range(STEPS)] + [tuple(int(.72 * c) for c in shade(90 * i / (STEPS - 1))) for i in range(STEPS)]
     near = [rows]
-    for _ in range(2):  # how far the shore is
+    for _ in range(2):  # distance from the shore
         last = near[-1]
         reach = 2 if len(near) == 1 else 5
         grown = [bytearray(row) for row in last]

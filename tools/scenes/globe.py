@@ -1,18 +1,20 @@
-"""examples/scenes/globe.wrl: a globe that turns under a lamp that travels; both, and a camera, follow paths of many keys as programs
-for design write them. 8 seconds are one round, 30 pictures a second."""
+"""examples/scenes/globe.wrl: a globe that turns under a moving lamp. Both, and a camera, follow
+paths of many keys, as design programs export them. One loop takes 8 seconds, at 30 pictures per
+second."""
 import math
 
 from scenes.parts import HEADER, arc, at, box, curve, lathe, mesh, number, numbers, shader, shape, viewpoint
 
 ROUND, KEYS = 8, 96
 CENTRE = (0, 2.65, 0)
-# Where the lamp is at equal times; it comes back to where it was.
+# Positions of the lamp at equal time steps; the path is closed.
 LAMP = [(-3.0, 4.7, 1.2), (-2.0, 4.9, 2.2), (.1, 5.1, 2.7), (2.1, 4.8, 2.2), (3.1, 4.3, 1.1), (2.3, 4.5, 2.0), (.3, 4.95, 2.6), (-1.9, 4.8, 2.1)]
 CAMERA = [(0, 3.5, 11.4), (2.6, 3.9, 10.8), (4.2, 4.6, 9.4), (3.0, 4.0, 10.6), (0, 3.5, 11.4), (-2.8, 3.1, 10.8), (-4.0, 2.8, 9.8), (-2.6, 3.1, 10.9)]
 
 
 def closed(points, count):
-    """So many points and the first again, along a smooth closed line through these."""
+    """Returns this many points, and the first one again, along a smooth closed curve through the
+    given points."""
     n, line = len(points), []
     for k in range(count + 1):
         position = (k % count) / count * n
@@ -23,7 +25,7 @@ def closed(points, count):
 
 
 def turn_of(position, target):
-    """That of a Viewpoint, as four numbers."""
+    """Returns the rotation of a Viewpoint as four numbers."""
     text = viewpoint(position, target, .5)
     words = text.split("orientation ")[1].split(" fieldOfView")[0].split()
     return tuple(float(w) for w in words)
@@ -36,7 +38,7 @@ def keys(values, kind, name):
 
 
 def lit(diffuse, specular=None, shininess=.3, extra=""):
-    """An appearance whose default shader is that of global illumination."""
+    """Returns an appearance whose default shader is the one for global illumination."""
     spec = f" specularColor {numbers(specular)} shininess {number(shininess)}" if specular else ""
     return f"ORTAppearance {{ material Material {{ diffuseColor {numbers(diffuse)}{spec} }} {extra}shader USE Light_From_All_Sides }}"
 
@@ -64,7 +66,7 @@ def globe():
     path, ride = closed(LAMP, KEYS), closed(CAMERA, KEYS)
     goal = (CENTRE[0], CENTRE[1] - .5, CENTRE[2] + .3)
     aims = []
-    for p in path:  # -y of the lamp looks at the globe
+    for p in path:  # the lamp's -y points at the globe
         x, y, z = (b - a for a, b in zip(p, goal))
         length = math.sqrt(x * x + y * y + z * z)
         flat = math.hypot(x, z)

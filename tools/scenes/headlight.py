@@ -1,14 +1,16 @@
-"""examples/scenes/headlight_studio.wrl: a headlamp on a photographer's table, about 800,000 triangles. Centimetres; the light goes
-along +z, the middle of the reflector is the origin. All large surfaces are Extrusions, so that the text is short: the reflector is a
-scalloped oval that grows along the axis, the lens a fluted section that is swept up along an arc."""
+"""examples/scenes/headlight_studio.wrl: a headlamp on a photographer's table, about 800,000
+triangles. Unit: centimetre. The light goes along +z, and the origin is the middle of the reflector.
+All large surfaces are Extrusions, so that the file is short: the reflector is a scalloped oval that
+grows along the axis, the lens a fluted section that is swept up along an arc."""
 import math
 
 from scenes.parts import HEADER, aim, arc, at, lathe, mesh, number, numbers, shader, shape, tube, viewpoint
 
-WIDE, HIGH, DEEP = 8.6, 5.9, 5.2  # of the reflector: half axes of its rim, depth
-SECTORS, RINGS = 20, 7  # facets around and along
-HOLE = .17  # of the rim's size: where the lamp goes through
-FOCUS = HIGH * HIGH / (4 * DEEP)  # in the upright plane; sideways the light spreads
+WIDE, HIGH, DEEP = 8.6, 5.9, 5.2  # half axes of the reflector's rim, and its depth
+SECTORS, RINGS = 20, 7  # number of facets around and along
+HOLE = .17  # radius of the hole for the bulb, in units of the rim's size
+# focal length in the vertical plane; horizontally the light spreads
+FOCUS = HIGH * HIGH / (4 * DEEP)
 
 
 def extrusion(section, spine, scale=(), crease=.3, caps=(False, False), solid=True, convex=True):
@@ -27,7 +29,8 @@ def superellipse(a, b, power, angle):
 
 
 def reflector(around=24, along=28):
-    """Each facet bulges towards the light by a share of its size; ridges between them stay sharp."""
+    """Each facet bulges towards the light in proportion to its size; the ridges between facets stay
+    sharp."""
     section = []
     for i in range(SECTORS * around + 1):
         a, t = 2 * math.pi * (i % (SECTORS * around)) / (SECTORS * around), i / around % 1
@@ -42,12 +45,12 @@ def reflector(around=24, along=28):
         g *= 1 - .022 * (1 - (2 * inside - 1) ** 2)
         spine.append((0, z, 0))
         scale.append((g, g))
-    # Seen from inside: the section runs the other way.
+    # Seen from inside, the section runs in the opposite direction.
     return extrusion(section[::-1], spine, scale, .09)
 
 
 def lens(flute_points=32, rows=290):
-    """A domed plate of 4 mm; flutes on its inside, broad ones in the middle."""
+    """Returns a domed plate of 4 mm with flutes on the inside, broad ones in the middle."""
     half_wide, half_high, thick = 9.0, 6.3, .42
     dome = 1.25
     front = []
@@ -79,13 +82,13 @@ def lens(flute_points=32, rows=290):
 
 
 def ring(profile, wide, high, power, steps=160, crease=.5):
-    """A profile (outwards, forwards) along a rounded rectangle."""
+    """Returns a profile (outwards, forwards) swept along a rounded rectangle."""
     spine = [(*superellipse(wide, high, power, 2 * math.pi * i / steps), 0) for i in range(steps)]
     return extrusion(profile, spine + spine[:1], (), crease, solid=False)
 
 
 def plate(z, steps=144):
-    """Between the rim of the reflector and the bezel."""
+    """Returns the plate between the rim of the reflector and the bezel."""
     inner = [superellipse(WIDE - .02, HIGH - .02, 2.35, 2 * math.pi * i / steps) for i in range(steps)]
     outer = [superellipse(9.35, 6.65, 7, 2 * math.pi * i / steps) for i in range(steps)]
     points = [(x, y, z) for x, y in inner + outer]
@@ -93,7 +96,7 @@ def plate(z, steps=144):
 
 
 def bulb():
-    """An H4: a tube of glass that is open below, in a base of metal. Its axis is z."""
+    """Returns an H4 bulb: a glass tube that is open below, in a metal base. Its axis is z."""
     outer, inner = .82, .74
     glass = ([(outer, -.9)] + [(outer, 2.9)] + arc(0, 2.9, outer, .75, 0, 90, 24)[1:]
              + arc(0, 2.9, inner, .66, 90, 0, 24) + [(inner, -.9), (outer, -.9)])
@@ -103,7 +106,7 @@ def bulb():
 
 
 def filament():
-    """A coil of tungsten wire along the axis, about the focus."""
+    """Returns a coil of tungsten wire along the axis, around the focus."""
     turns, steps, radius, wire, length = 11, 14, .085, .02, .62
     spine = []
     for i in range(turns * steps + 1):

@@ -1,11 +1,12 @@
-"""The knight of the chess set: a horse's head, its neck rising from y = .25, looking along -z. A tube of ovals along a bent line, with ears
-and a mane; kept apart because it is the one piece that no lathe makes."""
+"""The knight of the chess set: a horse's head that looks along -z, on a neck that rises from y =
+.25. It is a tube of ovals along a curve, with ears and a mane, and the only piece that is not a
+surface of revolution."""
 import math
 
 from scenes.parts import curve, mesh, tube
 
-# Outline of head and neck from the side, place by place from the foot to the muzzle: front (throat) and back (crest) as (forward, up),
-# and half of the width; read off a drawing.
+# Outline of head and neck from the side, row by row from the foot to the muzzle: front (throat) and
+# back (crest) as (forward, up), and half of the width; measured in a drawing.
 SIDE = [
     # forward, up      back,  up    half width
     (.20, .245,      -.205, .245,   .165),
@@ -33,7 +34,7 @@ def knight_head():
     for k, (fx, fy, bx, by, half) in enumerate(stations):
         t = k / (len(stations) - 1)
         mx, my = (fx + bx) / 2, (fy + by) / 2
-        ux, uy = (bx - fx) / 2, (by - fy) / 2  # half of the depth: from the middle to the crest
+        ux, uy = (bx - fx) / 2, (by - fy) / 2  # half of the depth, from the centre to the crest
         ring = []
         for i in range(COLUMNS):
             a = 2 * math.pi * i / COLUMNS
@@ -71,7 +72,7 @@ def add(points, faces, more):
 
 
 def ear(side):
-    """A leaf that stands on the poll."""
+    """Returns a leaf shape on the poll."""
     rows = []
     for up, wide, deep in ((-.03, .03, .026), (.02, .036, .028), (.06, .03, .022), (.1, .014, .012), (.118, .004, .004)):
         x, y, z = side * (.052 + up * .25), .925 + up, .0 - up * .35 - .02

@@ -1,12 +1,15 @@
-"""What the worlds of make_scenes.py and of this folder are put together from: numbers and nodes as text, surfaces of revolution,
-views. Everything is plain arithmetic on Python floats, rounded when it is written: the same text on every machine."""
+"""Building blocks for the worlds of make_scenes.py and of this folder: numbers and nodes as text,
+surfaces of revolution, views. They use plain arithmetic on Python floats, rounded when written, so
+the text is the same on every machine."""
 import math
 
 HEADER = "#VRML V2.0 utf8\n"
 
 
 def number(x):
-    if abs(x) < 1e-12:  # what rounding leaves of 0, which differs: sum() of floats is another one from Python 3.12 on
+    # rounding leaves such values instead of 0, and they differ: sum() of floats changed in Python
+    # 3.12
+    if abs(x) < 1e-12:
         return "0"
     text = f"{x:.5g}"
     return "0" if text == "-0" else text
@@ -17,7 +20,7 @@ def numbers(values):
 
 
 def shader(name, file, *options):
-    """An ORTAppearance; shared where it has a DEF name in the caller's text."""
+    """Returns an ORTAppearance; the caller's text shares it if it has a DEF name."""
     listed = " ".join(f'"{o}"' for o in options)
     return f'ORTAppearance {{ shader ORTShader {{ name "{name}" file "{file}" options [ {listed} ] }} }}'
 
@@ -36,15 +39,16 @@ def box(*size):
 
 
 def quad(a, b, c, d, solid=False):
-    """Faces the side from which a b c d run counter-clockwise."""
+    """Returns a quadrilateral that faces the side from which a b c d run counter-clockwise."""
     points = ", ".join(numbers(p) for p in (a, b, c, d))
     return (f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'} coord Coordinate {{ point [ {points} ] }} "
             "coordIndex [ 0 1 2 3 ] }")
 
 
 def lathe(profile, steps=48, crease=0.6, solid=False, up=False):
-    """The surface that a line of points (distance from the axis, place on it) sweeps about +z, or +y: an Extrusion along a circle.
-    With the axis on the left and the line followed from its first point to its last, the outside is on its left."""
+    """Returns the surface that a curve of points (distance from the axis, position along it) sweeps
+    about +z, or +y: an Extrusion along a circle. With the axis on the left and the curve followed
+    from its first point to its last, the outside is on its left."""
     circle = [(math.cos(2 * math.pi * i / steps), math.sin(2 * math.pi * i / steps), 0) for i in range(steps)]
     if up:
         circle = [(x, 0, -y) for x, y, _ in circle]
@@ -55,7 +59,8 @@ def lathe(profile, steps=48, crease=0.6, solid=False, up=False):
 
 
 def mesh(points, faces, crease=0.0, solid=True, extra=""):
-    """An IndexedFaceSet: faces are lists of places in `points`, counter-clockwise seen from outside."""
+    """Returns an IndexedFaceSet: faces are lists of indices into `points`, counter-clockwise seen
+    from outside."""
     listed = ", ".join(numbers(p) for p in points)
     indices = " ".join(" ".join(str(i) for i in face) + " -1" for face in faces)
     return (f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'} creaseAngle {number(crease)} {extra}\n"
@@ -63,8 +68,8 @@ def mesh(points, faces, crease=0.0, solid=True, extra=""):
 
 
 def tube(rows, closed_rings=True, caps=True):
-    """Points and faces of rings of equally many points; the ends are closed by fans. Each ring runs counter-clockwise seen from
-    the last one."""
+    """Returns points and faces of a tube of rings with equally many points; fans close its ends.
+    Each ring runs counter-clockwise seen from the last one."""
     n = len(rows[0])
     points = [p for row in rows for p in row]
     faces = []
@@ -83,7 +88,8 @@ def tube(rows, closed_rings=True, caps=True):
 
 
 def curve(points, steps=6):
-    """A smooth line through points of any dimension: centripetal enough for profiles (Catmull-Rom, ends repeated)."""
+    """Returns a smooth curve through points of any dimension: uniform Catmull-Rom with
+    repeated end points, which suffices for profiles."""
     line = []
     for i in range(len(points) - 1):
         a, b, c, d = points[max(i - 1, 0)], points[i], points[i + 1], points[min(i + 2, len(points) - 1)]
@@ -95,7 +101,7 @@ def curve(points, steps=6):
 
 
 def arc(x, y, rx, ry, start, end, steps=8):
-    """Points of an ellipse about (x, y), angles in degrees."""
+    """Returns points of an ellipse about (x, y); angles in degrees."""
     return [(x + rx * math.cos(math.radians(start + (end - start) * i / steps)),
              y + ry * math.sin(math.radians(start + (end - start) * i / steps))) for i in range(steps + 1)]
 
@@ -106,10 +112,10 @@ def world(title, view, *parts):
 
 
 def viewpoint(position, target, angle, kind="Viewpoint", extra=""):
-    """Looks at a target, with +y up: two turns in one."""
+    """Returns a Viewpoint that looks at a target, with +y up; its rotation combines two."""
     x, y, z = (t - p for t, p in zip(target, position))
     yaw, pitch = math.atan2(-x, -z), math.atan2(y, math.hypot(x, z))
-    # quaternion of the turn about y after the turn about x
+    # quaternion of the rotation about y after the rotation about x
     cy, sy, cp, sp = math.cos(yaw / 2), math.sin(yaw / 2), math.cos(pitch / 2), math.sin(pitch / 2)
     w, q = cy * cp, (cy * sp, sy * cp, -sy * sp)
     length = math.hypot(*q)
@@ -119,7 +125,7 @@ def viewpoint(position, target, angle, kind="Viewpoint", extra=""):
 
 
 def aim(place, target):
-    """Turns +z, where lamps shine to, towards a target."""
+    """Rotates +z, the direction in which lamps shine, towards a target."""
     x, y, z = (b - a for a, b in zip(place, target))
     length = math.sqrt(x * x + y * y + z * z)
     axis, flat = (-y, x, 0), math.hypot(x, y)

@@ -1,8 +1,9 @@
-"""PEP 517 backend of the distribution `xvrml`: scikit-build-core builds the wheel, auditwheel puts the libraries that it links
-into it. pip calls this for `pip install .` and `pip wheel .`, so that both need no system package at run time.
+"""PEP 517 backend of the distribution `xvrml`: scikit-build-core builds the wheel, then auditwheel
+adds the libraries that it links. pip calls this for `pip install .` and `pip wheel .`, so that both
+need no system package at run time.
 
-auditwheel leaves out what its manylinux policies expect of every desktop (X11, glib, zlib, expat, ...). A bare system has nothing
-but the C and C++ run time, so everything else is taken along.
+auditwheel omits libraries that its manylinux policies expect of every desktop (X11, glib, zlib,
+expat, ...). A bare system has only the C and C++ run time, so everything else is included.
 """
 import json
 import logging
@@ -12,10 +13,11 @@ import subprocess
 import sys
 import tempfile
 
-from scikit_build_core.build import *  # noqa: F401,F403  the other hooks are its own
+# noqa: F401,F403  scikit-build-core's other hooks are used unchanged
+from scikit_build_core.build import *
 from scikit_build_core import build as _build
 
-# What is there wherever a Python for glibc runs.
+# Libraries that exist wherever a Python for glibc runs.
 _SYSTEM = ("libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libutil.so", "libresolv.so", "libnsl.so",
            "ld-linux", "libgcc_s.so", "libstdc++.so")
 
@@ -24,7 +26,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as plain:
         name = _build.build_wheel(plain, config_settings, metadata_directory)
         out = pathlib.Path(plain) / "bundled"
-        # A process of its own: auditwheel's policies are changed, and it logs through the root logger.
+        # Runs in a process of its own: it changes auditwheel's policies, and auditwheel logs
+        # through the root logger.
         subprocess.run([sys.executable, __file__, str(pathlib.Path(plain) / name), str(out)], check=True,
                        env={**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)})
         made, = out.glob("*.whl")

@@ -1,4 +1,4 @@
-// cluster_options.cpp: the options of the group Cluster, a part of the table of options
+// cluster_options.cpp: Defines the options of the group Cluster, a part of the table of options
 // (options.h).
 #include "options.h"
 

@@ -58,8 +58,9 @@ Definition readOne(const std::string& text, const World& world) {
   if (!value)
     fail(text, fmt::format("a value of type {} was expected: {}", fieldTypeName(one.field->type),
                            problem));
-  const bool rotates = one.field->type == FieldType::SFRotation ||
-                       one.field->type == FieldType::MFRotation; // axes are normalised
+  // rotation axes are normalised, so their range is not checked
+  const bool rotates =
+      one.field->type == FieldType::SFRotation || one.field->type == FieldType::MFRotation;
   if (holdsValue(*one.field) && !rotates && !inRange(*one.field, *value))
     fail(text, fmt::format("the value is out of the range of {}.{}", one.node->type().name,
                            one.field->name));

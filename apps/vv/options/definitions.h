@@ -1,4 +1,5 @@
-// definitions.h: -D DEF.field=value: other values for fields of a loaded world. [main thread]
+// definitions.h: Implements -D DEF.field=value, which changes fields of a loaded world. [main
+// thread]
 #pragma once
 
 #include <string>
@@ -12,13 +13,14 @@ struct Definition {
   xvrml::NodeRef node;
   const xvrml::FieldInfo* field;
   xvrml::Value value;
-  // Fields get the value as if the file had it; what only a running world can do (an event, a
-  // prototype's interface, an Inline's url) is sent as an event at time 0.
+  // false: the field gets the value as if the file contained it. true: the value is sent as an
+  // event at time 0, because only a running world can apply it (an event, a prototype's interface,
+  // an Inline's url).
   bool asEvent;
 };
 
-// Throws Failure (usage) naming what was expected: the nearest DEF or field name, or the value's
-// syntax.
+// Throws Failure (usage) that says what was expected: the nearest DEF or field name, or the syntax
+// of the value.
 std::vector<Definition> readDefinitions(const std::vector<std::string>& texts,
                                         const xvrml::World& world);
 

@@ -12,13 +12,13 @@ namespace vv {
 
 namespace {
 
-struct Habit {
+struct ForeignOption {
   std::string_view option, instead;
 };
 
-// Options of view3dscene, F3D, Blender, Mitsuba, LuxCore, POV-Ray and ImageMagick, by what they are
-// called there.
-constexpr Habit habits[] = {
+// Options of view3dscene, F3D, Blender, Mitsuba, LuxCore, POV-Ray and ImageMagick under their names
+// there.
+constexpr ForeignOption habits[] = {
     {"--resolution", "--size 800x600 sets the size of the picture"},
     {"--geometry", "--size 800x600 sets the size of the picture"},
     {"--width", "--size 800x600 sets width and height"},
@@ -72,7 +72,7 @@ std::string sizeHint(std::string_view text) {
 }
 
 std::string optionHint(std::string_view option) {
-  for (const Habit& habit : habits)
+  for (const ForeignOption& habit : habits)
     if (habit.option == option)
       return fmt::format("there is no option {}: {}", option, habit.instead);
   return "";

@@ -1,5 +1,6 @@
-// habits.h: what people type who know other programs, and what they mean: hints for messages about
-// wrong command lines. Pure functions, called while the command line is read.
+// habits.h: Gives hints to users who type the syntax or the options of other programs. The hints
+// become part of messages about wrong command lines. Pure functions, called while the command line
+// is read.
 #pragma once
 
 #include <string>
@@ -7,16 +8,16 @@
 
 namespace vv {
 
-// Returns ": did you mean --size 800x600?" where a size was written as others write it (800,600;
-// 800*600; 800 600; 800); else "".
+// Returns ": did you mean --size 800x600?" if a size has another program's syntax (800,600;
+// 800*600; 800 600; 800); otherwise "".
 std::string sizeHint(std::string_view text);
 
-// Returns what serves for an option of another program (--resolution, --samples, ...), a sentence;
-// "" where none is known.
+// Returns a sentence that names the equivalent of another program's option (--resolution, --samples
+// and so on); "" if none is known.
 std::string optionHint(std::string_view option);
 
-// Returns what to do with a second file on the command line: a picture to be written, or one world
-// of several.
+// Returns what to do with a second file on the command line: it may be a picture to write, or one
+// of several worlds.
 std::string secondFileHint(const std::string& first, const std::string& second);
 
 } // namespace vv

@@ -11,7 +11,7 @@ namespace vv {
 namespace {
 
 constexpr std::string_view viewpointPlace = "{viewpoint}", frameStart = "{frame";
-constexpr int defaultDigits = 4, mostDigits = 12;
+constexpr int defaultDigits = 4, maxDigits = 12;
 
 struct FramePlace {
   size_t at = std::string::npos, length = 0;
@@ -30,7 +30,7 @@ FramePlace findFrame(const std::string& path) {
   else if (inside[0] != ':')
     throw UsageError(fmt::format("{{frame}} or {{frame:DIGITS}} was expected in \"{}\"", path));
   else
-    place.digits = int(readInteger(std::string_view(inside).substr(1), 1, mostDigits));
+    place.digits = int(readInteger(std::string_view(inside).substr(1), 1, maxDigits));
   place.length = end + 1 - place.at;
   return place;
 }

@@ -1,5 +1,5 @@
-// names.h: the names of the files that a run with several pictures writes: {viewpoint} and
-// {frame:4} in them. [any thread]
+// names.h: Expands {viewpoint} and {frame:4} in the names of files that a run with several pictures
+// writes. [any thread]
 #pragma once
 
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace vv {
 
-// What tells a picture from the others of the run.
+// Identifies one of the run's pictures.
 struct PictureName {
-  std::string viewpoint;          // empty: the only one
-  std::optional<long long> frame; // nothing: no sequence
+  std::string viewpoint;          // empty: the run has one viewpoint
+  std::optional<long long> frame; // nothing: the run is not a sequence
 
   std::string text() const; // for people: "front, frame 12"
 };
@@ -18,11 +18,11 @@ struct PictureName {
 // Throws UsageError if the braces of a {frame...} are wrong.
 void checkFramePlace(const std::string& path);
 
-// The path with {viewpoint} and {frame} (or {frame:DIGITS}) replaced; where they are missing and
-// needed, "-NAME" and "-NUMBER" (four digits) are put before the suffix.
+// Returns the path with {viewpoint} and {frame} (or {frame:DIGITS}) replaced. If a needed
+// placeholder is missing, "-NAME" or "-NUMBER" (four digits) is inserted before the suffix.
 std::string pathFor(const std::string& path, const PictureName& name);
 
-// The part of a file name that stands for a viewpoint's name.
+// Converts a viewpoint's name to a part of a file name.
 std::string fileNamePart(const std::string& name);
 
 } // namespace vv

@@ -1,5 +1,5 @@
-// option_table.cpp: every option of vv, once: names, argument, text and what it does. Those of the
-// group Cluster are in cluster_options.cpp.
+// option_table.cpp: Defines every option of vv: names, argument, help text and effect. The options
+// of the group Cluster are in cluster_options.cpp.
 #include "options.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using xvrml::MapOptions;
 
 void addOutput(Options& o, const std::string& value) {
   if (value == "-") return o.outputs.push_back({"-", picture::Format::png});
-  // FORMAT:FILE, for names whose suffix says something else, or nothing.
+  // FORMAT:FILE selects the format for names with another suffix, or without one.
   if (const size_t colon = value.find(':'); colon != value.npos && colon + 1 < value.size()) {
     const std::string file = value.substr(colon + 1);
     if (const auto format = picture::formatNamed(value.substr(0, colon))) {
@@ -104,8 +104,8 @@ void setLimit(Options& o, const std::string& value) {
     names.emplace_back(limit.name);
     known += (known.empty() ? "" : ", ") + std::string(limit.name);
   }
-  constexpr std::string_view ofScripts =
-      "worldScriptSeconds"; // of the running world, not of its file
+  // a limit of the running world, not of its file
+  constexpr std::string_view ofScripts = "worldScriptSeconds";
   names.emplace_back(ofScripts);
   known += ", " + names.back();
   if (equals == value.npos)

@@ -1,4 +1,4 @@
-// options.cpp: reads the command line with CLI11 as the table of options says. The only file that
+// options.cpp: Parses the command line with CLI11, according to the table of options. No other file
 // includes CLI11.
 #include "options.h"
 
@@ -41,7 +41,7 @@ std::string unknownOption(std::string option) {
   return fmt::format("there is no option {}; did you mean {}?", option, near);
 }
 
-// The value of an option is missing only at the end of the command line.
+// Describes a missing option value; this can happen only at the end of the command line.
 std::string missingValue(std::string_view last) {
   for (const OptionInfo& option : optionTable())
     for (std::string_view name : split(option.names, ','))
@@ -49,7 +49,7 @@ std::string missingValue(std::string_view last) {
   return fmt::format("{}: a value was expected", last);
 }
 
-// Several pictures, one after the other.
+// Checks the options for sequences of pictures.
 void checkSequence(const Options& options) {
   if (options.frames && options.time)
     throw UsageError("only one of --time and --frames can be used");
@@ -69,7 +69,7 @@ void checkSequence(const Options& options) {
     throw UsageError("--watch needs a file, not standard input");
 }
 
-// Options about workers say nothing where there are none.
+// Rejects worker options in a command line that names no workers.
 void checkCluster(const Options& options) {
   const picture::ClusterSettings& c = options.cluster;
   const auto alone = [&](bool given, const char* name) {
@@ -87,7 +87,7 @@ void checkCluster(const Options& options) {
     throw UsageError("--workers and --listen-workers go with -o, or with the window");
 }
 
-// What the options ask for together.
+// Checks combinations of options.
 void checkTogether(Options& options) {
   if (!options.viewpoint.empty() && (options.view.lookAt || options.view.fit))
     throw UsageError("--viewpoint: not with --camera or --fit, which look from elsewhere");
@@ -151,8 +151,8 @@ void checkTogether(Options& options) {
 
 } // namespace
 
-// An argument that may be left out is given as NAME=VALUE to the parser: what follows counts only
-// if it begins with a digit.
+// Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
+// its argument only if it begins with a digit.
 std::vector<std::string> withOptionalArguments(int argc, char** argv) {
   std::vector<std::string> out;
   for (int i = 1; i < argc; ++i) {
@@ -166,7 +166,7 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv) {
       break;
     }
   }
-  std::reverse(out.begin(), out.end()); // as CLI11 takes a vector
+  std::reverse(out.begin(), out.end()); // CLI11 expects a vector in reverse order
   return out;
 }
 
@@ -201,7 +201,7 @@ Options readCommandLine(int argc, char** argv) {
     const OptionInfo& option = optionTable()[i];
     if (added[i]->count() == 0) continue;
     if (!*option.argument) apply(option, options, "");
-    // Of an option that holds one value the last counts.
+    // If an option holds one value, the last one counts.
     const size_t first = option.repeatable || values[i].empty() ? 0 : values[i].size() - 1;
     for (size_t k = first; k < values[i].size(); ++k)
       apply(option, options, option.argument[0] == '[' && values[i][k] == "-" ? "" : values[i][k]);
@@ -221,7 +221,8 @@ Options readCommandLine(int argc, char** argv) {
 
 namespace {
 
-// `text` in lines of at most `width`, each but the first after `indent` blanks.
+// Breaks `text` into lines of at most `width`; all lines except the first are indented by `indent`
+// blanks.
 std::string wrapped(std::string_view text, size_t indent, size_t width) {
   std::string out;
   size_t column = 0;

@@ -1,5 +1,5 @@
-// options.h: what the command line asks for, and the one table of options that reads it and writes
-// --help. Called by main() once. [one thread]
+// options.h: Holds the values of the command line, and the one table of options that parses it and
+// prints --help. main() calls this once. [one thread]
 #pragma once
 
 #include <memory>
@@ -20,8 +20,8 @@ namespace vv {
 struct Output {
   std::string path; // "-": standard output
   picture::Format format = picture::Format::png;
-  picture::FilmKind film =
-      picture::FilmKind::none; // else a file of all pictures of a sequence, and no format
+  // Not none: the file holds all pictures of a sequence, and `format` is unused.
+  picture::FilmKind film = picture::FilmKind::none;
 };
 
 struct Options {
@@ -29,28 +29,29 @@ struct Options {
   std::vector<Output> outputs;
   picture::RenderSettings render;
   picture::ClusterSettings cluster;
-  std::optional<int> samples; // as asked for; render.samples is what follows
+  std::optional<int> samples; // value of --samples; render.samples is the number in use
   picture::View view;
-  std::optional<double> time;  // seconds since the world was loaded
-  std::optional<double> epoch; // seconds since 1970 when it is loaded; none: xvrml::worldEpoch, in
-                               // the window the real time
+  std::optional<double> time; // seconds since the world was loaded
+  // Seconds since 1970 when the world is loaded. None: xvrml::worldEpoch, or the real time in the
+  // window.
+  std::optional<double> epoch;
   std::optional<FrameRange> frames;
-  double fps = 30;                      // of frames and films; also the steps of the world's clock
-  int turntable = 0;                    // pictures around the world; 0: none
+  double fps = 30;   // rate of frames and films; also the step of the world's clock
+  int turntable = 0; // number of pictures around the world; 0: none
   std::vector<std::string> definitions; // DEF.field=value
   std::vector<std::string> shaders;     // DEF=Class:param=value
   std::string cameraShader;             // Class:param=value
-  std::string viewpoint;                // as asked for: a name, a number or "all"
+  std::string viewpoint;                // as given: a name, a number or "all"
   bool check = false, strict = false;
   bool info = false, listNodes = false, listViewpoints = false, listShaders = false,
        listEngines = false, explain = false, json = false;
   bool watch = false;
-  std::string inputScript, recordInput;      // files of what a user does; empty: none
-  std::shared_ptr<const InputScript> script; // what inputScript holds
+  std::string inputScript, recordInput;      // files of user input; empty: none
+  std::shared_ptr<const InputScript> script; // contents of inputScript
   bool listKeys = false;
   std::string write, stats;
   std::string compare;  // reference picture; empty: none
-  int audit = 0;        // pictures to check the error bars with; 0: none
+  int audit = 0;        // number of pictures to check the error bars with; 0: none
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;
@@ -67,8 +68,8 @@ struct Options {
   bool isSequence() const { return frames || turntable > 0; }
 };
 
-// A row of the table. `argument` is empty for a switch, in brackets if it may be left out: then the
-// value is "". `apply` throws UsageError.
+// A row of the table. `argument` is empty for a switch, and in brackets if it is optional; a
+// missing optional argument gives the value "". `apply` throws UsageError.
 struct OptionInfo {
   const char* names; // "-o,--output"
   const char* argument;
@@ -78,9 +79,9 @@ struct OptionInfo {
   bool repeatable = false;
 };
 std::span<const OptionInfo> optionTable();
-std::span<const OptionInfo> clusterOptions(); // a part of it
+std::span<const OptionInfo> clusterOptions(); // the rows of the group Cluster
 
-// Throws UsageError with one line that names the option and what was expected.
+// Throws UsageError with one line that names the option and says what was expected.
 Options readCommandLine(int argc, char** argv);
 
 std::string helpText();

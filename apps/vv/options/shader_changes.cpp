@@ -33,7 +33,7 @@ Node& findNode(const std::string& text, const std::string& name, const World& wo
                                near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
-// The parts of an appearance, as written.
+// The nodes of an appearance, as written in the file.
 struct Parts {
   NodeRef material, texture, textureTransform, shader;
 };
@@ -46,8 +46,8 @@ Parts partsOf(Node* appearance) {
   return {};
 }
 
-// All shapes of the world; below: those that hold, or stand below, one of these nodes (null: all
-// without a shader).
+// Returns the shapes that contain, or stand below, one of these nodes; null: all shapes without a
+// shader.
 std::vector<nodes::Shape*> shapesOf(const World& world, const std::set<const Node*>* nodes) {
   std::vector<nodes::Shape*> shapes;
   forEachNode(world, [&](const Node& node) {
@@ -65,7 +65,7 @@ std::vector<nodes::Shape*> shapesOf(const World& world, const std::set<const Nod
 
 void give(const std::vector<nodes::Shape*>& shapes, const NodeRef& shader, World& world) {
   const NodeType& type = *findNodeType("ORTAppearance");
-  std::map<const Node*, NodeRef> made; // shapes that share an appearance go on doing so
+  std::map<const Node*, NodeRef> made; // keeps shared appearances shared
   for (nodes::Shape* shape : shapes) {
     Node* before = renderedNode(shape->appearance.get());
     NodeRef& appearance = made[before];

@@ -1,5 +1,5 @@
-// shader_changes.h: --shader DEF=Class:param=value: other surface shaders for shapes of a loaded
-// world. [main thread]
+// shader_changes.h: Implements --shader DEF=Class:param=value, which changes surface shaders of a
+// loaded world. [main thread]
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace vv {
 
-// Gives the shapes that the texts name another shader. DEF: a Shape, an appearance, a Material, or
-// anything that shapes stand below; *: all of the world that have no ORTShader of their own.
-// Material and texture of a shape stay, for shaders that have parameters of these names. Later
-// texts win. Throws Failure (usage) naming what was expected.
+// Gives the selected shapes another shader. DEF selects a Shape, an appearance, a Material, or a
+// node above shapes; * selects all shapes without an ORTShader of their own. Material and texture
+// of a shape stay, for shaders with parameters of these names. Later texts override earlier ones.
+// Throws Failure (usage) that says what was expected.
 void changeShaders(const std::vector<std::string>& texts, const std::string& shaderPath,
                    xvrml::World& world);
 

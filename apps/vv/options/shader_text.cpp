@@ -22,7 +22,8 @@ struct Setting {
   std::string name, value;
 };
 
-// "Class:a=1:b=2"; a colon in a value is kept where no name and equals sign follow it.
+// The parsed text "Class:a=1:b=2". A colon belongs to a value unless a name and an equals sign
+// follow it.
 struct Written {
   std::string library, name;
   std::vector<Setting> settings;
@@ -84,8 +85,8 @@ size_t countOf(RTenum type) {
   }
 }
 
-// A place of the user's own: as a URL relative to the current folder, which a world's own rules let
-// through.
+// Converts a path given by the user to a URL relative to the current folder, which the rules for a
+// world's own URLs permit.
 std::string fileUrl(const std::string& path) {
   std::string url;
   for (const char c :
@@ -99,7 +100,7 @@ std::string quoted(const std::string& text) {
   return "'" + text + "'";
 }
 
-// As an option of an ORTShader node.
+// Formats a value as an option of an ORTShader node.
 std::string optionOf(const RTparameterInfo& info, const std::string& value) {
   switch (info.type) {
   case RT_PARAM_TEXTURE: return fmt::format("texture {} {}", info.name, quoted(fileUrl(value)));
@@ -127,7 +128,7 @@ std::string optionOf(const RTparameterInfo& info, const std::string& value) {
   return option;
 }
 
-// A context in which nothing is drawn.
+// A context that draws nothing.
 struct Lookup {
   RTcontext context;
   explicit Lookup(const std::string& shaderPath) {

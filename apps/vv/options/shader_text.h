@@ -1,5 +1,5 @@
-// shader_text.h: shaders as they are written on the command line: Class:param=value:...,
-// library/Class:param=value:... [main thread: a context of its own looks up the class]
+// shader_text.h: Parses the command line's syntax for shaders: Class:param=value:... and
+// library/Class:param=value:... The class is looked up in a context of its own. [main thread]
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace vv {
 
-// An ORTShader node with that class and these parameters. Throws UsageError naming what was
-// expected: the nearest class or parameter, the type of a value, its range. option: for messages,
-// "--shader"; role: RT_SURFACE, RT_CAMERA ...
+// Returns an ORTShader node with that class and these parameters. Throws UsageError that says what
+// was expected: the nearest class or parameter, the type of a value, or its range. `option` is for
+// messages, such as "--shader"; `role` is RT_SURFACE, RT_CAMERA and so on.
 xvrml::NodeRef readShader(const std::string& text, const char* option, RTenum role,
                           const std::string& shaderPath);
 
-// "surface", "light" ... of RT_SURFACE, RT_LIGHT ...
+// Returns "surface", "light" and so on for RT_SURFACE, RT_LIGHT and so on.
 const char* roleName(RTenum role);
 const char* parameterTypeName(RTenum type);
 

@@ -14,7 +14,7 @@ namespace vv {
 
 namespace {
 
-// The whole text as a number; no blanks, no sign `+`, no locale.
+// Parses the whole text as a number; blanks, a `+` sign and the locale's format are not accepted.
 template <class T> bool whole(std::string_view text, T& value) {
   auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() && !text.empty();

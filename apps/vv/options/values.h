@@ -1,5 +1,5 @@
-// values.h: strict readers of option values. Each throws UsageError saying what was expected. [any
-// thread]
+// values.h: Parses option values strictly. Each function throws UsageError that says what was
+// expected. [any thread]
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace vv {
 
-// Exit codes of the program (docs: vv --help).
+// Exit codes of the program (documented in vv --help).
 enum ExitCode {
   exitDone = 0,
   exitRender = 1,    // the picture could not be made or written
-  exitUsage = 2,     // the command line
+  exitUsage = 2,     // the command line is wrong
   exitInput = 3,     // the world is missing or unusable
   exitProblems = 4,  // --check or --strict found problems
-  exitMissing = 5,   // a plug-in or a texture is missing under --strict
-  exitNoWorkers = 6, // fewer than --require-workers asks for
-  exitTryAgain = 75, // out of memory or of another resource
+  exitMissing = 5,   // under --strict: a plug-in or a texture is missing
+  exitNoWorkers = 6, // there are fewer workers than --require-workers asks for
+  exitTryAgain = 75, // memory or another resource is exhausted
   exitInterrupted = 130
 };
 
@@ -29,27 +29,28 @@ struct UsageError : std::runtime_error {
   using runtime_error::runtime_error;
 };
 
-// Ends the program with this code once its text is said.
+// Ends the program with this exit code after its text has been printed.
 struct Failure {
   int code;
   std::string text;
 };
 
-// Pictures number first, first + step ... up to last of a sequence.
+// The pictures of a sequence: first, first + step and so on up to last.
 struct FrameRange {
   long long first = 0, last = 0, step = 1;
 };
 
 long long readInteger(std::string_view text, long long minimum, long long maximum);
-double readNumber(std::string_view text, double minimum, double maximum); // both exclusive
-double readSeconds(std::string_view text);                                // from 0 to a million
-double readShare(std::string_view text); // above 0 up to 1, or a percentage
-// A byte or item count, also with the suffixes k, M, G (powers of 1024).
+// both limits are exclusive
+double readNumber(std::string_view text, double minimum, double maximum);
+double readSeconds(std::string_view text); // seconds from 0 to a million
+double readShare(std::string_view text);   // above 0 up to 1, or a percentage
+// Parses a number of bytes or items, with the optional suffixes k, M, G (powers of 1024).
 uint64_t readCount(std::string_view text);
 bool readSwitch(std::string_view text); // on, off
 void readSize(std::string_view text, int& width, int& height);
 picture::LookAt readCamera(std::string_view text);
-xvrml::Axis readAxis(std::string_view text);  // x, y, z, perhaps with a sign
+xvrml::Axis readAxis(std::string_view text);  // x, y or z, with an optional sign
 FrameRange readFrames(std::string_view text); // A-B, A-B/STEP or A
 std::vector<std::string_view> split(std::string_view text, char separator);
 

@@ -11,9 +11,9 @@ namespace vv {
 
 namespace {
 
-constexpr int tileEdge = 16;           // of the tiles whose worst are looked at
-constexpr int referenceWorth = 16;     // samples of the reference over those of a picture
-constexpr int referenceSeed = 1000003; // away from the series' own
+constexpr int tileEdge = 16;           // edge of the tiles in pixels; the worst tiles are reported
+constexpr int referenceWorth = 16;     // samples of the reference divided by those of a picture
+constexpr int referenceSeed = 1000003; // a seed outside the range of the series
 
 picture::Picture readReference(const std::string& path, int width, int height) {
   picture::Picture picture;
@@ -59,7 +59,7 @@ picture::RenderResult Audit::render(const picture::View& view, const std::string
 bool Audit::run(const picture::View& view) {
   const int width = options_.render.width, height = options_.render.height;
   picture::Reference reference;
-  if (!options_.compare.empty()) { // before the work
+  if (!options_.compare.empty()) { // read it before the rendering work
     const picture::Picture other = readReference(options_.compare, width, height);
     reference.colours = coloursOf(other);
     if (const auto bars = other.planes.find(RT_ERROR); bars != other.planes.end())
@@ -111,7 +111,7 @@ std::string Audit::whatIsWrong() const {
   if (c.intervals() > 0 && c.worstTiles < .90)
     return "the coverage of the worst tiles is not what was promised";
   if (c.exact - c.exactHeld > c.exact / 100) return "exact pixels are not exact";
-  // Of so many pictures fewer than nine in ten, by more than chance.
+  // Fewer than nine in ten pictures agree with the prediction, by more than three standard errors.
   const double shots = double(c.shots);
   if (c.promiseShare() + 3 * std::sqrt(.09 / shots) < .9)
     return "the error of the pictures is not what was promised";

@@ -1,5 +1,5 @@
-// audit.h: pictures compared with a reference: how far one is off (--compare), and whether the
-// error bars of many hold (--audit). [one thread]
+// audit.h: Compares pictures with a reference: the error of one picture (--compare), and the
+// coverage of the error bars over many pictures (--audit). [one thread]
 #pragma once
 
 #include <functional>
@@ -11,22 +11,23 @@
 
 namespace vv {
 
-// What --compare prints. Throws Failure if the file cannot be read or is of another size.
+// Returns the text that --compare prints. Throws Failure if the file cannot be read or has another
+// size.
 std::string compareText(const picture::Picture& made, const std::string& path);
 
 class Audit {
  public:
   Audit(const Options& options, picture::Renderer& renderer)
       : options_(options), renderer_(renderer) {}
-  // Called before each picture with what it is, and with "" after the last.
+  // The callback gets a description before each picture, and "" after the last one.
   void setProgress(std::function<void(const std::string&)> progress) {
     progress_ = std::move(progress);
   }
-  // false: interrupted.
+  // Returns false if it was interrupted.
   bool run(const picture::View& view);
   bool good() const;
   std::string text() const;
-  // The first picture of the series.
+  // Encodes the first picture of the series.
   std::string encode(picture::Format format) const { return picture::encode(first_, format); }
 
  private:
@@ -37,7 +38,7 @@ class Audit {
   std::function<void(const std::string&)> progress_;
   picture::Picture first_;
   picture::Coverage coverage_;
-  std::string reference_; // in words
+  std::string reference_; // description of the reference in words
   double samples_ = 0;
 };
 

@@ -45,7 +45,7 @@ int exitCodeOf(const picture::RenderError& error) {
 }
 
 std::string workersText(const std::vector<RTworker>& workers) {
-  std::set<std::string_view> names; // who comes back is there twice
+  std::set<std::string_view> names; // a worker that has reconnected is listed twice
   size_t alive = 0;
   for (const RTworker& worker : workers) {
     if (picture::isHere(worker)) continue;
@@ -62,10 +62,10 @@ std::string workersText(const picture::Cluster* cluster) {
   return cluster ? workersText(cluster->workers()) : "";
 }
 
-std::vector<std::string> noteLines(const std::vector<picture::ClusterNote>& notes, bool verbose,
-                                   bool quiet) {
+std::vector<std::string> clusterMessageLines(const std::vector<picture::ClusterMessage>& notes,
+                                             bool verbose, bool quiet) {
   std::vector<std::string> lines;
-  for (const picture::ClusterNote& note : notes) {
+  for (const picture::ClusterMessage& note : notes) {
     if (note.level < (quiet ? 3 : verbose ? 1 : 2)) continue;
     const char* kind = note.level >= 3 ? "error: " : note.level == 2 ? "warning: " : "";
     lines.push_back(fmt::format("vv: {}{}", kind, oneLine(note.text)));

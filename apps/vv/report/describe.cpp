@@ -45,7 +45,7 @@ template <class T> std::string text(const std::vector<T>& list) {
   return out + "]";
 }
 
-// Without recursion: a hostile world may be a thousand nodes deep.
+// Visits nodes without recursion: a hostile world may be a thousand nodes deep.
 class Walk {
  public:
   Walk(const std::function<void(const Node&)>& visit,
@@ -150,7 +150,7 @@ void countScript(const Node& node, std::map<std::string, uint64_t>& scripts) {
     ++scripts[scriptProtocol(*static_cast<const MFString*>(node.storage(*url)))];
 }
 
-// Bodies of prototypes, and of those that are declared in them.
+// Counts the bodies of prototypes, including prototypes declared inside them.
 void countDeclared(const Scope& scope, WorldCounts& counts) {
   const std::function<void(const Node&)> count = [&](const Node& node) {
     countScript(node, counts.declaredScripts);

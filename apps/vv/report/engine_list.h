@@ -1,12 +1,12 @@
-// engine_list.h: the script engines that are installed, for --list-engines. [one thread]
+// engine_list.h: Implements --list-engines, which lists the installed script engines. [one thread]
 #pragma once
 
 #include <string>
 
 namespace vv {
 
-// scriptPath: folders, separated by colons, before the usual ones. Libraries that are no engines
-// are warned of.
+// scriptPath: folders, separated by colons, searched before the default ones. Prints a warning for
+// each library that is not an engine.
 std::string listEngines(const std::string& scriptPath, bool json);
 
 } // namespace vv

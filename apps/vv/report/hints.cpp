@@ -13,7 +13,7 @@ constexpr const char* black = "the picture is black: ";
 
 using Headlight = xvrml::MapOptions::Headlight;
 
-// Makes a picture of one sample a pixel and sets the renderer back to what the options say.
+// Renders a picture with one sample per pixel, then restores the renderer's settings.
 picture::RenderResult probe(const Options& options, const picture::View& view,
                             picture::Renderer& renderer, Headlight headlight) {
   renderer.change([&](picture::RenderSettings& s) {
@@ -66,7 +66,7 @@ std::string hintFor(const Options& options, const picture::View& view,
         "nothing is in view from here: --fit shows all of the world{}",
         viewpoints > 1 ? fmt::format(", --viewpoint one of its {} viewpoints", viewpoints) : "");
   }
-  // Black may be meant: only what really helps is proposed.
+  // A black picture may be intended: suggest an option only if it makes the picture brighter.
   if (!isBlack(result.picture) || isBlack(probe(options, view, renderer, Headlight::on).picture))
     return {};
   if (result.stats.lights == 0)

@@ -1,4 +1,4 @@
-// hints.h: what to do about a picture that shows nothing. [main thread]
+// hints.h: Suggests what to do about a picture that shows nothing. [main thread]
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace vv {
 
-// Returns true if all pixels look the same on a screen: black, or one colour of background.
+// Returns true if all pixels look the same on a screen: black, or one background colour.
 bool showsNothing(const picture::Picture& picture);
 
-// Returns why a picture that shows nothing may be so, and the option that helps; empty if it may be
-// meant. Makes a picture of one sample a pixel to see whether anything is in view. Not while a
-// frame is in flight.
+// Returns the probable reason for a picture that shows nothing, and the option that helps; empty if
+// the picture may be intended. Renders a picture with one sample per pixel to find out whether
+// anything is in view. Do not call it while a frame is in flight.
 std::string hintFor(const Options& options, const picture::View& view,
                     const picture::RenderResult& result, picture::Renderer& renderer);
 

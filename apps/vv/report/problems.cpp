@@ -15,8 +15,8 @@ namespace {
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
-// Notes are for whoever wrote the world: nothing that is seen depends on them. What Scripts print
-// are notes, too.
+// Tells whether a diagnostic is a detail for the author of the world, without a visible effect.
+// Output of Scripts also has the severity note, but is not a detail.
 bool isDetail(const xvrml::Diagnostic& d) {
   return d.severity == xvrml::Severity::note && !d.message.starts_with("Script");
 }
@@ -35,7 +35,7 @@ std::string kindOf(const xvrml::Diagnostic& diagnostic) {
       kind += text[i];
       continue;
     }
-    // A number with its sign, fraction and exponent; lists of numbers are one.
+    // Skip a number with its sign, fraction and exponent; a list of numbers counts as one.
     while (i + 1 < text.size() &&
            (isDigit(text[i + 1]) || text[i + 1] == '.' || text[i + 1] == 'e' ||
             ((text[i + 1] == '-' || text[i + 1] == '+') && (text[i] == 'e')) ||
@@ -47,8 +47,9 @@ std::string kindOf(const xvrml::Diagnostic& diagnostic) {
   return kind;
 }
 
-// Tells messages of one kind once. Lines that Scripts print are no problems: each of them is told.
-void Problems::tellFolded(const std::vector<xvrml::Diagnostic>& fresh) {
+// Reports the messages of one kind once. Lines printed by Scripts are not problems: each is
+// reported.
+void Problems::reportGrouped(const std::vector<xvrml::Diagnostic>& fresh) {
   std::unordered_map<std::string, size_t> counts;
   std::vector<std::pair<const xvrml::Diagnostic*, std::string>> shown;
   for (const xvrml::Diagnostic& d : fresh) {
@@ -65,35 +66,35 @@ void Problems::tellFolded(const std::vector<xvrml::Diagnostic>& fresh) {
     if (counts[kind]++ == 0) shown.emplace_back(&d, std::move(kind));
   }
   for (const auto& [kind, count] : counts) kinds_.insert(kind);
-  constexpr size_t mostErrors = 50, mostWarnings = 50;
+  constexpr size_t maxErrors = 50, maxWarnings = 50;
   size_t errors = 0, warnings = 0;
   for (const auto& [diagnostic, kind] : shown) {
-    if (diagnostic->severity == xvrml::Severity::error && ++errors > mostErrors) continue;
-    if (diagnostic->severity == xvrml::Severity::warning && ++warnings > mostWarnings) continue;
+    if (diagnostic->severity == xvrml::Severity::error && ++errors > maxErrors) continue;
+    if (diagnostic->severity == xvrml::Severity::warning && ++warnings > maxWarnings) continue;
     xvrml::Diagnostic told = *diagnostic;
     if (const auto count = counts.find(kind); count != counts.end() && count->second > 1)
       told.message += fmt::format(" (and {} more like this; -v shows all)", count->second - 1);
     say(told.text());
   }
   const size_t more =
-      errors - std::min(errors, mostErrors) + warnings - std::min(warnings, mostWarnings);
+      errors - std::min(errors, maxErrors) + warnings - std::min(warnings, maxWarnings);
   if (more > 0) say(fmt::format("vv: and {} more kinds of problems; -v shows all", more));
 }
 
 void Problems::tell(const xvrml::World& world) {
   if (std::exchange(world_, &world) != &world) {
-    told_ = droppedTold_ = repeated_ = 0;
+    reported_ = droppedTold_ = repeated_ = 0;
     kinds_.clear();
   }
   const auto& list = world.diagnostics.list();
-  const std::vector<xvrml::Diagnostic> fresh(list.begin() + long(std::min(told_, list.size())),
+  const std::vector<xvrml::Diagnostic> fresh(list.begin() + long(std::min(reported_, list.size())),
                                              list.end());
-  told_ = list.size();
+  reported_ = list.size();
   if (options_.verbose || options_.check) {
     for (const xvrml::Diagnostic& d : fresh)
       if (!options_.quiet || d.severity == xvrml::Severity::error) say(d.text());
   } else {
-    tellFolded(fresh);
+    reportGrouped(fresh);
   }
   if (const uint64_t dropped = world.diagnostics.dropped(); dropped > droppedTold_) {
     if (!options_.quiet) say(fmt::format("vv: and {} more problems", dropped - droppedTold_));
@@ -101,20 +102,20 @@ void Problems::tell(const xvrml::World& world) {
   }
 }
 
-void Problems::tellEnd(const xvrml::World& world) const {
+void Problems::reportEnd(const xvrml::World& world) const {
   if (options_.quiet) return;
   if (repeated_ > 0)
     say(fmt::format("vv: {} more like those above came later; -v shows all", repeated_));
   const uint64_t errors = world.diagnostics.errors();
   if (errors == 0) return;
-  constexpr size_t mostPlaces = 3;
+  constexpr size_t maxPlaces = 3;
   std::vector<std::string> places;
   bool more = false;
   for (const xvrml::Diagnostic& d : world.diagnostics.list()) {
     if (d.severity != xvrml::Severity::error || d.line == 0) continue;
     std::string place = fmt::format("{}:{}", d.file, d.line);
     if (std::find(places.begin(), places.end(), place) != places.end()) continue;
-    more = places.size() == mostPlaces;
+    more = places.size() == maxPlaces;
     if (more) break;
     places.push_back(std::move(place));
   }

@@ -1,5 +1,5 @@
-// problems.h: tells what is wrong with a world, each problem once, and each sentence once, however
-// often the world gives a reason for it. [main thread]
+// problems.h: Reports the problems of a world. Each problem, and each message text, is reported
+// once, however often the world causes it. [main thread]
 #pragma once
 
 #include <string>
@@ -12,29 +12,29 @@ namespace vv {
 class Problems {
  public:
   explicit Problems(const Options& options) : options_(options) {}
-  // Those that were not told yet. Messages that differ only in their places and numbers are told
-  // once, with how many more there are; -v and --check tell all of them, and also the details that
-  // nobody sees.
+  // Reports the problems that have not been reported yet. Messages that differ only in position and
+  // numbers are reported once, with the number of the others. -v and --check report all of them,
+  // and also the notes.
   void tell(const xvrml::World& world);
-  // Says at the end of a run that succeeds how many messages were like those told before; and, as
-  // its last line, if there were errors, what is left out, and what would refuse it.
-  void tellEnd(const xvrml::World& world) const;
+  // Reports, at the end of a successful run, how many messages repeated earlier ones. If there were
+  // errors, the last line says what is left out, and which option would reject the world.
+  void reportEnd(const xvrml::World& world) const;
   static bool any(const xvrml::World& world) {
     return world.diagnostics.errors() + world.diagnostics.warnings() > 0;
   }
 
  private:
-  void tellFolded(const std::vector<xvrml::Diagnostic>& fresh);
+  void reportGrouped(const std::vector<xvrml::Diagnostic>& fresh);
   const Options& options_;
-  const xvrml::World* world_ = nullptr; // the one that the numbers are of
-  size_t told_ = 0;
+  const xvrml::World* world_ = nullptr; // the world that the counts below refer to
+  size_t reported_ = 0;
   uint64_t droppedTold_ = 0;
-  uint64_t repeated_ = 0;                 // messages of kinds that had been told before
-  std::unordered_set<std::string> kinds_; // of sentences that have been told
+  uint64_t repeated_ = 0;                 // messages of a kind that had been reported before
+  std::unordered_set<std::string> kinds_; // kinds that have been reported
 };
 
-// Returns what messages have in common that say the same of different places: severity and text,
-// numbers as #.
+// Returns the common part of messages that say the same about different places: severity and text,
+// with numbers replaced by #.
 std::string kindOf(const xvrml::Diagnostic& diagnostic);
 
 } // namespace vv

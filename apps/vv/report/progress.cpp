@@ -43,7 +43,7 @@ Progress::Progress(const std::string& what, bool quiet)
   const char* terminal = std::getenv("TERM");
   terminal_ = ::isatty(STDERR_FILENO) && terminal && std::string_view(terminal) != "dumb";
   colour_ = terminal_ && !(noColour && *noColour);
-  // Nobody needs a bar for a picture that is there at once.
+  // A picture that is finished at once needs no bar.
   next_ = start_ + (terminal_ ? 300ms : 5s);
 }
 

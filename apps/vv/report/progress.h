@@ -1,5 +1,5 @@
-// progress.h: how far a picture is: a bar on a terminal, elsewhere a line every few seconds. [main
-// thread]
+// progress.h: Shows the progress of a picture: a bar on a terminal, otherwise a line every few
+// seconds. [main thread]
 #pragma once
 
 #include <chrono>
@@ -9,13 +9,13 @@ namespace vv {
 
 class Progress {
  public:
-  // what: shown in front, e.g. the viewpoint; quiet: nothing at all.
+  // what: text in front of the bar, such as the viewpoint. quiet: nothing is printed.
   Progress(const std::string& what, bool quiet);
   ~Progress();
-  // more: shown behind, e.g. who works on it.
+  // more: text behind the bar, such as the number of workers.
   void show(float fraction, const std::string& more = "");
   void rename(std::string what) { what_ = std::move(what); }
-  void clear(); // before something else is said
+  void clear(); // call it before anything else is printed
 
  private:
   std::string what_;
@@ -24,7 +24,7 @@ class Progress {
   std::chrono::steady_clock::time_point start_, next_;
 };
 
-// 83.4 -> "1:23", 7.25 -> "7.2 s"
+// Formats a duration: 83.4 -> "1:23", 7.25 -> "7.2 s".
 std::string duration(double seconds);
 
 } // namespace vv

@@ -1,4 +1,4 @@
-// report.cpp: The only file of vv that includes nlohmann/json.
+// report.cpp: Builds the reports. No other file of vv includes nlohmann/json.
 #include "report.h"
 
 #include <algorithm>
@@ -24,12 +24,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Names may hold bytes that are not UTF-8: JSON gets the replacement character for them.
+// Serializes JSON. Names may contain bytes that are not UTF-8; they become the replacement
+// character.
 std::string dump(const Json& json) {
   return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
-// What is said of the picture's error (openrt.h, RTstats): of the whole picture, relative.
+// Returns the error estimate of the whole picture, relative (openrt.h, RTstats).
 Json errorEstimate(const RTstats& s) {
   const bool known = s.errorPixels > 0;
   const auto value = [known](double x) { return known ? Json(x) : Json(nullptr); };
@@ -47,10 +48,11 @@ Json transportJson(const Options& options, const RTstats& s) {
   return {{"chosen", picture::transportName(s.transport)},
           {"reason", s.transportReason},
           {"claim", transportClaim(s, options.render)},
-          {"leaves_out", picture::leftOutNames(s)}};
+          {"leaves_out", picture::omittedLightNames(s)}};
 }
 
-// Since the program has begun to call the workers. Tiles: jobs, parts of tiles too.
+// Returns the state of the cluster since the program began to connect to the workers. `tiles`
+// counts jobs, which may be parts of tiles.
 Json clusterJson(const picture::RenderResult& result) {
   const RTstats& s = result.stats;
   Json machines = Json::array();
@@ -145,7 +147,8 @@ Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
 
 namespace {
 
-// What the statistics of a picture and of a sequence share; numbers of the last picture.
+// Returns the statistics common to a picture and a sequence; the numbers are those of the last
+// picture.
 Json sceneStats(const Options& options, const std::string& commandLine, const RunningWorld& running,
                 const picture::RenderResult& result) {
   const xvrml::World& world = running.world;
@@ -208,7 +211,7 @@ std::string statsJson(const Options& options, const std::string& commandLine,
   const RTstats& s = result.stats;
   const xvrml::World& world = running.world;
   Json json = sceneStats(options, commandLine, running, result);
-  // One pass makes the whole picture.
+  // A picture has a single pass.
   json["time"] = {{"parse", world.times.parse},
                   {"graph", world.times.load},
                   {"map", result.mapSeconds},
@@ -224,7 +227,7 @@ std::string statsJson(const Options& options, const std::string& commandLine,
 
 struct SequenceStats::Impl {
   Json frames = Json::array();
-  picture::RenderResult last{}; // without its picture
+  picture::RenderResult last{}; // its picture is empty
   double map = 0, build = 0, render = 0, write = 0, first = 0, tracing = 0;
   uint64_t camera = 0, shadow = 0, secondary = 0;
 };
@@ -276,10 +279,10 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
 
 namespace {
 
-// What --compat changes, or would.
+// Counts what --compat changes, or would change.
 struct Compat {
-  uint64_t scripts = 0;  // hold nodes without directOutput TRUE
-  uint64_t textures = 0; // appearances with a picture and a diffuseColor that is not white
+  uint64_t scripts = 0;  // Scripts that hold nodes without directOutput TRUE
+  uint64_t textures = 0; // appearances with a texture and a diffuseColor that is not white
 };
 
 Compat compatOf(const xvrml::World& world) {
@@ -288,18 +291,18 @@ Compat compatOf(const xvrml::World& world) {
     if (const auto* script = dynamic_cast<const xvrml::ScriptNode*>(&node)) {
       const xvrml::FieldInfo* flag = node.type().find("directOutput");
       const bool allowed = flag && node.get(*flag) == xvrml::Value(true);
-      const bool holds =
-          std::any_of(script->type().fields.begin(), script->type().fields.end(),
-                      [&](const xvrml::FieldInfo& field) {
-                        if (field.access == xvrml::Access::eventIn) // it may be sent some
-                          return field.type == xvrml::FieldType::SFNode ||
-                                 field.type == xvrml::FieldType::MFNode;
-                        if (field.access != xvrml::Access::field) return false;
-                        const xvrml::Value value = node.get(field);
-                        const auto* one = std::get_if<xvrml::NodeRef>(&value);
-                        const auto* many = std::get_if<xvrml::MFNode>(&value);
-                        return (one && *one) || (many && !many->empty());
-                      });
+      const bool holds = std::any_of(script->type().fields.begin(), script->type().fields.end(),
+                                     [&](const xvrml::FieldInfo& field) {
+                                       if (field.access == xvrml::Access::eventIn)
+                                         // events may send nodes to it
+                                         return field.type == xvrml::FieldType::SFNode ||
+                                                field.type == xvrml::FieldType::MFNode;
+                                       if (field.access != xvrml::Access::field) return false;
+                                       const xvrml::Value value = node.get(field);
+                                       const auto* one = std::get_if<xvrml::NodeRef>(&value);
+                                       const auto* many = std::get_if<xvrml::MFNode>(&value);
+                                       return (one && *one) || (many && !many->empty());
+                                     });
       compat.scripts += !allowed && holds;
     } else if (node.type().index == xvrml::nodes::Appearance::typeIndex) {
       const auto* appearance = static_cast<const xvrml::nodes::Appearance*>(&node);
@@ -385,7 +388,7 @@ std::string explainWorld(const Options& options, const xvrml::World& world, cons
 }
 
 namespace {
-// Scripts in the world, and in the bodies of its prototypes.
+// Counts the Scripts in the world and in the bodies of its prototypes, by protocol.
 std::map<std::string, std::pair<uint64_t, uint64_t>> scriptsByProtocol(const WorldCounts& counts) {
   std::map<std::string, std::pair<uint64_t, uint64_t>> all;
   for (const auto& [protocol, count] : counts.scripts) all[protocol].first = count;

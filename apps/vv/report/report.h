@@ -1,4 +1,4 @@
-// report.h: what vv tells about a world and about a picture it made, for people and as JSON. [main
+// report.h: Reports about a world and about a rendered picture, for people and as JSON. [main
 // thread]
 #pragma once
 
@@ -15,19 +15,19 @@ namespace vv {
 struct RunTimes {
   double write = 0, total = 0; // seconds
 };
-// Holds what statistics say of a running world.
+// The facts of a running world that the statistics contain.
 struct RunningWorld {
   const xvrml::World& world;
   xvrml::ScriptCounts scripts;
 };
 
-// The statistics of a picture as JSON, schema 1.
+// Returns the statistics of a picture as JSON, schema 1.
 std::string statsJson(const Options& options, const std::string& commandLine,
                       const RunningWorld& running, const picture::RenderResult& result,
                       const RunTimes& times);
 
-// The statistics of a sequence: sums, and the times of each picture. Also schema 1: `frames` is
-// there besides.
+// The statistics of a sequence: sums, and the times of each picture. They also use schema 1, with
+// the additional member `frames`.
 class SequenceStats {
  public:
   SequenceStats();
@@ -42,19 +42,19 @@ class SequenceStats {
   std::unique_ptr<Impl> impl_;
 };
 
-// How light is followed in a world, and what it is rendered as (OpenRTMapper::explain). stats: of
-// any picture of it.
+// Describes the light transport of a world and what it is rendered as (OpenRTMapper::explain).
+// `stats` are those of any picture of the world.
 std::string explainWorld(const Options& options, const xvrml::World& world, const RTstats& stats,
                          const std::vector<xvrml::ExplainedObject>& objects);
 
-// world may be null: the node types alone.
+// world may be null: then only the node types are listed.
 std::string listNodes(const xvrml::World* world, bool json);
 std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json);
-// Which axis is up, and why that is believed; no reason: it is said.
+// The up axis, and why it was chosen; the reason is empty if the axis was given.
 struct UpAxis {
   std::string axis, reason;
 };
-// scriptPath: where script engines are looked for first.
+// scriptPath: folders that are searched first for script engines.
 std::string describeWorld(const xvrml::World& world,
                           const std::vector<xvrml::ViewpointInfo>& viewpoints,
                           const xvrml::Bounds& bounds, const UpAxis& up,

@@ -1,5 +1,5 @@
-// shader_list.cpp: The library checks each plug-in; here only the names of its
-// classes are read.
+// shader_list.cpp: Reads the names of the classes from each plug-in. The library checks the
+// plug-ins.
 #include "shader_list.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct File {
   std::string name, path;
 };
 
-// The libraries in the shader folders, each name once: as the engine finds them.
+// Returns the libraries in the shader folders, each name once, in the engine's search order.
 std::vector<File> libraries(const std::string& shaderPath) {
   std::vector<File> list;
   std::set<std::string> known;
@@ -103,7 +103,7 @@ Json classJson(const RtsClass& c, RTid id, const std::string& library) {
           {"parameters", std::move(parameters)}};
 }
 
-// Appends the classes of a library; what is wrong with it, or empty. It stays loaded.
+// Appends the classes of a library, which stays loaded. Returns the error, or empty.
 std::string addLibrary(const File& file, Json& classes) {
   void* handle = dlopen(file.path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) return dlerror();
@@ -113,10 +113,11 @@ std::string addLibrary(const File& file, Json& classes) {
   if (plugin_files::exportedBytes(symbol) < sizeof(RtsPlugin) || plugin.magic != RTS_MAGIC ||
       plugin.major != RTS_ABI_MAJOR || plugin.classCount == 0 || plugin.classCount > 10000 ||
       !plugin.classes || !plugin.classes[0] || !plugin.classes[0]->name) {
-    rtNewShaderClass("any", file.name.c_str()); // the engine knows the words for what is wrong
+    rtNewShaderClass("any", file.name.c_str()); // fails; the engine then has the error text
     return lastError();
   }
-  for (uint32_t i = 0; i < plugin.classCount; ++i) { // the first call checks the tables of all
+  // the first call checks the tables of all classes
+  for (uint32_t i = 0; i < plugin.classCount; ++i) {
     const RTid id = rtNewShaderClass(plugin.classes[i]->name, file.name.c_str());
     if (id == 0) return lastError();
     classes.push_back(classJson(*plugin.classes[i], id, file.name));

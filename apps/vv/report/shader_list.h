@@ -1,12 +1,12 @@
-// shader_list.h: --list-shaders: the classes of all shader plug-ins that are found, as text or
-// JSON. [main thread]
+// shader_list.h: Implements --list-shaders: lists the classes of all installed shader plug-ins as
+// text or JSON. [main thread]
 #pragma once
 
 #include <string>
 
 namespace vv {
 
-// shaderPath: folders looked at first. A plug-in that cannot be used is named with the reason.
+// shaderPath: folders that are searched first. Unusable plug-ins are listed with the reason.
 std::string listShaders(const std::string& shaderPath, bool json);
 
 } // namespace vv

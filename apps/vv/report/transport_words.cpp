@@ -36,7 +36,7 @@ std::string followedBy(RTenum transport, const picture::RenderSettings& settings
 
 std::string transportClaim(const RTstats& stats, const picture::RenderSettings& settings) {
   std::string claim = followedBy(stats.transport, settings);
-  const auto left = picture::leftOutBy(stats.transport, stats.transportLeavesOut);
+  const auto left = picture::omittedLights(stats.transport, stats.transportLeavesOut);
   if (!left.empty()) {
     claim += "; left out:";
     for (size_t i = 0; i < left.size(); ++i)
@@ -44,7 +44,7 @@ std::string transportClaim(const RTstats& stats, const picture::RenderSettings& 
   } else if (stats.transport >= RT_TRANSPORT_DIRECT && stats.transport <= RT_TRANSPORT_LIGHT) {
     claim += "; no other light is left out";
   }
-  constexpr double negligible = .001; // errors are relative to colours + .03
+  constexpr double negligible = .001; // errors are relative to colour + .03
   if (stats.errorUnmet > negligible)
     claim += fmt::format("; of the paths that only chance leads by way of mirrors or glass to an "
                          "emitter few have met the "

@@ -1,4 +1,4 @@
-// transport_words.h: how light was followed, in words. [any thread]
+// transport_words.h: Describes the light transport in words. [any thread]
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace vv {
 
-// Says how exact a picture is that the transport of these statistics made, and which of the scene's
-// light it leaves out.
+// Returns how accurate a picture with the transport of these statistics is, and which of the
+// scene's light it omits.
 std::string transportClaim(const RTstats& stats, const picture::RenderSettings& settings);
 
 } // namespace vv

@@ -1,4 +1,4 @@
-// no_window.cpp: what stands for the window where vv is built without SDL.
+// no_window.cpp: Replaces the window in a build without SDL.
 #include "window/window.h"
 
 namespace vv {

@@ -35,7 +35,7 @@ std::string problems(const SessionFacts& f) {
   return text;
 }
 
-// A line for each machine, as long as there are few.
+// Returns a line for each machine, if there are few.
 std::vector<std::string> workerLines(const std::vector<RTworker>& workers) {
   constexpr size_t most = 8;
   std::vector<std::string> lines;

@@ -1,4 +1,5 @@
-// overlay.h: what the window tells of the picture, in lines of text. Pure functions. [any thread]
+// overlay.h: Formats the window's information about the picture as lines of text. Pure functions.
+// [any thread]
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@ namespace vv {
 
 enum class OverlayLevel : uint8_t { none, brief, all };
 
-// A line beginning with a tab is of less weight.
+// A line that begins with a tab is drawn in a weaker colour.
 std::vector<std::string> overlayLines(const SessionFacts& facts, bool paused, OverlayLevel level);
 std::vector<std::string> helpLines();
 

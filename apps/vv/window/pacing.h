@@ -1,6 +1,6 @@
-// pacing.h: how large the next picture is and how many samples it gets, so that the frame rate
-// holds while something moves, and the picture becomes as good as it can while nothing does. Never
-// less light: only fewer pixels. Numbers alone: no clock, no thread, no window. Owned by a session.
+// pacing.h: Chooses the size and the samples of the next picture. While something moves, the frame
+// rate is kept; otherwise the picture becomes as good as possible. Only the resolution is reduced,
+// never the light transport. Pure arithmetic without clock, thread or window. Owned by a session.
 #pragma once
 
 namespace vv {
@@ -14,30 +14,32 @@ class Pacing {
  public:
   explicit Pacing(double framesPerSecond);
 
-  // A frame has ended, or was given up.
+  // Records a frame that has ended or was cancelled.
+  //
   //   seconds:  from its start to its end
-  //   alone:    of these, while no other frame was in flight
-  //   overhead: of the seconds, before light was traced (the world is read, structures are built)
-  //   samples:  taken, mean over the pixels; 0: not known what a pixel costs
+  //   alone:    part of `seconds` while no other frame was in flight
+  //   overhead: part of `seconds` before tracing (the world is read, structures are built)
+  //   samples:  samples taken, mean over the pixels; 0: the cost of a pixel is unknown
   void took(const FrameSize& frame, double seconds, double alone, double overhead, double samples);
 
-  // The next frame in a window of this size. moving: the viewer, or anything else in the world;
-  // then it takes at most a frame's time as far as the frames before tell, at least an eighth of
-  // the window each way and 64 pixels; else it is as large as the window and gets the samples that
-  // were asked for.
+  // Returns the next frame for a window of this size. moving: the viewer or something in the world
+  // moves. A moving frame takes at most a frame's time, as predicted from earlier frames, but has
+  // at least an eighth of the window in each direction and 64 pixels. Otherwise the frame fills the
+  // window and gets all requested samples.
   FrameSize next(int width, int height, bool moving, int samples);
 
   double predicted(const FrameSize& frame) const; // seconds; 0: nothing is known yet
 
  private:
-  // Of the steps from the least picture to the best. Neighbours are far enough apart to stay at one
-  // while times vary.
+  // Returns the frame size of a quality step, from the smallest picture to the best. Steps are far
+  // enough apart that small variations of the time do not change the step.
   FrameSize at(int step, int width, int height) const;
 
-  double budget_;                   // seconds
-  double pixel_ = 0, overhead_ = 0; // seconds: of a sample of a pixel, of a frame; smoothed
+  double budget_; // seconds per frame
+  // seconds per sample of a pixel, seconds per frame; both smoothed
+  double pixel_ = 0, overhead_ = 0;
   int step_ = 0;
-  int calm_ = 0; // frames in a row that a better step would have had time for
+  int framesWithRoom_ = 0; // consecutive frames that left enough time for a better step
   bool moving_ = false;
 };
 

@@ -1,4 +1,4 @@
-// panel.cpp: The only file of vv that includes FreeType and fontconfig.
+// panel.cpp: Paints panels. No other file of vv includes FreeType and fontconfig.
 #include "window/panel.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace vv {
 
 namespace {
 
-// The file of a family's font; empty if there is none.
+// Returns the file of a family's font; empty if there is none.
 std::string findFontFile(const char* family) {
   FcPattern* wanted = FcNameParse(reinterpret_cast<const FcChar8*>(family));
   if (!wanted) return {};
@@ -29,7 +29,7 @@ std::string findFontFile(const char* family) {
   return path;
 }
 
-// The next character; a byte that is no UTF-8 is U+FFFD.
+// Decodes the next character; a byte that is not valid UTF-8 becomes U+FFFD.
 uint32_t nextCharacter(std::string_view& text) {
   const auto byte = [&](size_t i) { return uint32_t(static_cast<unsigned char>(text[i])); };
   const uint32_t first = byte(0);
@@ -90,7 +90,7 @@ struct PanelPainter::Impl {
     return int((pen + 63) >> 6);
   }
 
-  // Breaks a line at blanks so that its parts are at most so wide, if there are blanks.
+  // Wraps a line at blanks into parts of at most `width` pixels, as far as it has blanks.
   static void wrap(FT_Face face, std::string_view text, int width, std::vector<std::string>& out) {
     const bool weak = text.starts_with('\t');
     while (widthOf(face, text) > width) {
@@ -136,7 +136,7 @@ PanelPainter::PanelPainter(int size) : impl_(std::make_unique<Impl>(size)) {}
 PanelPainter::~PanelPainter() = default;
 
 Panel PanelPainter::paint(const std::vector<std::string>& texts, int width, bool fixed) {
-  constexpr size_t longest = 400; // bytes of a line that are looked at
+  constexpr size_t longest = 400; // bytes of a line that are drawn
   Panel panel;
   FT_Face face = fixed && impl_->fixed ? impl_->fixed : impl_->proportional;
   if (!face || texts.empty()) return panel;

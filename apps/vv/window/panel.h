@@ -1,5 +1,5 @@
-// panel.h: lines of text as a picture with a dark, translucent ground, for the overlay. FreeType
-// draws them in a font that fontconfig finds. [one thread]
+// panel.h: Draws lines of text on a dark, translucent background, for the overlay. FreeType draws
+// the text in a font that fontconfig finds. [one thread]
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,17 @@ namespace vv {
 
 struct Panel {
   int width = 0, height = 0;
-  std::vector<uint8_t> rgba; // first row at the top, colours not multiplied by alpha
+  std::vector<uint8_t> rgba; // first row at the top, colours not premultiplied
 };
 
 class PanelPainter {
  public:
-  // size: pixels of the em square. Without any font panels are empty.
+  // size: pixels of the em square. If no font is found, panels are empty.
   explicit PanelPainter(int size);
   ~PanelPainter();
-  // UTF-8; a line beginning with a tab stands apart in a weaker colour. Lines are broken at `width`
-  // pixels, and cut. fixed: columns line up, and lines are cut only.
+  // Draws UTF-8 text; a line that begins with a tab gets a weaker colour. Lines longer than `width`
+  // pixels are wrapped, and cut if that fails. fixed: uses a fixed-width font, and lines are only
+  // cut.
   Panel paint(const std::vector<std::string>& lines, int width, bool fixed = false);
 
  private:

@@ -17,9 +17,10 @@ using xvrml::NavigationInput;
 
 namespace {
 
-constexpr double transition = 0.5; // seconds from one Viewpoint to the next
-constexpr double notch =
-    0.2; // of the wheel: the logarithm of the distance; of full speed for a second
+constexpr double transition = 0.5; // seconds between two Viewpoints
+// One notch of the wheel: the change of the logarithm of the distance, or full speed for this many
+// seconds.
+constexpr double notch = 0.2;
 
 } // namespace
 
@@ -35,8 +36,8 @@ const char* navigationName(Navigation type) {
 
 namespace {
 
-// Speed from the way that the pointer has gone since it was pressed, as a part of half the picture:
-// slow at first.
+// Returns the speed for a pointer drag; `way` is the distance since the press, as a fraction of
+// half the picture. The speed rises slowly at first.
 double speedOf(double way) {
   constexpr double dead = 0.02;
   const double far = std::max(0.0, std::abs(way) - dead);
@@ -55,7 +56,7 @@ std::vector<xvrml::ViewpointName> described(std::vector<xvrml::ViewpointName> al
 Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov)
     : browser_(browser), start_(start), fov_(fov) {
   const xvrml::BoundNodes bound = browser_.bound();
-  // A model that says nothing about those who look at it is looked at from all sides.
+  // A world without Viewpoint and NavigationInfo is probably a model: start with EXAMINE.
   if (!bound.viewpoint && !bound.navigationInfo) browser_.setNavigation(Navigation::examine);
 }
 
@@ -73,8 +74,8 @@ xvrml::CameraSettings Pilot::camera() const {
 void Pilot::step(double seconds) {
   const double passed = std::max(0.0, seconds - session_);
   session_ = seconds;
-  if (paused_) lost_ += passed;
-  browser_.tick(paused_ ? browser_.now() : start_ + (session_ - lost_));
+  if (paused_) pausedSeconds_ += passed;
+  browser_.tick(paused_ ? browser_.now() : start_ + (session_ - pausedSeconds_));
   move(passed);
   if (inside_ && drag_ != Drag::view) point(drag_ == Drag::sensor); // the viewer may have moved
 }
@@ -99,7 +100,7 @@ void Pilot::point(bool button) {
 }
 
 void Pilot::press(const InputEvent& event) {
-  if (drag_ != Drag::none) return; // a second button: the first counts
+  if (drag_ != Drag::none) return; // a second button is ignored
   pressed_ = event;
   point(false);
   if (event.button == Button::left && overSensor_) {
@@ -116,14 +117,14 @@ void Pilot::release(const InputEvent& event) {
   point(false);
 }
 
-// What the button that began the drag stands for, with the keys that stand for other buttons.
+// Returns the button that began the drag; shift and control stand for other buttons.
 static Button meaning(const InputEvent& pressed) {
   if (pressed.button != Button::left) return pressed.button;
   return pressed.shift ? Button::right : pressed.control ? Button::middle : Button::left;
 }
 
-// EXAMINE: the world follows the pointer. The other ways of moving look at the way since it was
-// pressed, in move().
+// EXAMINE: the world follows the pointer. The other navigation types use the distance since the
+// press, in move().
 void Pilot::drag(double dx, double dy) {
   if (browser_.navigation() != Navigation::examine) return;
   const double size = std::tan(camera().fovy / 2);
@@ -153,7 +154,7 @@ std::string Pilot::hint() const {
 void Pilot::navigate(const NavigationInput& input, double seconds) {
   browser_.navigate(input, seconds);
   touched_ = true;
-  falls_ = browser_.navigation() == Navigation::walk;
+  gravityActs_ = browser_.navigation() == Navigation::walk;
 }
 
 void Pilot::move(double seconds) {
@@ -191,14 +192,14 @@ void Pilot::move(double seconds) {
   }
   if (wanted)
     navigate(input, seconds);
-  else if (falls_)
+  else if (gravityActs_)
     browser_.navigate({}, seconds);
 }
 
 void Pilot::frameAll(const xvrml::Bounds& bounds) {
   const xvrml::CameraSettings now = camera();
   browser_.placeViewer(xvrml::cameraAround(bounds, now.matrix, now.fovy, aspect_).matrix);
-  falls_ = false;
+  gravityActs_ = false;
 }
 
 void Pilot::present(const xvrml::CameraSettings& camera, xvrml::Axis up) {
@@ -206,14 +207,14 @@ void Pilot::present(const xvrml::CameraSettings& camera, xvrml::Axis up) {
   xvrml::upVector(up, axis);
   browser_.setUp(axis);
   browser_.placeViewer(camera.matrix);
-  falls_ = false;
+  gravityActs_ = false;
 }
 
-std::optional<picture::View> Pilot::beginning(const picture::View& view) const {
+std::optional<picture::View> Pilot::initialView(const picture::View& view) const {
   if (browser_.bound().viewpoint && !view.up && !view.lookAt) return {};
   picture::View wanted = view;
   wanted.fit = true;
-  if (!wanted.fov && browser_.bound().viewpoint) { // the picture goes on to have the Viewpoint's
+  if (!wanted.fov && browser_.bound().viewpoint) { // keep the Viewpoint's field of view
     const double vertical = camera().fovy;
     const double smaller =
         aspect_ >= 1 ? vertical : 2 * std::atan(std::tan(vertical / 2) * aspect_);
@@ -235,7 +236,7 @@ bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
   return view.fit || (!view.lookAt && !browser_.bound().viewpoint);
 }
 
-void Pilot::smooth() { browser_.setTransition(transition); }
+void Pilot::animateTransitions() { browser_.setTransition(transition); }
 
 void Pilot::putAt(const xvrml::CameraSettings& camera) {
   browser_.placeViewer(camera.matrix);
@@ -251,7 +252,7 @@ bool Pilot::bindViewpoint(const std::string& name) {
   if (browser_.bound().viewpoint == list[size_t(index)].node.get())
     browser_.key(xvrml::Key::home, true);
   browser_.set(*list[size_t(index)].node, "set_bind", true);
-  falls_ = false;
+  gravityActs_ = false;
   return true;
 }
 
@@ -264,7 +265,7 @@ void Pilot::jumpTo(size_t number) {
 }
 
 void Pilot::choose(Navigation type, const char* name) {
-  falls_ = false;
+  gravityActs_ = false;
   message_ = browser_.setNavigation(type) ? name
                                           : fmt::format("the world does not allow it: {}",
                                                         navigationName(browser_.navigation()));
@@ -292,24 +293,22 @@ Action Pilot::press(Action action) {
   case Action::still: choose(Navigation::none, "stand still"); break;
   case Action::headlight:
     message_ = hasHeadlight() ? "headlight off" : "headlight on";
-    headlight_ =
-        headlight_
-            ? std::nullopt
-            : std::optional(!hasHeadlight()); // back to what the world has, or the other way round
+    // back to the world's own setting, or the opposite of it
+    headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight());
     break;
   case Action::pause:
     paused_ = !paused_;
-    browser_.setTransition(paused_ ? 0 : transition); // it would stand still, too
+    browser_.setTransition(paused_ ? 0 : transition); // a paused transition would stand still
     message_ = paused_ ? "time stands still" : "time goes on";
     break;
   default: return action;
   }
   if (const xvrml::Node* now = browser_.bound().viewpoint; now && now != before) {
-    falls_ = false;
+    gravityActs_ = false;
     for (const xvrml::ViewpointName& one : browser_.viewpoints())
       if (one.node.get() == now) message_ = one.description.empty() ? one.name : one.description;
   }
-  if (action <= Action::back) falls_ = false;
+  if (action <= Action::back) gravityActs_ = false;
   return Action::none;
 }
 

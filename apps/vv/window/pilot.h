@@ -1,6 +1,6 @@
-// pilot.h: what a hand does to a running world: the pointer on its sensors, navigation by mouse and
-// keys, viewpoints, pausing. The same steps and events give the same world, whether a window is
-// there or not. [the browser's thread]
+// pilot.h: Applies user input to a running world: the pointer on its sensors, navigation by mouse
+// and keys, viewpoints, pausing. The same steps and events give the same world, with or without a
+// window. [the browser's thread]
 #pragma once
 
 #include <optional>
@@ -18,40 +18,41 @@ const char* navigationName(xvrml::Navigation type);
 
 class Pilot {
  public:
-  // start: the world's time at session time 0. fov: degrees, instead of the viewpoints'.
+  // start: the world's time at session time 0. fov: in degrees; replaces the viewpoints' angle.
   Pilot(xvrml::Browser& browser, double start, std::optional<double> fov);
 
-  // The session's time has come to `seconds`, not before the last one: the world's follows unless
-  // it is paused, held keys and drags move the viewer.
+  // Advances the session to `seconds`, which must not decrease. The world's time follows unless it
+  // is paused. Held keys and drags move the viewer.
   void step(double seconds);
-  // Returns what is the window's business (frameAll and beginAgain among it: they need the world's
-  // extent); none: it has been taken care of.
+  // Handles an event. Returns the action that is left to the window (including frameAll and
+  // beginAgain, which need the world's extent), or none.
   Action handle(const InputEvent& event);
 
-  void setAspect(double aspect); // of the picture, width / height
+  void setAspect(double aspect); // width / height of the picture
   double aspect() const { return aspect_; }
-  // The whole world in view, seen in the direction of now. bounds: of the world as it is.
+  // Shows the whole world in the current direction. bounds: the current extent of the world.
   void frameAll(const xvrml::Bounds& bounds);
-  // Where the first picture is taken from. True if the whole world is to be framed: a fitted camera
-  // is asked for, or there is no Viewpoint. Throws Failure if there is no such viewpoint.
+  // Sets the camera of the first picture. Returns true if the whole world is to be shown: a fitted
+  // camera was requested, or there is no Viewpoint. Throws Failure if the viewpoint does not exist.
   bool begin(const picture::View& view, const std::string& viewpoint);
-  // From here on the viewer glides from one Viewpoint to the next.
-  void smooth();
-  // By DEF name, description or number from 0; false if there is none.
+  // Animates the viewer between Viewpoints from now on.
+  void animateTransitions();
+  // Binds a viewpoint by DEF name, description or number from 0; returns false if there is none.
   bool bindViewpoint(const std::string& name);
-  void putAt(const xvrml::CameraSettings& camera); // where another session was
-  // The view that the world begins with where no Viewpoint says it, and the axis that is up in it.
+  void putAt(const xvrml::CameraSettings& camera); // restores the camera of another session
+  // Sets the initial view of a world without a Viewpoint, and its up axis.
   void present(const xvrml::CameraSettings& camera, xvrml::Axis up);
-  // What that view is asked for by, from the options' view; nothing where a bound Viewpoint gives
-  // the direction: frameAll() then.
-  std::optional<picture::View> beginning(const picture::View& view) const;
+  // Returns the request for that initial view, from the options' view. Returns nothing if a bound
+  // Viewpoint gives the direction; frameAll() applies then.
+  std::optional<picture::View> initialView(const picture::View& view) const;
 
   xvrml::CameraSettings camera() const;
   bool paused() const { return paused_; }
-  std::optional<bool> headlight() const { return headlight_; } // as the user has switched it
-  bool touched() const { return touched_; }                    // the user has moved the viewer
+  // the user's choice; none: not switched
+  std::optional<bool> headlight() const { return headlight_; }
+  bool hasViewerMoved() const { return touched_; } // the user has moved the viewer
   bool overSensor() const { return overSensor_; }
-  std::string hint() const; // of the Anchor under the pointer
+  std::string hint() const; // description of the Anchor under the pointer
   std::string takeMessage() { return std::exchange(message_, {}); }
 
  private:
@@ -68,20 +69,20 @@ class Pilot {
   bool hasHeadlight() const;
 
   xvrml::Browser& browser_;
-  double start_, session_ = 0,
-                 lost_ = 0; // lost: seconds of the session in which the world's time stood still
+  // pausedSeconds_: seconds of the session during which the world's time was paused
+  double start_, session_ = 0, pausedSeconds_ = 0;
   std::optional<double> fov_;
   double aspect_ = 4.0 / 3;
   bool paused_ = false, touched_ = false;
-  bool falls_ = false; // gravity acts: the user has walked
+  bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
 
-  // The pointer.
+  // State of the pointer.
   enum class Drag : uint8_t { none, sensor, view };
   bool inside_ = false, overSensor_ = false;
   double x_ = 0, y_ = 0;
   Drag drag_ = Drag::none;
-  InputEvent pressed_; // what began the drag
+  InputEvent pressed_; // the event that began the drag
   std::set<std::string> held_;
   bool shift_ = false, alt_ = false;
   std::string message_;

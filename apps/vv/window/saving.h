@@ -1,4 +1,4 @@
-// saving.h: pictures of the window as files. [any thread]
+// saving.h: Saves pictures of the window as files. [any thread]
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace vv {
 
-// Samples a pixel that the window refines its picture to.
+// Returns the samples per pixel up to which the window refines its picture.
 int samplesInWindow(const Options& options);
 
-// A name that no file has yet: world-1.png, world-2.png ... in the working folder.
+// Returns an unused file name: world-1.png, world-2.png and so on in the working folder.
 std::string freeName(const std::string& world, const std::string& suffix);
 
-// Returns what there is to tell: where it is, or why not.
+// Returns a message for the user: where the picture was saved, or why it was not.
 std::string savePicture(const picture::Picture& picture, const std::string& path,
                         uint32_t channels);
 

@@ -1,5 +1,5 @@
-// screen.cpp: Without OpenGL, as under Xvfb and far away, SDL scales and draws by
-// itself.
+// screen.cpp: Implements Screen with SDL. Without OpenGL, as under Xvfb and on remote displays,
+// SDL's own software renderer scales and draws.
 #include "window/screen.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
                                         SDL_GetError())};
 }
 
-// Keys that other keyboards have elsewhere come as text, not by their place.
+// Tells whether a key has different positions on different keyboards; such keys are read as text.
 bool isTextKey(const std::string& key) { return key == "[" || key == "]" || key == "?"; }
 
 void setModifiers(InputEvent& event, int modifiers) {
@@ -31,8 +31,8 @@ void setModifiers(InputEvent& event, int modifiers) {
   event.alt = modifiers & KMOD_ALT;
 }
 
-// OpenGL without a graphics processor takes the time that the rays need, and more of it than SDL's
-// own drawing.
+// Tells whether OpenGL is emulated in software. Emulation takes CPU time from rendering, more than
+// SDL's own renderer.
 bool isEmulated(SDL_Renderer* renderer) {
   SDL_RendererInfo info;
   if (SDL_GetRendererInfo(renderer, &info) != 0 ||
@@ -71,7 +71,7 @@ struct Screen::Impl {
   SDL_Cursor *arrow = nullptr, *hand = nullptr;
   Texture picture;
   std::array<Texture, places> panels;
-  std::vector<uint32_t> pixels; // of the picture, working storage
+  std::vector<uint32_t> pixels; // scratch storage for the picture
   bool changed = true, isHand = false, pressed = false;
 
   ~Impl() {
@@ -166,16 +166,16 @@ struct Screen::Impl {
 };
 
 Screen::Screen(const std::string& title, int width, int height) : impl_(std::make_unique<Impl>()) {
-  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); // vv has its own
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); // vv installs its own
   SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
   SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
   SDL_SetMainReady();
-  if (!SDL_getenv("DISPLAY") && !SDL_getenv("WAYLAND_DISPLAY") &&
-      !SDL_getenv("SDL_VIDEODRIVER")) { // SDL would try everything
+  // SDL would try all its drivers
+  if (!SDL_getenv("DISPLAY") && !SDL_getenv("WAYLAND_DISPLAY") && !SDL_getenv("SDL_VIDEODRIVER")) {
     SDL_SetError("there is no display");
     fail();
   }
-  // Only what was meant: SDL's other drivers would open windows that nobody sees.
+  // Only drivers with a real display: SDL's others open windows that nobody can see.
   if (!SDL_getenv("SDL_VIDEODRIVER"))
     SDL_SetHint(SDL_HINT_VIDEODRIVER, !SDL_getenv("DISPLAY")          ? "wayland"
                                       : SDL_getenv("WAYLAND_DISPLAY") ? "x11,wayland"
@@ -196,7 +196,7 @@ Screen::Screen(const std::string& title, int width, int height) : impl_(std::mak
   impl_->hand = SDL_CreateSystemCursor(SDL_SYSTEM_CURSOR_HAND);
   SDL_EventState(SDL_DROPFILE, SDL_ENABLE);
   SDL_StartTextInput();
-  // The size asked for is that of the picture.
+  // The requested size is that of the picture.
   if (const double s = scale(); s > 1.01)
     SDL_SetWindowSize(impl_->window, int(width / s), int(height / s));
 }
@@ -233,7 +233,7 @@ bool Screen::visible() const {
 }
 
 void Screen::setPicture(int width, int height, const std::vector<uint8_t>& rgb) {
-  // The format that SDL's own renderer can scale linearly.
+  // SDL's own renderer can scale this format linearly.
   if (!impl_->picture.fit(impl_->renderer, SDL_PIXELFORMAT_XRGB8888, width, height)) return;
   impl_->pixels.resize(rgb.size() / 3);
   for (size_t i = 0; i < impl_->pixels.size(); ++i)

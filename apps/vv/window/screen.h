@@ -1,5 +1,5 @@
-// screen.h: the window itself: an SDL window with a picture, panels of text over it, a cursor, and
-// the events of its user. [main thread]
+// screen.h: Wraps an SDL window: a picture, panels of text over it, a cursor, and the user's
+// events. [main thread]
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,24 @@ namespace vv {
 
 class Screen {
  public:
-  // width, height: pixels. Throws Failure (exit code 1) where there is no display.
+  // width, height: pixels. Throws Failure (exit code 1) if there is no display.
   Screen(const std::string& title, int width, int height);
   ~Screen();
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  // Waits for events at most so long, and appends what has come.
+  // Waits for events for at most `seconds` and appends those that have arrived.
   void wait(double seconds, std::vector<InputEvent>& events);
   int width() const; // pixels
   int height() const;
-  double scale() const; // pixels for a unit of the desktop: above 1 on a fine screen
-  bool visible() const; // something of it can be seen
+  double scale() const; // pixels per unit of the desktop; above 1 on a high-resolution screen
+  bool visible() const; // true if any part of the window is visible
 
-  // rgb: bytes, first row at the top; it fills the window.
+  // rgb: bytes, first row at the top; the picture fills the window.
   void setPicture(int width, int height, const std::vector<uint8_t>& rgb);
   enum Place : uint8_t { top, bottom, middle, places };
   void setPanel(Place place, const Panel& panel);
-  void present(); // if anything has changed
+  void present(); // redraws if anything has changed
   void setHand(bool hand);
   void setTitle(const std::string& title);
   void toggleFullScreen();

@@ -20,7 +20,7 @@ using State = picture::LiveRenderer::State;
 
 namespace {
 
-// Seconds since 1970, whole ones: the command of a view names them.
+// Returns whole seconds since 1970, because the command of a view contains them.
 double realTime() {
   return double(std::chrono::duration_cast<std::chrono::seconds>(
                     std::chrono::system_clock::now().time_since_epoch())
@@ -32,13 +32,14 @@ bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
          a.height == b.height && a.shader == b.shader;
 }
 
-// What a running world needs besides what a picture does.
-Options forWindow(const Options& options, const Session::Calls& calls, const bool scripted) {
+// Returns the options of a picture, completed for a running world.
+Options forWindow(const Options& options, const Session::Callbacks& calls, const bool scripted) {
   Options own = options;
   own.render.samples = samplesInWindow(options);
-  own.render.channels |= RT_VARIANCE; // then RTstats has the error
+  own.render.channels |= RT_VARIANCE; // RTstats then contains the error
   own.running.print = [](const std::string& text) { say(text); };
-  own.running.scriptPatience = scripted ? 0 : 0.05; // scripted: the same on every machine
+  // 0 in scripted sessions: the result must not depend on the machine's speed
+  own.running.scriptPatience = scripted ? 0 : 0.05;
   if (!own.epoch && !scripted && !options.time) own.epoch = realTime();
   if (calls.openUrl)
     own.running.loadUrl = [open = calls.openUrl](const std::vector<std::string>& urls,
@@ -54,9 +55,9 @@ Options forWindow(const Options& options, const Session::Calls& calls, const boo
 } // namespace
 
 Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
-                 Calls calls, const InputScript* script)
+                 Callbacks calls, const InputScript* script)
     : options_(forWindow(options, calls, script || !options.recordInput.empty())),
-      problems_(problems), calls_(std::move(calls)),
+      problems_(problems), callbacks_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, problems)),
       pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov),
       renderer_(*browser_, options_.render), channels_(options.render.channels),
@@ -68,7 +69,7 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
           if (action == Action::frameAll || action == Action::beginAgain)
             wantFit(action == Action::beginAgain);
           else
-            calls_.business(event, action);
+            callbacks_.onAction(event, action);
           if (blocked()) replay_->wait();
         });
   forEachNode(browser_->world(), [&](const xvrml::Node& node) {
@@ -96,7 +97,7 @@ void Session::begin(int width, int height, const std::optional<Place>& place,
   } else if (!fragment.empty() && !pilot_.bindViewpoint(fragment)) {
     sayWarning(fmt::format("there is no viewpoint \"{}\"", fragment));
   }
-  pilot_.smooth();
+  pilot_.animateTransitions();
 }
 
 void Session::resize(int width, int height) {
@@ -126,7 +127,7 @@ void Session::advance(double seconds) {
   if (!stepped_) clock_ += passed;
   if (!resting()) return;
   if (fit_ == Fit::mapping) {
-    if (const auto view = fitAsAtFirst_ ? pilot_.beginning(options_.view) : std::nullopt)
+    if (const auto view = fitAsAtFirst_ ? pilot_.initialView(options_.view) : std::nullopt)
       pilot_.present(renderer_.cameraOf(*view, pilot_.aspect()), renderer_.upOf(*view));
     else
       pilot_.frameAll(renderer_.bounds());
@@ -143,8 +144,9 @@ void Session::advance(double seconds) {
   if (!prepared_ && shownAny_) prepare();
 }
 
-// The first ray through a world costs seconds if there are millions of triangles: the thread that
-// the window waits for does not cast it. Nothing else uses the world meanwhile (resting()).
+// Casts the first ray on a thread of its own. With millions of triangles this takes seconds,
+// because it builds the acceleration structures, and the window must not wait. Meanwhile nothing
+// else uses the world (resting()).
 void Session::prepare() {
   prepared_ = preparing_ = true;
   preparer_ = std::thread([this, camera = pilot_.camera()] {
@@ -153,7 +155,7 @@ void Session::prepare() {
     try {
       xvrml::PickHit hit;
       browser_->pick(origin, direction, {}, hit);
-    } catch (const std::exception&) {} // too little memory: whoever asks next is told
+    } catch (const std::exception&) {} // out of memory: the next user of the structures reports it
     preparing_ = false;
   });
 }
@@ -163,7 +165,7 @@ void Session::step(double) {
     pilot_.step(time_ = clock_);
     return;
   }
-  constexpr int most = 10; // steps at once: then a picture
+  constexpr int most = 10; // maximum number of steps before a picture
   for (int i = 0; i < most && double(next_) / options_.fps <= clock_ && !blocked(); ++i) {
     time_ = double(next_) / options_.fps;
     if (replay_ && !replay_->step(time_)) return;
@@ -173,9 +175,9 @@ void Session::step(double) {
   clock_ = std::min(clock_, double(next_) / options_.fps);
 }
 
-// The user's. Of a session that a script drives only the window itself is his.
+// Handles the user's input. In a scripted session only window commands are taken from the user.
 void Session::takeEvents() {
-  std::deque<InputEvent> later; // the pointer waits for prepare()
+  std::deque<InputEvent> later; // pointer events wait for prepare()
   while (!waiting_.empty()) {
     if (!prepared_ && !replay_ && waiting_.front().kind <= InputEvent::Kind::wheel) {
       later.push_back(std::move(waiting_.front()));
@@ -185,7 +187,7 @@ void Session::takeEvents() {
     const InputEvent event = std::move(waiting_.front());
     waiting_.pop_front();
     Action action = Action::none;
-    if (calls_.record) calls_.record(time_, event);
+    if (callbacks_.record) callbacks_.record(time_, event);
     if (!replay_)
       action = pilot_.handle(event);
     else if (event.kind == InputEvent::Kind::down)
@@ -194,16 +196,16 @@ void Session::takeEvents() {
     if ((action == Action::frameAll || action == Action::beginAgain) && !replay_)
       wantFit(action == Action::beginAgain);
     else if (ofWindow)
-      calls_.business(event, action);
+      callbacks_.onAction(event, action);
   }
   waiting_ = std::move(later);
 }
 
-// Inlines come after the first picture, a few at a time.
+// Loads Inlines after the first picture, a few at a time.
 void Session::loadSome() {
   if (inlines_.empty() || !shownAny_) return;
-  if (browser_->generation() != generation_)
-    return inlines_.clear(); // of a world that a Script has replaced
+  // a Script has replaced the world
+  if (browser_->generation() != generation_) return inlines_.clear();
   const auto start = std::chrono::steady_clock::now();
   while (!inlines_.empty() &&
          std::chrono::steady_clock::now() - start < std::chrono::milliseconds(10)) {
@@ -215,7 +217,7 @@ void Session::loadSome() {
         inlines_.emplace_back(const_cast<xvrml::Node*>(&below));
     });
   }
-  if (inlines_.empty() && fitAgain_ && !pilot_.touched()) wantFit(true);
+  if (inlines_.empty() && fitAgain_ && !pilot_.hasViewerMoved()) wantFit(true);
 }
 
 // --- The picture ---
@@ -231,15 +233,16 @@ void Session::draw() {
   const bool dirty = !begun_ || fit_ == Fit::wanted || !equal(pilot_.camera(), shown_) ||
                      browser_->hasChanges() || pilot_.headlight() != shownHeadlight_ ||
                      (!moving_ && (frame_.width != width_ || frame_.height != height_));
-  const bool behind = state == State::ready &&
-                      moving_; // frames of what moves overlap; a refined one is given up instead
+  // moving frames overlap; a frame being refined is cancelled instead
+  const bool behind = state == State::ready && moving_;
   if (state == State::rendering || (state == State::ready && !behind)) {
     if (dirty && !moving_ && (shownAny_ || fit_ == Fit::wanted)) renderer_.cancel();
     return;
   }
   if (state == State::mapping) return;
+  // so that the first picture comes early
   if (dirty)
-    start(true); // a first picture comes early
+    start(true);
   else if (!behind && (moving_ || !refined_))
     start(false);
 }
@@ -248,7 +251,7 @@ void Session::start(bool moving) {
   picture::LiveFrame frame;
   frame.view.shader = options_.view.shader;
   const bool presenting = fit_ == Fit::wanted && fitAsAtFirst_;
-  if (const auto view = presenting ? pilot_.beginning(options_.view) : std::nullopt)
+  if (const auto view = presenting ? pilot_.initialView(options_.view) : std::nullopt)
     frame.view = *view;
   else if (presenting && !begun_) {
     frame.view.fit = true;
@@ -280,7 +283,7 @@ void Session::start(bool moving) {
 
 bool Session::look(picture::LivePicture& picture) {
   if (!renderer_.look(picture)) return false;
-  // Half of a picture over the one before tears what moves.
+  // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !shownAny_ || !moving_;
   shownAny_ = true;
   if (picture.finished)
@@ -321,7 +324,7 @@ bool Session::stop(double seconds) {
   return true;
 }
 
-// --- What is told ---
+// --- Reports ---
 
 std::string Session::command(const std::vector<std::string>& arguments) const {
   std::optional<bool> headlight = pilot_.headlight();

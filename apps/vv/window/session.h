@@ -1,6 +1,6 @@
-// session.h: a world that is being looked at: its browser, its pilot, and the renderer that draws
-// it while both go on. It knows no windowing system. Another world is another session. [the
-// browser's thread]
+// session.h: Owns a world that is shown in the window: its browser, its pilot, and the renderer
+// that draws it while both continue. It is independent of the windowing system. Each world has its
+// own session. [the browser's thread]
 #pragma once
 
 #include <atomic>
@@ -21,70 +21,72 @@
 
 namespace vv {
 
-// What the overlay tells of a session.
+// The facts about a session that the overlay shows.
 struct SessionFacts {
-  double frameRate = 0; // pictures a second while something moves; 0: nothing does
+  double frameRate = 0; // pictures per second while something moves; 0: nothing moves
   int width = 0, height = 0;
   double samples = 0, wanted = 0;
-  RTstats stats{}; // of the last picture that was finished
+  RTstats stats{}; // statistics of the last finished picture
   xvrml::MapStats map{};
   uint64_t errors = 0, warnings = 0;
   std::string lastProblem, navigation, description;
   bool loading = false, finished = false, cluster = false;
-  std::vector<RTworker> workers; // of a cluster
+  std::vector<RTworker> workers; // workers of the cluster
 };
 
 class Session {
  public:
-  struct Place { // where the viewer of another session was
+  struct Place { // the viewer's place in another session
     std::string viewpoint;
     xvrml::CameraSettings camera;
   };
-  struct Calls {
-    std::function<void(const InputEvent&, Action)> business; // what the keys ask of the window
-    // Worlds that Anchors and Scripts ask for.
+  struct Callbacks {
+    // receives the keys' actions for the window
+    std::function<void(const InputEvent&, Action)> onAction;
+    // Opens worlds that Anchors and Scripts request.
     std::function<void(const std::vector<std::string>& urls, const std::string& base)> openUrl;
-    std::function<void(double time, const InputEvent&)>
-        record; // what the user has done; null: nobody wants to know
+    // Records the user's input; may be null.
+    std::function<void(double time, const InputEvent&)> record;
   };
-  // script: events instead of the user's; null: none. Throws as startWorld does.
+  // script: replaces the user's events; may be null. Throws the errors of startWorld.
   Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
-          Calls calls, const InputScript* script);
+          Callbacks calls, const InputScript* script);
   ~Session();
 
-  // Where the first picture is taken from: as the options say, where another session was, or from
-  // the fragment of a URL.
+  // Sets the camera of the first picture: from the options, from another session, or from the
+  // fragment of a URL.
   void begin(int width, int height, const std::optional<Place>& place, const std::string& fragment);
   void resize(int width, int height);
   void handle(const InputEvent& event) { waiting_.push_back(event); }
-  // Time passes: events, the world's clock, what is left to be loaded, and the next frame. seconds:
-  // on any clock. Never waits.
+  // Advances the session: events, the world's clock, pending Inlines, and the next frame. seconds:
+  // time of any clock. Never waits.
   void advance(double seconds);
-  // A newer picture than the last one; false if there is none.
+  // Returns a newer picture than the last one; false if there is none.
   bool look(picture::LivePicture& picture);
-  // What the picture has so far, into a file. Returns what there is to tell.
+  // Saves the current state of the picture. Returns a message for the user.
   std::string save(const std::string& path);
-  // Writes the picture as soon as all its samples are taken; the script waits until then.
+  // Saves the picture when all its samples are taken; the script waits until then.
   void saveWhenFinished(const std::string& path) { saveTo_ = path; }
 
+  // Returns whether the world can be used.
   bool resting() const {
     return !preparing_ && renderer_.state() != picture::LiveRenderer::State::mapping;
-  } // the world can be used
-  // Something that moves, and the next frame has to wait for it.
+  }
+  // Tells whether something moves and the next frame must wait for the current one.
   bool drawing() const {
     const auto state = renderer_.state();
     return moving_ && (state == picture::LiveRenderer::State::mapping ||
                        state == picture::LiveRenderer::State::rendering);
   }
   bool scripted() const { return replay_ != nullptr; }
-  double time() const { return time_; } // of the session's clock, at the last step
+  double time() const { return time_; } // time of the session's clock at the last step
   xvrml::Browser& browser() { return *browser_; }
   const Pilot& pilot() const { return pilot_; }
   Place place() const;
   std::string command(const std::vector<std::string>& arguments) const;
   SessionFacts facts() const;
   std::string takeMessage();
-  // The frame in flight ends; false if it still reads the world after this time.
+  // Cancels the frame in flight. Returns false if it still reads the world after `seconds`.
   bool stop(double seconds);
 
  private:
@@ -100,39 +102,38 @@ class Session {
 
   Options options_;
   Problems& problems_;
-  Calls calls_;
+  Callbacks callbacks_;
   std::unique_ptr<xvrml::Browser> browser_;
   Pilot pilot_;
   picture::LiveRenderer renderer_;
-  const uint32_t channels_; // of pictures that are saved
+  const uint32_t channels_; // channels of saved pictures
   Pacing pacing_;
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
 
-  // Time.
-  bool stepped_; // in steps of 1/fps, for scripts
+  // --- Time ---
+  bool stepped_; // advances in steps of 1/fps, for scripts
   long long next_ = 0;
   double clock_ = 0, time_ = 0, last_ = -1;
 
-  // The picture.
+  // --- The picture ---
   int width_ = 0, height_ = 0;
-  enum class Fit : uint8_t {
-    none,
-    wanted,
-    mapping
-  } fit_ = Fit::none;        // the whole world in view, once its extent is known
-  bool fitAsAtFirst_ = true; // as the world begins; false: in the direction of now
-  bool fitAgain_ = false;    // the picture still shows it all, and more is loaded
+  // Tells whether to show the whole world when its extent is known.
+  enum class Fit : uint8_t { none, wanted, mapping } fit_ = Fit::none;
+  bool fitAsAtFirst_ = true; // true: the initial view; false: the current direction
+  // fit again when the Inlines are loaded: the picture shows the whole world so far
+  bool fitAgain_ = false;
   xvrml::CameraSettings shown_{};
   std::optional<bool> shownHeadlight_;
   bool begun_ = false, moving_ = false, refined_ = false, shownAny_ = false;
-  FrameSize frame_;                // in flight, or the last one
-  double lastStart_ = 0, gap_ = 0; // of frames while something moves, smoothed
-  picture::LivePicture facts_;     // without the pixels
+  FrameSize frame_; // size of the frame in flight, or of the last one
+  // start of the last frame; smoothed time between frames while something moves
+  double lastStart_ = 0, gap_ = 0;
+  picture::LivePicture facts_; // state of the picture, without the pixels
   std::string saveTo_, message_;
-  std::deque<xvrml::NodeRef> inlines_; // to be loaded
-  uint64_t generation_ = 0;            // of the browser's world that they are in
-  // What the pointer and the viewer's feet meet is made ready beside the first picture.
+  std::deque<xvrml::NodeRef> inlines_; // Inlines to load
+  uint64_t generation_ = 0;            // generation of the browser's world that contains inlines_
+  // Builds the structures for picking and collision in parallel with the first picture.
   std::thread preparer_;
   std::atomic<bool> preparing_{false};
   bool prepared_ = false;

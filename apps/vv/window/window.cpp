@@ -1,5 +1,5 @@
-// window.cpp: the window's loop: what its user does goes to the session, the session's pictures go
-// to the screen; worlds are read meanwhile. See window.h.
+// window.cpp: Runs the window's loop: it passes user input to the session and the session's
+// pictures to the screen, while worlds are read on another thread.
 #include "window/window.h"
 
 #include <algorithm>
@@ -62,11 +62,10 @@ class Window {
       wait(std::max(0.0, next - now));
       passOn();
       takeWorld();
-      // A picture of what moves that is nearly there is waited for: the next one can begin at once
-      // then.
+      // Wait for a moving picture that is almost finished; the next one can then begin at once.
       const double period = 1 / options_.fps, time = seconds();
       if (time >= next + (session_ && session_->drawing() ? period : 0)) {
-        goOn();
+        advanceSession();
         next = std::max(next + period, time);
       }
       if (session_ && session_->look(picture_)) show();
@@ -79,7 +78,8 @@ class Window {
  private:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-  // A picture that is due soon is looked for often; a hidden window can wait.
+  // Waits for events. The wait is short if a picture may be due, and longer if the window is
+  // hidden.
   void wait(double time) {
     const double most = session_ && screen_.visible() ? .004 : .05;
     screen_.wait(std::min(time, most), events_);
@@ -93,7 +93,7 @@ class Window {
       if (session_)
         input_.push_back(std::move(event));
       else if (event.kind == InputEvent::Kind::down)
-        business(event, actionOf(event));
+        onAction(event, actionOf(event));
     }
   }
 
@@ -106,7 +106,7 @@ class Window {
                       duration(seconds() - loadStart_)));
   }
 
-  void goOn() {
+  void advanceSession() {
     if (!session_) return;
     if (screen_.width() != width_ || screen_.height() != height_) {
       width_ = screen_.width();
@@ -129,7 +129,7 @@ class Window {
     request.options = options_.load;
     const bool whole = !options_.shaders.empty() || !options_.definitions.empty() ||
                        options_.script || record_.is_open() || options_.strict;
-    if (!whole) request.options.loadInlines = false; // they come after the first picture
+    if (!whole) request.options.loadInlines = false; // Inlines are loaded after the first picture
     keepPlace_ = keepPlace && session_;
     loading_ = request.urls.empty() ? "" : request.urls[0];
     loadStart_ = seconds();
@@ -138,7 +138,7 @@ class Window {
   }
 
   void takeWorld() {
-    if (session_ && !session_->resting()) return; // the old one cannot end yet
+    if (session_ && !session_->resting()) return; // the old session cannot end yet
     LoadAnswer answer;
     if (!loader_.take(answer)) return;
     const std::string name = std::exchange(loading_, "");
@@ -162,8 +162,8 @@ class Window {
     std::optional<Session::Place> place;
     if (keepPlace_) place = session_->place();
     world->options.loadInlines = true;
-    Session::Calls calls;
-    calls.business = [this](const InputEvent& event, Action action) { business(event, action); };
+    Session::Callbacks calls;
+    calls.onAction = [this](const InputEvent& event, Action action) { onAction(event, action); };
     calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) {
       open({urls, base, {}}, false);
     };
@@ -177,7 +177,7 @@ class Window {
     height_ = screen_.height();
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
-    session_ = std::move(fresh); // the former ends here
+    session_ = std::move(fresh); // ends the previous session
     failed_ = exitDone;
     first_ = true;
     message("", 0);
@@ -187,7 +187,8 @@ class Window {
       watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
   }
 
-  // After a write that failed nothing more is written: a script with a hole would be played wrong.
+  // Records a line of input. After a failed write nothing more is written, because a script with a
+  // gap would replay wrongly.
   void record(const std::string& line) {
     if (!record_) return;
     errno = 0;
@@ -220,7 +221,7 @@ class Window {
   }
 
   // --- Keys ---
-  void business(const InputEvent& event, Action action) {
+  void onAction(const InputEvent& event, Action action) {
     switch (action) {
     case Action::save:
     case Action::saveExr: save(event, action == Action::save ? "png" : "exr"); break;
@@ -247,10 +248,10 @@ class Window {
     const bool named = event.kind == InputEvent::Kind::save;
     const std::string path =
         named ? event.text : freeName(session_->browser().world().path, suffix);
-    if (session_->scripted())
-      session_->saveWhenFinished(path);
+    if (session_->scripted()) session_->saveWhenFinished(path);
+    // saved by a later call
     else if (first_)
-      saveTo_ = path; // a moment later
+      saveTo_ = path;
     else
       message(session_->save(path), 4);
   }
@@ -268,7 +269,7 @@ class Window {
                      shown ? painter_->paint(helpLines(), screen_.width(), true) : Panel());
   }
 
-  // --- What is told ---
+  // --- Reports ---
   void message(const std::string& text, double time) {
     message_ = text;
     messageEnds_ = seconds() + time;
@@ -287,17 +288,18 @@ class Window {
     return hint.empty() ? session_->browser().description() : hint;
   }
 
-  // What is said of workers: in the terminal, and what is wrong also in the window.
-  void tellNotes() {
+  // Reports messages about workers in the terminal; problems also appear in the window.
+  void reportClusterMessages() {
     if (!options_.render.cluster) return;
-    const std::vector<picture::ClusterNote> notes = options_.render.cluster->takeNotes();
-    for (const picture::ClusterNote& note : notes)
+    const std::vector<picture::ClusterMessage> notes = options_.render.cluster->takeMessages();
+    for (const picture::ClusterMessage& note : notes)
       if (note.level >= 2) message(note.text, 6);
-    for (const std::string& line : noteLines(notes, options_.verbose, options_.quiet)) say(line);
+    for (const std::string& line : clusterMessageLines(notes, options_.verbose, options_.quiet))
+      say(line);
   }
 
   void tell() {
-    tellNotes();
+    reportClusterMessages();
     if (session_ && session_->resting())
       if (const std::string text = session_->takeMessage(); !text.empty()) message(text, 3);
     const std::string bottom = bottomLine();
@@ -317,17 +319,17 @@ class Window {
   }
 
   void sound() {
-    const std::vector<xvrml::Heard> heard = session_->pilot().paused()
-                                                ? std::vector<xvrml::Heard>()
-                                                : xvrml::heardIn(session_->browser());
-    if (!heard.empty() && !speaker_.tried())
+    const std::vector<xvrml::Heard> audible = session_->pilot().paused()
+                                                  ? std::vector<xvrml::Heard>()
+                                                  : xvrml::heardIn(session_->browser());
+    if (!audible.empty() && !speaker_.tried())
       if (const std::string why = speaker_.open(); !why.empty() && options_.verbose)
         say("vv: no sound: " + why);
-    if (speaker_.tried()) mixer_.set(heard);
+    if (speaker_.tried()) mixer_.set(audible);
   }
 
-  // A world that is being read, or geometry that is being made, cannot be called back: then the
-  // process ends as it is.
+  // Ends the process. Reading a world and building geometry cannot be cancelled; in those cases the
+  // process exits without cleanup.
   int end() {
     errno = 0;
     if (record_.is_open() && record_ && (record_.close(), !record_)) recordingFailed(errno);
@@ -350,16 +352,16 @@ class Window {
   WorldLoader loader_;
   std::ofstream record_;
   std::unique_ptr<PanelPainter> painter_;
-  std::unique_ptr<Session> session_; // null: no world yet
+  std::unique_ptr<Session> session_; // null: no world has been loaded yet
   std::unique_ptr<Watched> watched_;
   picture::LivePicture picture_;
   std::vector<InputEvent> events_, input_;
   const Clock::time_point start_ = Clock::now();
   int width_ = 0, height_ = 0;
-  int failed_ = exitDone; // why there is no world
+  int failed_ = exitDone; // exit code of a world that could not be loaded
   bool ended_ = false, keepPlace_ = false, help_ = false;
-  std::string saveTo_; // with the first picture of the world
-  bool first_ = false; // picture of the world is still to come
+  std::string saveTo_; // save the first picture of the world here
+  bool first_ = false; // the first picture of the world is still missing
   double nextLook_ = 0, loadStart_ = 0;
 
   OverlayLevel level_ = OverlayLevel::brief;

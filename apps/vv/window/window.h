@@ -1,4 +1,4 @@
-// window.h: vv's window. [main thread]
+// window.h: Runs vv's window. [main thread]
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace vv {
 
-// Opens the window and returns an exit code when it is closed; what went wrong has been said.
-// arguments: of the command line. Throws Failure where there is no display, or where vv was built
-// without windows.
+// Opens the window and returns an exit code when it is closed; error messages have been printed.
+// `arguments` are those of the command line. Throws Failure if there is no display, or if vv was
+// built without windows.
 int runWindow(const Options& options, const std::vector<std::string>& arguments);
 
 } // namespace vv

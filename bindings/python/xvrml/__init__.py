@@ -1,4 +1,4 @@
-"""VRML97 worlds and ray-traced pictures of them.
+"""Loads and edits VRML97 worlds and renders ray-traced pictures of them.
 
 >>> import xvrml
 >>> world = xvrml.load("world.wrl")
@@ -7,14 +7,15 @@
 >>> image = world.render(size=(640, 480), error=0.02)
 >>> image.save("door.png")
 
-A world has a clock of its own, which moves when it is told to:
+A world has its own clock. The clock moves only when the program sets it:
 
 >>> @world.on("Door.translation_changed")
 ... def moved(value, time): print(value)
 >>> world.time = 0.5
 >>> for frame in world.animate(0, 10, fps=25): ...
 
-xvrml.rt is the renderer without VRML, xvrml.interop goes between other packages' meshes and pictures and ours.
+xvrml.rt is the renderer without VRML. xvrml.interop converts meshes and pictures to and from other
+packages.
 """
 import difflib as _difflib
 import importlib as _importlib
@@ -35,7 +36,7 @@ _world.complete(World, Node)
 for _line in load_node_plugins():
     _warnings.warn(_line, RuntimeWarning)
 
-from . import nodes as nodes  # noqa: E402  after the plug-ins: a class for each of their nodes, too
+from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have classes too
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
@@ -45,7 +46,7 @@ _SUBMODULES = ("dask", "interop", "rt")
 
 
 def __getattr__(name):
-    """Submodules, imported when they are first used, and nodes of plug-ins that were loaded later."""
+    """Imports submodules on first use, and finds nodes of plug-ins that were loaded later."""
     if name.startswith("__"):
         raise AttributeError(f"module xvrml has no attribute {name}")
     if name in _SUBMODULES:

@@ -1,4 +1,5 @@
-# Types of the package for checkers and editors; those of the nodes are in nodes.pyi, which nodegen writes.
+# Types of the package for checkers and editors. Those of the nodes are in nodes.pyi, which nodegen
+# writes.
 import os
 from typing import (
     Any,

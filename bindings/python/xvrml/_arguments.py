@@ -1,5 +1,6 @@
-"""Errors about arguments in sentences. The compiled functions list all their signatures when an argument has a wrong type; what is
-wrapped here says which argument it was, what was expected and what was given."""
+"""Readable errors for wrong arguments. If an argument has a wrong type, a compiled function lists
+all its signatures. A wrapped function says instead which argument is wrong, what was expected and
+what was given."""
 import difflib
 import functools
 import inspect
@@ -17,7 +18,7 @@ _WORDS = {"int": "a whole number", "float": "a number", "str": "a text", "bool":
 
 
 def _split(text):
-    """"a: int, b: Tuple[int, int] = (1, 2)" -> its parts at the commas that stand in no brackets."""
+    """Splits "a: int, b: Tuple[int, int] = (1, 2)" at the commas outside of brackets."""
     parts, depth, quote = [""], 0, ""
     for c in text:
         if quote:
@@ -36,7 +37,8 @@ def _split(text):
 
 
 def _signature(doc):
-    """{name: type as text} of the first line of a compiled function's text, and which have a default; None if it has none such."""
+    """Parses the first line of a compiled function's docstring. Returns {name: type as text} and
+    the set of names with a default; None if the line is not a signature."""
     found = re.match(r"\w+\((.*)\) -> ", (doc or "").strip().split("\n")[0])
     if not found:
         return None
@@ -65,7 +67,8 @@ def _describe(kind):
 
 
 def _fits(value, kind):
-    """Whether a value is what a type's text asks for, as far as that can be told from the text; True in doubt."""
+    """Returns whether a value matches a type given as text. Returns True if the text does not
+    say."""
     optional = re.fullmatch(_OPTIONAL, kind)
     if optional:
         return value is None or _fits(value, optional[1])
@@ -99,7 +102,8 @@ def _short(value):
 
 
 def sentence(function, args, kwargs):
-    """What is wrong with the arguments of a compiled function, in a sentence; None if its signature cannot be told."""
+    """Returns a sentence that says what is wrong with the arguments of a compiled function; None if
+    its signature is unknown."""
     parsed = _signature(function.__doc__)
     if not parsed:
         return None
@@ -122,7 +126,7 @@ def sentence(function, args, kwargs):
     missing = [n for n in order[len(args):] if n not in kwargs and n not in optional and n != "self"]
     if missing:
         return f"{name}(): {' and '.join(missing)} must be given"
-    for given, value in [*zip(order, args), *kwargs.items()]:  # types are right
+    for given, value in [*zip(order, args), *kwargs.items()]:  # the types are right
         for one in [value] if names[given] in ("int", "Optional[int]") else value if re.fullmatch(_PAIR, names[given]) else []:
             if one is not None and abs(operator.index(one)) >= 1 << 31:
                 return f"{name}(): {given}: a number nearer to 0 expected, not {_short(one)}"
@@ -146,7 +150,7 @@ def _wrapped(function):
 
 
 def _wrapped_setter(cls, name, setter):
-    """A property's setter: its text has no name, and "arg1" for the value."""
+    """Wraps a property's setter, whose docstring has no name, and "arg1" for the value."""
     kind = re.search(r"arg1: (.*)\) -> ", setter.__doc__ or "")
 
     @functools.wraps(setter)
@@ -166,7 +170,7 @@ def _compiled(value):
 
 
 def explain_class(cls):
-    """Wraps the compiled methods of a class, and what assigns its properties."""
+    """Wraps the compiled methods and property setters of a class."""
     for name, value in list(vars(cls).items()):
         if isinstance(value, property) and value.fset and _compiled(value.fset):
             setattr(cls, name, property(value.fget, _wrapped_setter(cls, name, value.fset), value.fdel, value.__doc__))
@@ -182,7 +186,8 @@ def _real(value):
 
 
 def number(name, value, above=None):
-    """An argument that must be a finite number, and above a bound if there is one, as a float."""
+    """Checks that an argument is a finite number, and above a bound if one is given. Returns a
+    float."""
     expected = "a number" if above is None else f"a number above {above}"
     try:
         made = _real(value)
@@ -198,7 +203,7 @@ def number(name, value, above=None):
 
 
 def whole(name, value, low=1, high=None):
-    """An argument that must be a whole number from low to high, as an int."""
+    """Checks that an argument is a whole number from low to high. Returns an int."""
     try:
         made = operator.index(value)
     except TypeError:
@@ -210,7 +215,7 @@ def whole(name, value, low=1, high=None):
 
 
 def explained(function):
-    """A compiled function whose errors are sentences."""
+    """Wraps a compiled function so that its errors are sentences."""
     return _wrapped(function)
 
 
@@ -222,8 +227,9 @@ def _expected(shape):
 
 
 def array(name, value, shape):
-    """The value as an array of numbers of whatever type. shape: its sides, ... for any number of them in front, None for any length.
-    Raises TypeError for what holds no numbers, ValueError for another shape."""
+    """Returns the value as an array of numbers of any type. shape: its lengths; ... allows any
+    number of dimensions in front, None any length. Raises TypeError for values that are not
+    numbers, ValueError for another shape."""
     import numpy as np
     try:
         found = np.asarray(value)
@@ -239,7 +245,8 @@ def array(name, value, shape):
 
 
 def numbers(name, value, shape, finite=True):
-    """The same as float64. Raises ValueError, too, for numbers that are not finite, unless finite is False."""
+    """Returns array() as float64. Also raises ValueError for numbers that are not finite, unless
+    finite is False."""
     import numpy as np
     found = array(name, value, shape).astype(np.float64)
     if finite and not np.isfinite(found).all():

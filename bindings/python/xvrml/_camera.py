@@ -1,4 +1,4 @@
-"""Cameras as matrices: Pinhole, in the conventions of OpenCV."""
+"""Pinhole: cameras given by matrices, in the conventions of OpenCV."""
 
 from . import _arguments
 
@@ -15,11 +15,12 @@ def _matrix(name, value, rows, columns):
 
 
 def _rigid(name, value):
-    """A 4x4 matrix that turns and moves; its last row may be missing."""
+    """Checks and returns a 4x4 matrix of a rotation and a translation; its last row may be
+    missing."""
     import numpy as np
     try:
         rows = 3 if np.shape(value) == (3, 4) else 4
-    except ValueError:  # of different lengths
+    except ValueError:  # rows of different lengths
         rows = 4
     matrix = _matrix(name, value, rows, 4)
     if rows == 3:
@@ -37,12 +38,13 @@ def _rigid(name, value):
 class Pinhole:
     """A pinhole camera as OpenCV describes it, for render(camera=...).
 
-    K is its intrinsic matrix (3x3): [[fx, s, cx], [0, fy, cy], [0, 0, 1]], in pixels of the picture that is rendered. T is its
-    extrinsic matrix (4x4 or 3x4): world to camera, for column vectors; the camera's x runs to the right, y down, z ahead. A point
-    X is seen at K (T X) / z.
+    K is the intrinsic matrix (3x3), [[fx, s, cx], [0, fy, cy], [0, 0, 1]], in pixels of the
+    rendered picture. T is the extrinsic matrix (4x4 or 3x4), world to camera, for column vectors.
+    The camera's x points to the right, y down, z forward. A point X appears at K (T X) / z.
 
-    center: the coordinate of the first pixel's centre. 0, OpenCV's: pixel (column, row) has its centre at exactly these numbers,
-    and the middle of a picture is (width - 1) / 2. 0.5, Open3D's and most renderers': the middle is width / 2.
+    center is the coordinate of the first pixel's centre. With 0, as in OpenCV, the centre of pixel
+    (column, row) has exactly these coordinates, and the middle of a picture is at (width - 1) / 2.
+    With 0.5, as in Open3D and most renderers, the middle is at width / 2.
     """
 
     def __init__(self, K, T=None, *, center=0.0):
@@ -58,7 +60,7 @@ class Pinhole:
 
     @classmethod
     def from_pose(cls, K, pose, *, center=0.0):
-        """The same from the camera's pose (4x4 or 3x4): camera to world, the inverse of T."""
+        """Creates a camera from its pose (4x4 or 3x4): camera to world, the inverse of T."""
         import numpy as np
         return cls(K, np.linalg.inv(_rigid("pose", pose)), center=center)
 
@@ -74,7 +76,7 @@ class Pinhole:
 
     @property
     def pose(self):
-        """Camera to world, float64 of shape (4, 4); x to the right, y down, z ahead."""
+        """Camera to world, float64 of shape (4, 4); x points to the right, y down, z forward."""
         import numpy as np
         return np.linalg.inv(self._T)
 
@@ -84,8 +86,8 @@ class Pinhole:
         return self._center
 
     def project(self, points):
-        """Where points (..., 3) of the world are seen: (..., 3), column, row and distance along the view axis, which is negative
-        behind the camera."""
+        """Projects points (..., 3) of the world. Returns (..., 3): column, row, and distance along
+        the view axis, which is negative behind the camera."""
         import numpy as np
         try:
             points = np.asarray(points, np.float64)
@@ -99,8 +101,9 @@ class Pinhole:
             return np.concatenate([(seen @ self._K.T)[..., :2] / z, z], -1)
 
     def rays(self, width, height):
-        """Rays (height, width, 6) through the centres of the pixels: origin and direction, whose length along the view axis is 1:
-        t_hit of a Raycaster is the distance along that axis."""
+        """Returns rays (height, width, 6) through the pixel centres: origin and direction. A
+        direction has length 1 along the view axis, so t_hit of a Raycaster is the distance along
+        that axis."""
         import numpy as np
         width, height = _arguments.whole("width", width), _arguments.whole("height", height)
         column, row = np.meshgrid(np.arange(width) + self._center, np.arange(height) + self._center)
@@ -118,7 +121,8 @@ class Pinhole:
         return _again, (self._K, self._T, self._center)
 
     def _numbers(self):
-        """fx, fy, cx, cy, s, with cx and cy from the picture's left and upper edge, and the pose row by row."""
+        """Returns [fx, fy, cx, cy, s] and the pose row by row. cx and cy are measured from the
+        picture's left and upper edges."""
         k, edge = self._K, 0.5 - self._center
         return [k[0, 0], k[1, 1], k[0, 2] + edge, k[1, 2] + edge, k[0, 1]], self.pose.ravel().tolist()
 
@@ -128,7 +132,8 @@ def _again(K, T, center):
 
 
 def _of(columns, fovy, width, height):
-    """Of a picture: a camera to world that looks along -z, by columns, and its vertical angle of view."""
+    """Returns the Pinhole of a picture, from a camera-to-world matrix by columns that looks along
+    -z, and its vertical angle of view."""
     import numpy as np
     pose = np.array(columns, np.float64).reshape(4, 4).T
     pose[:3, 1:3] *= -1

@@ -1,4 +1,5 @@
-"""The commands of the wheel: each takes the place of this process by the program of the same name that lies in the package."""
+"""The commands of the wheel. Each one replaces this process with the program of the same name in
+the package."""
 import os
 import pathlib
 import sys

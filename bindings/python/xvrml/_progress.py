@@ -1,8 +1,9 @@
-"""What progress=True shows on standard error: a bar on a terminal, in a log a line every five seconds."""
+"""The output of progress=True on standard error: a bar on a terminal, otherwise a line every five
+seconds."""
 import sys
 import time
 
-_SECONDS = 5  # between two lines of a log
+_SECONDS = 5  # seconds between two lines of a log
 
 
 class Bar:

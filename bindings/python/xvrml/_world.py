@@ -1,5 +1,5 @@
-"""Methods of World and Node that need nothing but other methods of theirs. Importing the package does not need numpy: programs of
-Scripts run in interpreters that may not have it."""
+"""Methods of World and Node that are written in Python. They import numpy only when they need it:
+the Python of a Script may not have it."""
 import contextlib
 import math
 
@@ -7,7 +7,7 @@ from . import _arguments
 
 
 class _Text:
-    """What load() takes for a file object: text with the name of the file that it stands for."""
+    """A file object for load(): text, and the name of the file that the text stands for."""
 
     def __init__(self, text, name):
         self._text = text
@@ -18,8 +18,8 @@ class _Text:
 
 
 def loads(text, path="<memory>", *, limits=None, allow_absolute=False):
-    """A world from VRML97 text (str or bytes), as json.loads is to json.load. path: the file that the text stands for; relative urls
-    in it are looked up beside that file. Raises ParseError."""
+    """Loads a world from VRML97 text (str or bytes), as json.loads does for JSON. path: the file
+    that the text stands for; relative URLs are resolved against it. Raises ParseError."""
     from ._xvrml import load
     if not isinstance(text, (str, bytes, bytearray, memoryview)):
         raise TypeError(f"loads(): text: a str or bytes expected, not the {type(text).__name__} {text!r}; load() takes files")
@@ -27,7 +27,8 @@ def loads(text, path="<memory>", *, limits=None, allow_absolute=False):
 
 
 def _reduce(self):
-    """What pickle and copy.deepcopy keep of a World: its text, as to_vrml() gives it, and its path. Its clock begins anew."""
+    """Reduces a World for pickle and copy.deepcopy to its text, as to_vrml() returns it, and its
+    path. The copy's clock starts again."""
     from ._xvrml import Browser
     if isinstance(self, Browser):
         raise TypeError("a Browser cannot be pickled: it runs; pickle the World that it was made from, or its to_vrml()")
@@ -35,7 +36,7 @@ def _reduce(self):
 
 
 def _end(world, end):
-    """The node and the event of "Clock.fraction_changed" or of (node, "fraction_changed")."""
+    """Returns node and event for "Clock.fraction_changed" or (node, "fraction_changed")."""
     if isinstance(end, str):
         name, dot, event = end.rpartition(".")
         if not dot:
@@ -47,8 +48,8 @@ def _end(world, end):
 
 
 def on(self, event, callback=None):
-    """Calls callback(value, time) after an eventOut or exposedField has sent. event: "NAME.event" or (node, "event"). A decorator
-    without a callback."""
+    """Calls callback(value, time) after an eventOut or exposedField has sent. event: "NAME.event"
+    or (node, "event"). Without a callback, this is a decorator."""
     node, name = _end(self, event)
 
     def register(function):
@@ -59,18 +60,19 @@ def on(self, event, callback=None):
 
 
 def route(self, source, target):
-    """ROUTE source TO target, each "NAME.event" or (node, "event")."""
+    """Adds ROUTE source TO target; each is "NAME.event" or (node, "event")."""
     if not self.add_route(*_end(self, source), *_end(self, target)):
         raise ValueError(f"no route from {source} to {target}")
 
 
 def unroute(self, source, target):
-    """Takes a route away; False if there was none."""
+    """Removes a route; returns False if there was none."""
     return self.delete_route(*_end(self, source), *_end(self, target))
 
 
 def _times(name, start, stop, fps):
-    """The numbers of the first picture and of the one after the last, at fps pictures a second."""
+    """Returns the numbers of the first picture and of the one after the last, at fps pictures per
+    second."""
     start, stop = _arguments.number(f"{name}: start", start), _arguments.number(f"{name}: stop", stop)
     fps = _arguments.number(f"{name}: fps", fps, above=0)
     if stop < start:
@@ -79,7 +81,7 @@ def _times(name, start, stop, fps):
 
 
 def _pictures(self, first, end, fps, options):
-    step = math.ceil(self.time * fps - 1e-9)  # the first that is not over
+    step = math.ceil(self.time * fps - 1e-9)  # the first step that is not in the past
     if first < step:
         raise ValueError(f"the world's time is {self.time} already: it does not go back to {first / fps}")
     for number in range(first, end):
@@ -90,15 +92,17 @@ def _pictures(self, first, end, fps, options):
 
 
 def animate(self, start, stop, fps=25, **options):
-    """Pictures of the times from start up to stop (excluded), fps of them a second; options are those of render. The clock gets
-    there in steps of 1/fps from 0, so that a picture of some time is the same whatever was pictured before it."""
+    """Yields pictures for the times from start to stop (excluded), fps per second. The options are
+    those of render. The clock advances in steps of 1/fps from 0, so that the picture for a given
+    time does not depend on earlier pictures."""
     first, end = _times("animate()", start, stop, fps)
     return _pictures(self, first, end, fps, options)
 
 
 def film(self, path, start, stop, fps=25, **options):
-    """Writes a film of the times from start up to stop (excluded): the pictures of animate(), whose options are those of render,
-    and at least the first. The suffix of path (mp4, webm, gif) says the format."""
+    """Writes a film for the times from start to stop (excluded), with at least one picture. The
+    options are those of render, as for animate(). The suffix of path (mp4, webm, gif) selects the
+    format."""
     from ._xvrml import Film
     first, end = _times("film()", start, stop, fps)
     with Film(path, fps) as file:
@@ -107,8 +111,8 @@ def film(self, path, start, stop, fps=25, **options):
 
 
 def raycaster(self, spheres=0):
-    """A Raycaster (xvrml.rt) of what is drawn now. Its geometry ids are places in its list `meshes`; meshes[i].node is the Shape.
-    spheres: see meshes(); 0: they are exact."""
+    """Returns a Raycaster (xvrml.rt) of what is drawn now. Its geometry ids are indices into its
+    list `meshes`; meshes[i].node is the Shape. spheres: see meshes(); 0: exact spheres."""
     from .rt import Raycaster
     caster = Raycaster()
     for mesh in self.meshes(spheres=spheres):
@@ -118,8 +122,8 @@ def raycaster(self, spheres=0):
 
 @property
 def bounds(self):
-    """The box that everything drawn lies in: float64 of shape (2, 3), the lower and the upper corner; None where nothing is drawn.
-    Of levels of detail the first."""
+    """The bounding box of everything drawn: float64 of shape (2, 3), the lower and the upper
+    corner; None if nothing is drawn. A level of detail counts with its first level."""
     import numpy as np
     corners = []
     for mesh in self.meshes(spheres=0):
@@ -134,7 +138,8 @@ def bounds(self):
 
 @contextlib.contextmanager
 def edit(self, field):
-    """A copy of a field's numbers that can be written to; the field is assigned when the block ends without an exception.
+    """Gives write access to a copy of a field's numbers. The field is assigned when the block ends
+    without an exception.
 
     >>> with coord.edit("point") as p:
     ...     p[:, 1] += 1

@@ -1,4 +1,5 @@
-"""Frames of an animation on a Dask cluster: `pip install xvrml[dask]`, and xvrml on every Dask worker.
+"""Renders the frames of an animation on a Dask cluster. Install it with `pip install xvrml[dask]`,
+on every Dask worker too.
 
 >>> from dask.distributed import Client
 >>> import xvrml.dask
@@ -6,9 +7,10 @@
 ...     for array in xvrml.dask.render_frames("world.wrl", times=[0, 0.5, 1], client=client, size=(640, 480)):
 ...         print(array.shape)
 
-A task makes one frame: it reads the world, lets its clock run up to the frame's time in steps of 1/fps, and renders. So a frame has
-the bytes that `vv --frames` gives it, whoever makes it, and a frame whose worker dies is simply made again. For single pictures that
-many machines share see xvrml.Cluster.
+One task renders one frame: it reads the world, advances its clock to the frame's time in steps of
+1/fps, and renders. A frame therefore has the same bytes as with `vv --frames`, on any worker, and a
+frame whose worker fails is rendered again. To share a single picture among machines, use
+xvrml.Cluster.
 """
 import io
 import os
@@ -22,19 +24,23 @@ __all__ = ["render_frames"]
 
 
 def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, in_flight=None, threads=1, browser=None, **options):
-    """Renders the world at each of these times (seconds of its clock) on a Dask cluster, in their order.
+    """Renders the world at each of these times (seconds of its clock) on a Dask cluster, in order.
 
-    world    a path that every Dask worker can read; or bytes or an xvrml.World, which travel (files that such a world refers to
-             are looked up relative to its own path, if the workers have it)
-    client   a dask.distributed.Client; None: the current one
-    out      None: an iterator of numpy arrays (float32, height x width x 4), which asks for frames as they are taken. A path with
-             {frame} in it, as "film-{frame:04}.png": the files are written here, not by the workers, and their paths returned
-    fps      steps of the world's clock, as of vv
-    retries  how often a frame is made again when its worker is lost or fails
-    in_flight  frames that are asked for at a time (default: two for each thread of the cluster): what bounds the memory
-    threads  render threads of a task
-    browser  keyword arguments of xvrml.Browser (limits, allow_absolute)
-    options  as of Browser.render: size, spp, viewpoint, transport ...
+    world      a path that every Dask worker can read; or bytes or an xvrml.World, which are sent to
+               the workers (files that such a world refers to are resolved against its own path, if
+               the workers have them)
+    client     a dask.distributed.Client; None: the current one
+    out        None: returns an iterator of numpy arrays (float32, height x width x 4), which
+               submits frames as they are consumed. A path with {frame} in it, such as
+               "film-{frame:04}.png": this process, not a worker, writes the files, and their paths
+               are returned
+    fps        steps per second of the world's clock, as in vv
+    retries    how often a frame is rendered again if its worker fails or is lost
+    in_flight  maximum number of submitted frames, which limits the memory (default: two for each
+               thread of the cluster)
+    threads    rendering threads of a task
+    browser    keyword arguments of xvrml.Browser (limits, allow_absolute)
+    options    those of Browser.render: size, spp, viewpoint, transport ...
     """
     if client is None:
         try:
@@ -64,7 +70,8 @@ def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, i
 
 
 def _frames(source, times, client, suffix, fps, retries, in_flight, options, browser):
-    if isinstance(source, tuple) and len(source[0]) > 100_000:  # sent once, not with every task
+    # sent once instead of with every task
+    if isinstance(source, tuple) and len(source[0]) > 100_000:
         source = client.scatter([source], broadcast=True, hash=False)[0]
     most = in_flight or 2 * max(1, sum(client.nthreads().values()))
     waiting, out_there = deque(times), deque()
@@ -74,13 +81,13 @@ def _frames(source, times, client, suffix, fps, retries, in_flight, options, bro
                 out_there.append(client.submit(_render, source, waiting.popleft(), fps, suffix, options, browser, retries=retries,
                                                pure=False, key=None))
             yield out_there[0].result()
-            out_there.popleft()  # forgotten by the cluster when the future is
+            out_there.popleft()  # the cluster forgets the result together with the future
     finally:
         client.cancel(list(out_there))
 
 
 def _source(world):
-    """What a task is given: a path, or (bytes, name)."""
+    """Returns the world for a task: a path, or (bytes, name)."""
     if isinstance(world, World):
         return world.to_vrml().encode("utf-8", "surrogateescape"), world.path
     if isinstance(world, (bytes, bytearray, memoryview)):
@@ -89,7 +96,7 @@ def _source(world):
 
 
 def _render(source, time, fps, suffix, options, browser):
-    """On a Dask worker: one frame, as an array or as the bytes of a file."""
+    """Renders one frame on a Dask worker. Returns an array, or the bytes of a file."""
     if isinstance(source, tuple):
         data = io.BytesIO(source[0])
         data.name = source[1] or "<memory>"
@@ -110,7 +117,7 @@ def _render(source, time, fps, suffix, options, browser):
 
 
 def _write(path, data):
-    """Beside its name, then renamed: a reader never sees half of it."""
+    """Writes to a temporary file and renames it, so that readers see only complete files."""
     folder = os.path.dirname(os.path.abspath(path))
     with tempfile.NamedTemporaryFile(dir=folder, prefix=".xvrml-", delete=False) as file:
         file.write(data)

@@ -1,6 +1,8 @@
-"""To and from other packages, each imported when it is asked for: trimesh, PyVista, Pillow, matplotlib.
+"""Conversions to and from other packages: trimesh, PyVista, Pillow, matplotlib. Each package is
+imported on first use.
 
-Pictures need little of this: numpy.asarray(image) works, Jupyter shows an image that ends a cell.
+Pictures often need no conversion: numpy.asarray(image) works, and Jupyter shows an image that ends
+a cell.
 """
 import numpy as np
 
@@ -8,7 +10,8 @@ __all__ = ["from_trimesh", "to_trimesh", "to_pyvista", "to_pil", "from_pil", "im
 
 
 def from_trimesh(mesh, color=None):
-    """A node of a trimesh.Trimesh (a Shape) or a trimesh.Scene (a Group with a Transform for each of its nodes)."""
+    """Converts a trimesh.Trimesh to a Shape, or a trimesh.Scene to a Group with a Transform for
+    each of its nodes."""
     import xvrml
     if hasattr(mesh, "graph") and hasattr(mesh, "geometry"):
         shapes = {name: from_trimesh(one, color) for name, one in mesh.geometry.items() if hasattr(one, "faces")}
@@ -41,7 +44,8 @@ def from_trimesh(mesh, color=None):
 
 
 def _placed(shape, matrix):
-    """A Transform that means the matrix: translation, rotation and scale by its singular values."""
+    """Returns a Transform that is equivalent to the matrix. Translation, rotation and scale come
+    from its singular value decomposition."""
     import xvrml
     if np.allclose(matrix, np.eye(4)):
         return shape
@@ -70,13 +74,14 @@ def _meshes(world, spheres):
 
 
 def _outward(mesh):
-    """Faces as they are seen from the front, wherever the mesh stands."""
+    """Returns the faces in counter-clockwise order as seen from the front, wherever the mesh is
+    placed."""
     faces = mesh.faces
     return faces if mesh.ccw == (np.linalg.det(mesh.matrix[:3, :3]) > 0) else faces[:, ::-1]
 
 
 def to_trimesh(world, spheres=32):
-    """A trimesh.Scene of everything that is drawn; names are those of the Shapes."""
+    """Returns a trimesh.Scene of everything that is drawn. Its names are those of the Shapes."""
     import trimesh
     scene = trimesh.Scene()
     for mesh in _meshes(world, spheres):
@@ -95,7 +100,7 @@ def _color(mesh):
 
 
 def to_pyvista(world, spheres=32):
-    """A pyvista.MultiBlock of everything that is drawn, in world coordinates."""
+    """Returns a pyvista.MultiBlock of everything that is drawn, in world coordinates."""
     import pyvista
     blocks = pyvista.MultiBlock()
     for number, mesh in enumerate(_meshes(world, spheres)):
@@ -110,13 +115,13 @@ def to_pyvista(world, spheres=32):
 
 
 def to_pil(image):
-    """A PIL.Image of what a screen shows of a picture."""
+    """Returns a PIL.Image that shows a picture as a screen does."""
     from PIL import Image
     return Image.fromarray(image.display, "RGB")
 
 
 def from_pil(image):
-    """A PixelTexture of a PIL.Image."""
+    """Returns a PixelTexture made from a PIL.Image."""
     import xvrml
     pixels = np.asarray(image if image.mode in ("L", "LA", "RGB", "RGBA") else image.convert("RGBA"))
     return xvrml.PixelTexture(image=pixels)

@@ -1,4 +1,5 @@
-# Types of xvrml.interop. Classes of other packages are Any: they need not be installed.
+# Types of xvrml.interop. Classes of other packages are Any, so that the packages need not be
+# installed.
 from typing import Any, Optional, Sequence
 
 from . import Node, Picture, World

@@ -1,6 +1,8 @@
-"""A class for every node type: xvrml.Box(size=(1, 2, 3)) is a node in no world yet; keywords are fields.
+"""A class for every node type. xvrml.Box(size=(1, 2, 3)) creates a node that is in no world yet;
+keywords are fields.
 
-The classes come from the tables that nodegen writes from the .node files, those of node plug-ins too.
+The classes come from the tables that nodegen writes from the .node files, including those of node
+plug-ins.
 """
 from . import _xvrml
 

@@ -1,4 +1,5 @@
-"""The renderer without VRML: OpenRT contexts, and ray queries on meshes under the names of Open3D's RaycastingScene.
+"""The renderer without VRML: OpenRT contexts, and ray queries on meshes under the names of Open3D's
+RaycastingScene.
 
 >>> from xvrml import rt
 >>> with rt.Context() as context:
@@ -29,11 +30,11 @@ _FIVE = ("t_hit", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_n
 
 
 def _corners(vertices, triangles):
-    """Triangles as whole numbers of vertices."""
+    """Checks the triangles and returns them as vertex indices."""
     count = len(_arguments.array("add_triangles(): vertices", vertices, (None, 3)))
     corners = _arguments.array("add_triangles(): triangles", triangles, (None, 3))
     if corners.dtype.kind not in "iu":
-        for odd in corners[corners != np.floor(corners)][:1]:  # NaN, too
+        for odd in corners[corners != np.floor(corners)][:1]:  # also catches NaN
             raise ValueError(f"add_triangles(): triangles: whole numbers expected, not {odd:g}")
     for none in corners[(corners < 0) | (corners >= count)][:1]:
         raise ValueError(f"add_triangles(): triangles: {none:.0f} is no vertex: there are {count}")
@@ -41,11 +42,13 @@ def _corners(vertices, triangles):
 
 
 class Raycaster:
-    """Ray queries on triangle meshes: arrays in, dicts of arrays out; all threads work, and other Python threads go on meanwhile.
+    """Ray queries on triangle meshes, with arrays as input and dicts of arrays as output. A query
+    uses all threads, and other Python threads continue meanwhile.
 
-    Rays are (..., 6): origin and direction, which need not be of length 1; t_hit is in its lengths. Results have the shape of
-    what is in front of the 6. geometry_ids are what add_triangles returned, primitive_ids rows of its triangles; INVALID_ID and
-    t_hit = inf where nothing is hit. Numbers are float32, as of the ray kernels.
+    Rays have shape (..., 6): origin and direction. The direction may have any length, which is the
+    unit of t_hit. Results have the leading shape of the rays. geometry_ids are the numbers that
+    add_triangles returned, primitive_ids are rows of its triangles. A ray that hits nothing has
+    INVALID_ID and t_hit = inf. Numbers are float32, like in the ray kernels.
     """
 
     INVALID_ID = 0xFFFFFFFF
@@ -63,7 +66,8 @@ class Raycaster:
         return number
 
     def add_triangles(self, vertices, triangles, matrix=None):
-        """Adds a mesh, vertices (n, 3) and triangles (m, 3), under a matrix (4, 4) for column vectors. Returns its number."""
+        """Adds a mesh with vertices (n, 3) and triangles (m, 3), placed by a matrix (4, 4) for
+        column vectors. Returns its number."""
         triangles = _corners(vertices, triangles)
         thing = self._context.mesh(vertices, triangles)
         number = self._place(thing, matrix, _rt._kept_triangles(vertices, triangles))
@@ -80,7 +84,7 @@ class Raycaster:
         return number
 
     def add_mesh(self, mesh):
-        """Adds an xvrml.Mesh where it stands; None for lines and points. Returns its number."""
+        """Adds an xvrml.Mesh at its place. Returns its number, or None for lines and points."""
         if not hasattr(mesh, "kind"):
             raise TypeError(f"add_mesh(): mesh: a Mesh of World.meshes() expected, not {_arguments._short(mesh)}")
         if mesh.kind == "sphere":
@@ -95,7 +99,8 @@ class Raycaster:
         return number
 
     def _numbered(self, hits, keys):
-        """Rows of the triangles as they were given: those without area are not there."""
+        """Renumbers primitives to the rows of the given triangles; triangles without area are not
+        in the scene."""
         ids, primitives = hits["geometry_ids"], hits["primitive_ids"]
         for number, kept in self._kept.items():
             here = ids == number
@@ -103,36 +108,38 @@ class Raycaster:
         return {key: hits[key] for key in keys}
 
     def cast_rays(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
-        """Nearest hits: a dict of t_hit, geometry_ids, primitive_ids, primitive_uvs, primitive_normals. nthreads: as in Open3D;
-        the constructor's threads work."""
+        """Returns the nearest hits as a dict of t_hit, geometry_ids, primitive_ids, primitive_uvs
+        and primitive_normals. nthreads: accepted for Open3D; the constructor's threads are used."""
         return self._numbered(self._context.cast_rays(rays, tnear=tnear, tfar=tfar), _FIVE)
 
     def test_occlusions(self, rays, tnear=0.0, tfar=np.inf, nthreads=0):
-        """Whether anything lies on the rays between tnear and tfar."""
+        """Returns whether anything lies on each ray between tnear and tfar."""
         return self._context.test_occlusions(rays, tnear=tnear, tfar=tfar)
 
     def count_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
-        """How many triangles each ray passes."""
+        """Returns the number of triangles on each ray."""
         return self._context.count_intersections(rays, tnear=tnear, tfar=tfar)
 
     def list_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
-        """All hits, nearest first: as cast_rays, of shape (n,), and ray_ids, ray_splits: those of ray i are ray_splits[i] to
-        ray_splits[i + 1]."""
+        """Returns all hits, nearest first: the arrays of cast_rays, of shape (n,), and ray_ids and
+        ray_splits. The hits of ray i are ray_splits[i] to ray_splits[i + 1]."""
         return self._numbered(self._context.list_intersections(rays, tnear=tnear, tfar=tfar), (*_FIVE[:4], "primitive_normals", "ray_ids",
                                                                                               "ray_splits"))
 
     def compute_closest_points(self, query_points, nthreads=0, *, radius=np.inf):
-        """The surface points nearest to points (..., 3): points, distances, geometry_ids, primitive_ids, primitive_uvs,
-        primitive_normals. radius: how far to look; NaN and INVALID_ID where nothing is."""
+        """Returns the surface points nearest to points (..., 3), as a dict of points, distances,
+        geometry_ids, primitive_ids, primitive_uvs and primitive_normals. radius: maximum distance;
+        NaN and INVALID_ID if no surface is that near."""
         return self._numbered(self._context.compute_closest_points(query_points, radius=radius), ("points", "distances", *_FIVE[1:]))
 
     def compute_distance(self, query_points, nthreads=0):
-        """Distances of points (..., 3) to the nearest surface."""
+        """Returns the distances from points (..., 3) to the nearest surface."""
         return self.compute_closest_points(query_points)["distances"]
 
     def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
-        """1 for points (..., 3) inside of closed surfaces, else 0: of rays that leave them an odd number of surfaces is passed.
-        nsamples: rays for each, an odd number; most of them decide."""
+        """Returns 1 for points (..., 3) inside closed surfaces, otherwise 0. A point is inside if a
+        ray from it crosses an odd number of surfaces. nsamples: rays per point, an odd number; the
+        majority decides."""
         points = _arguments.numbers("query_points", query_points, (..., 3), finite=False).astype(np.float32)
         nsamples = _arguments.whole("nsamples", nsamples, 1, 65535)
         votes = np.zeros(points.shape[:-1], np.int32)
@@ -143,7 +150,7 @@ class Raycaster:
         return (votes * 2 > nsamples).astype(np.float32)
 
     def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):
-        """Distances to the nearest surface, negative inside of closed ones."""
+        """Returns the distances to the nearest surface, negative inside closed surfaces."""
         inside = self.compute_occupancy(query_points, nsamples=nsamples) > 0
         return np.where(inside, -1, 1).astype(np.float32) * self.compute_distance(query_points)
 
@@ -151,11 +158,15 @@ class Raycaster:
 
 
 def create_rays_pinhole(*args, **options):
-    """Rays (height, width, 6) of a pinhole camera, as Open3D makes them: directions have length 1 along the view axis.
+    """Returns rays (height, width, 6) of a pinhole camera, as in Open3D. Directions have length 1
+    along the view axis.
 
-    create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px): at eye, looking at center; fov_deg is the horizontal angle of
-    view. create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): K (3x3) and world to camera (4x4), camera x to
-    the right, y down, z ahead; the middle of a picture is at (width_px / 2, height_px / 2), as in Open3D.
+    create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px): the camera is at eye and
+    looks at center; fov_deg is the horizontal angle of view.
+
+    create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): K (3x3) and world
+    to camera (4x4); camera x points to the right, y down, z forward. The middle of a picture is at
+    (width_px / 2, height_px / 2), as in Open3D.
     """
     by_matrices = any(name in options for name in _BY_MATRICES[:2]) or (
         len(args) > 0 and hasattr(args[0], "__len__") and not isinstance(args[0], (str, bytes)))

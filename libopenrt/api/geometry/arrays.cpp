@@ -1,5 +1,5 @@
-// arrays.cpp: rtVertexPointer and its kin, rtDrawArrays, rtDrawElements: the bulk path into an
-// object. Application thread.
+// arrays.cpp: rtVertexPointer and the other array pointers, rtDrawArrays and rtDrawElements. Runs
+// on the application's thread.
 #include <limits>
 
 #include "api/guard.h"

@@ -1,5 +1,6 @@
-// draw.cpp: rtDrawArrays and rtDrawElements: attributes are copied straight into the arrays that
-// travel to the backend. Everything is checked before anything is kept. Application thread.
+// draw.cpp: builds the geometry of rtDrawArrays and rtDrawElements. Attributes are copied directly
+// into the arrays that are sent to the backend; everything is checked before anything is stored.
+// Runs on the application's thread.
 #include <cstring>
 
 #include "api/geometry/object_builder.h"
@@ -12,8 +13,8 @@ namespace {
 constexpr size_t maxVertices = size_t(1) << 31;
 
 bool allFinite(const float* values, size_t count) {
-  // x - x is 0 for finite x and NaN otherwise. Independent sums, so that the loop is not bound by
-  // the latency of one.
+  // x - x is 0 for finite x and NaN otherwise. Eight independent sums hide the latency of the
+  // additions.
   float sums[8] = {};
   size_t i = 0;
   for (; i + 8 <= count; i += 8)
@@ -33,7 +34,7 @@ void checkIndices(const DrawCall& call) {
                                std::to_string(call.vertexCount) + " vertices");
 }
 
-// Which vertices a draw call uses: only they need to be finite.
+// The set of vertices that a draw call uses; only these must be finite.
 class UsedVertices {
  public:
   explicit UsedVertices(const DrawCall& call) : all_(!call.indices) {
@@ -48,7 +49,7 @@ class UsedVertices {
   std::vector<bool> used_;
 };
 
-// Values that are not finite: an error where they are used, else 0.
+// Throws if a used value is not finite. Sets unused values that are not finite to 0.
 void clearUnused(const DrawCall& call, float* values, size_t components, const char* complaint) {
   const UsedVertices used(call);
   for (size_t i = 0; i < call.vertexCount; i++) {
@@ -58,9 +59,8 @@ void clearUnused(const DrawCall& call, float* values, size_t components, const c
   }
 }
 
-// Copies count elements of from floats each into elements of to floats; what is missing is 1
-// (alpha).
-void gather(const AttributeSource& source, size_t count, size_t to, float* out) {
+// Copies `count` elements into elements of `to` floats; missing components become 1 (alpha).
+void copyElements(const AttributeSource& source, size_t count, size_t to, float* out) {
   const size_t from = static_cast<size_t>(source.components);
   if (from == to && source.stride == to * sizeof(float)) {
     std::memcpy(out, source.data, count * to * sizeof(float));
@@ -78,7 +78,7 @@ ArrayPtr attribute(const DrawCall& call, const AttributeSource& source, size_t c
   auto array = std::make_shared<Array>(call.vertexCount * components * sizeof(float));
   float* out = reinterpret_cast<float*>(array->data());
   if (source.data) {
-    gather(source, call.vertexCount, components, out);
+    copyElements(source, call.vertexCount, components, out);
     if (!allFinite(out, call.vertexCount * components))
       clearUnused(call, out, components, complaint);
   } else {
@@ -94,7 +94,8 @@ Vec3d loadPoint(const AttributeSource& source, size_t i) {
   return p;
 }
 
-// Points given in double: relative to an origin of their own unless float holds them exactly.
+// Converts points given in double to float, relative to a local origin (which goes into `matrix`)
+// unless float represents them exactly.
 ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   static_assert(sizeof(Vec3d) == 3 * sizeof(double));
   const UsedVertices used(call);
@@ -120,7 +121,8 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   return array;
 }
 
-// ordinals: where wanted, the number of each primitive that is kept among all of the call.
+// Returns the indices of the primitives that are not degenerate. ordinals: receives, if not null,
+// the number of each of them among all primitives of the call.
 ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& degenerate,
                         std::vector<uint32_t>* ordinals) {
   const size_t room = indexCount(call.mode, call.count);
@@ -145,10 +147,10 @@ ArrayPtr collectIndices(const DrawCall& call, const float* points, uint64_t& deg
   return fitting;
 }
 
-// Values of a shader parameter: those that something uses must be such as the parameter takes, the
-// others become its default.
-BuiltParameter ownValues(const DrawCall& call, const ParameterSource& from,
-                         const std::vector<uint32_t>& ordinals) {
+// Returns the values of a shader parameter. Used values must be valid for the parameter; unused
+// ones are set to its default.
+BuiltParameter varyingValues(const DrawCall& call, const ParameterSource& from,
+                             const std::vector<uint32_t>& ordinals) {
   const UsedVertices used(call);
   const bool perVertex = from.parameter.perVertex;
   const size_t count = perVertex ? call.vertexCount : ordinals.size(), n = from.parameter.floats;
@@ -189,7 +191,7 @@ std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState
   built.indices = collectIndices(call, built.points->as<float>(), degenerate,
                                  call.parameters.empty() ? nullptr : &ordinals);
   for (const ParameterSource& parameter : call.parameters)
-    built.parameters.push_back(ownValues(call, parameter, ordinals));
+    built.parameters.push_back(varyingValues(call, parameter, ordinals));
   if (built.indices->size() == 0) return std::nullopt;
   return built;
 }

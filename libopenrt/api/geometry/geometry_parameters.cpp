@@ -1,5 +1,5 @@
-// geometry_parameters.cpp: shader parameters by triangle and by vertex: between rtBegin and rtEnd,
-// and from arrays. Application thread.
+// geometry_parameters.cpp: shader parameters per triangle and per vertex, set between rtBegin and
+// rtEnd or from arrays. Runs on the application's thread.
 #include "api/parameters.h"
 
 #include "api/guard.h"
@@ -8,7 +8,7 @@
 namespace openrt {
 namespace {
 
-OwnParameter ownParameter(const RtsClass& table, uint32_t index) {
+VaryingParameter varyingParameter(const RtsClass& table, uint32_t index) {
   return {index, parameterFloats(table.params[index].type),
           frequencyOf(table, index) == RT_PER_VERTEX};
 }
@@ -25,7 +25,7 @@ void setPointer(Context& c, int handle, size_t stride, const float* pointer) {
   if (frequencyOf(table, index) == RT_PER_SHADER)
     fail(RT_INVALID_OPERATION, std::string("parameter ") + param.name + " of the class " +
                                    table.name + " is of the whole shader");
-  const OwnParameter own = ownParameter(table, index);
+  const VaryingParameter own = varyingParameter(table, index);
   const size_t packed = own.floats * sizeof(float);
   require(stride == 0 || (stride >= packed && stride <= maxStride), RT_INVALID_VALUE,
           "the stride is smaller than an element");
@@ -53,8 +53,8 @@ const RtsParam& declaredParameter(const RtsClass& table, int handle,
                                  table.name + " is of another type");
 }
 
-bool setOwnValue(Context& c, int handle, std::initializer_list<RtsType> types,
-                 std::span<const float> values) {
+bool setVaryingValue(Context& c, int handle, std::initializer_list<RtsType> types,
+                     std::span<const float> values) {
   if (!inList(c)) return false;
   const RTid shader = c.definition->builder.listShader();
   require(shader != 0, RT_INVALID_OPERATION, "no shader was bound at rtBegin");
@@ -62,7 +62,7 @@ bool setOwnValue(Context& c, int handle, std::initializer_list<RtsType> types,
   const RtsClass& table = c.scene.classOf(state);
   const RtsParam& param = declaredParameter(table, handle, types);
   const auto index = static_cast<uint32_t>(handle);
-  const OwnParameter own = ownParameter(table, index);
+  const VaryingParameter own = varyingParameter(table, index);
   if (frequencyOf(table, index) == RT_PER_SHADER || own.floats == 0) return false;
   if (const std::string problem = valueProblem(param, values); !problem.empty())
     fail(RT_INVALID_VALUE, problem);

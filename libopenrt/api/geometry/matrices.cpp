@@ -1,4 +1,5 @@
-// matrices.cpp: the current matrix: rtPushMatrix ... rtLookAt. Application thread.
+// matrices.cpp: API functions for the current matrix, rtPushMatrix to rtLookAt. Runs on the
+// application's thread.
 #include "api/geometry/transform.h"
 #include "api/guard.h"
 

@@ -1,5 +1,5 @@
-// matrix_stack.h: the current matrix and those below it. An object's definition has a stack of its
-// own. Application thread.
+// matrix_stack.h: the stack of the current matrix. The definition of an object uses a stack of its
+// own. Used on the application's thread.
 #pragma once
 
 #include <vector>
@@ -16,19 +16,19 @@ class MatrixStack {
   const Matrix4d& top() const { return entries_.back(); }
   void push();
   void pop();
-  // Throw RT_INVALID_VALUE where the result would not be finite.
+  // These throw RT_INVALID_VALUE if the result is not finite.
   void load(const Matrix4d& matrix);
   void multiply(const Matrix4d& matrix) { load(top() * matrix); }
 
-  // Opens a stack of its own that starts at the identity; close throws if a push in it lacks its
-  // pop.
+  // openDefinition() starts a new stack with the identity. checkBalanced() throws if a push since
+  // then has no pop.
   void openDefinition();
   void checkBalanced() const;
   void closeDefinition();
 
  private:
   std::vector<Matrix4d> entries_ = std::vector<Matrix4d>(1);
-  size_t floor_ = 0; // the entry at the bottom of the open stack
+  size_t floor_ = 0; // index of the bottom entry of the open stack
 };
 
 } // namespace openrt

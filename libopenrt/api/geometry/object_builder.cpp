@@ -1,5 +1,5 @@
-// object_builder.cpp: begin/end: merging of lists, local origins, attributes that appear late.
-// Application thread.
+// object_builder.cpp: merges rtBegin/rtEnd lists, chooses local origins, and adds attributes that
+// are first set inside a list. Runs on the application's thread.
 #include "api/geometry/object_builder.h"
 
 #include <cstring>
@@ -12,9 +12,9 @@ namespace {
 constexpr size_t maxMergedVertices = size_t(1) << 26; // further lists start another geometry
 constexpr double maxReachInExtents = 64;
 
-// Room for more elements with amortised growth, so that the caller can fill it without a further
-// allocation.
-void makeRoom(std::vector<uint32_t>& indices, size_t more) {
+// Reserves room for more elements with amortised growth, so that the caller can append them without
+// an allocation.
+void reserveMore(std::vector<uint32_t>& indices, size_t more) {
   if (indices.capacity() - indices.size() < more)
     indices.reserve(std::max(indices.size() + more, 2 * indices.capacity()));
 }
@@ -64,8 +64,8 @@ void ObjectBuilder::begin(RTenum mode, const GeometryState& state) {
                      state == state_ && vertices_.parameterFloats() == floats &&
                      vertices_.count() < maxMergedVertices;
   if (!joins) {
-    std::vector<OwnParameter> layout =
-        parameters ? latched->second.layout : std::vector<OwnParameter>();
+    std::vector<VaryingParameter> layout =
+        parameters ? latched->second.layout : std::vector<VaryingParameter>();
     flush(vertices_.count());
     vertices_.restart(present, floats);
     indices_.clear();
@@ -88,19 +88,19 @@ void ObjectBuilder::rejectVertex() const {
   fail(RT_INVALID_VALUE, "a coordinate is not finite");
 }
 
-// An attribute was set for the first time: lists before this one never have it, the vertices of
-// this one get the unset state.
+// Called when an attribute is set for the first time. Earlier lists are closed without it; the
+// vertices of this list get its default value.
 void ObjectBuilder::adaptAttributes() {
   if (listStart_ > 0) flush(listStart_);
   vertices_.addAttributes(current.present);
 }
 
-void ObjectBuilder::parameter(const OwnParameter& which, std::span<const float> value,
+void ObjectBuilder::parameter(const VaryingParameter& which, std::span<const float> value,
                               std::span<const float> own) {
   require(inList_, RT_INVALID_OPERATION, "not between rtBegin and rtEnd");
   Latched& latched = latched_[state_.shader];
   size_t at = 0;
-  for (const OwnParameter& known : latched.layout) {
+  for (const VaryingParameter& known : latched.layout) {
     if (known.index == which.index) {
       std::copy(value.begin(), value.end(), latched.values.begin() + ptrdiff_t(at));
       return;
@@ -110,8 +110,8 @@ void ObjectBuilder::parameter(const OwnParameter& which, std::span<const float> 
   Latched wider = latched;
   wider.layout.push_back(which);
   wider.values.insert(wider.values.end(), value.begin(), value.end());
-  std::vector<OwnParameter> layout = wider.layout;
-  if (listStart_ > 0) flush(listStart_); // lists before this one never have it
+  std::vector<VaryingParameter> layout = wider.layout;
+  if (listStart_ > 0) flush(listStart_); // earlier lists do not have the parameter
   vertices_.addParameters(own.data(), own.size());
   latched = std::move(wider);
   layout_ = std::move(layout);
@@ -141,8 +141,7 @@ void ObjectBuilder::appendWide(double x, double y, double z) {
   wide_.push_back({x, y, z});
 }
 
-// From here on the list is kept in double; what it has so far came in float and may be too large
-// for that.
+// Switches the list to double. Throws if an earlier vertex, given in float, exceeds maxCoordinate.
 void ObjectBuilder::widenList() {
   std::vector<Vec3d> points;
   for (size_t i = listStart_; i < vertices_.count(); i++) {
@@ -155,10 +154,11 @@ void ObjectBuilder::widenList() {
   wideList_ = true;
 }
 
-// Decides where the origin of a list in double lies, and whether the list joins the open geometry.
-void ObjectBuilder::settleOrigin() {
+// Chooses the local origin of a list in double, and whether the list is merged into the open
+// geometry.
+void ObjectBuilder::chooseOrigin() {
   if (!wideList_) {
-    if (local_ && listStart_ > 0) flush(listStart_); // coordinates in float keep their own origin
+    if (local_ && listStart_ > 0) flush(listStart_); // a list in float has no local origin
     local_ = false;
     return;
   }
@@ -194,10 +194,10 @@ void ObjectBuilder::end() {
   require(inList_, RT_INVALID_OPERATION, "not between rtBegin and rtEnd");
   const size_t count = vertices_.count() - listStart_;
   const size_t room = indexCount(mode_, count);
-  makeRoom(indices_, room);
-  if (!layout_.empty()) makeRoom(completing_, room);
-  settleOrigin();
-  const size_t before = indices_.size(); // settleOrigin may have handed earlier lists over
+  reserveMore(indices_, room);
+  if (!layout_.empty()) reserveMore(completing_, room);
+  chooseOrigin();
+  const size_t before = indices_.size(); // chooseOrigin() may have flushed earlier lists
   indices_.resize(before + room);
   const uint32_t first = static_cast<uint32_t>(listStart_);
   uint32_t* start = indices_.data() + before;
@@ -210,13 +210,13 @@ void ObjectBuilder::end() {
                                 static_cast<uint32_t>(completingVertex(mode_, count, ordinal)));
       });
   indices_.resize(before + static_cast<size_t>(written - start));
-  if (written == start) vertices_.truncate(listStart_); // nothing of the list is left
+  if (written == start) vertices_.truncate(listStart_); // every primitive is degenerate
   inList_ = wideList_ = false;
   wide_.clear();
 }
 
-// Hands the first vertexCount vertices of the open geometry over, with all indices so far: they are
-// those of closed lists.
+// Makes a finished geometry from the first vertexCount vertices of the open geometry and all
+// indices so far, which belong to closed lists.
 void ObjectBuilder::flush(size_t vertexCount) {
   if (!indices_.empty()) {
     BuiltGeometry built{.state = state_, .primitive = primitive_};
@@ -239,7 +239,7 @@ void ObjectBuilder::flush(size_t vertexCount) {
 
 void ObjectBuilder::addParameters(BuiltGeometry& built, size_t vertexCount) const {
   size_t at = 0;
-  for (const OwnParameter& parameter : layout_) {
+  for (const VaryingParameter& parameter : layout_) {
     const size_t count = parameter.perVertex ? vertexCount : completing_.size(),
                  n = parameter.floats;
     auto values = std::make_shared<Array>(count * n * sizeof(float));

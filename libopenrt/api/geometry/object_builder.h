@@ -1,11 +1,12 @@
-// object_builder.h: the geometry of the object being defined, from begin/end, arrays and analytic
-// shapes. Consecutive begin/end lists with the same state become one geometry. Application thread.
+// object_builder.h: builds the geometry of the object being defined from rtBegin/rtEnd lists, array
+// draw calls and spheres. Consecutive lists with the same state are merged into one geometry. Used
+// on the application's thread.
 //
-// Vertices given in double that float cannot hold are stored relative to a local origin, which goes
-// into the geometry's matrix. The origin is a multiple of the power of two above the extent, so
-// coordinates that are short binary fractions stay exact. A later list joins such a geometry only
-// while its distance from the origin is at most 64 of its own extents: the rounding of float then
-// stays below 2^-18 of the list's size.
+// Vertices in double that float cannot represent are stored relative to a local origin, which
+// becomes part of the geometry's matrix. The origin is a multiple of the power of two above the
+// extent, so coordinates that are short binary fractions stay exact. A later list is merged into
+// such a geometry only if its distance from the origin is at most 64 times its own extent. The
+// rounding to float is then below 2^-18 of the list's size.
 #pragma once
 
 #include <map>
@@ -22,7 +23,7 @@
 
 namespace openrt {
 
-// What is latched when a list begins, apart from its vertices.
+// The state that a list or draw call takes from the context when it begins.
 struct GeometryState {
   uint32_t shader = 0, name = 0;
   Matrix4d matrix;
@@ -34,7 +35,7 @@ struct GeometryState {
   }
 };
 
-// Where a draw call finds one attribute.
+// The array of one attribute of a draw call.
 struct AttributeSource {
   const std::byte* data = nullptr;
   size_t stride = 0; // bytes
@@ -42,16 +43,16 @@ struct AttributeSource {
   RTenum type = RT_FLOAT;
 };
 
-// A shader parameter that geometry has values of its own for.
-struct OwnParameter {
-  uint32_t index = 0; // in the class's table
-  size_t floats = 0;
-  bool perVertex = false; // else by triangle, segment or point
+// A shader parameter whose value varies over a geometry.
+struct VaryingParameter {
+  uint32_t index = 0;     // in the class's parameter table
+  size_t floats = 0;      // number of floats of its type
+  bool perVertex = false; // false: per triangle, segment or point
 };
 
-// One that a draw call finds in an array.
+// A varying parameter of a draw call, with its array.
 struct ParameterSource {
-  OwnParameter parameter;
+  VaryingParameter parameter;
   const RtsParam* declared = nullptr;
   AttributeSource source;
 };
@@ -70,7 +71,7 @@ struct BuiltParameter {
   ArrayPtr values;
 };
 
-// A geometry with its arrays, before they have numbers.
+// A finished geometry with its arrays, which get their ids at commit.
 struct BuiltGeometry {
   GeometryState state;
   edit::Primitive primitive = edit::Primitive::Triangles;
@@ -95,10 +96,10 @@ class ObjectBuilder {
   }
   void vertex(double x, double y, double z);
   void end();
-  // Within a list: the value of a parameter of the latched shader for the vertices or triangles
-  // that follow, also those of later lists with that shader. own: the shader's value, which the
-  // list's vertices had until now.
-  void parameter(const OwnParameter& which, std::span<const float> value,
+  // Sets, inside a list, a parameter of the latched shader for the following vertices or triangles,
+  // also in later lists with that shader. own: the shader's value, which applies to the vertices
+  // before.
+  void parameter(const VaryingParameter& which, std::span<const float> value,
                  std::span<const float> own);
   uint32_t listShader() const { return state_.shader; }
 
@@ -106,7 +107,7 @@ class ObjectBuilder {
   void sphere(float radius, const GeometryState& state);
 
   uint64_t degenerate() const { return degenerate_; }
-  // Closes the object and hands its geometry over.
+  // Ends the object and returns its geometry.
   std::vector<BuiltGeometry> finish();
 
  private:
@@ -114,52 +115,52 @@ class ObjectBuilder {
   void adaptAttributes();
   void appendWide(double x, double y, double z);
   void widenList();
-  void settleOrigin();
+  void chooseOrigin();
   void storeRelative(const Vec3d& origin);
   void flush(size_t vertexCount);
   void addParameters(BuiltGeometry& built, size_t vertexCount) const;
 
   std::vector<BuiltGeometry> done_;
-  // The open geometry: state, vertices and indices of lists that may still grow.
+  // The open geometry: state, vertices and indices of the lists merged so far.
   bool open_ = false, local_ = false;
   GeometryState state_;
   edit::Primitive primitive_ = edit::Primitive::Triangles;
   Vec3d origin_;
   VertexBuffer vertices_;
   std::vector<uint32_t> indices_;
-  // Values that were set for parameters of a shader since the object began: of each parameter in a
-  // row.
+  // The parameter values set for one shader since the object began, parameter after parameter.
   struct Latched {
-    std::vector<OwnParameter> layout;
+    std::vector<VaryingParameter> layout;
     std::vector<float> values;
   };
-  std::map<uint32_t, Latched> latched_; // by shader
-  std::vector<OwnParameter> layout_;    // of the open geometry
-  std::vector<uint32_t> completing_; // of the open geometry: vertex that completes each primitive,
-                                     // if layout_ is not empty
+  std::map<uint32_t, Latched> latched_;  // by shader
+  std::vector<VaryingParameter> layout_; // parameters of the open geometry
+  // If layout_ is not empty: the vertex that completes each primitive of the open geometry.
+  std::vector<uint32_t> completing_;
   // The list between begin and end.
   bool inList_ = false, wideList_ = false;
   RTenum mode_ = RT_POINTS;
   size_t listStart_ = 0;
-  std::vector<Vec3d> wide_; // the list's vertices as given, once one came in double
+  std::vector<Vec3d> wide_; // the list's vertices in double, if any of them was given in double
   uint64_t degenerate_ = 0;
 };
 
-// Bounds of points in double, and whether float holds all of them exactly.
+// Bounds of points in double, and whether float represents all of them exactly.
 struct WideBounds {
   Vec3d low, high;
   bool exact = true, any = false;
   void add(const Vec3d& p);
-  // The origin for points within these bounds, and the largest distance along an axis of any of
-  // them from a place.
+  // origin() returns the local origin for points in these bounds. reach() returns their largest
+  // distance from a point along any axis.
   Vec3d origin() const;
   double reach(const Vec3d& from) const;
 };
 
-// Largest coordinate accepted in double: differences of two stay within float's range.
+// Largest coordinate accepted in double: the difference of two stays in the range of float.
 inline constexpr double maxCoordinate = 1e38;
 
-// Geometry of one draw call; no value where every primitive is degenerate. (draw.cpp)
+// Builds the geometry of one draw call. Returns no value if every primitive is degenerate
+// (draw.cpp).
 std::optional<BuiltGeometry> buildDraw(const DrawCall& call, const GeometryState& state,
                                        const VertexState& current, uint64_t& degenerate);
 

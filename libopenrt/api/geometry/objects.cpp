@@ -1,4 +1,5 @@
-// objects.cpp: definitions of objects and their instances. Application thread.
+// objects.cpp: API functions that define objects and place instances. Runs on the application's
+// thread.
 #include "api/geometry/transform.h"
 #include "api/guard.h"
 
@@ -6,21 +7,21 @@ using namespace openrt;
 
 namespace {
 
-// An instance that is about to change.
+// Marks an instance for the next commit and changes it.
 template <class Change> void changeInstance(Context& c, RTid id, const Change& change) {
   InstanceState& state = c.scene.instance(id);
-  c.scene.instances.touch(id, state);
+  c.scene.instances.markDirty(id, state);
   change(state);
 }
 
-// A change of where an instance is, or whether. One that has been committed is dynamic from then on
-// (openrt.h, rtInstanceHint): the flag travels in its edit, so that every backend and every
-// recording builds the same structure.
+// Changes the matrix or the visibility of an instance. An instance that was already committed
+// becomes dynamic (openrt.h, rtInstanceHint). The flag is part of its edit, so every backend and
+// every recording builds the same acceleration structure.
 template <class T>
 void placeInstance(Context& c, RTid id, T InstanceState::*member, const T& value) {
   InstanceState& state = c.scene.instance(id);
   if (state.*member == value) return;
-  c.scene.instances.touch(id, state);
+  c.scene.instances.markDirty(id, state);
   if (state.committed) state.dynamic = true;
   state.*member = value;
 }

@@ -1,5 +1,5 @@
-// primitives.h: GL's vertex modes as triangles, segments and points, and what counts as degenerate.
-// Pure functions.
+// primitives.h: converts the vertex modes of OpenGL to triangles, segments and points, and drops
+// degenerate ones. Pure functions.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,8 @@ inline edit::Primitive primitiveOf(RTenum mode) {
   }
 }
 
-// Indices that count vertices of a mode make at most. Vertices that complete no primitive are
-// ignored, as in OpenGL.
+// Returns the largest number of indices for `count` vertices of a mode. Vertices that do not
+// complete a primitive are ignored, as in OpenGL.
 inline size_t indexCount(RTenum mode, size_t count) {
   switch (mode) {
   case RT_POINTS: return count;
@@ -45,8 +45,8 @@ inline bool samePoint(const float* a, const float* b) {
   return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-// Vertex of a list of count vertices that completes primitive number `ordinal`: whose value a
-// primitive as a whole has.
+// Returns the vertex (of `count`) that completes primitive number `ordinal`. Its parameter value
+// applies to the whole primitive (OpenGL's provoking vertex).
 inline size_t completingVertex(RTenum mode, size_t count, size_t ordinal) {
   switch (mode) {
   case RT_POINTS: return ordinal;
@@ -60,10 +60,11 @@ inline size_t completingVertex(RTenum mode, size_t count, size_t ordinal) {
   }
 }
 
-// Writes the indices of the primitives that count vertices of a mode make; vertexOf(i) is the i-th
-// vertex's index into points. Degenerate ones are left out and counted. out has room for
-// indexCount(mode, count). Returns the end of what was written. kept(ordinal) is called for each
-// that is written, with its number among all.
+// Writes the indices of the primitives of `count` vertices of a mode and returns the end of the
+// written indices. Degenerate primitives are left out and counted.
+//   vertexOf(i)    returns the index of the i-th vertex in points
+//   out            has room for indexCount(mode, count) indices
+//   kept(ordinal)  is called for every primitive that is written, with its number among all
 template <class VertexOf, class Kept>
 uint32_t* writeIndices(RTenum mode, size_t count, const float* points, const VertexOf& vertexOf,
                        uint32_t* out, uint64_t& degenerate, const Kept& kept) {
@@ -107,7 +108,7 @@ uint32_t* writeIndices(RTenum mode, size_t count, const float* points, const Ver
   case RT_TRIANGLES:
     for (size_t i = 0; i + 2 < count; i += 3) triangle(i, i + 1, i + 2);
     break;
-  case RT_TRIANGLE_STRIP: // every second triangle is turned, so that all face the same way
+  case RT_TRIANGLE_STRIP: // every second triangle is reversed, so that all have the same winding
     for (size_t i = 0; i + 2 < count; i++) triangle(i + (i & 1), i + 1 - (i & 1), i + 2);
     break;
   case RT_TRIANGLE_FAN:

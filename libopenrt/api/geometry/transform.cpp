@@ -1,5 +1,5 @@
-// transform.cpp: translation, scale, rotation and view matrices, composed in double. Application
-// thread.
+// transform.cpp: translation, scale, rotation and view matrices in double precision. Pure
+// functions.
 #include "api/geometry/transform.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct SineCosine {
   double sine, cosine;
 };
 
-// Exact at multiples of 90 degrees: a quarter turn four times over is the identity.
+// Exact at multiples of 90 degrees, so that four quarter turns give the identity.
 SineCosine sineCosineOfDegrees(double degrees) {
   const double reduced = std::remainder(degrees, 360.0); // -180 .. 180, exact
   const double quarters = std::round(reduced / 90.0);

@@ -1,5 +1,5 @@
-// vertex_buffer.cpp: growth and change of layout; every function allocates all it needs before it
-// changes anything.
+// vertex_buffer.cpp: growth and layout changes of the vertex buffer. Every function allocates its
+// memory before it changes anything.
 #include "api/geometry/vertex_buffer.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace openrt {
 namespace {
-constexpr size_t maxVertices = size_t(1) << 31; // what 32-bit indices name with room to spare
+constexpr size_t maxVertices = size_t(1) << 31; // half of the range of 32-bit indices
 }
 
 VertexBuffer::Floats VertexBuffer::grown(const Floats& old, size_t components,

@@ -1,5 +1,5 @@
-// vertex_buffer.h: the growing vertices of begin/end: one capacity for all attributes, so that
-// appending a vertex is one comparison and a few stores. Application thread.
+// vertex_buffer.h: the vertices between rtBegin and rtEnd. All attributes have the same capacity,
+// so appending a vertex takes one comparison and a few stores. Used on the application's thread.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +12,15 @@ namespace openrt {
 
 enum Attribute : uint8_t { HasNormal = 1, HasTexCoord = 2, HasColor = 4, HasParameters = 8 };
 
-// The attributes that the next vertex takes along; present: those that the object being defined has
-// set.
+// The current attributes, which the next vertex gets.
 struct VertexState {
-  float normal[3] = {0, 0, 0}; // 0 0 0: the face's own normal
+  float normal[3] = {0, 0, 0}; // 0 0 0: the geometric normal of the face
   float texCoord[2] = {0, 0};
   float color[4] = {1, 1, 1, 1};
-  const float* parameters =
-      nullptr; // of the latched shader, as many as the buffer's vertices have (HasParameters)
-  uint8_t present = 0;
+  // Parameter values for the latched shader: VertexBuffer::parameterFloats() floats
+  // (HasParameters).
+  const float* parameters = nullptr;
+  uint8_t present = 0; // Attribute bits that were set since the object's definition began
 };
 
 class VertexBuffer {
@@ -30,8 +30,8 @@ class VertexBuffer {
   const float* points() const { return points_.get(); }
   float* points() { return points_.get(); }
 
-  // Appends a vertex; state.present must be attributes(). Throws std::bad_alloc and then changes
-  // nothing.
+  // Appends a vertex; state.present must equal attributes(). If it throws std::bad_alloc, nothing
+  // is changed.
   void append(float x, float y, float z, const VertexState& state) {
     if (count_ == capacity_) [[unlikely]]
       reserve(capacity_ ? 2 * capacity_ : 256);
@@ -43,18 +43,18 @@ class VertexBuffer {
     count_++;
   }
 
-  // Gives every vertex so far the state that a vertex has before the attribute is first set.
+  // Adds attributes. Existing vertices get their default values.
   void addAttributes(uint8_t attributes);
-  // Widens the floats for shader parameters that every vertex has: the vertices so far get these
-  // values behind theirs.
+  // Appends `count` floats to the shader parameters of every vertex. Existing vertices get these
+  // values.
   void addParameters(const float* values, size_t count);
-  // Starts anew with these attributes and floats for parameters; keeps the storage.
+  // Removes all vertices and sets attributes and parameter floats; keeps the allocated memory.
   void restart(uint8_t attributes, size_t parameterFloats);
   // Removes the first n vertices.
   void dropFront(size_t n);
   void truncate(size_t n) { count_ = n; }
 
-  // Copies of the first n vertices; null where the attribute is absent.
+  // These copy an attribute of the first n vertices; null if the attribute is absent.
   ArrayPtr copyPoints(size_t n) const { return copy(points_.get(), 3 * n); }
   ArrayPtr copyNormals(size_t n) const {
     return attributes_ & HasNormal ? copy(normals_.get(), 3 * n) : nullptr;

@@ -1,7 +1,7 @@
-// debug.cpp: the backend of backend=debug:NAME: passes everything on to the backend that renders,
-// keeps a scene of its own beside, and explains misuse through the log callback: what, where, what
-// to do. It costs memory for the tables and time for each commit; pictures are those of the other
-// backend. Application thread; cancel, progress and snapshot from any.
+// debug.cpp: the backend of backend=debug:NAME. It forwards everything to the rendering backend,
+// keeps its own copy of the scene, and explains misuse through the log callback: the problem, the
+// place and the remedy. It costs memory for the tables and time for each commit; the pictures are
+// those of the rendering backend. Application thread; cancel, progress and snapshot from any.
 #include <set>
 #include <utility>
 
@@ -27,11 +27,11 @@ class DebugBackend final : public Backend, public ForwardedQueries {
       if (const auto* object = entry->any.AsObject()) {
         History& history = histories_[object->id];
         if (history.definitions++ == 0) history.hinted = object->dynamic;
-        fresh_.insert(object->id);
+        uncheckedObjects_.insert(object->id);
       }
       if (const auto* deleted = entry->any.AsDeleteObject()) {
         histories_.erase(deleted->id);
-        fresh_.erase(deleted->id);
+        uncheckedObjects_.erase(deleted->id);
       }
     }
     changed_ |= changes.any();
@@ -39,7 +39,7 @@ class DebugBackend final : public Backend, public ForwardedQueries {
   }
 
   void start() override {
-    if (changed_) look();
+    if (changed_) checkRules();
     changed_ = false;
     renderer_->start();
   }
@@ -73,16 +73,17 @@ class DebugBackend final : public Backend, public ForwardedQueries {
     if (name == scene_.classes.end() || !options_.shaders) return nullptr;
     try {
       return &options_.shaders->find(name->second.name, name->second.library);
-    } catch (const std::exception&) { return nullptr; } // whoever renders says it
+      // The rendering backend reports it.
+    } catch (const std::exception&) { return nullptr; }
   }
 
-  void look() {
+  void checkRules() {
     if (!options_.log) return;
-    const Facts facts{scene_, [this](uint32_t shader) { return classOf(shader); }, histories_,
-                      memory_};
+    const RuleContext facts{scene_, [this](uint32_t shader) { return classOf(shader); }, histories_,
+                            memory_};
     for (const auto rules : {sceneRules(), shaderRules()})
       for (const Rule& rule : rules) rule.check(facts, reporter(rule.name));
-    for (uint32_t id : std::exchange(fresh_, {})) {
+    for (uint32_t id : std::exchange(uncheckedObjects_, {})) {
       const auto object = scene_.objects.find(id);
       if (object == scene_.objects.end()) continue;
       for (const ObjectRule& rule : objectRules())
@@ -92,7 +93,7 @@ class DebugBackend final : public Backend, public ForwardedQueries {
 
   Report reporter(const char* rule) {
     return [this, rule](uint32_t id, const std::string& text) {
-      if (!said_.emplace(rule, id).second) return;
+      if (!reported_.emplace(rule, id).second) return;
       options_.log(2, ("debug: " + std::string(rule) + ": " + text).c_str(), options_.logUser);
     };
   }
@@ -103,9 +104,9 @@ class DebugBackend final : public Backend, public ForwardedQueries {
   std::unique_ptr<Backend> renderer_;
   Scene scene_;
   std::map<uint32_t, History> histories_;
-  Memory memory_;
-  std::set<uint32_t> fresh_; // objects defined since they were looked at
-  std::set<std::pair<std::string, uint32_t>> said_;
+  UsageHistory memory_;
+  std::set<uint32_t> uncheckedObjects_; // objects defined since the last check
+  std::set<std::pair<std::string, uint32_t>> reported_;
   bool changed_ = false;
 };
 

@@ -1,6 +1,7 @@
-// rules.h: the rules of the debug layer: each looks at what was committed and says what is odd
-// about it. A rule is a function in a table (rules_scene.cpp, rules_geometry.cpp); to add one is to
-// add a line there. Called by DebugBackend when a frame starts, on the application's thread.
+// rules.h: the rules of the debug layer. Each rule examines what was committed and reports misuse.
+// A rule is a function in a table (rules_scene.cpp, rules_shaders.cpp, rules_geometry.cpp); a new
+// rule needs one more line there. Called by DebugBackend when a frame starts, on the application's
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -15,43 +16,42 @@
 
 namespace openrt::debug {
 
-struct History { // of one object
+struct History { // definitions of one object
   uint64_t definitions = 0;
-  bool hinted = false; // dynamic with its first definition
+  bool hinted = false; // dynamic at its first definition
 };
 
-struct Memory { // what was in use in any frame
+struct UsageHistory { // everything that was used in any frame so far
   std::set<uint32_t> placed, shaders;
 };
 
-struct Facts {
+struct RuleContext {
   const Scene& scene;
-  std::function<const RtsClass*(uint32_t shader)>
-      classOf;                                  // null: no such shader, or an unknown class
-  const std::map<uint32_t, History>& histories; // by object
-  Memory& memory;
+  // Returns null if there is no such shader or its class is unknown.
+  std::function<const RtsClass*(uint32_t shader)> classOf;
+  const std::map<uint32_t, History>& histories; // definitions by object
+  UsageHistory& memory;
 };
 
-// Says something about the thing with this id (0: about the frame); the same rule says it once for
-// each id.
+// Reports a problem of the thing with this id (0: of the frame). A rule reports each id only once.
 using Report = std::function<void(uint32_t id, const std::string& text)>;
 
 struct Rule {
   const char* name;
-  void (*check)(const Facts& facts, const Report& report);
+  void (*check)(const RuleContext& facts, const Report& report);
 };
 
-std::span<const Rule> sceneRules();  // what is there and what is used
-std::span<const Rule> shaderRules(); // shaders, parameters, textures, lights
-// About one object, once for each definition.
+std::span<const Rule> sceneRules();  // contents and use of the scene
+std::span<const Rule> shaderRules(); // shaders, parameters, textures and lights
+// A rule about one object, checked once per definition.
 struct ObjectRule {
   const char* name;
-  void (*check)(uint32_t id, const Object& object, const Facts& facts, const Report& report);
+  void (*check)(uint32_t id, const Object& object, const RuleContext& facts, const Report& report);
 };
 std::span<const ObjectRule> objectRules();
 
-// "object 7", "shader 3 (Glass)".
+// Formats a name like "object 7" or "shader 3 (Glass)".
 std::string nameOf(const char* kind, uint32_t id);
-std::string nameOfShader(const Facts& facts, uint32_t id);
+std::string nameOfShader(const RuleContext& facts, uint32_t id);
 
 } // namespace openrt::debug

@@ -12,10 +12,10 @@ Vec3d at(const ArrayPtr& array, size_t i) {
   return {p[0], p[1], p[2]};
 }
 
-// Coordinates in float whose steps are coarse beside the object's own size. Positions in double
-// never come here like that: they have an origin of their own.
-void farFromOrigin(uint32_t id, const Object& object, const Facts&, const Report& report) {
-  constexpr double steps = 1 << 14; // of float, over the extent of a geometry
+// Reports float coordinates whose precision is coarse compared to the object's size. Positions
+// given in double never have this problem, because they get an origin of their own.
+void farFromOrigin(uint32_t id, const Object& object, const RuleContext&, const Report& report) {
+  constexpr double steps = 1 << 14; // smallest number of float steps across a geometry
   for (const Geometry& g : object.geometries) {
     if (!g.points || g.points->count<float>() < 6) continue;
     double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300}, reach = 0,
@@ -39,14 +39,15 @@ void farFromOrigin(uint32_t id, const Object& object, const Facts&, const Report
   }
 }
 
-struct Sides {
-  size_t triangles = 0, opposite = 0; // of the given normals to the side that the corners say
-  Vec3d area;                         // sum of area vectors: 0 of a closed surface
+struct Orientation {
+  size_t triangles = 0, opposite = 0; // triangles whose normals oppose their winding
+  // Sum of the area vectors; 0 for a closed surface.
+  Vec3d area;
   double total = 0, volume = 0;
 };
 
-Sides sidesOf(const Geometry& g) {
-  Sides s;
+Orientation orientationOf(const Geometry& g) {
+  Orientation s;
   const uint32_t* index = g.indices->as<uint32_t>();
   const double turn = g.clockwise ? -1 : 1;
   const Vec3d middle = at(g.points, index[0]);
@@ -65,11 +66,11 @@ Sides sidesOf(const Geometry& g) {
   return s;
 }
 
-void wrongSides(uint32_t id, const Object& object, const Facts&, const Report& report) {
+void wrongSides(uint32_t id, const Object& object, const RuleContext&, const Report& report) {
   for (const Geometry& g : object.geometries) {
     if (g.primitive != edit::Primitive::Triangles || !g.points || !g.indices || g.primitives() == 0)
       continue;
-    const Sides s = sidesOf(g);
+    const Orientation s = orientationOf(g);
     if (2 * s.opposite > s.triangles)
       report(id, std::to_string(s.opposite) + " of " + std::to_string(s.triangles) +
                      " triangles of " + nameOf("object", id) +

@@ -1,4 +1,5 @@
-// rules_scene.cpp: rules about what is in the scene and what of it can be seen. Application thread.
+// rules_scene.cpp: rules about the contents of the scene and what can be seen of them. Application
+// thread.
 #include <set>
 
 #include "backend/debug/rules.h"
@@ -7,13 +8,13 @@
 namespace openrt::debug {
 namespace {
 
-void noCamera(const Facts& f, const Report& report) {
+void noCamera(const RuleContext& f, const Report& report) {
   if (f.scene.camera.shader == 0 || !f.scene.shaders.contains(f.scene.camera.shader))
     report(0, "the frame has no camera and shows nothing: call rtPerspective, rtOrtho or "
               "rtUseCamera before rtRender");
 }
 
-void channels(const Facts& f, const Report& report) {
+void channels(const RuleContext& f, const Report& report) {
   const edit::FrameSettingsT& frame = f.scene.frame;
   if ((frame.channels & RT_VARIANCE) && frame.samples == 1)
     report(RT_VARIANCE, "RT_VARIANCE of one sample a pixel is 0 everywhere: raise "
@@ -34,7 +35,7 @@ bool drawable(const Scene& scene, uint32_t id) {
          !scene.childrenOf(id).empty();
 }
 
-void emptyInstances(const Facts& f, const Report& report) {
+void emptyInstances(const RuleContext& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances)
     if (!drawable(f.scene, instance.object))
       report(id, nameOf("instance", id) + " stands for " + nameOf("object", instance.object) +
@@ -43,7 +44,7 @@ void emptyInstances(const Facts& f, const Report& report) {
                      "degenerate is dropped (RTstats.degenerate)");
 }
 
-void flatInstances(const Facts& f, const Report& report) {
+void flatInstances(const RuleContext& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances)
     if (!instance.matrix.usable())
       report(id, "the matrix of " + nameOf("instance", id) +
@@ -52,7 +53,7 @@ void flatInstances(const Facts& f, const Report& report) {
                      "scale factors");
 }
 
-void neverPlaced(const Facts& f, const Report& report) {
+void neverPlaced(const RuleContext& f, const Report& report) {
   std::set<uint32_t>& placed = f.memory.placed;
   for (const auto& [id, instance] : f.scene.instances) placed.insert(instance.object);
   for (const auto& [id, object] : f.scene.objects)
@@ -61,7 +62,7 @@ void neverPlaced(const Facts& f, const Report& report) {
                                         "rtInstantiateObject, or delete it");
 }
 
-void redefined(const Facts& f, const Report& report) {
+void redefined(const RuleContext& f, const Report& report) {
   constexpr uint64_t often = 4;
   for (const auto& [id, history] : f.histories)
     if (history.definitions >= often && !history.hinted)
@@ -88,7 +89,7 @@ std::string nameOf(const char* kind, uint32_t id) {
   return std::string(kind) + " " + std::to_string(id);
 }
 
-std::string nameOfShader(const Facts& facts, uint32_t id) {
+std::string nameOfShader(const RuleContext& facts, uint32_t id) {
   const RtsClass* table = facts.classOf(id);
   return nameOf("shader", id) + (table ? std::string(" (") + table->name + ")" : std::string());
 }

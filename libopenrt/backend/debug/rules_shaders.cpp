@@ -13,7 +13,7 @@
 namespace openrt::debug {
 namespace {
 
-void noteUse(const Scene& scene, std::set<uint32_t>& used) {
+void collectUsedShaders(const Scene& scene, std::set<uint32_t>& used) {
   used.insert(
       {scene.camera.shader, scene.environment.shader, scene.defaultShader, scene.transport});
   for (const auto& [id, light] : scene.lights) used.insert(light.shader);
@@ -22,9 +22,9 @@ void noteUse(const Scene& scene, std::set<uint32_t>& used) {
     for (const Geometry& g : object.geometries) used.insert(g.shader);
 }
 
-void unusedShaders(const Facts& f, const Report& report) {
+void unusedShaders(const RuleContext& f, const Report& report) {
   std::set<uint32_t>& used = f.memory.shaders;
-  noteUse(f.scene, used);
+  collectUsedShaders(f.scene, used);
   for (const auto& [id, values] : f.scene.shaders) {
     const RtsClass* table = f.classOf(id);
     if (!table || used.contains(id)) continue;
@@ -41,7 +41,7 @@ void unusedShaders(const Facts& f, const Report& report) {
   }
 }
 
-void missingTextures(const Facts& f, const Report& report) {
+void missingTextures(const RuleContext& f, const Report& report) {
   for (const auto& [id, values] : f.scene.shaders)
     for (const auto& [index, parameter] : values.parameters)
       if (parameter.texture != 0 && !f.scene.textures.contains(parameter.texture))
@@ -49,7 +49,7 @@ void missingTextures(const Facts& f, const Report& report) {
                        ", which has no image and counts as white: bind it and call rtTexImage2D");
 }
 
-void goneParameters(const Facts& f, const Report& report) {
+void removedParameters(const RuleContext& f, const Report& report) {
   for (const auto& [id, values] : f.scene.shaders) {
     const RtsClass* table = f.classOf(id);
     for (const auto& [index, parameter] : values.parameters)
@@ -60,8 +60,8 @@ void goneParameters(const Facts& f, const Report& report) {
   }
 }
 
-// Textures on geometry without texture coordinates: one texel everywhere.
-void unmappedTextures(const Facts& f, const Report& report) {
+// Reports textures on geometry without texture coordinates, which show one texel everywhere.
+void unmappedTextures(const RuleContext& f, const Report& report) {
   for (const auto& [id, object] : f.scene.objects)
     for (const Geometry& g : object.geometries) {
       if (g.primitive == edit::Primitive::Sphere || g.texCoords || g.shader == 0) continue;
@@ -76,8 +76,8 @@ void unmappedTextures(const Facts& f, const Report& report) {
     }
 }
 
-// Values by vertex or triangle under an override of another class are ignored.
-void overriddenParameters(const Facts& f, const Report& report) {
+// Reports per-vertex or per-triangle values that an override with another class makes useless.
+void overriddenParameters(const RuleContext& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances) {
     if (instance.shader == 0) continue;
     const auto object = f.scene.objects.find(instance.object);
@@ -146,8 +146,9 @@ Bounds boundsOf(const Scene& scene) {
   return world;
 }
 
-// Numbers of a parameter by name: what was set, or the default; false if the class has none.
-bool valueOf(const Facts& f, uint32_t shader, const char* name, RtsType type, float out[3]) {
+// Returns the values of a parameter by name: those that were set, or the defaults. Returns false if
+// the class does not have the parameter.
+bool valueOf(const RuleContext& f, uint32_t shader, const char* name, RtsType type, float out[3]) {
   const RtsClass* table = f.classOf(shader);
   for (uint32_t i = 0; table && i < table->paramCount; i++) {
     const RtsParam& param = table->params[i];
@@ -162,7 +163,7 @@ bool valueOf(const Facts& f, uint32_t shader, const char* name, RtsType type, fl
   return false;
 }
 
-void uselessLights(const Facts& f, const Report& report) {
+void uselessLights(const RuleContext& f, const Report& report) {
   Bounds world;
   bool known = false;
   for (const auto& [id, light] : f.scene.lights) {
@@ -197,7 +198,7 @@ void uselessLights(const Facts& f, const Report& report) {
 constexpr Rule table[] = {
     {"unused-shader", unusedShaders},
     {"texture-without-image", missingTextures},
-    {"parameter-gone", goneParameters},
+    {"parameter-gone", removedParameters},
     {"no-texture-coordinates", unmappedTextures},
     {"parameters-ignored", overriddenParameters},
     {"useless-light", uselessLights},

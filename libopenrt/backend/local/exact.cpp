@@ -1,6 +1,7 @@
-// exact.cpp: Numbers that double precision cannot tell from 0 are worked out again in
-// long double, which has 64 bits of mantissa on x86: products of three differences of floats, of
-// triangles a million times longer than high, met at 1e-7.
+// exact.cpp: intersection of a ray and a triangle in double precision (exact.h). Numbers that
+// double precision cannot tell from 0 are recomputed in long double, which has 64 bits of mantissa
+// on x86. They are products of three differences of floats, for triangles a million times longer
+// than high that are hit at an angle of 1e-7.
 #include "backend/local/exact.h"
 
 #include <algorithm>
@@ -13,19 +14,20 @@ double largest(const Vec3d& v) {
   return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
 }
 
-// Twice the volume that the direction and the edge from p to q span with the origin; exactly the
-// negative for q and p. On which side of the edge the ray passes (J. Pluecker's coordinates; as S.
-// Woop, C. Benthin, I. Wald: Watertight ray/triangle intersection, JCGT 2(1), 2013, but for any
-// direction).
+// Returns twice the volume that the direction and the edge from p to q span with the origin;
+// swapping p and q exactly negates it. The sign says on which side of the edge the ray passes
+// (Pluecker coordinates, as in S. Woop, C. Benthin, I. Wald: Watertight ray/triangle intersection,
+// JCGT 2(1), 2013, but for any direction).
 template <class T> T side(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
   const T ex = T(q.x) - p.x, ey = T(q.y) - p.y, ez = T(q.z) - p.z, sx = T(q.x) + p.x,
           sy = T(q.y) + p.y, sz = T(q.z) + p.z;
   return (ey * sz - ez * sy) * d.x + (ez * sx - ex * sz) * d.y + (ex * sy - ey * sx) * d.z;
 }
 
-// The bound of the rounding error depends on the edge alone, so both of its triangles choose the
-// same precision. 2^-20 of the largest value: a weight must be right to about 1e-6 also where the
-// ray grazes.
+// The same, in long double if the double result is below the error bound. The bound depends only on
+// the edge, so both of its triangles choose the same precision. It leaves a factor of 2^20 above
+// the rounding error, because a barycentric weight must be right to about 1e-6 at grazing angles
+// too.
 double sideOf(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
   const double rough = side<double>(p, q, d);
   const double doubt = 0x1p-30 * largest(q - p) * (largest(p) + largest(q)) * largest(d);
@@ -33,18 +35,19 @@ double sideOf(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
 }
 
 struct Sides {
-  double ac, ba, cb; // weights of b, c and a, times their sum
+  double ac, ba, cb; // barycentric weights of b, c and a, not normalised
 };
 
-Sides sidesOf(const SeenTriangle& s, const Vec3d& d) {
+Sides sidesOf(const RelativeTriangle& s, const Vec3d& d) {
   return {sideOf(s.a, s.c, d), sideOf(s.b, s.a, d), sideOf(s.c, s.b, d)};
 }
 
-// The point (1 - s) p + s q of an edge that is next to the line along d through the origin.
-double nextOnEdge(const Vec3d& p, const Vec3d& q, const Vec3d& d, double& s, double& t) {
+// Finds the point (1 - s) p + s q of an edge that is closest to the line along d through the
+// origin. Returns its distance from the line; t is its parameter along the line.
+double closestPointOnEdge(const Vec3d& p, const Vec3d& q, const Vec3d& d, double& s, double& t) {
   const Vec3d e = q - p;
   const double dd = dot(d, d);
-  // Both without what is along the line.
+  // p and e without their components along the line.
   const Vec3d pp = p - d * (dot(p, d) / dd), ee = e - d * (dot(e, d) / dd);
   const double square = dot(ee, ee);
   s = square > 0 ? std::clamp(-dot(pp, ee) / square, 0.0, 1.0) : 0;
@@ -54,7 +57,7 @@ double nextOnEdge(const Vec3d& p, const Vec3d& q, const Vec3d& d, double& s, dou
 
 } // namespace
 
-bool meets(const SeenTriangle& s, const Vec3d& d, Meeting& at) {
+bool intersectTriangle(const RelativeTriangle& s, const Vec3d& d, TriangleHit& at) {
   const Sides w = sidesOf(s, d);
   const bool front = w.ac >= 0 && w.ba >= 0 && w.cb >= 0,
              back = w.ac <= 0 && w.ba <= 0 && w.cb <= 0;
@@ -68,11 +71,12 @@ bool meets(const SeenTriangle& s, const Vec3d& d, Meeting& at) {
   return std::isfinite(at.t);
 }
 
-double nextTo(const SeenTriangle& s, const Vec3d& d, unsigned edges, Meeting& at) {
+double closestPointToLine(const RelativeTriangle& s, const Vec3d& d, unsigned edges,
+                          TriangleHit& at) {
   double best = HUGE_VAL, share = 0, t = 0;
   const auto nearer = [&](unsigned edge, const Vec3d& p, const Vec3d& q) {
     if (!(edges & (1u << edge))) return false;
-    const double distance = nextOnEdge(p, q, d, share, t);
+    const double distance = closestPointOnEdge(p, q, d, share, t);
     if (!(distance < best)) return false;
     best = distance;
     at.t = t;
@@ -93,12 +97,13 @@ double nextTo(const SeenTriangle& s, const Vec3d& d, unsigned edges, Meeting& at
   return best;
 }
 
-double meetsPlane(const SeenTriangle& s, const Vec3d& d) {
+double intersectPlane(const RelativeTriangle& s, const Vec3d& d) {
   const Vec3d n = cross(s.b - s.a, s.c - s.a);
   return dot(n, s.a) / dot(n, d);
 }
 
-bool foundInSingle(const SeenTriangle& s, const Vec3d& direction, float near, float far) {
+bool isHitInSinglePrecision(const RelativeTriangle& s, const Vec3d& direction, float near,
+                            float far) {
   struct V {
     float x, y, z;
     V operator+(const V& o) const { return {x + o.x, y + o.y, z + o.z}; }
@@ -120,8 +125,8 @@ bool foundInSingle(const SeenTriangle& s, const Vec3d& direction, float near, fl
   return t >= near && t <= far;
 }
 
-void settle(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3d& direction,
-            float near, float far, float& t, float& u, float& v) {
+void refineHit(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3d& direction,
+               float near, float far, float& t, float& u, float& v) {
   const uint32_t* corner = r.indices + 3 * size_t(primitive);
   const auto place = [&](int k) {
     const float* p = r.vertices + 3 * size_t(corner[k]);
@@ -136,9 +141,9 @@ void settle(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3
     from = back.point(origin);
     d = back.vector(direction);
   }
-  const SeenTriangle seen{place(0) - from, place(1) - from, place(2) - from};
-  Meeting at;
-  if (!meets(seen, d, at) && !std::isfinite(nextTo(seen, d, 7, at))) return;
+  const RelativeTriangle seen{place(0) - from, place(1) - from, place(2) - from};
+  TriangleHit at;
+  if (!intersectTriangle(seen, d, at) && !std::isfinite(closestPointToLine(seen, d, 7, at))) return;
   if (!std::isfinite(at.t) || !std::isfinite(at.u) || !std::isfinite(at.v)) return;
   t = std::clamp(float(at.t), near, far);
   u = float(at.u);

@@ -1,7 +1,7 @@
-// huge_spheres.cpp: spheres and ellipsoids whose surface single precision cannot place
-// (render/huge_spheres.h): the ground as a sphere, of which the eye is a millionth of the radius
-// away. Each is met in double precision in its own frame, as a geometry of our own. Called by
-// render threads.
+// huge_spheres.cpp: an Embree user geometry for spheres and ellipsoids that are too large for
+// single precision (render/huge_spheres.h), for example the ground as a sphere with the eye at a
+// millionth of the radius above it. They are intersected in double precision in their own frame.
+// Called by render threads.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,10 +12,10 @@
 namespace openrt {
 namespace {
 
-// Where the ray meets the unit sphere, nearest first; false if it does not. The product of both
-// distances comes from how far the origin is from the surface, so that the nearer one keeps its
-// digits.
-bool meetsUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
+// Intersects the ray with the unit sphere. Returns false if it misses, else both distances, the
+// nearer one first. The nearer one is computed from the product of both, which follows from the
+// origin's distance from the surface, so that it keeps its digits.
+bool intersectUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
   const double dd = dot(d, d), middle = -dot(o, d) / dd;
   const Vec3d across = o + d * middle;
   const double h = length(across), square = (1 - h) * (1 + h) / dd;
@@ -28,13 +28,13 @@ bool meetsUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
   return std::isfinite(near) && std::isfinite(far);
 }
 
-struct SeenSphere {
+struct HugeSphere {
   Matrix4d toUnit;
-  explicit SeenSphere(const Matrix4d& unit) : toUnit(inverse(unit)) {}
-  bool meets(const Lane& lane, double t[2]) const {
-    return meetsUnitSphere(toUnit.point(lane.origin), toUnit.vector(lane.direction), t);
+  explicit HugeSphere(const Matrix4d& unit) : toUnit(inverse(unit)) {}
+  bool intersectRay(const Lane& lane, double t[2]) const {
+    return intersectUnitSphere(toUnit.point(lane.origin), toUnit.vector(lane.direction), t);
   }
-  // Outwards: by the transpose of the inverse.
+  // Returns the outward normal: the transpose of the inverse matrix transforms normals.
   Vec3d normalAt(const Lane& lane, double t) const {
     const Vec3d p = toUnit.point(lane.origin + lane.direction * t);
     return {dot(toUnit.column(0), p), dot(toUnit.column(1), p), dot(toUnit.column(2), p)};
@@ -64,25 +64,25 @@ void boundsOf(const RTCBoundsFunctionArguments* a) {
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {
-  const SeenSphere sphere(unitOf(a->geometryUserPtr, a->primID));
+  const HugeSphere sphere(unitOf(a->geometryUserPtr, a->primID));
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
   for (unsigned i = 0; i < a->N; i++) {
     double t[2];
     if (a->valid[i] != -1) continue;
     const Lane lane(rays, a->N, i);
-    if (!sphere.meets(lane, t)) continue;
+    if (!sphere.intersectRay(lane, t)) continue;
     for (const double at : t)
-      if (lane.reaches(at) && takeHit(a, i, at, 0, 0, sphere.normalAt(lane, at))) break;
+      if (lane.reaches(at) && storeHit(a, i, at, 0, 0, sphere.normalAt(lane, at))) break;
   }
 }
 
 void occluded(const RTCOccludedFunctionNArguments* a) {
-  const SeenSphere sphere(unitOf(a->geometryUserPtr, a->primID));
+  const HugeSphere sphere(unitOf(a->geometryUserPtr, a->primID));
   for (unsigned i = 0; i < a->N; i++) {
     double t[2];
     if (a->valid[i] != -1) continue;
     const Lane lane(a->ray, a->N, i);
-    if (sphere.meets(lane, t) && (lane.reaches(t[0]) || lane.reaches(t[1])))
+    if (sphere.intersectRay(lane, t) && (lane.reaches(t[0]) || lane.reaches(t[1])))
       RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
   }
 }

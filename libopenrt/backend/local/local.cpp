@@ -1,6 +1,8 @@
-// local.cpp: What a change costs: parameters, textures, lights and the camera make a
-// new snapshot over the same acceleration structure; moved dynamic instances and redefined dynamic
-// objects change it in place; all else lays it out anew from the parts that did not change.
+// local.cpp: snapshots, frames and statistics of LocalBackend. The cost of a change:
+//   parameters, textures, lights, camera    a new snapshot with the same acceleration structure
+//   moved dynamic instances, redefined      the acceleration structure is updated in place
+//   dynamic objects
+//   anything else                           it is rebuilt, reusing the parts that did not change
 #include "backend/local/local.h"
 #include "backend/local/near_lamps.h"
 #include "shading/running.h"
@@ -47,8 +49,8 @@ void LocalBackend::prepare() {
   next->frame = scene_.frame;
   makeShaders(*next);
   try {
-    bringUpToDate(*next);
-  } catch (...) { // half done: the next time builds
+    updateAccel(*next);
+  } catch (...) { // incomplete: the next call rebuilds it
     accel_ = nullptr;
     throw;
   }
@@ -61,26 +63,27 @@ void LocalBackend::prepare() {
   unreachedLights_ = choice.unreached;
   transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
-  next->emitters.build(*next, snapshot_.get(), samePlaces_);
-  if (!saidNearLamp_ && options_.log &&
+  next->emitters.build(*next, snapshot_.get(), recordsUnmoved_);
+  if (!warnedOfNearLamp_ && options_.log &&
       next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
     const std::string warning = warnOfNearLamps(*next);
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
-    saidNearLamp_ = !warning.empty();
+    warnedOfNearLamp_ = !warning.empty();
   }
   next->manyLights = makeManyLights(*next, snapshot_.get());
   if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass &&
       next->camera.shader.shaderClass->project) {
     auto sources =
-        std::make_shared<const LightSources>(*next, samePlaces_ ? snapshot_.get() : nullptr);
+        std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
   snapshot_ = std::move(next);
   changes_ = {};
 }
 
-// The acceleration structure of the committed scene, and with its origin the camera and the lights.
-void LocalBackend::bringUpToDate(RenderScene& next) {
+// Brings the acceleration structure up to date with the committed scene, and makes the camera and
+// the lights, which depend on its origin.
+void LocalBackend::updateAccel(RenderScene& next) {
   const double begin = now();
   const SceneChanges& c = changes_;
   bool scoped = false;
@@ -88,7 +91,7 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
   bool layOut = !accel_ || c.structure || (c.lights && (scoped || scopedLights_)) ||
                 (next.shaders != snapshot_->shaders && !next.shaders->extends(*snapshot_->shaders));
   for (size_t i = 0; i < c.redefined.size() && !layOut; i++)
-    layOut = !builder_.survey.retake(scene_, flat_, c.redefined[i]);
+    layOut = !builder_.survey.resurveyObject(scene_, flat_, c.redefined[i]);
   std::vector<uint32_t> moved;
   if (layOut) {
     flat_ = flatten(scene_);
@@ -100,7 +103,7 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
                        .c_str(),
                    options_.logUser);
   } else {
-    if (c.lights) { // no light is scoped, nor was: there is but this set
+    if (c.lights) { // no light is or was scoped, so there is a single light set
       flat_.lightSets.clear();
       flat_.setNumbers.clear();
       flat_.lightSet(unscopedLights(scene_));
@@ -118,8 +121,8 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
                          pixel};
-  const bool builds = layOut || !AccelBuilder::standsAt(*accel_, origin, input.scale);
-  samePlaces_ = !builds && moved.empty() && c.redefined.empty();
+  const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
+  recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)
     accel_ = builder_.build(input);
   else
@@ -130,7 +133,7 @@ void LocalBackend::bringUpToDate(RenderScene& next) {
   makeLights(next, flat_, origin);
 }
 
-// Shaders and textures are those of the last snapshot if they did not change.
+// Reuses the shaders and textures of the last snapshot if they did not change.
 void LocalBackend::makeShaders(RenderScene& next) const {
   fillHost(next.host);
   next.host.logCallback = options_.log;
@@ -145,7 +148,7 @@ void LocalBackend::makeShaders(RenderScene& next) const {
   }
   std::map<uint32_t, uint32_t> index;
   std::vector<Texture> textures;
-  textures.emplace_back(edit::TextureT(), nullptr); // number 0: none, white
+  textures.emplace_back(edit::TextureT(), nullptr); // number 0: no texture, samples as white
   for (const auto& [id, image] : scene_.textures) {
     const auto number = uint32_t(index.size() + 1);
     index[id] = number;
@@ -181,8 +184,8 @@ void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
   }
 }
 
-// How far apart two neighbouring pixels' rays are in the middle of the picture: lines and points
-// are pixels wide.
+// Returns the distance between the rays of two neighbouring pixels in the middle of the picture.
+// The width of lines and points is given in pixels.
 PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
   PixelFootprint result;
   for (int k = 0; k < 3; k++) {
@@ -217,7 +220,7 @@ PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
     const RunningShader running(*camera.shaderClass);
     camera.shaderClass->generate(&next.host, &batch, camera.params, 2, points, size, &rays);
   }
-  // In local space the view axis is -z: compare where the rays are at depth 0 and at depth 1.
+  // In local space the view axis is -z. Compare the positions of the rays at depths 0 and 1.
   const auto at = [&](int i, int k, float depth) {
     return org[k][i] + dir[k][i] * (depth + org[2][i]) / -dir[2][i];
   };
@@ -328,13 +331,13 @@ void LocalBackend::stats(RTstats& s) const {
   s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));
   s.threads = threads_;
   std::snprintf(s.isa, sizeof s.isa, "%s",
-                device_->wide                    ? "avx512"
+                device_->hasNativePackets16      ? "avx512"
                 : __builtin_cpu_supports("avx2") ? "avx2"
                                                  : "sse");
   std::snprintf(s.kernel, sizeof s.kernel, "Embree %s", RTC_VERSION_STRING);
 }
 
-// In render space, which has the world's lengths.
+// The ray is in render space, which has the world's unit of length.
 bool LocalBackend::cameraRay(double x, double y, float origin[3], float direction[3]) const {
   const ShaderSlot& camera = snapshot_->camera.shader;
   if (!camera.shaderClass || snapshot_->frame.width == 0) return false;
@@ -354,7 +357,7 @@ bool LocalBackend::cameraRay(double x, double y, float origin[3], float directio
   batch.scene = snapshot_.get();
   batch.arena = &arena;
   batch.counters = &counters;
-  batch.rays = lanes; // no sampler: random places are in the middle
+  batch.rays = lanes; // without a tracer, random points are (0.5, 0.5): the middle of the lens
   {
     const RunningShader running(*camera.shaderClass);
     camera.shaderClass->generate(&snapshot_->host, &batch, camera.params, 1, points, size, &local);

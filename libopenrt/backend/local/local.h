@@ -1,5 +1,6 @@
-// local.h: the backend that renders in this process: applies commits to its scene, builds what they
-// changed, renders frames.
+// local.h: the backend that renders in this process. It applies commits to its scene, rebuilds what
+// they changed, and renders frames and answers queries on its own threads. Called on one thread,
+// except cancel(), progress() and snapshot(), which any thread may call.
 #pragma once
 
 #include <functional>
@@ -33,25 +34,27 @@ class LocalBackend final : public Backend, public SurfaceQueries {
                      std::span<RTclosest> closest) override;
   bool pick(double x, double y, RThit& hit) override;
 
-  // The committed scene as threads render it, made if anything changed; it stays as it is until the
-  // next apply().
+  // Returns the committed scene as the threads render it; rebuilds it if anything changed. It stays
+  // unchanged until the next apply().
   std::shared_ptr<const RenderScene> prepared();
 
  private:
-  void prepare(); // the snapshot of the committed scene, if anything changed since the last
-  void bringUpToDate(RenderScene& next);
+  void prepare(); // makes a new snapshot of the committed scene if anything changed since the last
+  void updateAccel(RenderScene& next);
   void makeShaders(RenderScene& next) const;
   void makeLights(RenderScene& next, const Flattened& flat, const Vec3d& origin) const;
   void makeCamera(RenderScene& next, const Vec3d& origin) const;
   PixelFootprint footprint(const RenderScene& next) const;
   Vec3d eye() const;
-  bool cameraRay(double x, double y, float origin[3], float direction[3]) const; // of the snapshot
+  // Computes the ray of the snapshot's camera through a pixel.
+  bool cameraRay(double x, double y, float origin[3], float direction[3]) const;
   RThit hitOf(const RayHits& found, uint32_t i) const;
-  // Portions of rays, loaded, on all threads.
+  // Calls `use` for blocks of rays, converted to render space, on all threads.
   void forBatches(std::span<const RTray> rays,
                   const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
-  void forPassed(std::span<const RTray> rays,
-                 const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take);
+  // Calls `take` for each ray with all its hits, in order of distance.
+  void forMultiHits(std::span<const RTray> rays,
+                    const std::function<void(size_t ray, std::span<const Accel::MultiHit>)>& take);
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 
   BackendOptions options_;
@@ -64,12 +67,12 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::shared_ptr<Accel> accel_;
   Flattened flat_;
   PixelFootprint footprint_;
-  bool scopedLights_ = false,
-       samePlaces_ = false;     // samePlaces_: of the records, as in the last snapshot
-  std::string transportReason_; // of the snapshot
+  // recordsUnmoved_: every record stands where it stood in the last snapshot.
+  bool scopedLights_ = false, recordsUnmoved_ = false;
+  std::string transportReason_; // why the snapshot's transport was chosen
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
-  bool saidNearLamp_ = false;
-  mutable std::mutex mutex_; // frame_ as seen by cancel(), progress() and snapshot()
+  bool warnedOfNearLamp_ = false;
+  mutable std::mutex mutex_; // guards frame_ against cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;
 };

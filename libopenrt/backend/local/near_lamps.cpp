@@ -1,3 +1,5 @@
+// near_lamps.cpp: traces probe rays from emitting shapes to find surfaces that are too near. Called
+// between frames.
 #include "backend/local/near_lamps.h"
 
 #include <algorithm>
@@ -11,10 +13,13 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t most = 1024; // shapes that are looked at
-constexpr double wanted = 128;  // times the step: then a small lamp is right to about 1.5 %
+constexpr uint32_t most = 1024; // shapes that are tested
+// Required distance in multiples of the ray offset: the light of a small lamp is then right to
+// about 1.5 %.
+constexpr double wanted = 128;
 
-// From the middle of a shape to where it sends light; skip: how far the shape itself reaches there.
+// A ray from the centre of a shape in a direction of its light. `skip` is the distance from the
+// centre to the shape's own surface.
 struct Probe {
   double origin[3], direction[3], skip;
   uint32_t record;
@@ -50,8 +55,8 @@ void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<
     }
 }
 
-// How far rays step off what was met, about as render/surface/points.cpp works it out; unit: what a
-// float can tell apart there.
+// Returns the offset of rays spawned at a hit, about as computed by render/surface/points.cpp. Sets
+// `unit` to the spacing of floats there.
 double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, double& unit) {
   double largest[3] = {}, along = 0, all = 0;
   float corner[3][3];

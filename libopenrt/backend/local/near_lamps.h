@@ -1,5 +1,5 @@
-// near_lamps.h: emitting shapes so near to what they light that the step by which rays leave a
-// surface counts beside the distance. Called between frames.
+// near_lamps.h: finds emitting shapes that are so near to a surface that the offset of spawned rays
+// is not small compared to the distance. Called between frames by LocalBackend.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace openrt {
 
-// A message about the nearest such lamp, with its distance and the one that is needed; empty if
-// there is none. Looks along the normals of up to 1024 shapes: lamps that face what they light.
-// Those that touch it send no light there and do not count.
+// Returns a warning about the worst such lamp, with its distance and the distance that is needed;
+// empty if there is none. Traces rays along the normals of up to 1024 shapes, so it finds lamps
+// that face the surface they light. Lamps that touch the surface send no light there and do not
+// count.
 std::string warnOfNearLamps(const RenderScene& scene);
 
 } // namespace openrt

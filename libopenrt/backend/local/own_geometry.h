@@ -1,5 +1,5 @@
-// own_geometry.h: what geometries that are met by code of ours, not Embree's, do with a packet of
-// rays. Called by render threads.
+// own_geometry.h: helpers for Embree user geometries: reads the rays of a packet and stores hits.
+// Called by render threads.
 #pragma once
 
 #include "backend/local/accel/embree.h"
@@ -7,7 +7,7 @@
 
 namespace openrt {
 
-// A lane of one of Embree's packets.
+// One ray of an Embree packet.
 struct Lane {
   Vec3d origin, direction;
   float near, far;
@@ -18,10 +18,10 @@ struct Lane {
   bool reaches(double t) const { return float(t) >= near && float(t) <= far; }
 };
 
-// Stores a hit of lane i, unless the filter of the query refuses it, which sees it as of a packet
-// of one ray.
-inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u,
-                    double v, const Vec3d& normal) {
+// Stores a hit of lane i, unless the filter of the query rejects it. The filter gets the hit as a
+// packet of one ray. Returns whether the hit was stored.
+inline bool storeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u,
+                     double v, const Vec3d& normal) {
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
   RTCHit hit{};
   hit.Ng_x = float(normal.x);
@@ -32,7 +32,7 @@ inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double 
   hit.primID = a->primID;
   hit.geomID = a->geomID;
   hit.instID[0] = a->context->instID[0];
-  if (const auto* context = static_cast<const QueryContext*>(a->context); context->takes) {
+  if (const auto* context = static_cast<const QueryContext*>(a->context); context->queryFilter) {
     RTCRay ray{};
     ray.org_x = RTCRayN_org_x(rays, a->N, i);
     ray.org_y = RTCRayN_org_y(rays, a->N, i);
@@ -52,7 +52,7 @@ inline bool takeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double 
                                           reinterpret_cast<RTCRayN*>(&ray),
                                           reinterpret_cast<RTCHitN*>(&seen),
                                           1};
-    context->takes(&one);
+    context->queryFilter(&one);
     if (valid != -1) return false;
   }
   RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);

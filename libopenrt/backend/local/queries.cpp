@@ -1,4 +1,5 @@
-// queries.cpp: ray queries of the local backend, in blocks spread over the threads.
+// queries.cpp: ray, hit and closest-point queries of LocalBackend, in blocks distributed over its
+// threads. Called on the application's thread.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -14,8 +15,8 @@ namespace {
 
 constexpr size_t block = 4096;
 
-// Outward unit normal in the world: the kernel's, brought out of the instance and turned to the
-// front.
+// Transforms the kernel's normal out of the instance to the world's axes, turns it to the front and
+// normalises it.
 void worldNormal(const Record& r, const float k[3], float out[3]) {
   double n[3] = {k[0], k[1], k[2]};
   if (r.instanced)
@@ -91,12 +92,12 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
   return hit;
 }
 
-void LocalBackend::forPassed(
+void LocalBackend::forMultiHits(
     std::span<const RTray> rays,
-    const std::function<void(size_t ray, std::span<const Accel::Passed>)>& take) {
+    const std::function<void(size_t ray, std::span<const Accel::MultiHit>)>& take) {
   forBatches(rays, [&](size_t first, Arena&, Rays& batch) {
-    std::vector<Accel::Passed> all;
-    accel_->passed(batch, all);
+    std::vector<Accel::MultiHit> all;
+    accel_->allHits(batch, all);
     for (size_t i = 0, begin = 0; i < batch.count; i++) {
       size_t end = begin;
       while (end < all.size() && all[end].ray == i) end++;
@@ -107,19 +108,19 @@ void LocalBackend::forPassed(
 }
 
 void LocalBackend::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
-  forPassed(rays, [&](size_t ray, std::span<const Accel::Passed> passed) {
-    counts[ray] = uint32_t(passed.size());
+  forMultiHits(rays, [&](size_t ray, std::span<const Accel::MultiHit> allHits) {
+    counts[ray] = uint32_t(allHits.size());
   });
 }
 
 void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t> first,
                             std::span<RThit> hits) {
-  forPassed(rays, [&](size_t ray, std::span<const Accel::Passed> passed) {
+  forMultiHits(rays, [&](size_t ray, std::span<const Accel::MultiHit> allHits) {
     for (size_t i = first[ray]; i < first[ray + 1]; i++) {
       RThit& hit = hits[i] = {};
       hit.t = std::numeric_limits<float>::infinity();
-      if (i - first[ray] >= passed.size()) continue;
-      const Accel::Passed& p = passed[i - first[ray]];
+      if (i - first[ray] >= allHits.size()) continue;
+      const Accel::MultiHit& p = allHits[i - first[ray]];
       const Record& r = accel_->records[p.record];
       hit.t = p.t;
       hit.u = p.u;
@@ -162,8 +163,8 @@ void LocalBackend::closestPoints(std::span<const float> points, float radius,
   });
 }
 
-// The camera's own ray in render space: what the picture shows, also where the world's coordinates
-// are too large for float.
+// Traces the camera's ray in render space, so that the result matches the picture even where world
+// coordinates are too large for float.
 bool LocalBackend::pick(double x, double y, RThit& hit) {
   prepare();
   Arena arena;

@@ -1,3 +1,4 @@
+// sliver_edges.cpp: classifies triangles by shape and finds shared edges. Called while baking.
 #include "backend/local/sliver_edges.h"
 
 #include <algorithm>
@@ -12,32 +13,33 @@
 namespace openrt {
 namespace {
 
-// Height over longest edge. Single precision errs about the direction of a triangle's plane by 6e-8
-// over this, so that a ray from nearer to it than about that share of its length may be told to
-// begin behind it. Of boxes of ratio 200 and 300, three rays in 200,000 left that began more than
-// 7e-6 of the length inside, with a bound of 1/250; with 1/140 none.
+// Height over longest edge of a sliver. In single precision the direction of a triangle's plane is
+// wrong by up to 6e-8 divided by this ratio. A ray that starts nearer to the plane than about that
+// fraction of the triangle's length may be found to start behind it. With a bound of 1/250, three
+// of 200,000 rays that started more than 7e-6 of the length inside boxes of ratio 200 and 300 got
+// out; with 1/140 none.
 constexpr double sliverRatio = 1.0 / 128;
-// Longest edge: its square times a distance of up to 1e17 must fit in a float.
+// Limits of the longest edge: its square times a distance of up to 1e17 must fit in a float.
 constexpr double smallest = 1e-12, largest = 1e10;
 
 constexpr uint32_t none = ~0u;
 
-struct Place {
+struct VertexKey {
   std::array<uint32_t, 3> bits;
-  explicit Place(const float* p) {
+  explicit VertexKey(const float* p) {
     for (size_t k = 0; k < 3; k++) bits[k] = std::bit_cast<uint32_t>(p[k] == 0 ? 0.0f : p[k]);
   }
-  bool operator==(const Place&) const = default;
+  bool operator==(const VertexKey&) const = default;
 };
-struct PlaceHash {
-  size_t operator()(const Place& p) const {
+struct VertexKeyHash {
+  size_t operator()(const VertexKey& p) const {
     uint64_t h = p.bits[0] * 0x9e3779b97f4a7c15u;
     for (size_t k = 1; k < 3; k++) h = (h ^ (h >> 29) ^ p.bits[k]) * 0xbf58476d1ce4e5b9u;
     return size_t(h ^ (h >> 32));
   }
 };
 
-// Numbers of the places where corners of some triangles are, and the edges of these between them.
+// The set of the edges of some triangles. Vertices at the same position have the same number.
 class Edges {
  public:
   Edges(const std::vector<float>& vertices, const uint32_t* indices)
@@ -46,12 +48,12 @@ class Edges {
   void add(size_t triangle) {
     uint32_t id[3];
     for (size_t k = 0; k < 3; k++)
-      id[k] = ids_.try_emplace(Place(at(indices_[3 * triangle + k])), uint32_t(ids_.size()))
+      id[k] = ids_.try_emplace(VertexKey(at(indices_[3 * triangle + k])), uint32_t(ids_.size()))
                   .first->second;
     for (size_t k = 0; k < 3; k++) edges_.insert(key(id[k], id[(k + 1) % 3]));
     known_.clear();
   }
-  // Whether an edge, from corner k to the next, is one of them.
+  // Returns whether the edge from corner k of a triangle to the next corner is in the set.
   bool has(size_t triangle, size_t k) {
     const uint32_t p = idOf(indices_[3 * triangle + k]),
                    q = idOf(indices_[3 * triangle + (k + 1) % 3]);
@@ -64,25 +66,25 @@ class Edges {
     return uint64_t(std::min(p, q)) << 32 | std::max(p, q);
   }
   uint32_t idOf(uint32_t index) {
-    if (known_.empty()) know();
+    if (known_.empty()) lookUpVertices();
     return known_[index];
   }
-  // Asked for once all are added: each vertex is looked up once, most by a table of bits that says
-  // no.
-  void know() {
+  // Looks up the number of every vertex, after all triangles are added. A table of bits, as in a
+  // Bloom filter, rejects most vertices without a look-up.
+  void lookUpVertices() {
     known_.assign(vertices_.size() / 3, none);
     std::vector<bool> some(std::bit_ceil(16 * ids_.size() + 1));
     const size_t mask = some.size() - 1;
-    for (const auto& [place, id] : ids_) some[PlaceHash()(place) & mask] = true;
+    for (const auto& [place, id] : ids_) some[VertexKeyHash()(place) & mask] = true;
     for (uint32_t i = 0; i < known_.size(); i++) {
-      const Place place(at(i));
-      if (!some[PlaceHash()(place) & mask]) continue;
+      const VertexKey place(at(i));
+      if (!some[VertexKeyHash()(place) & mask]) continue;
       if (const auto found = ids_.find(place); found != ids_.end()) known_[i] = found->second;
     }
   }
   const std::vector<float>& vertices_;
   const uint32_t* indices_;
-  std::unordered_map<Place, uint32_t, PlaceHash> ids_;
+  std::unordered_map<VertexKey, uint32_t, VertexKeyHash> ids_;
   std::unordered_set<uint64_t> edges_;
   std::vector<uint32_t> known_; // by vertex
 };
@@ -119,7 +121,7 @@ std::vector<uint8_t> widenSlivers(const std::vector<float>& vertices, const uint
     if (slivers.has(t, 0) || slivers.has(t, 1) || slivers.has(t, 2)) good.add(t);
   });
   std::vector<uint8_t> open;
-  each(TriangleShape::sliver, [&](size_t t) { // exact.h has edges a to c, b to a, c to b
+  each(TriangleShape::sliver, [&](size_t t) { // in exact.h the edges are ac, ba, cb
     open.push_back(
         uint8_t((good.has(t, 2) ? 1 : 0) | (good.has(t, 0) ? 2 : 0) | (good.has(t, 1) ? 4 : 0)));
   });

@@ -1,6 +1,6 @@
-// sliver_edges.h: which triangles of a mesh must be met in double precision: slivers, and what
-// shares an edge with one, so that a ray past that edge is judged by one measure on both sides.
-// Pure functions, called when a geometry is baked.
+// sliver_edges.h: decides which triangles of a mesh are intersected in double precision: slivers,
+// and triangles that share an edge with a sliver, so that both sides of that edge use the same
+// test. Pure functions, called when a geometry is baked.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,14 @@ namespace openrt {
 
 enum class TriangleShape : uint8_t { good, sliver, degenerate };
 
-// Of three points, stride 3: a sliver is far longer than high, or so large or small that products
-// of its edges leave the range of floats.
+// Classifies the triangle of three points. A sliver is far longer than high, or so large or small
+// that products of its edges leave the range of floats.
 TriangleShape shapeOf(const float* a, const float* b, const float* c);
 
-// Turns good triangles beside slivers into slivers. Returns three bits for each sliver, in order:
-// edges that it still shares with a good one, numbered as in exact.h. Vertices at the same place
-// are the same. shapes: by triangle, at least one a sliver.
+// Turns good triangles that share an edge with a sliver into slivers. Returns three bits for each
+// sliver, in order: the edges that it still shares with a good triangle, numbered as in exact.h.
+// Vertices at the same position count as one. shapes: one per triangle, at least one is a sliver.
+// vertices: stride 3.
 std::vector<uint8_t> widenSlivers(const std::vector<float>& vertices, const uint32_t* indices,
                                   std::vector<TriangleShape>& shapes);
 

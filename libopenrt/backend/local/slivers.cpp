@@ -1,6 +1,6 @@
-// slivers.cpp: triangles that single precision cannot meet: far longer than high, or beside such.
-// Embree finds their boxes, each is met here in double precision (exact.h), as a geometry of our
-// own. Called by render threads.
+// slivers.cpp: an Embree user geometry for slivers, triangles that single precision cannot
+// intersect (sliver_edges.h). Embree traverses their bounding boxes; the triangles are intersected
+// here in double precision (exact.h). Called by render threads.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,21 +22,24 @@ Vec3d cornerOf(const Part& part, uint32_t triangle, int k) {
   return {v[0], v[1], v[2]};
 }
 
-// A ray that passes an open edge, beyond which the neighbour is met in single precision, at a
-// distance within what that rounds: neither of them might be found. Four units in the last place of
-// the edge's distance from the ray's origin.
-bool closesGap(const SeenTriangle& s, unsigned open, const Vec3d& d, double near, Meeting& at) {
-  const double distance = nextTo(s, d, open, at),
+// Returns whether a ray passes an open edge so closely that it counts as a hit. The neighbour
+// beyond the edge is intersected in single precision, whose rounding might miss it too. The
+// tolerance is four units in the last place of the edge's distance from the ray's origin.
+bool closesGap(const RelativeTriangle& s, unsigned open, const Vec3d& d, double near,
+               TriangleHit& at) {
+  const double distance = closestPointToLine(s, d, open, at),
                slack = 0x1p-21 * std::max({largest(s.a), largest(s.b), largest(s.c)});
-  return distance <= slack && meetsPlane(s, d) >= near;
+  return distance <= slack && intersectPlane(s, d) >= near;
 }
 
-// A triangle, with what the question that most rays are answered by asks of it.
+// A triangle with precomputed values for isClearlyMissed(), which rejects most rays.
 struct Sliver {
   Vec3d a, b, c;
-  Vec3d edge[3], moment[3]; // c - a, a - b, b - c; and their products with the sums of their ends
-  double extent, doubt; // largest coordinate; what the roundings of floats put in doubt, but for
-                        // the ray's part
+  // The edges c - a, a - b, b - c, and their cross products with the sums of their end points.
+  Vec3d edge[3], moment[3];
+  // The largest coordinate, and the factor of the float rounding error that does not depend on the
+  // ray.
+  double extent, doubt;
   Sliver(const Part& part, uint32_t triangle)
       : a(cornerOf(part, triangle, 0)), b(cornerOf(part, triangle, 1)),
         c(cornerOf(part, triangle, 2)), edge{c - a, a - b, b - c}, moment{cross(edge[0], c + a),
@@ -45,9 +48,9 @@ struct Sliver {
         extent(std::max({largest(a), largest(b), largest(c)})),
         doubt(0x1p-18 * std::max({largest(edge[0]), largest(edge[1]), largest(edge[2])})) {}
 
-  // Whether the ray's line passes so far away that no rounding of floats could put it there, nor a
-  // gap be closed.
-  bool isPassed(const Lane& ray) const {
+  // Returns whether the ray's line passes the triangle at such a distance that neither float
+  // rounding nor closesGap() could make it a hit.
+  bool isClearlyMissed(const Lane& ray) const {
     const Vec3d m = cross(ray.direction, ray.origin) * 2;
     const double slack = doubt * (extent + largest(ray.origin)) * largest(ray.direction);
     const auto side = [&](int k) { return dot(moment[k], ray.direction) + dot(edge[k], m); };
@@ -61,15 +64,15 @@ struct Sliver {
   }
 };
 
-bool meetsLane(const Part& part, uint32_t triangle, const Sliver& s, const Lane& lane,
-               Meeting& at) {
-  if (s.isPassed(lane)) return false;
-  const SeenTriangle seen{s.a - lane.origin, s.b - lane.origin, s.c - lane.origin};
-  bool met = meets(seen, lane.direction, at);
+bool intersectsLane(const Part& part, uint32_t triangle, const Sliver& s, const Lane& lane,
+                    TriangleHit& at) {
+  if (s.isClearlyMissed(lane)) return false;
+  const RelativeTriangle seen{s.a - lane.origin, s.b - lane.origin, s.c - lane.origin};
+  bool met = intersectTriangle(seen, lane.direction, at);
   if (!met && part.openEdges[triangle])
     met = closesGap(seen, part.openEdges[triangle], lane.direction, lane.near, at);
   if (met) return lane.reaches(at.t);
-  if (foundInSingle(seen, lane.direction, lane.near, lane.far))
+  if (isHitInSinglePrecision(seen, lane.direction, lane.near, lane.far))
     part.wrongHits->fetch_add(1, std::memory_order_relaxed);
   return false;
 }
@@ -78,7 +81,7 @@ void boundsOf(const RTCBoundsFunctionArguments* a) {
   const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
   const Vec3d p = cornerOf(part, a->primID, 0), q = cornerOf(part, a->primID, 1),
               r = cornerOf(part, a->primID, 2);
-  // As much wider as a gap that is closed (above) may be beside it.
+  // Padded by the tolerance of closesGap().
   const auto wide = [](double x, double y, double z, float& low, float& high) {
     const double slack = 0x1p-21 * std::max({std::fabs(x), std::fabs(y), std::fabs(z)});
     low = float(std::min({x, y, z}) - slack);
@@ -94,9 +97,9 @@ void intersect(const RTCIntersectFunctionNArguments* a) {
   const Sliver sliver(part, a->primID);
   RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
   for (unsigned i = 0; i < a->N; i++) {
-    Meeting at;
-    if (a->valid[i] == -1 && meetsLane(part, a->primID, sliver, Lane(rays, a->N, i), at))
-      takeHit(a, i, at.t, at.u, at.v, cross(sliver.b - sliver.a, sliver.c - sliver.a));
+    TriangleHit at;
+    if (a->valid[i] == -1 && intersectsLane(part, a->primID, sliver, Lane(rays, a->N, i), at))
+      storeHit(a, i, at.t, at.u, at.v, cross(sliver.b - sliver.a, sliver.c - sliver.a));
   }
 }
 
@@ -104,8 +107,8 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
   const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
   const Sliver sliver(part, a->primID);
   for (unsigned i = 0; i < a->N; i++) {
-    Meeting at;
-    if (a->valid[i] == -1 && meetsLane(part, a->primID, sliver, Lane(a->ray, a->N, i), at))
+    TriangleHit at;
+    if (a->valid[i] == -1 && intersectsLane(part, a->primID, sliver, Lane(a->ray, a->N, i), at))
       RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
   }
 }

@@ -1,3 +1,4 @@
+// thin.cpp: converts lines and points to spheres and round curves. Called by AccelBuilder.
 #include "backend/local/thin.h"
 
 #include <cmath>

@@ -1,5 +1,6 @@
-// null.cpp: the backend that renders nothing: it counts what a commit brings, and its pictures are
-// zeros. It shows what the API alone costs. Application thread; cancel and progress from any.
+// null.cpp: the backend that renders nothing. It counts the contents of commits, and its pictures
+// are zeros. It is used to measure the cost of the API alone. Application thread; cancel and
+// progress from any.
 #include <algorithm>
 #include <limits>
 #include <unordered_map>
@@ -65,8 +66,8 @@ class NullBackend final : public Backend {
     return count;
   }
 
-  std::unordered_map<ArrayId, uint64_t>
-      elements_; // 32-bit elements of the arrays of the commit at hand
+  // Number of 32-bit elements of the arrays in the current commit.
+  std::unordered_map<ArrayId, uint64_t> elements_;
   std::unordered_map<uint32_t, uint64_t> triangles_;
   uint32_t channels_ = 0;
   bool camera_ = false;

@@ -6,9 +6,9 @@
 namespace openrt {
 namespace {
 
-// Bytes that the edits take once unpacked, at least. A table may be named from many places in a
-// flatbuffer, so a small file could otherwise grow without bounds; what the writer makes is never
-// larger than its buffer by this count.
+// Returns the least number of bytes that the edits take once unpacked. Several references in a
+// flatbuffer may point to the same table, so a small file could otherwise unpack to any size. For
+// buffers made by packEdits, this count never exceeds the buffer size.
 uint64_t unpackedBytes(const edit::Edits& edits) {
   constexpr uint64_t perTable = 8;
   uint64_t bytes = 0;

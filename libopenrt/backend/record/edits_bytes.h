@@ -1,6 +1,6 @@
-// edits_bytes.h: the edits of a commit as bytes (edits.fbs), for recordings and for workers. Bytes
-// may come from anywhere: what is read is verified; what it means is the validator's to check. Pure
-// functions that throw std::runtime_error. [any]
+// edits_bytes.h: converts the edits of a commit to and from bytes (edits.fbs), for recordings and
+// workers. unpackEdits verifies the bytes, because they may come from any source; the validator
+// checks their meaning. Pure functions that throw std::runtime_error. [any]
 #pragma once
 
 #include <cstddef>

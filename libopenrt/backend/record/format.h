@@ -1,12 +1,12 @@
-// format.h: the recording: what rtSwapBuffers handed to the backend, commit by commit. Written by
-// record.cpp, read by reader.cpp.
+// format.h: the format of recordings: the commits that rtSwapBuffers passed to the backend. Written
+// by record.cpp, read by reader.cpp.
 //
 //   file    ::= magic version reserved commit*           magic 8 bytes, version and reserved 32-bit
 //   commit  ::= array* edits
 //   array   ::= ChunkHeader(kind Array, id) zstd-frame    the bytes of one array
-//   edits   ::= ChunkHeader(kind Edits) flatbuffer        root openrt.edit.Edits; its `render`
-//   marks a frame
-// All numbers are little-endian; `hash` is XXH3 (64 bits) of the bytes before compression.
+//   edits   ::= ChunkHeader(kind Edits) flatbuffer        root openrt.edit.Edits;
+//                                                         its `render` marks a frame
+// All numbers are little-endian. `hash` is XXH3 (64 bits) of the bytes before compression.
 #pragma once
 
 #include <bit>
@@ -22,15 +22,15 @@ enum class ChunkKind : uint32_t { Array = 1, Edits = 2 };
 struct FileHeader {
   char magic[8];
   uint32_t version;
-  uint32_t reserved; // 0
+  uint32_t reserved; // must be 0
 };
 
 struct ChunkHeader {
   ChunkKind kind;
-  uint32_t reserved; // 0
-  uint64_t id;       // of an array; 0 for edits
-  uint64_t bytes;    // before compression
-  uint64_t stored;   // bytes that follow
+  uint32_t reserved; // must be 0
+  uint64_t id;       // array number; 0 for edits
+  uint64_t bytes;    // size before compression
+  uint64_t stored;   // size of the payload that follows
   uint64_t hash;
 };
 

@@ -1,5 +1,5 @@
-// reader.cpp: chunks of a recording, decompressed and verified. Called by openrt-replay, tests and
-// the fuzz target; one thread.
+// reader.cpp: reads, decompresses and verifies the chunks of a recording. Called by openrt-replay,
+// tests and the fuzz target; one thread.
 #include "backend/record/reader.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void RecordingReader::fail(const std::string& what) const {
   throw BadRecording(name_ + ": byte " + std::to_string(offset_) + ": " + what);
 }
 
-// False only at the end of the file, where that is allowed.
+// Returns false only at the end of the file, and only if `mayEnd`.
 bool RecordingReader::read(void* out, size_t bytes, bool mayEnd) {
   const size_t got = std::fread(out, 1, bytes, file_.get());
   if (got == 0 && mayEnd && std::feof(file_.get())) return false;
@@ -42,13 +42,14 @@ bool RecordingReader::read(void* out, size_t bytes, bool mayEnd) {
   return true;
 }
 
-void RecordingReader::account(uint64_t bytes) {
+void RecordingReader::countBytes(uint64_t bytes) {
   total_ += bytes;
   if (total_ > limits_.totalBytes)
     fail("more than " + std::to_string(limits_.totalBytes) + " bytes of data");
 }
 
-// Piece by piece: a size that the file does not have is noticed before memory is taken for it.
+// Reads in pieces, so that a size beyond the end of the file fails before memory is allocated for
+// it.
 std::vector<uint8_t> RecordingReader::readPayload(uint64_t bytes) {
   constexpr uint64_t piece = 1 << 20;
   std::vector<uint8_t> payload;
@@ -62,13 +63,14 @@ std::vector<uint8_t> RecordingReader::readPayload(uint64_t bytes) {
 
 void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, uint64_t hash,
                                 Commit& commit) {
-  constexpr uint64_t bestRatio = 1 << 16; // zstd makes 4 bytes of a block of 128 KiB at best
+  // zstd compresses a block of 128 KiB to 4 bytes at best.
+  constexpr uint64_t bestRatio = 1 << 16;
   if (id == 0 || commit.arrays.contains(id))
     fail("array " + std::to_string(id) + " twice, or without a number");
   if (bytes > limits_.arrayBytes || stored > ZSTD_compressBound(bytes) ||
       bytes > bestRatio * stored)
     fail("an array of " + std::to_string(bytes) + " bytes in " + std::to_string(stored));
-  account(bytes);
+  countBytes(bytes);
   const std::vector<uint8_t> packed = readPayload(stored);
   auto array = std::make_shared<Array>(bytes);
   const size_t size = ZSTD_decompress(array->data(), bytes, packed.data(), packed.size());
@@ -81,7 +83,7 @@ void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, ui
 void RecordingReader::readEdits(uint64_t bytes, uint64_t stored, uint64_t hash, Commit& commit) {
   if (bytes != stored || bytes > limits_.editBytes)
     fail("edits of " + std::to_string(bytes) + " bytes");
-  account(bytes);
+  countBytes(bytes);
   const std::vector<uint8_t> buffer = readPayload(bytes);
   if (XXH3_64bits(buffer.data(), buffer.size()) != hash) fail("edits with a wrong checksum");
   try {

@@ -1,6 +1,6 @@
-// reader.h: reads recordings (format.h) back into commits. A file may come from anywhere: every
-// size, hash, reference and number is checked before a backend sees it, and what fails is a
-// BadRecording that says where. One thread.
+// reader.h: reads recordings (format.h) back into commits. The file is not trusted: every size,
+// hash, reference and number is checked before a backend sees it. A failed check throws
+// BadRecording with its position. One thread.
 #pragma once
 
 #include <cstdio>
@@ -20,20 +20,20 @@ class BadRecording : public std::runtime_error {
 };
 
 struct RecordingLimits {
-  uint64_t arrayBytes = uint64_t(1) << 34; // of one array
-  uint64_t totalBytes = uint64_t(1) << 36; // of all arrays and edits
-  uint64_t editBytes = uint64_t(1) << 30;  // of the edits of one commit
+  uint64_t arrayBytes = uint64_t(1) << 34; // limit for one array
+  uint64_t totalBytes = uint64_t(1) << 36; // limit for all arrays and edits together
+  uint64_t editBytes = uint64_t(1) << 30;  // limit for the edits of one commit
   uint64_t commits = 10'000'000;
 };
 
 class RecordingReader {
  public:
-  // Takes the file over, which must be readable from its beginning. shaders: to check parameters
-  // and kinds; may be null.
+  // Takes ownership of the file, which must be readable from its beginning. shaders: used to check
+  // parameters and shader kinds; may be null.
   RecordingReader(std::FILE* file, std::string name, const ShaderRegistry* shaders,
                   const RecordingLimits& limits = {});
 
-  // The next commit, or null at the end of the file.
+  // Returns the next commit, or null at the end of the file.
   std::shared_ptr<const Commit> next();
 
  private:
@@ -45,7 +45,7 @@ class RecordingReader {
   std::vector<uint8_t> readPayload(uint64_t bytes);
   void readArray(uint64_t id, uint64_t bytes, uint64_t stored, uint64_t hash, Commit& commit);
   void readEdits(uint64_t bytes, uint64_t stored, uint64_t hash, Commit& commit);
-  void account(uint64_t bytes);
+  void countBytes(uint64_t bytes);
 
   std::unique_ptr<std::FILE, Close> file_;
   std::string name_;

@@ -1,4 +1,4 @@
-// record.cpp: the backend that writes commits to a file, alone or beside one that renders.
+// record.cpp: the backend that writes commits to a file, alone or in front of a rendering backend.
 // Application thread; cancel, progress and snapshot from any.
 #include <algorithm>
 #include <cerrno>
@@ -25,10 +25,11 @@ namespace {
 
 using namespace recording;
 
-// Writes the file; any failure is a std::system_error that names it. The file is written beside its
-// name and gets that name once a first commit is in it: what was there before stays if the disk is
-// full, and a program that ends by a signal leaves a recording. A device or a pipe is written to
-// directly. After a failure the file ends with the last whole commit.
+// Writes the file. Every failure throws a std::system_error that names the file.
+// * The file is written under a temporary name and renamed after the first commit. So an earlier
+//   file survives a full disk, and a program ended by a signal leaves a recording.
+// * A device or a pipe is written to directly.
+// * After a failure the file ends with the last whole commit.
 class RecordingWriter {
  public:
   explicit RecordingWriter(std::string path) : path_(std::move(path)) {
@@ -41,7 +42,7 @@ class RecordingWriter {
       FileHeader header{};
       std::memcpy(header.magic, magic, sizeof(magic));
       header.version = version;
-      put(&header, sizeof(header));
+      writeBytes(&header, sizeof(header));
       commit();
     } catch (...) {
       end();
@@ -53,7 +54,7 @@ class RecordingWriter {
   RecordingWriter& operator=(const RecordingWriter&) = delete;
 
   void write(const Commit& commit) {
-    std::vector<ArrayId> ids; // in one order, so that equal scenes make equal files
+    std::vector<ArrayId> ids; // sorted, so that equal scenes make equal files
     for (const auto& [id, array] : commit.arrays) ids.push_back(id);
     std::sort(ids.begin(), ids.end());
     for (ArrayId id : ids) writeArray(id, *commit.arrays.at(id));
@@ -62,10 +63,10 @@ class RecordingWriter {
     if (!temporary_.empty() && !name()) failed("cannot be renamed");
   }
 
-  // Closes the file under its name. No write may follow.
+  // Closes the file under its final name. No write may follow.
   void finish() {
-    if (!temporary_.empty() && !name())
-      failed("cannot be renamed"); // a recording of nothing is one, too
+    // A recording without commits is valid.
+    if (!temporary_.empty() && !name()) failed("cannot be renamed");
     if (std::fclose(std::exchange(file_, nullptr)) != 0) failed("cannot be written");
   }
 
@@ -79,8 +80,8 @@ class RecordingWriter {
       throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(stored));
     const ChunkHeader header{ChunkKind::Array, 0,      id,
                              array.size(),     stored, XXH3_64bits(array.data(), array.size())};
-    put(&header, sizeof(header));
-    put(packed_.data(), stored);
+    writeBytes(&header, sizeof(header));
+    writeBytes(packed_.data(), stored);
   }
 
   void writeEdits(const edit::EditsT& edits) {
@@ -88,31 +89,32 @@ class RecordingWriter {
     const size_t bytes = packed.size();
     const ChunkHeader header{
         ChunkKind::Edits, 0, 0, bytes, bytes, XXH3_64bits(packed.data(), bytes)};
-    put(&header, sizeof(header));
-    put(packed.data(), bytes);
+    writeBytes(&header, sizeof(header));
+    writeBytes(packed.data(), bytes);
   }
 
-  void put(const void* data, size_t bytes) {
+  void writeBytes(const void* data, size_t bytes) {
     if (bytes > 0 && std::fwrite(data, 1, bytes, file_) != bytes) failed("cannot be written");
   }
-  // What has been put is in the file.
+  // Flushes everything written so far to the file.
   void commit() {
     if (std::fflush(file_) != 0) failed("cannot be written");
-    whole_ = ftello(file_);
+    completeBytes_ = ftello(file_);
   }
   bool name() {
     if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return false;
     temporary_.clear();
     return true;
   }
-  // Closes the file if it is open; cuts off what is not whole, removes what has no name yet.
+  // Closes the file if it is open. Cuts off an incomplete commit and removes a file that was not
+  // renamed.
   void end() {
     if (file_) {
       const int descriptor = good_ ? -1 : dup(fileno(file_));
-      std::fclose(
-          std::exchange(file_, nullptr)); // an error was told before, or nobody has called finish()
+      // Either an error was reported before, or finish() was not called.
+      std::fclose(std::exchange(file_, nullptr));
       if (descriptor >= 0) {
-        (void)!ftruncate(descriptor, whole_); // of no effect on devices
+        (void)!ftruncate(descriptor, completeBytes_); // has no effect on devices
         close(descriptor);
       }
     }
@@ -123,20 +125,20 @@ class RecordingWriter {
     throw std::system_error(errno, std::generic_category(), "recording " + path_ + " " + what);
   }
 
-  std::string path_, temporary_; // empty: the file has its name
+  std::string path_, temporary_; // temporary_ is empty once the file is renamed
   std::FILE* file_ = nullptr;
-  off_t whole_ = 0; // bytes up to the end of the last commit
+  off_t completeBytes_ = 0; // file size at the end of the last commit
   bool good_ = true;
   std::vector<char> packed_;
 };
 
-// Records; what renders, if anything does, sees everything that it would see alone.
+// Records commits. A rendering backend behind it gets the same calls as without recording.
 class RecordBackend final : public Backend, public ForwardedQueries {
  public:
   RecordBackend(const BackendOptions& options, std::unique_ptr<Backend> renderer)
       : writer_(std::make_unique<RecordingWriter>(options.file)), renderer_(std::move(renderer)) {}
 
-  // After a failed write the recording ends, rendering goes on with the next call.
+  // A failed write ends the recording; rendering continues with the next call.
   void apply(std::shared_ptr<const Commit> commit) override {
     if (writer_) {
       try {

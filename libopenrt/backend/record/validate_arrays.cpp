@@ -1,4 +1,4 @@
-// validate_arrays.cpp: sizes, indices and numbers of vertices and texels. Pure functions.
+// validate_arrays.cpp: checks sizes, indices and values of vertices and texels. Pure functions.
 #include "backend/record/validate_arrays.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ void demand(bool condition, const char* what) {
   if (!condition) throw std::runtime_error(what);
 }
 
-const Array* arriving(const Commit& commit, ArrayId id) {
+const Array* arrayOf(const Commit& commit, ArrayId id) {
   if (id == 0) return nullptr;
   const auto found = commit.arrays.find(id);
   demand(found != commit.arrays.end() && found->second,
@@ -29,7 +29,7 @@ void checkFinite(const Array& array, const char* what) {
 
 void checkAttribute(const Commit& commit, ArrayId id, size_t vertices, size_t components,
                     const char* what) {
-  const Array* array = arriving(commit, id);
+  const Array* array = arrayOf(commit, id);
   if (!array) return;
   demand(array->size() == vertices * components * sizeof(float), what);
   checkFinite(*array, what);
@@ -54,8 +54,8 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
     return;
   }
   const size_t corners = cornersOf(g.primitive);
-  const Array* points = arriving(commit, g.points);
-  const Array* indices = arriving(commit, g.indices);
+  const Array* points = arrayOf(commit, g.points);
+  const Array* indices = arrayOf(commit, g.indices);
   demand(points && indices, "a geometry without vertices");
   demand(points->size() % (3 * sizeof(float)) == 0, "points of a wrong size");
   demand(indices->size() % (corners * sizeof(uint32_t)) == 0, "indices of a wrong size");
@@ -72,9 +72,9 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
 void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParameterT& own,
                           const Commit& commit, const RtsParam* param) {
   demand(g.primitive != edit::Primitive::Sphere, "a sphere with parameters of its own");
-  const Array* values = arriving(commit, own.values);
+  const Array* values = arrayOf(commit, own.values);
   demand(values != nullptr, "a parameter without values");
-  const Array& counted = *arriving(commit, own.perVertex ? g.points : g.indices);
+  const Array& counted = *arrayOf(commit, own.perVertex ? g.points : g.indices);
   const size_t count = own.perVertex ? counted.count<float>() / 3
                                      : counted.count<uint32_t>() / cornersOf(g.primitive);
   demand(count > 0 && values->size() % (count * sizeof(float)) == 0,

@@ -1,5 +1,5 @@
-// validate_arrays.h: checks of the bulk data that edits name. Used by the validator; pure functions
-// that throw std::runtime_error.
+// validate_arrays.h: checks the bulk data of edits. Used by the validator. Pure functions that
+// throw std::runtime_error.
 #pragma once
 
 #include "openrt/openrts.h"
@@ -7,17 +7,18 @@
 
 namespace openrt {
 
-// Arrays of a geometry must travel with its commit, fit each other and hold finite numbers and
-// indices within the points.
+// Checks the arrays of a geometry: they belong to its commit, fit each other, hold finite numbers,
+// and the indices lie within the points.
 void checkGeometryArrays(const edit::GeometryT& geometry, const Commit& commit);
 
-// A parameter's values by vertex or by primitive of a geometry whose arrays are good: sizes,
-// finite, within the range. param: what its class declares; null: unknown.
+// Checks the values of a parameter per vertex or per primitive: their size, finiteness and range.
+// The geometry's arrays must have passed checkGeometryArrays. param: declaration of the parameter's
+// class; null: unknown.
 void checkParameterValues(const edit::GeometryT& geometry, const edit::GeometryParameterT& own,
                           const Commit& commit, const RtsParam* param);
 
-// Texels travel with the commit, or are the ones that the texture has already (current: its last
-// edit; null: none).
+// Checks a texture: its texels belong to the commit, or are those that it already has. current: its
+// last edit; null: none.
 void checkTexture(const edit::TextureT& texture, const Commit& commit,
                   const edit::TextureT* current);
 

@@ -1,4 +1,4 @@
-// validator.cpp: ids, references and roles of edits. Arrays are checked in validate_arrays.cpp.
+// validator.cpp: checks ids, references and roles of edits. validate_arrays.cpp checks the arrays.
 #include "backend/record/validator.h"
 
 #include <cmath>
@@ -28,46 +28,46 @@ void checkMatrix(const edit::Matrix* matrix) {
 
 } // namespace
 
-void CommitValidator::enter(uint32_t id, Kind kind) {
+void CommitValidator::defineId(uint32_t id, Kind kind) {
   demand(id != 0, "an edit without an id");
-  const auto [place, fresh] = live_.emplace(id, kind);
+  const auto [place, fresh] = liveIds_.emplace(id, kind);
   demand(fresh || place->second == kind, "an id that names two kinds of things");
-  demand(!dead_.contains(id), "an id that was deleted before");
+  demand(!deletedIds_.contains(id), "an id that was deleted before");
 }
 
-void CommitValidator::leave(uint32_t id, Kind kind) {
-  need(id, kind);
-  live_.erase(id);
-  dead_.insert(id);
+void CommitValidator::deleteId(uint32_t id, Kind kind) {
+  requireId(id, kind);
+  liveIds_.erase(id);
+  deletedIds_.insert(id);
 }
 
-void CommitValidator::need(uint32_t id, Kind kind) const {
-  const auto found = live_.find(id);
-  if (found == live_.end() || found->second != kind) refuse("unknown id " + std::to_string(id));
+void CommitValidator::requireId(uint32_t id, Kind kind) const {
+  const auto found = liveIds_.find(id);
+  if (found == liveIds_.end() || found->second != kind) refuse("unknown id " + std::to_string(id));
 }
 
-void CommitValidator::needShader(uint32_t shader, RtsKind kind) const {
-  need(shader, Kind::Shader);
+void CommitValidator::requireShader(uint32_t shader, RtsKind kind) const {
+  requireId(shader, Kind::Shader);
   const RtsClass* table = classes_.at(shaderClasses_.at(shader));
   demand(!table || table->kind == kind, "a shader in a role of another kind");
 }
 
 void CommitValidator::check(const edit::TextureT& texture, const Commit& commit) {
-  enter(texture.id, Kind::Texture);
+  defineId(texture.id, Kind::Texture);
   const auto known = textures_.find(texture.id);
   checkTexture(texture, commit, known == textures_.end() ? nullptr : &known->second);
   textures_.insert_or_assign(texture.id, texture);
 }
 
 void CommitValidator::check(const edit::ShaderClassT& shaderClass) {
-  demand(!live_.contains(shaderClass.id), "a shader class made twice");
-  enter(shaderClass.id, Kind::ShaderClass);
+  demand(!liveIds_.contains(shaderClass.id), "a shader class made twice");
+  defineId(shaderClass.id, Kind::ShaderClass);
   classes_[shaderClass.id] =
       shaders_ ? &shaders_->find(shaderClass.name, shaderClass.library) : nullptr;
   classNames_[shaderClass.id] = shaderClass;
 }
 
-// Libraries were loaded anew.
+// Looks all classes up again after shader libraries were reloaded.
 void CommitValidator::findClassesAgain() {
   if (!shaders_) return;
   for (auto& [id, table] : classes_)
@@ -75,14 +75,14 @@ void CommitValidator::findClassesAgain() {
 }
 
 void CommitValidator::check(const edit::ShaderT& shader) {
-  demand(!live_.contains(shader.id), "a shader made twice");
-  enter(shader.id, Kind::Shader);
-  need(shader.shaderClass, Kind::ShaderClass);
+  demand(!liveIds_.contains(shader.id), "a shader made twice");
+  defineId(shader.id, Kind::Shader);
+  requireId(shader.shaderClass, Kind::ShaderClass);
   shaderClasses_[shader.id] = shader.shaderClass;
 }
 
 void CommitValidator::check(const edit::ParameterT& parameter) const {
-  need(parameter.shader, Kind::Shader);
+  requireId(parameter.shader, Kind::Shader);
   const RtsClass* table = classes_.at(shaderClasses_.at(parameter.shader));
   if (!table) return;
   demand(parameter.index < table->paramCount, "a parameter that its class does not have");
@@ -99,7 +99,7 @@ void CommitValidator::check(const edit::ParameterT& parameter) const {
 void CommitValidator::check(const edit::GeometryT& geometry, const Commit& commit) const {
   checkMatrix(geometry.matrix.get());
   demand(std::isfinite(geometry.width) && geometry.width > 0, "a width that is not positive");
-  if (geometry.shader != 0) needShader(geometry.shader, RTS_SURFACE);
+  if (geometry.shader != 0) requireShader(geometry.shader, RTS_SURFACE);
   checkGeometryArrays(geometry, commit);
   checkParameters(geometry, commit);
 }
@@ -125,7 +125,7 @@ void CommitValidator::checkParameters(const edit::GeometryT& geometry, const Com
 }
 
 void CommitValidator::check(const edit::ObjectT& object, const Commit& commit) {
-  enter(object.id, Kind::Object);
+  defineId(object.id, Kind::Object);
   demand(objects_[object.id].children == 0, "an object replaced before its instances were deleted");
   for (const auto& geometry : object.geometries) {
     demand(geometry != nullptr, "an empty geometry");
@@ -134,19 +134,19 @@ void CommitValidator::check(const edit::ObjectT& object, const Commit& commit) {
 }
 
 void CommitValidator::check(const edit::InstanceT& instance) {
-  const bool fresh = !live_.contains(instance.id);
-  enter(instance.id, Kind::Instance);
-  need(instance.object, Kind::Object);
-  if (instance.parent != 0) need(instance.parent, Kind::Object);
-  if (instance.shader != 0) needShader(instance.shader, RTS_SURFACE);
+  const bool fresh = !liveIds_.contains(instance.id);
+  defineId(instance.id, Kind::Instance);
+  requireId(instance.object, Kind::Object);
+  if (instance.parent != 0) requireId(instance.parent, Kind::Object);
+  if (instance.shader != 0) requireShader(instance.shader, RTS_SURFACE);
   checkMatrix(instance.matrix.get());
-  Placing& placing = instances_[instance.id];
+  Placement& placement = instances_[instance.id];
   if (!fresh) {
-    demand(placing.parent == instance.parent && placing.object == instance.object,
+    demand(placement.parent == instance.parent && placement.object == instance.object,
            "an instance that changes its object");
     return;
   }
-  placing = {instance.parent, instance.object};
+  placement = {instance.parent, instance.object};
   objects_[instance.object].users++;
   if (instance.parent == 0) return;
   objects_[instance.parent].children++;
@@ -154,8 +154,8 @@ void CommitValidator::check(const edit::InstanceT& instance) {
 }
 
 void CommitValidator::check(const edit::LightT& light) {
-  enter(light.id, Kind::Light);
-  needShader(light.shader, RTS_LIGHT);
+  defineId(light.id, Kind::Light);
+  requireShader(light.shader, RTS_LIGHT);
   checkMatrix(light.matrix.get());
 }
 
@@ -180,17 +180,17 @@ void CommitValidator::check(const edit::FrameSettingsT& frame) {
 }
 
 void CommitValidator::deleteObject(uint32_t id) {
-  leave(id, Kind::Object);
+  deleteId(id, Kind::Object);
   demand(objects_[id].children == 0 && objects_[id].users == 0,
          "an object deleted before its instances");
   objects_.erase(id);
 }
 
 void CommitValidator::deleteInstance(uint32_t id) {
-  leave(id, Kind::Instance);
-  const Placing placing = instances_.at(id);
-  objects_[placing.object].users--;
-  if (placing.parent != 0) objects_[placing.parent].children--;
+  deleteId(id, Kind::Instance);
+  const Placement placement = instances_.at(id);
+  objects_[placement.object].users--;
+  if (placement.parent != 0) objects_[placement.parent].children--;
   instances_.erase(id);
 }
 
@@ -198,30 +198,31 @@ void CommitValidator::checkEdit(const edit::AnyUnion& any, const Commit& commit)
   using edit::Any;
   demand(any.value != nullptr, "an empty edit");
   const auto role = [&](const auto& edit, RtsKind kind) {
-    if (edit.shader != 0) needShader(edit.shader, kind);
+    if (edit.shader != 0) requireShader(edit.shader, kind);
     checkMatrix(edit.matrix.get());
   };
   switch (any.type) {
   case Any::Texture: return check(*any.AsTexture(), commit);
-  case Any::DeleteTexture: return leave(any.AsDeleteTexture()->id, Kind::Texture);
+  case Any::DeleteTexture: return deleteId(any.AsDeleteTexture()->id, Kind::Texture);
   case Any::ShaderClass: return check(*any.AsShaderClass());
   case Any::Shader: return check(*any.AsShader());
   case Any::Parameter: return check(*any.AsParameter());
-  case Any::DeleteShader: return leave(any.AsDeleteShader()->id, Kind::Shader);
+  case Any::DeleteShader: return deleteId(any.AsDeleteShader()->id, Kind::Shader);
   case Any::Object: return check(*any.AsObject(), commit);
   case Any::DeleteObject: return deleteObject(any.AsDeleteObject()->id);
   case Any::Instance: return check(*any.AsInstance());
   case Any::DeleteInstance: return deleteInstance(any.AsDeleteInstance()->id);
   case Any::Light: return check(*any.AsLight());
-  case Any::DeleteLight: return leave(any.AsDeleteLight()->id, Kind::Light);
+  case Any::DeleteLight: return deleteId(any.AsDeleteLight()->id, Kind::Light);
   case Any::Camera: return role(*any.AsCamera(), RTS_CAMERA);
   case Any::Environment: return role(*any.AsEnvironment(), RTS_ENVIRONMENT);
   case Any::DefaultShader:
-    if (any.AsDefaultShader()->shader != 0) needShader(any.AsDefaultShader()->shader, RTS_SURFACE);
+    if (any.AsDefaultShader()->shader != 0)
+      requireShader(any.AsDefaultShader()->shader, RTS_SURFACE);
     return;
   case Any::FrameSettings: return check(*any.AsFrameSettings());
   case Any::Transport:
-    if (any.AsTransport()->shader != 0) needShader(any.AsTransport()->shader, RTS_TRANSPORT);
+    if (any.AsTransport()->shader != 0) requireShader(any.AsTransport()->shader, RTS_TRANSPORT);
     return;
   case Any::ReloadShaders: return findClassesAgain();
   case Any::NONE: break;
@@ -229,15 +230,16 @@ void CommitValidator::checkEdit(const edit::AnyUnion& any, const Commit& commit)
   refuse("an unknown kind of edit");
 }
 
-// No object contains itself: every object comes off once nothing that is left contains it.
+// Checks that no object contains itself: removes objects that no remaining object contains, until
+// none is left.
 void CommitValidator::checkNesting() const {
   std::unordered_map<uint32_t, uint64_t> containers;
   std::unordered_map<uint32_t, std::vector<uint32_t>> contents;
-  for (const auto& [id, placing] : instances_) {
-    if (placing.parent == 0) continue;
-    contents[placing.parent].push_back(placing.object);
-    containers[placing.object]++;
-    containers[placing.parent];
+  for (const auto& [id, placement] : instances_) {
+    if (placement.parent == 0) continue;
+    contents[placement.parent].push_back(placement.object);
+    containers[placement.object]++;
+    containers[placement.parent];
   }
   std::vector<uint32_t> free;
   for (const auto& [id, count] : containers)

@@ -1,6 +1,6 @@
-// validator.h: whether a commit is one that the front end could have made: the contract of
-// scene_state.h and edits.fbs, checked edit by edit against all commits before. Stands between a
-// recording and a backend, and in tests behind the front end. One thread.
+// validator.h: checks that a commit could have been made by the front end: the contract of
+// scene_state.h and edits.fbs, edit by edit, against all commits before. Used between a recording
+// and a backend, and in tests behind the front end. One thread.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ class ShaderRegistry;
 
 class CommitValidator {
  public:
-  // shaders: to look classes up; without it kinds and parameters pass unchecked.
+  // shaders: finds shader classes; without it kinds and parameters are not checked.
   explicit CommitValidator(const ShaderRegistry* shaders) : shaders_(shaders) {}
 
-  // Throws std::runtime_error at the first edit that breaks a rule; the validator is of no use
+  // Throws std::runtime_error at the first edit that breaks a rule. The validator must not be used
   // afterwards.
   void check(const Commit& commit);
 
@@ -29,15 +29,15 @@ class CommitValidator {
   struct ObjectUse {
     uint64_t children = 0, users = 0;
   };
-  struct Placing {
+  struct Placement {
     uint32_t parent = 0, object = 0;
   };
 
   void checkEdit(const edit::AnyUnion& any, const Commit& commit);
-  void enter(uint32_t id, Kind kind);
-  void leave(uint32_t id, Kind kind);
-  void need(uint32_t id, Kind kind) const;
-  void needShader(uint32_t shader, RtsKind kind) const;
+  void defineId(uint32_t id, Kind kind);
+  void deleteId(uint32_t id, Kind kind);
+  void requireId(uint32_t id, Kind kind) const;
+  void requireShader(uint32_t shader, RtsKind kind) const;
 
   void check(const edit::TextureT& texture, const Commit& commit);
   void check(const edit::ShaderClassT& shaderClass);
@@ -55,14 +55,14 @@ class CommitValidator {
   void checkNesting() const;
 
   const ShaderRegistry* shaders_;
-  std::unordered_map<uint32_t, Kind> live_;
-  std::unordered_set<uint32_t> dead_; // ids are never used again
+  std::unordered_map<uint32_t, Kind> liveIds_;
+  std::unordered_set<uint32_t> deletedIds_; // deleted ids, which are never reused
   std::unordered_map<uint32_t, edit::TextureT> textures_;
-  std::unordered_map<uint32_t, const RtsClass*> classes_; // null: unknown
+  std::unordered_map<uint32_t, const RtsClass*> classes_; // null: unknown class
   std::unordered_map<uint32_t, edit::ShaderClassT> classNames_;
   std::unordered_map<uint32_t, uint32_t> shaderClasses_;
   std::unordered_map<uint32_t, ObjectUse> objects_;
-  std::unordered_map<uint32_t, Placing> instances_;
+  std::unordered_map<uint32_t, Placement> instances_;
   bool nestingChanged_ = false, hasFrame_ = false;
 };
 

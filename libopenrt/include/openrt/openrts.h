@@ -1,19 +1,26 @@
-/* openrts.h: OpenRTS, the shader SDK of OpenRT (C99, needs nothing but itself; C++ authors see
- * openrts.hpp).
+/* openrts.h: OpenRTS, the shader SDK of OpenRT. Needs a C99 compiler and no other header of OpenRT;
+ * C++ authors use openrts.hpp.
  *
- * A plug-in is a shared library that exports one constant, `rtsPlugin`, and links against nothing
- * of OpenRT: what it needs of the host comes as a table of functions. A plug-in has classes:
- * surface shaders, lights, cameras, environments, transports. Every function works on a batch of n
- * points or rays. Arrays are structures of arrays, aligned to 64 bytes and readable and writable up
- * to n rounded up to RTS_LANES, so a loop may run over whole vectors; the values of the padding are
- * harmless copies of lane n-1 on input and ignored on output.
+ * A plug-in is a shared library that exports one constant, `rtsPlugin`. It does not link against
+ * OpenRT: the host passes it a table of functions (RtsHost). A plug-in contains classes: surface
+ * shaders, lights, cameras, environments and transports. A shader is an instance of a class with
+ * its own parameter values.
  *
- * Spaces: "render space" has the world's axes and units; its origin is near the camera. Lights and
- * environments also see their local space, the frame of the matrix at rtUseLight /
- * rtUseEnvironment.
+ * Every batch function works on n points or rays. Arrays are structures of arrays. They are aligned
+ * to 64 bytes and readable and writable up to n rounded up to RTS_LANES, so a loop may run over
+ * whole vectors. Padding lanes hold harmless copies of lane n-1 on input and are ignored on output.
  *
- * Thread tag of every class function: [render], called concurrently on different batches. They must
- * be pure functions of their arguments: same input, same bytes.
+ * Spaces: "render space" has the world's axes and units; its origin is near the camera. Cameras,
+ * lights and environments also have a local space: the frame of the matrix at rtUseCamera,
+ * rtUseLight or rtUseEnvironment. Colours are linear RGB.
+ *
+ * Threads: the functions of a class must be pure: the same input gives the same bytes.
+ *   [render]  Batch functions (those with an RtsBatch) are called concurrently on different
+ *             batches. `generate`, `illuminate` and `miss` are also called on the committing
+ *             thread, between frames.
+ *   [commit]  traits, prepare, medium and extent are called on the committing thread, before any
+ *             frame uses the parameter values.
+ * Host functions may be called only from a function of a class, on the thread that runs it.
  */
 #ifndef OPENRT_OPENRTS_H
 #define OPENRT_OPENRTS_H
@@ -31,108 +38,108 @@ extern "C" {
 #endif
 
 typedef struct RtsHost RtsHost;
-typedef struct RtsBatch RtsBatch; /* the host's side of one batch; passed back to host functions */
-typedef uint32_t RtsTexture;      /* 0: none */
+typedef struct RtsBatch RtsBatch; /* the host's state of one batch; passed back to host functions */
+typedef uint32_t RtsTexture;      /* handle; 0: no texture */
 
-/* Parameters: a class declares a C struct; the host fills one per shader
- * ------------------------------------------------ */
+/* Parameters --------------------------------------------------------------------------------------
+ * A class declares a C struct; the host fills one struct for each shader. */
 
-/* C type in the parameter struct */
+/* The C type of a parameter in the struct. */
 typedef enum RtsType {
   RTS_INT = 1,                  /* int32_t */
   RTS_FLOAT,                    /* float */
   RTS_VEC2,                     /* float[2] */
   RTS_VEC3,                     /* float[3] */
   RTS_VEC4,                     /* float[4] */
-  RTS_COLOR,                    /* float[3], linear */
+  RTS_COLOR,                    /* float[3], linear RGB */
   RTS_MATRIX,                   /* float[16], column-major */
   RTS_FLOATS,                   /* RtsFloats */
   RTS_STRING,                   /* const char*, never NULL */
   RTS_TEXTURE,                  /* RtsTexture */
-  RTS_TYPE_32_BITS = 0x7fffffff /* no type: fixes the size of the enumeration */
+  RTS_TYPE_32_BITS = 0x7fffffff /* not a type: fixes the size of the enumeration */
 } RtsType;
 
+/* A list of numbers. Owned by the host; valid as long as the parameter struct. */
 typedef struct RtsFloats {
   const float* data;
   uint32_t count;
 } RtsFloats;
 
 typedef struct RtsParam {
-  const char* name;
+  const char* name; /* unique in the class */
   RtsType type;
-  uint32_t offset;        /* in the parameter struct */
-  float defaultValue[16]; /* numbers; lists, strings and textures start empty */
-  float minimum, maximum; /* inclusive; both 0: no range */
-  const char* text;       /* one line for people: meaning and unit */
+  uint32_t offset;        /* bytes from the start of the parameter struct */
+  float defaultValue[16]; /* for numbers; lists, strings and textures start empty */
+  float minimum, maximum; /* inclusive range of every component; both 0: no range */
+  const char* text;       /* one line for the user: meaning and unit */
 } RtsParam;
 
-/* Batches
- * ------------------------------------------------------------------------------------------------------------------
- */
+/* Batches -------------------------------------------------------------------------------------- */
 
-/* RtsHits.flags */
+/* Bits of RtsHits.flags */
 enum {
-  RTS_HIT_BACK = 1, /* the ray meets the side that the geometric normal, before it was turned, faces
-                       away from */
-  RTS_HIT_COLOR =
-      2, /* the geometry has colours; `color` holds the interpolated one (else 1 1 1 1) */
+  /* The ray hits the back: the side that the geometric normal pointed away from before it was
+   * turned. */
+  RTS_HIT_BACK = 1,
+  RTS_HIT_COLOR = 2,    /* the geometry has colours; `color` is interpolated (else 1 1 1 1) */
   RTS_HIT_TEXCOORD = 4, /* the geometry has texture coordinates (else uv is 0) */
-  RTS_HIT_LINE = 8      /* a line or a point rather than a surface */
+  RTS_HIT_LINE = 8      /* the hit is on a line or a point, not on a surface */
 };
 
+/* The hits of a batch: all have the same class, but not always the same parameter values. */
 typedef struct RtsHits {
   uint32_t count;
   const float* position[3];  /* render space */
-  const float* direction[3]; /* unit, of the ray, towards the surface */
+  const float* direction[3]; /* ray direction, unit, towards the surface */
   const float* geometric[3]; /* unit geometric normal, turned towards the ray's origin */
   const float* normal[3];    /* unit shading normal, on the same side as the geometric one */
-  const float* uv[2];
-  const float* color[4]; /* rgba */
-  const float* distance; /* along the path from the camera */
-  const uint32_t* flags;
-  const void* const* params; /* the shader's parameter struct, by lane */
-  const float* segment;      /* since 1.1: along the ray that met the surface */
+  const float* uv[2];        /* texture coordinates */
+  const float* color[4];     /* rgba of the geometry */
+  const float* distance;     /* path length from the camera */
+  const uint32_t* flags;     /* RTS_HIT_* */
+  const void* const* params; /* the shader's parameter struct, for each lane */
+  const float* segment;      /* since 1.1: length of the last ray of the path */
 } RtsHits;
 
-/* What a surface shader answers. All arrays are zero on entry. */
+/* The result of `shade`. All arrays are zero on entry. */
 typedef struct RtsShading {
-  float* radiance[3];     /* leaving towards the ray's origin, already weighted by opacity */
-  float* transmission[3]; /* fraction of what lies straight behind that is let through, 0..1 */
-  float* albedo[3];       /* surface colour for the albedo channel, or NULL where nobody asks */
+  float* radiance[3];     /* leaving towards the ray's origin, already multiplied by opacity */
+  float* transmission[3]; /* 0..1, fraction let through of the radiance straight behind the hit */
+  float* albedo[3];       /* surface colour for the albedo channel; NULL where it is not rendered */
 } RtsShading;
 
-/* Lobes (since 1.1): a surface as a sum of ways in which it answers light. The engine's transport
- * asks lights, follows mirror images and samples directions; the shader only describes. Weights are
- * linear, 0 .. 1; reflectances of one hit should add up to at most 1. The transports direct and
- * whitted answer lights by every lobe that scatters (all but REFLECTION, DIELECTRIC and
- * TRANSPARENT) and follow none of these; path tracing samples them. */
+/* Lobes (since 1.1) are the terms of a surface's BSDF. The shader only describes them; the engine's
+ * transport computes direct light, follows mirror directions and samples the lobes. Weights are
+ * linear, 0..1; the reflectances of one hit should add up to at most 1. The transports direct and
+ * whitted evaluate direct light for every lobe that scatters (all except REFLECTION, DIELECTRIC and
+ * TRANSPARENT) and spawn no rays from these lobes; path tracing samples them. */
 typedef enum RtsLobeKind {
-  RTS_LOBE_DIFFUSE = 1, /* Lambert; weight: albedo */
-  RTS_LOBE_REFLECTION,  /* perfect mirror; weight: reflectance for this direction (Fresnel included)
-                         */
-  RTS_LOBE_DIELECTRIC,  /* smooth boundary of a clear medium: Fresnel reflection and refraction,
-                           unpolarised; weight: their tint;  parameter[0]: index of refraction on the
-                           ray's side over that behind. Where the class has a  `medium` the engine
-                           knows the indices on both sides by itself and leaves the parameter alone
-                         */
-  RTS_LOBE_TRANSPARENT, /* straight through; weight: transmittance */
-  /* Since 1.2. Microfacets after B. Walter et al., "Microfacet Models for Refraction through Rough
-   * Surfaces", EGSR 2007 (GGX, Smith shadowing); alpha 0 .. 1 is the width of the distribution of
-   * slopes, below 1e-4 taken as 1e-4. */
-  RTS_LOBE_GLOSSY, /* reflection; weight: reflectance of a facet; parameter[0]: alpha; parameter[1]:
-                      index of refraction on the ray's side over that behind, whose Fresnel
-                      reflectance multiplies, or 0: none does */
-  RTS_LOBE_ROUGH_DIELECTRIC, /* boundary of a clear medium: reflection and refraction at facets;
-                                weight: their tint; parameter[0]: as of DIELECTRIC; parameter[1]:
-                                alpha */
-  RTS_LOBE_CUSTOM,           /* functions of the plug-in (RtsHost.customLobe) */
+  RTS_LOBE_DIFFUSE = 1, /* Lambertian; weight: albedo */
+  /* Perfect mirror; weight: reflectance for this direction, including Fresnel. */
+  RTS_LOBE_REFLECTION,
+  /* Smooth boundary of a clear medium: unpolarised Fresnel reflection and refraction. Weight: tint
+   * of both. parameter[0]: relative index of refraction, the ray's side over the far side. If the
+   * class has `medium`, the engine knows both indices and ignores the parameter. */
+  RTS_LOBE_DIELECTRIC,
+  RTS_LOBE_TRANSPARENT, /* passes straight through; weight: transmittance */
+  /* Since 1.2. The rough lobes are microfacet models after B. Walter et al., "Microfacet Models for
+   * Refraction through Rough Surfaces", EGSR 2007 (GGX, Smith shadowing). alpha, 0..1, is the width
+   * of the distribution of slopes; values below 1e-4 count as 1e-4. */
+  /* Rough reflection. Weight: reflectance of a facet. parameter[0]: alpha. parameter[1]: relative
+   * index of refraction (ray's side over far side), whose Fresnel reflectance multiplies the
+   * weight; 0: no Fresnel factor. */
+  RTS_LOBE_GLOSSY,
+  /* Rough boundary of a clear medium: reflection and refraction at facets. Weight: tint of both.
+   * parameter[0]: relative index as for DIELECTRIC; parameter[1]: alpha. */
+  RTS_LOBE_ROUGH_DIELECTRIC,
+  RTS_LOBE_CUSTOM, /* functions of the plug-in (RtsHost.customLobe) */
   RTS_LOBE_COUNT,
   RTS_LOBE_32_BITS = 0x7fffffff
 } RtsLobeKind;
 
-/* A lobe of every hit of a batch. Where the weight is 0 the hit has no such lobe. Made by
- * RtsHost.lobe: weights 0, the normal that of the hits, parameters 0; a shader writes what differs.
- */
+/* One lobe for every hit of a batch, made by RtsHost.lobe. A hit whose weight is 0 does not have
+ * the lobe. Initially the weights and parameters are 0 and the normal is that of the hits; a shader
+ * writes only what differs. */
 #define RTS_MAX_LOBE_FLOATS 16
 typedef struct RtsLobeFunctions RtsLobeFunctions;
 typedef struct RtsLobe {
@@ -140,107 +147,112 @@ typedef struct RtsLobe {
   float* weight[3];
   float* normal[3]; /* unit, on the side of the hit's geometric normal */
   float* parameter[2];
-  /* since 1.2, of RTS_LOBE_CUSTOM */
+  /* Since 1.2, for RTS_LOBE_CUSTOM. */
   const RtsLobeFunctions* functions;
-  float* data[RTS_MAX_LOBE_FLOATS]; /* as many as were asked for, one value a hit, 0 at first */
+  float* data[RTS_MAX_LOBE_FLOATS]; /* the requested number of arrays, initially 0 */
 } RtsLobe;
 
-/* A lobe of a plug-in's own (since 1.2): n pairs of a hit of the batch (hit[i] is its number) and a
- * direction. `value` is the response per radiance times the cosine at the lobe's normal, without
- * the lobe's weight; `density` is that of `sample` by solid angle, 0 for directions that it never
- * gives. Answers for hits where the lobe's weight is 0 are not used. Directions are unit, away from
- * the surface; towards the eye it is minus hits->direction. A lobe must be reciprocal unless it
- * transmits, and reflect at most what it gets. Nothing is padded to RTS_LANES here. */
+/* The functions of a custom lobe (since 1.2). They get n pairs of a hit of the batch (hit[i] is its
+ * lane) and a direction. Directions are unit, in render space, and point away from the surface; the
+ * direction towards the eye is -hits->direction. A lobe must be reciprocal unless it transmits, and
+ * must conserve energy. Results for hits where the lobe's weight is 0 are ignored. The arrays of
+ * these functions are not padded to RTS_LANES. [render] */
 struct RtsLobeFunctions {
   uint32_t size;      /* sizeof(RtsLobeFunctions) */
-  uint32_t transmits; /* 1: directions to the other side of the surface may have a value */
+  uint32_t transmits; /* 1: directions on the other side of the surface may have a value */
+  /* Writes for each direction the BSDF times the cosine at the lobe's normal to `value` (the lobe's
+   * weight is not included), and to `density` the pdf of `sample` with respect to solid angle, 0
+   * where `sample` never returns the direction. */
   void (*evaluate)(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
                    const float* const direction[3], float* const value[3], float* density);
-  /* For points of the unit square: a direction, `value` divided by its density, and the density.
-   * Density 0: none. */
+  /* Samples a direction for each point of the unit square. Writes the direction, `quotient` =
+   * `value` / pdf, and the pdf to `density`; a pdf of 0 means that no direction was sampled. */
   void (*sample)(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
                  const float* const square[2], float* const direction[3], float* const quotient[3],
                  float* density);
 };
 
-/* What a surface shader that answers in lobes says beside them. All arrays are zero on entry. */
+/* The result of `surface` besides the lobes. All arrays are zero on entry. */
 typedef struct RtsSurface {
-  float* emission[3]; /* radiance of its own towards the ray's origin */
-  float* albedo[3];   /* surface colour for the albedo channel, or NULL where nobody asks */
+  float* emission[3]; /* emitted radiance towards the ray's origin */
+  float* albedo[3];   /* surface colour for the albedo channel; NULL where it is not rendered */
 } RtsSurface;
 
-/* Light arriving at the points of a batch from one light. */
+/* Light from one light that arrives at the points of a batch. */
 typedef struct RtsIllumination {
-  /* Of a light's function: vector to the light in its local space, any length; to a surface shader:
-   * unit, render space. */
+  /* Vector to the light. A light writes it in its local space with any length; a surface shader
+   * reads it as a unit vector in render space. */
   float* toLight[3];
-  /* Radiance scale of the direct part: light colour x intensity x attenuation x cone; 0 where it
-   * does not reach. */
+  /* Direct part: light colour x intensity x attenuation x cone; 0 outside the light's reach. It is
+   * the radiance of a white Lambertian surface that faces the light. */
   float* color[3];
   float* ambient[3]; /* the same for the ambient part */
-  int directional;   /* set by the light: toLight has no end point (shadow rays run to infinity) */
+  int directional;   /* set by the light; 1: toLight has no end point, shadow rays are infinite */
 } RtsIllumination;
 
-/* Of a camera; render space comes later: these are in the camera's local space */
+/* Camera rays, in the camera's local space; the host transforms them to render space. */
 typedef struct RtsRays {
   float* origin[3];
   float* direction[3]; /* unit */
 } RtsRays;
 
-/* Since 1.2. The inside of a body whose surface has the shader, by colour: what differs by colour
- * is dispersion. Bodies may overlap: where they do, the one of the highest priority is there (C.
- * Schmidt, B. Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002). Boundaries
- * of others within it are not seen. Faces point outwards. */
+/* Since 1.2. The interior of a body whose surface has the shader, by colour channel; an index that
+ * differs by channel is dispersion. The surface's faces point outwards. Where bodies overlap, the
+ * one with the highest priority counts (C. Schmidt, B. Budge, "Simple Nested Dielectrics in Ray
+ * Traced Images", JGT 7(2), 2002); boundaries of the others inside it are invisible. */
 typedef struct RtsMedium {
-  float index[3];      /* of refraction, > 0 */
-  float absorption[3]; /* per unit of length in the world: exp(-absorption x length) is left */
+  float index[3];      /* index of refraction, > 0 */
+  float absorption[3]; /* per world unit of length; transmittance is exp(-absorption x length) */
   int32_t priority;
 } RtsMedium;
 
-/* Since 1.2. Where a light is and how strong, in its local space: to choose among many, and to
- * follow light from its source. */
+/* Since 1.2. The position and strength of a light in its local space, for selecting one of many
+ * lights and for tracing paths that start at the light. */
 typedef struct RtsExtent {
-  int32_t parallel; /* 1: light falls along `direction` everywhere; else it comes from `position` */
+  int32_t parallel; /* 1: light falls along `direction` everywhere; 0: it comes from `position` */
   float position[3];
-  float direction[3]; /* unit; axis of the cone that gets light */
-  float cosine;       /* of the cone's half angle; -1: all directions */
-  float power;  /* mean over the colours of the flux; parallel: of the irradiance. Only a guess */
-  float radius; /* nothing is lit beyond; infinite without */
+  float direction[3]; /* unit; axis of the lit cone */
+  float cosine;       /* cosine of the cone's half angle; -1: the light shines in all directions */
+  /* Estimate of the flux (parallel: of the irradiance), mean over the colour channels. */
+  float power;
+  float radius; /* nothing beyond this distance is lit; infinite if there is no limit */
 } RtsExtent;
 
-/* Since 1.2. Where points are in the picture. */
+/* Since 1.2. Where points appear in the picture. */
 typedef struct RtsProjection {
-  float* xy[2];    /* pixels from the top left corner */
-  float* toEye[3]; /* vector from the point to the place on the lens, or, for parallel views, a unit
-                      vector towards the eye */
-  float* weight; /* pixels covered per unit of area, at the point, of a surface that faces the eye;
-                    0: not in the picture */
-  int parallel;  /* set by the camera */
+  float* xy[2]; /* pixels from the top left corner */
+  /* Vector from the point to the sampled point on the lens; for parallel views a unit vector
+   * towards the eye. */
+  float* toEye[3];
+  /* Pixels covered per unit of area of a surface at the point that faces the eye; 0: the point is
+   * not in the picture. */
+  float* weight;
+  int parallel; /* set by the camera; 1: parallel view */
 } RtsProjection;
 
-/* Since 1.2. Rays that a shader sends: from hits of its batch, or from anywhere. */
+/* Since 1.2. Rays that a shader traces, from hits of its batch or from any other place. */
 typedef struct RtsRequest {
   uint32_t count;
-  const uint32_t*
-      hit; /* number of the hit that each ray belongs to (of a transport: of the camera ray) */
-  const float* origin[3]; /* render space; origin[0] NULL: from the hits, lifted off the surface to
-                             the side of the direction */
+  /* Lane of the hit that each ray belongs to (in a transport: of the camera ray). */
+  const uint32_t* hit;
+  /* Render space. If origin[0] is NULL, the rays start at their hits, offset from the surface to
+   * the side of the direction. */
+  const float* origin[3];
   const float* direction[3]; /* unit */
-  const float* length;       /* where it ends; NULL: nowhere */
+  const float* length;       /* end of each ray, in world units; NULL: infinite */
 } RtsRequest;
 
-/* What rays meet first. Arrays may be NULL where nobody asks. */
+/* The first hits of rays. An array is NULL where the caller does not need it. Only `distance` is
+ * written for rays that hit nothing. */
 typedef struct RtsFound {
-  float* distance;     /* infinite: nothing */
+  float* distance;     /* from the ray's origin; infinite: nothing is hit */
   float* position[3];  /* render space */
-  float* geometric[3]; /* unit, turned towards the ray's origin */
-  float* normal[3];    /* shading normal, unit */
+  float* geometric[3]; /* unit geometric normal, turned towards the ray's origin */
+  float* normal[3];    /* unit shading normal */
   uint32_t* name;      /* rtLoadName */
 } RtsFound;
 
-/* Classes
- * --------------------------------------------------------------------------------------------------------------------
- */
+/* Classes -------------------------------------------------------------------------------------- */
 
 typedef enum RtsKind {
   RTS_SURFACE = 1,
@@ -248,90 +260,92 @@ typedef enum RtsKind {
   RTS_CAMERA = 3,
   RTS_ENVIRONMENT = 4,
   RTS_TRANSPORT = 5,            /* since 1.2 */
-  RTS_KIND_32_BITS = 0x7fffffff /* no kind: fixes the size of the enumeration */
+  RTS_KIND_32_BITS = 0x7fffffff /* not a kind: fixes the size of the enumeration */
 } RtsKind;
 
-/* Answered by RtsClass.traits for one set of parameters */
+/* Traits: bits that RtsClass.traits returns for one set of parameter values. */
 enum {
-  RTS_TRANSPARENT = 1, /* surface: transmission may be above 0; shadow rays then ask `transmit` */
-  RTS_UNLIT = 2,       /* surface: never asks for lights */
+  RTS_TRANSPARENT = 1, /* surface: transmission may be above 0; shadow rays then call `transmit` */
+  RTS_UNLIT = 2,       /* surface: never evaluates lights */
   RTS_NO_SHADOW = 4,   /* light: casts no shadows */
-  RTS_EMISSIVE = 8,    /* surface that answers in lobes: emission may be above 0 */
-  /* since 1.2; from these the automatic transport is chosen */
-  RTS_SPECULAR =
-      16, /* surface: may have lobes REFLECTION or DIELECTRIC. Assumed of classes made for 1.1 */
-  RTS_GLOSSY = 32, /* surface: may have lobes that scatter, other than DIFFUSE */
-  RTS_GLOBAL = 64, /* surface: asks for the light of other surfaces: path tracing */
-  /* Hosts that do not know these take them as not set. */
-  RTS_NO_SCATTER = 128, /* surface: has no lobes but REFLECTION, DIELECTRIC and TRANSPARENT */
-  RTS_BACKDROP = 256    /* environment: a picture that does not light surfaces that answer by
-                           themselves (`shade`) */
+  RTS_EMISSIVE = 8,    /* surface with `surface`: emission may be above 0 */
+  /* Since 1.2; the automatic choice of the transport depends on these. */
+  RTS_SPECULAR = 16, /* surface: may have REFLECTION or DIELECTRIC lobes. Implied for ABI 1.1 */
+  RTS_GLOSSY = 32,   /* surface: may have scattering lobes other than DIFFUSE */
+  RTS_GLOBAL = 64,   /* surface: needs indirect light, so path tracing is chosen */
+  /* Hosts that do not know the following bits ignore them. */
+  RTS_NO_SCATTER = 128, /* surface: only REFLECTION, DIELECTRIC and TRANSPARENT lobes */
+  RTS_BACKDROP = 256    /* environment: does not light surfaces that are shaded by `shade` */
 };
 
-/* Since 1.2: what may set a parameter's value; whatever it is, functions find it in the parameter
- * struct of the hit. */
+/* Since 1.2: how often a parameter's value may change. Functions always find the value for a hit in
+ * the hit's parameter struct. */
 enum {
   RTS_PER_SHADER = 0,
-  RTS_PER_TRIANGLE = 1,
-  RTS_PER_VERTEX = 2 /* interpolated; numbers other than RTS_INT only */
+  RTS_PER_TRIANGLE = 1, /* RTS_FLOAT to RTS_MATRIX only */
+  RTS_PER_VERTEX = 2    /* interpolated; RTS_FLOAT to RTS_MATRIX only */
 };
 
+/* A shader class. Functions that the class does not have are NULL. */
 typedef struct RtsClass {
-  uint32_t size; /* sizeof(RtsClass) of the plug-in's header; absent functions are NULL */
+  uint32_t size; /* sizeof(RtsClass) of the plug-in's header */
   RtsKind kind;
-  const char* name;
-  const char* text;
-  uint32_t paramSize;
+  const char* name;   /* unique in the plug-in */
+  const char* text;   /* one line for the user: what the class is */
+  uint32_t paramSize; /* bytes of the parameter struct */
   uint32_t paramCount;
   const RtsParam* params;
-  /* RTS_* traits of a shader with these parameters; NULL: none. Called at commit. */
+  /* Returns the RTS_* traits of a shader with these parameters. NULL: no traits. [commit] */
   uint32_t (*traits)(const RtsHost* host, const void* params);
-  /* surface: fills out for every hit. */
+  /* surface: writes radiance and transmission of every hit to out. [render] */
   void (*shade)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out);
-  /* surface: only the transmission, for shadow rays; hits carry position, direction, uv, color,
-   * flags, params. NULL: opaque. */
+  /* surface: writes only the transmission (0..1), for shadow rays. Of hits, only position,
+   * direction, uv, color, flags and params are valid. NULL: opaque. [render] */
   void (*transmit)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
                    float* const transmission[3]);
-  /* light: fills out for n points given in the light's local space. */
+  /* light: writes the illumination of n points in the light's local space to out. [render] */
   void (*illuminate)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                      const float* const local[3], RtsIllumination* out);
-  /* camera: rays for n points of the picture; x, y in pixels from the top left corner, size =
-   * width, height. */
+  /* camera: writes the rays, in local space, of n points of the picture. xy: pixels from the top
+   * left corner; size: width and height in pixels. [render] */
   void (*generate)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                    const float* const xy[2], const float size[2], RtsRays* out);
-  /* environment: radiance (rgb) and opacity (a) seen in n local-space directions (unit). NULL:
-   * black, opacity 0. */
+  /* environment: writes the radiance (rgb) and opacity (a, 0..1) seen in n unit directions of its
+   * local space. NULL: black, opacity 0. [render] */
   void (*miss)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                const float* const direction[3], float* const rgba[4]);
-  /* environment: fog between the camera and hits at n local-space vectors from the eye: writes the
-   * fog colour and the fraction (0..1) of surface radiance that arrives. NULL: clear air. */
+  /* environment: fog between the camera and n hits. fromEye: vectors from the eye to the hits, in
+   * local space. Writes the fog's colour and the fraction (0..1) of surface radiance that arrives.
+   * NULL: no fog. [render] */
   void (*attenuate)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                     const float* const fromEye[3], float* const color[3], float* fraction);
-  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. Of a class that
-   * has both this and `shade` (since 1.2), path tracing asks this and the other transports ask
-   * `shade`. */
+  /* surface, since 1.1: describes every hit by lobes (RtsHost.lobe) and emission. If a class has
+   * both this and `shade` (since 1.2), path tracing calls this and the other transports call
+   * `shade`. [render] */
   void (*surface)(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out);
-  /* The rest since 1.2, all optional. */
-  /* RTS_PER_* by parameter: how often its value may change; NULL: all are RTS_PER_SHADER. */
+  /* The following fields exist since 1.2; all are optional. */
+  /* RTS_PER_* for each parameter. NULL: all are RTS_PER_SHADER. */
   const uint8_t* frequency;
-  /* Called once for each new set of parameter values, before any other function sees it, and when
-   * it goes. Both may change parts of the struct that are no parameters (they are zero before
-   * `prepare`): tables made from parameters. `prepare` returns NULL, or a message for people
-   * (static, or kept in the struct): it is logged, a surface is then drawn by the default surface
-   * shader, and a light, camera, environment or transport is not there. */
+  /* Called once for each new set of parameter values, before any other function gets it. May write
+   * the fields of the struct that are not parameters, for example tables computed from parameters;
+   * they are zero before. Returns NULL, or an error message (static, or stored in the struct) that
+   * the host logs. A surface is then drawn by the default surface shader; a light, camera,
+   * environment or transport is left out. [commit] */
   const char* (*prepare)(const RtsHost* host, void* params);
+  /* Frees what `prepare` allocated. Called once when neither the scene nor a frame uses the
+   * values, also if `prepare` returned a message; on any thread. */
   void (*release)(const RtsHost* host, void* params);
-  /* surface: 1 and the inside of the body, 0: it has none. Called at commit. */
+  /* surface: returns 1 and writes the interior of the body; 0: it has no interior. [commit] */
   int (*medium)(const RtsHost* host, const void* params, RtsMedium* out);
-  /* light: 1 and its extent, 0: unknown. Called at commit. */
+  /* light: returns 1 and writes its extent; 0: unknown. [commit] */
   int (*extent)(const RtsHost* host, const void* params, RtsExtent* out);
-  /* camera: the inverse of `generate` for n points in the camera's local space. lens: a point of
-   * the unit square for each. */
+  /* camera: the inverse of `generate`: projects n points of the camera's local space to the
+   * picture. lens: a point of the unit square for each. [render] */
   void (*project)(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                   const float* const local[3], const float* const lens[2], const float size[2],
                   RtsProjection* out);
-  /* transport: radiance (rgb) and alpha of n camera rays, through RtsHost.trace, findHit, occluded
-   * and random. */
+  /* transport: computes radiance (rgb) and alpha of n camera rays with RtsHost.trace, findHit,
+   * occluded and random. [render] */
   void (*radiance)(const RtsHost* host, RtsBatch* batch, const void* params, const RtsRequest* rays,
                    float* const rgba[4]);
 } RtsClass;
@@ -344,64 +358,70 @@ typedef struct RtsPlugin {
   const RtsClass* const* classes;
 } RtsPlugin;
 
-/* Host: what a shader may call
- * ---------------------------------------------------------------------------------------- */
+/* Host: the functions that a shader may call ------------------------------------------------------
+ * Functions with an RtsBatch take the batch that was passed to the running batch function, and the
+ * hits that were passed with it. */
 
 struct RtsHost {
   uint32_t size;
   uint16_t major, minor;
-  /* Number of lights that shine on the batch. */
+  /* Returns the number of lights to evaluate for the batch. The host may let one of them stand for
+   * many: it then selects a light for each hit and divides by the selection probability. */
   uint32_t (*lights)(RtsBatch* batch);
-  /* Light number i (0 <= i < lights) at the hits; the arrays of out are the host's, valid until the
-   * next call for this batch. */
+  /* Evaluates light i (0 <= i < lights) at the hits, without shadows. Sets the pointers of out to
+   * arrays of the host, valid until the next call for this batch. */
   void (*illuminate)(RtsBatch* batch, uint32_t i, const RtsHits* hits, RtsIllumination* out);
-  /* Visibility of light i from the hits: multiplies light->color by the colour let through by what
-   * lies between, for the lanes whose wanted[lane] is not 0 (2: it comes through the surface). Must
-   * follow illuminate(i). Does nothing where shadows are off. */
+  /* Traces shadow rays from the hits to light i and multiplies light->color by the transmittance
+   * (by colour). wanted[lane] is 0 for lanes to skip, 1, or 2 if the light comes through the
+   * surface. Must follow illuminate(i). Does nothing if shadows are off. */
   void (*shadow)(RtsBatch* batch, uint32_t i, const RtsHits* hits, const uint8_t* wanted,
                  RtsIllumination* light);
-  /* Filtered texels (rgba; grey is replicated, missing alpha is 1) at n places. texture 0 gives 1 1
-   * 1 1. */
+  /* Writes filtered texels at n texture coordinates: rgba, linear; grey is replicated, a missing
+   * alpha is 1. Texture 0 gives 1 1 1 1. */
   void (*sample)(RtsBatch* batch, RtsTexture texture, uint32_t n, const float* const uv[2],
                  float* const rgba[4]);
-  /* Components 1..4 of a texture, 0 for texture 0. */
+  /* Returns the number of components (1..4) of a texture, 0 for texture 0. */
   uint32_t (*components)(const RtsHost* host, RtsTexture texture);
-  /* n floats (rounded up to RTS_LANES), aligned, not initialised, freed when the batch function
-   * returns. Never NULL. */
+  /* Returns n floats (rounded up to RTS_LANES), aligned and uninitialised. Never NULL; freed when
+   * the batch function returns. */
   float* (*scratch)(RtsBatch* batch, uint32_t n);
-  /* level 0 debug .. 3 error; the host limits how often the same text is passed on. */
+  /* Passes a message to the application's log callback. level: 0 debug to 3 error. */
   void (*log)(const RtsHost* host, int level, const char* utf8);
-  /* Since 1.1: another lobe of the batch's hits, for `surface`. At most RTS_MAX_LOBES a batch, NULL
-   * beyond. Owned by the host. */
+  /* Since 1.1, for `surface`: adds a lobe to the batch's hits and returns it. The host owns it.
+   * Returns NULL for an unknown kind and after RTS_MAX_LOBES lobes of a batch. */
   RtsLobe* (*lobe)(RtsBatch* batch, RtsLobeKind kind);
-  /* The rest since 1.2. */
-  /* A lobe of the plug-in's own with a number of floats (at most RTS_MAX_LOBE_FLOATS) for each hit;
-   * NULL as by `lobe`. */
+  /* The following functions exist since 1.2. */
+  /* As `lobe`, for a custom lobe with a number of floats (at most RTS_MAX_LOBE_FLOATS) per hit. */
   RtsLobe* (*customLobe)(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t floats);
-  /* A point of the unit square for each hit (camera: each point), one sequence for each pair < 4:
-   * well spread over the samples of a pixel, the same for the same picture. Using one turns the
-   * pixel's value into an estimate. */
+  /* Writes a point of the unit square for each hit (camera: each point of the picture; transport:
+   * each ray). Every pair (0..3) is a sequence of its own, well distributed over the samples of a
+   * pixel and the same whenever the picture is rendered. A call makes the pixel's value a Monte
+   * Carlo estimate. */
   void (*random)(RtsBatch* batch, uint32_t pair, float* const square[2]);
-  /* Radiance (and, if rgba[3] is not NULL, alpha) that comes back along rays, shaded by the engine:
-   * for `shade` and `radiance`. Nests as deep as the depth limit allows, at most 64 times; black
-   * beyond. */
+  /* For `shade` and `radiance`: writes the radiance (and, if rgba[3] is not NULL, the alpha) that
+   * arrives along rays, shaded by the engine. May nest up to the depth limit, at most 64 times;
+   * black beyond. */
   void (*trace)(RtsBatch* batch, const RtsRequest* rays, float* const rgba[4]);
+  /* Writes the first hit of each ray. */
   void (*findHit)(RtsBatch* batch, const RtsRequest* rays, RtsFound* out);
-  /* Colour that is let through between a ray's origin and its end: 0 where it is blocked. */
-  void (*occluded)(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]);
-  /* Of the hits: position and geometric normal (not unit) in the frame of the object
-   * (rtBeginObject) that the surface belongs to: what rtInstantiateObject places. NULL pointers are
-   * left out. */
-  void (*local)(RtsBatch* batch, float* const position[3], float* const normal[3]);
-  /* Change of position per unit of texture coordinate, render space; 0 without texture coordinates.
+  /* Writes the transmittance (by colour, 0..1) between each ray's origin and end: 0 where blocked.
    */
+  void (*occluded)(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]);
+  /* Writes position and geometric normal (not unit) of the hits in the frame of the object
+   * (rtBeginObject) that the surface belongs to, which rtInstantiateObject places. Either may be
+   * NULL. */
+  void (*local)(RtsBatch* batch, float* const position[3], float* const normal[3]);
+  /* Writes the derivatives of the hits' position with respect to the texture coordinates, in render
+   * space; 0 without texture coordinates. */
   void (*derivatives)(RtsBatch* batch, float* const alongS[3], float* const alongT[3]);
-  /* rtLoadName, outermost instance, triangle (as RThit); NULL pointers are left out. */
+  /* Writes rtLoadName, outermost instance and triangle (as in RThit) of the hits. Each may be NULL.
+   */
   void (*ids)(RtsBatch* batch, uint32_t* name, uint32_t* instance, uint32_t* primitive);
-  /* Of the ray that met the surface: surfaces met before, and the share of the light that reaches
-   * the camera. */
+  /* Writes for each hit the number of surfaces that the path hit before, and the path throughput:
+   * the fraction of radiance that reaches the camera. Either may be NULL. */
   void (*path)(RtsBatch* batch, uint32_t* depth, float* const throughput[3]);
-  /* Bound of the positions' rounding error along the geometric normal. */
+  /* Writes a bound of the rounding error of the hits' positions along the geometric normal, in
+   * world units. */
   void (*error)(RtsBatch* batch, float* error);
 };
 #define RTS_MAX_LOBES 8
@@ -411,9 +431,9 @@ struct RtsHost {
 #else
 #define RTS_EXPORT __attribute__((visibility("default")))
 #endif
-/* The one symbol of a plug-in:
- *   RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR,
- * sizeof(RtsPlugin), n, classes}; */
+/* The only symbol that the host looks up in a plug-in:
+ *   RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC,         RTS_ABI_MAJOR, RTS_ABI_MINOR,
+ *                                           sizeof(RtsPlugin), n,             classes}; */
 #define RTS_ENTRY_NAME "rtsPlugin"
 
 #ifdef __cplusplus

@@ -1,60 +1,65 @@
-// openrts.hpp: OpenRTS for C++17: a shader as a small class that sees one hit at a time. The header
-// hides the batches, builds the class table and the parameter table, and needs nothing but
-// openrts.h. Where every nanosecond counts, write the batch functions of openrts.h instead.
+// openrts.hpp: OpenRTS for C++17. A shader is a small class whose functions see one hit at a time;
+// the header adds the loops over batches, the class table and the parameter table. It needs only
+// openrts.h and the headers beside it. Where every nanosecond counts, write the batch functions of
+// openrts.h instead. Units and spaces are those of openrts.h.
 //
 //   #include <openrt/openrts.hpp>
 //   struct Polished : rts::Surface<Polished> {
-//     rts::Param<rts::Color> reflectance{"reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected,
-//     0..1"}; void surface(const rts::Hit&, rts::Closures& out) const {
-//     out.reflection(reflectance); }
+//     rts::Param<rts::Color> reflectance{"reflectance", {0.9f, 0.9f, 0.9f},
+//                                        "fraction reflected, 0..1"};
+//     void surface(const rts::Hit&, rts::Closures& out) const { out.reflection(reflectance); }
 //   };
 //   RTS_PLUGIN(Polished)
 //
-// A class may say `static constexpr const char* text = "what it is";`. Its functions are const,
-// must not throw and are called on many threads at once [render]. Its members are rts::Param, and,
-// for what `prepare` makes of them, plain numbers and pointers, which are zero before `prepare`
-// whatever their initialisers say.
+// A class derives from one of the templates below and defines these functions. Except for `prepare`
+// and `release`, they are const. None may throw. They are called on many threads at once [render];
+// `emits`, `medium`, `needs`, `extent` and `prepare` are called on the committing thread.
 //
-//   Surface<T>      void surface(const Hit&, Closures&) const         a sum of lobes that the
-//   engine follows
-//                   Shaded shade(const Hit&) const                    instead: radiance; or beside
-//                   it, for the transports that
-//                                                                     follow no light between
-//                                                                     surfaces
-//                   Color reflect(const Hit&, const Light&) const     optional, with shade: the
-//                   answer to one light; without it:
-//                                                                     unlit
-//                   Color transmit(const Hit&) const                  optional: what shadow rays
-//                   see; without it the surface is
-//                                                                     opaque
-//                   bool emits() const                                optional: emission may be
-//                   above 0; without it path tracing
-//                                                                     meets the light by chance
-//                                                                     only
-//                   Medium medium() const                             optional: the inside of the
-//                   body static constexpr uint32_t needs = RTS_GLOSSY;     optional, also as a
-//                   const function: RTS_SPECULAR,
-//                                                                     RTS_GLOSSY, RTS_GLOBAL,
-//                                                                     RTS_NO_SCATTER; without it a
-//                                                                     class with `surface` counts
-//                                                                     as RTS_SPECULAR
-//   LightSource<T>  Illumination illuminate(Vec3 point) const         point and answer in the
-//   light's local space
-//                   Extent extent() const                             optional: where it is and how
-//                   strong static constexpr bool directional = true;         optional: toLight has
-//                   no end point static constexpr bool shadows = false;            optional
-//   Camera<T>       Ray generate(Vec2 pixel, Vec2 size) const         local space
-//                   Projection project(Vec3 point, Vec2 lens, Vec2 size) const     optional: its
-//                   inverse static constexpr bool parallel = true;            optional: all rays
-//                   have one direction
-//   Environment<T>  Vec4 miss(Vec3 direction) const                   radiance and opacity
-//                   Fog attenuate(Vec3 fromEye) const                 optional
-//   Transport<T>    Vec4 radiance(const CameraRay&) const             radiance and alpha
-//   all             const char* prepare()                             optional, called once for
-//   each new set of values: a message
-//                                                                     if they make no sense, else
-//                                                                     nullptr
-//                   void release()                                    optional: undoes it
+//   Surface<T>
+//     void surface(const Hit&, Closures&) const      adds the BSDF's lobes and emission
+//     Shaded shade(const Hit&) const                 instead: returns radiance. A class may have
+//                                                    both; then path tracing calls `surface` and
+//                                                    the other transports call `shade`
+//     Color reflect(const Hit&, const Light&) const  optional, with `shade`: radiance reflected
+//                                                    from one light; without it the surface is
+//                                                    unlit
+//     Color transmit(const Hit&) const               optional: transmittance (0..1) for shadow
+//                                                    rays; without it the surface is opaque
+//     bool emits() const                             optional: emission may be above 0; without it
+//                                                    no light samples are taken on the surface, and
+//                                                    path tracing finds its light only by chance
+//     Medium medium() const                          optional: the interior of the body
+//     static constexpr uint32_t needs = RTS_GLOSSY;  optional, also as a const function:
+//                                                    RTS_SPECULAR, RTS_GLOSSY, RTS_GLOBAL,
+//                                                    RTS_NO_SCATTER; the default with `surface` is
+//                                                    RTS_SPECULAR
+//   LightSource<T>
+//     Illumination illuminate(Vec3 point) const      illumination of a point, both in the light's
+//                                                    local space
+//     Extent extent() const                          optional: position and strength
+//     static constexpr bool directional = true;      optional: toLight has no end point
+//     static constexpr bool shadows = false;         optional: the light casts no shadows
+//   Camera<T>
+//     Ray generate(Vec2 pixel, Vec2 size) const      camera ray in local space; pixel from the top
+//                                                    left corner, size of the picture in pixels
+//     Projection project(Vec3 point, Vec2 lens, Vec2 size) const
+//                                                    optional: the inverse of `generate`
+//     static constexpr bool parallel = true;         optional: all rays have one direction
+//   Environment<T>
+//     Vec4 miss(Vec3 direction) const                radiance and opacity, in local space
+//     Fog attenuate(Vec3 fromEye) const              optional: fog between the eye and a hit, in
+//                                                    local space
+//   Transport<T>
+//     Vec4 radiance(const CameraRay&) const          radiance and alpha of a camera ray
+//   all
+//     const char* prepare()                          optional, called once for each new set of
+//                                                    values: returns nullptr, or a message if the
+//                                                    values make no sense
+//     void release()                                 optional: frees what `prepare` allocated
+//     static constexpr const char* text = "...";     optional: one line that says what the class is
+//
+// The members of a class are rts::Param, and plain numbers and pointers that `prepare` computes.
+// The latter are zero before `prepare`: their initialisers have no effect.
 #ifndef OPENRT_OPENRTS_HPP
 #define OPENRT_OPENRTS_HPP
 
@@ -69,7 +74,7 @@ namespace rts {
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
 
 namespace detail {
-// What the host has told about the hits of a batch, array by array, asked for once.
+// Cache of the host's answers for the hits of a batch: each array is requested once.
 struct Asked {
   float* random[4][2] = {};
   float *local[6] = {}, *derivatives[6] = {}, *throughput[3] = {}, *error = nullptr;
@@ -77,46 +82,49 @@ struct Asked {
 };
 } // namespace detail
 
-// What functions see and answer
-// -------------------------------------------------------------------------------------------
+// Arguments and results ---------------------------------------------------------------------------
 
 struct Ray {
-  Vec3 origin, direction; // unit
+  Vec3 origin, direction; // the direction is unit
 };
-// What a ray meets first.
+// The first hit of a ray.
 struct Found {
-  float distance = infinity; // infinite: nothing
+  float distance = infinity; // infinite: nothing is hit
   Vec3 position;             // render space
-  Vec3 geometric, normal;    // unit, turned towards the ray's origin; as shaded
-  uint32_t name = 0;         // rtLoadName
+  // Unit: the geometric normal, turned towards the ray's origin, and the shading normal.
+  Vec3 geometric, normal;
+  uint32_t name = 0; // rtLoadName
   bool any() const { return distance < infinity; }
 };
 
-// Something in a batch that can send rays, one at a time: a hit, or a camera ray of a transport.
-// The batch functions of RtsHost do the same for many at once and are several times as fast. Hosts
-// before 1.2 find nothing: black, clear.
+// A hit, or a camera ray of a transport: it can trace rays, one at a time. The batch functions of
+// RtsHost trace many at once and are several times as fast. Rays are in render space, directions
+// are unit, lengths in world units. On hosts before 1.2 the rays hit nothing: `trace` returns black
+// and `occluded` white. Valid only during the call that received it, on its thread. [render]
 class Tracer {
  public:
   const RtsHost* host = nullptr;
   RtsBatch* batch = nullptr;
   uint32_t lane = 0;
-  uint32_t count = 0; // of the batch
+  uint32_t count = 0; // lanes of the batch
   detail::Asked* asked = nullptr;
 
-  // Light that comes back along a ray (unit direction) from a place, shaded by the engine. Black
-  // beyond the depth limit.
+  // Returns the radiance that arrives along a ray, shaded by the engine; black beyond the depth
+  // limit. Writes the ray's alpha where `alpha` is not null.
   Color trace(Vec3 from, Vec3 towards, float length = infinity, float* alpha = nullptr) const {
     return traceFrom(&from, towards, length, alpha);
   }
+  // Returns the first hit of a ray.
   Found findHit(Vec3 from, Vec3 towards, float length = infinity) const {
     return findFrom(&from, towards, length);
   }
-  // The colour that is let through between a ray's origin and its end: black where it is blocked.
+  // Returns the transmittance (0..1, by colour) between a ray's origin and its end: black where it
+  // is blocked.
   Color occluded(Vec3 from, Vec3 towards, float length = infinity) const {
     return occludedFrom(&from, towards, length);
   }
-  // A point of the unit square, for each pair < 4 another: well spread over the samples of a pixel.
-  // Using one turns the pixel's value into an estimate.
+  // Returns a point of the unit square. Each pair (0..3) is a sequence of its own, well distributed
+  // over the samples of a pixel. A call makes the pixel's value a Monte Carlo estimate.
   Vec2 random(uint32_t pair) const;
 
  protected:
@@ -125,29 +133,31 @@ class Tracer {
   Color occludedFrom(const Vec3* origin, Vec3 direction, float length) const;
 };
 
+// In `transmit` only position, direction, uv, color and flags are set.
 struct Hit : Tracer {
-  Vec3 position;  // render space
-  Vec3 direction; // unit, of the ray, towards the surface
-  Vec3 geometric; // unit, turned towards the ray's origin
-  Vec3 normal;    // unit, on the same side
-  Vec2 uv;
-  Vec4 color;         // of the geometry, 1 1 1 1 without
-  float distance = 0; // along the path from the camera
-  float segment = 0;  // along the ray that met the surface
-  uint32_t flags = 0;
+  Vec3 position;      // render space
+  Vec3 direction;     // unit direction of the ray, towards the surface
+  Vec3 geometric;     // unit geometric normal, turned towards the ray's origin
+  Vec3 normal;        // unit shading normal, on the same side
+  Vec2 uv;            // texture coordinates, 0 if the geometry has none
+  Vec4 color;         // rgba of the geometry, 1 1 1 1 if it has none
+  float distance = 0; // path length from the camera
+  float segment = 0;  // length of the last ray of the path
+  uint32_t flags = 0; // RTS_HIT_*
 
   bool back() const { return (flags & RTS_HIT_BACK) != 0; }
   bool line() const { return (flags & RTS_HIT_LINE) != 0; }
-  // Of the ray that met the surface, at the shading normal: 0..1.
+  // Returns the cosine between the reversed ray and the shading normal, 0..1.
   float cosine() const { return std::fmin(1.0f, std::fmax(0.0f, -dot(direction, normal))); }
-  // Filtered texel; white for no texture.
+  // Returns the filtered texel (linear rgba) at texture coordinates; white if there is no texture.
   Vec4 sample(Texture texture, Vec2 place) const;
 
-  // The rest is the host's since 1.2; with older ones they answer as said.
+  // The following functions need a host of version 1.2; each says what it returns on older ones.
   using Tracer::findHit;
   using Tracer::occluded;
   using Tracer::trace;
-  // The same from this hit, lifted off the surface to the side of the direction (unit).
+  // The same with rays that start at this hit, offset from the surface to the side of the
+  // direction.
   Color trace(Vec3 towards, float length = infinity) const {
     return traceFrom(nullptr, towards, length, nullptr);
   }
@@ -157,132 +167,150 @@ struct Hit : Tracer {
   Color occluded(Vec3 towards, float length = infinity) const {
     return occludedFrom(nullptr, towards, length);
   }
-  // Position and geometric normal (not unit) in the frame of the object: a pattern made from them
-  // moves with it. Else render space.
+  // Returns position and geometric normal (not unit) in the frame of the object, so that a solid
+  // texture moves with the object. Older hosts: in render space.
   struct Local {
     Vec3 position, normal;
   };
   Local local() const;
-  // Change of the position per unit of texture coordinate, render space; else 0.
+  // Returns the derivatives of the position with respect to the texture coordinates, in render
+  // space; 0 without texture coordinates and on older hosts.
   struct Derivatives {
     Vec3 alongS, alongT;
   };
   Derivatives derivatives() const;
-  // rtLoadName, outermost instance, triangle; else 0.
+  // Returns rtLoadName, outermost instance and triangle. Older hosts: 0.
   struct Ids {
     uint32_t name = 0, instance = 0, primitive = 0;
   };
   Ids ids() const;
-  uint32_t depth() const;   // surfaces that the path met before; else 0
-  Color throughput() const; // share of the light from here that reaches the camera; else 1
-  float error() const; // bound of the position's rounding error along the geometric normal; else 0
+  // Returns the number of surfaces that the path hit before this one. Older hosts: 0.
+  uint32_t depth() const;
+  // Returns the path throughput: the fraction of radiance from here that reaches the camera. Older
+  // hosts: 1.
+  Color throughput() const;
+  // Returns a bound of the position's rounding error along the geometric normal, in world units.
+  // Older hosts: 0.
+  float error() const;
 };
 
-// Of a transport: the ray of a sample of the picture.
+// The argument of a transport: the ray of one sample of a pixel.
 struct CameraRay : Tracer {
-  Vec3 origin, direction; // render space; unit
+  Vec3 origin, direction; // render space; the direction is unit
   float length = infinity;
 
   using Tracer::findHit;
   using Tracer::trace;
-  // What the engine makes of this ray, and what it meets.
+  // Returns the radiance along this ray as the engine computes it, and the ray's first hit.
   Color trace(float* alpha = nullptr) const { return traceFrom(&origin, direction, length, alpha); }
   Found findHit() const { return findFrom(&origin, direction, length); }
 };
 
+// The result of Surface::shade.
 struct Shaded {
-  Color radiance;     // leaving towards the ray's origin, weighted by opacity
-  Color transmission; // of what lies straight behind
-  Color albedo;
+  Color radiance;     // leaving towards the ray's origin, multiplied by opacity
+  Color transmission; // 0..1, fraction let through of the radiance straight behind the hit
+  Color albedo;       // surface colour for the albedo channel
 };
 
-struct Light {  // as it arrives at a hit, shadows taken off the direct part
-  Vec3 toLight; // unit
-  Color color, ambient;
+// Light from one light that arrives at a hit (RtsIllumination), in render space.
+struct Light {
+  Vec3 toLight;         // unit
+  Color color, ambient; // direct part, multiplied by the shadow; ambient part
 };
 
+// The result of LightSource::illuminate (RtsIllumination), in the light's local space.
 struct Illumination {
-  Vec3 toLight; // any length
-  Color color, ambient;
+  Vec3 toLight;         // any length
+  Color color, ambient; // direct and ambient part
 };
+// The result of Environment::attenuate.
 struct Fog {
   Color color;
-  float fraction = 1; // of the surface's radiance that arrives
+  float fraction = 1; // fraction (0..1) of the surface's radiance that arrives
 };
-// The inside of a body (RtsMedium): where bodies overlap the one of the highest priority is there.
-// Faces point outwards.
+// The interior of a body (RtsMedium). Where bodies overlap, the one with the highest priority
+// counts. Faces point outwards.
 struct Medium {
-  Color index{1, 1, 1}; // of refraction, by colour
-  Color absorption;     // per unit of length in the world
+  Color index{1, 1, 1}; // index of refraction, > 0, by colour
+  Color absorption;     // per world unit of length: transmittance is exp(-absorption x length)
   int32_t priority = 0;
-  bool present = true;
+  bool present = true; // false: the body has no interior
 };
-// Where a light is and how strong (RtsExtent), local space.
+// The position and strength of a light (RtsExtent), in its local space.
 struct Extent {
   Vec3 position, direction{0, 0, -1};
-  float cosine = -1; // of the half angle of the cone about the direction that gets light
-  float power = 1;
-  float radius = infinity; // nothing is lit beyond
+  float cosine = -1;       // cosine of the lit cone's half angle; -1: all directions
+  float power = 1;         // estimate of the flux (parallel: of the irradiance), mean over colours
+  float radius = infinity; // nothing beyond this distance is lit
+  // parallel: light falls along `direction` everywhere. known: false if the rest is unknown.
   bool parallel = false, known = true;
 };
-// Where a point is in the picture (RtsProjection).
+// Where a point appears in the picture (RtsProjection).
 struct Projection {
-  Vec2 pixel;
-  Vec3 toEye;
-  float weight = 0; // pixels covered per unit of area that faces the eye; 0: not in the picture
+  Vec2 pixel;       // from the top left corner
+  Vec3 toEye;       // to the point on the lens; parallel views: unit, towards the eye
+  float weight = 0; // pixels per unit of area that faces the eye; 0: not in the picture
 };
 
-// A direction that a lobe of one's own chooses: its value divided by the density, and the density;
-// 0: none.
+// A direction sampled from a custom lobe, with the BSDF times cosine divided by the pdf, and the
+// pdf (with respect to solid angle; 0: no direction was sampled).
 struct Sample {
   Vec3 direction;
   Color quotient;
   float density = 0;
 };
 
-// The functions of a lobe of a plug-in's own: a trivially copyable class of floats (at most
-// RTS_MAX_LOBE_FLOATS), with
-//   Color evaluate(Vec3 toEye, Vec3 direction, Vec3 normal) const    response per radiance times
-//   the cosine at the normal float density(Vec3 toEye, Vec3 direction, Vec3 normal) const     of
-//   sample, by solid angle Sample sample(Vec3 toEye, Vec2 square, Vec3 normal) const        or the
-//   direction alone (Vec3): the rest is then worked out static constexpr bool transmits = true;
-//   optional: may answer light from the other side
-// Directions are unit, away from the surface. A lobe must be reciprocal unless it transmits, and
-// reflect at most what it gets.
+// Returns the function table of a custom lobe L: a trivially copyable class of at most
+// RTS_MAX_LOBE_FLOATS floats, with
+//   Color evaluate(Vec3 toEye, Vec3 direction, Vec3 normal) const  BSDF times the cosine at normal
+//   float density(Vec3 toEye, Vec3 direction, Vec3 normal) const   pdf of `sample`, solid angle
+//   Sample sample(Vec3 toEye, Vec2 square, Vec3 normal) const      or returning only the direction
+//                                                                  (Vec3): the rest is computed
+//   static constexpr bool transmits = true;                        optional: BTDF, may be above 0
+//                                                                  on the other side of the surface
+// `square` is a point of the unit square. Directions are unit, in render space, and point away from
+// the surface. A lobe must be reciprocal unless it transmits, and must conserve energy.
 template <class L> const RtsLobeFunctions* lobeFunctions();
 
-// The lobes of one hit (RtsLobeKind). Several of a kind add up. Weights 0..1; all of a hit should
-// add up to at most 1.
+// Collects the lobes of one hit (RtsLobeKind). Lobes of the same kind add up. Weights are 0..1; all
+// weights of a hit should add up to at most 1. A hit may have RTS_MAX_LOBES lobes; further ones are
+// dropped. Valid only during the call of `surface`. [render]
 class Closures {
  public:
-  // Lambert's law.
+  // Adds a Lambertian lobe.
   void diffuse(Color albedo) { add(RTS_LOBE_DIFFUSE, albedo); }
-  // Perfect mirror; Fresnel's share is part of the reflectance.
+  // Adds a perfect mirror. The reflectance includes the Fresnel factor.
   void reflection(Color reflectance) { add(RTS_LOBE_REFLECTION, reflectance); }
-  // Smooth boundary of a clear medium. eta: index of refraction on the ray's side over that behind.
+  // Adds a smooth boundary of a clear medium. eta: index of refraction on the ray's side over that
+  // on the far side.
   void dielectric(Color tint, float eta) { add(RTS_LOBE_DIELECTRIC, tint, eta); }
+  // Lets light pass straight through.
   void transparent(Color transmittance) { add(RTS_LOBE_TRANSPARENT, transmittance); }
-  // Microfacets (GGX) of width alpha, 0..1. With eta Fresnel's share of a clear medium multiplies.
+  // Adds a microfacet reflection (GGX) of width alpha, 0..1. If eta is not 0, the Fresnel
+  // reflectance of a clear medium multiplies the weight.
   void glossy(Color reflectance, float alpha, float eta = 0) {
     add(RTS_LOBE_GLOSSY, reflectance, alpha, eta);
   }
+  // Adds a rough boundary of a clear medium (GGX).
   void roughDielectric(Color tint, float eta, float alpha) {
     add(RTS_LOBE_ROUGH_DIELECTRIC, tint, eta, alpha);
   }
-  // A lobe of one's own (see lobeFunctions).
+  // Adds a custom lobe (lobeFunctions); needs a host of version 1.2.
   template <class L> void custom(Color weight, const L& lobe);
-  // The normal of the lobes that follow for this hit; at first the hit's. Unit, on the side of the
-  // geometric one.
+  // Sets the normal of the lobes that are added after it; the default is the hit's shading normal.
+  // It must be on the side of the geometric normal.
   void normal(Vec3 unit) {
     normal_ = unit;
     bent_ = true;
   }
 
+  // Adds emitted radiance towards the ray's origin.
   void emission(Color radiance) {
     const float c[3] = {radiance.r, radiance.g, radiance.b};
     for (int k = 0; k < 3; k++) out_->emission[k][lane_] += c[k];
   }
-  // For the albedo channel.
+  // Sets the surface colour for the albedo channel.
   void albedo(Color color) {
     const float c[3] = {color.r, color.g, color.b};
     for (int k = 0; out_->albedo[0] && k < 3; k++) out_->albedo[k][lane_] = c[k];
@@ -290,7 +318,7 @@ class Closures {
 
   Closures(const RtsHost* host, RtsBatch* batch, RtsSurface* out)
       : host_(host), batch_(batch), out_(out) {}
-  void begin(uint32_t lane) { // the next hit
+  void begin(uint32_t lane) { // starts the next hit
     lane_ = lane;
     bent_ = false;
     for (uint32_t i = 0; i < count_; i++) free_[i] = true;
@@ -309,8 +337,8 @@ class Closures {
     lobe->parameter[1][lane_] = second;
     return lobe;
   }
-  // A lobe of this kind that the hit has not used yet. Null beyond RTS_MAX_LOBES and on hosts that
-  // do not know the kind.
+  // Returns a lobe of this kind that the hit has not used yet, or null after RTS_MAX_LOBES lobes
+  // and on hosts that do not know the kind.
   RtsLobe* slot(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
     for (uint32_t i = 0; i < count_; i++) {
       if (!free_[i] || lobes_[i]->kind != kind || functions_[i] != functions) continue;
@@ -352,7 +380,7 @@ template <class T> struct Transport {};
 #include "openrts_ask.hpp"
 #include "openrts_glue.hpp"
 
-// Exports the classes, each under its own name. Once a library, outside any namespace.
+// Exports the classes, each under its own name. Use it once in a library, outside any namespace.
 #define RTS_PLUGIN(...)                                                                            \
   extern "C" {                                                                                     \
   extern RTS_EXPORT const RtsPlugin rtsPlugin;                                                     \

@@ -1,5 +1,5 @@
-// openrts_ask.hpp: what the hits of openrts.hpp ask the host: rays, random numbers, textures,
-// facts. Part of openrts.hpp. [render]
+// openrts_ask.hpp: the member functions of Tracer and Hit that call the host: rays, random numbers,
+// textures and attributes of the hit. Part of openrts.hpp. [render]
 #ifndef OPENRT_OPENRTS_ASK_HPP
 #define OPENRT_OPENRTS_ASK_HPP
 
@@ -8,12 +8,12 @@
 namespace rts {
 namespace detail {
 
-// A function that hosts have since 1.2, or null.
+// Returns a host function that exists since 1.2, or null on older hosts.
 template <class F> F since12(const RtsHost* host, F RtsHost::*function) {
   return host->minor >= 2 ? host->*function : nullptr;
 }
 
-// Whole lanes of one ray: what the host may read of a request of one.
+// A request of one ray, with arrays padded to RTS_LANES because the host may read whole vectors.
 struct OneRay {
   OneRay(const Tracer& from, const Vec3* start, Vec3 direction, float end) {
     for (int i = 0; i < RTS_LANES; i++) {
@@ -41,7 +41,8 @@ struct OneRay {
 inline float* lanes(const Tracer& t) { return t.host->scratch(t.batch, t.count); }
 inline uint32_t* wholeNumbers(const Tracer& t) { return reinterpret_cast<uint32_t*>(lanes(t)); }
 
-// Six arrays of a host function that fills two vectors.
+// Fills the six arrays of `cache` by a host function that writes two vectors. Returns false if the
+// host does not have the function.
 template <class F> bool askVectors(const Tracer& t, F RtsHost::*member, float* (&cache)[6]) {
   if (cache[0]) return true;
   const F function = t.asked ? since12(t.host, member) : nullptr;
@@ -116,7 +117,7 @@ inline Vec2 Tracer::random(uint32_t pair) const {
 }
 
 inline Vec4 Hit::sample(Texture texture, Vec2 place) const {
-  if (texture.id == 0) return {1, 1, 1, 1}; // as the host would say
+  if (texture.id == 0) return {1, 1, 1, 1}; // the same value as from the host
   alignas(64) float in[2][RTS_LANES], out[4][RTS_LANES];
   for (int i = 0; i < RTS_LANES; i++) {
     in[0][i] = place.x;

@@ -1,5 +1,6 @@
-// openrts_glue.hpp: the tables of openrts.h made from the classes of openrts.hpp, and the loops
-// from batches to single hits. Part of openrts.hpp. The loops: [render]
+// openrts_glue.hpp: builds the tables of openrts.h from the classes of openrts.hpp, and loops over
+// batches to call the functions for single hits. Part of openrts.hpp. The loops run on [render]
+// threads; the tables are built when the plug-in is loaded.
 #ifndef OPENRT_OPENRTS_GLUE_HPP
 #define OPENRT_OPENRTS_GLUE_HPP
 
@@ -15,7 +16,7 @@
 namespace rts {
 namespace detail {
 
-// Which of the optional members a class has.
+// Detects which of the optional members a class has.
 #define RTS_DETECT(Name, expression)                                                               \
   template <class T, class = void> struct Name : std::false_type {};                               \
   template <class T> struct Name<T, std::void_t<decltype(expression)>> : std::true_type {}
@@ -60,10 +61,10 @@ inline void put(float* const a[3], uint32_t i, Vec3 v) {
 inline void put(float* const a[3], uint32_t i, Color c) { put(a, i, Vec3{c.r, c.g, c.b}); }
 inline void add(float* const a[3], uint32_t i, Color c) { put(a, i, color(a, i) + c); }
 
-// Surfaces
-// -------------------------------------------------------------------------------------------------
+// Surfaces ----------------------------------------------------------------------------------------
 
-// shadowRay: only what openrts.h promises to `transmit` is read.
+// Returns hit i of a batch. If shadowRay is true, reads only the arrays that are valid in
+// `transmit` (openrts.h).
 inline Hit hitAt(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t i,
                  Asked& asked, bool shadowRay) {
   Hit h;
@@ -148,8 +149,7 @@ template <class T> int medium(const RtsHost*, const void* params, RtsMedium* out
   return m.present;
 }
 
-// Lobes
-// -------------------------------------------------------------------------------------------------
+// Lobes -------------------------------------------------------------------------------------------
 
 template <class L> struct LobeLoops {
   static_assert(std::is_trivially_copyable_v<L> && alignof(L) <= alignof(float),
@@ -202,8 +202,7 @@ template <class L> struct LobeLoops {
   }
 };
 
-// Lights, cameras, environments, transports
-// ---------------------------------------------------------------------------------
+// Lights, cameras, environments, transports -------------------------------------------------------
 
 template <class T> void illuminate(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
                                    const float* const local[3], RtsIllumination* out) {
@@ -294,8 +293,7 @@ template <class T> void radiance(const RtsHost* host, RtsBatch* batch, const voi
   }
 }
 
-// Tables
-// -------------------------------------------------------------------------------------------------
+// Tables ------------------------------------------------------------------------------------------
 
 template <class T> uint32_t surfaceTraits(const void* params) {
   uint32_t t = HasTransmit<T>::value ? uint32_t(RTS_TRANSPARENT) : 0u;
@@ -364,7 +362,7 @@ template <class T> void fillFunctions(RtsClass& c) {
   }
 }
 
-// The tables of one class; they live as long as the plug-in.
+// Builds the tables of one class; they live as long as the plug-in.
 template <class T> const RtsClass* classOf(std::string name) {
   static_assert(std::is_trivially_destructible_v<T> && !std::is_polymorphic_v<T>,
                 "a shader holds rts::Param and plain values");
@@ -377,15 +375,15 @@ template <class T> const RtsClass* classOf(std::string name) {
   declaration() = &params;
   new (prototype) T();
   declaration() = nullptr;
-  params.start = nullptr; // the offsets are known; the prototype ends here
+  params.start = nullptr; // the offsets are known; the prototype is no longer needed
   table.size = sizeof(RtsClass);
   table.name = ownName.c_str();
   if constexpr (HasText<T>::value)
     table.text = T::text;
   else
     table.text = "";
-  table.paramSize =
-      static_cast<uint32_t>(sizeof(T)); // never 0: functions are called on what lies there
+  // Never 0: member functions are called on the object at this address.
+  table.paramSize = static_cast<uint32_t>(sizeof(T));
   table.paramCount = static_cast<uint32_t>(params.params.size());
   table.params = params.params.data();
   table.frequency = params.frequency.data();
@@ -393,7 +391,7 @@ template <class T> const RtsClass* classOf(std::string name) {
   return &table;
 }
 
-// Takes the next of "a::Mirror, Glass" off the list: the class's own name.
+// Removes the first entry from a list like "a::Mirror, Glass" and returns it without namespaces.
 inline std::string nextName(const char*& list) {
   const char* end = std::strchr(list, ',');
   std::string name = end ? std::string(list, end) : std::string(list);
@@ -405,8 +403,8 @@ inline std::string nextName(const char*& list) {
 }
 
 template <class... T> RtsPlugin pluginOf(const char* names) {
-  static const RtsClass* const classes[] = {
-      classOf<T>(nextName(names))...}; // braces: from left to right
+  // Braces evaluate from left to right, in the order of the names.
+  static const RtsClass* const classes[] = {classOf<T>(nextName(names))...};
   return {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin), sizeof...(T), classes};
 }
 

@@ -1,5 +1,5 @@
-// openrts_values.hpp: the vectors, colours and parameters of openrts.hpp, which includes it, and
-// some optics. Pure functions.
+// openrts_values.hpp: vectors, colours, local frames, Fresnel reflectance and shader parameters.
+// Included by openrts.hpp. The functions are pure. [any thread]
 #ifndef OPENRT_OPENRTS_VALUES_HPP
 #define OPENRT_OPENRTS_VALUES_HPP
 
@@ -13,8 +13,7 @@
 
 namespace rts {
 
-// Values
-// -------------------------------------------------------------------------------------------------
+// Values ------------------------------------------------------------------------------------------
 
 struct Vec2 {
   float x = 0, y = 0;
@@ -25,7 +24,7 @@ struct Vec3 {
 struct Vec4 {
   float x = 0, y = 0, z = 0, w = 0;
 };
-struct Color {
+struct Color { // linear RGB
   float r = 0, g = 0, b = 0;
 };
 struct Matrix { // column-major
@@ -47,7 +46,7 @@ inline Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
-inline Vec3 normalize(Vec3 a) { // the zero vector stays
+inline Vec3 normalize(Vec3 a) { // returns the zero vector unchanged
   const float l = length(a);
   return l > 0 ? a * (1 / l) : a;
 }
@@ -61,10 +60,9 @@ inline Color operator/(Color a, float s) { return a * (1 / s); }
 inline float largest(Color c) { return std::fmax(c.r, std::fmax(c.g, c.b)); }
 inline constexpr float pi = 3.14159265358979f;
 
-// Three unit vectors at right angles of which the third is given: local coordinates with z along a
-// normal. The frame is a fixed one, reflected at the plane between its third axis and -normal. It
-// is continuous but in one direction, along which hardly anything is built: where a frame jumps,
-// pictures have more noise.
+// An orthonormal basis (s, t, n) whose third axis is the given unit normal. It is a fixed frame,
+// reflected at the plane between its third axis and -normal. It is continuous except at one normal,
+// a direction that few surfaces face: pictures are noisier where a frame jumps.
 struct Frame {
   explicit Frame(Vec3 normal) : n(normal) {
     constexpr Vec3 pole{-0.664998269f, -0.11246118f, 0.738329049f};
@@ -75,7 +73,7 @@ struct Frame {
     s = first - scale * dot(n, first) * v;
     t = second - scale * dot(n, second) * v;
     if (square > 0.01f) return;
-    s = s - dot(s, n) * n; // digits are lost there
+    s = s - dot(s, n) * n; // orthogonalise again: the division above lost digits
     s = s * (1 / std::sqrt(dot(s, s)));
     t = {n.y * s.z - n.z * s.y, n.z * s.x - n.x * s.z, n.x * s.y - n.y * s.x};
   }
@@ -84,15 +82,17 @@ struct Frame {
   Vec3 s, t, n;
 };
 
-// Mirror image of a direction towards a surface.
+// Returns the mirror direction of a direction that points towards a surface. normal: unit.
 inline Vec3 reflect(Vec3 direction, Vec3 normal) {
   return direction - 2 * dot(direction, normal) * normal;
 }
 
-// Fresnel reflectance of unpolarised light at the boundary of a clear medium. cosine: of the angle
-// of incidence, 0..1; eta: index of refraction on the ray's side over that behind; cosineBehind
-// gets the refracted angle's, 0 where all is reflected. In double: near the critical angle the root
-// loses half of the digits. M. Born, E. Wolf, "Principles of Optics", 1.5.2.
+// Returns the Fresnel reflectance (0..1) of unpolarised light at the boundary of a clear medium (M.
+// Born, E. Wolf, "Principles of Optics", 1.5.2).
+//   cosine        cosine of the angle of incidence, 0..1
+//   eta           index of refraction on the ray's side over that on the far side
+//   cosineBehind  receives the cosine of the angle of refraction, 0 at total internal reflection
+// In double precision, because near the critical angle the square root loses half of the digits.
 inline double fresnel(double cosine, double eta, double* cosineBehind = nullptr) {
   const double sine2 = eta * eta * std::fmax(0.0, 1 - cosine * cosine),
                behind = sine2 < 1 ? std::sqrt(1 - sine2) : 0;
@@ -103,11 +103,10 @@ inline double fresnel(double cosine, double eta, double* cosineBehind = nullptr)
   return (s * s + p * p) / 2;
 }
 
-// Parameters
-// -------------------------------------------------------------------------------------------------
+// Parameters --------------------------------------------------------------------------------------
 
-// What may set a parameter's value: calls for the whole shader, or also the triangle or the
-// vertices (interpolated) that a hit lies on. Numbers other than int32_t only.
+// How often the value of a parameter may change: per shader, or also per triangle or per vertex
+// (interpolated at the hit). The last two are for numbers other than int32_t only.
 enum class Frequency : uint8_t {};
 inline constexpr Frequency PerShader{RTS_PER_SHADER}, PerTriangle{RTS_PER_TRIANGLE},
     PerVertex{RTS_PER_VERTEX};
@@ -126,7 +125,8 @@ template <> struct ParamType<Floats> { static constexpr RtsType type = RTS_FLOAT
 template <> struct ParamType<String> { static constexpr RtsType type = RTS_STRING; };
 template <> struct ParamType<Texture> { static constexpr RtsType type = RTS_TEXTURE; };
 
-// A class's parameters as its prototype is constructed: each Param notes where it lies.
+// Collects the parameters of a class while its prototype is constructed: each Param records its
+// offset.
 struct Declaration {
   std::vector<RtsParam> params;
   std::vector<uint8_t> frequency;
@@ -162,8 +162,9 @@ inline void declare(const char* name, RtsType type, const void* place, const voi
 
 } // namespace detail
 
-// A parameter with its name, default value, meaning and, where given, its range and frequency.
-// Reads as its value. Lists, strings and textures start empty.
+// A parameter: name, default value, a line that says meaning and unit, and optionally an inclusive
+// range (0, 0: none) and a frequency. Converts to its value. Lists, strings and textures start
+// empty.
 template <class T> class Param {
  public:
   Param(const char* name, T value, const char* text, float minimum = 0, float maximum = 0,

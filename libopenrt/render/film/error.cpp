@@ -1,16 +1,17 @@
-// error.cpp: see error.h.
+// error.cpp: error bars from replicates.
 //
-// Replicated randomised quasi-Monte Carlo: A. B. Owen, "Monte Carlo theory, methods and
-// examples", 17.3 (error estimation from independent randomisations); Student's interval over the
-// means of the replicates.
-//   A pixel's own estimate of that variance is not enough. Samples of light are skewed, and a pixel
-//   that has missed what is rare
-// has both too small a mean and too small a variance: of such intervals 89 % held instead of 95 %
-// (scene `room` of the audit). The variance of the 5x5 pixels around does not know what this pixel
-// has missed, and with it 95 % hold. How much each of the two is worth is estimated too: what the
-// variances of the window differ by beyond what chance makes of them is real (H. Bühlmann, E.
-// Straub, "Glaubwürdigkeit für Schadensätze", 1970; for intervals G. K. Smyth, "Linear models and
-// empirical Bayes methods", 2004).
+// Replicated randomised quasi-Monte Carlo: A. B. Owen, "Monte Carlo theory, methods and examples",
+// 17.3 (error estimation from independent randomisations), with Student's interval over the means
+// of the replicates.
+//
+// A pixel's own estimate of that variance is not enough. Samples of light are skewed, and a pixel
+// that has missed a rare event has both too small a mean and too small a variance: of such
+// intervals 89 % held instead of 95 % (scene `room` of the audit). The variance of the surrounding
+// 5x5 pixels does not depend on what this pixel has missed, and with it 95 % hold. The weights of
+// the two variances are estimated as well: the variances of the window differ by more than sampling
+// noise explains where the differences are real (H. Bühlmann, E. Straub, "Glaubwürdigkeit für
+// Schadensätze", 1970; for intervals G. K. Smyth, "Linear models and empirical Bayes methods",
+// 2004).
 #include "render/film/error.h"
 
 #include <algorithm>
@@ -23,21 +24,22 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t fewestSamples = 32, fewestReplicates = 16; // of frames whose error is asked for
+// Defaults of frames whose error is requested.
+constexpr uint32_t fewestSamples = 32, fewestReplicates = 16;
 constexpr uint32_t trustedReplicates = 8;
-constexpr uint32_t reach = 2; // the window: so many pixels to each side, within the tile
+constexpr uint32_t reach = 2; // the window: pixels to each side, within the tile
 constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
-// Replicates' means that carry the variance of a window, at least; hits by what is rare and bright,
-// in a window, at least.
+// fewestMeans: minimum effective number of replicate means that carry the variance of a window.
+// fewestHits: minimum number of hits of a rare bright feature in a window.
 constexpr double fewestMeans = 2.5, fewestHits = 4;
-constexpr double negligible = .25; // of a half-width
-constexpr double fewestPaths = 16; // from lamps, in a window
+constexpr double negligible = .25; // fraction of a half-width
+constexpr double fewestPaths = 16; // minimum number of light paths in a window
 
-// Of the means of the replicates of one colour of one pixel, about their mean.
+// Spread of the replicates' means of one colour of one pixel about their mean.
 struct Spread {
   double variance = 0;    // k-statistic
-  double uncertainty = 0; // variance of that, without bias
-  double fourth = 0;      // central sum
+  double uncertainty = 0; // unbiased variance of `variance`
+  double fourth = 0;      // sum of fourth powers of the differences from the mean
   double k3 = 0, k4 = 0;  // k-statistics
 };
 
@@ -45,7 +47,7 @@ Spread spreadOf(const PixelSums& s, int k, double size) {
   Spread out;
   const double r = s.replicates, m = s.closed[k] / r;
   const double second = s.closed2[k] - s.closed[k] * m;
-  if (!(second > 1e-13 * s.closed2[k])) return out; // of the subtraction
+  if (!(second > 1e-13 * s.closed2[k])) return out; // rounding of the subtraction
   const double fourth =
       s.closed4[k] - 4 * m * s.closed3[k] + 6 * m * m * s.closed2[k] - 3 * r * m * m * m * m;
   const double third = s.closed3[k] - 3 * m * s.closed2[k] + 2 * r * m * m * m;
@@ -53,7 +55,7 @@ Spread spreadOf(const PixelSums& s, int k, double size) {
   const double squares = second * scale;
   out.fourth = std::max(fourth, 0.0) * scale * scale;
   out.variance = squares / (r - 1);
-  // Fisher's fourth k-statistic; Var(k2) = k4 / r + 2 k2^2 / (r - 1) with k2^2 corrected for its
+  // Fisher's fourth k-statistic; Var(k2) = k4 / r + 2 k2^2 / (r - 1), with k2^2 corrected for its
   // own bias.
   if (r > 3) {
     out.k3 = r * third * scale / size / ((r - 1) * (r - 2));
@@ -64,7 +66,7 @@ Spread spreadOf(const PixelSums& s, int k, double size) {
   return out;
 }
 
-// What the windows sum up.
+// Quantities that are summed over a window.
 struct Cell {
   double count = 0, variance = 0, variance2 = 0, uncertainty = 0, fourth = 0;
   void scale(double s) {
@@ -82,8 +84,8 @@ struct Cell {
   }
 };
 
-// Sums over windows, in two passes; each window is summed anew, so that no cell knows of numbers
-// that lie outside of it.
+// Sums cells over windows, in two passes. Each window is summed anew, so that no result depends on
+// numbers outside of its window.
 void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
   std::vector<Cell> rows(cells.size());
   const auto pass = [&](const std::vector<Cell>& from, std::vector<Cell>& to, bool across) {
@@ -99,39 +101,41 @@ void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
   pass(rows, cells, false);
 }
 
-// What a window tells of the variance of a pixel's replicates.
+// The variance of a pixel's replicates as estimated from a window.
 struct Pool {
-  double mean = 0, chance = 0,
-         real = 0; // of the window's variances; variance of these by chance, and beyond it
+  // mean: of the window's variances. samplingVariance: their variance due to sampling noise. real:
+  // their variance beyond that.
+  double mean = 0, samplingVariance = 0, real = 0;
   explicit Pool(const Cell& window) {
     const double n = window.count;
     mean = window.variance / n;
-    chance = std::max(window.uncertainty / n, 0.0);
+    samplingVariance = std::max(window.uncertainty / n, 0.0);
     const double between =
         n > 1 ? std::max(0.0, window.variance2 / n - mean * mean) * n / (n - 1) : 0;
-    real = std::max(0.0, between - chance);
+    real = std::max(0.0, between - samplingVariance);
   }
   double differing() const { return mean > 0 ? real / (mean * mean) : 0; }
-  // The variance from the pixel's own and this, and the degrees of freedom of that.
+  // Combines the pixel's own variance with the window's; freedom gets the degrees of freedom.
   double combined(double own, double n, double replicates, double& freedom) const {
-    const double weight = n > 1 && real + chance > 0 ? real / (real + chance) : 1;
+    const double weight =
+        n > 1 && real + samplingVariance > 0 ? real / (real + samplingVariance) : 1;
     freedom = (replicates - 1) / (weight * weight + (1 - weight) * (1 - weight) / n);
     return mean + weight * (own - mean);
   }
 };
 
-// What is rare and bright in a tile, from the samples' grey: how often pixels that it matters to
-// have met it.
+// Detects rare bright features of a tile from the fourth moments of the samples' grey: how often
+// the affected pixels have hit them.
 struct Rare {
-  double square2 = 0, fourth = 0,
-         variance = 0; // sums over the pixels; square2: of (sum of squares)^2 / samples
+  // Sums over the pixels. square2: of (sum of squares)^2 / samples.
+  double square2 = 0, fourth = 0, variance = 0;
   uint32_t pixels = 0;
   float largest[3] = {};
 
   void add(const PixelSums& s) {
     const double n = s.samples, sum = s.delta[0] + s.delta[1] + s.delta[2], m = sum / n;
     double second = s.grey[0] - sum * m;
-    if (!(second > 1e-12 * std::fabs(s.grey[0]))) second = 0; // of the subtraction
+    if (!(second > 1e-12 * std::fabs(s.grey[0]))) second = 0; // rounding of the subtraction
     const double g4 = s.grey[2] - 4 * m * s.grey[1] + 6 * m * m * s.grey[0] - 3 * n * m * m * m * m;
     square2 += second * second / n;
     fourth += std::max(g4, 0.0);
@@ -139,17 +143,18 @@ struct Rare {
     pixels++;
     for (int k = 0; k < 3; k++) largest[k] = std::max(largest[k], s.largest[k]);
   }
-  // For light that a fraction p of n samples meets fourth / square2 is n / (1 + n p).
+  // Returns the mean number of hits. For light that a fraction p of n samples hits, fourth /
+  // square2 is n / (1 + n p).
   double hits(double samples) const {
     if (!(fourth > 0)) return std::numeric_limits<double>::infinity();
     return std::max(samples * square2 / fourth - 1, 1 / double(pixels));
   }
-  // What it adds to a pixel on average: hits^2 times the variance that one hit makes.
+  // Returns the mean contribution to a pixel: hits^2 times the variance that one hit causes.
   double mean(double samples) const { return std::sqrt(variance / pixels * hits(samples)); }
 };
 
-// Mean of |x| of a normal x of estimated variance v, with the bias of the root of a variance taken
-// out (the factor known as c4).
+// Returns the mean of |x| of a normal x with estimated variance v, corrected for the bias of the
+// root of a variance (the factor known as c4).
 double meanError(double v, double freedom) {
   return std::sqrt(2 / M_PI * v) * (4 * freedom + 1) / (4 * freedom);
 }
@@ -160,12 +165,12 @@ void finish(PixelError& e) {
   e.relative = relativeError(half, e.mean);
 }
 
-// What errors are relative to.
+// Returns the value that errors are relative to.
 float scaleOf(const float mean[3]) {
   return darkest + std::fabs(mean[0]) + std::fabs(mean[1]) + std::fabs(mean[2]);
 }
 
-// The pixels of a tile, colour by colour.
+// Estimates the errors of a tile's pixels, colour by colour.
 class TileErrors {
  public:
   TileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
@@ -193,16 +198,16 @@ class TileErrors {
   }
 
  private:
-  struct Pooled { // of a pixel
+  struct Pooled { // pooled variance of a pixel
     double variance[3] = {}, freedom[3] = {};
-    double window = 0; // pixels in it
-    bool few = false;  // few replicates carry the window's variance
+    double window = 0; // number of pixels in the window
+    bool few = false;  // only few replicates carry the window's variance
   };
 
-  // Random pixels and others are kept apart: those have nothing to say of each other. Nor have
-  // those that are exact. Noise may be as strong everywhere, or as strong as the light: the
-  // variances, or those relative to the brightness of the 3x3 pixels around, are pooled, whichever
-  // differ less.
+  // Pools variances. Random and non-random pixels are pooled separately, and exact pixels not at
+  // all. Noise may be equally strong everywhere, or proportional to the light. So either the
+  // variances are pooled, or the variances relative to the brightness of the surrounding 3x3
+  // pixels, whichever differ less.
   void pool(bool random, int k) {
     std::vector<Cell> cells(pixels_.size()), relative;
     const std::vector<double> bright = brightness(random, k);
@@ -235,7 +240,8 @@ class TileErrors {
     }
   }
 
-  // Of the 3x3 pixels around: a pixel's own would know of what it has missed.
+  // Returns the brightness of the surrounding 3x3 pixels: a pixel's own brightness would depend on
+  // what it has missed.
   std::vector<double> brightness(bool random, int k) const {
     std::vector<double> out(pixels_.size(), 1);
     for (uint32_t y = 0; y < height_; y++)
@@ -253,7 +259,8 @@ class TileErrors {
     return out;
   }
 
-  // For the picture as a whole each pixel's own spread counts, whatever those around have met.
+  // Records a pixel's own spread. The error of the whole picture uses it independently of the
+  // neighbours.
   void noteNoise(const PixelSums& sums, const Spread& s, PixelNoise& noise) const {
     const double parts = sums.samples / double(replicates_.size());
     noise.own += float(meanError(s.variance / parts, sums.replicates - 1.0));
@@ -264,12 +271,12 @@ class TileErrors {
   }
 
   void judge(const PixelSums& s, const Pooled& p, bool enough, PixelError& e) const {
-    const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] >
-                                    0); // all the same, here and around
+    // All samples are equal, here and in the window.
+    const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0);
     double half = 0;
     for (int k = 0; k < 3; k++) {
       double h = student95(p.freedom[k]) * std::sqrt(p.variance[k]);
-      if (dark) // no sample has met anything: the rule of three
+      if (dark) // no sample has hit anything: the rule of three
         h = rare_.largest[k] > 0 ? ruleOfThree / (s.samples * p.window) * rare_.largest[k]
                                  : std::numeric_limits<double>::infinity();
       e.halfWidth[k] = float(h);
@@ -277,8 +284,8 @@ class TileErrors {
     }
     finish(e);
     e.trusted = enough && !dark && !p.few;
-    // What is so rare that most windows have missed it: its mean is missing there, and no variance
-    // tells.
+    // Features so rare that most windows have missed them: their mean is missing there, and no
+    // variance shows it.
     const double hits = rare_.hits(s.samples) * std::min(windowPixels, rare_.pixels);
     if (s.random && hits < fewestHits && rare_.mean(s.samples) > negligible * half)
       e.trusted = false;
@@ -347,7 +354,8 @@ void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replica
 
 void addLight(const LightSums& light, PixelError& e) {
   double half = 0, lamps = 0, own = 0;
-  const double met = std::max(light.hits / windowPixels, 1e-3); // by a pixel, on average
+  // Mean number of light paths per pixel.
+  const double met = std::max(light.hits / windowPixels, 1e-3);
   for (int k = 0; k < 3; k++) {
     const double w = light.variance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
     e.mean[k] += float(light.mean[k]);
@@ -367,7 +375,7 @@ void addLight(const LightSums& light, PixelError& e) {
     e.noise.random = true;
   }
   if (lamps > negligible * half && light.hits < fewestPaths)
-    e.trusted = false; // few paths have met the pixel
+    e.trusted = false; // few light paths have contributed to the pixel
   e.relative = relativeError(half, e.mean);
 }
 

@@ -1,5 +1,5 @@
-// error.h: how far the pixels of a tile may be off: intervals from independent replicates, whether
-// they can be trusted; how many samples make them small enough. Pure functions of sums of samples.
+// error.h: error bars of a tile's pixels: confidence intervals from independent replicates, whether
+// they can be trusted, and which replicates a frame takes. Pure functions of sums of samples.
 // [render]
 #pragma once
 
@@ -13,25 +13,26 @@
 
 namespace openrt {
 
-// Quantile of Student's distribution for two-sided intervals of level 95 %.
+// Returns the quantile of Student's distribution for two-sided intervals of level 95 %.
 double student95(double degreesOfFreedom);
 
-// Whether somebody asks for the error of a frame.
+// Returns whether the frame's settings request error estimates.
 bool wantsError(const edit::FrameSettingsT& frame);
-// The replicates of a frame of a number of samples. [any]
+// Returns the replicates of a frame with the given number of samples. [any]
 Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uint32_t seed);
 
-// What independent samples would have: for frames without replicates. Never trusted.
+// Estimates the error of a pixel as if its samples were independent, for frames without replicates.
+// The result is never trusted.
 PixelError independentError(const PixelSums& sums);
 
-// Of a tile: its pixels' sums row by row, as many errors. All that its pixels know of each other is
-// used (error.cpp).
+// Estimates the errors of a tile's pixels, row by row. Variances are pooled over neighbouring
+// pixels of the tile (error.cpp).
 void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
                 std::span<PixelError> out);
 
-// What paths from lamps add to a pixel.
+// Adds the contribution and the error of light paths to a pixel's error.
 void addLight(const LightSums& light, PixelError& error);
-// The half-width of that by itself, colours summed.
+// Returns the half-width of the light paths' contribution alone, summed over the colours.
 double lightHalfWidth(const LightSums& light);
 
 } // namespace openrt

@@ -8,12 +8,13 @@
 
 namespace openrt {
 
-// Most pixels in doubt are what they seem. Of an edge across pixels, 64 samples: a tenth of the
-// bound is what they are off by. The corner that no sample meets has an area of 1 / n, the edges
-// that cut so little off are as many as sqrt(1 / n) of all.
+// Returns the expected error of a doubted pixel over its bound. Most such pixels are exact.
+// Measured for an edge across pixels with 64 samples: the error is a tenth of the bound. The corner
+// that no sample hits has an area of 1 / n, and a fraction sqrt(1 / n) of all edges cuts off so
+// little.
 double expectedOfBound(double samples) { return std::min(1.0, .8 / std::sqrt(samples)); }
 
-// How far apart nineteen in twenty of them are; they are put in another order.
+// Returns the range that contains 95 % of the values. Reorders the values.
 static float middleRange(std::vector<float>& values) {
   const auto out = std::ptrdiff_t(double(values.size() - 1) * .025);
   const auto low = values.begin() + out, high = values.end() - 1 - out;
@@ -46,7 +47,7 @@ void ErrorMap::store(size_t pixel, const PixelError& e) {
   if (!seen_.empty()) seen_[pixel] = {{e.mean[0], e.mean[1], e.mean[2]}, e.samples, e.constant};
 }
 
-// Whether one of the eight neighbours differs.
+// Returns whether one of the eight neighbours differs.
 bool ErrorMap::beside(uint32_t x, uint32_t y) const {
   const Seen& here = seen_[size_t(y) * width_ + x];
   for (uint32_t j = y - std::min(y, 1u); j <= std::min(y + 1, height_ - 1); j++)
@@ -60,7 +61,8 @@ bool ErrorMap::beside(uint32_t x, uint32_t y) const {
   return false;
 }
 
-// Of the colours within two pixels: an edge that cuts a corner has its other side there.
+// Writes the range of the colours within two pixels: the far side of an edge that cuts a corner is
+// there.
 void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
   float low[3], high[3];
   for (int k = 0; k < 3; k++) low[k] = high[k] = seen_[size_t(y) * width_ + x].mean[k];
@@ -79,9 +81,9 @@ void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
 void ErrorMap::doubtConstants(
     const std::function<void(size_t pixel, const float halfWidth[3])>& changed) {
   if (seen_.empty()) return;
-  // At the border of the picture the other side may lie outside: it has any colour of nineteen in
-  // twenty of the pixels. One that a bright path has met, or a lamp, tells nothing of what is
-  // there.
+  // At the border of the picture the far side of an edge may lie outside. It is then assumed to
+  // have any colour in the range of 95 % of the pixels. The range excludes outliers: a pixel hit by
+  // a bright path or a lamp says nothing about that side.
   bool uniform = true;
   std::vector<float> values;
   values.reserve(seen_.size());
@@ -111,7 +113,7 @@ void ErrorMap::doubtConstants(
       const float edge = relativeError(behind, here.mean);
       doubted_[pixel] = relativeError(expectedOfBound(here.samples) * behind, here.mean);
       if (!noise_.empty())
-        noise_[pixel].own = edge; // picture_error.cpp: what it is off by if there is an edge
+        noise_[pixel].own = edge; // its error if there is an edge; used by picture_error.cpp
       relative_[pixel] = -relativeError(sum, here.mean);
       changed(pixel, half);
     }
@@ -144,8 +146,8 @@ ErrorSummary ErrorMap::summary(double missed) const {
   for (size_t i = 0; i < noise_.size() && missed > 0; i++)
     if (noise_[i].finished) missing += std::min(1.0, missed / double(noise_[i].scale)) / n;
   s.mean = whole.mean;
-  s.meanInterval = std::min(std::hypot(whole.interval, missing),
-                            std::max(s.mean, 1 - s.mean)); // the error is from 0 to 1
+  // The error lies between 0 and 1.
+  s.meanInterval = std::min(std::hypot(whole.interval, missing), std::max(s.mean, 1 - s.mean));
   const auto at = halves.begin() + std::ptrdiff_t(double(halves.size() - 1) * 0.99);
   std::nth_element(halves.begin(), at, halves.end());
   s.p99 = *at;

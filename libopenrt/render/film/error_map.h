@@ -1,6 +1,6 @@
-// error_map.h: the errors of a picture's pixels, for what only the neighbours know of a pixel and
-// for the picture as a whole. store(): [render] each pixel by one thread; the rest by one thread
-// when the picture is finished.
+// error_map.h: the errors of all pixels of a picture: corrections that need a pixel's neighbours,
+// and statistics of the whole picture. store(): [render] each pixel by one thread. Everything else
+// is called by one thread when the picture is finished.
 #pragma once
 
 #include <cstddef>
@@ -12,52 +12,57 @@
 
 namespace openrt {
 
-inline constexpr float darkest = 0.03f; // colours summed: errors of what is darker are not blown up
-inline constexpr double ruleOfThree =
-    2.9957; // -ln 0.05: n misses in a row bound a probability by this / n
+// Floor for relative errors (sum of the colours), so that errors of dark pixels are not
+// exaggerated.
+inline constexpr float darkest = 0.03f;
+// -ln 0.05: n misses in a row bound a probability by this / n with 95 %
+inline constexpr double ruleOfThree = 2.9957;
 
 struct PixelError {
   float mean[3] = {};
-  float halfWidth[3] = {}; // of the 95 % interval of each colour
+  float halfWidth[3] = {}; // half-width of the 95 % interval of each colour
   float relative = 1;      // relativeError() of the half-widths
   PixelNoise noise;
   uint32_t samples = 0;
   bool trusted = false;
-  bool constant =
-      false; // nothing random, all samples equal: exact, unless an edge passes through a corner
+  // All samples are equal and no path took a random decision: the pixel is exact unless an edge
+  // cuts its corner.
+  bool constant = false;
 };
 
-// A sum over the colours of errors, over the sum of the colours and `darkest`. At most 1.
+// Returns the sum of the colours' errors over the sum of the colours and `darkest`, at most 1.
 float relativeError(double sum, const float colors[3]);
 
-struct ErrorSummary { // as in RTstats
+struct ErrorSummary { // statistics as in RTstats
   double mean = 0, meanInterval = 0, halfWidth = 0, p99 = 0;
   uint64_t pixels = 0, trusted = 0;
 };
 
 class ErrorMap {
  public:
-  // full: also what doubtConstants() needs; doubts: that alone, there is no summary().
+  // summary: statistics only. full: also the data for doubtConstants(). doubts: only the data for
+  // doubtConstants(); summary() is not available.
   enum class Kind { none, summary, full, doubts };
   ErrorMap() = default;
   ErrorMap(uint32_t width, uint32_t height, Kind kind);
   bool empty() const { return relative_.empty(); }
   void store(size_t pixel, const PixelError& e);
-  // A constant pixel beside pixels that differ from it is not known to be exact: the edge may cut a
-  // corner of it that no sample met. Its interval gets what the rule of three allows for, and it is
-  // not trusted. The same at the border of a picture that is not of one colour. changed is called
-  // for each.
+  // Widens the intervals of constant pixels beside pixels that differ, and takes their trust. Such
+  // a pixel is not known to be exact: an edge may cut a corner that no sample hit. The interval
+  // becomes what the rule of three allows for. The same is done at the border of a picture that is
+  // not of one colour. Calls `changed` for each such pixel.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
-  // Takes the trust of a pixel with random samples, and returns true, if it may lack more than its
-  // interval. missed: radiance that no sample tells of (ledger.h), colours summed.
+  // Takes the trust of a pixel with random samples if it may lack more radiance than its interval,
+  // and returns whether it did. missed: bound of the radiance that no sample has found (ledger.h),
+  // summed over the colours.
   bool distrust(size_t pixel, double missed);
-  // missed: the same of the whole picture.
+  // Returns the statistics of the picture. missed: as for distrust(), of the whole picture.
   ErrorSummary summary(double missed = 0) const;
 
  private:
   struct Seen {
     float mean[3];
-    uint32_t samples; // 0: not finished
+    uint32_t samples; // 0: the pixel is not finished
     bool constant;
   };
   bool border(uint32_t x, uint32_t y) const {
@@ -67,11 +72,11 @@ class ErrorMap {
   void range(uint32_t x, uint32_t y, float out[3]) const;
   uint32_t width_ = 0, height_ = 0;
   std::vector<float> relative_; // NaN: not finished; negative: not trusted
-  std::vector<float> doubted_; // what a constant pixel in doubt is expected to be off by, relative;
-                               // NaN: it is not in doubt
+  // Expected relative error of doubted constant pixels; NaN: the pixel is not in doubt.
+  std::vector<float> doubted_;
   std::vector<PixelNoise> noise_;
   std::vector<Seen> seen_;
-  float range_[3] = {}; // of all pixels' colours; doubtConstants()
+  float range_[3] = {}; // range of all pixels' colours; set by doubtConstants()
 };
 
 } // namespace openrt

@@ -1,4 +1,5 @@
-// film.cpp: sums of samples to mean and sample variance, and the planes of the channels.
+// film.cpp: converts sums of samples to means and sample variances, and stores them in the
+// channels' planes.
 #include "render/film/film.h"
 
 #include <algorithm>

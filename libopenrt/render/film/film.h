@@ -1,5 +1,5 @@
-// film.h: the picture being made: channels as floats, rows from the top. Whoever writes takes a
-// tile of its own. Statistics of a pixel are gathered in double (sums.h) and rounded once.
+// film.h: the film: the channels of the picture as floats, rows from the top. Each writing thread
+// has a tile of its own. Statistics of a pixel are accumulated in double (sums.h) and rounded once.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,12 @@
 
 namespace openrt {
 
-// What paths from lamps add to a pixel: an estimate of its own (light_image.h).
+// Contribution of light paths to a pixel, estimated separately from the camera samples
+// (light_image.h).
 struct LightSums {
   double mean[3] = {}, variance[3] = {};
-  double hits = 0; // paths that have met the pixel and those around
+  // Effective number of light paths that contributed to the pixel and its neighbours.
+  double hits = 0;
 };
 
 class Film {
@@ -28,18 +30,20 @@ class Film {
   uint32_t width() const { return width_; }
   uint32_t height() const { return height_; }
   bool has(uint32_t channel) const { return channels_ & channel; }
-  // [render] each pixel by one thread; light, error: null where there is none, where nothing is
-  // known of it
+  // Stores a pixel. [render] each pixel by one thread. light: null if there is no light tracing;
+  // error: null if the error is unknown.
   void store(uint32_t x, uint32_t y, const PixelSums& sums, const LightSums* light = nullptr,
              const PixelError* error = nullptr);
-  // After the last store(): looks at the neighbours of constant pixels. One thread.
+  // Revises the errors of constant pixels beside edges. Call after the last store(), from one
+  // thread.
   void finishErrors();
-  // Then, of each tile: what its pixels may lack that no sample tells of (ErrorMap).
+  // Takes the trust of the tile's pixels that may lack more radiance than their interval. missed:
+  // bound of the radiance that no sample has found (ErrorMap). Call after finishErrors().
   void distrust(const Tile& tile, double missed);
   const ErrorMap& errors() const { return errors_; }
   bool read(uint32_t channel, std::span<float> out) const;
-  // Of a picture that is still being made: nothing everywhere, then tile by tile those that are
-  // finished. false: no such channel, or no room for it.
+  // Snapshots of an unfinished picture: clear() empties the output, then copy() adds the finished
+  // tiles. clear() returns false if the channel does not exist or `out` is too small.
   bool clear(uint32_t channel, std::span<float> out) const;
   void copy(uint32_t channel, const Tile& tile, std::span<float> out) const;
 

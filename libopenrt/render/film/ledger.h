@@ -1,6 +1,7 @@
-// ledger.h: what a picture leaves out on purpose and no error bar covers, and what it may have
-// missed by chance: sums over the samples of one tile, added in their order. Tiles are added up in
-// theirs, so that the sums do not depend on threads. [render]
+// ledger.h: energy that the picture leaves out on purpose and that no error bar covers (depth
+// limit, energy cut, clamp), and light that it may have missed by chance. The sums are taken over
+// the samples of one tile in a fixed order, and tiles are added in a fixed order, so they do not
+// depend on threads. [render]
 #pragma once
 
 #include <algorithm>
@@ -14,15 +15,16 @@ inline double luminanceOf(const float v[3]) {
   return .2126 * double(v[0]) + .7152 * double(v[1]) + .0722 * double(v[2]);
 }
 
-// Light that rays meet by chance alone: they come from a surface that scatters, by way of mirrors
-// or smooth boundaries, so that no place on an emitter can be chosen for them.
-struct ChanceLight {
-  double light =
-      0; // what they would bring if each met the brightest emitter that it can meet; colours summed
-  double rays = 0; // their number
-  double met = 0;  // how many have met something at least half as bright as that one
+// Emitted light that only BSDF sampling can find: the ray comes from a non-specular surface by way
+// of mirrors or smooth boundaries, so light sampling cannot connect to the emitter.
+struct UnsampledLight {
+  // Radiance if every such ray hit the brightest emitter that it can reach; summed over the
+  // colours.
+  double light = 0;
+  double rays = 0; // number of such rays
+  double met = 0;  // number of rays that hit something at least half as bright as that emitter
 
-  void add(const ChanceLight& c) {
+  void add(const UnsampledLight& c) {
     light += c.light;
     rays += c.rays;
     met += c.met;
@@ -35,10 +37,10 @@ struct ChanceLight {
   void meet(const float radiance[3], double brightest) {
     if (luminanceOf(radiance) >= .5 * brightest) met++;
   }
-  // Share of the rays that have not met such an emitter although they might have: how much the
-  // upper bound of 95 % of a Poisson variable (E. B. Wilson, M. M. Hilferty, The distribution of
-  // chi-square, 1931) is more than what was met; none: the rule of three. Once so many have, the
-  // samples tell by themselves.
+  // Returns a bound of the share of rays that should have hit such an emitter but did not: the
+  // upper 95 % bound of a Poisson variable (E. B. Wilson, M. M. Hilferty, The distribution of
+  // chi-square, 1931) less the number of hits. Without hits this is the rule of three. From 32 hits
+  // on the share is 0, because then the samples' own variance covers it.
   double missedShare() const {
     constexpr double enough = 32, normal95 = 1.645;
     if (!(rays > 0) || !(met < enough)) return 0;
@@ -48,25 +50,25 @@ struct ChanceLight {
   }
 };
 
-struct Ledger { // summed over the colours
-  double cutByDepth = 0,
-         cutByEnergy = 0; // throughput of paths that the depth limit, the energy cut ended
-  double clipped = 0;     // radiance above the clamp
-  ChanceLight chance;     // of rays that may meet any emitter
-  ChanceLight
-      chanceSky; // of those for which the emitters that have a place are left to paths from lamps
-  uint64_t samples = 0; // a pixel of the tile
+struct Ledger { // all values are summed over the colours
+  // Throughput of the paths ended by the depth limit and by the energy cut.
+  double cutByDepth = 0, cutByEnergy = 0;
+  double clipped = 0;       // radiance removed by the clamp
+  UnsampledLight unsampled; // for rays that may hit any emitter
+  // For rays whose hits on area lights are left to light tracing: only the sky counts.
+  UnsampledLight unsampledSky;
+  uint64_t samples = 0; // samples per pixel of the tile
 
   void add(const Ledger& l) {
     cutByDepth += l.cutByDepth;
     cutByEnergy += l.cutByEnergy;
     clipped += l.clipped;
     samples += l.samples;
-    chance.add(l.chance);
-    chanceSky.add(l.chanceSky);
+    unsampled.add(l.unsampled);
+    unsampledSky.add(l.unsampledSky);
   }
-  // Of a tile of so many samples to that of one: its pixels' sum. Light by chance is of the
-  // samples, and not divided.
+  // Adds the ledger of a tile divided by its number of samples: the sum over its pixels for one
+  // sample each. Light that was not sampled belongs to all samples and is not divided.
   void addMean(const Ledger& l) {
     if (l.samples == 0) return;
     const double n = double(l.samples);
@@ -74,15 +76,15 @@ struct Ledger { // summed over the colours
     cutByEnergy += l.cutByEnergy / n;
     clipped += l.clipped / n;
     samples = 1;
-    chance.add(l.chance);
-    chanceSky.add(l.chanceSky);
+    unsampled.add(l.unsampled);
+    unsampledSky.add(l.unsampledSky);
   }
-  // Radiance that the mean of so many paths may lack, colours summed, where `all` is the sum over
-  // the whole picture.
-  double missedByChance(const Ledger& all, double paths) const {
+  // Returns a bound of the radiance that the mean of `paths` samples may lack, summed over the
+  // colours. all: the sum over the whole picture.
+  double missedRadiance(const Ledger& all, double paths) const {
     if (!(paths > 0)) return 0;
-    return (all.chance.missedShare() * chance.light +
-            all.chanceSky.missedShare() * chanceSky.light) /
+    return (all.unsampled.missedShare() * unsampled.light +
+            all.unsampledSky.missedShare() * unsampledSky.light) /
            paths;
   }
 };

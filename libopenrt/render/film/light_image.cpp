@@ -7,7 +7,7 @@ namespace openrt {
 void LightImage::add(uint32_t number, std::vector<float>&& part) {
   std::unique_lock turn(turn_);
   waiting_[number] = std::move(part);
-  if (adding_) return; // by somebody who looks again
+  if (adding_) return; // another thread is adding parts and will find this one
   adding_ = true;
   for (uint32_t next; (next = added_) < all_ && !waiting_[next].empty();) {
     const std::vector<float> now = std::move(waiting_[next]);
@@ -36,9 +36,9 @@ double LightImage::variance(const Pixel& pixel, int k) const {
   return n > 1 ? pixel.squares[k] / (n * (n - 1)) : std::numeric_limits<double>::infinity();
 }
 
-// A pixel that few paths have met knows too little of itself (error.cpp): its variance is its own,
-// at least the mean of those of the 5x5 pixels around. hits: as many equal paths have met these, in
-// the colour with the fewest.
+// Returns the sums of a pixel. A pixel with few light paths has an unreliable variance (error.cpp):
+// it uses the mean variance of the surrounding 5x5 pixels if that is larger. hits: effective number
+// of equal paths in the window, for the colour with the fewest.
 LightSums LightImage::at(uint32_t x, uint32_t y) const {
   constexpr uint32_t reach = 2;
   const Pixel& pixel = pixels_[size_t(y) * width_ + x];

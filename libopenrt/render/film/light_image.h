@@ -1,7 +1,7 @@
-// light_image.h: the part of a picture that paths from lamps make. They may fall on any pixel, so
-// the picture is made in a fixed number of parts, each a whole picture by one thread; their mean
-// and its variance are kept. Parts are added in their order, those that come too early wait: the
-// sums do not depend on threads. [any]
+// light_image.h: the part of the picture made by light tracing. Light paths may contribute to any
+// pixel, so the picture is made in a fixed number of parts, each a whole picture rendered by one
+// thread. Their mean and its variance are kept. Parts are added in the order of their numbers,
+// early ones wait, so the sums do not depend on threads. [any]
 #pragma once
 
 #include <atomic>
@@ -17,15 +17,15 @@ namespace openrt {
 
 class LightImage {
  public:
-  static constexpr uint32_t parts = 16; // of a frame
+  static constexpr uint32_t parts = 16; // number of parts of a frame
   LightImage(uint32_t width, uint32_t height, uint32_t all = parts)
       : width_(width), height_(height), all_(all), pixels_(size_t(width) * height), waiting_(all) {}
-  // part: rgb by pixel; each number once.
+  // Adds a part: rgb by pixel. Each number is added once.
   void add(uint32_t number, std::vector<float>&& part);
   uint32_t added() const { return added_.load(std::memory_order_acquire); }
   bool complete() const { return added() == all_; }
-  // Of a tile, row by row, from the parts that are in; their variance is infinite if these are
-  // fewer than two.
+  // Returns a tile's sums, row by row, from the parts added so far. The variance is infinite with
+  // fewer than two parts.
   void look(const Tile& tile, std::vector<LightSums>& out) const;
 
  private:
@@ -37,10 +37,10 @@ class LightImage {
   LightSums at(uint32_t x, uint32_t y) const;
 
   uint32_t width_, height_, all_;
-  mutable std::shared_mutex sums_; // pixels_, and added_ for those who look
+  mutable std::shared_mutex sums_; // guards pixels_, and added_ for readers
   std::vector<Pixel> pixels_;
   std::atomic<uint32_t> added_{0};
-  std::mutex turn_; // waiting_, adding_
+  std::mutex turn_; // guards waiting_ and adding_
   std::vector<std::vector<float>> waiting_;
   bool adding_ = false;
 };

@@ -1,19 +1,17 @@
-// picture_error.cpp: see picture_error.h.
+// picture_error.cpp: the error of the whole picture.
 //
-// A pixel's own variance tells too little where light is rare: pixels that have missed it have too
-// small a variance, and the mean of roots is less than the root of the mean. And these pixels are
-// off, too: by what they miss, relative to their darkness. So:
-//   * Third cumulants, pooled over pixels around, give the share of rare jumps in the variance and
-//   how many of them a
-//     pixel meets on average (method of moments for a normal plus a Poisson variable). How much
-//     E|error| differs from what own variances say follows in closed sums.
-//   * Errors sum to zero: what pixels with jumps have too much the others have too little. The
-//   latter half is distributed over the
-//     pixels around, each relative to its own colours. The pixels around: so many that some jumps
-//     are among them.
-//   * The interval is one of prediction: how far the errors of one picture scatter about their
-//   expectation, and how well that is
-//     known from so many jumps. Pixels are independent.
+// A pixel's own variance is not reliable where light is rare. Pixels that have missed it have too
+// small a variance, and the mean of roots is less than the root of the mean. These pixels are
+// wrong, too, by what they have missed relative to their dark value. Therefore:
+// * Third cumulants, pooled over the surrounding pixels, give the share of rare jumps in the
+//   variance and the mean number of jumps per pixel (method of moments for a normal plus a Poisson
+//   variable). Closed sums then give the ratio of E|error| to what the own variances suggest.
+// * Errors sum to zero: what pixels with jumps have too much, the others have too little. The
+//   latter half is distributed over the surrounding pixels, each relative to its own colours. The
+//   window is chosen so large that it contains some jumps.
+// * The interval is a prediction interval. It covers how far the errors of one picture scatter
+//   about their expectation, and how well that is known from the number of jumps. Pixels are
+//   treated as independent.
 #include "render/film/picture_error.h"
 
 #include <algorithm>
@@ -28,27 +26,29 @@ namespace openrt {
 namespace {
 
 constexpr double meanOfNormal = 0.797884560802865; // E|z|
-constexpr double varianceOfNormal =
-    1 - 2 / M_PI + .033;          // of |z|, and of what 16 replicates know of its scale, over E z^2
-constexpr double fewestJumps = 8; // in the pixels around
-constexpr double negligibleExcess = .1; // fourth over squared second cumulant
+// Variance of |z|, and of the scale estimated from 16 replicates, over E z^2.
+constexpr double varianceOfNormal = 1 - 2 / M_PI + .033;
+constexpr double fewestJumps = 8; // minimum number of jumps in the window
+// Fourth over squared second cumulant below which a tail is ignored.
+constexpr double negligibleExcess = .1;
 constexpr double lowerHalf = .72;  // mean of the lower half of variances with 15 degrees of freedom
-constexpr double unsureShape = .3; // of the correction by tailShape()
-constexpr double unsureScale = .6; // of the errors of random pixels: neighbours err together
-constexpr double mostJumps = 24;   // where a Poisson variable is as good as normal
-constexpr std::array<uint32_t, 2> reaches{2, 5}; // of the pixels around, to each side
+constexpr double unsureShape = .3; // relative uncertainty of the correction by tailShape()
+// Relative uncertainty of the errors of random pixels: neighbours have correlated errors.
+constexpr double unsureScale = .6;
+constexpr double mostJumps = 24;                 // above this a Poisson variable is taken as normal
+constexpr std::array<uint32_t, 2> reaches{2, 5}; // window sizes: pixels to each side
 
 double normalDensity(double x) { return 0.398942280401433 * std::exp(-.5 * x * x); }
 double normalBelow(double x) { return .5 * std::erfc(-x * 0.707106781186548); }
 
-// E|x| of a normal variable.
+// Returns E|x| of a normal variable.
 double foldedMean(double mean, double deviation) {
   if (!(deviation > 0)) return std::fabs(mean);
   const double t = mean / deviation;
   return 2 * deviation * normalDensity(t) + mean * (2 * normalBelow(t) - 1);
 }
 
-// E min(1, |x|) of a normal variable of mean 0 for which E|x| = expected.
+// Returns E min(1, |x|) of a normal variable of mean 0 for which E|x| = expected.
 double cappedMean(double expected) {
   if (!(expected > .1)) return expected;
   if (!(expected < 1e6)) return 1;
@@ -56,7 +56,7 @@ double cappedMean(double expected) {
   return 2 * s * (normalDensity(0) - normalDensity(1 / s)) + 2 * (1 - normalBelow(1 / s));
 }
 
-struct Cumulants { // summed over pixels, relative
+struct Cumulants { // relative cumulants, summed over pixels
   double pixels = 0, second = 0, third = 0, fourth = 0, square = 0;
   void add(const Cumulants& c) {
     pixels += c.pixels;
@@ -65,30 +65,31 @@ struct Cumulants { // summed over pixels, relative
     fourth += c.fourth;
     square += c.square;
   }
-  double jumps() const { // among these pixels
+  double jumps() const { // effective number of jumps among these pixels
     if (!(second > 0)) return 0;
     return fourth > 0 ? second * second / fourth : std::numeric_limits<double>::infinity();
   }
-  // Else errors are as good as normal. Squares are summed pixel by pixel: that some have more noise
-  // than others is no tail.
+  // Returns whether errors have a tail; otherwise they are treated as normal. Squares are summed
+  // pixel by pixel, because pixels with different noise are no tail.
   bool tailed() const {
     return second > 0 && third > 0 && fourth > negligibleExcess * std::max(square, 0.0);
   }
-  // seconds: of the pixels, in any order; they are put in another. met: second cumulant of a pixel
-  // that has met a jump, at least.
+  // Estimates the tail's shape. seconds: the pixels' second cumulants; they are reordered. met:
+  // gets the minimum second cumulant of a pixel with a jump.
   TailShape shape(std::vector<double>& seconds, double& met) const {
     if (!tailed()) return {};
     const double k2 = second / pixels, k3 = third / pixels;
     const auto middle = seconds.begin() + std::ptrdiff_t(seconds.size() / 2);
     std::nth_element(seconds.begin(), middle, seconds.end());
-    double normal = *middle; // of pixels that have met none: the lower half's mean
+    double normal = *middle; // variance of pixels without a jump: mean of the lower half
     for (auto at = seconds.begin(); at != middle; ++at) normal += *at;
     normal /= double(middle - seconds.begin() + 1) * lowerHalf;
-    // Too much where most have met one; then equal jumps tell by the cumulants, too.
+    // That is too large if most pixels have a jump; then the cumulants of equal jumps bound it.
     normal = std::min(normal, std::max(0.0, k2 - k3 * k3 * pixels / fourth));
     const double rest = k2 - normal;
     if (!(rest > 0)) return {};
-    // The former where all pixels are alike, the latter where some have many jumps and others none.
+    // alike: right if all pixels are alike. apart: right if some pixels have many jumps and others
+    // none.
     const double alike = rest * rest * rest / (k3 * k3),
                  apart = square * (rest / k2) * (rest / k2) / fourth;
     const double jumps = std::min(std::max(alike, apart), mostJumps);
@@ -97,39 +98,42 @@ struct Cumulants { // summed over pixels, relative
   }
 };
 
-class Whole {
+class PictureErrorEstimator {
  public:
-  Whole(uint32_t width, std::span<const PixelNoise> pixels, std::span<const float> doubted)
+  PictureErrorEstimator(uint32_t width, std::span<const PixelNoise> pixels,
+                        std::span<const float> doubted)
       : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels), doubted_(doubted),
         stay_(pixels.size()), spread_(pixels.size()), missing_(pixels.size()), part_(pixels.size()),
         met_(pixels.size()), reach_(pixels.size()) {}
 
   PictureError make() {
-    gather();
+    collectCumulants();
     for (size_t i = 0; i < pixels_.size(); i++) look(i);
     distribute();
     return sum();
   }
 
  private:
-  // f(pixel) for the random ones of the window about one.
+  // Calls f(pixel) for the random pixels of the window about pixel i.
   template <class F> void window(size_t i, uint32_t reach, const F& f) const {
     const auto x = uint32_t(i % width_), y = uint32_t(i / width_);
     for (uint32_t v = y - std::min(y, reach); v <= std::min(y + reach, height_ - 1); v++)
       for (uint32_t u = x - std::min(x, reach); u <= std::min(x + reach, width_ - 1); u++)
         if (const size_t at = size_t(v) * width_ + u; random(at)) f(at);
   }
-  // What a pixel gets of what is missing: as the light, if it has not met a jump.
+  // Returns the pixel's share of the missing light: proportional to its brightness if it has had no
+  // jump, else 0.
   double lacking(size_t i, double met) const {
     return random(i) && own_[i].second < met ? double(pixels_[i].scale) : 0;
   }
   bool random(size_t i) const { return pixels_[i].finished && pixels_[i].random; }
 
-  void gather() {
+  void collectCumulants() {
     own_.resize(pixels_.size());
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (!random(i)) continue;
-      // Relative to the colours around: else those that have met something would count for less.
+      // Relative to the mean brightness of the 3x3 window: otherwise pixels with a hit would count
+      // for less.
       double scale = 0, n = 0;
       window(i, 1, [&](size_t at) {
         scale += double(pixels_[at].scale);
@@ -140,7 +144,7 @@ class Whole {
       largest_ = std::max(largest_, double(p.largest));
       if (!std::isfinite(p.second) || !std::isfinite(p.fourth)) continue;
       const double s2 = scale * scale;
-      // So that three equal colours count as one would.
+      // Scaled so that three equal colours count as one colour would.
       own_[i] = {1, double(p.second) / s2 / std::sqrt(3.0),
                  double(p.third) / (s2 * scale) / std::pow(3.0, .25), double(p.fourth) / (s2 * s2),
                  double(p.square) / (s2 * s2)};
@@ -152,7 +156,7 @@ class Whole {
     allShape_ = all_.shape(seconds_, allMet_);
   }
 
-  // How much of the pixel's error is where it is, and how much is with those around.
+  // Divides the pixel's error into the part at the pixel itself and the part at its neighbours.
   void look(size_t i) {
     const PixelNoise& p = pixels_[i];
     if (!p.finished || !std::isnan(doubted_[i])) return;
@@ -172,7 +176,7 @@ class Whole {
     seconds_.clear();
     if (!few) window(i, reach, [&](size_t at) { seconds_.push_back(own_[at].second); });
     const TailShape shape = few ? allShape_ : c.shape(seconds_, met);
-    double lack = 0, all = 0; // pixels
+    double lack = 0, all = 0; // numbers of pixels: without a jump, in the window
     if (shape.missing > 0)
       window(i, reach, [&](size_t at) {
         all++;
@@ -181,14 +185,14 @@ class Whole {
       });
     const double alike =
         std::max(1.0, all - lack) *
-        shape.without; // so many of those that lack are of the kind that meets jumps
+        shape.without; // number of lacking pixels that are of the kind that has jumps
     const double expected = double(p.own) * shape.factor;
     corrected_ += std::fabs(expected - double(p.own)) / double(p.scale);
     missing_[i] = without > 0 ? shape.missing : 0;
     spread_[i] = missing_[i] * expected;
     stay_[i] = expected - spread_[i];
-    // None of these lacks a larger part of its light than what is wrong with the pixel that tells
-    // of it.
+    // No pixel lacks a larger fraction of its light than the relative error of the pixel that this
+    // is derived from.
     if (without > 0)
       part_[i] =
           std::min(spread_[i] / without, std::min(1.0, alike / lack) * expected / double(p.scale));
@@ -208,7 +212,7 @@ class Whole {
     PictureError out;
     double n = 0, unseen = 0, unknown = 0, doubts = 0;
     const bool nothing = all_.pixels > 0 && !(largest_ > 0);
-    // Where next to nothing has been met at all it may be the largest sample that was missed.
+    // If almost nothing has been hit at all, the largest sample may be what was missed.
     const double bound =
         all_.pixels > 0 && !(all_.jumps() > ruleOfThree) ? ruleOfThree * largest_ / all_.pixels : 0;
     std::vector<double> kept(pixels_.size()), slopes(pixels_.size());
@@ -240,7 +244,7 @@ class Whole {
     if (n == 0) return out;
     double variance = 0, fourth = 0;
     for (size_t i = 0; i < pixels_.size(); i++) {
-      double scattered = 0; // this pixel's share of the errors of others
+      double scattered = 0; // this pixel's contribution to the errors of others
       if (spread_[i] > 0) {
         window(i, reach_[i], [&](size_t at) { scattered += slopes[at] * lacking(at, met_[i]); });
         scattered *= part_[i];
@@ -254,19 +258,20 @@ class Whole {
       fourth += v * v;
     }
     const double freedom = fourth > 0 ? variance * variance / fourth : 1;
-    const double chance = student95(std::max(1.0, freedom - 1)) * std::sqrt(variance),
+    const double prediction = student95(std::max(1.0, freedom - 1)) * std::sqrt(variance),
                  unsure = unsureShape * corrected_;
     const double common = unsureScale * (out.mean - doubts);
-    // How many of the pixels in doubt hold an edge is the scene's: from none to twice as many.
-    out.interval = std::sqrt(chance * chance + unsure * unsure + common * common + unseen * unseen +
-                             doubts * doubts);
-    // Where nothing at all has been met it may be anything.
+    // The number of doubted pixels with an edge depends on the scene: from none to twice as many as
+    // expected.
+    out.interval = std::sqrt(prediction * prediction + unsure * unsure + common * common +
+                             unseen * unseen + doubts * doubts);
+    // If nothing has been hit at all, the error may be anything.
     out.mean += .5 * unknown;
     out.interval += .5 * unknown;
     out.mean /= n;
     out.interval /= n;
-    out.interval =
-        std::min(out.interval, std::max(out.mean, 1 - out.mean)); // it is between 0 and 1
+    // The error lies between 0 and 1.
+    out.interval = std::min(out.interval, std::max(out.mean, 1 - out.mean));
     return out;
   }
 
@@ -278,10 +283,11 @@ class Whole {
   TailShape allShape_;
   double largest_ = 0, corrected_ = 0, allMet_ = 0;
   std::vector<double> stay_, spread_, missing_, lack_;
-  std::vector<double> part_,
-      met_; // of what those around lack: the pixel's part, relative; how they are told
-  std::vector<double> seconds_; // room
-  std::vector<uint32_t> reach_; // of the pixels around
+  // part_: the pixel's relative share of what its neighbours lack. met_: threshold that tells
+  // pixels with a jump.
+  std::vector<double> part_, met_;
+  std::vector<double> seconds_; // working storage
+  std::vector<uint32_t> reach_; // window size
 };
 
 } // namespace
@@ -289,7 +295,7 @@ class Whole {
 TailShape tailShape(double variance, double jumps) {
   TailShape out;
   if (!(jumps > 0) || !(jumps < mostJumps)) return out;
-  // In units of a jump.
+  // All in units of a jump.
   const double normal = std::sqrt(variance * jumps);
   const auto most = uint32_t(jumps + 6 * std::sqrt(jumps) + 6);
   double probability = std::exp(-jumps), error = 0, told = 0;
@@ -310,7 +316,7 @@ TailShape tailShape(double variance, double jumps) {
 PictureError pictureError(uint32_t width, std::span<const PixelNoise> pixels,
                           std::span<const float> doubted) {
   if (pixels.empty()) return {};
-  return Whole(width, pixels, doubted).make();
+  return PictureErrorEstimator(width, pixels, doubted).make();
 }
 
 } // namespace openrt

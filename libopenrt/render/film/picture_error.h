@@ -1,6 +1,6 @@
-// picture_error.h: what a picture as a whole is off by: the mean over its pixels of their errors,
-// with an interval that holds the true one, from what each pixel's replicates tell of the cumulants
-// of its own error. Pure functions. [any]
+// picture_error.h: the error of the picture as a whole: the mean over its pixels of their errors,
+// with a confidence interval. It is computed from the cumulants of each pixel's own error, which
+// its replicates provide. Pure functions. [any]
 #pragma once
 
 #include <cstdint>
@@ -8,36 +8,36 @@
 
 namespace openrt {
 
-// Of the error of a pixel's mean.
+// Statistics of the error of a pixel's mean.
 struct PixelNoise {
-  float own =
-      0; // expected sum over the colours of |error|, were it normal, from the pixel's own variance
-  float second = 0, third = 0, fourth = 0; // cumulants without bias, summed over the colours
-  float square = 0;    // of the second cumulants, without bias, summed over the colours
-  float scale = 0;     // colours summed + 0.03: what errors are relative to
-  float largest = 0;   // largest sample, colours summed, over the number of samples
-  bool random = false; // a path has taken a random decision
+  // Expected |error| summed over the colours, if it were normal with the pixel's own variance.
+  float own = 0;
+  float second = 0, third = 0, fourth = 0; // unbiased cumulants, summed over the colours
+  float square = 0;    // unbiased squares of the second cumulants, summed over the colours
+  float scale = 0;     // sum of the colours + 0.03: errors are relative to this
+  float largest = 0;   // largest sample (sum of the colours) over the number of samples
+  bool random = false; // a path of the pixel has taken a random decision
   bool finished = false;
 };
 
 struct PictureError {
-  double mean = 0,
-         interval =
-             0; // relative; the picture's true mean error lies within mean +- interval with 95 %
+  // Relative. The true mean error of the picture lies within mean +- interval with 95 %.
+  double mean = 0, interval = 0;
 };
 
-// The pixels row by row; doubted: relative error expected of each pixel for other reasons, or NaN.
+// Estimates the picture's error from its pixels, row by row. doubted: relative error expected of
+// each pixel for other reasons, or NaN.
 PictureError pictureError(uint32_t width, std::span<const PixelNoise> pixels,
                           std::span<const float> doubted);
 
-// How errors that are the sum of something normal and of rare equal jumps differ from normal ones.
+// How the distribution of errors that are the sum of a normal part and of rare equal jumps differs
+// from a normal one.
 struct TailShape {
-  double factor = 1;  // expected |error| over what pixels' own variances make of it, on average
-  double without = 0; // pixels that have met no jump, for each that has
-  double missing =
-      0; // share of it that is at pixels that have not met what is rare and do not know of it
+  double factor = 1;  // expected |error| over the mean of what the pixels' own variances suggest
+  double without = 0; // number of pixels without a jump for each pixel with one
+  double missing = 0; // share of the error at pixels that had no jump and so cannot know of it
 };
-// variance: of the normal part over that of the jumps; jumps: expected number in a pixel.
+// variance: of the normal part over that of the jumps. jumps: expected number of jumps in a pixel.
 TailShape tailShape(double variance, double jumps);
 
 } // namespace openrt

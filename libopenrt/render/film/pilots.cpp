@@ -1,13 +1,15 @@
-// pilots.cpp: see pilots.h.
+// pilots.cpp: the decision rule.
 //
-// The first pilot has 32 samples a pixel. A tile's half-width after N samples is foretold from it:
-// that of noise falls as 1/sqrt(N), the bound of a constant pixel beside an edge as 1/N, that of
-// paths from lamps does not fall. Two things make a pilot unable to decide: pixels of it, or of the
-// tiles around, that do not trust themselves make up too much of what is foretold; or it would have
-// to foretell more than eight times its own number. Then the tile has a further pilot: of a quarter
-// of the samples that the picture may take, or of a quarter of that, and so on, at least twice as
-// many as before. Where the largest cannot decide either, all samples are taken that are allowed.
-//   All pilots of a tile together have at most 32 + a third of RT_SAMPLES_PER_PIXEL samples.
+// The first pilot has 32 samples per pixel. It predicts a tile's half-width after N samples: noise
+// falls as 1/sqrt(N), the bound of a constant pixel beside an edge as 1/N, and the error of light
+// paths does not fall. A pilot cannot decide in two cases:
+// * untrusted pixels of the tile, or of the surrounding tiles, make up too much of the prediction;
+// * the prediction would exceed eight times the pilot's own number of samples.
+// The tile then has a further pilot. It has a quarter of the samples that the picture may take, or
+// a quarter of that, and so on, but at least twice as many as the previous one. If the largest
+// pilot cannot decide either, all allowed samples are taken.
+//
+// All pilots of a tile together have at most 32 + a third of RT_SAMPLES_PER_PIXEL samples.
 #include "render/film/pilots.h"
 
 #include <algorithm>
@@ -19,16 +21,16 @@
 namespace openrt {
 namespace {
 
-constexpr double margin =
-    .9; // of the target: a picture has more noise than its pilot as often as less
-constexpr double unknownPart = .25; // of the target
-constexpr double farthest = 8;      // what is foretold, over the pilot's own number
-constexpr uint32_t growth = 4,
-                   share =
-                       4; // from pilot to pilot; samples allowed, over those of the largest pilot
+// Fraction of the target to aim at: a picture is noisier than its pilot as often as less noisy.
+constexpr double margin = .9;
+constexpr double unknownPart = .25; // fraction of the target that untrusted pixels may make up
+constexpr double farthest = 8;      // largest prediction over the pilot's own number of samples
+// growth: from pilot to pilot. share: samples allowed over those of the largest
+// pilot.
+constexpr uint32_t growth = 4, share = 4;
 
-// The numbers of samples that tiles may take are four an octave, and multiples of 32: the last is
-// all that are allowed.
+// Returns the numbers of samples that tiles may take: four per octave, multiples of 32. The last is
+// the number allowed.
 std::vector<uint32_t> ladderOf(uint32_t most) {
   std::vector<uint32_t> out;
   for (uint64_t octave = samplesOfPilot; octave < most; octave *= 2)
@@ -39,7 +41,7 @@ std::vector<uint32_t> ladderOf(uint32_t most) {
   return out;
 }
 
-// Samples of the pilot after one of so many; 0: there is none.
+// Returns the number of samples of the pilot after one of `samples`; 0: there is none.
 uint32_t pilotAfter(uint32_t samples, uint32_t most) {
   uint32_t next = 0;
   for (uint32_t n = most / share; n >= 2 * samples; n /= growth)
@@ -89,7 +91,7 @@ void Pilots::note(uint32_t tile, std::span<const PilotPixel> pixels,
     }
 }
 
-// Mean over the pixels of their half-widths after so many samples, at most 1 each.
+// Predicts the mean over the pixels of their half-widths after `wanted` samples, at most 1 each.
 double Pilots::expected(const Tile& tile, std::span<const PilotPixel> pixels, double samples,
                         double wanted) const {
   const double less = std::sqrt(samples / wanted), lessDoubt = samplesOfPilot / wanted;
@@ -104,19 +106,20 @@ double Pilots::expected(const Tile& tile, std::span<const PilotPixel> pixels, do
   return sum / double(pixels.size());
 }
 
-Pilots::Opinion Pilots::opinion(const Tile& tile, std::span<const PilotPixel> pixels,
-                                uint32_t samples) const {
+Pilots::Estimate Pilots::estimate(const Tile& tile, std::span<const PilotPixel> pixels,
+                                  uint32_t samples) const {
   double light = 0, unknown = 0;
   for (const PilotPixel& p : pixels)
     light += std::min(1.0, double(p.light)) / double(pixels.size());
-  // Where paths from lamps alone are over it, samples are of use until they add little.
+  // If the error of the light paths alone exceeds the target, samples help until they add little to
+  // it.
   const double target = std::max(margin * target_, 1.1 * light);
   const auto enough = [&](uint32_t wanted) {
     return expected(tile, pixels, samples, wanted) <= target;
   };
   const auto found = std::partition_point(ladder_.begin(), ladder_.end() - 1,
                                           [&](uint32_t n) { return !enough(n); });
-  Opinion out{*found, 0};
+  Estimate out{*found, 0};
   const double less = std::sqrt(double(samples) / out.wanted);
   for (const PilotPixel& p : pixels)
     if (!p.trusted && !p.constant) unknown += std::min(1.0, double(p.noise) * less);
@@ -124,7 +127,7 @@ Pilots::Opinion Pilots::opinion(const Tile& tile, std::span<const PilotPixel> pi
   return out;
 }
 
-Pilots::Verdict Pilots::verdict(const Opinion& o, double unknown, uint32_t samples) const {
+Pilots::Decision Pilots::decision(const Estimate& o, double unknown, uint32_t samples) const {
   const bool known = unknown <= unknownPart * target_;
   if (known && (o.wanted >= most_ || o.wanted <= farthest * samples)) return {o.wanted, false};
   if (const uint32_t next = timed_ ? 0 : pilotAfter(samples, most_)) return {next, true};
@@ -139,26 +142,26 @@ std::vector<PilotPixel> Pilots::pixelsOf(const Tile& tile) const {
   return out;
 }
 
-std::vector<Pilots::Verdict> Pilots::judgeAll() {
+std::vector<Pilots::Decision> Pilots::decideAll() {
   doubt_.assign(first_.size(), 0);
   map_.doubtConstants([this](size_t pixel, const float half[3]) {
     doubt_[pixel] = (half[0] + half[1] + half[2]) / scale_[pixel];
   });
-  std::vector<Opinion> opinions;
+  std::vector<Estimate> estimates;
   for (uint32_t i = 0; i < grid_.count(); i++)
-    opinions.push_back(opinion(grid_.at(i), pixelsOf(grid_.at(i)), samplesOfPilot));
-  // What is rare may have been met by the tiles around alone.
+    estimates.push_back(estimate(grid_.at(i), pixelsOf(grid_.at(i)), samplesOfPilot));
+  // The neighbouring tiles may be the only ones that have hit a rare feature.
   const uint32_t columns = grid_.columns(), rows = grid_.count() / columns;
-  std::vector<Verdict> out;
+  std::vector<Decision> out;
   for (uint32_t i = 0; i < grid_.count(); i++) {
     const uint32_t x = i % columns, y = i / columns;
     double sum = 0, n = 0;
     for (uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, rows - 1); v++)
       for (uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, columns - 1); u++) {
-        sum += opinions[v * columns + u].unknown;
+        sum += estimates[v * columns + u].unknown;
         n++;
       }
-    out.push_back(verdict(opinions[i], std::max(opinions[i].unknown, sum / n), samplesOfPilot));
+    out.push_back(decision(estimates[i], std::max(estimates[i].unknown, sum / n), samplesOfPilot));
   }
   map_ = {};
   first_ = {};
@@ -166,12 +169,12 @@ std::vector<Pilots::Verdict> Pilots::judgeAll() {
   return out;
 }
 
-Pilots::Verdict Pilots::judge(uint32_t tile, std::span<const PilotPixel> pixels,
-                              uint32_t samples) const {
-  Opinion o = opinion(grid_.at(tile), pixels, samples);
-  o.wanted = std::max(
-      o.wanted, samples); // with fewer the picture would know itself as little as the last pilot
-  return verdict(o, o.unknown, samples);
+Pilots::Decision Pilots::decide(uint32_t tile, std::span<const PilotPixel> pixels,
+                                uint32_t samples) const {
+  Estimate o = estimate(grid_.at(tile), pixels, samples);
+  // With fewer the picture's error would be as unreliable as the last pilot's.
+  o.wanted = std::max(o.wanted, samples);
+  return decision(o, o.unknown, samples);
 }
 
 } // namespace openrt

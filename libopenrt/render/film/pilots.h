@@ -1,7 +1,7 @@
-// pilots.h: how many samples each tile of a frame with a target error takes. Pilots decide it:
-// samples that are thrown away, so that those which make the picture know nothing of the decision
-// (docs/decisions/0037). Called by FrameWork; a pure function of the pilots' samples, whoever takes
-// them and in whatever order they come.
+// pilots.h: adaptive sampling: decides how many samples each tile of a frame with a target error
+// takes. The decision is made from pilot samples, which are thrown away, so that the picture's
+// samples are independent of it (docs/decisions/0037). Called by FrameWork. The decision is a pure
+// function of the pilots' samples, in whatever order they arrive.
 #pragma once
 
 #include <cstdint>
@@ -14,58 +14,59 @@
 
 namespace openrt {
 
-inline constexpr uint32_t samplesOfPilot = 32; // of the first one
+inline constexpr uint32_t samplesOfPilot = 32; // samples per pixel of the first pilot
 
-// Samples of the first pilot of a frame, 0: it needs none.
+// Returns the number of samples of a frame's first pilot; 0: it needs none.
 uint32_t firstPilotOf(const edit::FrameSettingsT& frame, bool timed);
 
-// What a pilot tells of a pixel: relative half-widths, which may be more than 1.
+// Result of a pilot for one pixel: relative half-widths, which may exceed 1.
 struct PilotPixel {
-  float noise = 0;       // of its samples
-  float light = 0;       // of the paths from lamps, whose number does not depend on the samples
-  bool trusted = false;  // of its samples alone
-  bool constant = false; // all samples are equal, and nothing is random
+  float noise = 0; // half-width of the samples
+  float light = 0; // half-width of the light paths, whose number does not depend on the samples
+  bool trusted = false;  // whether the error of the samples alone is trusted
+  bool constant = false; // all samples are equal and no path took a random decision
 };
-// error: of the samples alone; paths from lamps are added to it.
+// Summarises a pixel. error: of the samples alone; the light paths' error is added to it.
 PilotPixel pilotPixel(PixelError& error, const LightSums* light);
 
 class Pilots {
  public:
   Pilots(const edit::FrameSettingsT& frame, const TileGrid& grid, bool timed);
 
-  struct Verdict {
+  struct Decision {
     uint32_t samples = 0;
-    bool pilot = false; // so many samples of a further pilot; else of the picture
+    // true: take a further pilot of `samples`; false: take `samples` for the picture
+    bool pilot = false;
   };
-  // What the first pilot has found in a tile, row by row. [any] Each tile once.
+  // Stores the first pilot's results of a tile, row by row. [any] Once for each tile.
   void note(uint32_t tile, std::span<const PilotPixel> pixels, std::span<const PixelError> errors);
-  // Of all tiles, once all are noted.
-  std::vector<Verdict> judgeAll();
-  // What a further pilot of so many samples has found in a tile. After judgeAll(). [any]
-  Verdict judge(uint32_t tile, std::span<const PilotPixel> pixels, uint32_t samples) const;
+  // Decides for all tiles, after note() was called for each.
+  std::vector<Decision> decideAll();
+  // Decides after a further pilot of `samples` of a tile. After decideAll(). [any]
+  Decision decide(uint32_t tile, std::span<const PilotPixel> pixels, uint32_t samples) const;
 
  private:
-  struct Opinion {
+  struct Estimate {
     uint32_t wanted = 0;
-    double unknown =
-        0; // relative half-width that the tile's pixels have by what they do not trust, then
+    // Relative half-width that untrusted pixels contribute after `wanted` samples.
+    double unknown = 0;
   };
   float doubtOf(const PilotPixel& pixel, size_t at) const {
     return pixel.constant && !doubt_.empty() ? doubt_[at] : 0;
   }
   double expected(const Tile& tile, std::span<const PilotPixel> pixels, double samples,
                   double wanted) const;
-  Opinion opinion(const Tile& tile, std::span<const PilotPixel> pixels, uint32_t samples) const;
-  Verdict verdict(const Opinion& opinion, double unknown, uint32_t samples) const;
+  Estimate estimate(const Tile& tile, std::span<const PilotPixel> pixels, uint32_t samples) const;
+  Decision decision(const Estimate& estimate, double unknown, uint32_t samples) const;
   std::vector<PilotPixel> pixelsOf(const Tile& tile) const;
 
   const TileGrid grid_;
   const uint32_t width_, most_;
   const double target_;
   const bool timed_;
-  const std::vector<uint32_t> ladder_; // numbers of samples that tiles may take
-  // Row by row, of the first pilot. The half-width that constant pixels beside an edge have:
-  // neighbours of other tiles tell.
+  const std::vector<uint32_t> ladder_; // the numbers of samples that a tile may take
+  // Results of the first pilot, row by row. The half-width of constant pixels beside an edge
+  // depends on neighbours in other tiles.
   ErrorMap map_;
   std::vector<PilotPixel> first_;
   std::vector<float> scale_, doubt_;

@@ -1,4 +1,5 @@
-// sums.cpp: Moments about another point: (x + c)^m by the binomial theorem.
+// sums.cpp: merging of sums. Moments are moved to another reference point by the binomial theorem,
+// (x + c)^m.
 #include "render/film/sums.h"
 
 #include <algorithm>
@@ -12,18 +13,19 @@
 namespace openrt {
 namespace {
 
-static_assert(std::is_trivially_copyable_v<PixelSums> &&
-              std::is_standard_layout_v<PixelSums>); // kept as bytes
+// Stored as bytes.
+static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout_v<PixelSums>);
 
-// Of each pixel's sums only the part that is gathered is kept: there may be one for each pixel of
-// the picture.
-size_t keptBytes(const Gathering& g) {
+// Returns the bytes of PixelSums to store. Only the part that the frame needs is stored, because
+// there may be one for each pixel of the picture.
+size_t keptBytes(const RequiredSums& g) {
   if (g.error) return sizeof(PixelSums);
   if (g.surface) return offsetof(PixelSums, closed);
   return g.spread ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
 }
 
-// What errors are told by: change: of the differences of l.
+// Merges the sums for error estimates. change: what moves the differences of l to the reference
+// point of s.
 void mergeTails(PixelSums& s, const PixelSums& l, const double change[3], double size) {
   const double c = change[0] + change[1] + change[2], n = l.samples,
                grey1 = l.delta[0] + l.delta[1] + l.delta[2];
@@ -35,8 +37,8 @@ void mergeTails(PixelSums& s, const PixelSums& l, const double change[3], double
   if (l.replicates == 0) return;
   const double r = l.replicates;
   for (int k = 0; k < 3; k++) {
-    const double d = size * change[k], s1 = l.closed[k], s2 = l.closed2[k],
-                 s3 = l.closed3[k]; // d: of a replicate's sum
+    // d: change of a replicate's sum
+    const double d = size * change[k], s1 = l.closed[k], s2 = l.closed2[k], s3 = l.closed3[k];
     s.closed[k] += s1 + r * d;
     s.closed2[k] += s2 + d * (2 * s1 + r * d);
     s.closed3[k] += s3 + d * (3 * s2 + d * (3 * s1 + r * d));
@@ -46,17 +48,17 @@ void mergeTails(PixelSums& s, const PixelSums& l, const double change[3], double
 
 } // namespace
 
-Gathering gatheringOf(const edit::FrameSettingsT& frame) {
-  Gathering g;
+RequiredSums requiredSums(const edit::FrameSettingsT& frame) {
+  RequiredSums g;
   g.error = wantsError(frame);
   g.spread = g.error || (frame.channels & RT_VARIANCE);
   g.surface = frame.channels & (RT_NORMAL | RT_ALBEDO);
   return g;
 }
 
-void startSums(std::vector<PixelSums>& sums, size_t pixels, const Gathering& gathering) {
+void startSums(std::vector<PixelSums>& sums, size_t pixels, const RequiredSums& required) {
   if (sums.size() != pixels) return sums.assign(pixels, {});
-  const size_t bytes = keptBytes(gathering);
+  const size_t bytes = keptBytes(required);
   for (PixelSums& s : sums) std::memset(static_cast<void*>(&s), 0, bytes);
 }
 
@@ -71,32 +73,32 @@ void PixelSums::closeReplicate() {
   replicates++;
 }
 
-void PixelSums::merge(const PixelSums& l, const Gathering& gathering, const Replicates& parts) {
+void PixelSums::merge(const PixelSums& l, const RequiredSums& required, const Replicates& parts) {
   for (int k = 0; k < 4; k++) rgba[k] += l.rgba[k];
-  for (int k = 0; k < 3 && gathering.surface; k++) {
+  for (int k = 0; k < 3 && required.surface; k++) {
     normal[k] += l.normal[k];
     albedo[k] += l.albedo[k];
   }
-  if (gathering.spread) {
+  if (required.spread) {
     const double n = l.samples;
-    double c[3]; // what has to be added to the differences
+    double c[3]; // change of the differences
     for (int k = 0; k < 3; k++) {
       c[k] = l.first[k] - first[k];
       delta[k] += l.delta[k] + n * c[k];
       delta2[k] += l.delta2[k] + c[k] * (2 * l.delta[k] + n * c[k]);
     }
-    if (gathering.error) mergeTails(*this, l, c, double(parts.size()));
+    if (required.error) mergeTails(*this, l, c, double(parts.size()));
   }
   samples += l.samples;
   replicates += l.replicates;
-  // Larger than its leaves: none of it is closed yet.
-  if (gathering.error && parts.many() && replicates == 0 && samples == parts.size())
+  // A replicate larger than its leaves has not been closed yet.
+  if (required.error && parts.many() && replicates == 0 && samples == parts.size())
     closeReplicate();
 }
 
-void SumBlock::append(const SumBlock& later, const Gathering& gathering,
+void SumBlock::append(const SumBlock& later, const RequiredSums& required,
                       const Replicates& replicates) {
-  for (size_t i = 0; i < sums.size(); i++) sums[i].merge(later.sums[i], gathering, replicates);
+  for (size_t i = 0; i < sums.size(); i++) sums[i].merge(later.sums[i], required, replicates);
   ledger.add(later.ledger);
   count += later.count;
 }
@@ -116,8 +118,8 @@ uint32_t blockFrom(uint32_t first, uint32_t end, uint32_t largest) {
   return count;
 }
 
-void TileSums::unpack(const Kept& from, SumBlock& to, const Gathering& gathering) {
-  const size_t bytes = keptBytes(gathering);
+void TileSums::unpack(const StoredBlock& from, SumBlock& to, const RequiredSums& required) {
+  const size_t bytes = keptBytes(required);
   to.first = from.first;
   to.count = from.count;
   to.ledger = from.ledger;
@@ -126,42 +128,42 @@ void TileSums::unpack(const Kept& from, SumBlock& to, const Gathering& gathering
     std::memcpy(static_cast<void*>(&to.sums[i]), &from.bytes[i * bytes], bytes);
 }
 
-void TileSums::join(SumBlock& block, const Gathering& gathering, const Replicates& replicates) {
+void TileSums::join(SumBlock& block, const RequiredSums& required, const Replicates& replicates) {
   SumBlock other;
   for (;;) {
-    const auto sibling = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
+    const auto sibling = std::find_if(kept_.begin(), kept_.end(), [&](const StoredBlock& k) {
       return siblings(k.first, k.count, block.first, block.count) ||
              siblings(block.first, block.count, k.first, k.count);
     });
     if (sibling == kept_.end()) return;
-    unpack(*sibling, other, gathering);
+    unpack(*sibling, other, required);
     kept_.erase(sibling);
     if (other.first < block.first) std::swap(other, block);
-    block.append(other, gathering, replicates);
+    block.append(other, required, replicates);
   }
 }
 
-void TileSums::keep(const SumBlock& block, const Gathering& gathering) {
-  const size_t bytes = keptBytes(gathering);
-  Kept kept{block.first, block.count, block.ledger,
-            std::vector<std::byte>(block.sums.size() * bytes)};
+void TileSums::keep(const SumBlock& block, const RequiredSums& required) {
+  const size_t bytes = keptBytes(required);
+  StoredBlock kept{block.first, block.count, block.ledger,
+                   std::vector<std::byte>(block.sums.size() * bytes)};
   for (size_t i = 0; i < block.sums.size(); i++)
     std::memcpy(&kept.bytes[i * bytes], &block.sums[i], bytes);
   const auto place = std::find_if(kept_.begin(), kept_.end(),
-                                  [&](const Kept& k) { return k.first > block.first; });
+                                  [&](const StoredBlock& k) { return k.first > block.first; });
   kept_.insert(place, std::move(kept));
 }
 
 uint32_t TileSums::reach(const SumBlock* block) const {
   uint32_t at = block && block->first == 0 ? block->count : 0;
-  for (const Kept& kept : kept_) {
+  for (const StoredBlock& kept : kept_) {
     if (kept.first == at) at += kept.count;
     if (block && block->first == at) at += block->count;
   }
   return at;
 }
 
-const SumBlock* TileSums::fold(const SumBlock* block, SumBlock& out, const Gathering& gathering,
+const SumBlock* TileSums::fold(const SumBlock* block, SumBlock& out, const RequiredSums& required,
                                const Replicates& replicates) const {
   if (block && block->first == 0 && (kept_.empty() || kept_.front().first != block->count))
     return block;
@@ -171,14 +173,14 @@ const SumBlock* TileSums::fold(const SumBlock* block, SumBlock& out, const Gathe
     if (at == 0)
       out = b;
     else
-      out.append(b, gathering, replicates);
+      out.append(b, required, replicates);
     at = b.end();
   };
   if (block && block->first == 0) take(*block);
-  for (const Kept& kept : kept_) {
+  for (const StoredBlock& kept : kept_) {
     if (block && at != 0 && block->first == at) take(*block);
     if (kept.first != at) break;
-    unpack(kept, next, gathering);
+    unpack(kept, next, required);
     take(next);
   }
   if (block && at != 0 && block->first == at) take(*block);

@@ -1,6 +1,6 @@
-// sums.h: statistics of a pixel's samples, gathered in double while they are taken, and how those
-// of blocks of samples become one (docs/decisions/0028). The sums of any samples are the same bytes
-// however these were divided into jobs.
+// sums.h: statistics of a pixel's samples, accumulated in double, and how the sums of sample blocks
+// are merged (docs/decisions/0028). The result has the same bytes however the samples were divided
+// into jobs.
 #pragma once
 
 #include <cstddef>
@@ -14,26 +14,26 @@
 
 namespace openrt {
 
-// What a frame's channels need to be gathered; the rest of the sums means nothing.
-struct Gathering {
-  bool spread = false;  // first, delta, delta2
-  bool surface = false; // normal, albedo
-  bool error = false;   // all
+// Which sums the channels of a frame need; the other fields of PixelSums are undefined.
+struct RequiredSums {
+  bool spread = false;  // needs first, delta, delta2
+  bool surface = false; // needs normal, albedo
+  bool error = false;   // needs all sums
 };
-Gathering gatheringOf(const edit::FrameSettingsT& frame);
+RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
-struct PixelSums { // of one pixel, samples added in their order
+struct PixelSums { // sums of one pixel, samples added in order
   double rgba[4] = {};
-  float depth = 0, position[3] = {}, name = 0; // of sample 0
+  float depth = 0, position[3] = {}, name = 0; // values of sample 0
   uint32_t samples = 0;
-  double first[3] = {}, delta[3] = {},
-         delta2[3] = {}; // sums of (x - first) and its square: no cancellation
+  // Sums of (x - first) and of its square: avoids cancellation.
+  double first[3] = {}, delta[3] = {}, delta2[3] = {};
   double normal[3] = {}, albedo[3] = {};
-  // Over the complete replicates: sums of their delta, of its square, cube and fourth power.
+  // Over the complete replicates: sums of their delta, and of its square, cube and fourth power.
   double closed[3] = {}, closed2[3] = {}, closed3[3] = {}, closed4[3] = {};
   double grey[3] = {}; // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float largest[3] = {};
-  uint32_t replicates = 0; // complete ones
+  uint32_t replicates = 0; // number of complete replicates
   bool random = false;     // a path has taken a random decision
 
   void add(const float radiance[3], float alpha) {
@@ -48,12 +48,12 @@ struct PixelSums { // of one pixel, samples added in their order
     samples++;
   }
   void addColor(const float radiance[3],
-                float alpha) { // instead of add(), where nobody asks for the spread
+                float alpha) { // Replaces add() if the frame does not need the variance.
     for (int k = 0; k < 3; k++) rgba[k] += radiance[k];
     rgba[3] += alpha;
     samples++;
   }
-  // After add(), where somebody asks for the error.
+  // Adds the higher moments of a sample for the error estimate. Call after add().
   void addTails(const float radiance[3]) {
     double grey1 = 0;
     for (int k = 0; k < 3; k++) {
@@ -66,59 +66,61 @@ struct PixelSums { // of one pixel, samples added in their order
     grey[2] += grey2 * grey2;
   }
   void closeReplicate();
-  // Adds the samples that follow; a replicate that they complete is closed.
-  void merge(const PixelSums& later, const Gathering& gathering, const Replicates& replicates);
+  // Merges the sums of the samples that follow these; closes a replicate that they complete.
+  void merge(const PixelSums& later, const RequiredSums& required, const Replicates& replicates);
 };
 
-// Empties sums for so many pixels.
-void startSums(std::vector<PixelSums>& sums, size_t pixels, const Gathering& gathering);
+// Clears the sums of the given number of pixels.
+void startSums(std::vector<PixelSums>& sums, size_t pixels, const RequiredSums& required);
 
-// Samples of all pixels of a tile.
+// Sums of consecutive samples of all pixels of a tile.
 struct SumBlock {
   uint32_t first = 0, count = 0;
-  std::vector<PixelSums> sums; // row by row
+  std::vector<PixelSums> sums; // by pixel, row by row
   Ledger ledger;
   uint32_t end() const { return first + count; }
-  void append(const SumBlock& later, const Gathering& gathering, const Replicates& replicates);
+  void append(const SumBlock& later, const RequiredSums& required, const Replicates& replicates);
 };
 
-// Frames of so many samples are made of leaves and may be made in rounds; of fewer, small waves
-// would cost too much.
+// Frames of at least this many samples are made of leaves and may be made in rounds. With fewer,
+// small waves would cost too much.
 inline constexpr uint32_t fewestOfLeaves = 32;
-// Samples that are always gathered in one go: [0,1) [1,2) [2,4) ... [16,32) [32,64) [64,96) ...;
-// this one's end.
+// Returns the end of the leaf that starts at `first`. The samples of a leaf are always taken
+// together: [0,1) [1,2) [2,4) ... [16,32) [32,64) [64,96) ...
 uint32_t leafEnd(uint32_t first, uint32_t end, uint32_t samplesOfFrame);
-// Two aligned blocks that become one as soon as both are there.
+// Returns whether two aligned blocks are siblings, which are merged as soon as both exist.
 inline bool siblings(uint32_t first, uint32_t count, uint32_t laterFirst, uint32_t laterCount) {
   return count == laterCount && (count & (count - 1)) == 0 && first + count == laterFirst &&
          first % (2 * count) == 0;
 }
-// The largest block from here that a job of at most so many samples (32 or more) may be.
+// Returns the size of the largest block from `first` that a job of at most `largest` samples (32 or
+// more) may take.
 uint32_t blockFrom(uint32_t first, uint32_t end, uint32_t largest);
 
-// The blocks of one tile that are there, in any order; only what the frame gathers is kept. One
-// thread at a time.
+// The finished blocks of one tile, in any order of arrival. Stores only the sums that the frame
+// needs. One thread at a time.
 class TileSums {
  public:
-  // The block becomes as large as it can with those that are there, which then are gone.
-  void join(SumBlock& block, const Gathering& gathering, const Replicates& replicates);
-  void keep(const SumBlock& block, const Gathering& gathering);
-  uint32_t reach(
-      const SumBlock* block) const; // samples from 0 on without a gap; block: not kept, may be null
-  // These, one after the other from the left. Null: none, else block or out.
-  const SumBlock* fold(const SumBlock* block, SumBlock& out, const Gathering& gathering,
+  // Merges the block with all its stored siblings and removes them.
+  void join(SumBlock& block, const RequiredSums& required, const Replicates& replicates);
+  void keep(const SumBlock& block, const RequiredSums& required);
+  // Returns the number of samples from 0 on without a gap. block: counted as well though it is not
+  // stored; may be null.
+  uint32_t reach(const SumBlock* block) const;
+  // Merges the gapless blocks from the left. Returns `block` or `out`, or null if there is none.
+  const SumBlock* fold(const SumBlock* block, SumBlock& out, const RequiredSums& required,
                        const Replicates& replicates) const;
   void clear() { kept_ = {}; }
   bool empty() const { return kept_.empty(); }
 
  private:
-  struct Kept {
+  struct StoredBlock {
     uint32_t first, count;
     Ledger ledger;
     std::vector<std::byte> bytes;
   };
-  static void unpack(const Kept& from, SumBlock& to, const Gathering& gathering);
-  std::vector<Kept> kept_; // by first
+  static void unpack(const StoredBlock& from, SumBlock& to, const RequiredSums& required);
+  std::vector<StoredBlock> kept_; // sorted by first
 };
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// frame_schedule.cpp: Which samples a picture is made of depends on the
-// settings and on pilots alone, with a time limit also on the time; never on who does what.
+// frame_schedule.cpp: the schedule. The samples of a picture depend only on the settings and on
+// pilots, with a time limit also on the time; never on who does which job.
 #include "render/frame/frame_schedule.h"
 
 #include <algorithm>
@@ -12,19 +12,19 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t mostOfRound =
-    32; // progressive: so that the picture goes on becoming better everywhere
+// Largest progressive round, so that the picture keeps improving everywhere.
+constexpr uint32_t mostOfRound = 32;
 constexpr uint32_t pilotSeed = 0x70696c6f, furtherSeed = 0x66757274, lightSeed = 0x6c616d70,
                    earlySeed = 0x6561726c;
-constexpr double bytesAhead = 64 << 20; // of sums that wait for light
+constexpr double bytesAhead = 64 << 20; // memory for sums that wait for light tracing
 
 bool makesRounds(const edit::FrameSettingsT& frame) {
   return frame.timeLimit > 0 ? frame.samples > 1
                              : frame.progressive && frame.samples >= fewestOfLeaves;
 }
 
-// As many paths from lamps as from the camera; where the number of these is open, at most a few for
-// each pixel.
+// Returns the number of light paths: as many as camera paths. If that number is open, at most a few
+// per pixel.
 uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   constexpr uint32_t mostOfOpen = 64;
   const bool open = frame.targetError > 0 || frame.timeLimit > 0;
@@ -36,24 +36,24 @@ uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
 } // namespace
 
 FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts& facts,
-                             const TileGrid& grid, uint32_t crew, double now)
+                             const TileGrid& grid, uint32_t threadCount, double now)
     : frame_(frame), grid_(grid), tiles_(facts.camera ? grid.count() : 0),
       lamps_(facts.lamps && tiles_ > 0), timed_(frame.timeLimit > 0 && makesRounds(frame)),
       rounds_(makesRounds(frame)), pilotSamples_(firstPilotOf(frame, timed_)),
       wanted_(tiles_, frame.samples), started_(now), began_(now),
-      earlyParts_(
-          std::clamp(crew + 1, 2u, LightImage::parts)) { // of one part nobody knows the variance
+      // A variance needs at least two parts.
+      earlyParts_(std::clamp(threadCount + 1, 2u, LightImage::parts)) {
   pilot_ = pilotSamples_ > 0;
   undecided_ = unpiloted_ = pilot_ ? tiles_ : 0;
   most_ = frame.samples;
   samples_ = timed_ ? pilotSamples_ : rounds_ ? 1 : frame.samples;
   const double ahead = bytesAhead / (double(sizeof(PixelSums)) * grid.edge() * grid.edge());
-  ahead_ = std::max(uint32_t(ahead), 4 * crew);
+  ahead_ = std::max(uint32_t(ahead), 4 * threadCount);
   all_ = double(frame.width) * frame.height * (double(frame.samples) + pilotSamples_);
   if (lamps_) {
     partPaths_ = lightPathsOf(frame) / LightImage::parts + 1;
-    earlyPaths_ = frame.width * frame.height / 2 / earlyParts_ +
-                  1; // altogether half as many as a sample of the camera
+    earlyPaths_ =
+        frame.width * frame.height / 2 / earlyParts_ + 1; // altogether half a path per pixel
     all_ += double(LightImage::parts) * partPaths_;
   }
   undone_ = all_;
@@ -66,7 +66,7 @@ double FrameSchedule::costOf(const TileGrid& grid, const Job& job) {
                                       : double(job.count) * double(grid.at(job.number).pixels());
 }
 
-void FrameSchedule::give(const Out& out, Job& job, double now) {
+void FrameSchedule::give(const OutstandingJob& out, Job& job, double now) {
   if (!begun_ && out.job.kind == Job::Kind::samples) {
     begun_ = true;
     began_ = now;
@@ -74,7 +74,7 @@ void FrameSchedule::give(const Out& out, Job& job, double now) {
   job = out.job;
   if (out.stage != Stage::early) undone_ -= costOf(grid_, job);
   if (job.kind == Job::Kind::samples) outNow_++;
-  Out& entry = out_[keyOf(job)] = out;
+  OutstandingJob& entry = outstanding_[keyOf(job)] = out;
   entry.round = round_;
 }
 
@@ -89,9 +89,9 @@ uint32_t FrameSchedule::upcoming() const {
 
 bool FrameSchedule::next(Job& job, uint32_t largest, double now) {
   while (!back_.empty()) {
-    const auto found = out_.find(back_.front());
+    const auto found = outstanding_.find(back_.front());
     back_.pop_front();
-    if (found == out_.end() || !found->second.back) continue;
+    if (found == outstanding_.end() || !found->second.back) continue;
     found->second.back = false;
     job = found->second.job;
     if (found->second.stage != Stage::early) undone_ -= costOf(grid_, job);
@@ -104,7 +104,7 @@ bool FrameSchedule::next(Job& job, uint32_t largest, double now) {
 }
 
 bool FrameSchedule::nextLight(Job& job, double now) {
-  Out out;
+  OutstandingJob out;
   out.job.kind = Job::Kind::light;
   if (nextEarly_ < earlyUntil_) {
     out.stage = Stage::early;
@@ -123,9 +123,9 @@ bool FrameSchedule::nextLight(Job& job, double now) {
   return true;
 }
 
-// The next block of a tile's samples, from there to the end of its round; from is moved on.
-void FrameSchedule::giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end,
-                              uint32_t largest, double now) {
+// Hands out the next block of a tile's samples, up to the end of its round, and advances `from`.
+void FrameSchedule::giveBlock(Job& job, OutstandingJob out, uint32_t tile, uint32_t& from,
+                              uint32_t end, uint32_t largest, double now) {
   const bool pilot = out.stage == Stage::pilot;
   out.job.number = tile;
   out.job.first = from;
@@ -141,9 +141,9 @@ void FrameSchedule::giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, 
 }
 
 bool FrameSchedule::nextTile(Job& job, uint32_t largest, double now) {
-  const bool dark = lamps_ && !lit_;
+  const bool dark = lamps_ && !lightComplete_;
   if (timed_ && dark) return false;
-  Out out;
+  OutstandingJob out;
   if (!ready_.empty()) {
     Ready& ready = ready_.front();
     out.until = ready.pilot ? ready.pilot : wanted_[ready.tile];
@@ -162,35 +162,35 @@ bool FrameSchedule::nextTile(Job& job, uint32_t largest, double now) {
   return true;
 }
 
-// Of a tile's samples in this round.
+// Returns the end of a tile's samples in this round.
 uint32_t FrameSchedule::endOf(uint32_t tile) const {
   const uint32_t all = pilot_ ? pilotSamples_ : wanted_[tile];
   return rounds_ ? std::min(first_ + samples_, all) : all;
 }
 
-// On to the next tile that has something left in this round.
+// Advances to the next tile that has samples left in this round.
 void FrameSchedule::skipTiles() {
   for (; nextTile_ < tiles_ && from_ >= endOf(tileAt(nextTile_)); from_ = first_) nextTile_++;
 }
 
-std::optional<FrameSchedule::Out> FrameSchedule::claim(const Job& job) {
-  const auto found = out_.find(keyOf(job));
-  if (found == out_.end() || !(found->second.job == job)) return std::nullopt;
-  const Out out = found->second;
-  out_.erase(found);
+std::optional<FrameSchedule::OutstandingJob> FrameSchedule::claim(const Job& job) {
+  const auto found = outstanding_.find(keyOf(job));
+  if (found == outstanding_.end() || !(found->second.job == job)) return std::nullopt;
+  const OutstandingJob out = found->second;
+  outstanding_.erase(found);
   if (out.back && out.stage != Stage::early) undone_ -= costOf(grid_, job);
   return out;
 }
 
-void FrameSchedule::done(const Out& out, double now) {
+void FrameSchedule::done(const OutstandingJob& out, double now) {
   if (out.job.kind == Job::Kind::samples) (out.round == round_ ? outNow_ : outBefore_)--;
   if (out.stage != Stage::early) done_ += costOf(grid_, out.job);
   while (nextTile_ >= tiles_ && endRound(now)) {}
 }
 
 void FrameSchedule::giveBack(const Job& job) {
-  const auto found = out_.find(keyOf(job));
-  if (found == out_.end() || !(found->second.job == job) || found->second.back) return;
+  const auto found = outstanding_.find(keyOf(job));
+  if (found == outstanding_.end() || !(found->second.job == job) || found->second.back) return;
   found->second.back = true;
   back_.push_back(found->first);
   if (found->second.stage != Stage::early) undone_ += costOf(grid_, job);
@@ -205,7 +205,7 @@ void FrameSchedule::decided(uint32_t tile, uint32_t wanted) {
   if (!rounds_) ready_.push_back({tile, 0, 0});
 }
 
-void FrameSchedule::pilotAgain(uint32_t tile, uint32_t samples) {
+void FrameSchedule::addPilot(uint32_t tile, uint32_t samples) {
   const double more = double(samples) * double(grid_.at(tile).pixels());
   undone_ += more;
   all_ += more;
@@ -214,22 +214,21 @@ void FrameSchedule::pilotAgain(uint32_t tile, uint32_t samples) {
 
 bool FrameSchedule::over() const {
   const bool given = rounds_ ? ended_ : nextTile_ >= tiles_ && ready_.empty() && undecided_ == 0;
-  return given && out_.empty() && outNow_ + outBefore_ == 0 &&
-         (!lamps_ || (nextPart_ == partsUntil_ && lit_));
+  return given && outstanding_.empty() && outNow_ + outBefore_ == 0 &&
+         (!lamps_ || (nextPart_ == partsUntil_ && lightComplete_));
 }
 
-// False: there is no further round, or it must wait.
+// Starts the next round. Returns false if there is none, or if it must wait.
 bool FrameSchedule::endRound(double now) {
   if (!rounds_ || ended_ || nextTile_ < tiles_) return false;
   const bool decides = pilot_ && first_ + samples_ >= pilotSamples_;
-  // At most the next round's jobs are out beside those of one: the picture becomes better
-  // everywhere.
+  // Jobs of at most two successive rounds are outstanding, so that the picture improves everywhere.
   if (outBefore_ > 0 || ((timed_ || decides) && outNow_ > 0) || (decides && undecided_ > 0))
     return false;
   ended_ = !(timed_ ? endTimed(now) : endProgressive());
   if (ended_) return false;
   if (earlyUntil_ == 0 && partsUntil_ == 0)
-    earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round has gone without
+    earlyUntil_ = lamps_ ? earlyParts_ : 0; // the first round is shown without light paths
   wantLight();
   outBefore_ = outNow_;
   outNow_ = 0;
@@ -240,13 +239,13 @@ bool FrameSchedule::endRound(double now) {
   return true;
 }
 
-// Whether there is a further round depends on the time alone and on the pilot, which is no part of
-// the picture.
+// Prepares the next timed round. Whether there is one depends only on the time and on the pilot,
+// which is not part of the picture.
 bool FrameSchedule::endTimed(double now) {
   const double took = now - began_, left = double(frame_.timeLimit) - (now - started_);
   bool more = true;
   if (pilot_) {
-    // About sixteen rounds fill the time that is left.
+    // About sixteen rounds fill the remaining time.
     const double samples = left / 16 / std::max(took, 1e-9) * samples_;
     const uint32_t most = std::max(frame_.samples / 16, 1u);
     replicates_ = {frame_.seed,
@@ -255,22 +254,23 @@ bool FrameSchedule::endTimed(double now) {
     pilot_ = false;
   } else {
     first_ += samples_;
-    more = left >= took / 2; // else the next one would end farther beyond the limit than this one
-                             // has ended before it
+    // Otherwise the next round would overshoot the limit by more than this one falls short of it.
+    more = left >= took / 2;
   }
   samples_ = std::min(replicates_.size(), frame_.samples - std::min(first_, frame_.samples));
   begun_ = false;
   return more && first_ < most_;
 }
 
-// The portions are leaves (sums.h): the picture's bytes are those of one go.
+// Prepares the next progressive round. Rounds consist of leaves (sums.h), so the picture's bytes
+// equal those of an ordinary frame.
 bool FrameSchedule::endProgressive() {
   first_ += samples_;
   if (pilot_ && first_ >= pilotSamples_) {
     most_ = *std::max_element(wanted_.begin(), wanted_.end());
     pilot_ = false;
     first_ = 0;
-    samples_ = pilotSamples_; // fewer would look worse than the pilot
+    samples_ = pilotSamples_; // fewer would look noisier than the pilot
   } else
     samples_ = std::clamp(first_, 1u, mostOfRound);
   const uint32_t all = pilot_ ? pilotSamples_ : most_;
@@ -278,8 +278,9 @@ bool FrameSchedule::endProgressive() {
   return first_ < most_;
 }
 
-// In progressive frames light comes by and by, as samples do. What of it is shown early does not
-// matter for the finished picture, which has all parts, nor for what a pilot finds.
+// Releases parts of light tracing. In progressive frames they are made gradually, as samples are.
+// The early display affects neither the finished picture, which has all parts, nor the result of a
+// pilot.
 void FrameSchedule::wantLight() {
   if (!lamps_) return;
   const uint32_t all = pilot_ ? pilotSamples_ : most_;

@@ -1,7 +1,11 @@
-// frame_schedule.h: in which order the jobs of a frame are given out, and which are out. Three
-// kinds of frames: made tile by tile; with a time limit, in rounds over the picture, of one
-// replicate each (docs/decisions/0018); progressive ones, which take the samples of an ordinary
-// frame in doubling portions (docs/decisions/0025). Part of FrameWork, under its lock.
+// frame_schedule.h: the order in which the jobs of a frame are handed out, and which jobs are
+// outstanding. There are three kinds of frames:
+// * frames made tile by tile;
+// * frames with a time limit, made in rounds over the picture of one replicate each
+//   (docs/decisions/0018);
+// * progressive frames, which take the samples of an ordinary frame in doubling portions
+//   (docs/decisions/0025).
+// Part of FrameWork, called under its lock.
 #pragma once
 
 #include <cstdint>
@@ -16,38 +20,46 @@ namespace openrt {
 
 class FrameSchedule {
  public:
-  // now: seconds of a steady clock, here and below; looked at only with a time limit.
+  // now: seconds of a steady clock, here and below; used only with a time limit.
   FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts& facts, const TileGrid& grid,
-                uint32_t crew, double now);
+                uint32_t threadCount, double now);
 
   enum class Stage : uint8_t {
-    light,  // that counts
-    early,  // few paths of no consequence: shown while those that count are not there
-    pilot,  // samples that do not count: they tell how many are needed
-    samples // that count
+    light,  // a part of light tracing
+    early,  // a few light paths for display until the real ones are done
+    pilot,  // pilot samples: they decide how many samples are needed and are thrown away
+    samples // samples of the picture
   };
-  struct Out { // a job that is given out
+  struct OutstandingJob { // a job that was handed out and is not done
     Job job;
     Stage stage = Stage::samples;
-    uint32_t until = 0;   // samples that the tile gets altogether, in this stage
-    bool further = false; // a pilot that is not the first one
+    uint32_t until = 0;   // samples of the tile altogether in this stage
+    bool further = false; // not the first pilot of the tile
     uint32_t round = 0;
-    bool back = false; // nobody has it
+    bool back = false; // returned by its worker; waits to be handed out again
   };
 
-  // Tiles in another order than their numbers'; of a frame that is not shown before it is finished,
-  // and not begun.
+  // Sets the order of the tiles. Only before the first job, and only for frames that are not shown
+  // before they are finished.
   void order(std::vector<uint32_t> tiles);
-  uint32_t upcoming() const; // the tile that next() comes to; their number: none, or it is open
-  bool next(Job& job, uint32_t largest, double now); // false: not now
-  std::optional<Out> claim(const Job& job);          // it has been done; none: it is not out
-  void done(const Out& out, double now);             // and what it has made is where it belongs
+  // Returns the tile that next() will hand out; the number of tiles if there is none or it is open.
+  uint32_t upcoming() const;
+  // Hands out the next job. Returns false if no job is available now.
+  bool next(Job& job, uint32_t largest, double now);
+  // Takes a finished job off the outstanding ones. Returns nothing if it is not outstanding.
+  std::optional<OutstandingJob> claim(const Job& job);
+  // Counts a job as done. Call after its result was merged.
+  void done(const OutstandingJob& out, double now);
   void giveBack(const Job& job);
-  bool firstPilotDone() { return --unpiloted_ == 0; } // of a tile; true: of all of them
-  void decided(uint32_t tile, uint32_t wanted);       // by pilots
-  void pilotAgain(uint32_t tile, uint32_t samples);   // instead: a further pilot of so many
-  void lit() { lit_ = true; }                         // all of the light is in
-  bool over() const;                                  // everything has been given out and is done
+  // Counts a tile whose first pilot is done. Returns true for the last one.
+  bool firstPilotDone() { return --unpiloted_ == 0; }
+  // Sets the number of samples of a tile, as the pilots decided.
+  void decided(uint32_t tile, uint32_t wanted);
+  // Schedules a further pilot of `samples` for a tile.
+  void addPilot(uint32_t tile, uint32_t samples);
+  // Call when all parts of light tracing are complete.
+  void lightComplete() { lightComplete_ = true; }
+  bool over() const; // Returns whether all jobs were handed out and are done.
 
   bool rounds() const { return rounds_; } // the picture is shown before it is finished
   bool timed() const { return timed_; }
@@ -68,11 +80,11 @@ class FrameSchedule {
     return {uint8_t(job.kind), job.number, job.first, job.replicates.seed};
   }
   static double costOf(const TileGrid& grid, const Job& job);
-  void give(const Out& out, Job& job, double now);
+  void give(const OutstandingJob& out, Job& job, double now);
   bool nextLight(Job& job, double now);
   bool nextTile(Job& job, uint32_t largest, double now);
-  void giveBlock(Job& job, Out out, uint32_t tile, uint32_t& from, uint32_t end, uint32_t largest,
-                 double now);
+  void giveBlock(Job& job, OutstandingJob out, uint32_t tile, uint32_t& from, uint32_t end,
+                 uint32_t largest, double now);
   uint32_t endOf(uint32_t tile) const;
   uint32_t tileAt(uint32_t place) const { return order_.empty() ? place : order_[place]; }
   void skipTiles();
@@ -85,35 +97,39 @@ class FrameSchedule {
   const TileGrid grid_;
   const uint32_t tiles_;
   const bool lamps_, timed_, rounds_;
-  bool pilot_; // stage of all tiles in rounds; else tiles have pilots
-  bool lit_ = false, ended_ = false;
+  bool pilot_; // with rounds: all tiles are in the pilot stage; otherwise: tiles have pilots
+  bool lightComplete_ = false, ended_ = false;
   const uint32_t pilotSamples_;
-  std::vector<uint32_t> wanted_; // by tile: samples; known after the pilot
-  uint32_t undecided_,
-      unpiloted_; // tiles without an answer of pilots; with a first pilot that is not done
-  std::vector<uint32_t> order_;      // empty: by their numbers
-  uint32_t nextTile_ = 0, from_ = 0; // place in the order
+  std::vector<uint32_t> wanted_; // samples by tile; known after the pilot
+  // undecided_: tiles that pilots have not decided. unpiloted_: tiles whose first pilot is not
+  // done.
+  uint32_t undecided_, unpiloted_;
+  std::vector<uint32_t> order_;      // empty: in the order of their numbers
+  uint32_t nextTile_ = 0, from_ = 0; // position in the order
   struct Ready {
-    uint32_t tile, from, pilot; // pilot: samples of a further one; 0: those that count
+    uint32_t tile, from, pilot; // pilot: samples of a further pilot; 0: samples of the picture
   };
-  std::deque<Ready>
-      ready_;      // tiles that need a further pilot; not in rounds: tiles that are decided, too
-  uint32_t ahead_; // not in rounds: tiles that may be begun as long as light is missing, their sums
-                   // are kept
+  // Tiles that need a further pilot; without rounds also the tiles that are decided.
+  std::deque<Ready> ready_;
+  // Without rounds: number of tiles that may be started before light tracing is complete; their
+  // sums are kept.
+  uint32_t ahead_;
   // Rounds.
-  uint32_t round_ = 0, first_ = 0, samples_ = 0, most_ = 0; // most_: samples that any tile wants
-  uint32_t outNow_ = 0, outBefore_ = 0; // tiles of this round, of earlier ones, that are out
-  Replicates replicates_;               // of all tiles, if timed
-  double started_, began_;              // the frame, the round
+  // most_: largest number of samples that a tile needs
+  uint32_t round_ = 0, first_ = 0, samples_ = 0, most_ = 0;
+  uint32_t outNow_ = 0, outBefore_ = 0; // outstanding tile jobs of this round, and of earlier ones
+  Replicates replicates_;               // replicates of all tiles in timed frames
+  double started_, began_;              // start times of the frame and of the round
   bool begun_ = false;
   // Light.
   uint32_t nextPart_ = 0, partsUntil_ = 0, partPaths_ = 0, nextEarly_ = 0, earlyUntil_ = 0,
            earlyPaths_ = 0;
   const uint32_t earlyParts_;
 
-  std::unordered_map<Key, Out, KeyHash> out_;
+  std::unordered_map<Key, OutstandingJob, KeyHash> outstanding_;
   std::deque<Key> back_;
-  double undone_ = 0, done_ = 0, all_ = 0; // pixels times samples, paths
+  // Amounts of work in pixels times samples, or light paths.
+  double undone_ = 0, done_ = 0, all_ = 0;
 };
 
 } // namespace openrt

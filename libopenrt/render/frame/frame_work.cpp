@@ -1,6 +1,6 @@
-// frame_work.cpp: Locks: `mutex` for what is to be done and what is out; one for
-// each tile's sums and its place in the film, so that tiles are merged and stored by all who bring
-// results at once. A tile's lock is never taken under `mutex`.
+// frame_work.cpp: merging of results. Locks: `mutex` guards the schedule and the outstanding jobs.
+// Each tile has a lock for its sums and its place in the film, so that several threads merge and
+// store tiles at once. A tile's lock is never taken while `mutex` is held.
 #include "render/frame/frame_work.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
 
 struct TileState {
   std::mutex mutex;
-  TileSums sums; // that are not complete, or wait for light
+  TileSums sums; // sums of tiles that are incomplete or wait for light tracing
   Ledger ledger;
   bool shown = false;
 };
@@ -41,11 +41,12 @@ struct TileState {
 } // namespace
 
 struct FrameWork::Impl {
-  Impl(const edit::FrameSettingsT& f, const FrameFacts& facts, uint32_t crew)
+  Impl(const edit::FrameSettingsT& f, const FrameFacts& facts, uint32_t threadCount)
       : frame(f), grid(frame), count(facts.camera ? grid.count() : 0),
-        gathering(gatheringOf(frame)),
+        required(requiredSums(frame)),
         film(frame.width, frame.height, frame.channels, errorsOf(frame)),
-        tiles(std::make_unique<TileState[]>(count)), schedule(frame, facts, grid, crew, now()) {
+        tiles(std::make_unique<TileState[]>(count)),
+        schedule(frame, facts, grid, threadCount, now()) {
     if (frame.targetError > 0 && count > 0)
       pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
@@ -54,16 +55,16 @@ struct FrameWork::Impl {
       early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts());
   }
 
-  bool lit() const { return !light || light->complete(); }
+  bool lightComplete() const { return !light || light->complete(); }
   bool fits(const Job& job, const JobResult& result) const;
-  void addSamples(const FrameSchedule::Out& out, JobResult& result);
-  void addLight(const FrameSchedule::Out& out, JobResult& result);
-  void finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state);
+  void addSamples(const FrameSchedule::OutstandingJob& out, JobResult& result);
+  void addLight(const FrameSchedule::OutstandingJob& out, JobResult& result);
+  void finish(const FrameSchedule::OutstandingJob& out, const SumBlock& all, TileState& state);
   void store(const Tile& tile, const std::vector<PixelSums>& sums, const Replicates& replicates,
-             bool show, const FrameSchedule::Out* pilot = nullptr);
-  void judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels,
-             const std::vector<PixelError>& errors);
-  void follow(uint32_t tile, const Pilots::Verdict& verdict);
+             bool show, const FrameSchedule::OutstandingJob* pilot = nullptr);
+  void decide(const FrameSchedule::OutstandingJob& pilot, const std::vector<PilotPixel>& pixels,
+              const std::vector<PixelError>& errors);
+  void apply(uint32_t tile, const Pilots::Decision& decision);
   double pathsOf(uint32_t tile) const {
     return double(tiles[tile].ledger.samples) * double(grid.at(tile).pixels());
   }
@@ -72,24 +73,24 @@ struct FrameWork::Impl {
     for (uint32_t i = 0; i < count; i++) all.add(tiles[i].ledger);
     return all;
   }
-  void settle();
-  void settleWaiting();
-  void tell();
+  void advance();
+  void finishWaitingTiles();
+  void notifyChange();
 
   const edit::FrameSettingsT frame;
   const TileGrid grid;
   const uint32_t count; // tiles
-  const Gathering gathering;
+  const RequiredSums required;
   Film film;
-  mutable std::shared_mutex ending; // alone: the picture as a whole is looked at
+  mutable std::shared_mutex ending; // exclusive while the picture as a whole is evaluated
   std::unique_ptr<TileState[]> tiles;
-  std::unique_ptr<LightImage> light, early; // null: none
-  std::unique_ptr<Pilots> pilots;           // null: no target error
+  std::unique_ptr<LightImage> light, early; // null if there is no light tracing
+  std::unique_ptr<Pilots> pilots;           // null without a target error
 
-  mutable std::mutex mutex; // all below
+  mutable std::mutex mutex; // guards everything below
   FrameSchedule schedule;
-  std::deque<FrameSchedule::Out> waiting; // complete tiles without all of the light
-  uint32_t busy = 0;                      // threads between claiming a result and its end
+  std::deque<FrameSchedule::OutstandingJob> waiting; // complete tiles that wait for light tracing
+  uint32_t busy = 0;                                 // threads that are merging a result
   bool cancelled = false, finishing = false, over = false, waited = false;
   RayCounters counters;
   std::function<void()> changed;
@@ -101,11 +102,11 @@ bool FrameWork::Impl::fits(const Job& job, const JobResult& result) const {
   return job.number < count && result.sums.size() == grid.at(job.number).pixels();
 }
 
-// What is there of the tile, with what is there of the light, into the film if it is to be shown.
-// pilot: that is complete, and is asked how many samples are needed.
+// Writes the tile's samples so far, plus the light paths so far, to the film (if `show`). pilot: a
+// complete pilot that decides on the number of samples; else null.
 void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums,
                             const Replicates& replicates, bool show,
-                            const FrameSchedule::Out* pilot) {
+                            const FrameSchedule::OutstandingJob* pilot) {
   std::vector<LightSums> lights;
   if (light && light->added() > 1)
     light->look(tile, lights);
@@ -115,7 +116,7 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
   std::vector<PixelError> errors;
   if (!film.errors().empty()) {
     errors.resize(sums.size());
-    if (gathering.error)
+    if (required.error)
       tileErrors(tile.width(), sums, replicates, errors);
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
@@ -131,17 +132,18 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
         openrt::addLight(lights[i], *error);
       if (show) film.store(x, y, sums[i], lamps ? &lights[i] : nullptr, error);
     }
-  if (pilot) judge(*pilot, asked, errors);
+  if (pilot) decide(*pilot, asked, errors);
 }
 
-// What the tile does next. Under its lock.
-void FrameWork::Impl::judge(const FrameSchedule::Out& pilot, const std::vector<PilotPixel>& pixels,
-                            const std::vector<PixelError>& errors) {
+// Decides on the tile's next samples. Called under the tile's lock.
+void FrameWork::Impl::decide(const FrameSchedule::OutstandingJob& pilot,
+                             const std::vector<PilotPixel>& pixels,
+                             const std::vector<PixelError>& errors) {
   const uint32_t tile = pilot.job.number;
   if (pilot.further) {
-    const Pilots::Verdict verdict = pilots->judge(tile, pixels, pilot.until);
+    const Pilots::Decision decision = pilots->decide(tile, pixels, pilot.until);
     std::lock_guard lock(mutex);
-    follow(tile, verdict);
+    apply(tile, decision);
     return;
   }
   pilots->note(tile, pixels, errors);
@@ -149,22 +151,24 @@ void FrameWork::Impl::judge(const FrameSchedule::Out& pilot, const std::vector<P
     std::lock_guard lock(mutex);
     if (!schedule.firstPilotDone()) return;
   }
-  const std::vector<Pilots::Verdict> verdicts =
-      pilots->judgeAll(); // no other thread has anything of it
+  // No other thread uses the pilots now.
+  const std::vector<Pilots::Decision> decisions = pilots->decideAll();
   std::lock_guard lock(mutex);
-  for (uint32_t i = 0; i < count; i++) follow(i, verdicts[i]);
+  for (uint32_t i = 0; i < count; i++) apply(i, decisions[i]);
 }
 
-// Under `mutex`.
-void FrameWork::Impl::follow(uint32_t tile, const Pilots::Verdict& verdict) {
-  if (verdict.pilot)
-    schedule.pilotAgain(tile, verdict.samples);
+// Called under `mutex`.
+void FrameWork::Impl::apply(uint32_t tile, const Pilots::Decision& decision) {
+  if (decision.pilot)
+    schedule.addPilot(tile, decision.samples);
   else
-    schedule.decided(tile, verdict.samples);
+    schedule.decided(tile, decision.samples);
 }
 
-// All samples of this stage are there, and all of the light. Under the tile's lock.
-void FrameWork::Impl::finish(const FrameSchedule::Out& out, const SumBlock& all, TileState& state) {
+// Finishes a stage of a tile whose samples and light paths are complete. Called under the tile's
+// lock.
+void FrameWork::Impl::finish(const FrameSchedule::OutstandingJob& out, const SumBlock& all,
+                             TileState& state) {
   const bool pilot = out.stage == Stage::pilot,
              show = !pilot || (schedule.rounds() && !out.further);
   const bool asks = pilot && pilots;
@@ -172,22 +176,22 @@ void FrameWork::Impl::finish(const FrameSchedule::Out& out, const SumBlock& all,
   state.shown |= show;
   if (!pilot) state.ledger = all.ledger;
   if (!pilot || asks) return;
-  std::lock_guard lock(mutex); // it was for the clock
+  std::lock_guard lock(mutex); // the pilot only measured the time
   schedule.decided(out.job.number, frame.samples);
 }
 
-void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& result) {
+void FrameWork::Impl::addSamples(const FrameSchedule::OutstandingJob& out, JobResult& result) {
   const Job& job = out.job;
   TileState& state = tiles[job.number];
   std::lock_guard tileLock(state.mutex);
   SumBlock block{job.first, job.count, std::move(result.sums), result.ledger}, room;
-  state.sums.join(block, gathering, job.replicates);
+  state.sums.join(block, required, job.replicates);
   const uint32_t reach = state.sums.reach(&block);
   const bool complete = reach == out.until;
   const bool showsParts = schedule.rounds() && !out.further;
   const SumBlock* all =
-      complete || showsParts ? state.sums.fold(&block, room, gathering, job.replicates) : nullptr;
-  if (complete && lit()) {
+      complete || showsParts ? state.sums.fold(&block, room, required, job.replicates) : nullptr;
+  if (complete && lightComplete()) {
     finish(out, *all, state);
     state.sums.clear();
   } else {
@@ -197,28 +201,28 @@ void FrameWork::Impl::addSamples(const FrameSchedule::Out& out, JobResult& resul
       if (out.stage == Stage::samples) state.ledger = all->ledger;
     }
     if (complete) state.sums.clear();
-    state.sums.keep(complete ? *all : block, gathering);
+    state.sums.keep(complete ? *all : block, required);
     if (complete) {
       std::lock_guard lock(mutex);
       waiting.push_back(out);
     }
   }
-  result.sums = std::move(block.sums); // memory for the next job
+  result.sums = std::move(block.sums); // its memory is reused for the next job
 }
 
-void FrameWork::Impl::addLight(const FrameSchedule::Out& out, JobResult& result) {
+void FrameWork::Impl::addLight(const FrameSchedule::OutstandingJob& out, JobResult& result) {
   (out.stage == Stage::early ? early : light)->add(out.job.number, std::move(result.light));
   if (!light->complete()) return;
   std::lock_guard lock(mutex);
-  schedule.lit();
+  schedule.lightComplete();
 }
 
-// Tiles that have waited for light; several threads may be at it.
-void FrameWork::Impl::settleWaiting() {
-  if (!lit()) return;
+// Finishes tiles that have waited for light tracing. May run on several threads at once.
+void FrameWork::Impl::finishWaitingTiles() {
+  if (!lightComplete()) return;
   std::unique_lock lock(mutex);
   while (!waiting.empty() && !cancelled) {
-    const FrameSchedule::Out out = waiting.front();
+    const FrameSchedule::OutstandingJob out = waiting.front();
     waiting.pop_front();
     busy++;
     lock.unlock();
@@ -226,7 +230,7 @@ void FrameWork::Impl::settleWaiting() {
       TileState& state = tiles[out.job.number];
       std::lock_guard tileLock(state.mutex);
       SumBlock all;
-      state.sums.fold(nullptr, all, gathering, out.job.replicates);
+      state.sums.fold(nullptr, all, required, out.job.replicates);
       finish(out, all, state);
       state.sums.clear();
     }
@@ -235,9 +239,9 @@ void FrameWork::Impl::settleWaiting() {
   }
 }
 
-// What is to be done after each change.
-void FrameWork::Impl::settle() {
-  settleWaiting();
+// Advances the frame after each change.
+void FrameWork::Impl::advance() {
+  finishWaitingTiles();
   bool last = false;
   {
     std::lock_guard lock(mutex);
@@ -250,15 +254,15 @@ void FrameWork::Impl::settle() {
       film.finishErrors();
       const Ledger whole = wholeLedger();
       for (uint32_t i = 0; i < count; i++)
-        film.distrust(grid.at(i), tiles[i].ledger.missedByChance(whole, pathsOf(i)));
+        film.distrust(grid.at(i), tiles[i].ledger.missedRadiance(whole, pathsOf(i)));
     }
     std::lock_guard lock(mutex);
     over = true;
   }
-  tell();
+  notifyChange();
 }
 
-void FrameWork::Impl::tell() {
+void FrameWork::Impl::notifyChange() {
   std::function<void()> call;
   {
     std::lock_guard lock(mutex);
@@ -269,19 +273,20 @@ void FrameWork::Impl::tell() {
   if (call) call();
 }
 
-FrameWork::FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts, uint32_t crew)
-    : impl_(std::make_unique<Impl>(settings, facts, crew)) {
-  impl_->settle();
+FrameWork::FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts,
+                     uint32_t threadCount)
+    : impl_(std::make_unique<Impl>(settings, facts, threadCount)) {
+  impl_->advance();
 }
 FrameWork::~FrameWork() = default;
 
 FrameWork::Next FrameWork::next(Job& job, uint32_t largest) {
   Impl& m = *impl_;
   std::unique_lock lock(m.mutex);
-  if (!m.waiting.empty() && m.lit()) {
+  if (!m.waiting.empty() && m.lightComplete()) {
     lock.unlock();
     const FlushDenormals flush;
-    m.settle();
+    m.advance();
     lock.lock();
   }
   if (m.over) return Next::over;
@@ -305,12 +310,12 @@ void FrameWork::giveBack(const Job& job) {
     std::lock_guard lock(impl_->mutex);
     impl_->schedule.giveBack(job);
   }
-  impl_->tell();
+  impl_->notifyChange();
 }
 
 bool FrameWork::take(const Job& job, JobResult&& result) {
   Impl& m = *impl_;
-  std::optional<FrameSchedule::Out> out;
+  std::optional<FrameSchedule::OutstandingJob> out;
   {
     std::lock_guard lock(m.mutex);
     if (m.cancelled || !m.fits(job, result)) return false;
@@ -332,7 +337,7 @@ bool FrameWork::take(const Job& job, JobResult&& result) {
     m.schedule.done(*out, now());
     m.busy--;
   }
-  m.settle();
+  m.advance();
   return true;
 }
 
@@ -341,7 +346,7 @@ void FrameWork::cancel() {
     std::lock_guard lock(impl_->mutex);
     impl_->cancelled = true;
   }
-  impl_->settle();
+  impl_->advance();
 }
 
 bool FrameWork::over() const {
@@ -371,7 +376,7 @@ bool FrameWork::snapshot(uint32_t channel, std::span<float> out) const {
   std::shared_lock notEnding(impl_->ending);
   if (!impl_->film.clear(channel, out)) return false;
   for (uint32_t i = 0; i < impl_->count;
-       i++) { // who merges the next one's samples does not wait for long
+       i++) { // locks one tile at a time, so that merging threads do not wait for long
     std::lock_guard lock(impl_->tiles[i].mutex);
     if (impl_->tiles[i].shown) impl_->film.copy(channel, tile(i), out);
   }
@@ -391,7 +396,7 @@ void FrameWork::describeError(RTstats& stats) const {
   double paths = 0;
   for (uint32_t i = 0; i < impl_->count; i++) paths += impl_->pathsOf(i);
   const Ledger whole = impl_->wholeLedger();
-  const double missed = whole.missedByChance(whole, paths);
+  const double missed = whole.missedRadiance(whole, paths);
   const ErrorSummary s = impl_->film.errors().summary(missed);
   stats.errorMean = s.mean;
   stats.errorMeanInterval = s.meanInterval;

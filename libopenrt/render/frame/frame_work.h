@@ -1,7 +1,7 @@
-// frame_work.h: what of a frame is to be done, and the picture that comes of it. Gives jobs out in
-// an order that shows something soon, takes what they have made in any order, and merges it in a
-// fixed one: the picture is the same bytes whoever did what. Knows nothing of threads, machines and
-// time (but for frames with a time limit). All functions [any].
+// frame_work.h: the work of one frame: hands out jobs in an order that shows a picture early, takes
+// their results in any order, and merges them in a fixed order, so the picture has the same bytes
+// whoever did which job. It knows nothing of threads, machines and time (except for frames with a
+// time limit). All functions [any].
 #pragma once
 
 #include <cstdint>
@@ -16,47 +16,46 @@
 
 namespace openrt {
 
-// What the work depends on beside the settings of the frame. The same wherever the scene is
-// prepared.
+// Properties of the scene that the work depends on besides the frame's settings. They are the same
+// wherever the scene is prepared.
 struct FrameFacts {
-  bool camera = false; // something can be seen
-  bool lamps = false;  // paths from lamps are followed, too
+  bool camera = false; // the scene has a camera
+  bool lamps = false;  // light tracing is needed
 };
 
 class FrameWork {
  public:
-  // settings: with the transport that was chosen. crew: threads that work on it, about; it decides
-  // nothing of the picture.
-  FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts, uint32_t crew);
+  // settings: with the transport that was chosen. threadCount: approximate number of threads that
+  // work on the frame; it has no influence on the picture.
+  FrameWork(const edit::FrameSettingsT& settings, const FrameFacts& facts, uint32_t threadCount);
   ~FrameWork();
 
   enum class Next : uint8_t {
     job,
-    wait, // for jobs that are out
+    wait, // for outstanding jobs
     over
   };
-  // The next job that nobody has. largest: samples of a pixel that it should have at most; a tile's
-  // samples are given out in aligned blocks of powers of two then, at least 32.
+  // Hands out the next job. largest: preferred maximum of samples per pixel; the samples of a tile
+  // are then handed out in aligned blocks of powers of two, at least 32.
   Next next(Job& job, uint32_t largest = ~0u);
-  // All tiles' numbers, in the order in which they are to be given out. Before the first job; a
-  // frame that shows something early keeps its own order.
+  // Sets the order in which tiles are handed out: the numbers of all tiles. Call before the first
+  // job. A frame that shows early results keeps its own order.
   void order(std::vector<uint32_t> tiles);
-  uint32_t upcoming()
-      const; // the tile whose samples next() gives out, if it gives any; tiles(): that is open
-  // A job that comes back undone; it is given out again, before others.
+  uint32_t upcoming() const; // Returns the tile that next() will hand out; tiles() if that is open.
+  // Returns a job undone; it is handed out again before others.
   void giveBack(const Job& job);
-  // What has become of a job that was given out. True the first time; what comes a second time is
-  // dropped.
+  // Takes the result of a job that was handed out. Returns true the first time; repeated results
+  // are dropped.
   bool take(const Job& job, JobResult&& result);
-  // No more jobs, those that are out do not count: the picture holds what is finished.
+  // Stops handing out jobs and drops outstanding ones; the picture keeps what is finished.
   void cancel();
-  bool over() const; // all has been taken, or cancelled
-  // Called (by whoever gives or takes) after there may be something new for those who got `wait`,
-  // who then ask again: once for all that have waited.
+  bool over() const; // all results were taken, or the frame was cancelled
+  // Sets a callback for threads that got `wait` and should call next() again. It is called from the
+  // thread that hands out or takes a job, once for all waiting threads.
   void onChange(std::function<void()> changed);
 
-  uint32_t tiles() const; // of the picture
-  double undone() const;  // pixels times samples that nobody has yet, about
+  uint32_t tiles() const; // number of tiles of the picture
+  double undone() const;  // approximate amount of work not handed out: pixels times samples
   Tile tile(uint32_t number) const;
   float progress() const;
   bool snapshot(uint32_t channel, std::span<float> out) const;

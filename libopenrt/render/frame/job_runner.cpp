@@ -1,5 +1,5 @@
-// job_runner.cpp: A job's samples are gathered leaf by leaf and merged as if each
-// leaf were a job (sums.h).
+// job_runner.cpp: execution of jobs. The samples of a job are taken leaf by leaf and merged as if
+// each leaf were a job (sums.h).
 #include "render/frame/job_runner.h"
 
 #include <algorithm>
@@ -29,10 +29,10 @@ FrameFacts factsOf(const RenderScene& scene) {
 
 struct JobRunner::Impl {
   explicit Impl(std::shared_ptr<const RenderScene> s)
-      : scene(std::move(s)), grid(scene->frame), gathering(gatheringOf(scene->frame)),
+      : scene(std::move(s)), grid(scene->frame), required(requiredSums(scene->frame)),
         tiles(*scene) {}
 
-  // Jobs may come from another machine.
+  // Throws if the frame has no such job; jobs may come from another machine.
   void check(const Job& job) const {
     const bool light = job.kind == Job::Kind::light;
     const FrameFacts facts = factsOf(*scene);
@@ -48,7 +48,7 @@ struct JobRunner::Impl {
 
   const std::shared_ptr<const RenderScene> scene;
   const TileGrid grid;
-  const Gathering gathering;
+  const RequiredSums required;
   TileRenderer tiles;
   std::optional<LightTracer> lamps;
   std::vector<SumBlock> stack;
@@ -58,10 +58,11 @@ struct JobRunner::Impl {
 bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, JobResult& result) {
   const Tile tile = grid.at(job.number);
   spare.push_back(std::move(result.sums));
-  for (SumBlock& left : stack) spare.push_back(std::move(left.sums)); // of a job that was given up
+  // Blocks of a job that was given up.
+  for (SumBlock& left : stack) spare.push_back(std::move(left.sums));
   stack.clear();
   const auto append = [&](SumBlock& to, SumBlock& later) {
-    to.append(later, gathering, job.replicates);
+    to.append(later, required, job.replicates);
     spare.push_back(std::move(later.sums));
   };
   for (uint32_t at = job.first, end = job.first + job.count; at < end;) {
@@ -73,7 +74,7 @@ bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, Job
       leaf.sums = std::move(spare.back());
       spare.pop_back();
     }
-    startSums(leaf.sums, tile.pixels(), gathering);
+    startSums(leaf.sums, tile.pixels(), required);
     if (!tiles.render(tile, job.replicates, job.centred, leaf.first, leaf.count, leaf.sums, stop))
       return false;
     leaf.ledger = tiles.ledger();

@@ -1,4 +1,4 @@
-// job_runner.h: does jobs of one prepared scene, on one thread.
+// job_runner.h: executes jobs of one prepared scene on one thread.
 #pragma once
 
 #include <atomic>
@@ -16,9 +16,9 @@ class JobRunner {
  public:
   explicit JobRunner(std::shared_ptr<const RenderScene> scene);
   ~JobRunner();
-  // False: given up because the flag was set; result is of no use then. What result holds before is
-  // overwritten, its memory used again. Throws what shaders and kernels throw, and
-  // std::runtime_error where the frame has no such job.
+  // Executes a job. Returns false if it was given up because `stop` was set; the result must then
+  // be discarded. Overwrites `result` and reuses its memory. Throws what shaders and kernels throw,
+  // and std::runtime_error if the frame has no such job.
   bool run(const Job& job, const std::atomic<bool>& stop, JobResult& result);
 
  private:

@@ -1,4 +1,4 @@
-// renderer.cpp: The picture does not depend on which thread does what
+// renderer.cpp: the render threads. The picture does not depend on which thread does which job
 // (frame_work.h).
 #include "render/frame/renderer.h"
 
@@ -16,7 +16,8 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Samples of a job at most: a picture of few tiles has work for all threads, too, until its end.
+// Returns the maximum number of samples of a job: a picture with few tiles keeps all threads busy
+// until its end.
 uint32_t largestJob(const edit::FrameSettingsT& frame, uint32_t tiles, uint32_t threads) {
   constexpr uint32_t jobsOfThread = 8;
   if (threads < 2 || tiles >= jobsOfThread * threads) return ~0u;

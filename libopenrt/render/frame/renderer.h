@@ -1,5 +1,5 @@
-// renderer.h: a frame in flight on threads of this process, which take jobs until none is left or
-// the frame is cancelled.
+// renderer.h: a frame in flight on threads of this process. The threads take jobs until none is
+// left or the frame is cancelled.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ namespace openrt {
 
 class Frame {
  public:
-  // Starts at once. The scene must stay as it is until the frame is waited for.
+  // Starts rendering at once. The scene must not change until the frame is waited for.
   Frame(std::shared_ptr<const RenderScene> scene, uint32_t threads);
   ~Frame(); // cancels and waits
   void wait();
@@ -28,10 +28,10 @@ class Frame {
   bool snapshot(uint32_t channel, std::span<float> out) const { // [any]
     return work_.snapshot(channel, out);
   }
-  // After wait().
+  // Valid after wait().
   const FrameWork& work() const { return work_; }
   double seconds() const { return seconds_; }
-  const std::string& failure() const { return failure_; } // empty: none
+  const std::string& failure() const { return failure_; } // empty if the frame succeeded
 
  private:
   void work(uint32_t largest);
@@ -39,7 +39,7 @@ class Frame {
   FrameWork work_;
   std::atomic<bool> cancelled_{false};
   std::vector<std::thread> threads_;
-  std::mutex mutex_; // all below
+  std::mutex mutex_; // guards everything below
   std::condition_variable changed_;
   uint64_t changes_ = 0;
   std::string failure_;

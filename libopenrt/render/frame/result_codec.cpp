@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little);
 
 enum class Form : uint8_t { one, floats, all };
 
-struct Field { // of PixelSums
+struct Field { // a field of PixelSums
   size_t offset, bytes, count;
 };
 #define FIELD(name)                                                                                \
@@ -26,15 +26,15 @@ template <class T, size_t n> constexpr size_t countOf(T (PixelSums::*)[n]) { ret
 template <class T> constexpr size_t countOf(T PixelSums::*) { return 1; }
 
 std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
-  const Gathering gathering = gatheringOf(frame);
+  const RequiredSums required = requiredSums(frame);
   std::vector<Field> fields{FIELD(rgba)};
   if (frame.channels & RT_DEPTH) fields.push_back(FIELD(depth));
   if (frame.channels & RT_POSITION) fields.push_back(FIELD(position));
   if (frame.channels & RT_NAME) fields.push_back(FIELD(name));
-  if (gathering.spread) fields.insert(fields.end(), {FIELD(first), FIELD(delta), FIELD(delta2)});
+  if (required.spread) fields.insert(fields.end(), {FIELD(first), FIELD(delta), FIELD(delta2)});
   if (frame.channels & RT_NORMAL) fields.push_back(FIELD(normal));
   if (frame.channels & RT_ALBEDO) fields.push_back(FIELD(albedo));
-  if (gathering.error)
+  if (required.error)
     fields.insert(fields.end(), {FIELD(closed), FIELD(closed2), FIELD(closed3), FIELD(closed4),
                                  FIELD(grey), FIELD(largest), FIELD(random)});
   return fields;
@@ -47,7 +47,8 @@ void put(std::vector<std::byte>& out, const void* from, size_t bytes) {
   std::memcpy(out.data() + at, from, bytes);
 }
 
-// Whether nothing is lost; denormal floats are not trusted, which some threads take for zeros.
+// Returns whether the conversion to float is lossless. Denormal floats are refused, because some
+// threads flush them to zero.
 bool fits(double x, float& f) {
   f = static_cast<float>(x);
   const uint32_t bits = std::bit_cast<uint32_t>(f);
@@ -90,7 +91,7 @@ class Source {
     if (from) std::memcpy(to, from, bytes);
     return from;
   }
-  // So many bytes; null: there are fewer.
+  // Skips bytes and returns them; null if there are fewer.
   const std::byte* skip(size_t bytes) {
     if (bytes > left_.size()) return nullptr;
     const std::byte* at = left_.data();
@@ -109,12 +110,12 @@ bool getLedger(Source& source, Ledger& ledger) {
   ledger.cutByDepth = v[0];
   ledger.cutByEnergy = v[1];
   ledger.clipped = v[2];
-  ledger.chance = {v[3], v[4], v[5]};
-  ledger.chanceSky = {v[6], v[7], v[8]};
+  ledger.unsampled = {v[3], v[4], v[5]};
+  ledger.unsampledSky = {v[6], v[7], v[8]};
   return true;
 }
 
-// sums: null: only looked at.
+// Reads a field; only validates it if `sums` is null.
 bool getField(Source& source, std::vector<PixelSums>* sums, size_t pixels, size_t offset,
               size_t bytes, bool flag) {
   uint8_t form = 0;
@@ -155,7 +156,7 @@ bool getTile(const edit::FrameSettingsT& frame, Source source, std::vector<Pixel
 bool zero(float f) { return std::bit_cast<uint32_t>(f) == 0; }
 
 void putLight(std::vector<std::byte>& out, const std::vector<float>& light) {
-  constexpr size_t fewest = 4; // zeros that make a run of their own
+  constexpr size_t fewest = 4; // shortest run of zeros that is encoded
   for (size_t i = 0; i < light.size();) {
     size_t begin = i;
     while (begin < light.size() && zero(light[begin])) begin++;
@@ -170,7 +171,7 @@ void putLight(std::vector<std::byte>& out, const std::vector<float>& light) {
   }
 }
 
-// light: null: only looked at.
+// Reads light; only validates it if `light` is null.
 bool getLight(Source source, size_t size, float* light) {
   for (size_t at = 0; !source.empty();) {
     uint32_t run[2];
@@ -192,9 +193,9 @@ std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job
                                     const JobResult& result) {
   std::vector<std::byte> out;
   const Ledger& l = result.ledger;
-  const double ledger[9] = {l.cutByDepth,      l.cutByEnergy,    l.clipped,
-                            l.chance.light,    l.chance.rays,    l.chance.met,
-                            l.chanceSky.light, l.chanceSky.rays, l.chanceSky.met};
+  const double ledger[9] = {l.cutByDepth,         l.cutByEnergy,       l.clipped,
+                            l.unsampled.light,    l.unsampled.rays,    l.unsampled.met,
+                            l.unsampledSky.light, l.unsampledSky.rays, l.unsampledSky.met};
   put(out, ledger, sizeof ledger);
   if (job.kind == Job::Kind::light) {
     putLight(out, result.light);
@@ -219,12 +220,13 @@ bool decodeResult(const edit::FrameSettingsT& frame, const Job& job, const Tile&
     return getLight(source, size, result.light.data());
   }
   const size_t pixels = tile.pixels();
-  if (!getTile(frame, source, nullptr, pixels)) return false; // before memory is taken
+  // Validates before memory is allocated.
+  if (!getTile(frame, source, nullptr, pixels)) return false;
   result.ledger.samples = job.count;
   result.light.clear();
   result.sums.assign(pixels, {});
   const Replicates& parts = job.replicates;
-  const bool closed = gatheringOf(frame).error && parts.many() && job.count >= parts.size();
+  const bool closed = requiredSums(frame).error && parts.many() && job.count >= parts.size();
   for (PixelSums& s : result.sums) {
     s.samples = job.count;
     s.replicates = closed ? job.count / parts.size() : 0;

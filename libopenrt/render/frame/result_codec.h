@@ -1,10 +1,12 @@
-// result_codec.h: results of jobs as bytes, exactly: of a pixel's sums what the frame's channels
-// need, field by field, each as one value if all pixels have the same, as floats where nothing is
-// lost, else as doubles. Without rays, faults and seconds. [any]
+// result_codec.h: lossless encoding of job results as bytes. Of a pixel's sums only the fields that
+// the frame's channels need are encoded, field by field: as one value if all pixels have the same,
+// as floats if that loses nothing, else as doubles. Ray counts, faults and seconds are not encoded.
+// [any]
 //
-// A tile: 9 doubles (Ledger), then each field of all pixels, row by row: a byte, then what it says
-// (0: one value; 1: floats; 2: all values as they are). Light: 9 doubles, then runs of the
-// picture's numbers: how many zeros, how many numbers follow, these; zeros at the end are left out.
+// A tile: 9 doubles (Ledger), then each field of all pixels, row by row: a byte for the form (0:
+// one value; 1: floats; 2: all values as they are) and the values.
+// Light: 9 doubles, then runs of the picture's numbers: the number of zeros, the number of values
+// that follow, these values. Zeros at the end are left out.
 // Little-endian, not aligned.
 #pragma once
 
@@ -19,7 +21,8 @@ namespace openrt {
 
 std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job& job,
                                     const JobResult& result);
-// False: not what a job like this makes for a frame like this. bytes: from anywhere.
+// Decodes a result. Returns false if the bytes, which may come from anywhere, are not a result of
+// such a job for such a frame.
 bool decodeResult(const edit::FrameSettingsT& frame, const Job& job, const Tile& tile,
                   std::span<const std::byte> bytes, JobResult& result);
 

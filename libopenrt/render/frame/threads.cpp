@@ -22,7 +22,7 @@ std::string_view word(std::string_view& text) {
   return result;
 }
 
-// Whole numbers only; 0: none, or not positive.
+// Parses a whole number; 0 if there is none or it is not positive.
 double number(std::string_view text) {
   const std::string_view digits = word(text);
   int64_t value = 0;
@@ -36,7 +36,8 @@ std::string contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Lines of /proc/self/cgroup: number:controllers:path.
+// Returns the path of the first wanted line of /proc/self/cgroup. Its lines are
+// number:controllers:path.
 template <class Wanted> std::string_view pathOf(std::string_view text, const Wanted& wanted) {
   while (!text.empty()) {
     const std::string_view line = text.substr(0, text.find('\n'));
@@ -52,7 +53,8 @@ template <class Wanted> std::string_view pathOf(std::string_view text, const Wan
 
 double smaller(double a, double b) { return a == 0 ? b : b == 0 ? a : std::min(a, b); }
 
-// The group and all above it: the tightest one holds. In a container the root is the group itself.
+// Returns the tightest quota of the group and its ancestors. In a container the root is the group
+// itself.
 template <class Quota>
 double tightest(const std::string& root, std::string path, const Quota& quota) {
   double result = 0;
@@ -88,7 +90,7 @@ double groupQuota2(std::string_view cpuMax) {
 }
 
 double groupQuota1(std::string_view quota, std::string_view period) {
-  const double q = number(quota), p = number(period); // "-1": none
+  const double q = number(quota), p = number(period); // "-1" means no quota
   return q > 0 && p > 0 ? q / p : 0;
 }
 

@@ -5,7 +5,8 @@
 namespace openrt {
 namespace {
 
-// A few thousand paths are in flight, and small pictures have tiles for many threads, too.
+// Returns the edge length of the tiles: large enough for a few thousand paths in flight, and small
+// enough that small pictures have tiles for many threads.
 uint32_t edgeOf(const edit::FrameSettingsT& frame) {
   constexpr uint32_t least = 16, enough = 64; // pixels; tiles
   if (frame.tile) return frame.tile;

@@ -1,5 +1,5 @@
-// tiles.h: the tiles that a picture is made in: squares, cut off at its right and lower border,
-// numbered row by row. [any]
+// tiles.h: the tiles of a picture: squares, cut off at the right and lower border, numbered row by
+// row. [any]
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct Tile {
   size_t pixels() const { return size_t(x1 - x0) * (y1 - y0); }
 };
 
-// The same wherever the frame is made.
+// The division into tiles. It is the same on every machine that renders the frame.
 class TileGrid {
  public:
   explicit TileGrid(const edit::FrameSettingsT& frame);

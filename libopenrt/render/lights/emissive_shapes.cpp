@@ -1,5 +1,5 @@
-// emissive_shapes.cpp: What a shape sends out is asked of its shader, head
-// on, at a few places.
+// emissive_shapes.cpp: finds the area lights of a scene. The emission of a shape is measured by
+// evaluating its shader at a few points, seen along the normal.
 #include "render/lights/emissive_shapes.h"
 
 #include <algorithm>
@@ -31,23 +31,23 @@ double areaOf(const float p[3][3], float normal[3]) {
   return length / 2;
 }
 
-// A map that turns corners the other way around: the kernel's normal does not turn with them.
+// Returns whether the map reverses the orientation of corners; the kernel's normal does not follow.
 bool mirrors(const Record& r) { return r.instanced && determinantOf(r.toRender) < 0; }
 
-// Rays that meet places of a record head on.
-struct Looks {
+// Probe rays that hit points of a record along given directions, usually the normal.
+struct ProbeRays {
   Rays rays;
   RayHits hits;
   uint32_t* order;
   uint32_t count = 0;
 
-  Looks(Arena& arena, uint32_t capacity) {
+  ProbeRays(Arena& arena, uint32_t capacity) {
     rays.allocate(arena, capacity);
     hits.allocate(arena, capacity);
     order = arena.take<uint32_t>(padded(capacity));
   }
   void add(const float place[3],
-           const float towards[3]) { // towards: where the ray comes from, unit
+           const float towards[3]) { // towards: unit direction to the ray's origin
     for (int k = 0; k < 3; k++) {
       rays.org[k][count] = place[k] + towards[k];
       rays.dir[k][count] = -towards[k];
@@ -58,12 +58,14 @@ struct Looks {
   }
 };
 
-// What n places send towards where they are looked at from.
-RtsSurface answer(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena) {
+// Evaluates the shader at the probed points, towards the probes' origins.
+RtsSurface evaluateEmission(const RenderScene& scene, uint32_t record, const ProbeRays& probes,
+                            Arena& arena) {
   const Record& r = scene.records[record];
-  const uint32_t n = looks.count;
+  const uint32_t n = probes.count;
   const auto* travelled = arena.takeZero<float>(padded(n));
-  const Points points = makePoints(scene, looks.rays, looks.hits, looks.order, n, travelled, arena);
+  const Points points =
+      makePoints(scene, probes.rays, probes.hits, probes.order, n, travelled, arena);
   RtsSurface surface{};
   for (auto& e : surface.emission) e = arena.takeZero<float>(padded(n));
   RayCounters counters;
@@ -77,17 +79,18 @@ RtsSurface answer(const RenderScene& scene, uint32_t record, const Looks& looks,
   return surface;
 }
 
-// Its luminance.
-void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena, double* out) {
-  const RtsSurface surface = answer(scene, record, looks, arena);
-  for (uint32_t i = 0; i < looks.count; i++) {
+// Computes the emitted luminance of the probed points.
+void emittedLuminance(const RenderScene& scene, uint32_t record, const ProbeRays& probes,
+                      Arena& arena, double* out) {
+  const RtsSurface surface = evaluateEmission(scene, record, probes, arena);
+  for (uint32_t i = 0; i < probes.count; i++) {
     const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
     out[i] = luminance(c);
   }
 }
 
-// As the kernel gives it: of an instance in its own frame, up to its length the inverse transpose
-// of kernelNormal's map.
+// Returns a normal as the kernel gives it: for an instance in its own frame, up to its length the
+// inverse transpose of kernelNormal's map.
 void kernelNormal(const Record& r, const float normal[3], float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = normal[k];
   if (!r.instanced) return;
@@ -96,47 +99,48 @@ void kernelNormal(const Record& r, const float normal[3], float out[3]) {
              r.toRender.r[2][k] * normal[2];
 }
 
-// Mean emission of triangles, of either side. Where colours or pictures may vary, of four places.
-void askTriangles(const RenderScene& scene, uint32_t record,
-                  std::span<const EmissiveShapes::Shape> shapes, bool otherSide, Arena& arena,
-                  double* out) {
+// Computes the mean emission of one side of triangles: from four points where colours or textures
+// may vary, else from one.
+void triangleEmission(const RenderScene& scene, uint32_t record,
+                      std::span<const EmissiveShapes::Shape> shapes, bool otherSide, Arena& arena,
+                      double* out) {
   const Record& r = scene.records[record];
   static constexpr float at[4][2] = {
       {1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
   const bool mirrored = mirrors(r);
   const uint32_t places = r.texCoords || r.colors || r.parameterCount ? 4 : 1;
   ArenaScope scope(arena);
-  Looks looks(arena, uint32_t(shapes.size()) * places);
+  ProbeRays probes(arena, uint32_t(shapes.size()) * places);
   for (const EmissiveShapes::Shape& s : shapes) {
     float normal[3], towards[3], kernel[3];
     areaOf(s.corner, normal);
     for (int k = 0; k < 3; k++) towards[k] = otherSide ? -normal[k] : normal[k];
     kernelNormal(r, normal, kernel);
     for (uint32_t p = 0; p < places; p++) {
-      const uint32_t i = looks.count;
+      const uint32_t i = probes.count;
       const float u = at[p][0], v = at[p][1];
       float place[3];
       for (int k = 0; k < 3; k++) {
         place[k] = (1 - u - v) * s.corner[0][k] + u * s.corner[1][k] + v * s.corner[2][k];
-        looks.hits.ng[k][i] = kernel[k];
+        probes.hits.ng[k][i] = kernel[k];
       }
-      looks.hits.u[i] = mirrored ? v : u;
-      looks.hits.v[i] = mirrored ? u : v;
-      looks.hits.record[i] = record;
-      looks.hits.primitive[i] = s.primitive;
-      looks.add(place, towards);
+      probes.hits.u[i] = mirrored ? v : u;
+      probes.hits.v[i] = mirrored ? u : v;
+      probes.hits.record[i] = record;
+      probes.hits.primitive[i] = s.primitive;
+      probes.add(place, towards);
     }
   }
-  auto* each = arena.take<double>(looks.count);
-  ask(scene, record, looks, arena, each);
-  for (uint32_t i = 0; i < looks.count; i++) out[i / places] += each[i] / places;
+  auto* each = arena.take<double>(probes.count);
+  emittedLuminance(scene, record, probes, arena, each);
+  for (uint32_t i = 0; i < probes.count; i++) out[i / places] += each[i] / places;
 }
 
-// The same of a sphere's outside, at the ends of its axes.
-double askSphere(const RenderScene& scene, uint32_t record, Arena& arena) {
+// The same for the outside of a sphere, from the ends of its axes.
+double sphereEmission(const RenderScene& scene, uint32_t record, Arena& arena) {
   const Record& r = scene.records[record];
   ArenaScope scope(arena);
-  Looks looks(arena, 6);
+  ProbeRays probes(arena, 6);
   for (int axis = 0; axis < 3; axis++)
     for (const float sign : {1.0f, -1.0f}) {
       float place[3], towards[3], length = 0;
@@ -146,15 +150,15 @@ double askSphere(const RenderScene& scene, uint32_t record, Arena& arena) {
         length += towards[k] * towards[k];
       }
       for (float& x : towards) x /= std::sqrt(length);
-      const uint32_t i = looks.count;
-      for (int k = 0; k < 3; k++) looks.hits.ng[k][i] = towards[k];
-      looks.hits.u[i] = looks.hits.v[i] = 0;
-      looks.hits.record[i] = record;
-      looks.hits.primitive[i] = 0;
-      looks.add(place, towards);
+      const uint32_t i = probes.count;
+      for (int k = 0; k < 3; k++) probes.hits.ng[k][i] = towards[k];
+      probes.hits.u[i] = probes.hits.v[i] = 0;
+      probes.hits.record[i] = record;
+      probes.hits.primitive[i] = 0;
+      probes.add(place, towards);
     }
   double each[6], sum = 0;
-  ask(scene, record, looks, arena, each);
+  emittedLuminance(scene, record, probes, arena, each);
   for (double x : each) sum += x / 6;
   return sum;
 }
@@ -177,7 +181,7 @@ LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double 
 
 LightBounds sphereBounds(const Record& r, double outside) {
   LightBounds b;
-  double disc = 0; // area of the largest shadow, about
+  double disc = 0; // approximate area of the largest projection
   for (int k = 0; k < 3; k++) {
     const auto& m = r.toRender.r[k];
     const double half = std::sqrt(double(m[0]) * m[0] + double(m[1]) * m[1] + double(m[2]) * m[2]);
@@ -214,8 +218,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   if (!(shader.traits & RTS_EMISSIVE) || !shader.shaderClass->surface) return;
   Arena arena;
   if (r.primitive == edit::Primitive::Sphere) {
-    const double outside =
-        askSphere(scene, id, arena); // inside, a surface's own directions meet it
+    const double outside = sphereEmission(scene, id, arena); // from inside, BSDF sampling finds it
     firstOf_[id] = uint32_t(shapes_.size());
     brightest_ = std::max(brightest_, outside);
     bounds.push_back(sphereBounds(r, outside));
@@ -238,9 +241,10 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     front.assign(n, 0);
     back.assign(n, 0);
     const std::span<const Shape> shapes(shapes_.data() + begin, n);
-    askTriangles(scene, id, shapes, false, arena, front.data());
-    askTriangles(scene, id, shapes, true, arena, back.data());
-    if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, 0.0); // that side is not there
+    triangleEmission(scene, id, shapes, false, arena, front.data());
+    triangleEmission(scene, id, shapes, true, arena, back.data());
+    // The culled side does not emit.
+    if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, 0.0);
     for (uint32_t i = 0; i < n; i++) {
       Shape& s = shapes_[begin + i];
       brightest_ = std::max({brightest_, front[i], back[i]});
@@ -273,14 +277,14 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
   const auto& m = r.toRender.r;
   for (int k = 0; k < 3; k++) {
     p.position[k] = float(m[k][0] * l[0] + m[k][1] * l[1] + m[k][2] * l[2] + m[k][3]);
-    n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] +
-           r.fromRender.r[2][k] * l[2]; // by the inverse transpose
+    // Transformed by the inverse transpose.
+    n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] + r.fromRender.r[2][k] * l[2];
     length += n[k] * n[k];
   }
   length = std::sqrt(length);
   for (int k = 0; k < 3; k++) p.normal[k] = float(n[k] / length);
-  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) *
-           length; // an element of area grows by |det M| |M^-T n|
+  // An element of area grows by |det M| |M^-T n|.
+  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) * length;
   return p;
 }
 
@@ -288,19 +292,19 @@ void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const P
                               const float towards[3], Arena& arena, float out[3]) const {
   const Shape& s = shapes_[number];
   ArenaScope scope(arena);
-  Looks looks(arena, 1);
+  ProbeRays probes(arena, 1);
   float kernel[3];
   if (s.sphere)
     std::copy_n(place.normal, 3, kernel);
   else
     kernelNormal(scene.records[s.record], place.normal, kernel);
-  for (int k = 0; k < 3; k++) looks.hits.ng[k][0] = kernel[k];
-  looks.hits.u[0] = s.swapped ? place.v : place.u;
-  looks.hits.v[0] = s.swapped ? place.u : place.v;
-  looks.hits.record[0] = s.record;
-  looks.hits.primitive[0] = s.primitive;
-  looks.add(place.position, towards);
-  const RtsSurface surface = answer(scene, s.record, looks, arena);
+  for (int k = 0; k < 3; k++) probes.hits.ng[k][0] = kernel[k];
+  probes.hits.u[0] = s.swapped ? place.v : place.u;
+  probes.hits.v[0] = s.swapped ? place.u : place.v;
+  probes.hits.record[0] = s.record;
+  probes.hits.primitive[0] = s.primitive;
+  probes.add(place.position, towards);
+  const RtsSurface surface = evaluateEmission(scene, s.record, probes, arena);
   for (int k = 0; k < 3; k++)
     out[k] = surface.emission[k][0] > 0 && std::isfinite(surface.emission[k][0])
                  ? surface.emission[k][0]

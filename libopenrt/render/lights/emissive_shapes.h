@@ -1,5 +1,6 @@
-// emissive_shapes.h: triangles and spheres whose surface emits, with a light tree over them. Made
-// between frames when places, shaders or textures have changed, read by all render threads.
+// emissive_shapes.h: area lights: triangles and spheres with emission, and a light tree over them.
+// Rebuilt between frames if transforms, shaders or textures have changed; read by all render
+// threads.
 #pragma once
 
 #include <cstdint>
@@ -17,31 +18,34 @@ class EmissiveShapes {
  public:
   struct Shape {
     uint32_t record, primitive;
-    uint8_t
-        sides; // 1: the side that the corners turn to (of a sphere: outside) emits, 2: the other
+    // 1: the side from which the corners turn counter-clockwise emits (the outside of a sphere); 2:
+    // the other side
+    uint8_t sides;
     bool sphere;
-    float corner[3][3]; // triangle: render space, turning as the kernel's normal tells
-    bool swapped;       // corner 1 and 2 are the record's 2 and 1
-    float power;        // about proportional to the flux
+    float corner[3][3]; // triangle in render space, in the order of the kernel's normal
+    bool swapped;       // corners 1 and 2 are the record's 2 and 1
+    float power;        // approximately proportional to the flux
   };
 
   explicit EmissiveShapes(const RenderScene& scene);
   bool empty() const { return tree_.empty(); }
   size_t size() const { return shapes_.size(); }
-  double brightest() const { return brightest_; } // mean luminance of a shape's side
+  double brightest() const { return brightest_; } // largest mean luminance of a shape's side
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
   const LightTree& tree() const { return tree_; }
-  // A place on a shape. u, v: even numbers of the unit square; area: of the whole shape, or what
-  // makes up for uneven places.
+  // A point sampled on a shape. u, v: barycentric coordinates on a triangle. area: 1 / pdf by area,
+  // which is the area of a triangle, and for an ellipsoid also corrects the uneven distribution of
+  // points.
   struct Place {
     float position[3], normal[3], u, v;
     double area;
   };
+  // Samples a point of a shape. u, v: uniform in the unit square.
   Place place(const RenderScene& scene, uint32_t number, float u, float v) const;
-  // What the place sends out in a direction.
+  // Evaluates the emitted radiance of a point in a direction.
   void radiance(const RenderScene& scene, uint32_t number, const Place& place,
                 const float towards[3], Arena& arena, float out[3]) const;
-  // The number of a shape, none if it is not among them.
+  // Returns the number of a shape; none if it does not emit.
   uint32_t find(uint32_t record, uint32_t primitive) const {
     const uint32_t first = firstOf_[record];
     return first == none ? none : first + primitive;
@@ -50,13 +54,13 @@ class EmissiveShapes {
 
  private:
   void add(const RenderScene& scene, uint32_t record, std::vector<LightBounds>& bounds);
-  std::vector<Shape> shapes_;     // all primitives of a record one after the other
-  std::vector<uint32_t> firstOf_; // by record
+  std::vector<Shape> shapes_;     // all primitives of a record are consecutive
+  std::vector<uint32_t> firstOf_; // index of a record's first shape, by record
   LightTree tree_;
   double brightest_ = 0;
 };
 
-// Corners of a record's triangle in render space.
+// Writes the corners of a record's triangle in render space.
 void cornersOf(const struct Record& record, uint32_t primitive, float out[3][3]);
 
 } // namespace openrt

@@ -1,6 +1,5 @@
-// emitted.cpp: light of emitters and of the sky at surfaces that scatter: for each hit one place is
-// chosen, looked at by a ray, and weighed against the directions that the surface chooses itself.
-// Part of TileRenderer.
+// emitted.cpp: light sampling of emitters and of the sky at non-specular surfaces: one light sample
+// and one shadow ray per hit, combined with BSDF sampling by MIS. Part of TileRenderer.
 #include <algorithm>
 #include <cmath>
 
@@ -11,36 +10,39 @@
 
 namespace openrt {
 
-// From where a surface sees emitters; through: also those behind it.
-Receiver TileRenderer::receiverOf(const Points& points, uint32_t i, bool through) const {
-  Receiver from;
+// Returns the reference point for light sampling at a hit. twoSided: emitters behind the surface
+// count as well.
+LightSampleContext TileRenderer::lightSampleContext(const Points& points, uint32_t i,
+                                                    bool twoSided) const {
+  LightSampleContext from;
   float p[3], n[3];
   for (int k = 0; k < 3; k++) {
     p[k] = points.hits.position[k][i];
     n[k] = points.hits.geometric[k][i];
   }
-  for (int k = 0; k < 3 && !through; k++) from.normal[k] = n[k];
+  for (int k = 0; k < 3 && !twoSided; k++) from.normal[k] = n[k];
   offsetPoint(p, n, points.error[i], from.position);
   return from;
 }
 
-// What the hits answer to light from the sights: by the balance heuristic the share that belongs to
-// places chosen on emitters. Sights that no lobe answers to go; how many are left.
-uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* const chance[],
-                             Rays& rays, Sight* sights, uint32_t* hitOf, uint32_t n,
-                             float* response[3]) {
+// Computes the BSDF response of the hits to their light samples, with the MIS weight of light
+// sampling (balance heuristic). Removes the samples with response 0 and returns how many are left.
+uint32_t TileRenderer::weightLightSamples(const RtsBatch& batch, const RtsHits& hits,
+                                          float* const selectionProbability[], Rays& rays,
+                                          LightSample* lightSamples, uint32_t* hitOf, uint32_t n,
+                                          float* response[3]) {
   for (int k = 0; k < 3; k++) response[k] = arena_.takeZero<float>(padded(n));
   ArenaScope scope(arena_);
-  LobeAnswers answers(arena_, n, &batch);
+  LobeValues lobeValues(arena_, n, &batch);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    if (!chance[l]) continue;
-    answers.evaluate(batch.lobes[l], hits, n, hitOf, rays.dir);
+    if (!selectionProbability[l]) continue;
+    lobeValues.evaluate(batch.lobes[l], hits, n, hitOf, rays.dir);
     for (uint32_t r = 0; r < n; r++) {
       float w[3];
-      const float followed = chance[l][hitOf[r]];
+      const float followed = selectionProbability[l][hitOf[r]];
       if (!(followed > 0) || !weightAt(batch.lobes[l], hitOf[r], w)) continue;
-      const float scale = 1 / (sights[r].density + followed * answers.density[r]);
-      for (int k = 0; k < 3; k++) response[k][r] += w[k] * answers.value[k][r] * scale;
+      const float scale = 1 / (lightSamples[r].pdf + followed * lobeValues.pdf[r]);
+      for (int k = 0; k < 3; k++) response[k][r] += w[k] * lobeValues.value[k][r] * scale;
     }
   }
   uint32_t left = 0;
@@ -54,58 +56,60 @@ uint32_t TileRenderer::weigh(const RtsBatch& batch, const RtsHits& hits, float* 
     rays.tnear[left] = rays.tnear[r];
     rays.tfar[left] = rays.tfar[r];
     hitOf[left] = hitOf[r];
-    sights[left++] = sights[r];
+    lightSamples[left++] = lightSamples[r];
   }
   return left;
 }
 
-void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order,
-                               const Paths& paths, const Random& random, float* const chance[],
-                               const Crossing* crossing, float* const radiance[3]) {
+void TileRenderer::sampleEmitters(const RtsBatch& batch, const Points& points,
+                                  const uint32_t* order, const Paths& paths, const Random& random,
+                                  float* const selectionProbability[], const Crossing* crossing,
+                                  float* const radiance[3]) {
   ArenaScope scope(arena_);
   const RtsHits& hits = points.hits;
   const Emitters& emitters = scene_.emitters;
   Rays rays;
   rays.allocate(arena_, hits.count);
-  auto* sights = arena_.take<Sight>(hits.count);
-  auto* hitOf = arena_.take<uint32_t>(hits.count); // of the batch, by sight
+  auto* lightSamples = arena_.take<LightSample>(hits.count);
+  auto* hitOf = arena_.take<uint32_t>(hits.count); // index of the hit in the batch, by light sample
   float *pick[2], *place[2];
   draw(random, Draw::emitter, 0, pick);
   draw(random, Draw::place, 0, place);
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
     bool wanted = false;
-    for (uint32_t l = 0; l < batch.lobeCount; l++) wanted |= chance[l] && chance[l][i] > 0;
+    for (uint32_t l = 0; l < batch.lobeCount; l++)
+      wanted |= selectionProbability[l] && selectionProbability[l][i] > 0;
     if (!wanted) continue;
-    const Receiver from = receiverOf(points, i, transmitsAt(batch, i));
-    const Sight sight = emitters.choose(from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24,
-                                        place[0][i], place[1][i]);
-    if (!(sight.density > 0)) continue;
+    const LightSampleContext from = lightSampleContext(points, i, transmitsAt(batch, i));
+    const LightSample lightSample = emitters.choose(
+        from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24, place[0][i], place[1][i]);
+    if (!(lightSample.pdf > 0)) continue;
     float origin[3];
-    liftPoint(points, i, sight.direction, origin);
+    liftPoint(points, i, lightSample.direction, origin);
     for (int k = 0; k < 3; k++) {
       rays.org[k][n] = origin[k];
-      rays.dir[k][n] = sight.direction[k];
+      rays.dir[k][n] = lightSample.direction[k];
     }
     rays.tnear[n] = 0;
-    rays.tfar[n] = sight.distance * (1 + 0x1p-10f);
+    rays.tfar[n] = lightSample.distance * (1 + 0x1p-10f);
     hitOf[n] = i;
-    sights[n++] = sight;
+    lightSamples[n++] = lightSample;
   }
   float* response[3];
-  n = weigh(batch, hits, chance, rays, sights, hitOf, n, response);
+  n = weightLightSamples(batch, hits, selectionProbability, rays, lightSamples, hitOf, n, response);
   if (n == 0) return;
   rays.count = n;
   counters_.shadow += n;
   RayHits found;
   found.allocate(arena_, n);
   scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
-  lookThroughBacks(scene_, arena_, counters_, rays, found);
+  skipCulledBacks(scene_, arena_, counters_, rays, found);
 
   const auto add = [&](uint32_t ray, const float light[3]) {
     const uint32_t i = hitOf[ray];
     float left[3] = {light[0], light[1], light[2]};
-    if (!scene_.shaders->media().empty()) { // of light on its way through the body between
+    if (!scene_.shaders->media().empty()) { // absorption of the medium between hit and emitter
       float towards = 0;
       for (int k = 0; k < 3; k++) towards += hits.geometric[k][i] * rays.dir[k][ray];
       const MediaStack& media =
@@ -120,10 +124,10 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
   auto* sorted = arena_.take<uint32_t>(n);
   uint32_t skies = 0, lit = 0;
   for (uint32_t r = 0; r < n; r++)
-    if (sights[r].record == noHit && found.record[r] == noHit) lanes[skies++] = r;
+    if (lightSamples[r].record == noHit && found.record[r] == noHit) lanes[skies++] = r;
   if (skies) {
     float *local[3], *rgba[4];
-    skyAt(rays, lanes, skies, local, rgba);
+    evaluateSky(rays, lanes, skies, local, rgba);
     for (uint32_t i = 0; i < skies; i++) {
       const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
       add(lanes[i], light);
@@ -131,7 +135,7 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
   }
   for (uint32_t r = 0; r < n; r++)
     if (found.record[r] != noHit &&
-        emitters.sees(sights[r], found.record[r], found.primitive[r], found.t[r]))
+        emitters.isSampledHit(lightSamples[r], found.record[r], found.primitive[r], found.t[r]))
       lanes[lit++] = r;
   if (lit == 0) return;
   auto* travelled = arena_.takeZero<float>(padded(n));
@@ -146,7 +150,9 @@ void TileRenderer::addEmitters(const RtsBatch& batch, const Points& points, cons
     RtsSurface surface{};
     for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(m));
     RtsBatch inner = makeBatch();
-    inner.tracer = nullptr; // the answer must be the one that the emitters' choice was made from
+    // Random decisions are off: the emission must be the one that the sampling tables were built
+    // from.
+    inner.tracer = nullptr;
     inner.points = &seen;
     {
       const RunningShader running(shaderClass);

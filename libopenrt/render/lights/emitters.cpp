@@ -14,14 +14,14 @@ namespace {
 bool sameEmission(const RenderScene& a, const RenderScene& b) {
   if (a.shaders == b.shaders) return true;
   if (!a.shaders->extends(*b.shaders)) return false;
-  for (const Record& r : a.records) { // an unchanged shader has kept its block of parameters
+  for (const Record& r : a.records) { // an unchanged shader keeps its parameter block
     const ShaderSlot &now = (*a.shaders)[r.shader], &then = (*b.shaders)[r.shader];
     if (((now.traits | then.traits) & RTS_EMISSIVE) && now.params != then.params) return false;
   }
   return true;
 }
 
-const float* sideOf(const Receiver& from) {
+const float* sideOf(const LightSampleContext& from) {
   return from.normal[0] != 0 || from.normal[1] != 0 || from.normal[2] != 0 ? from.normal : nullptr;
 }
 
@@ -47,12 +47,12 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
                            m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
   const bool sky = sky_->usable() && determinant_ > 0 && std::isfinite(determinant_);
-  share_ = shapes_->empty() ? (sky ? 1.0f : -1.0f) : sky ? 0.5f : 0.0f;
+  skyProbability_ = shapes_->empty() ? (sky ? 1.0f : -1.0f) : sky ? 0.5f : 0.0f;
 }
 
-// Solid angle in render space over that in the environment's space: a linear map M takes it to |det
-// M| / |M d|^3 of itself.
-float Emitters::skyStretch(const float local[3]) const {
+// Jacobian of directions: solid angle in render space over that in the environment's space. A
+// linear map M scales solid angle by |det M| / |M d|^3.
+float Emitters::skyJacobian(const float local[3]) const {
   const auto& m = scene_->environment.fromLocal.r;
   double square = 0;
   for (int k = 0; k < 3; k++) {
@@ -63,68 +63,72 @@ float Emitters::skyStretch(const float local[3]) const {
   return float(square * std::sqrt(square) * determinant_);
 }
 
-// A direction to a place on the shape, and its density if the shape is the only one; 0: none.
-double Emitters::densityOf(const EmissiveShapes::Shape& shape, const Receiver& from, double u,
-                           double v, double direction[3], double& distance, bool& rim) const {
+// Samples a direction to a point on the shape. Returns its pdf as if the shape were the only one;
+// 0: no sample.
+double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from,
+                             double u, double v, double direction[3], double& distance,
+                             bool& nearEdge) const {
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
     const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
     if (!(shape.sides & 1) || !seen.sample(u, v, direction, distance)) return 0;
-    return seen.density(direction);
+    return seen.pdf(direction);
   }
   const SphericalTriangle seen(shape.corner, from.position);
   if (!(shape.sides & (seen.front() ? 1 : 2)) || !seen.sample(u, v, direction, distance)) return 0;
-  rim = seen.atRim(direction, distance);
-  return seen.density(direction);
+  nearEdge = seen.isNearEdge(direction, distance);
+  return seen.pdf(direction);
 }
 
-Sight Emitters::choose(const Receiver& from, double pick, float u, float v) const {
-  Sight sight;
-  if (pick < double(share_)) {
+LightSample Emitters::choose(const LightSampleContext& from, double pick, float u, float v) const {
+  LightSample lightSample;
+  if (pick < double(skyProbability_)) {
     float local[3];
-    sight.distance = std::numeric_limits<float>::infinity();
-    sight.density = share_ * sky_->sample(u, v, local);
-    if (!(sight.density > 0)) return {};
-    sight.density /= skyStretch(local);
+    lightSample.distance = std::numeric_limits<float>::infinity();
+    lightSample.pdf = skyProbability_ * sky_->sample(u, v, local);
+    if (!(lightSample.pdf > 0)) return {};
+    lightSample.pdf /= skyJacobian(local);
     const auto& m = scene_->environment.fromLocal.r;
     double way[3], square = 0;
     for (int k = 0; k < 3; k++) {
       way[k] = double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
       square += way[k] * way[k];
     }
-    for (int k = 0; k < 3; k++) sight.direction[k] = float(way[k] / std::sqrt(square));
+    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(way[k] / std::sqrt(square));
   } else {
     const float* normal = sideOf(from);
-    const double left = (pick - double(share_)) / (1 - double(share_));
+    const double left = (pick - double(skyProbability_)) / (1 - double(skyProbability_));
     const LightTree::Choice choice =
         shapes_->tree().choose(from.position, normal, std::min(left, 1 - 0x1p-53));
     if (!(choice.probability > 0)) return {};
     const EmissiveShapes::Shape& shape = (*shapes_)[choice.light];
-    sight.record = shape.record;
-    sight.primitive = shape.primitive;
+    lightSample.record = shape.record;
+    lightSample.primitive = shape.primitive;
     double way[3], distance = 0;
-    const double alone = densityOf(shape, from, u, v, way, distance, sight.rim);
-    sight.density = float((1 - double(share_)) * double(choice.probability) * alone);
-    sight.distance = float(distance);
-    for (int k = 0; k < 3; k++) sight.direction[k] = float(way[k]);
+    const double alone = sampleShape(shape, from, u, v, way, distance, lightSample.nearEdge);
+    lightSample.pdf = float((1 - double(skyProbability_)) * double(choice.probability) * alone);
+    lightSample.distance = float(distance);
+    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(way[k]);
   }
   const float* normal = sideOf(from);
-  if (!(sight.density > 0) || !std::isfinite(sight.density) ||
-      (normal && !(dot3(sight.direction, normal) > 0)))
+  if (!(lightSample.pdf > 0) || !std::isfinite(lightSample.pdf) ||
+      (normal && !(dot3(lightSample.direction, normal) > 0)))
     return {};
-  return sight;
+  return lightSample;
 }
 
-// At an edge it may be a neighbour of the same surface, at the same distance.
-bool Emitters::sees(const Sight& sight, uint32_t record, uint32_t primitive, float distance) const {
-  if (sight.record != record) return false;
-  return primitive == sight.primitive ||
-         (sight.rim && std::fabs(distance - sight.distance) <= 0x1p-10f * sight.distance);
+// At an edge the hit may be a neighbouring primitive of the same surface at the same distance.
+bool Emitters::isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
+                            float distance) const {
+  if (lightSample.record != record) return false;
+  return primitive == lightSample.primitive ||
+         (lightSample.nearEdge &&
+          std::fabs(distance - lightSample.distance) <= 0x1p-10f * lightSample.distance);
 }
 
-float Emitters::density(const Receiver& from, uint32_t record, uint32_t primitive,
-                        const float direction[3], float) const {
-  if (!any() || share_ >= 1) return 0;
+float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
+                    const float direction[3], float) const {
+  if (!any() || skyProbability_ >= 1) return 0;
   const uint32_t number = shapes_->find(record, primitive);
   if (number == EmissiveShapes::none) return 0;
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
@@ -135,26 +139,27 @@ float Emitters::density(const Receiver& from, uint32_t record, uint32_t primitiv
   if (shape.sphere) {
     const Record& r = scene_->records[record];
     const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
-    if (shape.sides & 1) alone = seen.density(way);
+    if (shape.sides & 1) alone = seen.pdf(way);
   } else {
     const SphericalTriangle seen(shape.corner, from.position);
-    if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.density(way);
+    if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.pdf(way);
   }
   if (!(alone > 0)) return 0;
-  return float((1 - double(share_)) *
+  return float((1 - double(skyProbability_)) *
                double(shapes_->tree().probability(from.position, normal, number)) * alone);
 }
 
-float Emitters::skyDensity(const Receiver&, const float local[3]) const {
-  return share_ > 0 ? share_ * sky_->density(local) / skyStretch(local) : 0.0f;
+float Emitters::skyPdf(const LightSampleContext&, const float local[3]) const {
+  return skyProbability_ > 0 ? skyProbability_ * sky_->pdf(local) / skyJacobian(local) : 0.0f;
 }
 
-double Emitters::brightestSky() const { return share_ > 0 ? sky_->brightest() : 0; }
+double Emitters::brightestSky() const { return skyProbability_ > 0 ? sky_->brightest() : 0; }
 double Emitters::brightest() const {
   return any() ? std::max(brightestSky(), shapes_->brightest()) : 0;
 }
 
-bool Emitters::sends(uint32_t record, uint32_t primitive, const float direction[3]) const {
+bool Emitters::startsLightPaths(uint32_t record, uint32_t primitive,
+                                const float direction[3]) const {
   const uint32_t number = shapes_ ? shapes_->find(record, primitive) : EmissiveShapes::none;
   if (number == EmissiveShapes::none) return false;
   const EmissiveShapes::Shape& s = (*shapes_)[number];

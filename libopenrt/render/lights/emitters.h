@@ -1,8 +1,8 @@
-// emitters.h: what sends out light besides the lights: surfaces that emit, and the environment.
-// Path tracing chooses a place on them for every answer of a surface that scatters and weighs it
-// against directions chosen by the surface (multiple importance sampling: E. Veach, L. Guibas,
-// SIGGRAPH 1995, balance heuristic). Made between frames, its tables kept from snapshot to snapshot
-// while what they are made of stays; read by all render threads.
+// emitters.h: light sampling of everything that emits besides the light shaders: emissive surfaces
+// and the environment. At every non-specular path vertex the path tracer takes one light sample and
+// combines it with BSDF sampling (multiple importance sampling: E. Veach, L. Guibas, SIGGRAPH 1995,
+// balance heuristic). Built between frames; tables are shared between snapshots while their inputs
+// stay the same. Read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -16,59 +16,63 @@ namespace openrt {
 
 struct RenderScene;
 
-// Who asks for light: where its rays begin.
-struct Receiver {
+// The reference point that light is sampled for.
+struct LightSampleContext {
   float position[3];
-  float normal[3] = {0, 0, 0}; // unit, if light counts from its side only; 0 0 0: from everywhere
+  // Unit normal if light counts from its side only; 0 0 0: light counts from everywhere.
+  float normal[3] = {0, 0, 0};
 };
 
-// A direction in which an emitter may be seen.
-struct Sight {
-  uint32_t record = noHit, primitive = 0; // noHit: the sky
+// A sampled direction towards an emitter.
+struct LightSample {
+  uint32_t record = noHit, primitive = 0; // record: noHit if the sky was sampled
   float direction[3];                     // unit, render space
-  float distance = 0;                     // infinite: the sky
-  float density =
-      0; // by solid angle, of this direction among all that might be chosen; 0: there is none
-  bool rim = false; // so near to the emitter's edge that the ray may meet its neighbour
+  float distance = 0;                     // infinite if the sky was sampled
+  float pdf = 0; // solid-angle pdf including the selection of the emitter; 0: no sample
+  // The ray passes so near to an edge of the primitive that it may hit the neighbour.
+  bool nearEdge = false;
 };
 
 class Emitters {
  public:
-  // Empty where the scene's transport does not ask for them. before: the last snapshot, or null;
-  // samePlaces: its records and their places are those of this one.
+  // Builds the sampling tables; they are empty if the scene's transport does not sample emitters.
+  // before: the last snapshot, or null. samePlaces: its records and their transforms equal those of
+  // this scene.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
-  bool any() const { return share_ >= 0; }
-  // Largest luminance of the sky, of sky and shapes.
+  bool any() const { return skyProbability_ >= 0; }
+  // Return the largest luminance of the sky alone, and of sky and shapes.
   double brightestSky() const;
   double brightest() const;
-  // pick chooses the emitter, (u, v) the place on it: numbers of [0, 1). Of pick every digit counts
-  // where emitters are many.
-  Sight choose(const Receiver& from, double pick, float u, float v) const;
-  // Whether what the ray of a sight has met is what it was sent for.
-  bool sees(const Sight& sight, uint32_t record, uint32_t primitive, float distance) const;
-  // Density of what choose() would answer for a surface that was met along a direction; 0 if it
-  // could not be.
-  float density(const Receiver& from, uint32_t record, uint32_t primitive, const float direction[3],
-                float distance) const;
-  // The same of the sky in a direction in the environment's local space.
-  float skyDensity(const Receiver& from, const float local[3]) const;
+  // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point
+  // on it. With many emitters all digits of pick matter.
+  LightSample choose(const LightSampleContext& from, double pick, float u, float v) const;
+  // Returns whether the hit of the sample's ray is the emitter that was sampled.
+  bool isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
+                    float distance) const;
+  // Returns the solid-angle pdf of choose() for a surface hit along a direction; 0 if choose()
+  // cannot sample it.
+  float pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
+            const float direction[3], float distance) const;
+  // The same for the sky, for a direction in the environment's local space.
+  float skyPdf(const LightSampleContext& from, const float local[3]) const;
 
-  // Whether paths from lamps begin on a surface that is met along a direction
+  // Returns whether light paths start on the surface hit along a direction
   // (render/lights/light_sources.h).
-  bool sends(uint32_t record, uint32_t primitive, const float direction[3]) const;
-  // For light sources, tests and statistics.
+  bool startsLightPaths(uint32_t record, uint32_t primitive, const float direction[3]) const;
+  // Access for light_sources.h, tests and statistics.
   const EmissiveShapes* shapes() const { return shapes_.get(); }
   const SkySampler* sky() const { return sky_.get(); }
 
  private:
-  double densityOf(const EmissiveShapes::Shape& shape, const Receiver& from, double u, double v,
-                   double direction[3], double& distance, bool& rim) const;
-  float skyStretch(const float local[3]) const;
+  double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
+                     double v, double direction[3], double& distance, bool& nearEdge) const;
+  float skyJacobian(const float local[3]) const;
   const RenderScene* scene_ = nullptr;
   std::shared_ptr<const SkySampler> sky_;
   std::shared_ptr<const EmissiveShapes> shapes_;
-  float share_ = -1;      // of the choices, that goes to the sky; -1: nothing emits
-  float determinant_ = 1; // of the environment's map into its local space
+  float skyProbability_ = -1; // selection probability of the sky; -1: nothing emits
+  // Absolute determinant of the map from render space into the environment's space.
+  float determinant_ = 1;
 };
 
 } // namespace openrt

@@ -13,18 +13,19 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t lightPair = 0x6c696768u; // of random points: apart from those of shaders
+// Keeps the random points of light sampling apart from those of shaders.
+constexpr uint32_t lightPair = 0x6c696768u;
 constexpr uint32_t none = ~0u;
 
-// Null where every light of the set is asked.
-const ManyLights* manyOf(const RtsBatch& batch) {
-  if (!batch.tracer || !batch.scene->manyLights) return nullptr;
-  const ManyLights& many = (*batch.scene->manyLights)[batch.lightSet];
+// Returns the light sampler of the batch; null if it evaluates every light of its set.
+const LightSampler* lightSamplerOf(const RtsBatch& batch) {
+  if (!batch.tracer || !batch.scene->lightSamplers) return nullptr;
+  const LightSampler& many = (*batch.scene->lightSamplers)[batch.lightSet];
   return many.chooses() ? &many : nullptr;
 }
 
 const LightSlot& lightOf(const RtsBatch& batch, uint32_t i) {
-  const ManyLights* many = manyOf(batch);
+  const LightSampler* many = lightSamplerOf(batch);
   return batch.scene->lights[many ? many->always()[i] : batch.scene->lightSets[batch.lightSet][i]];
 }
 
@@ -37,7 +38,7 @@ void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* 
   }
 }
 
-// Light-space vectors to unit vectors in render space; reach: their length there.
+// Transforms light-space vectors to unit vectors in render space; reach gets their length there.
 void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* reach) {
   for (uint32_t i = 0; i < n; i++) {
     const float x = v[0][i], y = v[1][i], z = v[2][i];
@@ -53,10 +54,11 @@ void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* r
   }
 }
 
-// One light at places, up to whole groups of lanes. The arrays of out are written; whether it is
-// parallel.
-bool ask(RtsBatch& batch, const LightSlot& light, uint32_t count, const float* const position[3],
-         float* const local[3], RtsIllumination& out, float* reach) {
+// Evaluates one light at points, padded to whole groups of lanes, into the arrays of `out`. Returns
+// whether the light is parallel.
+bool evaluateLight(RtsBatch& batch, const LightSlot& light, uint32_t count,
+                   const float* const position[3], float* const local[3], RtsIllumination& out,
+                   float* reach) {
   const uint32_t n = padded(count);
   pointsToLocal(light.toLocal, n, position, local);
   for (float* a : out.ambient) std::fill_n(a, n, 0.0f);
@@ -67,15 +69,16 @@ bool ask(RtsBatch& batch, const LightSlot& light, uint32_t count, const float* c
     light.shader.shaderClass->illuminate(&batch.scene->host, &batch, light.shader.params, n, places,
                                          &out);
   }
-  checkAnswer(*light.shader.shaderClass, batch, count,
-              {out.toLight[0], out.toLight[1], out.toLight[2], out.color[0], out.color[1],
-               out.color[2], out.ambient[0], out.ambient[1], out.ambient[2]});
+  sanitizeOutput(*light.shader.shaderClass, batch, count,
+                 {out.toLight[0], out.toLight[1], out.toLight[2], out.color[0], out.color[1],
+                  out.color[2], out.ambient[0], out.ambient[1], out.ambient[2]});
   directionsToRender(light.fromLocal, n, out.toLight, reach);
   return out.directional != 0;
 }
 
-// A light for each hit; the hits of each light are asked together.
-void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, RtsIllumination& out) {
+// Samples a light for each hit; the hits of each light are evaluated together.
+void evaluateChosenLights(RtsBatch& batch, const LightSampler& many, const RtsHits& hits,
+                          RtsIllumination& out) {
   Arena& arena = *batch.arena;
   const uint32_t n = hits.count;
   batch.chosen = arena.take<uint32_t>(padded(n));
@@ -91,7 +94,7 @@ void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, Rts
   for (uint32_t i = 0; i < n; i++) {
     const float place[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
     const float normal[3] = {hits.normal[0][i], hits.normal[1][i], hits.normal[2][i]};
-    const ManyLights::Choice c =
+    const LightSampler::Choice c =
         many.choose(place, normal, double(square[0][i]) + double(square[1][i]) * 0x1p-24);
     batch.chosen[i] = c.probability > 0 ? c.light : none;
     probability[i] = c.probability;
@@ -118,7 +121,8 @@ void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, Rts
     }
     auto* reach = arena.take<float>(size);
     const float* const places[3] = {position[0], position[1], position[2]};
-    const bool parallel = ask(batch, batch.scene->lights[light], m, places, local, part, reach);
+    const bool parallel =
+        evaluateLight(batch, batch.scene->lights[light], m, places, local, part, reach);
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t to = order[begin + i];
       for (int k = 0; k < 3; k++) {
@@ -133,15 +137,15 @@ void askChosen(RtsBatch& batch, const ManyLights& many, const RtsHits& hits, Rts
 
 } // namespace
 
-// The arrays are made here: callers release what they take for each light.
+// Allocates the arrays here, because callers open an arena scope for each light.
 uint32_t lightCount(RtsBatch& batch) {
-  if (batch.points) makeRoomForLight(batch, batch.points->hits.count);
-  const ManyLights* many = manyOf(batch);
+  if (batch.points) allocateLightArrays(batch, batch.points->hits.count);
+  const LightSampler* many = lightSamplerOf(batch);
   return uint32_t(many ? many->always().size() + 1 : batch.scene->lightSets[batch.lightSet].size());
 }
 
 void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumination& out) {
-  makeRoomForLight(batch, hits.count);
+  allocateLightArrays(batch, hits.count);
   for (int k = 0; k < 3; k++) {
     out.toLight[k] = batch.toLight[k];
     out.color[k] = batch.color[k];
@@ -149,14 +153,14 @@ void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumin
   }
   batch.current = i;
   batch.chosen = nullptr;
-  if (const ManyLights* many = manyOf(batch); many && i == many->always().size()) {
-    askChosen(batch, *many, hits, out);
+  if (const LightSampler* many = lightSamplerOf(batch); many && i == many->always().size()) {
+    evaluateChosenLights(batch, *many, hits, out);
     out.directional = 0;
     batch.directional = false;
     return;
   }
-  batch.directional =
-      ask(batch, lightOf(batch, i), hits.count, hits.position, batch.local, out, batch.reach);
+  batch.directional = evaluateLight(batch, lightOf(batch, i), hits.count, hits.position,
+                                    batch.local, out, batch.reach);
 }
 
 void shadowHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, const uint8_t* wanted,

@@ -1,5 +1,5 @@
-// illumination.h: the lights of a batch, one after the other (RtsHost.lights, illuminate, shadow).
-// In path tracing the last one may be a different one at each hit, chosen among many
+// illumination.h: evaluates the lights of a batch one after the other (RtsHost.lights, illuminate,
+// shadow). In path tracing the last one may be a light sampled separately for each hit
 // (render/lights/many_lights.h). [render]
 #pragma once
 

@@ -10,8 +10,8 @@
 namespace openrt {
 namespace {
 
-// A direction in a cone about an axis, evenly by solid angle.
-void inCone(const float axis[3], double cosine, float u, float v, float out[3]) {
+// Samples a direction in a cone about an axis uniformly by solid angle.
+void sampleCone(const float axis[3], double cosine, float u, float v, float out[3]) {
   const double z = 1 - (1 - cosine) * u, round = std::sqrt(std::max(0.0, 1 - z * z)),
                phi = 2 * M_PI * v;
   float s[3], t[3];
@@ -20,7 +20,7 @@ void inCone(const float axis[3], double cosine, float u, float v, float out[3]) 
     out[k] = float(round * std::cos(phi) * s[k] + round * std::sin(phi) * t[k] + z * axis[k]);
 }
 
-// From the light's space into render space; false if nothing is known of the light.
+// Transforms a light's extent into render space. Returns false if the light has no usable extent.
 bool extentOf(const RenderScene& scene, const LightSlot& light, RtsExtent& out) {
   const RtsClass& c = *light.shader.shaderClass;
   RtsExtent local{};
@@ -40,14 +40,15 @@ bool extentOf(const RenderScene& scene, const LightSlot& light, RtsExtent& out) 
   return local.power > 0 && std::isfinite(local.power);
 }
 
-// Of scenes with the same records: whether the same of them mirror or refract.
-bool sameMirrors(const RenderScene& a, const RenderScene& b) {
-  return a.shaders == b.shaders || a.shaders->extends(*b.shaders); // the same traits
+// Returns whether the same records are specular in two scenes with the same records.
+bool sameSpecularSurfaces(const RenderScene& a, const RenderScene& b) {
+  // extends(): the traits are the same
+  return a.shaders == b.shaders || a.shaders->extends(*b.shaders);
 }
 
 } // namespace
 
-void LightSources::aimAtMirrors(const RenderScene& scene) {
+void LightSources::boundSpecularSurfaces(const RenderScene& scene) {
   double low[3], high[3];
   std::fill_n(low, 3, std::numeric_limits<double>::infinity());
   std::fill_n(high, 3, -std::numeric_limits<double>::infinity());
@@ -85,7 +86,7 @@ void LightSources::aimAtMirrors(const RenderScene& scene) {
   radius_ = float(std::sqrt(square) * (1 + 1e-5));
 }
 
-void LightSources::standBack(const RenderScene& scene) {
+void LightSources::measureSceneExtent(const RenderScene& scene) {
   float sceneLow[3], sceneHigh[3];
   scene.kernel->bounds(sceneLow, sceneHigh);
   double diagonal = 0;
@@ -94,13 +95,13 @@ void LightSources::standBack(const RenderScene& scene) {
 }
 
 LightSources::LightSources(const RenderScene& scene, const RenderScene* before) {
-  if (before && before->lightSources && sameMirrors(scene, *before)) {
+  if (before && before->lightSources && sameSpecularSurfaces(scene, *before)) {
     std::copy_n(before->lightSources->centre_, 3, centre_);
     radius_ = before->lightSources->radius_;
   } else
-    aimAtMirrors(scene);
+    boundSpecularSurfaces(scene);
   if (!(radius_ > 0)) return;
-  standBack(scene);
+  measureSceneExtent(scene);
   if (!std::isfinite(far_)) return;
   double total = 0;
   const auto add = [&](const Source& source, double power) {
@@ -112,8 +113,7 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before) 
   for (uint32_t i = 0; shapes && i < shapes->size(); i++)
     add({none, i, {}}, (*shapes)[i].power * M_PI);
   for (uint32_t i = 0; i < scene.lights.size(); i++) {
-    // Without shadows a light shines straight through glass: what a path brought besides would
-    // count twice.
+    // Without shadows a light shines straight through glass, so its light paths would count twice.
     if (!scene.frame.shadows || (scene.lights[i].shader.traits & RTS_NO_SHADOW)) continue;
     Source source{i, none, {}};
     if (extentOf(scene, scene.lights[i], source.extent))
@@ -121,8 +121,9 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before) 
   }
 }
 
-// The ball's cone as seen from a point: its cosine, -1 from within.
-double LightSources::coneTo(const float from[3], float axis[3]) const {
+// Returns the cosine of the half angle of the cone about the specular surfaces as seen from a
+// point; -1 from inside their bounding sphere.
+double LightSources::coneToSpecular(const float from[3], float axis[3]) const {
   double square = 0;
   for (int k = 0; k < 3; k++) square += std::pow(double(centre_[k]) - from[k], 2);
   const double distance = std::sqrt(square);
@@ -132,15 +133,16 @@ double LightSources::coneTo(const float from[3], float axis[3]) const {
   return sine < 1 ? std::sqrt(1 - sine * sine) : -1;
 }
 
-LightSources::Start LightSources::begin(const RenderScene& scene, double pick, const float place[2],
-                                        const float direction[2]) const {
+LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double pick,
+                                               const float place[2],
+                                               const float direction[2]) const {
   const double at = pick * cumulative_.back();
   const size_t i = size_t(
       std::min(std::upper_bound(cumulative_.begin(), cumulative_.end(), at) - cumulative_.begin(),
                ptrdiff_t(cumulative_.size()) - 1));
   const Source& source = sources_[i];
   const double probability = (cumulative_[i] - (i ? cumulative_[i - 1] : 0)) / cumulative_.back();
-  Start start;
+  LightRay start;
   start.light = source.light;
   start.shape = source.shape;
   float axis[3];
@@ -149,9 +151,9 @@ LightSources::Start LightSources::begin(const RenderScene& scene, double pick, c
     start.parallel = e.parallel != 0;
     start.endless = !std::isfinite(e.radius);
     if (!start.parallel) {
-      const double cosine = coneTo(e.position, axis);
+      const double cosine = coneToSpecular(e.position, axis);
       std::copy_n(e.position, 3, start.origin);
-      inCone(axis, cosine, direction[0], direction[1], start.direction);
+      sampleCone(axis, cosine, direction[0], direction[1], start.direction);
       start.weight = 2 * M_PI * (1 - cosine) / probability;
       return start;
     }
@@ -169,13 +171,13 @@ LightSources::Start LightSources::begin(const RenderScene& scene, double pick, c
   const EmissiveShapes& shapes = *scene.emitters.shapes();
   start.place = shapes.place(scene, source.shape, place[0], place[1]);
   std::copy_n(start.place.position, 3, start.origin);
-  double cosine = coneTo(start.origin, axis), solidAngle = 2 * M_PI * (1 - cosine);
-  inCone(axis, cosine, direction[0], direction[1], start.direction);
+  double cosine = coneToSpecular(start.origin, axis), solidAngle = 2 * M_PI * (1 - cosine);
+  sampleCone(axis, cosine, direction[0], direction[1], start.direction);
   const float towards = dot3(start.place.normal, start.direction);
   if (!(shapes[source.shape].sides & (towards > 0 ? 1 : 2)) || towards == 0) return start;
   start.weight = start.place.area * std::fabs(towards) * solidAngle / probability;
-  // Off the surface, to the side that the direction leads to; the place is a sum of three products
-  // or so, each rounded.
+  // Offsets the origin off the surface, to the side that the direction leads to. The position is a
+  // sum of about three products, each rounded.
   float n[3], origin[3], bound = 0;
   for (int k = 0; k < 3; k++) {
     n[k] = towards > 0 ? start.place.normal[k] : -start.place.normal[k];

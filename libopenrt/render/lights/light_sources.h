@@ -1,6 +1,7 @@
-// light_sources.h: where paths from lamps begin: on shapes that emit and at lights whose class says
-// where they are. Only what may meet a mirror or a lens first is wanted, so directions are aimed at
-// these. Made between frames, read by all render threads.
+// light_sources.h: samples the first rays of light paths. They start on emissive shapes and at
+// lights whose class declares its extent. Only paths that hit a specular surface first are wanted,
+// so directions are aimed at the bounding sphere of all specular surfaces. Built between frames,
+// read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -13,38 +14,38 @@ namespace openrt {
 
 class LightSources {
  public:
-  // Empty where nothing sends out light, or nothing mirrors or refracts it. before: a scene with
+  // Stays empty if nothing emits, or if nothing mirrors or refracts. before: a snapshot with
   // everything in the same places, or null.
   LightSources(const RenderScene& scene, const RenderScene* before);
   bool empty() const { return cumulative_.empty(); }
 
-  struct Start {
+  struct LightRay {
     float origin[3], direction[3];
-    // Of a shape: flux over radiance. Of a light: flux over (irradiance times the square of the way
-    // to what is met), or, where it is parallel, over irradiance.
-    double weight = 0; // 0: nothing starts
+    // For a shape: flux over radiance. For a light: flux over (irradiance times the squared
+    // distance to the hit); for a parallel light: flux over irradiance.
+    double weight = 0; // 0: no ray was sampled
     uint32_t light = none, shape = none;
-    EmissiveShapes::Place place; // of a shape
+    EmissiveShapes::Place place; // the sampled point, if `shape` is set
     bool parallel = false;
-    bool endless = true; // nothing says that it lights nothing beyond some radius
+    bool endless = true; // the light has no finite radius of influence
   };
   static constexpr uint32_t none = ~0u;
-  // Numbers of [0, 1): which, the place on it, the direction.
-  Start begin(const RenderScene& scene, double pick, const float place[2],
-              const float direction[2]) const;
+  // Samples a ray. The numbers in [0, 1) select the source, the point on it, and the direction.
+  LightRay sampleRay(const RenderScene& scene, double pick, const float place[2],
+                     const float direction[2]) const;
 
  private:
   struct Source {
     uint32_t light, shape;
-    RtsExtent extent; // of a light, in render space
+    RtsExtent extent; // extent of the light in render space
   };
-  void aimAtMirrors(const RenderScene& scene);
-  void standBack(const RenderScene& scene);
-  double coneTo(const float from[3], float axis[3]) const;
+  void boundSpecularSurfaces(const RenderScene& scene);
+  void measureSceneExtent(const RenderScene& scene);
+  double coneToSpecular(const float from[3], float axis[3]) const;
   std::vector<Source> sources_;
-  std::vector<double> cumulative_;    // of power
-  float centre_[3] = {}, radius_ = 0; // of a ball around all that mirrors or refracts
-  float far_ = 0;                     // from there everything lies in front of parallel light
+  std::vector<double> cumulative_;    // cumulative power of the sources
+  float centre_[3] = {}, radius_ = 0; // bounding sphere of all specular surfaces
+  float far_ = 0; // distance at which parallel light starts: the whole scene lies in front of it
 };
 
 } // namespace openrt

@@ -10,14 +10,14 @@ namespace {
 
 constexpr uint32_t bins = 12;
 constexpr uint32_t none = ~0u;
-constexpr uint32_t balanceFrom = 28; // deeper nodes are halved: bounds the depth
+constexpr uint32_t balanceFrom = 28; // deeper nodes are split in halves, which bounds the depth
 
 double dot(const float a[3], const float b[3]) {
   return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2];
 }
 
-// The smallest cone about both (S. Glassner's construction, as in PBR 3.8.4), a little wider for
-// its own rounding.
+// Unites two cones into the smallest cone about both (S. Glassner's construction, as in PBR 3.8.4),
+// slightly widened for rounding.
 void uniteCones(LightBounds& a, const LightBounds& b) {
   if (a.cosineNormals <= -1 || b.cosineNormals <= -1) {
     a.cosineNormals = -1;
@@ -25,7 +25,7 @@ void uniteCones(LightBounds& a, const LightBounds& b) {
   }
   const double along = dot(a.axis, b.axis);
   if (b.cosineNormals >= 1 && along >= a.cosineNormals)
-    return; // most often: one normal more within the cone
+    return; // the most frequent case: one more normal inside the cone
   const double first = std::acos(std::clamp(double(a.cosineNormals), -1.0, 1.0));
   const double second = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
   const double between = std::acos(std::clamp(along, -1.0, 1.0));
@@ -36,11 +36,11 @@ void uniteCones(LightBounds& a, const LightBounds& b) {
     return;
   }
   const double half = (first + between + second) / 2, turn = half - first, sine = std::sin(between);
-  if (half >= M_PI || !(sine > 1e-7)) { // opposite axes have no middle
+  if (half >= M_PI || !(sine > 1e-7)) { // opposite axes have no middle direction
     a.cosineNormals = -1;
     return;
   }
-  double axis[3], square = 0; // from the first axis towards the second
+  double axis[3], square = 0; // rotated from the first axis towards the second
   for (int k = 0; k < 3; k++) {
     axis[k] = (std::sin(between - turn) * a.axis[k] + std::sin(turn) * b.axis[k]) / sine;
     square += axis[k] * axis[k];
@@ -55,19 +55,19 @@ void unite(LightBounds& a, const LightBounds& b) {
     a.high[k] = std::max(a.high[k], b.high[k]);
   }
   uniteCones(a, b);
-  a.cosineBeyond = std::min(a.cosineBeyond, b.cosineBeyond);
+  a.cosineEmission = std::min(a.cosineEmission, b.cosineEmission);
   a.bothSides |= b.bothSides;
   a.intensity += b.intensity;
   a.irradiance += b.irradiance;
   a.reach = std::max(a.reach, b.reach);
 }
 
-// Of a split: strength times the directions lit times the surface of the box. Flat boxes get a
-// little depth.
+// Cost of a node for split selection: strength times the solid angle lit times the surface area of
+// the box. Flat boxes get a little depth.
 double cost(const LightBounds& b, const double size[3]) {
   const double normals = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
   const double all =
-      std::min(normals + std::acos(std::clamp(double(b.cosineBeyond), -1.0, 1.0)), M_PI);
+      std::min(normals + std::acos(std::clamp(double(b.cosineEmission), -1.0, 1.0)), M_PI);
   const double directions = 2 * M_PI * (1 - std::cos(normals)) +
                             M_PI / 2 *
                                 (2 * all * std::sin(normals) - std::cos(normals - 2 * all) -
@@ -80,15 +80,16 @@ double cost(const LightBounds& b, const double size[3]) {
 }
 
 struct Range {
-  uint32_t begin, end, parent,
-      steps; // parent: its second child is this one; none: a first child, or the root
+  // parent: the node whose second child this is; none for a first child and the root
+  uint32_t begin, end, parent, steps;
 };
 
-// A binary tree first.
-struct Twig {
+// A node of the binary tree that is built first.
+struct BinaryNode {
   LightBounds bounds;
-  uint32_t next,
-      steps; // the second child (the first one follows the twig), or the light; from the root
+  // next: the second child (the first one follows the node), or the light of a leaf. steps:
+  // distance from the root.
+  uint32_t next, steps;
   bool leaf;
 };
 
@@ -96,7 +97,7 @@ class Builder {
  public:
   Builder(std::span<const LightBounds> lights, std::vector<uint32_t>& order)
       : lights_(lights), order_(order) {}
-  // Where the range is cut in two, its lights in order before and after.
+  // Partitions the lights of a range and returns the position of the split.
   uint32_t split(const Range& range, const LightBounds& whole) {
     const uint32_t middle = (range.begin + range.end) / 2;
     float low[3], high[3];
@@ -110,11 +111,12 @@ class Builder {
     int widest = 0;
     for (int k = 1; k < 3; k++)
       if (high[k] - low[k] > high[widest] - low[widest]) widest = k;
-    if (!(high[widest] - low[widest] > 0)) return middle; // all in one place
+    if (!(high[widest] - low[widest] > 0)) return middle; // all lights are in one place
     double best = std::numeric_limits<double>::infinity();
     int dimension = -1;
     uint32_t cut = 0;
-    const bool all = range.end - range.begin <= 1u << 14; // of many only the widest extent is tried
+    // With many lights only the widest axis is tried.
+    const bool all = range.end - range.begin <= 1u << 14;
     for (int k = 0; k < 3 && range.steps < balanceFrom; k++)
       if ((all || k == widest) && high[k] > low[k])
         tryCuts(range, whole, k, low[k], high[k], best, dimension, cut);
@@ -185,33 +187,36 @@ class Builder {
   std::vector<uint32_t>& order_;
 };
 
-std::vector<Twig> makeTwigs(std::span<const LightBounds> lights, std::vector<uint32_t>& order) {
-  std::vector<Twig> twigs;
-  twigs.reserve(2 * order.size() - 1);
+std::vector<BinaryNode> buildBinaryTree(std::span<const LightBounds> lights,
+                                        std::vector<uint32_t>& order) {
+  std::vector<BinaryNode> binaryNodes;
+  binaryNodes.reserve(2 * order.size() - 1);
   Builder builder(lights, order);
   std::vector<Range> left{{0, uint32_t(order.size()), none, 0}};
-  while (!left.empty()) { // depth first, the first child first: it follows its parent
+  while (!left.empty()) { // depth first; the first child follows its parent
     const Range range = left.back();
     left.pop_back();
-    const auto number = uint32_t(twigs.size());
-    if (range.parent != none) twigs[range.parent].next = number;
-    Twig twig{lights[order[range.begin]], order[range.begin], range.steps,
-              range.end - range.begin == 1};
-    for (uint32_t i = range.begin + 1; i < range.end; i++) unite(twig.bounds, lights[order[i]]);
-    twigs.push_back(twig);
-    if (twig.leaf) continue;
-    const uint32_t middle = builder.split(range, twig.bounds);
+    const auto number = uint32_t(binaryNodes.size());
+    if (range.parent != none) binaryNodes[range.parent].next = number;
+    BinaryNode binaryNode{lights[order[range.begin]], order[range.begin], range.steps,
+                          range.end - range.begin == 1};
+    for (uint32_t i = range.begin + 1; i < range.end; i++)
+      unite(binaryNode.bounds, lights[order[i]]);
+    binaryNodes.push_back(binaryNode);
+    if (binaryNode.leaf) continue;
+    const uint32_t middle = builder.split(range, binaryNode.bounds);
     left.push_back({middle, range.end, number, range.steps + 1});
     left.push_back({range.begin, middle, none, range.steps + 1});
   }
-  return twigs;
+  return binaryNodes;
 }
 
-constexpr float slack = 1e-5f; // of cosines: bounds must hold whatever rounds
+constexpr float slack = 1e-5f; // tolerance of cosines, so that bounds hold despite rounding
 
 } // namespace
 
-// Strongest twigs first are replaced by their children until a node is full.
+// Collapses the binary tree: the strongest binary nodes are replaced by their children until a node
+// is full.
 void LightTree::build(std::span<const LightBounds> lights) {
   nodes_.clear();
   depth_ = 0;
@@ -220,9 +225,9 @@ void LightTree::build(std::span<const LightBounds> lights) {
   for (uint32_t i = 0; i < lights.size(); i++)
     if (lights[i].intensity > 0 || lights[i].irradiance > 0) order.push_back(i);
   if (order.empty()) return;
-  const std::vector<Twig> twigs = makeTwigs(lights, order);
+  const std::vector<BinaryNode> binaryNodes = buildBinaryTree(lights, order);
   struct Todo {
-    uint32_t twig, parent, slot, depth;
+    uint32_t binaryNode, parent, slot, depth;
   };
   std::vector<Todo> left{{0, none, 0, 1}};
   for (size_t next = 0; next < left.size(); next++) {
@@ -234,12 +239,12 @@ void LightTree::build(std::span<const LightBounds> lights) {
     node.slot = todo.slot;
     if (todo.parent != none) nodes_[todo.parent].child[todo.slot] = number;
     depth_ = std::max(depth_, todo.depth);
-    uint32_t children[width] = {todo.twig}, count = 1;
+    uint32_t children[width] = {todo.binaryNode}, count = 1;
     while (count < width) {
       uint32_t strongest = none;
       float most = -1;
       for (uint32_t i = 0; i < count; i++) {
-        const Twig& t = twigs[children[i]];
+        const BinaryNode& t = binaryNodes[children[i]];
         const float strength = t.bounds.intensity + t.bounds.irradiance;
         if (!t.leaf && strength > most) {
           most = strength;
@@ -249,10 +254,10 @@ void LightTree::build(std::span<const LightBounds> lights) {
       if (strongest == none) break;
       const uint32_t opened = children[strongest];
       children[strongest] = opened + 1;
-      children[count++] = twigs[opened].next;
+      children[count++] = binaryNodes[opened].next;
     }
     for (uint32_t i = 0; i < count; i++) {
-      const Twig& t = twigs[children[i]];
+      const BinaryNode& t = binaryNodes[children[i]];
       fill(number, i, t.bounds);
       nodes_[number].leaf[i] = t.leaf;
       if (t.leaf) {
@@ -280,7 +285,7 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
       far < 1e19 ? float(far * far * (1 + 1e-6)) : std::numeric_limits<float>::infinity();
   node.cosine[i] = b.cosineNormals;
   node.sine[i] = float(std::sqrt(std::max(0.0, 1 - double(b.cosineNormals) * b.cosineNormals)));
-  node.beyond[i] = b.cosineBeyond;
+  node.beyond[i] = b.cosineEmission;
   node.both[i] = b.bothSides ? 1 : 0;
   node.intensity[i] = b.intensity;
   node.irradiance[i] = b.irradiance;
@@ -289,9 +294,9 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
 
 struct LightTree::Query {
   float place[3], normal[3];
-  float facing; // added to the cosine at the receiver: 2 where its side does not matter
-  float cut,
-      least; // of that cosine: below the one nothing arrives, and it counts as the other at least
+  float facing; // added to the cosine at the receiver; 2 if its side does not matter
+  // cut: nothing arrives below this cosine. least: lower bound of the cosine otherwise.
+  float cut, least;
   Query(const float from[3], const float* side, Side meaning) {
     for (int k = 0; k < 3; k++) {
       place[k] = from[k];
@@ -303,9 +308,10 @@ struct LightTree::Query {
   }
 };
 
-// A bound of the irradiance of each child at a place that faces where the light comes from, up to
-// the nearness of the box. One loop without calls or branches: it goes into vector lanes.
-void LightTree::measure(const Node& node, const Query& q, float* __restrict out) {
+// Computes the importance of each child: a bound of its irradiance at a point that faces the light,
+// except for the clamped distance near the box. One loop without calls or branches, so that it
+// vectorises.
+void LightTree::importances(const Node& node, const Query& q, float* __restrict out) {
   const auto larger = [](float a, float b) { return a > b ? a : b; };
   for (uint32_t i = 0; i < width; i++) {
     const float x = q.place[0] - node.centre[0][i], y = q.place[1] - node.centre[1][i],
@@ -313,11 +319,10 @@ void LightTree::measure(const Node& node, const Query& q, float* __restrict out)
     const float square = x * x + y * y + z * z, radius2 = node.radius2[i];
     const bool within = square <= radius2 * (1 + 1e-5f);
     const float inverse = 1 / std::sqrt(within ? 1.0f : square);
-    // The cone about the box as seen from the place.
+    // The cone about the box as seen from the point.
     const float cosBox = std::sqrt(larger(1 - radius2 * inverse * inverse, 0)) - slack;
     const float sinBox = std::sqrt(larger(1 - cosBox * cosBox, 0));
-    // Of all directions that leave the box towards the place the one nearest to the cone of
-    // normals.
+    // The direction from the box to the point that is nearest to the cone of normals.
     const float along = (x * node.axis[0][i] + y * node.axis[1][i] + z * node.axis[2][i]) * inverse;
     const float axial = larger(along, -along * node.both[i] - (1 - node.both[i]) * 2);
     const float across = std::sqrt(larger(1 - axial * axial, 0));
@@ -328,7 +333,7 @@ void LightTree::measure(const Node& node, const Query& q, float* __restrict out)
     const float leaves = ((cosX > cosBox) | within) ? 1.0f : leavesBeside,
                 atLeast = larger(leaves, slack);
     const float leaving = leaves < node.beyond[i] - slack ? 0.0f : atLeast;
-    // And of all that arrive the one nearest to the receiver's normal.
+    // The arriving direction that is nearest to the receiver's normal.
     const float facing = q.facing - (x * q.normal[0] + y * q.normal[1] + z * q.normal[2]) * inverse;
     const float aside = std::sqrt(larger(1 - facing * facing, 0));
     const float arrivesBeside = facing * cosBox + aside * sinBox;
@@ -351,7 +356,7 @@ LightTree::Choice LightTree::choose(const float place[3], const float* normal, d
   for (uint32_t at = 0;;) {
     const Node& node = nodes_[at];
     float each[width];
-    measure(node, query, each);
+    importances(node, query, each);
     double sum = 0;
     for (const float m : each) sum += double(m);
     if (!(sum > 0)) return {};
@@ -375,7 +380,7 @@ float LightTree::probability(const float place[3], const float* normal, uint32_t
   for (;;) {
     const Node& node = nodes_[at.node];
     float each[width];
-    measure(node, query, each);
+    importances(node, query, each);
     double sum = 0;
     for (const float m : each) sum += double(m);
     if (!(sum > 0)) return 0;

@@ -1,5 +1,5 @@
-// many_lights.cpp: How a light's strength falls is measured: its extent does not
-// tell.
+// many_lights.cpp: builds the light samplers. The falloff of a light is measured, because its
+// extent does not describe it.
 #include "render/lights/many_lights.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace openrt {
 namespace {
 
-struct Placed { // a light with an extent, in render space
+struct Placed { // a light with an extent, transformed to render space
   uint32_t light;
   RtsExtent extent;
   float position[3], axis[3];
-  bool similar; // angles are those of its local space
+  bool similar; // the transform is a similarity: angles are those of the light's space
   double stretch;
 };
 
@@ -57,13 +57,13 @@ bool place(const RenderScene& scene, uint32_t number, Placed& out) {
   for (int k = 0; k < 3; k++)
     for (int j = 0; j < 3; j++)
       out.similar &= std::fabs(gram[k][j] - (k == j ? gram[0][0] : 0)) < 1e-4 * gram[0][0];
-  out.stretch = out.similar ? std::sqrt(gram[0][0])
-                            : std::sqrt(out.stretch); // at most so long becomes a unit
+  // Upper bound of the length of a transformed unit vector.
+  out.stretch = out.similar ? std::sqrt(gram[0][0]) : std::sqrt(out.stretch);
   for (float& a : out.axis) a = length > 0 ? float(a / std::sqrt(length)) : 0;
   return finite(out.position, 3) && finite(out.axis, 3);
 }
 
-// Mean colour of a light at two distances along its axis.
+// Computes the mean colour of a light at `distance` and at twice that along its axis.
 void measure(const RenderScene& scene, const Placed& p, float distance, Arena& arena,
              double out[2]) {
   ArenaScope scope(arena);
@@ -107,18 +107,18 @@ LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, 
     b.axis[k] = p.axis[k];
   }
   b.cosineNormals = p.similar && p.extent.cosine > -1 ? std::min(p.extent.cosine, 1.0f) : -1;
-  b.cosineBeyond = 1; // light leaves within the cone alone
+  b.cosineEmission = 1; // light is emitted only within the cone
   const double reach = double(p.extent.radius) * p.stretch;
   if (std::isfinite(reach) && reach < double(b.reach)) b.reach = float(reach);
   const float near = reach > 0 ? std::min(distance, float(reach / 4)) : distance;
   double seen[2];
   measure(scene, p, near, arena, seen);
-  // I / d^2 + E through both; the colour of a light is that of a white surface, a pi-th of what
-  // arrives.
+  // Fits I / d^2 + E to both values. The colour of a light is that of a white surface, irradiance
+  // over pi.
   const double flat = std::max(0.0, (4 * seen[1] - seen[0]) / 3);
   const double solidAngle = 2 * M_PI * (1 - std::clamp(double(p.extent.cosine), -1.0, 1.0 - 1e-6));
-  const double mean = double(p.extent.power) / solidAngle / M_PI * p.stretch *
-                      p.stretch; // intensity in units of the light's space
+  // Mean intensity, in units of the light's space.
+  const double mean = double(p.extent.power) / solidAngle / M_PI * p.stretch * p.stretch;
   const double falling = std::max((seen[0] - flat) * near * near, flat > 0 ? 0 : mean);
   b.intensity = float(std::min(falling, 1e30));
   b.irradiance = float(std::min(flat, 1e30));
@@ -128,8 +128,7 @@ LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, 
 bool sameLights(const RenderScene& a, const RenderScene& b) {
   if (a.lightSets != b.lightSets || a.lights.size() != b.lights.size() || a.textures != b.textures)
     return false;
-  for (size_t i = 0; i < a.lights.size();
-       i++) { // an unchanged shader has kept its block of parameters
+  for (size_t i = 0; i < a.lights.size(); i++) { // an unchanged shader keeps its parameter block
     const LightSlot &x = a.lights[i], &y = b.lights[i];
     if (x.shader.shaderClass != y.shader.shaderClass || x.shader.params != y.shader.params ||
         std::memcmp(&x.toLocal, &y.toLocal, sizeof x.toLocal) != 0)
@@ -140,7 +139,7 @@ bool sameLights(const RenderScene& a, const RenderScene& b) {
 
 } // namespace
 
-ManyLights::ManyLights(const RenderScene& scene, const std::vector<uint32_t>& set) {
+LightSampler::LightSampler(const RenderScene& scene, const std::vector<uint32_t>& set) {
   std::vector<Placed> placed;
   float low[3], high[3];
   for (const uint32_t light : set) {
@@ -159,13 +158,13 @@ ManyLights::ManyLights(const RenderScene& scene, const std::vector<uint32_t>& se
   double square = 0;
   for (int k = 0; k < 3; k++) square += (double(high[k]) - low[k]) * (double(high[k]) - low[k]);
   const auto distance = float(square > 0 ? std::min(std::sqrt(square) / 4, 1e15)
-                                         : 1); // at which strengths are compared
+                                         : 1); // distance at which strengths are compared
   Arena arena;
   std::vector<LightBounds> bounds;
   for (const Placed& p : placed) {
     const LightBounds b = boundsOf(scene, p, distance, arena);
     if (!(b.intensity > 0 || b.irradiance > 0)) {
-      always_.push_back(p.light); // nothing is known of it
+      always_.push_back(p.light); // its falloff could not be measured
       continue;
     }
     bounds.push_back(b);
@@ -174,20 +173,20 @@ ManyLights::ManyLights(const RenderScene& scene, const std::vector<uint32_t>& se
   tree_.build(bounds);
 }
 
-ManyLights::Choice ManyLights::choose(const float place[3], const float normal[3],
-                                      double pick) const {
+LightSampler::Choice LightSampler::choose(const float place[3], const float normal[3],
+                                          double pick) const {
   const LightTree::Choice c = tree_.choose(place, normal, pick, LightTree::Side::likely);
   return {c.probability > 0 ? chosen_[c.light] : 0, c.probability};
 }
 
-std::shared_ptr<const std::vector<ManyLights>> makeManyLights(const RenderScene& scene,
-                                                              const RenderScene* before) {
+std::shared_ptr<const std::vector<LightSampler>> makeLightSamplers(const RenderScene& scene,
+                                                                   const RenderScene* before) {
   const bool many = scene.frame.transport >= RT_TRANSPORT_PATH &&
                     std::any_of(scene.lightSets.begin(), scene.lightSets.end(),
-                                [](const auto& s) { return s.size() > ManyLights::few; });
+                                [](const auto& s) { return s.size() > LightSampler::few; });
   if (!many) return nullptr;
-  if (before && before->manyLights && sameLights(scene, *before)) return before->manyLights;
-  auto sets = std::make_shared<std::vector<ManyLights>>();
+  if (before && before->lightSamplers && sameLights(scene, *before)) return before->lightSamplers;
+  auto sets = std::make_shared<std::vector<LightSampler>>();
   for (const auto& set : scene.lightSets) sets->emplace_back(scene, set);
   return sets;
 }

@@ -1,7 +1,8 @@
-// many_lights.h: the lights of a set, for path tracing: a few are all asked; of many, one is chosen
-// for each place through a light tree (render/lights/light_tree.h) and stands for all of them, its
-// colour over its probability. Lights without extent, and those that shine everywhere the same, are
-// always asked. Made between frames while lights change, read by all render threads.
+// many_lights.h: the light sampler for the light shaders of a light set in path tracing. A few
+// lights are all evaluated. Of many, one is sampled per hit through a light tree
+// (render/lights/light_tree.h) and represents all of them: its colour is divided by its selection
+// probability. Parallel lights and lights whose class does not declare an extent are always
+// evaluated. Built between frames when lights change, read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +15,19 @@ namespace openrt {
 
 struct RenderScene;
 
-class ManyLights {
+class LightSampler {
  public:
-  static constexpr uint32_t few = 16; // up to here all are asked
+  static constexpr uint32_t few = 16; // sets of up to so many lights are evaluated completely
 
-  // set: of RenderScene::lights.
-  ManyLights(const RenderScene& scene, const std::vector<uint32_t>& set);
+  // set: indices into RenderScene::lights.
+  LightSampler(const RenderScene& scene, const std::vector<uint32_t>& set);
   const std::vector<uint32_t>& always() const { return always_; }
   bool chooses() const { return !tree_.empty(); }
   struct Choice {
-    uint32_t light; // of RenderScene::lights
+    uint32_t light; // index into RenderScene::lights
     float probability;
   };
-  // normal: of the surface, only a hint.
+  // Samples a light for a point. normal: the surface normal, used only as a hint.
   Choice choose(const float place[3], const float normal[3], double pick) const;
 
  private:
@@ -34,8 +35,9 @@ class ManyLights {
   LightTree tree_;
 };
 
-// By light set; null where no set has many. before: the last snapshot, or null.
-std::shared_ptr<const std::vector<ManyLights>> makeManyLights(const RenderScene& scene,
-                                                              const RenderScene* before);
+// Builds the samplers by light set. Returns null if no set has many lights. before: the last
+// snapshot, or null.
+std::shared_ptr<const std::vector<LightSampler>> makeLightSamplers(const RenderScene& scene,
+                                                                   const RenderScene* before);
 
 } // namespace openrt

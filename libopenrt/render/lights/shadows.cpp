@@ -1,6 +1,6 @@
-// shadows.cpp: shadow rays of a batch, compacted: first against all that is opaque, then, for the
-// rays that got through and only if the scene has anything transparent, through the transparent
-// surfaces one after the other.
+// shadows.cpp: shadow rays of a batch, compacted. They are tested against all opaque surfaces
+// first. If the scene has transparent surfaces, the unoccluded rays then pass these one after the
+// other.
 #include "render/lights/shadows.h"
 #include "shading/running.h"
 
@@ -10,7 +10,7 @@
 namespace openrt {
 namespace {
 
-// A ray for every wanted lane that light can reach at all.
+// Makes a shadow ray for every wanted lane that the light can reach.
 ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIllumination& light) {
   const RtsHits& hits = batch.points->hits;
   ShadowRays s;
@@ -23,8 +23,9 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     const float l[3] = {light.toLight[0][i], light.toLight[1][i], light.toLight[2][i]};
     float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
     float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]}, origin[3];
-    // The facet faces away, the smooth surface does not: the ray starts on the smooth surface, or
-    // behind where it is flat. Light that comes through the surface (2) arrives from behind.
+    // If the facet faces away from the light but the smooth surface does not, the ray starts on the
+    // smooth surface, or behind the facet if the surface is flat. Light that is transmitted through
+    // the surface (2) arrives from behind.
     const bool away = g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0;
     if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) {
       g[0] = -g[0];
@@ -51,7 +52,7 @@ void scaleColor(float* const color[3], uint32_t lane, float r, float g, float b)
   color[2][lane] *= b;
 }
 
-// Keeps the rays whose flag is 0.
+// Removes the rays whose flag is set.
 void compact(ShadowRays& s, const uint8_t* drop) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < s.rays.count; i++) {
@@ -67,9 +68,9 @@ void compact(ShadowRays& s, const uint8_t* drop) {
   s.rays.count = n;
 }
 
-// One transparent surface further along every ray; rays that meet none are done.
-void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done,
-                 float* const color[3]) {
+// Advances every ray by one transparent surface; rays that hit none are done.
+void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* done,
+                             float* const color[3]) {
   const RenderScene& scene = *batch.scene;
   Arena& arena = *batch.arena;
   ArenaScope scope(arena);
@@ -96,7 +97,8 @@ void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* 
     RtsBatch inner = batch;
     inner.tracer = nullptr;
     inner.points = &points;
-    // What mirrors and glass do with light is not guessed where it is followed.
+    // With light tracing, glass is opaque to shadow rays: light tracing follows the refracted
+    // light.
     if (shaderClass.transmit &&
         !(scene.lightSources && shaderClass.surface && shaderClass.medium)) {
       const RunningShader running(shaderClass);
@@ -127,7 +129,7 @@ void passSurface(const RtsBatch& batch, ShadowRays& s, RayHits& found, uint8_t* 
 
 } // namespace
 
-void passShadows(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
+void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
   if (s.rays.count == 0) return;
   ArenaScope scope(*batch.arena);
   const RenderScene& scene = *batch.scene;
@@ -141,17 +143,17 @@ void passShadows(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
   RayHits found;
   found.allocate(*batch.arena, s.rays.count);
   for (uint32_t pass = 0; s.rays.count && pass < scene.frame.depth; pass++) {
-    passSurface(batch, s, found, blocked, color);
+    crossTransparentSurface(batch, s, found, blocked, color);
     compact(s, blocked);
   }
   for (uint32_t i = 0; i < s.rays.count; i++)
-    scaleColor(color, s.lane[i], 0, 0, 0); // beyond the depth: dark, as documented
+    scaleColor(color, s.lane[i], 0, 0, 0); // too many transparent surfaces: dark, as documented
 }
 
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {
   ArenaScope scope(*batch.arena);
   ShadowRays s = makeRays(batch, wanted, light);
-  passShadows(batch, s, light.color);
+  traceTransmittance(batch, s, light.color);
 }
 
 } // namespace openrt

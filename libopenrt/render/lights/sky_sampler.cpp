@@ -18,8 +18,8 @@ double luminance(const float c[3]) {
   return std::isfinite(l) && l > 0 ? std::min(l, 1e30) : 0;
 }
 
-// As many columns as the widest picture has texels around: a single one goes around, one of several
-// covers a quarter.
+// Returns the number of columns: as many as the widest texture has texels around the horizon. A
+// single texture covers the whole turn, one of several a quarter.
 uint32_t columnsFor(const RenderScene& scene) {
   const ShaderSlot& environment = scene.environment.shader;
   uint32_t widest = 0, pictures = 0;
@@ -43,7 +43,7 @@ double SkySampler::solidAngle(uint32_t row) const {
   return 2 * M_PI / columns_ * (std::cos(M_PI * row / rows_) - std::cos(M_PI * (row + 1) / rows_));
 }
 
-// Mean radiance of the cells from four places in each.
+// Computes the mean luminance of the cells from four directions in each.
 void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) const {
   const ShaderSlot& environment = scene.environment.shader;
   Arena arena;
@@ -92,7 +92,7 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
 bool SkySampler::shines(const RenderScene& scene) {
   SkySampler coarse;
   coarse.columns_ = 64;
-  coarse.rows_ = 8; // four places in each
+  coarse.rows_ = 8; // four directions in each cell
   std::vector<float> cells(size_t(coarse.columns_) * coarse.rows_);
   coarse.measure(scene, cells);
   return std::any_of(cells.begin(), cells.end(), [](float mean) { return mean > 0; });
@@ -106,7 +106,7 @@ SkySampler::SkySampler(const RenderScene& scene) {
   std::vector<float> cells(size_t(columns_) * rows_);
   measure(scene, cells);
   for (const float mean : cells) brightest_ = std::max(brightest_, double(mean));
-  // A cell beside a much brighter one may hold some of it between the places that were looked at.
+  // A cell beside a much brighter one may contain some of its light between the sampled directions.
   const auto beside = [&](uint32_t row, uint32_t column) {
     float most = 0;
     for (int y = -1; y <= 1; y++)
@@ -133,14 +133,13 @@ SkySampler::SkySampler(const RenderScene& scene) {
   for (double& share : byRow_) share /= total_ > 0 ? total_ : 1;
 }
 
-float SkySampler::cellDensity(uint32_t row, uint32_t column) const {
+float SkySampler::cellPdf(uint32_t row, uint32_t column) const {
   const float* shares = inRow_.data() + size_t(row) * columns_;
   const double inRow = double(shares[column]) - (column ? shares[column - 1] : 0.0f);
   return float((byRow_[row] - (row ? byRow_[row - 1] : 0.0)) * inRow / solidAngle(row));
 }
 
-// What is left of u and v after they have chosen row and column places the direction within the
-// cell.
+// Selects row and column by u and v, and uses their remainders for the position in the cell.
 float SkySampler::sample(double u, double v, float direction[3]) const {
   if (!usable()) return 0;
   const auto row = uint32_t(std::min(
@@ -157,10 +156,10 @@ float SkySampler::sample(double u, double v, float direction[3]) const {
   direction[0] = float(s * std::cos(phi));
   direction[1] = float(y);
   direction[2] = float(s * std::sin(phi));
-  return cellDensity(row, column);
+  return cellPdf(row, column);
 }
 
-float SkySampler::density(const float d[3]) const {
+float SkySampler::pdf(const float d[3]) const {
   if (!usable()) return 0;
   const double theta = std::acos(std::clamp(double(d[1]), -1.0, 1.0));
   double phi = std::atan2(double(d[2]), double(d[0]));
@@ -168,7 +167,7 @@ float SkySampler::density(const float d[3]) const {
   if (!(theta >= 0) || !(phi >= 0)) return 0;
   const uint32_t row = std::min(uint32_t(theta / M_PI * rows_), rows_ - 1),
                  column = std::min(uint32_t(phi / (2 * M_PI) * columns_), columns_ - 1);
-  return cellDensity(row, column);
+  return cellPdf(row, column);
 }
 
 } // namespace openrt

@@ -1,8 +1,8 @@
-// sky_sampler.h: directions of the environment in proportion to its radiance: a table of cells of
-// equal latitude and longitude in its local space, as fine as its pictures, at least fine enough
-// for a sun of half a degree. M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th
-// ed., 12.5 (without its compensation, so that the choice serves alone where need be). Made between
-// frames when the environment or its pictures change, read by all render threads.
+// sky_sampler.h: importance sampling of the environment by its radiance. A table of equal
+// latitude-longitude cells in its local space has the resolution of the environment's textures, and
+// at least enough for a sun of half a degree. M. Pharr, W. Jakob, G. Humphreys, "Physically Based
+// Rendering", 4th ed., 12.5, without MIS compensation, so that the strategy is also unbiased alone.
+// Built between frames when the environment or its textures change, read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -14,26 +14,27 @@ struct RenderScene;
 
 class SkySampler {
  public:
-  // Reads the environment of the scene; not usable() where there is none or it is black.
+  // Tabulates the scene's environment. usable() is false if there is none or it is black.
   explicit SkySampler(const RenderScene& scene);
   bool usable() const { return total_ > 0; }
-  double brightest() const { return brightest_; } // mean luminance of a cell
-  // Whether some of 2048 directions of the scene's environment, which has `miss`, has light.
+  double brightest() const { return brightest_; } // Returns the largest mean luminance of a cell.
+  // Returns whether any of 2048 directions of the scene's environment has light. The environment
+  // must have `miss`.
   static bool shines(const RenderScene& scene);
-  // A local unit direction and its density by solid angle, from a point of the unit square. 0:
-  // none.
+  // Samples a local unit direction from a point of the unit square and returns its solid-angle pdf;
+  // 0: no sample.
   float sample(double u, double v, float direction[3]) const;
-  float density(const float direction[3]) const;
+  float pdf(const float direction[3]) const;
   uint32_t columns() const { return columns_; }
 
  private:
   SkySampler() = default;
   void measure(const RenderScene& scene, std::vector<float>& cells) const;
   double solidAngle(uint32_t row) const;
-  float cellDensity(uint32_t row, uint32_t column) const;
+  float cellPdf(uint32_t row, uint32_t column) const;
   uint32_t columns_ = 0, rows_ = 0;
-  std::vector<float> inRow_;  // by cell: share of its row up to its end
-  std::vector<double> byRow_; // share of the sphere up to the row's end
+  std::vector<float> inRow_;  // by cell: cumulative share of its row
+  std::vector<double> byRow_; // by row: cumulative share of the sphere
   double total_ = 0, brightest_ = 0;
 };
 

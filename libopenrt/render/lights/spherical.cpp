@@ -23,7 +23,7 @@ bool normalize(double v[3]) {
   return true;
 }
 
-// About an axis, with the cosine 1 - below.
+// Computes the direction about an axis with the cosine 1 - below.
 void aboutAxis(const double axis[3], double below, double turn, double out[3]) {
   double s[3], t[3];
   basisOf(axis, s, t);
@@ -62,7 +62,7 @@ void SphericalTriangle::look() {
     for (int k = 0; k < 3; k++) unit_[c][k] = corner_[c][k] * scale;
     size *= length;
   }
-  if (!(size > 0) || !std::isfinite(size)) return; // also where a length was 0
+  if (!(size > 0) || !std::isfinite(size)) return; // also if a length was 0
   volume_ = std::fabs(height_) / size;
   others_ = dot(unit_[0], unit_[2]) + dot(unit_[1], unit_[2]);
   first_ = 1 + dot(unit_[0], unit_[1]);
@@ -90,15 +90,15 @@ bool SphericalTriangle::sample(double u, double v, double direction[3], double& 
     return normalize(direction);
   }
   if (!(solidAngle_ > 0)) return false;
-  // A place on the arc from the first corner to the last that cuts off the share u of the solid
-  // angle, then a place on the arc from the second corner to there.
+  // Selects a point on the arc from the first corner to the last that cuts off the fraction u of
+  // the solid angle, then a point on the arc from the second corner to there.
   const double half = u * solidAngle_ / 2, c = std::cos(half), s = std::sin(half);
   const double x = volume_ * c - others_ * s, y = first_ * s;
   double r[3], end[3];
   for (int k = 0; k < 3; k++) r[k] = x * unit_[0][k] + y * unit_[2][k];
   const double square = dot(r, r), scale = square > 0 ? 2 * dot(unit_[0], r) / square : 0;
   for (int k = 0; k < 3; k++) end[k] = scale * r[k] - unit_[0][k];
-  double across[3], span = 0; // span: 1 - cosine of the second arc, from its chord
+  double across[3], span = 0; // span: 1 - cosine of the second arc, computed from its chord
   const double far = dot(unit_[1], end);
   for (int k = 0; k < 3; k++) {
     across[k] = end[k] - far * unit_[1][k];
@@ -112,16 +112,16 @@ bool SphericalTriangle::sample(double u, double v, double direction[3], double& 
   return distance > 0 && std::isfinite(distance);
 }
 
-double SphericalTriangle::density(const double direction[3]) const {
+double SphericalTriangle::pdf(const double direction[3]) const {
   if (!far_) return solidAngle_ > 0 ? 1 / solidAngle_ : 0;
   const double along = std::fabs(dot(normal_, direction)), distance = distanceAlong(direction);
   return height_ != 0 ? 2 * distance * distance / along
-                      : 0; // square of the distance over the projected area
+                      : 0; // squared distance over the projected area
 }
 
-// Barycentric coordinates against the rounding of a float direction and of the kernel's corners, as
-// far as they move the place where the plane is met.
-bool SphericalTriangle::atRim(const double direction[3], double distance) const {
+// Compares barycentric coordinates with the rounding of a float direction and of the kernel's
+// corners, as far as these move the intersection with the plane.
+bool SphericalTriangle::isNearEdge(const double direction[3], double distance) const {
   constexpr double rounding = 0x1p-20;
   const double along = dot(normal_, direction), square = dot(normal_, normal_);
   double place[3];
@@ -134,8 +134,8 @@ bool SphericalTriangle::atRim(const double direction[3], double distance) const 
       way[k] = place[k] - from[k];
     }
     cross(edge, way, turn);
-    // dot(turn, normal) / |normal| is the distance from the edge times its length; a turn of the
-    // ray moves the place by more the flatter it meets the plane.
+    // dot(turn, normal) / |normal| is the distance from the edge times its length. An angular error
+    // of the ray moves the intersection more at grazing angles.
     const double inside = std::fabs(dot(turn, normal_)) * std::fabs(along);
     if (inside <= rounding * distance * std::sqrt(dot(edge, edge)) * square) return true;
   }
@@ -160,8 +160,8 @@ SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float to
   if (!inside_) cap_ = 1 / (square * (1 + std::sqrt(1 - 1 / square)));
 }
 
-// With the density of directions in the sphere's frame: a linear map M takes solid angle there to
-// its |det M| / |M d|^3 here.
+// Samples the cone uniformly in the sphere's frame: a linear map M transforms solid angle there by
+// |det M| / |M d|^3.
 bool SphericalEllipsoid::sample(double u, double v, double direction[3], double& distance) const {
   if (inside_) return false;
   const double length = std::sqrt(dot(eye_, eye_)),
@@ -172,17 +172,17 @@ bool SphericalEllipsoid::sample(double u, double v, double direction[3], double&
   const double scale = std::sqrt(dot(direction, direction));
   if (!normalize(direction)) return false;
   for (double& l : local) l /= scale;
-  // Of the two places along the line the nearer one.
+  // The nearer of the two intersections along the line.
   const double a = dot(local, local), b = dot(eye_, local), c = dot(eye_, eye_) - 1;
-  double
-      offset[3]; // from the centre to the line: keeps its digits where the sphere is small and far
+  // From the centre to the line; accurate also if the sphere is small and far away.
+  double offset[3];
   for (int k = 0; k < 3; k++) offset[k] = eye_[k] - b / a * local[k];
   const double root = std::sqrt(std::max(0.0, (1 - dot(offset, offset)) * a));
   distance = c / (root - b);
   return distance > 0 && std::isfinite(distance);
 }
 
-double SphericalEllipsoid::density(const double direction[3]) const {
+double SphericalEllipsoid::pdf(const double direction[3]) const {
   if (inside_) return 0;
   double local[3];
   for (int i = 0; i < 3; i++) local[i] = dot(toLocal_[i], direction);

@@ -19,12 +19,12 @@ enum Pair : uint32_t {
   aim,
   first,
   perLevel = 4
-}; // of random numbers: at the lamp, then by level
+}; // pairs of random numbers: those for the light source, then `perLevel` for each level
 enum Use : uint32_t { direction, choice, lens };
 
-// Flux meets a surface by its true cosines, lobes count those at their normals: E. Veach,
-// 1997, 5.3.
-float tilt(const RtsLobe& lobe, const RtsHits& hits, uint32_t i, const float out[3]) {
+// Returns the correction for shading normals in importance transport: flux scales with the cosines
+// at the geometric normal, lobes with those at their own normal. E. Veach, 1997, 5.3.
+float adjointCorrection(const RtsLobe& lobe, const RtsHits& hits, uint32_t i, const float out[3]) {
   const float n[3] = {lobe.normal[0][i], lobe.normal[1][i], lobe.normal[2][i]};
   const float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
   const float d[3] = {hits.direction[0][i], hits.direction[1][i], hits.direction[2][i]};
@@ -62,7 +62,7 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
   level_ = 0;
   rays_.allocate(arena_, n);
   states_ = arena_.take<RayState>(padded(n));
-  starts_.clear();
+  lightRays_.clear();
   departures_.assign(n, {});
   queue_.clear();
   for (uint32_t i = 0; i < n; i++) {
@@ -71,8 +71,8 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
     sampleAt(state, Pair::which, pick);
     sampleAt(state, Pair::place, where);
     sampleAt(state, Pair::aim, towards);
-    starts_.push_back(sources_.begin(scene_, pick[0] + pick[1] * 0x1p-24, where, towards));
-    const LightSources::Start& start = starts_.back();
+    lightRays_.push_back(sources_.sampleRay(scene_, pick[0] + pick[1] * 0x1p-24, where, towards));
+    const LightSources::LightRay& start = lightRays_.back();
     if (!(start.weight > 0) || !std::isfinite(start.weight)) continue;
     QueuedRay& ray = queue_.emplace_back();
     std::copy_n(start.origin, 3, ray.origin);
@@ -80,11 +80,11 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
     ray.state = state;
   }
   while (!queue_.empty() &&
-         level_ < scene_.frame.depth) { // the surface that the camera sees is one more
+         level_ < scene_.frame.depth) { // the surface that the camera sees counts as one more
     next_.clear();
     load(uint32_t(queue_.size()));
     counters_.secondary += queue_.size();
-    step(uint32_t(queue_.size()));
+    traceWave(uint32_t(queue_.size()));
     queue_.swap(next_);
     level_++;
   }
@@ -104,26 +104,27 @@ void LightTracer::load(uint32_t n) {
   }
 }
 
-void LightTracer::step(uint32_t n) {
+void LightTracer::traceWave(uint32_t n) {
   ArenaScope scope(arena_);
   RayHits hits;
   hits.allocate(arena_, n);
   scene_.kernel->intersect(rays_, maskAll, Coherence::incoherent, hits);
-  lookThroughBacks(scene_, arena_, counters_, rays_, hits);
-  absorbOnTheWay(scene_, rays_, hits, states_);
+  skipCulledBacks(scene_, arena_, counters_, rays_, hits);
+  absorbAlongRays(scene_, rays_, hits, states_);
   auto *met = arena_.take<uint32_t>(n), *order = arena_.take<uint32_t>(n);
   auto* travelled = arena_.takeZero<float>(padded(n));
-  uint32_t mets = 0;
+  uint32_t hitCount = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (hits.record[i] == noHit) continue;
     const uint32_t traits = (*scene_.shaders)[scene_.records[hits.record[i]].shader].traits;
-    if (states_[i].course == Course::straight && !(traits & (RTS_SPECULAR | RTS_TRANSPARENT)))
+    if (states_[i].pathClass == PathClass::undeflected &&
+        !(traits & (RTS_SPECULAR | RTS_TRANSPARENT)))
       continue;
-    departures_[states_[i].path].way += double(hits.t[i]);
-    met[mets++] = i;
+    departures_[states_[i].path].pathLength += double(hits.t[i]);
+    met[hitCount++] = i;
   }
   std::vector<BucketRange> ranges;
-  sortByBucket(scene_, hits, met, mets, order, counts_, ranges);
+  sortByBucket(scene_, hits, met, hitCount, order, counts_, ranges);
   for (const BucketRange& range : ranges) {
     ArenaScope inner(arena_);
     const uint32_t* lanes = order + range.begin;
@@ -133,7 +134,7 @@ void LightTracer::step(uint32_t n) {
     if (shaderClass.surface)
       scatter(points, lanes, shaderClass);
     else if (shaderClass.transmit)
-      pass(points, lanes, shaderClass);
+      transmitRays(points, lanes, shaderClass);
   }
 }
 
@@ -146,8 +147,10 @@ RtsBatch LightTracer::makeBatch(const Points& points) {
   return batch;
 }
 
-// A surface that answers for itself lets light pass, and returns none.
-void LightTracer::pass(const Points& points, const uint32_t* order, const RtsClass& shaderClass) {
+// Continues paths through a surface that has `transmit` but no lobes: it attenuates light and does
+// not scatter it.
+void LightTracer::transmitRays(const Points& points, const uint32_t* order,
+                               const RtsClass& shaderClass) {
   const uint32_t n = points.hits.count;
   RtsBatch batch = makeBatch(points);
   float* through[3];
@@ -166,8 +169,8 @@ void LightTracer::pass(const Points& points, const uint32_t* order, const RtsCla
   }
 }
 
-// The flux that a light without extent sends on a straight way to a place.
-void LightTracer::lampFlux(const Points& points, const LightSources::Start& start,
+// Computes the flux that a light without extent sends to a point, without occlusion.
+void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& start,
                            const float at[3], float flux[3]) {
   const LightSlot& light = scene_.lights[start.light];
   ArenaScope scope(arena_);
@@ -185,19 +188,20 @@ void LightTracer::lampFlux(const Points& points, const LightSources::Start& star
   const float* places[3] = {local[0], local[1], local[2]};
   const RunningShader running(*light.shader.shaderClass);
   light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
-  double way = 0;
-  for (int k = 0; k < 3; k++) way += std::pow(double(at[k]) - start.origin[k], 2);
-  const double scale =
-      M_PI * start.weight * (start.parallel ? 1 : way); // a colour is the radiance of white paper
+  double squaredDistance = 0;
+  for (int k = 0; k < 3; k++) squaredDistance += std::pow(double(at[k]) - start.origin[k], 2);
+  // Factor pi: a light's colour is the radiance of a white Lambert surface.
+  const double scale = M_PI * start.weight * (start.parallel ? 1 : squaredDistance);
   for (int k = 0; k < 3; k++) {
     flux[k] = float(out.color[k][0] * scale);
     if (!(flux[k] > 0) || !std::isfinite(flux[k])) flux[k] = 0;
   }
 }
 
-// The flux that the lamp sends along a ray that has met its first surface.
-bool LightTracer::leaveLamp(const Points& points, uint32_t i, RayState& state) {
-  const LightSources::Start& start = starts_[state.path];
+// Multiplies the throughput by the emitted flux when a path has reached its first surface. Returns
+// whether any is left.
+bool LightTracer::applyEmission(const Points& points, uint32_t i, RayState& state) {
+  const LightSources::LightRay& start = lightRays_[state.path];
   Departure& departure = departures_[state.path];
   float flux[3] = {0, 0, 0};
   if (start.shape != LightSources::none) {
@@ -209,21 +213,22 @@ bool LightTracer::leaveLamp(const Points& points, uint32_t i, RayState& state) {
                          points.hits.position[2][i]};
     lampFlux(points, start, at, flux);
     std::copy_n(flux, 3, departure.flux);
-    departure.settled = start.parallel;
+    departure.attenuationKnown = start.parallel;
   }
   for (int k = 0; k < 3; k++)
     state.throughput[k] *= flux[k] > 0 && std::isfinite(flux[k]) ? flux[k] : 0.0f;
   return largest(state.throughput) > 0;
 }
 
-// Asks the light at the end of the unfolded way, in the direction that the path has left it in. A
-// light that falls with the square of the distance has the same flux everywhere: what differs there
-// is rounding.
+// Evaluates the light at the end of the unfolded path, in the direction in which the path has left
+// it, and stores the attenuation relative to the first surface. A light with inverse-square falloff
+// has the same flux everywhere; a difference below 1e-3 is then taken as rounding.
 void LightTracer::attenuate(const Points& points, uint32_t path) {
-  const LightSources::Start& start = starts_[path];
+  const LightSources::LightRay& start = lightRays_[path];
   Departure& departure = departures_[path];
   float at[3], flux[3];
-  for (int k = 0; k < 3; k++) at[k] = float(start.origin[k] + departure.way * start.direction[k]);
+  for (int k = 0; k < 3; k++)
+    at[k] = float(start.origin[k] + departure.pathLength * start.direction[k]);
   lampFlux(points, start, at, flux);
   for (int k = 0; k < 3; k++) {
     const float change = departure.flux[k] > 0 ? flux[k] / departure.flux[k] : 0.0f;
@@ -246,22 +251,22 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
     shaderClass.surface(&scene_.host, &batch, &hits, &surface);
   }
   Boundaries boundaries{nullptr, nullptr};
-  if (shaderClass.medium) meetBoundaries(batch, states_, boundaries);
+  if (shaderClass.medium) crossBoundaries(batch, states_, boundaries);
   bool scatters = false;
   for (uint32_t l = 0; l < batch.lobeCount; l++)
-    scatters |= scatteringOf(batch.lobes[l]) != nullptr;
+    scatters |= nonSpecularFunctions(batch.lobes[l]) != nullptr;
   const uint32_t* all = arena_.takeNumbers(n);
   auto* connected = arena_.take<uint32_t>(n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
-    if (const RayState& state = states_[order[i]]; state.course != Course::straight) {
+    if (const RayState& state = states_[order[i]]; state.pathClass != PathClass::undeflected) {
       connected[count++] = i;
-      if (scatters && !departures_[state.path].settled) attenuate(points, state.path);
+      if (scatters && !departures_[state.path].attenuationKnown) attenuate(points, state.path);
     }
   if (count && scatters) connect(batch, connected, count);
   const LobeSamples* samples[RTS_MAX_LOBES] = {};
   for (uint32_t l = 0; count && l < batch.lobeCount; l++) {
-    if (!scatteringOf(batch.lobes[l])) continue;
+    if (!nonSpecularFunctions(batch.lobes[l])) continue;
     float* square[2] = {arena_.take<float>(n), arena_.take<float>(n)};
     for (uint32_t i = 0; i < n; i++) {
       float uv[2];
@@ -278,35 +283,39 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
   }
   for (uint32_t i = 0; i < n; i++) {
     RayState& state = states_[order[i]];
-    if (boundaries.crossing && !boundaries.crossing[i].seen) { // nothing is there for light
+    // The boundary has no effect on light.
+    if (boundaries.crossing && !boundaries.crossing[i].visible) {
       RayState on = state;
       on.media = boundaries.crossing[i].behind;
       const float d[3] = {hits.direction[0][i], hits.direction[1][i], hits.direction[2][i]};
       push(points, i, on, d);
       continue;
     }
-    goOn(batch, i, samples, boundaries);
+    spawnRay(batch, i, samples, boundaries);
   }
 }
 
-// One of the ways on, in proportion to what they carry. From the lamp only bent ones count.
-void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[],
-                       const Boundaries& boundaries) {
+// Spawns one ray, selected in proportion to the weight it would carry. At the first surface only
+// specular reflection and refraction count.
+void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[],
+                           const Boundaries& boundaries) {
   const Points& points = *batch.points;
   RayState state = states_[batch.order[i]];
-  const bool first = state.course == Course::straight;
-  Ways ways(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr, state.channel, true);
+  const bool first = state.pathClass == PathClass::undeflected;
+  BsdfSamples bsdfSamples(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr,
+                          state.channel, true);
   for (uint32_t l = 0; l < batch.lobeCount; l++)
-    if (!first || !scatteringOf(batch.lobes[l]))
-      ways.add(l, batch.lobes[l], first ? nullptr : samples[l]);
-  float carried[Ways::maximum], sum = 0;
-  for (uint32_t w = 0; w < ways.count; w++) sum += carried[w] = largest(ways.list[w].share);
+    if (!first || !nonSpecularFunctions(batch.lobes[l]))
+      bsdfSamples.add(l, batch.lobes[l], first ? nullptr : samples[l]);
+  float carried[BsdfSamples::maximum], sum = 0;
+  for (uint32_t w = 0; w < bsdfSamples.count; w++)
+    sum += carried[w] = largest(bsdfSamples.list[w].expectedWeight);
   if (!(sum > 0)) return;
   float uv[2];
   sampleAt(state, Pair::first + Pair::perLevel * level_ + Use::choice, uv);
-  const uint32_t chosen = chooseAmong(carried, ways.count, uv[0] * sum);
-  const Way& way = ways.list[chosen];
-  if (!(carried[chosen] > 0) || way.lost) return;
+  const uint32_t chosen = sampleDiscrete(carried, bsdfSamples.count, uv[0] * sum);
+  const BsdfSample& sample = bsdfSamples.list[chosen];
+  if (!(carried[chosen] > 0) || sample.rejected) return;
   double kept = carried[chosen] / sum;
   if (level_ >= rouletteFrom) {
     const float stay = std::min(1.0f, sum);
@@ -314,33 +323,35 @@ void LightTracer::goOn(const RtsBatch& batch, uint32_t i, const LobeSamples* con
     kept *= stay;
   }
   if (Departure& departure = departures_[state.path];
-      scatteringOf(batch.lobes[way.lobe]) && !departure.settled) {
+      nonSpecularFunctions(batch.lobes[sample.lobe]) && !departure.attenuationKnown) {
     for (int k = 0; k < 3; k++) state.throughput[k] *= departure.attenuation[k];
     departure = {};
   }
-  const float turned = way.bent ? tilt(batch.lobes[way.lobe], points.hits, i, way.direction) : 1.0f;
-  for (int k = 0; k < 3; k++) state.throughput[k] *= float(way.weight[k] * turned / kept);
-  state.channel = way.channel;
+  const float turned = sample.deflected ? adjointCorrection(batch.lobes[sample.lobe], points.hits,
+                                                            i, sample.direction)
+                                        : 1.0f;
+  for (int k = 0; k < 3; k++) state.throughput[k] *= float(sample.weight[k] * turned / kept);
+  state.channel = sample.channel;
   float towards = 0;
-  for (int k = 0; k < 3; k++) towards += points.hits.geometric[k][i] * way.direction[k];
+  for (int k = 0; k < 3; k++) towards += points.hits.geometric[k][i] * sample.direction[k];
   if (towards < 0 && boundaries.crossing) state.media = boundaries.crossing[i].behind;
-  if (first && way.bent) {
-    if (!leaveLamp(points, i, state)) return;
-    state.course = Course::mirrored;
+  if (first && sample.deflected) {
+    if (!applyEmission(points, i, state)) return;
+    state.pathClass = PathClass::specularFirst;
   }
-  push(points, i, state, way.direction);
+  push(points, i, state, sample.direction);
 }
 
 void LightTracer::push(const Points& points, uint32_t i, const RayState& state,
-                       const float way[3]) {
+                       const float dir[3]) {
   if (!(largest(state.throughput) > 0) || !std::isfinite(largest(state.throughput))) return;
   QueuedRay& ray = next_.emplace_back();
-  liftPoint(points, i, way, ray.origin);
-  std::copy_n(way, 3, ray.direction);
+  liftPoint(points, i, dir, ray.origin);
+  std::copy_n(dir, 3, ray.direction);
   ray.state = state;
 }
 
-// Light that goes straight from the hits into the camera.
+// Connects the hits with the camera and adds their light to the picture.
 void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uint32_t n) {
   const ShaderSlot& camera = scene_.camera.shader;
   ArenaScope scope(arena_);
@@ -391,24 +402,24 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   }
   float* sent[3];
   for (auto& a : sent) a = arena_.takeZero<float>(size);
-  LobeAnswers answers(arena_, n, &batch);
+  LobeValues lobeValues(arena_, n, &batch);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     const RtsLobe& lobe = batch.lobes[l];
-    if (!scatteringOf(lobe)) continue;
-    answers.evaluate(lobe, hits, n, hitNumbers, towards);
+    if (!nonSpecularFunctions(lobe)) continue;
+    lobeValues.evaluate(lobe, hits, n, hitNumbers, towards);
     for (uint32_t i = 0; i < n; i++) {
       const uint32_t h = hitNumbers[i];
       const float out[3] = {towards[0][i], towards[1][i], towards[2][i]};
       const float g[3] = {hits.geometric[0][h], hits.geometric[1][h], hits.geometric[2][h]};
       float w[3];
-      if (!weightAt(lobe, h, w) || (!scatteringOf(lobe)->transmits && !(dot3(g, out) > 0)))
+      if (!weightAt(lobe, h, w) || (!nonSpecularFunctions(lobe)->transmits && !(dot3(g, out) > 0)))
         continue;
-      const float factor = tilt(lobe, hits, h, out) * seen.weight[i];
-      for (int k = 0; k < 3; k++) sent[k][i] += w[k] * answers.value[k][i] * factor;
+      const float factor = adjointCorrection(lobe, hits, h, out) * seen.weight[i];
+      for (int k = 0; k < 3; k++) sent[k][i] += w[k] * lobeValues.value[k][i] * factor;
     }
   }
-  // Of rough boundaries radiance in the denser medium is meant, of which flux knows nothing: eyes
-  // are in the open.
+  // Rough boundaries scale radiance by eta squared. Flux is not scaled, because the camera is
+  // outside of all media.
   ShadowRays rays;
   rays.rays.allocate(arena_, n);
   rays.lane = arena_.take<uint32_t>(n);
@@ -416,9 +427,9 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t h = hitNumbers[i];
     if (!(seen.weight[i] > 0) || !(sent[0][i] > 0 || sent[1][i] > 0 || sent[2][i] > 0)) continue;
-    const float way[3] = {towards[0][i], towards[1][i], towards[2][i]};
+    const float dir[3] = {towards[0][i], towards[1][i], towards[2][i]};
     float origin[3];
-    liftPoint(points, h, way, origin);
+    liftPoint(points, h, dir, origin);
     for (int k = 0; k < 3; k++) {
       rays.rays.org[k][count] = origin[k];
       rays.rays.dir[k][count] = towards[k][i];
@@ -428,7 +439,7 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
     rays.lane[count++] = i;
   }
   rays.rays.count = count;
-  passShadows(batch, rays, sent);
+  traceTransmittance(batch, rays, sent);
   for (uint32_t i = 0; i < n; i++) {
     const float x = seen.xy[0][i], y = seen.xy[1][i];
     if (!(seen.weight[i] > 0) || !(x >= 0 && y >= 0 && x < extent[0] && y < extent[1])) continue;

@@ -1,5 +1,5 @@
-// paths.h: the samples of a tile that are under way: the rays of the wave being traced by lane,
-// what has been gathered by path. Shared by the two halves of TileRenderer. [render]
+// paths.h: the paths of a tile that are in flight. Ray arrays are indexed by lane of the current
+// wave, accumulated results by path. Shared by the source files of TileRenderer. [render]
 #pragma once
 
 #include "render/path/tile.h"
@@ -8,15 +8,15 @@
 namespace openrt {
 
 struct TileRenderer::Paths {
-  Rays rays;          // of the wave
-  RayState* state;    // by ray lane
-  float* travelled;   // state[lane].travelled, as makePoints reads it
-  float* radiance[3]; // by path, from here on
+  Rays rays;          // rays of the current wave
+  RayState* state;    // indexed by ray lane
+  float* travelled;   // copy of state[lane].travelled, in the layout that makePoints reads
+  float* radiance[3]; // from here on indexed by path
   float* alpha;
-  uint8_t* first;                                     // nothing was shaded on the path yet
-  float *normal[3], *albedo[3], *position[3], *depth; // null where nobody asks
+  uint8_t* first; // 1 until the first surface of the path has been shaded
+  float *normal[3], *albedo[3], *position[3], *depth; // null if the frame does not have the channel
   uint32_t* name;
-  // storage of a wave's intersections
+  // Working storage for the intersections of a wave.
   RayHits hits;
   uint32_t *missed, *met, *order;
 };

@@ -1,5 +1,5 @@
-// ray_queue.h: rays that wait for the next wave of a tile: a path may send on several. Grows with
-// what is pushed; kept by the tile renderer from tile to tile. [render]
+// ray_queue.h: rays queued for the next wave of a tile. A path may spawn several rays. The tile
+// renderer keeps the queues from tile to tile to reuse their memory. [render]
 #pragma once
 
 #include <algorithm>
@@ -11,33 +11,37 @@
 
 namespace openrt {
 
-// Which paths from the camera light tracing makes instead: those that are in `through` when they
-// meet a lamp.
-enum class Course : uint8_t {
-  straight,  // nothing has bent it yet
-  scattered, // first a surface that scatters; so did the last one
-  through,   // the same, and since the last one that scatters mirrors or smooth boundaries alone
-  mirrored // first a mirror or a smooth boundary; of a path from a lamp: what light tracing follows
+// Class of a path so far. Light tracing takes over the `caustic` camera paths that end on a light
+// source; path tracing must leave those out.
+enum class PathClass : uint8_t {
+  undeflected, // no scattering event yet: the ray still follows the camera ray
+  diffuse,     // the first and the last scattering events were non-specular
+  caustic,     // as `diffuse`, followed only by specular events since the last non-specular one
+  // The first event was specular. For a path from a light source: light tracing follows it.
+  specularFirst
 };
 
-// What a ray knows of the path it belongs to.
+// State that a ray carries for its path.
 struct RayState {
   float throughput[3] = {1, 1, 1};
-  float travelled = 0; // length of the path up to the ray's origin
-  uint32_t path = 0;   // sample of the tile
-  uint32_t branch =
-      0; // tells the branches of one path apart for its random numbers; 0: the one from the camera
-  float density =
-      0; // by solid angle, with which a lobe has chosen the direction; 0: it could not be another
-  Receiver from;         // whose density it is
-  MediaStack media = {}; // bodies that the ray is inside of
-  Course course = Course::straight;
-  uint8_t scattered = 0; // a surface that scatters was on the way
-  uint8_t byChance = 0;  // and mirrors or smooth boundaries alone since the last one: it meets
-                         // emitters by chance (ledger.h)
-  uint8_t bent = 0;      // no longer the straight line from the camera: alpha is settled
-  uint8_t splits = 0;    // times the path has gone on in several directions
-  uint8_t channel = 0;   // 1 + the only colour it carries (dispersion); 0: all
+  float travelled = 0; // path length up to the ray's origin
+  uint32_t path = 0;   // index of the path (sample) in the tile
+  // Distinguishes the random numbers of the path's branches; 0: the branch of the camera ray.
+  uint32_t branch = 0;
+  // Solid-angle pdf with which BSDF sampling chose the direction; 0: specular or camera ray.
+  float pdf = 0;
+  // The previous path vertex, where `pdf` was sampled; needed for the light pdf in MIS.
+  LightSampleContext previous;
+  MediaStack media = {}; // media that the ray is inside of
+  PathClass pathClass = PathClass::undeflected;
+  uint8_t scattered = 0; // the path has a non-specular vertex
+  // The path has a non-specular vertex and only specular ones since: light sampling cannot find
+  // what the ray hits (UnsampledLight, ledger.h).
+  uint8_t specularSinceDiffuse = 0;
+  uint8_t deflected = 0; // a surface has changed the direction: the pixel's alpha is final
+  uint8_t splits = 0;    // number of times the path has split into several rays
+  // 1 + index of the only colour that the ray carries (dispersion); 0: all colours
+  uint8_t channel = 0;
 };
 
 struct QueuedRay {

@@ -1,10 +1,10 @@
-// sampler.cpp: Integers alone, so that the machine's widest vectors give the same
-// numbers as any others.
+// sampler.cpp: vectorised sampling. It computes with integers only, so that all vector widths give
+// the same numbers.
 #include "render/path/sampler.h"
 
 namespace openrt {
 
-// Sanitizers cannot run in the resolver that chooses among the clones.
+// target_clones is off under sanitizers, which cannot run in the ifunc resolver.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&    \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx512f", "avx2", "default")))

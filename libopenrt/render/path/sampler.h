@@ -1,7 +1,7 @@
-// sampler.h: the points of a pixel's samples: a pure function of (pixel, sample, pair of
-// dimensions, seed, size of a replicate). A pair is a (0,2)-sequence in base 2: Sobol's first two
-// dimensions, Owen-scrambled by hashing as in B. Burley, "Practical Hash-based Owen Scrambling",
-// JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
+// sampler.h: the sampler: low-discrepancy points as a pure function of (pixel, sample index, pair
+// of dimensions, seed, samples per replicate). Each pair of dimensions is a (0,2)-sequence in base
+// 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical Hash-based
+// Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace openrt {
   return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
 }
 
-[[gnu::always_inline]] inline uint32_t hash(uint32_t x) { // full avalanche
+[[gnu::always_inline]] inline uint32_t hash(uint32_t x) { // Integer hash with full avalanche.
   x ^= x >> 16;
   x *= 0x7feb352du;
   x ^= x >> 15;
@@ -27,8 +27,8 @@ namespace openrt {
   return hash(a ^ (hash(b) + 0x9e3779b9u + (a << 6) + (a >> 2)));
 }
 
-// Owen scrambling of a number in reversed bit order: every bit is flipped by a hash of the bits
-// below it.
+// Owen-scrambles a number in reversed bit order: every bit is flipped by a hash of the bits below
+// it.
 [[gnu::always_inline]] inline uint32_t scrambleReversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -38,9 +38,9 @@ namespace openrt {
   return x;
 }
 
-// Second Sobol dimension of an index, in reversed bit order. Its direction numbers, reversed, are
-// the polynomials (1+x)^i over GF(2): the sum over the index's bits is the index as a polynomial
-// taken at 1+x, half by half.
+// Returns the second Sobol dimension of an index in reversed bit order. Its direction numbers,
+// reversed, are the polynomials (1+x)^i over GF(2). So the sum over the index's bits is the index
+// as a polynomial evaluated at 1+x, which is computed by repeated halving.
 [[gnu::always_inline]] inline uint32_t sobol1Reversed(uint32_t x) {
   x ^= x >> 16;
   x ^= (x & 0xff00ff00u) >> 8;
@@ -50,11 +50,12 @@ namespace openrt {
   return x;
 }
 
-// Which point a sample is. The samples of a pixel are consecutive replicates of 2^shift samples,
-// each a net of its own with a seed of its own: independent of the others, so that their means tell
-// their error. The first one has the frame's own seed.
+// Maps sample numbers to points of the sequence. The samples of a pixel are divided into
+// consecutive replicates of 2^shift samples. Each replicate is an independently randomised net with
+// its own seed, so the spread of the replicates' means estimates the error. The first replicate
+// uses the frame's seed.
 struct Replicates {
-  uint32_t seed = 0, shift = 31; // 31: one net
+  uint32_t seed = 0, shift = 31; // 31: a single net, no replicates
   bool operator==(const Replicates&) const = default;
   bool many() const { return shift < 31; }
   uint32_t size() const { return 1u << shift; }
@@ -66,9 +67,9 @@ struct Replicates {
 
 [[gnu::always_inline]] inline float toUnit(uint32_t x) {
   return float(x >> 8) * 0x1p-24f;
-} // [0, 1)
+} // in [0, 1)
 
-// The samples of one pair of dimensions in one pixel. Any first 2^k of them are a (0,k,2)-net.
+// Samples one pair of dimensions in one pixel. The first 2^k samples are a (0,k,2)-net for every k.
 class PairSampler {
  public:
   PairSampler(uint32_t pixel, uint32_t pair, uint32_t seed) {
@@ -78,8 +79,8 @@ class PairSampler {
     y_ = hash(key, 0x967a889bu);
   }
   void operator()(uint32_t index, float& x, float& y) const {
-    const uint32_t shuffled = reverseBits(
-        scrambleReversed(reverseBits(index), order_)); // decorrelates the pairs of a pixel
+    // Shuffling the index decorrelates the pairs of a pixel.
+    const uint32_t shuffled = reverseBits(scrambleReversed(reverseBits(index), order_));
     x = toUnit(reverseBits(scrambleReversed(shuffled, x_)));
     y = toUnit(reverseBits(scrambleReversed(sobol1Reversed(shuffled), y_)));
   }
@@ -88,8 +89,8 @@ class PairSampler {
   uint32_t order_, x_, y_;
 };
 
-// The same for many at once, vectorised: point number index[i] of pair[i] + draw, where key[i] is
-// hash(pixel, seed).
+// Vectorised form for many samples: writes point index[i] of the pair pair[i] + draw, where key[i]
+// is hash(pixel, seed).
 void samplePairs(uint32_t n, const uint32_t* key, const uint32_t* pair, uint32_t draw,
                  const uint32_t* index, float* x, float* y);
 

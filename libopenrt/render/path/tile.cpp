@@ -1,5 +1,5 @@
-// tile.cpp: Every sum has a fixed order, so a tile's pixels do not depend on who
-// renders it.
+// tile.cpp: the wave loop of TileRenderer. Every sum has a fixed order, so the pixels of a tile do
+// not depend on who renders it.
 #include "render/path/tile.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr uint32_t pathsInFlight = 4096;
 } // namespace
 
 TileRenderer::TileRenderer(const RenderScene& scene)
-    : scene_(scene), width_(scene.frame.width), gathering_(gatheringOf(scene.frame)),
+    : scene_(scene), width_(scene.frame.width), required_(requiredSums(scene.frame)),
       brightest_(scene.emitters.brightest()), brightestSky_(scene.emitters.brightestSky()) {}
 
 void TileRenderer::begin(const Tile& tile) {
@@ -36,8 +36,8 @@ void TileRenderer::begin(const Tile& tile) {
         }
 }
 
-// What a path meets may depend on those beside it, where faces coincide: a leaf's waves are always
-// the same.
+// Where faces coincide, a ray's hit may depend on the other rays of its batch. So the waves of a
+// leaf are always the same.
 bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred,
                           uint32_t first, uint32_t samples, std::span<PixelSums> sums,
                           const std::atomic<bool>& stop) {
@@ -57,10 +57,11 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
     wave(s, n);
     s += n;
   }
-  return !stopped(); // a wave may have been broken off
+  return !stopped(); // a wave may have been interrupted
 }
 
-// Working storage of n paths; film: with what the picture's channels want of their first surfaces.
+// Allocates working storage for n paths. film: with the arrays for the picture's channels of the
+// first surface.
 void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
   const uint32_t size = padded(n);
   paths.state = arena_.take<RayState>(size);
@@ -97,7 +98,7 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   for (uint32_t i = 0; i < n; i++) paths.state[i] = RayState{.path = i};
   level_ = 0;
   if (scene_.transport.shaderClass) {
-    askTransport(paths);
+    runTransportShader(paths);
   } else {
     counters_.camera += n;
     follow(paths, n);
@@ -105,8 +106,8 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   addToPixels(paths, firstSample, samples);
 }
 
-// The rays that are loaded, then bounce by bounce what becomes of them, in portions of at most n,
-// so that a path's sums have one order.
+// Traces the loaded rays, then the rays that they spawn, bounce by bounce. Rays are processed in
+// portions of at most n in a fixed order, so that the sums of a path have one order.
 void TileRenderer::follow(Paths& paths, uint32_t n) {
   traceWave(paths);
   for (level_++; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
@@ -140,15 +141,15 @@ void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
 void TileRenderer::traceWave(Paths& paths) {
   const Coherence coherence = level_ == 0 ? Coherence::coherent : Coherence::incoherent;
   scene_.kernel->intersect(paths.rays, maskAll, coherence, paths.hits);
-  lookThroughBacks(scene_, arena_, counters_, paths.rays, paths.hits);
-  absorbOnTheWay(scene_, paths.rays, paths.hits, paths.state);
-  uint32_t misses = 0, mets = 0;
+  skipCulledBacks(scene_, arena_, counters_, paths.rays, paths.hits);
+  absorbAlongRays(scene_, paths.rays, paths.hits, paths.state);
+  uint32_t misses = 0, hitCount = 0;
   for (uint32_t i = 0; i < paths.rays.count; i++)
-    (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[mets++]) = i;
-  background(paths, paths.missed, misses);
-  sortByBucket(scene_, paths.hits, paths.met, mets, paths.order, counts_, ranges_);
+    (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[hitCount++]) = i;
+  addEnvironment(paths, paths.missed, misses);
+  sortByBucket(scene_, paths.hits, paths.met, hitCount, paths.order, counts_, ranges_);
   std::vector<BucketRange> ranges;
-  ranges.swap(ranges_); // shaders may trace in their turn
+  ranges.swap(ranges_); // shaders may trace rays, which uses ranges_ again
   for (const BucketRange& range : ranges)
     shadeRange(paths, paths.hits, range, paths.order + range.begin);
   ranges.swap(ranges_);
@@ -186,7 +187,7 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
     PairSampler sampler(pixel, 0, replicates_.seedOf(firstSample));
     const float x = float(pixel % width_), y = float(pixel / width_);
     for (uint32_t sample = firstSample; sample < firstSample + samples; sample++, lane++) {
-      float dx = 0.5f, dy = 0.5f; // centred
+      float dx = 0.5f, dy = 0.5f; // middle of the pixel, for `centred`
       const uint32_t index = replicates_.indexOf(sample);
       if (index == 0 && sample > firstSample)
         sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
@@ -226,9 +227,10 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
   }
 }
 
-// What the environment shows in the directions of rays: local unit directions and rgba, padded.
-void TileRenderer::skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, float* direction[3],
-                         float* rgba[4]) {
+// Evaluates the environment in the directions of rays. Returns local unit directions and rgba,
+// padded.
+void TileRenderer::evaluateSky(const Rays& rays, const uint32_t* lanes, uint32_t n,
+                               float* direction[3], float* rgba[4]) {
   const uint32_t size = padded(n);
   for (int k = 0; k < 3; k++) direction[k] = arena_.take<float>(size);
   for (int k = 0; k < 4; k++) rgba[k] = arena_.takeZero<float>(size);
@@ -246,37 +248,38 @@ void TileRenderer::skyAt(const Rays& rays, const uint32_t* lanes, uint32_t n, fl
   const float* directions[3] = {direction[0], direction[1], direction[2]};
   const RunningShader running(*environment.shaderClass);
   environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
-  checkAnswer(*environment.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
+  sanitizeOutput(*environment.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
 }
 
-void TileRenderer::background(Paths& paths, const uint32_t* missed, uint32_t n) {
+void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t n) {
   const ShaderSlot& environment = scene_.environment.shader;
   if (n == 0 || !environment.shaderClass || !environment.shaderClass->miss) return;
   ArenaScope scope(arena_);
   float *direction[3], *rgba[4];
-  skyAt(paths.rays, missed, n, direction, rgba);
+  evaluateSky(paths.rays, missed, n, direction, rgba);
   for (uint32_t i = 0; i < n; i++) {
     const RayState& ray = paths.state[missed[i]];
     float weight = 0, share = 1;
-    if (ray.density > 0 && scene_.emitters.any()) { // the sky might have been chosen just so
+    // Light sampling of the sky could have chosen this direction.
+    if (ray.pdf > 0 && scene_.emitters.any()) {
       const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
-      share = ray.density / (ray.density + scene_.emitters.skyDensity(ray.from, d));
+      share = ray.pdf / (ray.pdf + scene_.emitters.skyPdf(ray.previous, d));
     }
-    if (ray.byChance) {
+    if (ray.specularSinceDiffuse) {
       const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
-      chanceOf(ray).meet(light, brightestFor(ray));
+      unsampledLightOf(ray).meet(light, brightestFor(ray));
     }
     for (int k = 0; k < 3; k++) {
       if (std::isfinite(rgba[k][i]))
         paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
       weight += ray.throughput[k];
     }
-    if (!ray.bent) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
+    if (!ray.deflected) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
   }
 }
 
-// Along mirror images and through lenses the length of the path counts, as seen in the ray's
-// direction.
+// Evaluates fog at the hits. Along mirrored and refracted paths the whole path length counts, as
+// seen in the ray's direction.
 void TileRenderer::attenuate(const Points& points, const Paths& paths, const uint32_t* order,
                              float* fog[4]) {
   const ShaderSlot& environment = scene_.environment.shader;
@@ -288,12 +291,12 @@ void TileRenderer::attenuate(const Points& points, const Paths& paths, const uin
   const Affine& m = scene_.environment.toLocal;
   const RtsHits& h = points.hits;
   for (uint32_t i = 0; i < size; i++) {
-    const bool bent = paths.state[order[std::min(i, n - 1)]].bent;
-    float way[3];
+    const bool deflected = paths.state[order[std::min(i, n - 1)]].deflected;
+    float toHit[3];
     for (int j = 0; j < 3; j++)
-      way[j] = bent ? h.direction[j][i] * h.distance[i] : h.position[j][i] - scene_.eye[j];
+      toHit[j] = deflected ? h.direction[j][i] * h.distance[i] : h.position[j][i] - scene_.eye[j];
     for (int k = 0; k < 3; k++)
-      fromEye[k][i] = m.r[k][0] * way[0] + m.r[k][1] * way[1] + m.r[k][2] * way[2];
+      fromEye[k][i] = m.r[k][0] * toHit[0] + m.r[k][1] * toHit[1] + m.r[k][2] * toHit[2];
   }
   for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
   RtsBatch batch = makeBatch();
@@ -309,7 +312,7 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
   const uint32_t n = range.end - range.begin, size = padded(n);
   const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
   const Bucket& bucket = scene_.buckets[range.bucket];
-  // Of a class that answers both ways path tracing asks for lobes.
+  // Path tracing uses the lobes of a class that has both `shade` and `surface`.
   if (bucket.shaderClass->surface &&
       (!bucket.shaderClass->shade || scene_.frame.transport >= RT_TRANSPORT_PATH))
     return scatterRange(paths, points, bucket, order);
@@ -325,17 +328,17 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
     batch.lightSet = bucket.lightSet;
     const RunningShader running(*bucket.shaderClass);
     bucket.shaderClass->shade(&scene_.host, &batch, &points.hits, &shaded);
-    checkAnswer(*bucket.shaderClass, batch, shaded);
+    sanitizeOutput(*bucket.shaderClass, batch, shaded);
   }
   float* fog[4];
   attenuate(points, paths, order, fog);
   const float* airlight[4] = {fog[0], fog[1], fog[2], fog[3]};
-  gather(points, shaded, order, paths, airlight);
+  addShading(points, shaded, order, paths, airlight);
 }
 
-// Adds what was shaded to the paths and sends on those that something lets through.
-void TileRenderer::gather(const Points& points, const RtsShading& shaded, const uint32_t* order,
-                          Paths& paths, const float* fog[4]) {
+// Adds shaded radiance to the paths and spawns rays through transparent surfaces.
+void TileRenderer::addShading(const Points& points, const RtsShading& shaded, const uint32_t* order,
+                              Paths& paths, const float* fog[4]) {
   for (uint32_t i = 0; i < points.hits.count; i++) {
     const RayState& ray = paths.state[order[i]];
     float transmission[3], covered = 0, through = 0;
@@ -349,19 +352,19 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
       covered += ray.throughput[k] * (1 - transmission[k]);
       through += ray.throughput[k] * transmission[k];
     }
-    if (!ray.bent) paths.alpha[ray.path] += covered / 3;
-    if (paths.first[ray.path]) noteFirst(points, i, ray.path, shaded.albedo, paths);
+    if (!ray.deflected) paths.alpha[ray.path] += covered / 3;
+    if (paths.first[ray.path]) storeFirstHit(points, i, ray.path, shaded.albedo, paths);
     if (through <= 1e-6f) {
       ledger_.cutByEnergy += double(through);
       continue;
     }
-    Step on{.density = 0,
-            .bent = false,
-            .split = false,
-            .through = false,
-            .channel = ray.channel,
-            .branch = ray.branch,
-            .media = ray.media};
+    NextRay on{.pdf = 0,
+               .deflected = false,
+               .split = false,
+               .twoSided = false,
+               .channel = ray.channel,
+               .branch = ray.branch,
+               .media = ray.media};
     for (int k = 0; k < 3; k++) {
       on.direction[k] = points.hits.direction[k][i];
       on.weight[k] = transmission[k];
@@ -370,9 +373,9 @@ void TileRenderer::gather(const Points& points, const RtsShading& shaded, const 
   }
 }
 
-// The auxiliary channels show the first surface.
-void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path,
-                             float* const albedo[3], Paths& paths) {
+// Stores the first hit for the auxiliary channels (AOVs).
+void TileRenderer::storeFirstHit(const Points& points, uint32_t i, uint32_t path,
+                                 float* const albedo[3], Paths& paths) {
   const RtsHits& h = points.hits;
   paths.first[path] = 0;
   paths.name[path] = scene_.records[points.record[i]].name;
@@ -386,35 +389,36 @@ void TileRenderer::noteFirst(const Points& points, uint32_t i, uint32_t path,
   if (paths.depth) paths.depth[path] = along;
 }
 
-// Another ray of the path, from the side of the surface that its direction leads to.
-void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const Step& step,
+// Queues another ray of the path, starting on the side of the surface that its direction leads to.
+void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const NextRay& nextRay,
                         Paths& paths) {
   const RtsHits& h = points.hits;
   const RayState& from = paths.state[lane];
   QueuedRay& ray = next_.emplace_back();
-  liftPoint(points, i, step.direction, ray.origin);
+  liftPoint(points, i, nextRay.direction, ray.origin);
   ray.state = from;
   for (int k = 0; k < 3; k++) {
-    ray.direction[k] = step.direction[k];
-    ray.state.throughput[k] = from.throughput[k] * step.weight[k];
+    ray.direction[k] = nextRay.direction[k];
+    ray.state.throughput[k] = from.throughput[k] * nextRay.weight[k];
   }
   ray.state.travelled = h.distance[i];
-  ray.state.density = step.density;
-  if (step.density > 0) ray.state.from = receiverOf(points, i, step.through);
-  if (step.bent) {
-    if (from.course == Course::straight)
-      ray.state.course = step.density > 0 ? Course::scattered : Course::mirrored;
-    else if (from.course != Course::mirrored)
-      ray.state.course = step.density > 0 ? Course::scattered : Course::through;
-    ray.state.scattered |= step.density > 0 ? 1 : 0;
-    ray.state.byChance = ray.state.scattered && !(step.density > 0) ? 1 : 0;
-    if (ray.state.byChance) chanceOf(ray.state).send(ray.state.throughput, brightestFor(ray.state));
+  ray.state.pdf = nextRay.pdf;
+  if (nextRay.pdf > 0) ray.state.previous = lightSampleContext(points, i, nextRay.twoSided);
+  if (nextRay.deflected) {
+    if (from.pathClass == PathClass::undeflected)
+      ray.state.pathClass = nextRay.pdf > 0 ? PathClass::diffuse : PathClass::specularFirst;
+    else if (from.pathClass != PathClass::specularFirst)
+      ray.state.pathClass = nextRay.pdf > 0 ? PathClass::diffuse : PathClass::caustic;
+    ray.state.scattered |= nextRay.pdf > 0 ? 1 : 0;
+    ray.state.specularSinceDiffuse = ray.state.scattered && !(nextRay.pdf > 0) ? 1 : 0;
+    if (ray.state.specularSinceDiffuse)
+      unsampledLightOf(ray.state).send(ray.state.throughput, brightestFor(ray.state));
   }
-  ray.state.bent |= step.bent ? 1 : 0;
-  ray.state.branch = step.branch;
-  ray.state.channel = step.channel;
-  ray.state.media = step.media;
-  if (step.split && ray.state.splits < 255) ray.state.splits++;
+  ray.state.deflected |= nextRay.deflected ? 1 : 0;
+  ray.state.branch = nextRay.branch;
+  ray.state.channel = nextRay.channel;
+  ray.state.media = nextRay.media;
+  if (nextRay.split && ray.state.splits < 255) ray.state.splits++;
 }
 
 void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {
@@ -429,15 +433,15 @@ void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_
         ledger_.clipped += double(r) - double(limit);
         r = limit;
       }
-      if (gathering_.spread)
+      if (required_.spread)
         sums.add(radiance, paths.alpha[i]);
       else
         sums.addColor(radiance, paths.alpha[i]);
-      if (gathering_.error) {
+      if (required_.error) {
         sums.addTails(radiance);
         sums.random |= random_[i] != 0;
-        const uint32_t next =
-            firstSample + s + 1; // replicates larger than the leaf are closed where leaves merge
+        // Replicates larger than the leaf are closed where leaves are merged.
+        const uint32_t next = firstSample + s + 1;
         if (replicates_.many() && replicates_.indexOf(next) == 0 &&
             next - leaf_ >= replicates_.size())
           sums.closeReplicate();

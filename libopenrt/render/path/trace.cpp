@@ -1,6 +1,6 @@
-// trace.cpp: what shaders and transports ask of the renderer itself: random points, light along
-// rays, what rays meet, what lies between. Part of TileRenderer; the host's functions (host.cpp)
-// come here. [render]
+// trace.cpp: services that shaders and transport shaders request from the renderer: random points,
+// radiance along rays, hits, occlusion. Part of TileRenderer; called by the host's functions
+// (host.cpp). [render]
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,14 +15,16 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t maxNesting = 64;
-constexpr uint32_t shaderPairs = 0x73686164; // apart from the pairs that transports use
+// Keeps the pairs of shaders apart from those of the transports.
+constexpr uint32_t shaderPairs = 0x73686164;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
 uint32_t pointsOf(const RtsBatch& batch) {
   return batch.points ? batch.points->hits.count : batch.rays;
 }
 
-// Rays of a request that belong to a point of the batch; to: number of the request, by ray.
+// Makes the rays of a request whose point belongs to the batch. `to` gets the index in the request,
+// by ray.
 Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
   Rays rays;
   rays.allocate(*batch.arena, request.count);
@@ -56,19 +58,19 @@ void TileRenderer::randomPoints(const RtsBatch& batch, uint32_t pair, float* con
     const RayState* ray = batch.order ? &batch.states[batch.order[i]] : nullptr;
     const uint32_t key = hash(shaderPairs + pair, ray ? pairOf(*ray, Draw::direction) : 0);
     sampleAt(ray ? ray->path : i, key, square[0][i], square[1][i]);
-    if (!centred_ || ray) noteRandom(ray ? ray->path : i);
+    if (!centred_ || ray) markRandom(ray ? ray->path : i);
   }
 }
 
-void TileRenderer::noteRandom(uint32_t path) { random_[root_ ? root_[path] : path] = 1; }
+void TileRenderer::markRandom(uint32_t path) { random_[root_ ? root_[path] : path] = 1; }
 
-// The rays are the camera rays of a small wave of their own, within the one that is being shaded.
+// Traces the rays like the camera rays of a small wave, nested in the one that is being shaded.
 void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* const rgba[4]) {
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], request.count, 0.0f);
   if (request.count == 0 || nesting_ == maxNesting || level_ >= scene_.frame.depth) return;
-  if (!batch.requests)
-    batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch)); // it lives as long as the batch
+  // Allocated outside of the scope: it lives as long as the batch.
+  if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch));
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
   Paths paths;
@@ -120,7 +122,7 @@ void TileRenderer::findHit(const RtsBatch& batch, const RtsRequest& request, Rts
   found.allocate(arena_, rays.count);
   counters_.secondary += rays.count;
   scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
-  lookThroughBacks(scene_, arena_, counters_, rays, found);
+  skipCulledBacks(scene_, arena_, counters_, rays, found);
   auto* met = arena_.take<uint32_t>(rays.count);
   uint32_t n = 0;
   for (uint32_t i = 0; i < rays.count; i++)
@@ -148,11 +150,11 @@ void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request,
   ShadowRays rays;
   rays.lane = arena_.take<uint32_t>(request.count);
   rays.rays = raysOf(batch, request, rays.lane);
-  passShadows(batch, rays, transmission);
+  traceTransmittance(batch, rays, transmission);
 }
 
-// A transport shader instead of the engine's own.
-void TileRenderer::askTransport(Paths& paths) {
+// Lets a transport shader compute the radiance of the camera rays.
+void TileRenderer::runTransportShader(Paths& paths) {
   ArenaScope scope(arena_);
   const uint32_t n = paths.rays.count;
   float* rgba[4];
@@ -171,7 +173,7 @@ void TileRenderer::askTransport(Paths& paths) {
     scene_.transport.shaderClass->radiance(&scene_.host, &batch, scene_.transport.params, &request,
                                            rgba);
   }
-  checkAnswer(*scene_.transport.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
+  sanitizeOutput(*scene_.transport.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
   for (uint32_t i = 0; i < n; i++) {
     for (int k = 0; k < 3; k++)
       if (std::isfinite(rgba[k][i])) paths.radiance[k][i] = rgba[k][i];

@@ -9,16 +9,17 @@ namespace {
 
 constexpr uint32_t light = hasLamps | hasEmitters | hasGlow | hasSky;
 
-// The choice. Rows are tried from the top; a row whose `from` is the transport chosen so far
-// replaces it. A transport is chosen only where it leaves out nothing that surfaces of lobes do
-// with light. Surfaces that answer by themselves are drawn as their own rule says (VRML97's
-// lighting model) until something that is meant as light shines on them.
+// Rules that choose the transport. Rows are tried from the top; a row whose `from` is the transport
+// chosen so far replaces it. A transport is chosen only if it leaves out no light of lobe-only
+// surfaces. Surfaces that have `shade` are drawn by their own lighting model (that of VRML97) until
+// something meant as light shines on them.
 struct Choice {
   RTenum from;
-  uint32_t all, any; // bits that must all be there; of which at least one must be there (0: no such
-                     // condition)
+  // all: bits that must all be set. any: at least one must be set (0: no condition).
+  uint32_t all, any;
   RTenum to;
-  const char* reason; // {}: class that set the first bit of `all`, [] : of `any`
+  // {} stands for the class that set the first bit of `all`, [] for that of `any`
+  const char* reason;
 };
 constexpr Choice choices[] = {
     {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH,
@@ -42,7 +43,7 @@ constexpr Choice choices[] = {
     {RT_TRANSPORT_AUTO, 0, 0, RT_TRANSPORT_DIRECT, "no surface asks for more than the lights"},
 };
 
-// What a transport leaves out of a scene, whoever has chosen it.
+// Light that a transport leaves out of a scene, whether the user or the engine chose the transport.
 struct Omission {
   uint32_t transports; // 1 << RT_TRANSPORT_*
   uint32_t all, any;
@@ -83,8 +84,8 @@ std::string reasonOf(const Choice& row, const SceneContents& contents) {
   return text;
 }
 
-// The environment is asked on a coarse grid; one that looks black there is measured, as a lamp may
-// lie between the places.
+// Returns whether the environment emits light. It is evaluated on a coarse grid first. If that is
+// black, the full table is built, because a light source may lie between the grid points.
 bool shines(const RenderScene& scene, const RenderScene* before) {
   const ShaderSlot& environment = scene.environment.shader;
   if (!environment.shaderClass || !environment.shaderClass->miss) return false;
@@ -111,8 +112,9 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
     last = &record;
     const ShaderSlot& shader = (*scene.shaders)[record.shader];
     const RtsClass& shaderClass = *shader.shaderClass;
-    if (!shaderClass.surface) continue; // answers by itself whatever the transport is
-    // Values of a geometry may make a surface scatter that does not by its shader's own.
+    if (!shaderClass.surface) continue; // shades itself in every transport
+    // Parameter values of a geometry may make a surface scatter although its shader's values do
+    // not.
     const bool scatters = values || !(shader.traits & (RTS_NO_SCATTER | RTS_UNLIT));
     const bool emits = shader.traits & RTS_EMISSIVE;
     uint32_t bits = shader.traits & RTS_SPECULAR ? uint32_t(hasMirrors) : 0u;

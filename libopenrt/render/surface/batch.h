@@ -1,4 +1,4 @@
-// batch.h: the host's side of one batch of shading points: what the functions of RtsHost work on.
+// batch.h: the host's state for one batch of shading points. The functions of RtsHost work on it.
 // [render]
 #pragma once
 
@@ -23,24 +23,26 @@ struct RtsBatch {
   openrt::RayCounters* counters = nullptr;
   const openrt::Points* points = nullptr;
   uint32_t lightSet = 0;
-  // Light being looked at (illuminate): arrays of the host, made with the first light.
+  // The light that is being evaluated (illuminate). The host allocates these arrays with the first
+  // light.
   float* local[3] = {};
   float* toLight[3] = {};
   float* color[3] = {};
   float* ambient[3] = {};
-  float* reach = nullptr; // distance to the light; 0 where there is no direction
+  float* reach = nullptr; // distance to the light; 0 if there is no direction
   uint32_t current = ~0u; // index into the batch's lights
   bool directional = false;
-  uint32_t* chosen =
-      nullptr; // by hit: the light of the scene that stands for many; null: one light for all hits
-  // Who renders: null where shaders are asked outside of a picture. There nothing is traced, and
-  // random points are the middle.
+  // By hit: index of the sampled scene light; null: the same light for all hits.
+  uint32_t* chosen = nullptr;
+  // The renderer. Null if shaders are called outside of a frame: nothing is traced then, and random
+  // points are (0.5, 0.5).
   openrt::TileRenderer* tracer = nullptr;
-  const openrt::RayState* states = nullptr; // rays of the wave, by lane
-  const uint32_t* order = nullptr;          // lanes of the hits; null: the camera's rays, in order
-  uint32_t rays = 0;                        // number of these
-  uint32_t* requests = nullptr;             // by hit: rays that it has sent; made with the first
-  // Lobes that the shader has asked for (surface).
+  const openrt::RayState* states = nullptr; // ray states of the wave, by lane
+  const uint32_t* order = nullptr;          // lanes of the hits; null: camera rays, in order
+  uint32_t rays = 0;                        // number of camera rays
+  // By hit: number of rays it has traced; allocated with the first request.
+  uint32_t* requests = nullptr;
+  // Lobes that the shader has added (`surface`).
   RtsLobe lobes[RTS_MAX_LOBES];
   uint32_t lobeCount = 0;
 };

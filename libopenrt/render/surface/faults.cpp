@@ -34,7 +34,7 @@ const char* textOf(Fault fault) {
   return "";
 }
 
-// By the bits of the exponent, so that the loop runs over whole vectors.
+// Tests the bits of the exponent, so that the loop vectorises.
 bool allFinite(const float* values, uint32_t n) {
   constexpr uint32_t exponent = 0x7f800000;
   uint32_t bad = 0;
@@ -48,7 +48,7 @@ uint32_t traitsAt(const RtsBatch& batch, uint32_t i) {
   return (*batch.scene->shaders)[record.shader].traits;
 }
 
-// Hits at which something is above 0 that the class does not announce.
+// Counts the hits with values above 0 that the class's traits do not declare.
 template <class Above> void demandTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait,
                                         Fault fault, const Above& above) {
   uint64_t hits = 0;
@@ -61,8 +61,8 @@ bool anyAbove(float* const group[3], uint32_t i) {
   return group[0][i] > 0 || group[1][i] > 0 || group[2][i] > 0;
 }
 
-// The opposite: hits at which something is above 0 that the class excludes. Values of a geometry
-// are not known to traits.
+// Counts the hits with values above 0 that the class's traits exclude. Hits with parameter values
+// of their geometry are skipped, because traits do not know these.
 template <class Above> void excludeTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait,
                                          Fault fault, const Above& above) {
   uint64_t hits = 0;
@@ -80,7 +80,7 @@ void diagnose(const RtsClass& c, RtsBatch& batch, const RtsSurface& out) {
     if (lobe.kind == RTS_LOBE_TRANSPARENT)
       demandTrait(c, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency,
                   [&](uint32_t i) { return anyAbove(lobe.weight, i); });
-    if (scatteringOf(lobe))
+    if (nonSpecularFunctions(lobe))
       excludeTrait(c, batch, RTS_NO_SCATTER, Fault::undeclaredScattering,
                    [&](uint32_t i) { return anyAbove(lobe.weight, i); });
     if (lobe.kind == RTS_LOBE_GLOSSY || lobe.kind == RTS_LOBE_ROUGH_DIELECTRIC ||
@@ -90,7 +90,8 @@ void diagnose(const RtsClass& c, RtsBatch& batch, const RtsSurface& out) {
   }
 }
 
-// Takes the weight of a lobe at hits where any of its numbers is not finite; bad[i] is set there.
+// Sets the weight of a lobe to 0 at hits where any of its numbers is not finite, and sets bad[i]
+// there.
 void checkLobe(RtsLobe& lobe, const RtsHits& hits, uint8_t* bad) {
   float* all[8 + RTS_MAX_LOBE_FLOATS] = {lobe.weight[0],    lobe.weight[1],   lobe.weight[2],
                                          lobe.normal[0],    lobe.normal[1],   lobe.normal[2],
@@ -162,15 +163,15 @@ void ShaderFaults::report(RTlogCallback callback, void* user) const {
   }
 }
 
-void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, uint32_t n,
-                 std::initializer_list<float*> arrays) {
+void sanitizeOutput(const RtsClass& shaderClass, RtsBatch& batch, uint32_t n,
+                    std::initializer_list<float*> arrays) {
   ArenaScope scope(*batch.arena);
   auto* bad = batch.arena->takeZero<uint8_t>(n);
   clear(arrays, n, bad);
   countBad(shaderClass, batch, bad, n);
 }
 
-void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, const RtsSurface& out) {
+void sanitizeOutput(const RtsClass& shaderClass, RtsBatch& batch, const RtsSurface& out) {
   ArenaScope scope(*batch.arena);
   const RtsHits& hits = batch.points->hits;
   auto* bad = batch.arena->takeZero<uint8_t>(hits.count);
@@ -182,12 +183,12 @@ void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, const RtsSurface&
   if (batch.scene->host.diagnose) diagnose(shaderClass, batch, out);
 }
 
-void checkAnswer(const RtsClass& shaderClass, RtsBatch& batch, const RtsShading& out) {
+void sanitizeOutput(const RtsClass& shaderClass, RtsBatch& batch, const RtsShading& out) {
   const uint32_t n = batch.points->hits.count;
-  checkAnswer(shaderClass, batch, n,
-              {out.radiance[0], out.radiance[1], out.radiance[2], out.transmission[0],
-               out.transmission[1], out.transmission[2], out.albedo[0], out.albedo[1],
-               out.albedo[2]});
+  sanitizeOutput(shaderClass, batch, n,
+                 {out.radiance[0], out.radiance[1], out.radiance[2], out.transmission[0],
+                  out.transmission[1], out.transmission[2], out.albedo[0], out.albedo[1],
+                  out.albedo[2]});
   if (batch.scene->host.diagnose)
     demandTrait(shaderClass, batch, RTS_TRANSPARENT, Fault::undeclaredTransparency,
                 [&](uint32_t i) { return anyAbove(out.transmission, i); });

@@ -1,5 +1,5 @@
-// hit_info.cpp: what a shader may ask of its hits beyond RtsHits: made only when asked for. Called
-// by host.cpp. [render]
+// hit_info.cpp: data about hits that shaders may request beyond RtsHits; computed on request.
+// Called by host.cpp. [render]
 #include "render/surface/hit_info.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
   }
 }
 
-// The texture coordinates of rtSphere.
+// Derivatives for the texture coordinates of rtSphere.
 void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3],
                        float* const alongT[3]) {
   const Record& r = recordAt(batch, i);
@@ -73,7 +73,7 @@ void localOf(const RtsBatch& batch, float* const position[3], float* const norma
       for (int k = 0; k < 3; k++)
         position[k][i] = m.r[k][0] * p[0] + m.r[k][1] * p[1] + m.r[k][2] * p[2] + m.r[k][3];
     if (!normal) continue;
-    const Affine back = inverseOf(m); // normals go by the transpose of the inverse
+    const Affine back = inverseOf(m); // normals are transformed by the transpose of the inverse
     for (int k = 0; k < 3; k++)
       normal[k][i] = back.r[0][k] * hits.geometric[0][i] + back.r[1][k] * hits.geometric[1][i] +
                      back.r[2][k] * hits.geometric[2][i];

@@ -1,4 +1,5 @@
-// host.cpp: the functions that shaders call (openrts.h), over one batch at a time. [render]
+// host.cpp: the host functions that shaders call (openrts.h), each for one batch at a time.
+// [render]
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +12,7 @@
 
 namespace openrt {
 
-void makeRoomForLight(RtsBatch& batch, uint32_t n) {
+void allocateLightArrays(RtsBatch& batch, uint32_t n) {
   if (batch.reach) return;
   const uint32_t size = padded(n);
   for (auto* group : {batch.local, batch.toLight, batch.color, batch.ambient})

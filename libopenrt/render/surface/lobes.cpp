@@ -1,8 +1,8 @@
-// lobes.cpp: Microfacets: B. Walter et al., "Microfacet Models for Refraction through
-// Rough Surfaces", EGSR 2007 (the GGX distribution); height-correlated shadowing: E. Heitz,
-// "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014; visible normals chosen as in J.
-// Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023. In double: a
-// lobe of width 1e-4 has densities of 1e8, and loses its digits near its axis in float.
+// lobes.cpp: built-in lobes. Microfacets: B. Walter et al., "Microfacet Models for Refraction
+// through Rough Surfaces", EGSR 2007 (the GGX distribution). Height-correlated shadowing: E. Heitz,
+// "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014. Visible normals are sampled as
+// in J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023. In double,
+// because a lobe of width 1e-4 has pdfs of 1e8 and loses its digits near its axis in float.
 #include "render/surface/lobes.h"
 
 #include <cmath>
@@ -27,7 +27,7 @@ Vec unit(const Vec& a) {
   return (l > 0 ? 1 / std::sqrt(l) : 0.0) * a;
 }
 
-// Directions about a lobe's normal, which is its z axis.
+// Local frame of a lobe; its normal is the z axis.
 class Frame {
  public:
   Frame(const RtsLobe& lobe, uint32_t hit) {
@@ -62,27 +62,27 @@ void put(float* const value[3], uint32_t i, double v) {
 // -------------------------------------------------------------------------------------------------
 
 void evaluateDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit,
-                     const float* const direction[3], float* const value[3], float* density) {
+                     const float* const direction[3], float* const value[3], float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t h = hit[i];
     const float cosine = lobe->normal[0][h] * direction[0][i] +
                          lobe->normal[1][h] * direction[1][i] +
                          lobe->normal[2][h] * direction[2][i];
-    density[i] = std::max(cosine, 0.0f) * float(M_1_PI);
-    for (int k = 0; k < 3; k++) value[k][i] = density[i];
+    pdf[i] = std::max(cosine, 0.0f) * float(M_1_PI);
+    for (int k = 0; k < 3; k++) value[k][i] = pdf[i];
   }
 }
 
 void sampleDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit,
                    const float* const square[2], float* const direction[3],
-                   float* const quotient[3], float* density) {
+                   float* const quotient[3], float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
     const float normal[3] = {lobe->normal[0][hit[i]], lobe->normal[1][hit[i]],
                              lobe->normal[2][hit[i]]};
     float out[3];
-    cosineDirection(normal, square[0][i], square[1][i], out);
+    sampleCosineHemisphere(normal, square[0][i], square[1][i], out);
     for (int k = 0; k < 3; k++) direction[k][i] = out[k];
-    density[i] = std::max(dot3(out, normal), 0.0f) * float(M_1_PI);
+    pdf[i] = std::max(dot3(out, normal), 0.0f) * float(M_1_PI);
     put(quotient, i, 1);
   }
 }
@@ -93,19 +93,19 @@ void sampleDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32
 class Facets {
  public:
   explicit Facets(double alpha) : a_(alpha > 1e-4 ? std::min(alpha, 1.0) : 1e-4) {}
-  // Facets with the normal h, per area and solid angle.
+  // Returns the distribution of facet normals per area and solid angle at h.
   double distribution(const Vec& h) const {
     const double t = (h.x * h.x + h.y * h.y) / (a_ * a_) + h.z * h.z;
     return h.z > 0 ? 1 / (M_PI * a_ * a_ * t * t) : 0;
   }
-  // Smith's Lambda: 1 / (1 + Lambda) of the facets that face v are seen from there.
+  // Smith's Lambda: a fraction 1 / (1 + Lambda) of the facets that face v is visible from v.
   double lambda(const Vec& v) const {
     const double slope2 = a_ * a_ * (v.x * v.x + v.y * v.y) / (v.z * v.z);
     return v.z != 0 ? (std::sqrt(1 + slope2) - 1) / 2 : 1e30;
   }
   double masking(const Vec& v) const { return 1 / (1 + lambda(v)); }
   double shadowing(const Vec& v, const Vec& w) const { return 1 / (1 + lambda(v) + lambda(w)); }
-  // A facet's normal among those seen from v.
+  // Samples a facet normal among those visible from v.
   Vec visible(const Vec& v, double u1, double u2) const {
     const Vec stretched = unit({a_ * v.x, a_ * v.y, v.z});
     const double phi = 2 * M_PI * u1, z = (1 - u2) * (1 + stretched.z) - stretched.z;
@@ -113,8 +113,8 @@ class Facets {
     const Vec h = Vec{s * std::cos(phi), s * std::sin(phi), z} + stretched;
     return unit({a_ * h.x, a_ * h.y, std::max(h.z, 0.0)});
   }
-  // Its density, by the solid angle of normals.
-  double visibleDensity(const Vec& v, const Vec& h) const {
+  // Returns the pdf of visible(), by the solid angle of normals.
+  double visiblePdf(const Vec& v, const Vec& h) const {
     return masking(v) * distribution(h) * std::max(0.0, dot(v, h)) / v.z;
   }
 
@@ -129,37 +129,37 @@ double fresnelAt(double cosine, double eta) {
 
 struct Glossy {
   Facets facets;
-  double eta; // 0: no Fresnel
+  double eta; // relative index for the Fresnel term; 0: no Fresnel term
   Glossy(const RtsLobe& lobe, uint32_t hit)
       : facets(lobe.parameter[0][hit]), eta(lobe.parameter[1][hit]) {}
   double reflectance(double cosine) const { return eta > 0 ? fresnelAt(cosine, eta) : 1; }
 };
 
 void evaluateGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
-                    const float* const direction[3], float* const value[3], float* density) {
+                    const float* const direction[3], float* const value[3], float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]), w = towards(frame, direction, i);
     put(value, i, 0);
-    density[i] = 0;
+    pdf[i] = 0;
     if (!(v.z > 0) || !(w.z > 0)) continue;
     const Glossy g(*lobe, hit[i]);
     const Vec h = unit(v + w);
     const double d = g.facets.distribution(h);
     put(value, i, g.reflectance(dot(v, h)) * d * g.facets.shadowing(v, w) / (4 * v.z));
-    density[i] = float(g.facets.masking(v) * d / (4 * v.z));
+    pdf[i] = float(g.facets.masking(v) * d / (4 * v.z));
   }
 }
 
 void sampleGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
                   const float* const square[2], float* const direction[3], float* const quotient[3],
-                  float* density) {
+                  float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]);
     put(quotient, i, 0);
     put(direction, i, 0);
-    density[i] = 0;
+    pdf[i] = 0;
     if (!(v.z > 0)) continue;
     const Glossy g(*lobe, hit[i]);
     const Vec h = g.facets.visible(v, square[0][i], square[1][i]);
@@ -167,13 +167,13 @@ void sampleGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const ui
     if (!(w.z > 0)) continue;
     frame.toWorld(w, direction, i);
     put(quotient, i, g.reflectance(dot(v, h)) * g.facets.shadowing(v, w) / g.facets.masking(v));
-    density[i] = float(g.facets.masking(v) * g.facets.distribution(h) / (4 * v.z));
+    pdf[i] = float(g.facets.masking(v) * g.facets.distribution(h) / (4 * v.z));
   }
 }
 
-// Both sides of a rough boundary. eta: index on the eye's side over that behind. A part of the last
-// digits of the second number chooses between reflection and refraction: they are spread as evenly
-// as the first ones.
+// A rough dielectric boundary, both sides. eta: index on the viewer's side over that on the far
+// side. The low digits of the second random number choose between reflection and refraction; they
+// are as evenly distributed as the leading ones.
 struct Boundary {
   Facets facets;
   double eta;
@@ -181,52 +181,51 @@ struct Boundary {
       : facets(lobe.parameter[1][hit]), eta(lobe.parameter[0][hit]) {
     if (!(eta > 0) || !std::isfinite(eta)) eta = 1;
   }
-  // Value and density of light from w; half: normal of the facet that leads it to v, on v's side.
-  void answer(const Vec& v, const Vec& w, double& value, double& density) const {
-    value = density = 0;
+  // Computes value and pdf for light from w. The facet normal that scatters it to v is on v's side.
+  void evaluateAt(const Vec& v, const Vec& w, double& value, double& pdf) const {
+    value = pdf = 0;
     if (!(v.z > 0) || w.z == 0) return;
     const bool reflected = w.z > 0;
-    Vec h = reflected
-                ? unit(v + w)
-                : unit(eta * v + w); // Walter's equations 13 and 16, scaled by the index behind
+    // Walter's equations 13 and 16, scaled by the index of the far side
+    Vec h = reflected ? unit(v + w) : unit(eta * v + w);
     if (h.z < 0) h = -1 * h;
     const double vh = dot(v, h), wh = dot(w, h);
     if (!(vh > 0) || (reflected ? wh <= 0 : wh >= 0)) return;
     const double f = fresnelAt(vh, eta), d = facets.distribution(h);
     if (reflected) {
       value = f * d * facets.shadowing(v, w) / (4 * v.z);
-      density = f * facets.masking(v) * d / (4 * v.z);
+      pdf = f * facets.masking(v) * d / (4 * v.z);
       return;
     }
-    const double root =
-        eta * vh + wh; // with radiance compressed by eta^2, as at the smooth boundary
+    const double root = eta * vh + wh; // with radiance scaled by eta^2, as at the smooth boundary
     if (root == 0) return;
     const double spread = std::fabs(wh) / (root * root);
-    density = (1 - f) * facets.visibleDensity(v, h) * spread;
+    pdf = (1 - f) * facets.visiblePdf(v, h) * spread;
     value = (1 - f) * d * facets.shadowing(v, w) * vh * spread / v.z * eta * eta;
   }
 };
 
 void evaluateBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
-                      const float* const direction[3], float* const value[3], float* density) {
+                      const float* const direction[3], float* const value[3], float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     double f, p;
-    Boundary(*lobe, hit[i]).answer(toEye(frame, *hits, hit[i]), towards(frame, direction, i), f, p);
+    Boundary(*lobe, hit[i])
+        .evaluateAt(toEye(frame, *hits, hit[i]), towards(frame, direction, i), f, p);
     put(value, i, f);
-    density[i] = float(p);
+    pdf[i] = float(p);
   }
 }
 
 void sampleBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
                     const float* const square[2], float* const direction[3],
-                    float* const quotient[3], float* density) {
+                    float* const quotient[3], float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
     const Frame frame(*lobe, hit[i]);
     const Vec v = toEye(frame, *hits, hit[i]);
     put(quotient, i, 0);
     put(direction, i, 0);
-    density[i] = 0;
+    pdf[i] = 0;
     if (!(v.z > 0)) continue;
     const Boundary b(*lobe, hit[i]);
     const Vec h = b.facets.visible(v, square[0][i], square[1][i]);
@@ -240,12 +239,12 @@ void sampleBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const 
         unit(reflected ? 2 * cosine * h + -1 * v : (b.eta * cosine - behind) * h + -b.eta * v);
     if (reflected ? !(w.z > 0) : !(w.z < 0)) continue;
     double value, p;
-    b.answer(v, w, value, p);
+    b.evaluateAt(v, w, value, p);
     if (!(p > 0)) continue;
     frame.toWorld(w, direction, i);
     put(quotient, i,
         (reflected ? 1 : b.eta * b.eta) * b.facets.shadowing(v, w) / b.facets.masking(v));
-    density[i] = float(p);
+    pdf[i] = float(p);
   }
 }
 
@@ -257,7 +256,7 @@ float checked(float v) { return v > 0 && std::isfinite(v) ? v : 0.0f; }
 
 } // namespace
 
-const RtsLobeFunctions* scatteringOf(const RtsLobe& lobe) {
+const RtsLobeFunctions* nonSpecularFunctions(const RtsLobe& lobe) {
   switch (lobe.kind) {
   case RTS_LOBE_DIFFUSE: return &diffuse;
   case RTS_LOBE_GLOSSY: return &glossy;
@@ -275,7 +274,7 @@ bool weightAt(const RtsLobe& lobe, uint32_t hit, float out[3]) {
 bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
   float ignored[3];
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    const RtsLobeFunctions* functions = scatteringOf(batch.lobes[l]);
+    const RtsLobeFunctions* functions = nonSpecularFunctions(batch.lobes[l]);
     if (functions && functions->transmits && weightAt(batch.lobes[l], hit, ignored)) return true;
   }
   return false;
@@ -283,21 +282,22 @@ bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
 
 namespace {
 
-// The class whose lobes a batch has; null: unknown.
+// Returns the class whose lobes a batch has; null if unknown.
 const RtsClass* classOf(const RtsBatch* batch) {
   if (!batch || !batch->points) return nullptr;
   return (*batch->scene->shaders)[batch->scene->records[batch->points->record[0]].shader]
       .shaderClass;
 }
 
-// Calls a function of a plug-in's lobe under the name of its class.
+// Calls a function of a plug-in's lobe; crashes are attributed to its class.
 template <class F> void callCustom(const RtsBatch* batch, const F& f) {
   std::optional<RunningShader> running;
   if (const RtsClass* shaderClass = classOf(batch)) running.emplace(*shaderClass);
   f();
 }
 
-// What a plug-in's lobe has answered, made harmless.
+// Replaces negative values and values that are not finite in the output of a plug-in's lobe, and
+// counts the latter.
 void checkCustom(const RtsBatch* batch, std::initializer_list<float*> arrays, uint32_t n) {
   uint64_t bad = 0;
   for (float* a : arrays)
@@ -311,36 +311,35 @@ void checkCustom(const RtsBatch* batch, std::initializer_list<float*> arrays, ui
 
 } // namespace
 
-LobeAnswers::LobeAnswers(Arena& arena, uint32_t n, const RtsBatch* batch) : batch_(batch) {
+LobeValues::LobeValues(Arena& arena, uint32_t n, const RtsBatch* batch) : batch_(batch) {
   for (auto& a : value) a = arena.take<float>(padded(n));
-  density = arena.take<float>(padded(n));
+  pdf = arena.take<float>(padded(n));
 }
 
-void LobeAnswers::evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n,
-                           const uint32_t* hit, const float* const directions[3]) {
+void LobeValues::evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,
+                          const float* const directions[3]) {
   if (lobe.kind != RTS_LOBE_CUSTOM)
-    return scatteringOf(lobe)->evaluate(&lobe, &hits, n, hit, directions, value, density);
+    return nonSpecularFunctions(lobe)->evaluate(&lobe, &hits, n, hit, directions, value, pdf);
   callCustom(batch_,
-             [&] { lobe.functions->evaluate(&lobe, &hits, n, hit, directions, value, density); });
-  checkCustom(batch_, {value[0], value[1], value[2], density}, n);
+             [&] { lobe.functions->evaluate(&lobe, &hits, n, hit, directions, value, pdf); });
+  checkCustom(batch_, {value[0], value[1], value[2], pdf}, n);
 }
 
 LobeSamples::LobeSamples(Arena& arena, uint32_t n, const RtsBatch* batch)
-    : LobeAnswers(arena, n, batch) {
+    : LobeValues(arena, n, batch) {
   for (auto& a : direction) a = arena.take<float>(padded(n));
 }
 
 void LobeSamples::sample(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,
                          const float* const square[2]) {
   if (lobe.kind != RTS_LOBE_CUSTOM)
-    return scatteringOf(lobe)->sample(&lobe, &hits, n, hit, square, direction, value, density);
-  callCustom(batch_, [&] {
-    lobe.functions->sample(&lobe, &hits, n, hit, square, direction, value, density);
-  });
-  checkCustom(batch_, {value[0], value[1], value[2], density}, n);
-  for (uint32_t i = 0; i < n; i++) { // what is no direction leads nowhere
+    return nonSpecularFunctions(lobe)->sample(&lobe, &hits, n, hit, square, direction, value, pdf);
+  callCustom(batch_,
+             [&] { lobe.functions->sample(&lobe, &hits, n, hit, square, direction, value, pdf); });
+  checkCustom(batch_, {value[0], value[1], value[2], pdf}, n);
+  for (uint32_t i = 0; i < n; i++) { // a direction that is not normalised counts as no sample
     const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
-    if (!(std::fabs(dot3(d, d) - 1) < 1e-3f)) density[i] = 0;
+    if (!(std::fabs(dot3(d, d) - 1) < 1e-3f)) pdf[i] = 0;
   }
 }
 

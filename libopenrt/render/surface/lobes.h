@@ -1,5 +1,5 @@
-// lobes.h: lobes that scatter light over directions: the engine's own kinds as the same functions
-// that a plug-in brings for its own (RtsLobeFunctions). Pure functions. [render]
+// lobes.h: evaluation and sampling of non-specular lobes. The built-in kinds have the same function
+// table as the custom lobes of plug-ins (RtsLobeFunctions). Pure functions. [render]
 #pragma once
 
 #include "openrt/openrts.h"
@@ -7,22 +7,24 @@
 
 namespace openrt {
 
-// Null for lobes that know but one direction: mirrors, smooth boundaries, straight through.
-const RtsLobeFunctions* scatteringOf(const RtsLobe& lobe);
+// Returns the evaluate and sample functions of a lobe; null for specular lobes: mirrors, smooth
+// boundaries, straight transmission.
+const RtsLobeFunctions* nonSpecularFunctions(const RtsLobe& lobe);
 
-// Whether the lobe's weight at a hit is above 0; out gets it, NaN, infinite and negative parts as
-// 0.
+// Returns whether the lobe's weight at a hit is above 0 and writes the weight to `out`. NaN,
+// infinite and negative components become 0.
 bool weightAt(const RtsLobe& lobe, uint32_t hit, float out[3]);
 
-// Whether light from behind the surface counts at a hit.
+// Returns whether light from behind the surface contributes at a hit.
 bool transmitsAt(const RtsBatch& batch, uint32_t hit);
 
-// A lobe's answers to n pairs of a hit and a direction, checked: what is not finite or negative is
-// 0.
-struct LobeAnswers {
-  float *value[3], *density;
-  // batch: whose lobes; crashes and NaN in functions of a plug-in are then put down to its class
-  LobeAnswers(Arena& arena, uint32_t n, const RtsBatch* batch = nullptr);
+// Values and pdfs of a lobe for n pairs of a hit and a direction. Values that are not finite or
+// negative are replaced by 0.
+struct LobeValues {
+  float *value[3], *pdf;
+  // batch: the batch that has the lobes. It attributes crashes and NaN in a plug-in's functions to
+  // its class.
+  LobeValues(Arena& arena, uint32_t n, const RtsBatch* batch = nullptr);
   void evaluate(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,
                 const float* const direction[3]);
 
@@ -30,9 +32,9 @@ struct LobeAnswers {
   const RtsBatch* batch_;
 };
 
-// Directions that a lobe has chosen, with `value` over density in LobeAnswers::value. Density 0:
-// none.
-struct LobeSamples : LobeAnswers {
+// Directions sampled from a lobe. LobeValues::value holds value / pdf. A pdf of 0 means that no
+// direction was sampled.
+struct LobeSamples : LobeValues {
   float* direction[3];
   LobeSamples(Arena& arena, uint32_t n, const RtsBatch* batch = nullptr);
   void sample(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, const uint32_t* hit,

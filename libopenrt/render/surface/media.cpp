@@ -23,11 +23,11 @@ Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
       c.behind.back() = 0;
     }
     c.to = mediumOf(c.behind, media);
-    c.seen = !c.to || media[c.to - 1].priority <= media[medium - 1].priority;
-    if (c.unknown || c.seen) c.from = medium;
+    c.visible = !c.to || media[c.to - 1].priority <= media[medium - 1].priority;
+    if (c.unknown || c.visible) c.from = medium;
     return c;
   }
-  c.seen = !c.from || media[c.from - 1].priority <= media[medium - 1].priority;
+  c.visible = !c.from || media[c.from - 1].priority <= media[medium - 1].priority;
   if (const auto free = std::find(c.behind.begin(), c.behind.end(), uint16_t(0));
       free != c.behind.end())
     *free = medium;

@@ -1,5 +1,5 @@
-// media.h: the bodies that a ray is inside of, and what it meets at their boundaries. Bodies may
-// overlap: the one of the highest priority is there (C. Schmidt, B. Budge, "Simple Nested
+// media.h: the stack of media that a ray is inside of, and what happens at their boundaries. Media
+// may overlap; the one with the highest priority wins (C. Schmidt, B. Budge, "Simple Nested
 // Dielectrics in Ray Traced Images", JGT 7(2), 2002). Pure functions.
 #pragma once
 
@@ -11,28 +11,29 @@
 
 namespace openrt {
 
-// Numbers from 1 into a scene's media, in the order they were entered; 0: none. A fifth body inside
-// four others is not noticed.
+// Media by number (1 + index into the scene's media) in the order they were entered; 0: empty. A
+// fifth medium inside four others is ignored.
 using MediaStack = std::array<uint16_t, 4>;
 
-// The medium a ray of this stack is in, 0: none. Of equal priorities the one entered last.
+// Returns the medium that a ray with this stack is in, 0 for none. Of equal priorities the one
+// entered last wins.
 uint16_t mediumOf(const MediaStack& stack, std::span<const RtsMedium> media);
 
 struct Crossing {
-  MediaStack behind; // on the other side of the boundary
-  uint16_t from, to; // media on both sides
-  bool seen;         // false: the boundary lies in a body of higher priority
-  bool unknown;      // the ray came from inside a body that it never entered: there the eye is
+  MediaStack behind; // media stack on the far side of the boundary
+  uint16_t from, to; // media on the near and on the far side
+  bool visible; // false: the boundary lies inside a medium of higher priority and has no effect
+  bool unknown; // the ray leaves a medium that it never entered: the camera is inside of it
 };
-// A ray meets the boundary of a medium; back: from inside.
+// Crosses the boundary of a medium. back: the ray hits it from inside.
 Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
                std::span<const RtsMedium> media);
 
-// Index of refraction of a medium (0: nothing, 1) by colour.
+// Returns the index of refraction of a medium by colour; 1 without a medium.
 inline float indexOf(uint16_t medium, int colour, std::span<const RtsMedium> media) {
   return medium ? media[medium - 1].index[colour] : 1.0f;
 }
-// What is left of light after a way through a medium, by colour.
+// Attenuates `colour` by the absorption along `length` in a medium.
 void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, float colour[3]);
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// points.cpp: position with its error bound, normals, texture coordinates and colour of hits.
-// Bounds follow pbrt's running error analysis: gamma(n) = n e / (1 - n e), e = 2^-24.
+// points.cpp: computes the position of hits with its error bound, normals, texture coordinates and
+// colour. Error bounds follow pbrt's running error analysis: gamma(n) = n e / (1 - n e), e = 2^-24.
 #include "render/surface/points.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr float gammaOf(int n) { return n * 0x1p-24f / (1 - n * 0x1p-24f); }
 
-struct Out { // arrays being filled for one lane
+struct PointArrays { // output arrays, filled lane by lane
   float *position[3], *direction[3], *geometric[3], *normal[3], *uv[2], *color[4], *distance,
       *segment, *error;
   uint32_t *flags, *record;
@@ -25,7 +25,7 @@ void apply(const float m[3][3], const float v[3], float out[3]) {
   for (int i = 0; i < 3; i++) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
 }
 
-// Point and its componentwise error bound through an affine map.
+// Transforms a point and its componentwise error bound by an affine map.
 void applyBound(const Affine& m, const float p[3], const float e[3], float out[3], float bound[3]) {
   for (int i = 0; i < 3; i++) {
     const float* r = m.r[i];
@@ -40,7 +40,7 @@ void applyBound(const Affine& m, const float p[3], const float e[3], float out[3
 bool normalize(float v[3]) {
   const float largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   if (!(largest > 0) || !std::isfinite(largest)) return false;
-  const float s = 1 / largest; // first into range: squares neither overflow nor vanish
+  const float s = 1 / largest; // scaled first, so that squares neither overflow nor underflow
   const float x = v[0] * s, y = v[1] * s, z = v[2] * s;
   const float k = 1 / std::sqrt(x * x + y * y + z * z);
   v[0] = x * k;
@@ -56,7 +56,7 @@ void mix(const float* values, const uint32_t i[3], const float w[3], float out[N
         w[0] * values[N * i[0] + k] + w[1] * values[N * i[1] + k] + w[2] * values[N * i[2] + k];
 }
 
-struct Local { // one hit being worked out
+struct Local { // intermediate data of one hit
   float p[3], bound[3], ng[3], ns[3], uv[2] = {0, 0}, color[4] = {1, 1, 1, 1};
   uint32_t flags = 0;
   bool smooth = false;
@@ -110,8 +110,9 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
     l[2] = 1;
   }
   const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
-  if (metInDouble(r)) // t is right to its last bit: near to the ray's origin the place is known far
-                      // better than the radius
+  // t is exact to its last bit: near the ray's origin the position is known far better than the
+  // radius
+  if (metInDouble(r))
     for (int k = 0; k < 3; k++) {
       h.p[k] = p[k];
       h.bound[k] = bound[k];
@@ -119,7 +120,7 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
   else
     applyBound(r.toRender, l, e, h.p, h.bound);
   apply(r.normalMatrix, l, h.ng);
-  // Clause 6.43: s runs counter-clockwise seen from above, from the back; t from the bottom to the
+  // Clause 6.43: s runs counter-clockwise seen from above, starting at the back; t from bottom to
   // top.
   const float turn = std::atan2(-l[0], -l[2]) * float(0.5 / M_PI);
   h.uv[0] = turn < 0 ? turn + 1 : turn;
@@ -146,8 +147,8 @@ void thin(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
   h.flags |= RTS_HIT_COLOR;
 }
 
-// The shader's parameters with the hit's values in place of those that the geometry has of its own:
-// a private copy.
+// Makes a private copy of the shader's parameters with the geometry's own values interpolated at
+// the hit.
 const void* ownParameters(const RenderScene& scene, const Record& r, const RayHits& hits,
                           uint32_t lane, Arena& arena) {
   const ShaderSlot& shader = (*scene.shaders)[r.shader];
@@ -175,26 +176,27 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
       std::copy_n(values + n * (own.perVertex ? size_t(r.indices[primitive]) : primitive), n,
                   mixed);
     }
-    if (param.minimum != 0 || param.maximum != 0) // weights may be below 0 by a rounding error
+    // Interpolation weights may be below 0 by a rounding error.
+    if (param.minimum != 0 || param.maximum != 0)
       for (size_t k = 0; k < n; k++) mixed[k] = std::clamp(mixed[k], param.minimum, param.maximum);
     std::memcpy(block + param.offset, mixed, n * sizeof(float));
   }
   return block;
 }
 
-void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out& out,
+void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const PointArrays& out,
            uint32_t to) {
   const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
   if (!normalize(h.ng))
     for (int k = 0; k < 3; k++) h.ng[k] = -d[k];
   const float towards = h.ng[0] * d[0] + h.ng[1] * d[1] + h.ng[2] * d[2];
   const bool thinHit = h.flags & RTS_HIT_LINE;
-  const bool away = towards > 0; // the kernel's normal faces away from the ray's origin
+  const bool away = towards > 0; // the kernel's normal points away from the ray's origin
   if (!thinHit && away != r.flip) h.flags |= RTS_HIT_BACK;
   const float sign = away ? -1.0f : 1.0f;
   if (h.smooth && !normalize(h.ns)) h.smooth = false;
-  // A given normal is used as given; seen from the back it is turned with the face (accuracy:
-  // two-sided lighting).
+  // A given vertex normal is not flipped towards the ray; only seen from the back it is flipped
+  // with the face (two-sided lighting).
   const float smoothSign = (h.flags & RTS_HIT_BACK) ? -1.0f : 1.0f;
   float error = 0;
   for (int k = 0; k < 3; k++) {
@@ -208,8 +210,8 @@ void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Out
   out.color[3][to] = h.color[3];
   out.uv[0][to] = h.uv[0];
   out.uv[1][to] = h.uv[1];
-  // A face within a plane through the origin of an axis has no error along it; the step off it must
-  // still be one.
+  // A face in a plane that contains an axis through the origin has no error along it, but rays must
+  // still be offset.
   out.error[to] = std::max(error, 0x1p-6f * std::max({h.bound[0], h.bound[1], h.bound[2]}));
   out.flags[to] = h.flags;
 }
@@ -241,7 +243,7 @@ void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t*
 Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hits,
                   const uint32_t* order, uint32_t n, const float* travelled, Arena& arena) {
   const uint32_t size = padded(n);
-  Out out;
+  PointArrays out;
   const auto floats = [&] { return arena.take<float>(size); };
   for (auto* group : {out.position, out.direction, out.geometric, out.normal})
     for (int k = 0; k < 3; k++) group[k] = floats();
@@ -310,7 +312,7 @@ bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, fl
       const float* m = r.toRender.r[k];
       vertex[k] = r.instanced ? m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3] : at[k] * r.scale;
     }
-    float below = 0; // depth of the point under the tangent plane of the vertex
+    float below = 0; // depth of the point below the tangent plane of the vertex
     for (int k = 0; k < 3; k++) below += (p[k] - vertex[k]) * n[k] * sign;
     below = std::min(below, 0.0f);
     for (int k = 0; k < 3; k++) lift[k] -= w[c] * below * n[k] * sign;

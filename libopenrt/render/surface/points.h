@@ -1,5 +1,5 @@
-// points.h: hits become shading points, sorted into buckets of one shader class and one set of
-// lights. [render]
+// points.h: turns ray hits into shading points, sorted into buckets of one shader class and one
+// light set. [render]
 #pragma once
 
 #include <bit>
@@ -10,30 +10,31 @@
 namespace openrt {
 
 struct BucketRange {
-  uint32_t bucket, begin, end; // in the sorted order
+  uint32_t bucket, begin, end; // positions in the sorted order
 };
 
-// Shading points of one bucket, with what the host keeps beside.
+// Shading points of one bucket, with additional data for the host.
 struct Points {
   RtsHits hits;
   float* error;           // bound of the position's rounding error along the geometric normal
-  const uint32_t* record; // Record of each
-  const RayHits* rayHits; // where they come from, and
-  const uint32_t* order;  // their lanes there
+  const uint32_t* record; // index of the Record of each point
+  const RayHits* rayHits; // the ray hits that the points were made from
+  const uint32_t* order;  // lane of each point in rayHits
 };
 
-// Stable counting sort of n ray lanes by the bucket of the record each has hit: order gets the
-// lanes, the result the ranges. counts is working storage kept between calls.
+// Sorts n ray lanes by the bucket of the record each has hit (stable counting sort). `order` gets
+// the lanes, `ranges` the buckets' ranges. `counts` is working storage kept between calls.
 void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t* rayLanes,
                   uint32_t n, uint32_t* order, std::vector<uint32_t>& counts,
                   std::vector<BucketRange>& ranges);
 
-// travelled: path length up to the ray's origin, by ray lane.
+// Computes the shading points of n hits. travelled: path length up to the ray's origin, by ray
+// lane.
 Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hits,
                   const uint32_t* order, uint32_t n, const float* travelled, Arena& arena);
 
-// Whether the ray has met a surface from its back.
-inline bool metFromBehind(const RenderScene& scene, const Rays& rays, const RayHits& hits,
+// Returns whether the ray has hit the back face of a surface.
+inline bool isBackFaceHit(const RenderScene& scene, const Rays& rays, const RayHits& hits,
                           uint32_t lane) {
   const Record& r = scene.records[hits.record[lane]];
   float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
@@ -46,30 +47,31 @@ inline bool metFromBehind(const RenderScene& scene, const Rays& rays, const RayH
   const float d = n[0] * rays.dir[0][lane] + n[1] * rays.dir[1][lane] + n[2] * rays.dir[2][lane];
   return r.flip ? d < 0 : d > 0;
 }
-// Whether that back is not there.
-inline bool culled(const RenderScene& scene, const Rays& rays, const RayHits& hits, uint32_t lane) {
-  return scene.records[hits.record[lane]].cull && metFromBehind(scene, rays, hits, lane);
+// Returns whether the hit is a back face that is culled.
+inline bool isCulledHit(const RenderScene& scene, const Rays& rays, const RayHits& hits,
+                        uint32_t lane) {
+  return scene.records[hits.record[lane]].cull && isBackFaceHit(scene, rays, hits, lane);
 }
 
-// The point of hit i lifted from its flat triangle to the smooth surface that the vertex normals
-// describe, on the side that the shading normal is on: J. Hanika, "Hacking the Shadow Terminator",
-// Ray Tracing Gems II, ch. 4. False, and nothing written, where the surface is flat.
+// Lifts the point of hit i from its flat triangle to the smooth surface that the vertex normals
+// describe, on the side of the shading normal: J. Hanika, "Hacking the Shadow Terminator", Ray
+// Tracing Gems II, ch. 4. Returns false and writes nothing if the surface is flat.
 bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, float out[3]);
 
-// p moved along n (unit) out of the error bound, then one float further on every axis: M. Pharr, W.
-// Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., 3.9.5.
+// Moves p along the unit vector n out of the error bound, then by one more float on every axis: M.
+// Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., 3.9.5.
 inline void offsetPoint(const float p[3], const float n[3], float error, float out[3]) {
   for (int k = 0; k < 3; k++) {
     const float step = n[k] * error, moved = p[k] + step;
     const int32_t bits = std::bit_cast<int32_t>(moved);
-    const int32_t outward =
-        (step > 0) == (moved > 0) ? bits + 1 : bits - 1; // away from or towards zero
+    // Away from or towards zero.
+    const int32_t outward = (step > 0) == (moved > 0) ? bits + 1 : bits - 1;
     const float next = moved != 0 ? std::bit_cast<float>(outward) : step;
     out[k] = step != 0 ? next : moved;
   }
 }
 
-// The point of hit i moved off its surface, to the side that a direction leads to.
+// Moves the point of hit i off its surface, to the side that a direction leads to.
 inline void liftPoint(const Points& points, uint32_t i, const float direction[3], float out[3]) {
   float p[3], n[3], towards = 0;
   for (int k = 0; k < 3; k++) {

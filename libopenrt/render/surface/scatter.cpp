@@ -1,11 +1,13 @@
-// scatter.cpp: surfaces described by lobes: light from the lights, then the rays that go on. The
-// other half of TileRenderer.
+// scatter.cpp: shading of surfaces that are described by lobes: direct light, then the rays that
+// continue the path. Part of TileRenderer.
 //
-// Transports. Direct: lights alone. Whitted: every mirror image and refraction is followed,
-// deterministically, until a branch carries less than the frame's energy cut of the camera ray.
-// Path: also a direction from each lobe that scatters; where a path has split already one way is
-// chosen with a probability in proportion to what it carries, and from the fourth surface on
-// Russian roulette ends paths.
+// Transports:
+// * Direct: lights only.
+// * Whitted: follows every specular reflection and refraction deterministically until a branch
+//   carries less than the frame's energy cut.
+// * Path: also samples a direction from each non-specular lobe. Once a path has split, one sample
+//   is selected with a probability proportional to what it carries. From the fourth surface on
+//   Russian roulette terminates paths.
 #include "render/surface/scatter.h"
 
 #include <algorithm>
@@ -24,19 +26,19 @@ constexpr uint32_t rouletteFrom = 3;
 
 } // namespace
 
-// A light's colour is the radiance of a white Lambert surface that faces it (openrts.h), so pi of
-// it arrive.
+// Adds the light of the light shaders. A light's colour is the radiance of a white Lambert surface
+// that faces it (openrts.h), so the irradiance is pi times the colour.
 void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]) {
   uint32_t scattering = 0;
   for (uint32_t l = 0; l < batch.lobeCount; l++)
-    scattering += scatteringOf(batch.lobes[l]) != nullptr;
+    scattering += nonSpecularFunctions(batch.lobes[l]) != nullptr;
   const uint32_t lights = scattering ? scene_.host.lights(&batch) : 0, n = hits.count;
   if (lights == 0) return;
-  makeRoomForLight(batch, n);
+  allocateLightArrays(batch, n);
   ArenaScope scope(arena_);
   const uint32_t* all = arena_.takeNumbers(n);
   auto* wanted = arena_.take<uint8_t>(padded(n));
-  LobeAnswers answers(arena_, n, &batch);
+  LobeValues lobeValues(arena_, n, &batch);
   float* response[3];
   for (auto& a : response) a = arena_.take<float>(n);
   for (uint32_t light = 0; light < lights; light++) {
@@ -47,14 +49,14 @@ void TileRenderer::addLights(RtsBatch& batch, const RtsHits& hits, float* const 
     std::fill_n(wanted, n, uint8_t(0));
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       const RtsLobe& lobe = batch.lobes[l];
-      if (!scatteringOf(lobe)) continue;
-      answers.evaluate(lobe, hits, n, all, from.toLight);
+      if (!nonSpecularFunctions(lobe)) continue;
+      lobeValues.evaluate(lobe, hits, n, all, from.toLight);
       for (uint32_t i = 0; i < n; i++) {
         float w[3];
         if (!weightAt(lobe, i, w)) continue;
         float side = 0, sum = 0;
         for (int k = 0; k < 3; k++) {
-          response[k][i] += w[k] *= answers.value[k][i];
+          response[k][i] += w[k] *= lobeValues.value[k][i];
           sum += w[k];
           side += lobe.normal[k][i] * from.toLight[k][i];
         }
@@ -84,17 +86,17 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     const RunningShader running(*bucket.shaderClass);
     bucket.shaderClass->surface(&scene_.host, &batch, &hits, &surface);
   }
-  checkAnswer(*bucket.shaderClass, batch, surface);
+  sanitizeOutput(*bucket.shaderClass, batch, surface);
   Boundaries boundaries{nullptr, nullptr};
-  if (bucket.shaderClass->medium) meetBoundaries(batch, paths.state, boundaries);
+  if (bucket.shaderClass->medium) crossBoundaries(batch, paths.state, boundaries);
   for (uint32_t i = 0; i < hits.count; i++) {
-    const float share = boundaries.crossing && !boundaries.crossing[i].seen
+    const float share = boundaries.crossing && !boundaries.crossing[i].visible
                             ? 0
-                            : chanceMet(paths.state[order[i]], points, i);
+                            : emissionMisWeight(paths.state[order[i]], points, i);
     for (int k = 0; k < 3; k++) radiance[k][i] *= share;
-    if (const RayState& ray = paths.state[order[i]]; share > 0 && ray.byChance) {
+    if (const RayState& ray = paths.state[order[i]]; share > 0 && ray.specularSinceDiffuse) {
       const float light[3] = {radiance[0][i], radiance[1][i], radiance[2][i]};
-      chanceOf(ray).meet(light, brightestFor(ray));
+      unsampledLightOf(ray).meet(light, brightestFor(ray));
     }
   }
   addLights(batch, hits, radiance);
@@ -107,30 +109,32 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     draw(random, Draw::choice, 0, choices);
   }
   const LobeSamples* samples[RTS_MAX_LOBES] = {};
-  float* chance[RTS_MAX_LOBES] = {};
+  float* selectionProbability[RTS_MAX_LOBES] = {};
   for (uint32_t l = 0; path && l < batch.lobeCount; l++) {
-    if (!scatteringOf(batch.lobes[l])) continue;
+    if (!nonSpecularFunctions(batch.lobes[l])) continue;
     samples[l] = sampleLobe(batch, l, hits, random);
-    if (emitters) chance[l] = arena_.takeZero<float>(size);
+    if (emitters) selectionProbability[l] = arena_.takeZero<float>(size);
   }
   for (uint32_t i = 0; i < hits.count; i++) {
-    if (boundaries.crossing && !boundaries.crossing[i].seen)
-      passOn(points, i, order[i], boundaries.crossing[i], paths);
+    if (boundaries.crossing && !boundaries.crossing[i].visible)
+      passThroughBoundary(points, i, order[i], boundaries.crossing[i], paths);
     else
-      sendOn(batch, points, i, order[i], paths, samples, boundaries, choices, chance);
+      spawnRays(batch, points, i, order[i], paths, samples, boundaries, choices,
+                selectionProbability);
   }
   if (emitters)
-    addEmitters(batch, points, order, paths, random, chance, boundaries.crossing, radiance);
+    sampleEmitters(batch, points, order, paths, random, selectionProbability, boundaries.crossing,
+                   radiance);
   float* fog[4];
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
     const RayState& ray = paths.state[order[i]];
-    float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0},
-          covered = 0; // straight behind; there, in mirrors and through lenses
-    const bool unseen = boundaries.crossing && !boundaries.crossing[i].seen;
+    // clear: weight of what lies straight behind; seen: also of mirror images and refractions
+    float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0}, covered = 0;
+    const bool unseen = boundaries.crossing && !boundaries.crossing[i].visible;
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       float w[3];
-      if (scatteringOf(batch.lobes[l]) || !weightAt(batch.lobes[l], i, w)) continue;
+      if (nonSpecularFunctions(batch.lobes[l]) || !weightAt(batch.lobes[l], i, w)) continue;
       for (int k = 0; k < 3; k++) {
         seen[k] += w[k];
         clear[k] += batch.lobes[l].kind == RTS_LOBE_TRANSPARENT ? w[k] : 0.0f;
@@ -139,32 +143,32 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     for (int k = 0; k < 3; k++) {
       if (unseen) seen[k] = clear[k] = 1;
       float light = std::isfinite(radiance[k][i]) ? radiance[k][i] : 0.0f;
-      // Fog counts the whole length of a path: what is seen beyond brings the air's light of the
-      // way to here with it.
+      // Fog uses the whole path length. What is seen beyond the surface already contains the
+      // airlight of the path up to here, so that part is left out.
       if (fog[3])
         light = fog[3][i] * light + (1 - fog[3][i]) * fog[k][i] * (1 - std::min(seen[k], 1.0f));
       paths.radiance[k][ray.path] += ray.throughput[k] * light;
       covered += ray.throughput[k] * (1 - std::min(clear[k], 1.0f));
     }
-    if (!ray.bent) paths.alpha[ray.path] += covered / 3;
-    if (paths.first[ray.path] && !unseen) noteFirst(points, i, ray.path, surface.albedo, paths);
+    if (!ray.deflected) paths.alpha[ray.path] += covered / 3;
+    if (paths.first[ray.path] && !unseen) storeFirstHit(points, i, ray.path, surface.albedo, paths);
   }
 }
 
-// The share of a surface's own light that belongs to the ray: the rest comes from those who choose
-// places on emitters.
-float TileRenderer::chanceMet(const RayState& ray, const Points& points, uint32_t i) const {
+// Returns the MIS weight of emission found by BSDF sampling; light sampling or light tracing
+// contributes the rest.
+float TileRenderer::emissionMisWeight(const RayState& ray, const Points& points, uint32_t i) const {
   const uint32_t lane = points.order[i], record = points.rayHits->record[lane],
                  primitive = points.rayHits->primitive[lane];
   const RtsHits& h = points.hits;
   const float direction[3] = {h.direction[0][i], h.direction[1][i], h.direction[2][i]};
-  if (scene_.lightSources && ray.course == Course::through &&
-      scene_.emitters.sends(record, primitive, direction))
+  if (scene_.lightSources && ray.pathClass == PathClass::caustic &&
+      scene_.emitters.startsLightPaths(record, primitive, direction))
     return 0;
-  if (!(ray.density > 0)) return 1;
+  if (!(ray.pdf > 0)) return 1;
   const float chosen =
-      scene_.emitters.density(ray.from, record, primitive, direction, h.segment[i]);
-  return std::isfinite(chosen) ? ray.density / (ray.density + chosen) : 0.0f;
+      scene_.emitters.pdf(ray.previous, record, primitive, direction, h.segment[i]);
+  return std::isfinite(chosen) ? ray.pdf / (ray.pdf + chosen) : 0.0f;
 }
 
 void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
@@ -187,14 +191,14 @@ TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* 
   return random;
 }
 
-void TileRenderer::draw(const Random& random, Draw what, uint32_t apart, float* square[2]) {
+void TileRenderer::draw(const Random& random, Draw what, uint32_t pairOffset, float* square[2]) {
   for (int k = 0; k < 2; k++) square[k] = arena_.take<float>(random.count);
   samplePairs(random.count, random.key, random.pair,
-              uint32_t(what) - uint32_t(Draw::direction) + apart, random.index, square[0],
+              uint32_t(what) - uint32_t(Draw::direction) + pairOffset, random.index, square[0],
               square[1]);
 }
 
-// A direction for every hit from a lobe that scatters.
+// Samples a direction for every hit from a non-specular lobe.
 const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits,
                                             const Random& random) {
   auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count, &batch);
@@ -206,85 +210,88 @@ const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, c
   return samples;
 }
 
-// Straight through a boundary that is not there for light.
-void TileRenderer::passOn(const Points& points, uint32_t i, uint32_t lane, const Crossing& crossing,
-                          Paths& paths) {
+// Spawns a ray straight through a boundary that has no effect on light.
+void TileRenderer::passThroughBoundary(const Points& points, uint32_t i, uint32_t lane,
+                                       const Crossing& crossing, Paths& paths) {
   const RayState& ray = paths.state[lane];
-  Step step{.weight = {1, 1, 1},
-            .density = 0,
-            .bent = false,
-            .split = false,
-            .through = false,
-            .channel = ray.channel,
-            .branch = ray.branch};
-  for (int k = 0; k < 3; k++) step.direction[k] = points.hits.direction[k][i];
-  step.media = crossing.behind;
-  push(points, i, lane, step, paths);
+  NextRay nextRay{.weight = {1, 1, 1},
+                  .pdf = 0,
+                  .deflected = false,
+                  .split = false,
+                  .twoSided = false,
+                  .channel = ray.channel,
+                  .branch = ray.branch};
+  for (int k = 0; k < 3; k++) nextRay.direction[k] = points.hits.direction[k][i];
+  nextRay.media = crossing.behind;
+  push(points, i, lane, nextRay, paths);
 }
 
-// The rays that go on from hit i: all of them, or one of them chosen. chance: of each lobe's
-// direction to be followed; it must not depend on the directions themselves, which light from
-// emitters is weighed against.
-void TileRenderer::sendOn(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane,
-                          Paths& paths, const LobeSamples* const samples[],
-                          const Boundaries& boundaries, float* const choices[2],
-                          float* const chance[]) {
+// Spawns the rays that continue the path from hit i: all samples, or one selected sample.
+// selectionProbability gets the probability of each lobe's sample to be followed. It must not
+// depend on the sampled directions, because the MIS weights of light sampling use it.
+void TileRenderer::spawnRays(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane,
+                             Paths& paths, const LobeSamples* const samples[],
+                             const Boundaries& boundaries, float* const choices[2],
+                             float* const selectionProbability[]) {
   const RayState ray = paths.state[lane];
   const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH,
              direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
-  Ways ways(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr, ray.channel);
+  BsdfSamples bsdfSamples(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr,
+                          ray.channel);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (direct && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
-    ways.add(l, batch.lobes[l], samples[l]);
-    if (samples[l]) noteRandom(ray.path);
+    bsdfSamples.add(l, batch.lobes[l], samples[l]);
+    if (samples[l]) markRandom(ray.path);
   }
-  float carried[Ways::maximum], sum = 0;
-  for (uint32_t w = 0; w < ways.count; w++) {
-    const Way& way = ways.list[w];
-    const float left[3] = {way.share[0] * ray.throughput[0], way.share[1] * ray.throughput[1],
-                           way.share[2] * ray.throughput[2]};
+  float carried[BsdfSamples::maximum], sum = 0;
+  for (uint32_t w = 0; w < bsdfSamples.count; w++) {
+    const BsdfSample& sample = bsdfSamples.list[w];
+    const float left[3] = {sample.expectedWeight[0] * ray.throughput[0],
+                           sample.expectedWeight[1] * ray.throughput[1],
+                           sample.expectedWeight[2] * ray.throughput[2]};
     sum += carried[w] = largest(left);
   }
   if (!(sum > 0)) return;
-  const bool all = !path || ways.count == 1 || ray.splits == 0;
-  for (uint32_t w = 0; w < ways.count; w++)
-    if (chance[ways.list[w].lobe]) chance[ways.list[w].lobe][i] = all ? 1 : carried[w] / sum;
+  const bool all = !path || bsdfSamples.count == 1 || ray.splits == 0;
+  for (uint32_t w = 0; w < bsdfSamples.count; w++)
+    if (selectionProbability[bsdfSamples.list[w].lobe])
+      selectionProbability[bsdfSamples.list[w].lobe][i] = all ? 1 : carried[w] / sum;
   const float choice = path ? choices[0][i] : 0, survival = path ? choices[1][i] : 0;
   const auto send = [&](uint32_t w, float probability) {
-    const Way& way = ways.list[w];
-    if (way.lost) return;
+    const BsdfSample& sample = bsdfSamples.list[w];
+    if (sample.rejected) return;
     float kept = probability;
     if (path && level_ >= rouletteFrom) {
       const float stay = std::min(1.0f, carried[w] / probability);
-      if (stay < 1) noteRandom(ray.path);
+      if (stay < 1) markRandom(ray.path);
       if (survival >= stay) return;
       kept *= stay;
     } else if (!path && carried[w] < scene_.frame.energyCut) {
       for (int k = 0; k < 3; k++)
-        ledger_.cutByEnergy += double(way.share[k]) * double(ray.throughput[k]);
+        ledger_.cutByEnergy += double(sample.expectedWeight[k]) * double(ray.throughput[k]);
       return;
     }
-    Step step{.density = way.density * probability,
-              .bent = way.bent,
-              .split = ways.count > 1,
-              .through = way.density > 0 && transmitsAt(batch, i),
-              .channel = way.channel,
-              .branch = w == 0 ? ray.branch : hash(ray.branch + w, level_ + 1)};
+    NextRay nextRay{.pdf = sample.pdf * probability,
+                    .deflected = sample.deflected,
+                    .split = bsdfSamples.count > 1,
+                    .twoSided = sample.pdf > 0 && transmitsAt(batch, i),
+                    .channel = sample.channel,
+                    .branch = w == 0 ? ray.branch : hash(ray.branch + w, level_ + 1)};
     float towards = 0;
     for (int k = 0; k < 3; k++) {
-      step.direction[k] = way.direction[k];
-      step.weight[k] = way.weight[k] / kept;
-      towards += points.hits.geometric[k][i] * way.direction[k];
+      nextRay.direction[k] = sample.direction[k];
+      nextRay.weight[k] = sample.weight[k] / kept;
+      towards += points.hits.geometric[k][i] * sample.direction[k];
     }
-    step.media = towards < 0 && boundaries.crossing ? boundaries.crossing[i].behind : ray.media;
-    push(points, i, lane, step, paths);
+    nextRay.media = towards < 0 && boundaries.crossing ? boundaries.crossing[i].behind : ray.media;
+    push(points, i, lane, nextRay, paths);
   };
   if (all) {
-    for (uint32_t w = 0; w < ways.count; w++) send(w, 1);
+    for (uint32_t w = 0; w < bsdfSamples.count; w++) send(w, 1);
     return;
   }
-  noteRandom(ray.path);
-  const uint32_t chosen = chooseAmong(carried, ways.count, choice * sum);
+  markRandom(ray.path);
+  const uint32_t chosen = sampleDiscrete(carried, bsdfSamples.count, choice * sum);
   if (carried[chosen] > 0) send(chosen, carried[chosen] / sum);
 }
 

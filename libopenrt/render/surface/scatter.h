@@ -1,5 +1,5 @@
-// scatter.h: where light comes from that leaves a surface described by lobes: directions, Fresnel's
-// equations. Pure functions.
+// scatter.h: geometry of scattering: reflection, refraction, Fresnel's equations, cosine-weighted
+// directions. Pure functions.
 #pragma once
 
 #include <algorithm>
@@ -15,16 +15,17 @@ inline float dot3(const float a[3], const float b[3]) {
 
 inline float largest(const float v[3]) { return std::max({v[0], v[1], v[2]}); }
 
-// Mirror image of a direction (towards the surface) at a normal.
+// Reflects a direction (towards the surface) at a normal.
 inline void reflectAt(const float d[3], const float n[3], float out[3]) {
   const float twice = 2 * dot3(d, n);
   for (int k = 0; k < 3; k++) out[k] = d[k] - twice * n[k];
 }
 
-// Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine: of the angle of
-// incidence, 0..1; eta: index on the ray's side over that behind; cosineBehind gets the refracted
-// angle's, 0 under total reflection. In double: near the critical angle the root loses half of the
-// digits. M. Born, E. Wolf, "Principles of Optics", 1.5.2.
+// Returns the Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine: of
+// the angle of incidence, 0..1. eta: index on the ray's side over that on the far side.
+// cosineBehind gets the cosine of the refracted angle, 0 under total reflection. In double, because
+// near the critical angle the root loses half of the digits. M. Born, E. Wolf, "Principles of
+// Optics", 1.5.2.
 inline double fresnel(double cosine, double eta, double& cosineBehind) {
   const double sineBehind2 = eta * eta * std::max(0.0, 1 - cosine * cosine);
   if (sineBehind2 >= 1) {
@@ -37,7 +38,7 @@ inline double fresnel(double cosine, double eta, double& cosineBehind) {
   return (s * s + p * p) / 2;
 }
 
-// Snell's law in vectors; d towards the surface, n against it.
+// Refracts a direction by Snell's law in vector form. d points towards the surface, n against d.
 inline void refractAt(const float d[3], const float n[3], double eta, double cosine,
                       double cosineBehind, float out[3]) {
   double length = 0, r[3];
@@ -45,12 +46,13 @@ inline void refractAt(const float d[3], const float n[3], double eta, double cos
     r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k];
     length += r[k] * r[k];
   }
-  const double s =
-      length > 0 ? 1 / std::sqrt(length) : 0; // unit again: errors of a long chain must not grow
+  // Normalised again, so that errors do not grow over a long chain.
+  const double s = length > 0 ? 1 / std::sqrt(length) : 0;
   for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
 }
 
-// Sine and cosine between -pi/4 and pi/4, to a unit in the last place: their series.
+// Sine and cosine for arguments between -pi/4 and pi/4 by their power series, exact to a unit in
+// the last place.
 inline float sineSmall(float x) {
   const float s = x * x;
   return x * (1 + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));
@@ -61,9 +63,9 @@ inline float cosineSmall(float x) {
                   s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
 }
 
-// A direction about n with density cosine / pi from a point of the unit square: the disc of P.
-// Shirley, K. Chiu (1997), lifted to the hemisphere.
-inline void cosineDirection(const float n[3], float u, float v, float out[3]) {
+// Samples a direction about n with pdf cosine / pi: the concentric disc mapping of P. Shirley, K.
+// Chiu (1997), lifted to the hemisphere.
+inline void sampleCosineHemisphere(const float n[3], float u, float v, float out[3]) {
   const float a = 2 * u - 1, b = 2 * v - 1;
   const bool wide = std::fabs(a) > std::fabs(b); // within an eighth of a turn of the x axis
   const float r = wide ? a : b, other = wide ? b : a,

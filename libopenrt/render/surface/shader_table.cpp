@@ -1,4 +1,5 @@
-// shader_table.cpp: parameter blocks of shaders: defaults of the class, then what the scene set.
+// shader_table.cpp: builds the parameter blocks of shaders: the class's defaults, then the values
+// of the scene.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,8 +12,8 @@
 namespace openrt {
 namespace {
 
-// For `release`, which may come when no picture is made any more: everything is there, nothing is
-// behind it.
+// Returns a host for `release`, which may be called when no frame exists any more. All functions
+// are present but have no scene.
 const RtsHost& idleHost() {
   static const RenderHost host = [] {
     RenderHost h;
@@ -102,8 +103,8 @@ bool ShaderTable::extends(const ShaderTable& other) const {
          });
 }
 
-// False where the class cannot make sense of the values: the default shader then stands for a
-// surface, and nothing for others.
+// Makes the parameter block of a slot. Returns false if the class refuses the values: the default
+// shader then replaces a surface, and nothing replaces other kinds.
 bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const ShaderValues* values,
                        const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host) {
   const auto made = std::make_shared<Block>();
@@ -167,7 +168,8 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
   return true;
 }
 
-// A medium keeps its number when its values change. What is out of range has no inside.
+// Stores the slot's medium; it keeps its number when its values change. A shader whose values are
+// out of range has no medium.
 void ShaderTable::setMedium(ShaderSlot& slot, const RtsHost& host) {
   RtsMedium medium{};
   bool good = slot.shaderClass->medium(&host, slot.params, &medium) != 0;

@@ -5,13 +5,13 @@
 
 namespace openrt {
 
-void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
-                      const Rays& rays, RayHits& hits) {
+void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
+                     const Rays& rays, RayHits& hits) {
   ArenaScope scope(arena);
   auto* lanes = arena.take<uint32_t>(rays.count);
   uint32_t n = 0;
   for (uint32_t i = 0; i < rays.count; i++)
-    if (hits.record[i] != noHit && culled(scene, rays, hits, i)) lanes[n++] = i;
+    if (hits.record[i] != noHit && isCulledHit(scene, rays, hits, i)) lanes[n++] = i;
   if (n == 0) return;
   Rays again;
   again.allocate(arena, n);
@@ -45,8 +45,9 @@ uint16_t mediumAt(const RenderScene& scene, uint32_t record) {
   return (*scene.shaders)[scene.records[record].shader].medium;
 }
 
-// Where two bodies share a face a ray meets one of the two, and is then led beyond the other: both
-// are crossed at once. A ray looks for the other's face within the bounds of the errors.
+// Crosses shared faces. Where two media share a face, a ray hits only one of the two surfaces and
+// continues beyond the other, so both are crossed at once. A ray looks for the other face within
+// the error bounds.
 void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
   const RenderScene& scene = *batch.scene;
   const Points& points = *batch.points;
@@ -62,7 +63,7 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
     float cosine = 0;
     for (int k = 0; k < 3; k++) cosine -= hits.geometric[k][i] * hits.direction[k][i];
     const float reach =
-        2 * points.error[i] / std::max(cosine, 1e-3f); // two bounds along the normal
+        2 * points.error[i] / std::max(cosine, 1e-3f); // two error bounds along the normal
     for (int k = 0; k < 3; k++) {
       rays.org[k][n] = hits.position[k][i] - reach * hits.direction[k][i];
       rays.dir[k][n] = hits.direction[k][i];
@@ -84,17 +85,17 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
     const uint32_t i = hit[r];
     Crossing& c = crossings[i];
     const Crossing other =
-        cross(c.behind, medium, metFromBehind(scene, rays, found, r), scene.shaders->media());
+        cross(c.behind, medium, isBackFaceHit(scene, rays, found, r), scene.shaders->media());
     c.behind = other.behind;
     c.to = mediumOf(c.behind, scene.shaders->media());
-    c.seen = c.from != c.to;
-    points.error[i] *= 4; // beyond both
+    c.visible = c.from != c.to;
+    points.error[i] *= 4; // offsets the next ray beyond both faces
   }
 }
 
 } // namespace
 
-void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
+void crossBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
   const RenderScene& scene = *batch.scene;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
@@ -114,7 +115,7 @@ void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
     if (c.unknown) absorb(c.from, hits.segment[i], media, ray.throughput);
     for (int k = 0; k < 3; k++) out.eta[i][k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
-      if (!c.seen)
+      if (!c.visible)
         for (auto* weight : batch.lobes[l].weight) weight[i] = 0;
       if (batch.lobes[l].kind == RTS_LOBE_ROUGH_DIELECTRIC)
         batch.lobes[l].parameter[0][i] = out.eta[i][ray.channel ? ray.channel - 1 : 1];
@@ -122,12 +123,12 @@ void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
   }
 }
 
-void absorbOnTheWay(const RenderScene& scene, const Rays& rays, const RayHits& hits,
-                    RayState* states) {
+void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& hits,
+                     RayState* states) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   if (media.empty()) return;
   for (uint32_t i = 0; i < rays.count;
-       i++) // nothing is left of light that comes from infinity through what absorbs
+       i++) // Light from infinity is fully absorbed in an absorbing medium.
     absorb(mediumOf(states[i].media, media), std::min(hits.t[i], 1e30f), media,
            states[i].throughput);
 }

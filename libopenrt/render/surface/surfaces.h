@@ -1,5 +1,5 @@
-// surfaces.h: what rays meet before shaders answer: backs that are not there, boundaries of media.
-// For those who follow paths from the camera and from lamps. [render]
+// surfaces.h: processing of hits before shading: culled back faces and boundaries of media. Used by
+// the path tracer and the light tracer. [render]
 #pragma once
 
 #include "render/surface/batch.h"
@@ -7,22 +7,23 @@
 
 namespace openrt {
 
-// Rays whose nearest hit is a back that is not there are traced again without such backs. From
-// their origin: a face and a back in the same place must not hide each other.
-void lookThroughBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
-                      const Rays& rays, RayHits& hits);
+// Retraces the rays whose nearest hit is a culled back face with such faces ignored. The rays start
+// again at their origin, because a front and a back face in the same place must not hide each
+// other.
+void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
+                     const Rays& rays, RayHits& hits);
 
 // Boundaries of media at the hits of a batch.
 struct Boundaries {
-  Crossing* crossing; // by hit
-  float (*eta)[3];    // index on the ray's side over that behind, by colour
+  Crossing* crossing; // indexed by hit
+  float (*eta)[3];    // relative index of refraction by colour: ray's side over far side
 };
-// For a batch whose class has a medium, after its `surface`: what lies on both sides of each hit.
-// At a boundary within a body of higher priority all weights become 0.
-void meetBoundaries(RtsBatch& batch, RayState* states, Boundaries& out);
+// For a batch whose class has a medium, after its `surface`: computes what lies on both sides of
+// each hit. Sets all weights to 0 at boundaries inside a medium of higher priority.
+void crossBoundaries(RtsBatch& batch, RayState* states, Boundaries& out);
 
-// What the media absorb of rays on their way to what they have met.
-void absorbOnTheWay(const RenderScene& scene, const Rays& rays, const RayHits& hits,
-                    RayState* states);
+// Attenuates the rays' throughput by the absorption of the media between origin and hit.
+void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& hits,
+                     RayState* states);
 
 } // namespace openrt

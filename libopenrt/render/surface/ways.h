@@ -1,5 +1,5 @@
-// ways.h: the directions in which a path may go on from one hit, with what each carries: one for
-// every lobe, two at a smooth boundary. [render]
+// ways.h: BSDF samples of one hit: the directions in which a path may continue, one for every lobe,
+// two at a smooth boundary. [render]
 #pragma once
 
 #include "render/surface/lobes.h"
@@ -7,38 +7,45 @@
 
 namespace openrt {
 
-// A direction in which a path may go on. density: by solid angle, of a lobe that scatters; 0: it
-// could not be another.
-struct Way {
-  float direction[3], weight[3], density;
-  float share[3]; // about what it carries, whatever direction was chosen: ways are chosen by this
+// One sampled continuation of a path. pdf: by solid angle, of a non-specular lobe; 0: a specular
+// direction.
+struct BsdfSample {
+  float direction[3], weight[3], pdf;
+  // Approximate weight independent of the sampled direction. One of several samples is selected
+  // with probability proportional to it.
+  float expectedWeight[3];
   uint32_t lobe;
-  uint8_t channel; // 1 + the only colour it carries, 0: all
-  bool bent, lost; // lost: on the wrong side of the facet
+  uint8_t channel; // 1 + index of the only colour that is carried; 0: all colours
+  // deflected: the direction differs from the incoming ray's. rejected: the direction is on the
+  // wrong side of the facet.
+  bool deflected, rejected;
 };
 
-// The share that a number between 0 and the sum of all falls on.
-inline uint32_t chooseAmong(const float* shares, uint32_t count, float at) {
+// Samples a discrete distribution: returns the index of the share that `at` falls into, where `at`
+// lies between 0 and the sum of all shares.
+inline uint32_t sampleDiscrete(const float* shares, uint32_t count, float at) {
   uint32_t chosen = 0;
   while (chosen + 1 < count && at >= shares[chosen]) at -= shares[chosen++];
   return chosen;
 }
 
-class Ways {
+class BsdfSamples {
  public:
   static constexpr uint32_t maximum = 6 * RTS_MAX_LOBES;
-  // eta: index of refraction on the ray's side over that behind, by colour, where the engine knows
-  // it, else null. channel: as in Way, of the ray. fromLamp: the path comes from a lamp: what it
-  // carries is flux, which boundaries do not compress.
-  Ways(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel, bool fromLamp = false);
-  // samples: null for lobes that do not scatter; those that do are then left out.
+  // eta: relative index of refraction (ray's side over far side) by colour if the engine knows it,
+  // else null. channel: that of the ray, as in BsdfSample. fromLamp: the path starts at a light, so
+  // it carries flux (importance transport), which is not scaled by eta squared at boundaries.
+  BsdfSamples(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel,
+              bool fromLamp = false);
+  // Adds the samples of one lobe. samples: null for specular lobes. Non-specular lobes without
+  // samples are left out.
   void add(uint32_t number, const RtsLobe& lobe, const LobeSamples* samples);
 
-  Way list[maximum];
+  BsdfSample list[maximum];
   uint32_t count = 0;
 
  private:
-  Way& put(const float direction[3], const float weight[3], float factor);
+  BsdfSample& put(const float direction[3], const float weight[3], float factor);
   void scatter(const RtsLobe& lobe, const LobeSamples& samples, const float w[3]);
   void mirror(const float n[3], const float w[3], float factor);
   void dielectric(const float n[3], const float w[3], float eta);

@@ -1,4 +1,5 @@
-// binding.cpp: The rules are numbered as in clause 4.6.10 and, for Viewpoints, 6.53.
+// binding.cpp: the bindable stacks. Rule letters are those of clause 4.6.10 and, for Viewpoints, of
+// 6.53.
 #include "behaviour/viewer/binding.h"
 
 #include <algorithm>
@@ -22,24 +23,25 @@ size_t Binding::typeOf(const Node& node) {
                                                      : types;
 }
 
-void Binding::tell(Node& node, bool bound) {
+void Binding::sendBindEvents(Node& node, bool bound) {
   engine_.send(node, "isBound", bound);
-  engine_.send(node, "bindTime", engine_.now()); // Viewpoints have one
+  engine_.send(node, "bindTime", engine_.now()); // Viewpoints only
   engine_.changed(node, *node.type().find("set_bind"));
 }
 
-// Rules a and b: the old one's isBound FALSE, then the new one's TRUE, both at the same time.
+// Rules a and b: sends isBound FALSE of the old node, then isBound TRUE of the new node, at the
+// same time.
 void Binding::push(size_t type, Node& node) {
   Stack& stack = stacks_[type];
   NodeRef old(top(type));
   std::erase_if(stack, [&](const Entry& e) { return e.node.get() == &node; });
   stack.push_back({NodeRef(&node), isInScene(node)});
   if (type == 0) viewer_.bind(old.get(), &node);
-  if (old) tell(*old, false);
-  tell(node, true);
+  if (old) sendBindEvents(*old, false);
+  sendBindEvents(node, true);
 }
 
-// Rule c. A node that is not on top leaves without a word.
+// Rule c. A node below the top leaves without events.
 void Binding::remove(size_t type, size_t index) {
   Stack& stack = stacks_[type];
   const NodeRef node = stack[index].node;
@@ -52,8 +54,8 @@ void Binding::remove(size_t type, size_t index) {
   stack.pop_back();
   const NodeRef next(top(type));
   if (type == 0) viewer_.unbind(*node, next.get());
-  tell(*node, false);
-  if (next) tell(*next, true);
+  sendBindEvents(*node, false);
+  if (next) sendBindEvents(*next, true);
 }
 
 void Binding::set(Node& node, bool bound) {
@@ -72,8 +74,7 @@ bool Binding::dropAbsent() {
   bool dropped = false;
   for (size_t type = 0; type < types; ++type) {
     for (size_t i = 0;
-         i <
-         stacks_[type].size();) { // from below: a node that is gone must not be bound in between
+         i < stacks_[type].size();) { // from below: an absent node must not be bound in between
       Entry& entry = stacks_[type][i];
       const bool there = isInScene(*entry.node);
       if (!there && entry.inScene) {
@@ -90,8 +91,8 @@ bool Binding::dropAbsent() {
 
 namespace {
 
-// Calls visit for each node of a scope in the order of the file; where it returns false what is
-// below is left out.
+// Calls visit for each node of a scope in file order. It skips what is below a node if visit
+// returns false.
 template <class Visit> void walkScope(const Scope& scope, Visit&& visit) {
   std::unordered_set<const Node*> seen;
   std::vector<Node*> open, below;

@@ -1,5 +1,5 @@
-// binding.h: the stacks of bindable nodes (clause 4.6.10): Viewpoint, Background, Fog,
-// NavigationInfo. [the browser's thread]
+// binding.h: the stacks of the bindable nodes Viewpoint, Background, Fog and NavigationInfo (clause
+// 4.6.10). [the browser's thread]
 #pragma once
 
 #include <array>
@@ -16,34 +16,34 @@ class Binding {
  public:
   Binding(Engine& engine, Viewer& viewer) : engine_(engine), viewer_(viewer) {}
 
-  // Binds the first node of each type in a file, bodies of prototypes included, Inlines not. Stacks
-  // that are in use stay.
+  // Binds the first node of each type in a file, including prototype bodies but not Inlines. Stacks
+  // in use are kept.
   void bindFirst(const Scope& scope);
-  // A set_bind event.
+  // Handles a set_bind event.
   void set(Node& node, bool bound);
-  // Nodes that have left the scene leave their stacks, as if they had received set_bind FALSE. True
-  // if there was one.
+  // Removes nodes that have left the scene, as if they had received set_bind FALSE. Returns whether
+  // there was one.
   bool dropAbsent();
-  // The node is no longer part of the world: it leaves its stack without a word.
+  // Removes a node that is no longer part of the world from its stack, without events.
   void forget(const Node& node);
   BoundNodes bound() const;
-  // All Viewpoints in the scene in the order of the files, Inlines included.
+  // Returns all Viewpoints in the scene in file order, including those in Inlines.
   static std::vector<Node*> viewpoints(const Scope& scope);
 
  private:
   static constexpr size_t types = 4;
   struct Entry {
     NodeRef node;
-    bool inScene; // it has been; a node that hangs nowhere yet may be bound
+    bool inScene; // it has been in the scene; a node outside the scene may be bound too
   };
-  using Stack = std::vector<Entry>;       // the bound one last
-  static size_t typeOf(const Node& node); // `types`: not bindable
+  using Stack = std::vector<Entry>;       // the bound node is last
+  static size_t typeOf(const Node& node); // returns `types` if the node is not bindable
   Node* top(size_t type) const {
     return stacks_[type].empty() ? nullptr : stacks_[type].back().node.get();
   }
   void push(size_t type, Node& node);
   void remove(size_t type, size_t index);
-  void tell(Node& node, bool bound);
+  void sendBindEvents(Node& node, bool bound);
 
   Engine& engine_;
   Viewer& viewer_;

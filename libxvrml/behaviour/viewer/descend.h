@@ -1,5 +1,5 @@
-// descend.h: where the children of a node stand and which of them a viewer sees: for walks from the
-// roots of a world down. Pure functions.
+// descend.h: helpers for walks from the roots of a world down: the matrix of a node's children and
+// the level of an LOD that the viewer sees. Pure functions.
 #pragma once
 
 #include "geometry/matrix.h"
@@ -8,11 +8,12 @@
 
 namespace xvrml {
 
-// Where children stand, seen from where the node stands. view: the viewer's, to whom Billboards
-// turn. False if nothing of them can be seen.
+// Computes `inner`, the world matrix of the node's children. toWorld: the world matrix of the node.
+// view: the viewer's matrix, to which Billboards turn. Returns false if no child can be visible.
 bool innerMatrix(const Node& node, const Matrix& toWorld, const Matrix& view, Matrix& inner);
 
-// The level that is shown (clause 6.26); without ranges the first one. The node has levels.
+// Returns the level to show (clause 6.26); the first one if there are no ranges. The node must have
+// levels.
 size_t levelFor(const nodes::LOD& lod, const Matrix& toWorld, const Matrix& view);
 
 } // namespace xvrml

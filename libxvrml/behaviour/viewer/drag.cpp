@@ -1,6 +1,6 @@
-// drag.cpp: Rays that miss the sensor's surface are taken at the nearest point of it,
-// so that a drag over the edge of a sphere or cylinder goes on without a leap; rays along a plane
-// say nothing.
+// drag.cpp: the drag sensors. A ray that misses the sensor's surface uses the nearest point of it.
+// So a drag over the edge of a sphere or cylinder continues without a leap. Rays parallel to a
+// plane are ignored.
 #include "behaviour/viewer/drag.h"
 
 #include <algorithm>
@@ -17,17 +17,18 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+// Returns false for huge coordinates and NaN.
 bool usable(const Vector& v) {
   return std::abs(v.x) < 1e30 && std::abs(v.y) < 1e30 && std::abs(v.z) < 1e30;
-} // false for NaN
+}
 Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
-// A limit holds if the smallest value is not above the largest (6.15, 6.34).
+// Clamps a value. A limit applies only if its minimum is not above its maximum (6.15, 6.34).
 double limited(double v, double lowest, double highest) {
   return lowest <= highest ? std::clamp(v, lowest, highest) : v;
 }
 
-// Where the ray meets the plane through `point` with this normal. False if it does not.
+// Intersects the ray with the plane through `point`. Returns false if it misses.
 bool onPlane(const PickRay& ray, const Vector& point, const Vector& normal, Vector& out) {
   const double slope = ray.direction.dot(normal);
   const double t = (point - ray.origin).dot(normal) / slope;
@@ -36,9 +37,9 @@ bool onPlane(const PickRay& ray, const Vector& point, const Vector& normal, Vect
   return usable(out);
 }
 
-// Along origin + t direction, the t of distance `radius` from 0: the nearer or the farther one, or
-// the t that comes nearest.
-double onRound(const Vector& origin, const Vector& direction, double radius, bool farther) {
+// Returns the t at which origin + t direction has distance `radius` from 0: the nearer or the
+// farther one. If there is none, it returns the t of closest approach.
+double intersectRound(const Vector& origin, const Vector& direction, double radius, bool farther) {
   const double a = direction.dot(direction);
   const double middle = -origin.dot(direction) / a;
   const Vector foot = origin + direction * middle;
@@ -47,7 +48,7 @@ double onRound(const Vector& origin, const Vector& direction, double radius, boo
   return middle - half;
 }
 
-// Was the far side of the round body hit at the press?
+// Returns whether the press hit the far side of the round body.
 bool isFar(const PickRay& ray, const Vector& fromAxis) { return ray.direction.dot(fromAxis) > 0; }
 
 class PlaneDrag final : public Drag {
@@ -58,7 +59,7 @@ class PlaneDrag final : public Drag {
   void move(Events& events, const PickRay& ray) override {
     Vector p;
     if (!onPlane(ray, start_, {0, 0, 1}, p)) return;
-    p.z = start_.z; // exactly
+    p.z = start_.z; // removes rounding
     Vector moved = p - start_ + offset_;
     moved.x = limited(moved.x, sensor_.minPosition.x, sensor_.maxPosition.x);
     moved.y = limited(moved.y, sensor_.minPosition.y, sensor_.maxPosition.y);
@@ -80,7 +81,7 @@ class PlaneDrag final : public Drag {
   bool has_ = false;
 };
 
-// The turn that brings direction a to direction b on the shortest way.
+// Returns the shortest rotation from direction a to direction b.
 Matrix turn(const Vector& a, const Vector& b) {
   Vector axis = a.cross(b);
   if (!(axis.length() > 0))
@@ -105,7 +106,7 @@ class SphereDrag final : public Drag {
   void move(Events& events, const PickRay& ray) override {
     const double radius = start_.length();
     if (!(radius > 0)) return;
-    Vector p = ray.at(onRound(ray.origin, ray.direction, radius, far_));
+    Vector p = ray.at(intersectRound(ray.origin, ray.direction, radius, far_));
     if (!usable(p) || !(p.length() > 0)) return;
     p *= radius / p.length();
     last_ = rotationOf(compose(turn(start_, p), offset_));
@@ -141,7 +142,7 @@ class CylinderDrag final : public Drag {
   void move(Events& events, const PickRay& ray) override {
     Vector p;
     if (!(disk_ ? onDisk(ray, p) : onCylinder(ray, p))) return;
-    // The nearest turn to the last one: drags may go round more than once.
+    // Use the angle nearest to the last one: a drag may go round more than once.
     turned_ += std::remainder(around(p) - angle_, 2 * pi);
     angle_ = around(p);
     last_ = float(limited(turned_ + offset_, sensor_.minAngle, sensor_.maxAngle));
@@ -156,7 +157,7 @@ class CylinderDrag final : public Drag {
   }
 
  private:
-  static double around(const Vector& p) { return std::atan2(p.x, p.z); } // about +y, from +z
+  static double around(const Vector& p) { return std::atan2(p.x, p.z); } // angle about +y, from +z
 
   bool onDisk(const PickRay& ray, Vector& p) const {
     if (!onPlane(ray, start_, {0, 1, 0}, p)) return false;
@@ -169,7 +170,7 @@ class CylinderDrag final : public Drag {
         direction(ray.direction.x, 0, ray.direction.z);
     const double radius = std::hypot(start_.x, start_.z);
     if (!(radius > 0) || !(direction.length() > 0)) return false;
-    p = ray.at(onRound(origin, direction, radius, far_));
+    p = ray.at(intersectRound(origin, direction, radius, far_));
     const double away = std::hypot(p.x, p.z);
     if (!usable(p) || !(away > 0)) return false;
     p.x *= radius / away;

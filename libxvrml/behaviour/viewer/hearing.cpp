@@ -1,5 +1,5 @@
-// hearing.cpp: what the viewer of a running world hears: its Sounds (clause 6.42), where they
-// stand. See xvrml/media.h. [the browser's thread]
+// hearing.cpp: computes what the viewer of a running world hears: its Sounds (clause 6.42) and
+// their directions, for xvrml/media.h. [the browser's thread]
 #include <unordered_set>
 
 #include "behaviour/viewer/interaction.h"
@@ -30,7 +30,7 @@ Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
 } // namespace
 
 std::vector<Heard> heardIn(Browser& browser) {
-  constexpr size_t places = 16; // of one Sound that count
+  constexpr size_t places = 16; // places of one Sound that count
   auto& engine = static_cast<Engine&>(browser.events());
   Interaction& interaction = interactionOf(engine);
   if (interaction.soundsStructure != engine.structure()) {

@@ -1,5 +1,4 @@
-// interaction.cpp: what happens in the world, handed to those who keep something of it. See
-// interaction.h.
+// interaction.cpp: passes the engine's notifications on to the parts that depend on them.
 #include "behaviour/viewer/interaction.h"
 
 namespace xvrml {
@@ -10,7 +9,7 @@ std::unique_ptr<EngineObserver> makeInteraction(Engine& engine) {
 
 void Interaction::began(const Scope& scope) {
   this->scope = &scope;
-  navigation.rest();
+  navigation.resetMotion();
   binding.bindFirst(scope);
 }
 
@@ -44,9 +43,10 @@ bool Interaction::settled() {
     sent |= pointer.dropAbsent();
   }
   if (std::exchange(moved_, false)) viewer.settled();
-  // Clause 6.53: regions that a jump leaves or enters say so at the time of the binding.
+  // Regions that a jump leaves or enters send their events at the time of the binding (clause
+  // 6.53).
   if (viewer.takeJump()) {
-    navigation.rest();
+    navigation.resetMotion();
     engine.lookNow();
     sent = true;
   }

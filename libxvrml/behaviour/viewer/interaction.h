@@ -1,6 +1,5 @@
-// interaction.h: the viewer's part of a running world: what is bound, where the viewer is, what the
-// pointer is over. One per engine, which owns it; behaviours reach it through their Events. [the
-// browser's thread]
+// interaction.h: the viewer's part of a running world: the bound nodes, the viewer's position, the
+// pointer. Each engine owns one; behaviours reach it through their Events. [the browser's thread]
 #pragma once
 
 #include "behaviour/viewer/binding.h"
@@ -30,15 +29,15 @@ class Interaction final : public EngineObserver {
   Picker picker;
   Pointer pointer;
   Navigator navigation;
-  const Scope* scope = nullptr; // the world's; null before it has begun
+  const Scope* scope = nullptr; // the world's scope; null before the world has begun
   double aspect = 4.0 / 3;      // width / height of the picture
-  // Sounds in the scene, of the engine's structure with this number (hearing.cpp).
+  // Sounds in the scene when Engine::structure() was soundsStructure (see hearing.cpp).
   std::vector<Node*> sounds;
   uint64_t soundsStructure = ~uint64_t(0);
 
  private:
-  uint64_t structure_ = 0; // of the engine, when it was last looked at
-  bool moved_ = true;      // something that may carry the viewer has changed
+  uint64_t structure_ = 0; // Engine::structure() when it was last checked
+  bool moved_ = true;      // something that may move the viewer has changed
 };
 
 std::unique_ptr<EngineObserver> makeInteraction(Engine& engine);

@@ -1,6 +1,5 @@
-// motion.cpp: WALK, FLY and EXAMINE as pure functions (clause 6.29). See navigation.h. Time is cut
-// into steps of a thirtieth of a second at most, so that a long frame does not carry anybody
-// through a wall.
+// motion.cpp: WALK, FLY and EXAMINE as pure functions (clause 6.29). Time is divided into steps of
+// at most a thirtieth of a second. So a long frame cannot move the viewer through a wall.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -12,7 +11,8 @@ namespace xvrml {
 namespace {
 
 constexpr double quarter = std::numbers::pi / 2;
-constexpr double steepest = 85 * std::numbers::pi / 180; // looking up or down without turning over
+// The limit for looking up or down without turning over.
+constexpr double steepest = 85 * std::numbers::pi / 180;
 
 Vector axis(const Matrix& m, int i) { return {m.x[i][0], m.x[i][1], m.x[i][2]}; }
 Vector eyeOf(const Matrix& m) { return axis(m, 3); }
@@ -27,7 +27,7 @@ Matrix turned(const Matrix& view, const Vector& about, const Vector& point, doub
                  compose(translation(-point), view));
 }
 
-// Tilts as far as the view stays upright: round `point`, about the view's own x axis.
+// Tilts about `point` and the view's x axis, as far as the view stays upright.
 Matrix tilted(const Matrix& view, const Vector& point, double angle, const Vector& up,
               double limit) {
   const double height = std::asin(std::clamp(-axis(view, 2).dot(up), -1.0, 1.0));
@@ -44,9 +44,9 @@ NavigationInput usable(const NavigationInput& in) {
           usable(in.turn),  usable(in.tilt),  usable(in.roll)};
 }
 
-// The way from `eye` along `wish` as far as nothing comes nearer than `distance`, and on along the
-// walls that are met. offsets: the parts of the body that meet walls. level: not null if walls only
-// turn the way about this axis.
+// Returns the motion from `eye` along `wish`. It stays `distance` away from walls and slides along
+// them. offsets: the parts of the body that collide with walls. level: if not null, walls deflect
+// the motion only about this axis.
 Vector slide(const Vector& eye, Vector wish, std::initializer_list<Vector> offsets, double distance,
              const Vector* level, const Obstacle& obstacle) {
   Vector moved(0);
@@ -78,7 +78,8 @@ Vector slide(const Vector& eye, Vector wish, std::initializer_list<Vector> offse
   return moved;
 }
 
-// Horizontal direction of view; of its upper edge where the view is straight up or down.
+// Returns the horizontal direction of view. If the view is straight up or down, it is that of the
+// view's upper edge.
 Vector headingOf(const Matrix& view, const Vector& up) {
   const Vector forward = -axis(view, 2);
   Vector flat = forward - up * up.dot(forward);
@@ -89,12 +90,12 @@ Vector headingOf(const Matrix& view, const Vector& up) {
   return flat.normalized();
 }
 
-// Gravity and steps: where the eye ends that has moved from `eye` by `moved`.
+// Applies gravity and steps: returns where the eye ends after moving from `eye` by `moved`.
 Vector settle(const Vector& eye, const Vector& moved, double seconds, const Avatar& a,
               const Obstacle& obstacle, double& fall) {
   const auto floorUnder =
       [&](const Vector& from,
-          double& gap) { // gap: from the feet down to the floor, negative below it
+          double& gap) { // distance from the feet down to the floor, negative below it
         double t;
         Vector n;
         if (!obstacle({from, -a.up, 0, std::numeric_limits<double>::infinity()}, false, t, n))
@@ -112,7 +113,7 @@ Vector settle(const Vector& eye, const Vector& moved, double seconds, const Avat
     after = before;
     stands = stood;
   }
-  if (!stands) { // nothing below, however far: there is no falling out of a world
+  if (!stands) { // no floor at any depth: the viewer does not fall out of the world
     fall = 0;
   } else if (after <= 0 || (after <= a.step && fall == 0)) {
     to -= a.up * after;

@@ -1,5 +1,4 @@
-// navigation.cpp: the viewer of a running world on the move: what NavigationInfo says, what he runs
-// into, keys. See navigation.h.
+// navigation.cpp: the Navigator: NavigationInfo, collisions and keys.
 #include "behaviour/viewer/navigation.h"
 
 #include <algorithm>
@@ -10,8 +9,8 @@
 
 namespace xvrml {
 
-// Lengths are those of the coordinate system that the bound Viewpoint stands in (6.29), up is its y
-// axis (6.53).
+// Returns the avatar in world units. Lengths are in the coordinate system around the bound
+// Viewpoint (6.29); up is its y axis (6.53).
 Avatar Navigator::avatar() const {
   Avatar a;
   const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
@@ -35,7 +34,7 @@ Avatar Navigator::avatar() const {
   return a;
 }
 
-bool Navigator::meet(const PickRay& ray, bool touch, double& t, Vector& normal) {
+bool Navigator::findObstacle(const PickRay& ray, bool touch, double& t, Vector& normal) {
   Hit hit;
   if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true},
                                 interaction_.viewer.view(), interaction_.scope->roots, hit))
@@ -49,9 +48,9 @@ bool Navigator::meet(const PickRay& ray, bool touch, double& t, Vector& normal) 
   return true;
 }
 
-// What EXAMINE goes round: a place in the middle of the picture, so that what is looked at stays in
-// view, as far away as the middle of the Shape that is seen there, or else of the world. Of a world
-// that does not lie ahead its middle.
+// Returns the centre of rotation for EXAMINE. It lies on the line of sight, so the view does not
+// change. Its distance is that of the centre of the Shape in the middle of the picture, else of the
+// world. If the world's centre is not ahead, that centre itself is used.
 Vector Navigator::centerOf(const Matrix& view) {
   Picker& picker = interaction_.picker;
   const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
@@ -72,7 +71,7 @@ void Navigator::move(const NavigationInput& input, double seconds) {
   if (!interaction_.scope || interaction_.viewer.inTransition()) return;
   motion_.view = interaction_.viewer.view();
   const Obstacle obstacle = [this](const PickRay& ray, bool touch, double& t, Vector& normal) {
-    return meet(ray, touch, t, normal);
+    return findObstacle(ray, touch, t, normal);
   };
   Motion to = motion_;
   switch (type()) {
@@ -93,14 +92,14 @@ void Navigator::move(const NavigationInput& input, double seconds) {
 
 namespace {
 
-struct Known {
+struct NavigationName {
   std::string_view name;
   Navigation type;
 };
-constexpr Known known[] = {{"NONE", Navigation::none},
-                           {"WALK", Navigation::walk},
-                           {"FLY", Navigation::fly},
-                           {"EXAMINE", Navigation::examine}};
+constexpr NavigationName known[] = {{"NONE", Navigation::none},
+                                    {"WALK", Navigation::walk},
+                                    {"FLY", Navigation::fly},
+                                    {"EXAMINE", Navigation::examine}};
 
 } // namespace
 
@@ -112,11 +111,11 @@ Navigation Navigator::type() const {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
   if (hasChosen_)
-    for (const Known& k : known)
+    for (const NavigationName& k : known)
       if (k.type == chosen_ && (lists(k.name) || lists("ANY"))) return chosen_;
   for (const std::string& name : list) {
     if (name == "ANY") return Navigation::walk;
-    for (const Known& k : known)
+    for (const NavigationName& k : known)
       if (k.name == name) return k.type;
   }
   return Navigation::none;

@@ -1,6 +1,6 @@
-// navigation.h: how the viewer moves: WALK, FLY and EXAMINE as functions of where he is, what he
-// wants and for how long; and the part that asks the world for floors and walls and tells Collision
-// nodes. [the browser's thread]
+// navigation.h: viewer navigation. WALK, FLY and EXAMINE are functions of position, input and time.
+// The Navigator applies them: it finds floors and walls in the world and sends the events of
+// Collision nodes. [the browser's thread]
 #pragma once
 
 #include <functional>
@@ -16,21 +16,22 @@ class Interaction;
 
 // Lengths in the world's units.
 struct Avatar {
-  double distance = 0.25, height = 1.6,
-         step = 0.75;    // avatarSize: to walls, of the eye above ground, that can be climbed
-  double speed = 1;      // a second
-  double gravity = 9.81; // a second squared
+  // From avatarSize: distance to walls, eye height above the ground, highest step that can be
+  // climbed.
+  double distance = 0.25, height = 1.6, step = 0.75;
+  double speed = 1;      // per second
+  double gravity = 9.81; // per second squared
   Vector up{0, 1, 0};
 };
 
 struct Motion {
   Matrix view;      // camera to world, rigid
-  double fall = 0;  // speed downwards, of WALK
-  Vector center{0}; // that EXAMINE goes round
+  double fall = 0;  // downward speed of WALK
+  Vector center{0}; // centre of rotation of EXAMINE
 };
 
-// The nearest thing along a ray that the viewer cannot pass: how far, in lengths of the direction,
-// and its unit normal. What was met counts as touched if `touch`.
+// Finds the nearest thing along a ray that the viewer cannot pass. t: its distance in units of the
+// direction; normal: its unit normal. touch: whether a hit counts as a collision.
 using Obstacle = std::function<bool(const PickRay& ray, bool touch, double& t, Vector& normal)>;
 
 Motion walk(const Motion& from, const NavigationInput& input, double seconds, const Avatar& avatar,
@@ -44,24 +45,26 @@ class Navigator {
  public:
   explicit Navigator(Interaction& interaction) : interaction_(interaction) {}
 
-  // Moves the viewer within the present cascade; Collision nodes send.
+  // Moves the viewer within the current cascade. Collision nodes send their events.
   void move(const NavigationInput& input, double seconds);
   void key(Key key, bool pressed);
-  void ticked(); // keys that are held move the viewer
-  // The first of NavigationInfo.type that is known; what was chosen last if the list has ANY or it.
+  void ticked(); // moves the viewer for the keys held down
+  // Returns the first known entry of NavigationInfo.type, or the last chosen type if the list
+  // contains it or ANY.
   Navigation type() const;
-  bool choose(Navigation type); // false if the bound NavigationInfo does not allow it
-  // The direction that is up while no Viewpoint is bound.
+  bool choose(Navigation type); // returns false if the bound NavigationInfo does not allow it
+  // Sets the up direction used while no Viewpoint is bound.
   void setUp(const Vector& up) { up_ = up; }
-  void rest() {
+  // Called when the viewer has been placed by other means.
+  void resetMotion() {
     motion_.fall = 0;
     hasCenter_ = false;
-  } // the viewer has been put somewhere else
+  }
 
  private:
   Avatar avatar() const;
   Vector centerOf(const Matrix& view);
-  bool meet(const PickRay& ray, bool touch, double& t, Vector& normal);
+  bool findObstacle(const PickRay& ray, bool touch, double& t, Vector& normal);
 
   Interaction& interaction_;
   Motion motion_;

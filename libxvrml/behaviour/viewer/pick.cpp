@@ -1,4 +1,4 @@
-// pick.cpp: The walk has a stack of its own: nesting costs no C++ stack.
+// pick.cpp: the picker. The walk uses an explicit stack, so nesting costs no C++ stack.
 #include "behaviour/viewer/pick.h"
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 namespace xvrml {
 namespace {
 
-constexpr size_t maximumSteps =
-    4'000'000; // nodes one ray may visit: what events have built has no limit of its own
+// The number of nodes that one ray may visit. Scenes built by events have no limit of their own.
+constexpr size_t maximumSteps = 4'000'000;
 
-// What may be seen below a node, whatever the viewer does (LODs: all levels), and proxies.
+// Appends the children that any viewer may see (all levels of an LOD), and proxies.
 void partsOf(Node& node, std::vector<Node*>& parts) {
   if (node.type().index == nodes::Shape::typeIndex) return;
   if (const auto* choice = nodeCast<nodes::Switch>(&node)) {
@@ -26,9 +26,9 @@ void partsOf(Node& node, std::vector<Node*>& parts) {
   childrenInHierarchy(node, parts);
 }
 
-// What is met below a node by a ray of these rules.
-void metBelow(Node& node, const PickRules& rules, const Matrix& toWorld, const Matrix& view,
-              std::vector<Node*>& parts) {
+// Appends the children that a ray with these rules may hit.
+void appendHitCandidates(Node& node, const PickRules& rules, const Matrix& toWorld,
+                         const Matrix& view, std::vector<Node*>& parts) {
   if (const auto* lod = nodeCast<nodes::LOD>(&node)) {
     if (!lod->level.empty()) parts.push_back(lod->level[levelFor(*lod, toWorld, view)].get());
   } else if (auto* collision = nodeCast<nodes::Collision>(&node)) {
@@ -49,7 +49,7 @@ void Picker::changed(Node& first) {
     Node* node = open.back();
     open.pop_back();
     const auto found = entries_.find(node);
-    // Nothing is known above a group or Shape that nothing is known of.
+    // If a group or Shape has no entry, nothing above it has one.
     if (found != entries_.end())
       entries_.erase(found);
     else if (node != &first &&
@@ -84,7 +84,7 @@ PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
   if (node.type().index == nodes::Transform::typeIndex) {
     Matrix inner;
     if (innerMatrix(node, Matrix(), Matrix(), inner)) outer.extend(box, inner);
-  } else if (node.type().index == nodes::Billboard::typeIndex) { // however it is turned
+  } else if (node.type().index == nodes::Billboard::typeIndex) { // for any rotation
     const Vector far(std::max(std::abs(box.low.x), std::abs(box.high.x)),
                      std::max(std::abs(box.low.y), std::abs(box.high.y)),
                      std::max(std::abs(box.low.z), std::abs(box.high.z)));
@@ -139,25 +139,25 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
   constexpr uint32_t none = ~0u, stale = none - 1;
   struct Visit {
     Node* node;
-    uint32_t parent; // in `way`
+    uint32_t parent; // index into `ancestors`
   };
   PickRay ray = whole;
   std::vector<Visit> open;
-  std::vector<Hit::Step> way; // from a root down to where the walk is
+  std::vector<Hit::Step> ancestors; // from a root down to the current node
   std::vector<Node*> parts;
   bool found = false;
   MeshHit best{};
   for (size_t i = roots.size(); i-- > 0;)
     if (roots[i]) open.push_back({roots[i].get(), none});
-  // Rays are moved into the coordinate system of a parent once, not once for each of its children.
+  // A ray is transformed into a parent's coordinate system once, not once per child.
   uint32_t movedFor = stale;
   PickRay moved = ray;
   bool movable = true;
   for (size_t steps = 0; !open.empty() && steps < maximumSteps; ++steps) {
     const Visit visit = open.back();
     open.pop_back();
-    way.resize(visit.parent + 1); // what lies beyond has been left; none + 1 is 0
-    const Matrix outside = visit.parent == none ? Matrix() : way[visit.parent].toWorld;
+    ancestors.resize(visit.parent + 1); // drops the finished subtrees; none + 1 is 0
+    const Matrix outside = visit.parent == none ? Matrix() : ancestors[visit.parent].toWorld;
     if (visit.parent != movedFor) {
       Matrix toLocal;
       movable = invert(outside, toLocal);
@@ -167,7 +167,7 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
     }
     if (!movable) continue;
     moved.farthest = ray.farthest;
-    if (!moved.meets(boundsOf(*visit.node))) continue;
+    if (!moved.intersects(boundsOf(*visit.node))) continue;
     if (visit.node->type().index == nodes::Shape::typeIndex) {
       MeshHit meshHit;
       const PickMesh* mesh = meshOf(*visit.node);
@@ -177,17 +177,17 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
       best = meshHit;
       ray.farthest = best.t;
       found = true;
-      hit.path = way;
+      hit.path = ancestors;
       hit.path.push_back({visit.node, outside});
       continue;
     }
     Matrix inner;
     if (!innerMatrix(*visit.node, outside, view, inner)) continue;
     parts.clear();
-    metBelow(*visit.node, rules, outside, view, parts);
-    const uint32_t index = uint32_t(way.size());
-    way.push_back({visit.node, inner});
-    if (movedFor == index) movedFor = stale; // another node has taken the place
+    appendHitCandidates(*visit.node, rules, outside, view, parts);
+    const uint32_t index = uint32_t(ancestors.size());
+    ancestors.push_back({visit.node, inner});
+    if (movedFor == index) movedFor = stale; // another node now has this index
     for (size_t i = parts.size(); i-- > 0;)
       if (parts[i]) open.push_back({parts[i], index});
   }
@@ -195,7 +195,7 @@ bool Picker::pick(const PickRay& whole, const PickRules& rules, const Matrix& vi
   hit.t = best.t;
   hit.point = whole.at(best.t);
   hit.texCoord = best.texCoord;
-  // Normals move by the inverse's transpose.
+  // Normals are transformed by the transpose of the inverse.
   Matrix inverse;
   invert(hit.path.back().toWorld, inverse);
   hit.normal = transformDirection(inverse.transposed(), best.normal).normalized();

@@ -1,4 +1,4 @@
-// pick_mesh.cpp: rays against triangles and spheres, in double precision. See pick_mesh.h.
+// pick_mesh.cpp: intersects rays with triangles and spheres, in double precision.
 #include "behaviour/viewer/pick_mesh.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void PickBox::pad() {
   high += Vector(margin);
 }
 
-bool PickRay::meets(const PickBox& box) const {
+bool PickRay::intersects(const PickBox& box) const {
   if (box.empty()) return false;
   double enter = nearest, leave = farthest;
   for (int i = 0; i < 3; ++i) {
@@ -64,7 +64,7 @@ PickMesh::PickMesh(Node& geometry, const Limits* limits)
   } else if (mesh_.kind == Mesh::Kind::triangles) {
     const size_t triangles = mesh_.indices.size() / 3;
     for (const uint32_t i : mesh_.indices) {
-      if (i >= mesh_.points.size()) { // cannot be: builders check
+      if (i >= mesh_.points.size()) { // impossible: builders check
         mesh_.kind = Mesh::Kind::empty;
         return;
       }
@@ -80,47 +80,46 @@ Vector PickMesh::corner(uint32_t triangle, int k) const {
   return vector(mesh_.points[mesh_.indices[size_t(triangle) * 3 + size_t(k)]]);
 }
 
-// Halves of equal numbers along the longest side: as deep as the logarithm of the number of
-// triangles.
+// Builds the hierarchy: it splits equal halves along the longest side, so the depth is the
+// logarithm of the number of triangles.
 void PickMesh::split() {
   order_.resize(mesh_.indices.size() / 3);
   std::iota(order_.begin(), order_.end(), 0u);
-  knots_.push_back({{}, 0, uint32_t(order_.size()), 0});
-  for (size_t k = 0; k < knots_.size(); ++k) {
-    Knot knot = knots_[k];
+  bvh_.push_back({{}, 0, uint32_t(order_.size()), 0});
+  for (size_t k = 0; k < bvh_.size(); ++k) {
+    BvhNode bvhNode = bvh_[k];
     PickBox middles;
-    for (uint32_t i = knot.first; i < knot.first + knot.count; ++i) {
-      for (int c = 0; c < 3; ++c) knot.box.extend(corner(order_[i], c));
+    for (uint32_t i = bvhNode.first; i < bvhNode.first + bvhNode.count; ++i) {
+      for (int c = 0; c < 3; ++c) bvhNode.box.extend(corner(order_[i], c));
       middles.extend(corner(order_[i], 0) + corner(order_[i], 1) + corner(order_[i], 2));
     }
-    knot.box.pad();
+    bvhNode.box.pad();
     const Vector size = middles.empty() ? Vector(0) : middles.high - middles.low;
-    if (knot.count > 8 && !middles.empty()) {
+    if (bvhNode.count > 8 && !middles.empty()) {
       const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-      const auto begin = order_.begin() + knot.first;
-      const uint32_t half = knot.count / 2;
+      const auto begin = order_.begin() + bvhNode.first;
+      const uint32_t half = bvhNode.count / 2;
       const auto key = [&](uint32_t t) {
         const double v = corner(t, 0)[axis] + corner(t, 1)[axis] + corner(t, 2)[axis];
         return std::isfinite(v) ? v : 0;
       };
-      std::nth_element(begin, begin + half, begin + knot.count,
+      std::nth_element(begin, begin + half, begin + bvhNode.count,
                        [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-      knot.next = uint32_t(knots_.size());
-      knots_.push_back({{}, knot.first, half, 0});
-      knots_.push_back({{}, knot.first + half, knot.count - half, 0});
-      knot.count = 0;
+      bvhNode.next = uint32_t(bvh_.size());
+      bvh_.push_back({{}, bvhNode.first, half, 0});
+      bvh_.push_back({{}, bvhNode.first + half, bvhNode.count - half, 0});
+      bvhNode.count = 0;
     }
-    knots_[k] = knot;
+    bvh_[k] = bvhNode;
   }
 }
 
-// Textures wrap anticlockwise, seen from above, from the back of the sphere (clause 6.43).
+// Textures wrap counterclockwise, seen from above, from the back of the sphere (clause 6.43).
 bool PickMesh::sphere(const PickRay& ray, bool bothSides, MeshHit& hit) const {
   const double radius = mesh_.radius, a = ray.direction.dot(ray.direction);
   if (!(a > 0)) return false;
   const double nearest = -ray.origin.dot(ray.direction) / a;
-  const Vector foot =
-      ray.at(nearest); // the root's argument is small beside the terms of the usual formula
+  const Vector foot = ray.at(nearest); // avoids the cancellation of the usual formula
   const double rest = radius * radius - foot.dot(foot);
   if (!(rest >= 0)) return false;
   const double half = std::sqrt(rest / a);
@@ -178,22 +177,22 @@ bool PickMesh::intersect(const PickRay& whole, bool bothSides, MeshHit& hit) con
   if (mesh_.kind != Mesh::Kind::triangles) return false;
   PickRay ray = whole;
   bool found = false;
-  if (knots_.empty()) {
+  if (bvh_.empty()) {
     for (uint32_t i = 0; i < mesh_.indices.size() / 3; ++i)
       found |= triangle(i, ray, bothSides, hit);
     return found;
   }
   std::vector<uint32_t> open{0};
   while (!open.empty()) {
-    const Knot& knot = knots_[open.back()];
+    const BvhNode& bvhNode = bvh_[open.back()];
     open.pop_back();
-    if (!ray.meets(knot.box)) continue;
-    if (knot.count == 0) {
-      open.push_back(knot.next + 1);
-      open.push_back(knot.next);
+    if (!ray.intersects(bvhNode.box)) continue;
+    if (bvhNode.count == 0) {
+      open.push_back(bvhNode.next + 1);
+      open.push_back(bvhNode.next);
     }
-    for (uint32_t i = 0; i < knot.count; ++i)
-      found |= triangle(order_[knot.first + i], ray, bothSides, hit);
+    for (uint32_t i = 0; i < bvhNode.count; ++i)
+      found |= triangle(order_[bvhNode.first + i], ray, bothSides, hit);
   }
   return found;
 }

@@ -1,5 +1,5 @@
-// pick_mesh.h: what one ray meets of one geometry node, in the node's own coordinate system. Large
-// meshes are searched through a tree of boxes. Made and asked by the picker. [the browser's thread]
+// pick_mesh.h: intersects a ray with one geometry node, in the node's own coordinate system. Large
+// meshes have a bounding volume hierarchy. Used by the picker. [the browser's thread]
 #pragma once
 
 #include <limits>
@@ -15,24 +15,24 @@ struct PickBox {
   bool empty() const { return !(low.x <= high.x); }
   void extend(const Vector& p);
   void extend(const PickBox& b);
-  void extend(const PickBox& b, const Matrix& m); // the corners of b, moved
-  // Grows by what rounding may take away.
+  void extend(const PickBox& b, const Matrix& m); // extends by the transformed corners of b
+  // Grows the box to allow for rounding.
   void pad();
 };
 
-// origin + t direction, t in [nearest, farthest]. The direction's length is free and stays: t means
-// the same in every coordinate system.
+// The ray origin + t direction, t in [nearest, farthest]. The direction is not normalised, so t
+// means the same in every coordinate system.
 struct PickRay {
   Vector origin, direction;
   double nearest = 0, farthest = std::numeric_limits<double>::infinity();
 
   Vector at(double t) const { return origin + direction * t; }
-  bool meets(const PickBox& box) const;
+  bool intersects(const PickBox& box) const;
 };
 
 struct MeshHit {
   double t;
-  Vector normal; // unit, towards the front side
+  Vector normal; // unit normal, towards the front side
   Vec2f texCoord;
 };
 
@@ -40,14 +40,14 @@ class PickMesh {
  public:
   PickMesh(Node& geometry, const Limits* limits);
   const PickBox& bounds() const { return bounds_; }
-  // The nearest hit; back faces of solid geometry are passed unless bothSides. False if there is
-  // none.
+  // Finds the nearest hit. Back faces of solid geometry are ignored unless bothSides. Returns false
+  // if nothing is hit.
   bool intersect(const PickRay& ray, bool bothSides, MeshHit& hit) const;
 
  private:
-  struct Knot { // a box; its two parts follow at `next` and `next + 1`, or it holds triangles
+  struct BvhNode { // a box with two children at `next` and `next + 1`, or a leaf with triangles
     PickBox box;
-    uint32_t first = 0, count = 0, next = 0; // count 0: has parts
+    uint32_t first = 0, count = 0, next = 0; // count 0: an inner node
   };
   void split();
   bool sphere(const PickRay& ray, bool bothSides, MeshHit& hit) const;
@@ -56,8 +56,8 @@ class PickMesh {
 
   Mesh mesh_;
   PickBox bounds_;
-  std::vector<uint32_t> order_; // of triangles, in the leaves
-  std::vector<Knot> knots_;
+  std::vector<uint32_t> order_; // triangle numbers in the order of the leaves
+  std::vector<BvhNode> bvh_;
 };
 
 } // namespace xvrml

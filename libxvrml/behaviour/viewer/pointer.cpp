@@ -38,8 +38,8 @@ Vec3f narrow(const Vector& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
 } // namespace
 
-// The lowest group above the geometry that has an enabled sensor among its children wins; all its
-// sensors do (4.6.7.3).
+// Returns the enabled sensors of the lowest group above the geometry that has any; all of them take
+// part (4.6.7.3).
 std::vector<Pointer::Candidate> Pointer::candidatesOf(const Hit& hit) const {
   std::vector<Candidate> found;
   const auto look = [&](const std::vector<NodeRef>& siblings, const Matrix& toWorld) {
@@ -59,7 +59,7 @@ std::vector<Pointer::Candidate> Pointer::candidatesOf(const Hit& hit) const {
 
 bool Pointer::isOver(const Node& sensor) const { return holds(over_, sensor); }
 
-// While something has grabbed the pointer no other sensor makes events (4.6.7.3).
+// While a sensor has grabbed the pointer, no other sensor sends events (4.6.7.3).
 void Pointer::setOver(const std::vector<Candidate>& candidates) {
   const auto mayChange = [&](const Node& sensor) {
     return active_.empty() || std::any_of(active_.begin(), active_.end(), [&](const Active& a) {
@@ -82,8 +82,8 @@ void Pointer::setOver(const std::vector<Candidate>& candidates) {
   }
 }
 
-// In the sensor's coordinate system; normals move by the transpose of what moves points the other
-// way (6.51).
+// Sends hit events in the sensor's coordinate system (6.51). Normals are transformed by the
+// transpose of the inverse point transformation.
 void Pointer::touch(const Candidate& candidate, const Hit& hit) {
   Matrix toLocal;
   if (!invert(candidate.toWorld, toLocal)) return;
@@ -102,7 +102,7 @@ void Pointer::press(const std::vector<Candidate>& candidates, const PickRay& ray
                         transformDirection(toLocal, ray.direction)};
     active_.push_back(
         {c.sensor, toLocal, beginDrag(*c.sensor, local, transformPoint(toLocal, hit.point))});
-    interaction_.engine.send(*c.sensor, "isActive", true); // an Anchor has none
+    interaction_.engine.send(*c.sensor, "isActive", true); // no effect for an Anchor
   }
 }
 
@@ -136,7 +136,7 @@ void Pointer::point(const PickRay& ray, bool button) {
                               transformDirection(a.toLocal, ray.direction)});
   }
   if (button && !button_) {
-    setOver(candidates); // what has moved under a pointer at rest counts when it is pressed
+    setOver(candidates); // count what has moved under a pointer at rest
     press(candidates, ray, hit);
   } else if (!button && button_) {
     release(true);
@@ -160,8 +160,7 @@ void Pointer::leave() {
   engine.settle();
 }
 
-// A sensor that is disabled lets go at once (4.6.7.3); one that is enabled waits for the pointer to
-// move.
+// Releases a disabled sensor at once (4.6.7.3). An enabled sensor waits for the pointer to move.
 void Pointer::enabledChanged(Node& sensor) {
   Engine& engine = interaction_.engine;
   if (isEnabledSensor(sensor)) return;

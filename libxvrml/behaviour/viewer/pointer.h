@@ -1,5 +1,5 @@
-// pointer.h: the pointing device (clause 4.6.7.3): which sensors a ray is over, which of them have
-// grabbed it, and their events. Anchors take part as TouchSensors. [the browser's thread]
+// pointer.h: the pointing device (clause 4.6.7.3): the sensors that its ray is over, those that
+// have grabbed it, and their events. Anchors are treated as TouchSensors. [the browser's thread]
 #pragma once
 
 #include "behaviour/viewer/drag.h"
@@ -13,28 +13,28 @@ class Pointer {
  public:
   explicit Pointer(Interaction& interaction) : interaction_(interaction) {}
 
-  // The pointer points along a ray in world coordinates; button: it is pressed. One cascade.
+  // Points along a ray in world coordinates, in one cascade. button: whether the button is pressed.
   void point(const PickRay& ray, bool button);
-  // The pointer is nowhere, its button released: nothing is over any more, what is active ends
-  // without a click.
+  // Takes the pointer away with its button released: nothing is under it any more, and active
+  // sensors end without a click.
   void leave();
-  // A sensor's enabled has changed.
+  // Called when a sensor's `enabled` has changed.
   void enabledChanged(Node& sensor);
-  // Sensors that have left the scene let go. True if there was one.
+  // Releases sensors that have left the scene. Returns whether there was one.
   bool dropAbsent();
-  void forget(const Node& sensor); // no longer part of the world
-  // Sensors and Anchors under the pointer, or those that have grabbed it.
+  void forget(const Node& sensor); // the sensor is no longer part of the world
+  // Returns the sensors and Anchors that have grabbed the pointer, else those under it.
   std::vector<NodeRef> sensors() const;
 
  private:
   struct Candidate {
     NodeRef sensor;
-    Matrix toWorld; // of the coordinate system it stands in
+    Matrix toWorld; // of the sensor's parent coordinate system
   };
   struct Active {
     NodeRef sensor;
     Matrix toLocal;
-    std::unique_ptr<Drag> drag; // null: TouchSensor, Anchor
+    std::unique_ptr<Drag> drag; // null for a TouchSensor or Anchor
   };
   std::vector<Candidate> candidatesOf(const Hit& hit) const;
   bool isOver(const Node& sensor) const;
@@ -44,9 +44,9 @@ class Pointer {
   void release(bool click);
 
   Interaction& interaction_;
-  std::vector<NodeRef>
-      over_; // TouchSensors whose isOver is TRUE, drag sensors and Anchors under the pointer
-  std::vector<Active> active_; // those that have grabbed the pointer
+  // TouchSensors with isOver TRUE; drag sensors and Anchors under the pointer
+  std::vector<NodeRef> over_;
+  std::vector<Active> active_; // sensors that have grabbed the pointer
   std::vector<NodeRef> clicked_;
   PickRay last_{};
   bool button_ = false, pointed_ = false;

@@ -18,8 +18,8 @@ using Quaternion = Imath::Quatd;
 
 Vector place(const Matrix& m) { return {m.x[3][0], m.x[3][1], m.x[3][2]}; }
 
-// Between two views: the eye on a straight line, the turn about one axis at constant speed; s in
-// [0,1].
+// Interpolates between two views: the eye on a straight line, the rotation about one axis at
+// constant speed; s in [0,1].
 Matrix between(const Matrix& a, const Matrix& b, double s) {
   const Quaternion p = Imath::extractQuat(a), q = Imath::extractQuat(b);
   Matrix m = Imath::slerpShortestArc(p, q, s).toMatrix44();
@@ -44,8 +44,8 @@ Node* Viewer::bound() const { return binding_.bound().viewpoint; }
 
 Matrix Viewer::surroundings() const { return above(bound()); }
 
-// A world that squashes its Viewpoint has no way back from the world to it: the view is then kept
-// in a rigid system.
+// Returns the Viewpoint's coordinate system. If it is singular, the rigid part is used, because the
+// offset needs the inverse.
 Matrix Viewer::placeOf(const Node* viewpoint) const {
   const auto fields = viewpointFields(viewpoint);
   if (!fields) return translation({0, 0, 10}); // the default Viewpoint of 6.53
@@ -76,8 +76,8 @@ CameraSettings Viewer::camera(double aspect) const {
   return camera;
 }
 
-// With scale above the Viewpoint the offset is no rotation and translation alone, but what leads
-// back to the very same view.
+// Sets the offset so that the view stays the same. With scale above the Viewpoint the offset
+// contains scale too.
 void Viewer::keep(const Matrix& view, const Node* viewpoint) {
   Matrix inverse;
   offset_ = invert(placeOf(viewpoint), inverse) ? compose(inverse, view) : Matrix();
@@ -104,12 +104,12 @@ void Viewer::jump(const Matrix& from) {
   moving_ = {transition_ > 0, engine_.now(), from};
 }
 
-// Rule b of 6.53. The caller has put `to` on the stack; the view is still that below `from`.
+// Rule b of 6.53. `to` is already on the stack; the view is still relative to `from`.
 void Viewer::bind(Node* from, Node* to) {
   const Matrix seen = shown(rigid(compose(leavingPlace(from), offset_)));
   saved_[from] = offset_;
   saved_.erase(to);
-  if (!begun_) { // nothing has been seen yet: jump FALSE has no view to keep
+  if (!begun_) { // nothing was visible yet: jump FALSE has no view to keep
     offset_ = Matrix();
   } else if (const auto next = viewpointFields(to); next && !next->jump) {
     keep(seen, to);
@@ -120,8 +120,8 @@ void Viewer::bind(Node* from, Node* to) {
   }
 }
 
-// Rule c: back to where the viewer was, as seen from the next Viewpoint; if the one that leaves has
-// jump FALSE, no jump.
+// Rule c: returns to the saved position relative to the next Viewpoint. If the leaving Viewpoint
+// has jump FALSE, the view stays.
 void Viewer::unbind(Node& from, Node* to) {
   const Matrix seen = shown(rigid(compose(leavingPlace(&from), offset_)));
   const auto saved = saved_.find(to);

@@ -1,6 +1,6 @@
-// viewer.h: where the viewer is. The view hangs below the bound Viewpoint, moved by an offset of
-// its own (clause 6.53): what moves the Viewpoint or the nodes above it carries the viewer along.
-// [the browser's thread]
+// viewer.h: the viewer's position. The view is attached to the bound Viewpoint with an offset of
+// its own (clause 6.53). So the Viewpoint and the nodes above it carry the viewer along. [the
+// browser's thread]
 #pragma once
 
 #include <unordered_map>
@@ -17,36 +17,35 @@ class Viewer {
  public:
   Viewer(Engine& engine, const Binding& binding) : engine_(engine), binding_(binding) {}
 
-  // Camera to world: rotation and translation only; looks along -z, +y up.
+  // Returns the camera-to-world matrix: rotation and translation only; it looks along -z with +y
+  // up.
   Matrix view() const;
   CameraSettings camera(double aspect) const;
-  // The coordinate system the bound Viewpoint stands in, scale included: what NavigationInfo's
-  // lengths are in, and whose y axis is up (6.29, 6.53).
+  // Returns the coordinate system around the bound Viewpoint, scale included. NavigationInfo's
+  // lengths are in its units, and its y axis is up (6.29, 6.53).
   Matrix surroundings() const;
-  // Moves the viewer to a place in the world, as navigation does; a transition ends.
+  // Moves the viewer to a position in the world, as navigation does. A transition ends.
   void moveTo(const Matrix& view);
-  // Back to where the bound Viewpoint is.
+  // Returns the viewer to the bound Viewpoint.
   void reset();
-  void restart(); // a world that has no Viewpoint bound begins
-  void begin() {
-    begun_ = true;
-  } // the file's first Viewpoint, if there is one, is bound: somebody looks from now on
-  // The bound Viewpoint becomes another; null: the standard's default. Called before the events of
-  // the binding.
+  void restart(); // for a new world that has no Viewpoint bound
+  // Called when the first Viewpoint, if any, is bound: from now on the view is visible.
+  void begin() { begun_ = true; }
+  // Switches to another bound Viewpoint (null: the standard's default). Called before the events of
+  // the binding are sent.
   void bind(Node* from, Node* to);
   void unbind(Node& from, Node* to);
-  void forget(const Node& viewpoint); // it has left the stack
-  // Seconds that a jump takes to be shown; 0: none.
+  void forget(const Node& viewpoint); // the Viewpoint has left the stack
+  // Sets how many seconds a jump is animated; 0: none.
   void setTransition(double seconds);
 
   bool inTransition() const { return moving_.running; }
   void ticked();
-  void settled(); // the cascade is over; something has moved
-  bool takeJump() {
-    return std::exchange(jumped_, false);
-  } // since the last call the viewer has jumped
-  // Metres per second in the coordinate system of the bound Viewpoint, between the last two ticks
-  // (4.12.10.3).
+  void settled(); // the cascade has ended and something has moved
+  // Returns whether the viewer has jumped since the last call.
+  bool takeJump() { return std::exchange(jumped_, false); }
+  // Returns the speed between the last two ticks in metres per second, in the coordinate system of
+  // the bound Viewpoint (4.12.10.3).
   double speed() const { return speed_; }
 
  private:
@@ -54,17 +53,17 @@ class Viewer {
   Matrix leavingPlace(const Node* viewpoint) const;
   Node* bound() const;
   Matrix target() const;                                // the view without a transition
-  Matrix shown(const Matrix& target) const;             // with it
-  void keep(const Matrix& view, const Node* viewpoint); // the offset that leads to view
+  Matrix shown(const Matrix& target) const;             // the view with the transition applied
+  void keep(const Matrix& view, const Node* viewpoint); // sets the offset that leads to `view`
   void jump(const Matrix& from);
 
   Engine& engine_;
   const Binding& binding_;
-  Matrix
-      lastPlace_; // of the bound Viewpoint when it was last seen in the scene: it may be taken out
-  Matrix offset_; // Viewpoint to viewer
-  std::unordered_map<const Node*, Matrix>
-      saved_; // of Viewpoints in the stack below its top; null: the default's
+  // The place of the bound Viewpoint when it was last in the scene; it may be removed from there.
+  Matrix lastPlace_;
+  Matrix offset_; // from the Viewpoint to the viewer
+  // Offsets of the Viewpoints below the top of the stack; null: of the default Viewpoint.
+  std::unordered_map<const Node*, Matrix> saved_;
   double transition_ = 0;
   struct {
     bool running = false;

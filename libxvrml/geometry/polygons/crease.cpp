@@ -1,8 +1,8 @@
-// crease.cpp: normals for creaseAngle (clause 4.6.3.5). Around each point every face takes the mean
-// of the normals of those faces there that differ from its own by less than the crease angle,
-// weighted by their angle at the point (G. Thürmer, C. A. Wüthrich, "Computing Vertex Normals from
-// Polygonal Facets", Journal of Graphics Tools 3(1), 1998), so that the result does not depend on
-// how faces are cut into triangles. Linear in the number of corners, whatever the mesh.
+// crease.cpp: normals for creaseAngle (clause 4.6.3.5). At each point a face gets a mean of the
+// face normals there that differ from its own by less than the crease angle. Each normal is
+// weighted by its face's angle at the point (G. Thürmer, C. A. Wüthrich, "Computing Vertex Normals
+// from Polygonal Facets", Journal of Graphics Tools 3(1), 1998). The result does not depend on how
+// faces are cut into triangles. The cost is linear in the number of corners for any mesh.
 #include <algorithm>
 #include <numbers>
 
@@ -11,8 +11,8 @@
 namespace xvrml {
 namespace {
 
-// Angle of a face at a corner, good to 1e-4: it is only a weight. y = |cross|, x = dot of the two
-// edges.
+// Returns the angle of a face at a corner, accurate to 1e-4; it is used as a weight only. y =
+// |cross|, x = dot of the two edges.
 float roughAngle(float y, float x) {
   float ax = std::abs(x), ay = std::abs(y);
   float low = std::min(ax, ay), high = std::max(ax, ay);
@@ -37,8 +37,8 @@ std::vector<float> cornerAngles(const FaceSet& set) {
       V3f a = previous - current, b = next - current;
       V3f product = a.cross(b);
       float square = product.dot(product), dot = a.dot(b);
-      // Squares of squares leave the range of floats for very small or large faces; those count as
-      // if equal.
+      // The squares overflow or underflow for very large or small faces, which then get equal
+      // weights.
       angles[corner] =
           square > 1e-30f && std::isfinite(square) ? roughAngle(std::sqrt(square), dot) : 1.0f;
       previous = current;
@@ -54,7 +54,7 @@ struct Member {
   uint32_t corner;
 };
 
-// Faces around one point in one group of equal results.
+// Smooths the faces around one point; faces with equal results share a normal.
 class PointCrease {
  public:
   PointCrease(FaceSet& set, float creaseAngle) : set_(set) {
@@ -74,7 +74,7 @@ class PointCrease {
     bool together = everything_;
     if (!together &&
         length >
-            1e-6f) { // all within half the angle of the mean: all within the angle of each other
+            1e-6f) { // all within half the angle of the mean, so all within the angle of each other
       together = true;
       for (const Member& m : members)
         together = together && (m.normal - mean).dot(m.normal - mean) < closeLimit_;
@@ -88,8 +88,8 @@ class PointCrease {
   }
 
  private:
-  // The length of a chord between unit vectors tells angles apart even where their cosine is
-  // almost 1.
+  // Compares the chord between unit vectors, which separates angles even where the cosine is almost
+  // 1.
   bool smooth(const V3f& a, const V3f& b) const {
     return everything_ || (a - b).dot(a - b) < limit_;
   }
@@ -113,7 +113,7 @@ class PointCrease {
   }
 
   void pairwise(const std::vector<Member>& members) {
-    uint64_t sets[64]; // which faces are summed for each
+    uint64_t sets[64]; // bit set of the faces that are summed for each face
     for (size_t i = 0; i < members.size(); i++) {
       sets[i] = 0;
       for (size_t k = 0; k < members.size(); k++)
@@ -132,8 +132,8 @@ class PointCrease {
     }
   }
 
-  // Very many faces at one point: directions in cells of a cube map stand for them, so that the
-  // cost stays linear.
+  // Handles points with very many faces. Cells of a cube map of directions represent the faces, so
+  // that the cost stays linear.
   void binned(const std::vector<Member>& members) {
     constexpr int resolution = 8, cells = 6 * resolution * resolution;
     struct Cell {
@@ -189,7 +189,7 @@ void creaseNormals(FaceSet& set, std::span<const Vec3f> faceNormals) {
   set.normals.index.assign(set.corners.size(), 0);
   set.normals.own.clear();
   set.normals.own.reserve(std::min(set.points.size() + 16, set.corners.size()));
-  set.normals.own.push_back({0, 0, 1}); // for corners of faces that are dropped
+  set.normals.own.push_back({0, 0, 1}); // for the corners of dropped faces
   PointCrease crease(set, set.creaseAngle);
   std::vector<Member> members;
   for (size_t i = 0; i < order.size();) {

@@ -1,4 +1,4 @@
-// face_set.cpp: the order of steps from polygons to a mesh, and the small ones among them.
+// face_set.cpp: the sequence of steps from polygons to a mesh, and the short steps.
 #include "geometry/polygons/face_set.h"
 
 #include <algorithm>
@@ -20,8 +20,8 @@ static bool faceIsFinite(const FaceSet& set, uint32_t face) {
   return true;
 }
 
-// Newell's normal of a figure of eight is zero though it has area: take the largest corner
-// triangle's then.
+// Returns the normal of the largest corner triangle. Used where Newell's normal is zero although
+// the polygon has area, as for a figure of eight.
 static V3d anyNormal(const FaceSet& set, uint32_t first, uint32_t last) {
   V3d origin = toV3d(set.points[set.corners[first]]), best(0, 0, 0);
   for (uint32_t corner = first + 1; corner + 1 < last; corner++) {
@@ -42,8 +42,8 @@ std::vector<Vec3f> faceNormals(const FaceSet& set, Faults& faults) {
       faults.add(Fault::notFinite, set.name(face));
       continue;
     }
-    // Newell's sum of the cross products of successive corners, relative to the first one so that
-    // nothing cancels far out.
+    // Newell's sum of the cross products of successive corners, relative to the first corner to
+    // avoid cancellation far from the origin.
     V3d origin = toV3d(set.points[set.corners[first]]), sum(0, 0, 0), previous(0, 0, 0);
     double largest = 0;
     for (uint32_t corner = first + 1; corner < last; corner++) {
@@ -57,7 +57,7 @@ std::vector<Vec3f> faceNormals(const FaceSet& set, Faults& faults) {
       sum = anyNormal(set, first, last);
     V3d normal = unit(sum);
     normals[face] = toVec3f(normal);
-    if (normal.x == 0 && normal.y == 0 && normal.z == 0 && !set.quietNoArea)
+    if (normal.x == 0 && normal.y == 0 && normal.z == 0 && !set.ignoreNoArea)
       faults.add(Fault::noArea, set.name(face));
   }
   return normals;
@@ -77,7 +77,7 @@ void repairNormals(FaceSet& set, std::span<const Vec3f> faceNormals, Faults& fau
     for (size_t i = 0; allUsable && i < normals.index.size(); i++)
       allUsable = normals.index[i] != noValue;
 
-  // Unit length once, in the values, so that interpolation weighs corners equally.
+  // Normalise the values once, so that interpolation weights corners equally.
   bool unitLength = true;
   for (const Vec3f& n : normals.values)
     unitLength = unitLength && std::abs(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-4f;
@@ -89,7 +89,7 @@ void repairNormals(FaceSet& set, std::span<const Vec3f> faceNormals, Faults& fau
 
   std::vector<uint32_t> index(set.corners.size());
   std::vector<uint32_t> ownOfFace(set.faceCount(), noValue);
-  const size_t givenCount = normals.values.size(); // values grow below
+  const size_t givenCount = normals.values.size(); // the values grow below
   for (uint32_t face = 0; face < set.faceCount(); face++) {
     for (uint32_t corner = set.faceStart[face]; corner < set.faceStart[face + 1]; corner++) {
       uint32_t given = normals.at(corner, face, set.corners[corner]);

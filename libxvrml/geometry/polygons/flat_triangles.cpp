@@ -1,5 +1,4 @@
-// flat_triangles.cpp: edge flips until no triangle without area has a neighbour at its longest
-// edge. See flat_triangles.h.
+// flat_triangles.cpp: flips edges until no sliver has a neighbour at its longest edge.
 #include "geometry/polygons/flat_triangles.h"
 
 #include <algorithm>
@@ -19,9 +18,8 @@ class Flips {
     for (size_t i = 0; i + 2 < triangles.size(); i += 3)
       insert({triangles[i], triangles[i + 1], triangles[i + 2]});
     if (open_.empty()) return;
-    // Each flip makes one triangle less without area, or a shorter edge between two of them, after
-    // a walk along flat neighbours. The number is a guard against rounding and against faces made
-    // to take long.
+    // Each flip removes a sliver or, after a walk along slivers, shortens the edge between two of
+    // them. The limit guards against rounding and against faces made to take long.
     const uint64_t n = all_.size();
     for (uint64_t left = 64 + 16 * n + std::min<uint64_t>(n * n, 2'000'000);
          !open_.empty() && left > 0; --left)
@@ -38,8 +36,8 @@ class Flips {
   bool hasArea(size_t number) const {
     return hasArea_(all_[number][0], all_[number][1], all_[number][2]);
   }
-  // So thin that rounding may have made it: corners in one line are seldom exactly so. The flips
-  // leave the outline as it is.
+  // Returns whether the triangle is so thin that rounding may have made it: collinear corners are
+  // seldom exactly collinear. The flips leave the outline unchanged.
   bool isFlat(size_t number) const {
     const auto [a, b, c] = turned(all_[number]);
     const double longest = length(a, c);
@@ -66,7 +64,7 @@ class Flips {
     }
   }
 
-  // Turns a triangle so that its longest edge leads from the last vertex to the first.
+  // Rotates a triangle so that its longest edge leads from the last vertex to the first.
   Triangle turned(const Triangle& t) const {
     int best = 0;
     double longest = -1;
@@ -80,16 +78,16 @@ class Flips {
     return {t[best], t[(best + 1) % 3], t[(best + 2) % 3]};
   }
 
-  // The last open triangle (a, b, c): b lies between a and c. With (a, c, d) behind its edge it
-  // becomes (a, b, d) and (b, c, d).
+  // Flips the last open triangle (a, b, c), where b lies between a and c. With the triangle (a, c,
+  // d) behind its edge it becomes (a, b, d) and (b, c, d).
   void flip() {
     const uint32_t number = open_.back();
     open_.pop_back();
     if (!alive_[number] || final_[number]) return;
     const auto [a, b, c] = turned(all_[number]);
     const auto found = edges_.find(key(a, c));
-    const bool apart =
-        length(a, b) > 0 && length(b, c) > 0; // of two vertices in one place either will do
+    // If two vertices coincide, either can be used.
+    const bool apart = length(a, b) > 0 && length(b, c) > 0;
     if (!apart || found == edges_.end() || found->second == number) { // on the outline
       final_[number] = true;
       if (!hasArea(number)) remove(number);
@@ -104,7 +102,7 @@ class Flips {
       remove(other);
       return;
     }
-    // A neighbour that is flat itself, and longer, comes first.
+    // A longer sliver behind the edge is processed first.
     if (isFlat(other) && !final_[other] && std::max(length(c, d), length(d, a)) > length(a, c)) {
       open_.push_back(number);
       open_.push_back(other);
@@ -119,9 +117,9 @@ class Flips {
   const std::function<V3d(uint32_t)>& position_;
   const std::function<bool(uint32_t, uint32_t, uint32_t)>& hasArea_;
   std::vector<Triangle> all_;
-  std::vector<bool> alive_, final_; // final: nothing can be done about it
+  std::vector<bool> alive_, final_; // final_: cannot be flipped
   std::vector<uint32_t> open_;
-  std::unordered_map<uint64_t, uint32_t> edges_; // directed, to the triangle on their left
+  std::unordered_map<uint64_t, uint32_t> edges_; // directed edges to the triangle on their left
 };
 
 } // namespace

@@ -1,6 +1,6 @@
-// tangle.cpp: what a polygon will cost the tessellator, found before it starts. Crossings are
-// counted up to a budget by halving the plane until few edges are left, so that a polygon made to
-// have a billion of them is refused.
+// tangle.cpp: estimates the cost of tessellating a polygon before it starts. Crossings are counted
+// up to a budget by halving the plane until few edges are left. So a polygon built to have a
+// billion of them is rejected.
 #include <algorithm>
 
 #include "geometry/polygons/tessellator.h"
@@ -24,7 +24,7 @@ bool cross(const Edge& e, const Edge& f) {
 bool touches(const Edge& e, const V2d& low, const V2d& high) {
   if (std::max(e.a.x, e.b.x) < low.x || std::min(e.a.x, e.b.x) > high.x) return false;
   if (std::max(e.a.y, e.b.y) < low.y || std::min(e.a.y, e.b.y) > high.y) return false;
-  // All corners of the box on one side of the edge's line: they miss each other.
+  // All corners of the box lie on one side of the edge's line: no contact.
   double s0 = side(e.a, e.b, low), s1 = side(e.a, e.b, high);
   double s2 = side(e.a, e.b, {low.x, high.y}), s3 = side(e.a, e.b, {high.x, low.y});
   return !((s0 > 0 && s1 > 0 && s2 > 0 && s3 > 0) || (s0 < 0 && s1 < 0 && s2 < 0 && s3 < 0));
@@ -73,7 +73,7 @@ PlaneAxes::PlaneAxes(const V3d& normal) {
   if (normal[w_] < 0) std::swap(u_, v_);
 }
 
-V3d PlaneAxes::outOf(const V3d& p) const {
+V3d PlaneAxes::fromPlane(const V3d& p) const {
   V3d result;
   result[u_] = turned_ ? -p.y : p.x;
   result[v_] = turned_ ? p.x : p.y;
@@ -91,7 +91,7 @@ uint64_t sweepWork(std::span<const V3d> flatPolygon, int axis) {
                     events.begin());
   };
   uint64_t work = 0, previous = rank(n - 1);
-  for (size_t i = 0; i < n; i++) { // an edge is looked at in each event between its ends
+  for (size_t i = 0; i < n; i++) { // an edge is visited at each event between its ends
     uint64_t now = rank(i);
     work += now > previous ? now - previous : previous - now;
     previous = now;
@@ -102,7 +102,7 @@ uint64_t sweepWork(std::span<const V3d> flatPolygon, int axis) {
 bool isTangled(std::span<const V3d> polygon, uint64_t budget) {
   size_t n = polygon.size();
   if (n < 4) return false;
-  if (uint64_t(n) * n / 2 <= budget) return false; // cannot have so many
+  if (uint64_t(n) * n / 2 <= budget) return false; // it cannot have that many
   Counter counter;
   counter.crossingBudget = budget;
   counter.workBudget = 1000 * uint64_t(n) + 1'000'000;

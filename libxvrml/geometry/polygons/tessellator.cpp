@@ -1,4 +1,4 @@
-// tessellator.cpp: the GLU tessellator's callbacks gathered into arrays.
+// tessellator.cpp: collects the output of the GLU tessellator's callbacks in arrays.
 #include "geometry/polygons/tessellator.h"
 
 #include <GL/glu.h>
@@ -8,17 +8,17 @@
 namespace xvrml {
 namespace {
 
-// Vertex numbers travel through the library as pointers; 0 stays the null pointer.
+// Vertex numbers pass through GLU as pointers. They are offset by 1, because 0 is the null pointer.
 void* asPointer(uint32_t vertex) { return reinterpret_cast<void*>(uintptr_t(vertex) + 1); }
 uint32_t asVertex(void* pointer) { return uint32_t(reinterpret_cast<uintptr_t>(pointer) - 1); }
 
-// Asking for edge flags makes the library give separate triangles only (never fans or strips).
+// An edge flag callback makes GLU emit separate triangles only, never fans or strips.
 void edgeFlag(GLboolean, void*) {}
 void vertex(void* data, void* self) { static_cast<Tessellator*>(self)->addVertex(asVertex(data)); }
 void error(GLenum, void* self) { static_cast<Tessellator*>(self)->fail(); }
 
 void combine(GLdouble point[3], void* data[4], GLfloat weight[4], void** out, void* self) {
-  // Two vertices only: they lie in one place, either will do.
+  // With only two vertices they coincide, so either can be used.
   if (!data[2] || !data[3]) {
     *out = data[0];
     return;
@@ -61,7 +61,7 @@ void Tessellator::begin(const V3d& normal, Winding winding) {
 void Tessellator::contour(std::span<const V3d> points) {
   gluTessBeginContour(tess_);
   for (const V3d& point : points) {
-    GLdouble coordinates[3] = {point.x, point.y, point.z}; // copied by the library
+    GLdouble coordinates[3] = {point.x, point.y, point.z}; // copied by GLU
     gluTessVertex(tess_, coordinates, asPointer(vertices_++));
   }
   gluTessEndContour(tess_);

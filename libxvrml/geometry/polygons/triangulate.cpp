@@ -1,6 +1,6 @@
-// triangulate.cpp: faces to triangles of corners. Triangles, convex faces and quadrilaterals are
-// cut directly; everything else, also faces that break the promise of `convex TRUE`, goes through
-// the tessellator.
+// triangulate.cpp: cuts faces into triangles of corners. Triangles, quadrilaterals and convex faces
+// are cut directly. All other faces are tessellated, including faces that break the promise of
+// `convex TRUE`.
 #include <algorithm>
 #include <optional>
 
@@ -25,7 +25,7 @@ class Triangulation {
     crossingBudget_ = set_.corners.size() / 4 + 200'000;
     for (uint32_t face = 0; face < set_.faceCount(); face++) {
       const Vec3f& n = normals_[face];
-      if (n.x == 0 && n.y == 0 && n.z == 0) continue; // counted with the normals
+      if (n.x == 0 && n.y == 0 && n.z == 0) continue; // counted by faceNormals
       if (triangles_.size() / 3 >= limit_) {
         faults_.add(Fault::overLimit, set_.name(face));
         continue;
@@ -47,7 +47,8 @@ class Triangulation {
     if (isKept(a, b, c)) triangles_.insert(triangles_.end(), {a, b, c});
   }
 
-  // Sine of the turn at a corner about the face's normal, negative where it is concave.
+  // Returns the sine of the turn at a corner about the face normal, negative where the face is
+  // concave.
   double turn(const V3d& normal, uint32_t previous, uint32_t corner, uint32_t next) const {
     V3d a = unit(point(corner) - point(previous)), b = unit(point(next) - point(corner));
     return a.cross(b).dot(normal);
@@ -66,10 +67,11 @@ class Triangulation {
       tessellate(face, first, count, normal);
   }
 
-  // From the one corner that is concave or straight, if any, both diagonals' triangles lie inside.
+  // Cuts a quadrilateral from its concave or straight corner, if any: both triangles then lie
+  // inside.
   bool addQuadrilateral(uint32_t face, uint32_t first, const V3d& normal) {
     uint32_t apex = 0;
-    if (face >= set_.plainFaces) {
+    if (face >= set_.uncheckedFaces) {
       double sharpest = 1e-6;
       int bent = 0;
       for (uint32_t i = 0; i < 4; i++) {
@@ -80,7 +82,7 @@ class Triangulation {
           apex = i;
         }
       }
-      if (bent > 1) return false; // crosses itself
+      if (bent > 1) return false; // it crosses itself
     }
     uint32_t a = first + apex, b = first + (apex + 1) % 4, c = first + (apex + 2) % 4,
              d = first + (apex + 3) % 4;
@@ -89,10 +91,10 @@ class Triangulation {
     return true;
   }
 
-  // Strictly convex and wound once: every corner turns left, and the edges change direction only
-  // twice along an axis.
+  // Returns whether the face is strictly convex and wound once: every corner turns left, and the
+  // edges change direction only twice along an axis.
   bool isConvex(uint32_t first, uint32_t count, const V3d& normal) const {
-    if (!set_.convex && count > 64) return false; // declared concave: do not look for long
+    if (!set_.convex && count > 64) return false; // declared concave: a long test rarely pays
     V3d axis = unit(point(first + 1) - point(first));
     int changes = 0, direction = 0, firstDirection = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -112,8 +114,9 @@ class Triangulation {
   void tessellate(uint32_t face, uint32_t first, uint32_t count, const V3d& normal) {
     contour_.clear();
     PlaneAxes axes(normal);
-    V3d origin = point(first); // small numbers far out
-    for (uint32_t i = 0; i < count; i++) contour_.push_back(axes.into(point(first + i) - origin));
+    V3d origin = point(first); // keeps coordinates small far from the origin
+    for (uint32_t i = 0; i < count; i++)
+      contour_.push_back(axes.toPlane(point(first + i) - origin));
     if (!affordable(axes, count)) {
       faults_.add(Fault::tangled, set_.name(face));
       return;
@@ -127,11 +130,11 @@ class Triangulation {
     }
     size_t crossings = tessellator_->crossings().size();
     crossingBudget_ -= std::min<uint64_t>(crossingBudget_, crossings);
-    // Vertices in the tessellator's numbering: the face's corners, then the crossings, made corners
-    // here.
+    walkBudget_ -= std::min<uint64_t>(walkBudget_, crossings * count);
+    // The tessellator numbers the face's corners, then the crossings, which become corners here.
     uint32_t added = uint32_t(set_.corners.size());
     for (const auto& crossing : tessellator_->crossings())
-      addCorner(face, first, count, added, axes.outOf(crossing.point) + origin, crossing);
+      addCorner(face, first, count, added, axes.fromPlane(crossing.point) + origin, crossing);
     auto corner = [&](uint32_t vertex) {
       return vertex < count ? first + vertex : added + (vertex - count);
     };
@@ -144,15 +147,17 @@ class Triangulation {
     triangles_.insert(triangles_.end(), t.begin(), t.end());
   }
 
-  // Large polygons are looked at first: the tessellator takes time by the square of some of them.
-  // Turns the plane if that helps.
+  // Checks large polygons first, because the tessellator is quadratic for some of them. It turns
+  // the plane by 90 degrees if that means less work.
   bool affordable(PlaneAxes& axes, uint32_t count) {
     if (count < 200) return crossingBudget_ > 0; // quick even if every edge crosses every other
     uint64_t alongX = sweepWork(contour_, 0), alongY = sweepWork(contour_, 1),
              work = std::min(alongX, alongY);
-    if (work > sweepBudget_ ||
-        isTangled(contour_, std::min<uint64_t>(crossingBudget_, 4 * uint64_t(count) + 20'000)))
-      return false;
+    // Each crossing cuts a loop of edges in two, and the tessellator walks along all of a loop that
+    // it cuts.
+    const uint64_t crossings = std::min(
+        {uint64_t(crossingBudget_), 4 * uint64_t(count) + 20'000, walkBudget_ / uint64_t(count)});
+    if (work > sweepBudget_ || isTangled(contour_, crossings)) return false;
     sweepBudget_ -= work;
     if (alongY < alongX) {
       axes.turn();
@@ -230,7 +235,7 @@ class Triangulation {
   FaceSet& set_;
   std::span<const Vec3f> normals_;
   Faults& faults_;
-  uint64_t limit_, crossingBudget_ = 0, sweepBudget_ = 20'000'000;
+  uint64_t limit_, crossingBudget_ = 0, sweepBudget_ = 20'000'000, walkBudget_ = 250'000'000;
   std::optional<Tessellator> tessellator_;
   std::vector<V3d> contour_;
   std::vector<uint32_t> triangles_;

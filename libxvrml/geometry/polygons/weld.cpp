@@ -1,6 +1,5 @@
-// weld.cpp: corners to vertices. A mesh has one index a vertex, so a point is doubled where
-// normals, colours or texture coordinates differ between the corners that meet there, and only
-// there.
+// weld.cpp: turns corners into vertices. A mesh has one index per vertex, so a point is duplicated
+// only where normals, colours or texture coordinates differ between its corners.
 #include <algorithm>
 #include <array>
 
@@ -16,7 +15,8 @@ template <class T> bool onePerPoint(const Attribute<T>& attribute, size_t points
          (attribute.per == Attribute<T>::Per::point && attribute.values.size() >= points);
 }
 
-// Arrays can be used as they are: nothing to double, and nothing in them that must not be seen.
+// Returns whether the arrays can be used unchanged: no point needs a duplicate and all points are
+// finite.
 bool usableInPlace(const FaceSet& set, size_t usedCorners) {
   size_t n = set.points.size();
   return onePerPoint(set.normals, n) && onePerPoint(set.texCoords, n) &&
@@ -87,8 +87,7 @@ class Welder {
   void addPoint(std::span<const uint32_t> corners) {
     keys_.clear();
     for (uint32_t corner : corners) keys_.push_back({keyOf(corner), corner});
-    if (keys_.size() >
-        16) { // equal keys side by side; few keys are quicker compared with each other
+    if (keys_.size() > 16) { // sort equal keys together; a few keys are compared directly instead
       std::sort(keys_.begin(), keys_.end());
       uint32_t vertex = 0;
       for (size_t i = 0; i < keys_.size(); i++) {

@@ -1,5 +1,5 @@
-// font.cpp: one font: layout by HarfBuzz, outlines by FreeType, triangles by the tessellator, kept
-// a glyph.
+// font.cpp: one font: layout by HarfBuzz, outlines by FreeType, triangles by the tessellator, with
+// a cache of glyphs.
 #include <ft2build.h>
 #include FT_FREETYPE_H
 #include FT_OUTLINE_H
@@ -25,8 +25,8 @@ FT_Library freeType() {
   return library;
 }
 
-// Contours of an outline as polygons; curves in as many pieces as keep them within a thousandth of
-// an em.
+// Converts the contours of an outline to polygons. Curves are cut into enough pieces to stay within
+// a thousandth of an em.
 struct Flattener {
   double scale, slant;
   std::vector<std::vector<V3d>> contours;
@@ -55,7 +55,7 @@ struct Flattener {
     f->add(f->at(to));
     return 0;
   }
-  // A parabola leaves its chord by a quarter of its second difference.
+  // The distance of a parabola from its chord is a quarter of its second difference.
   static int conicTo(const FT_Vector* control, const FT_Vector* to, void* self) {
     auto* f = static_cast<Flattener*>(self);
     if (f->contours.empty()) f->contours.emplace_back();
@@ -107,7 +107,7 @@ GlyphMesh tessellate(Flattener& flat) {
 struct Font::Impl {
   FT_Face face = nullptr;
   hb_font_t* font = nullptr;
-  double scale = 1; // em a font unit
+  double scale = 1; // em per font unit
   bool slant = false, embolden = false;
   std::unordered_map<uint32_t, GlyphMesh> glyphs;
 
@@ -127,7 +127,7 @@ Font::Font(const std::string& file, int faceIndex, bool slant, bool embolden)
   impl_->slant = slant;
   impl_->embolden = embolden;
   hb_face_t* face = hb_ft_face_create_referenced(impl_->face);
-  impl_->font = hb_font_create(face); // measures from the font's tables, in font units
+  impl_->font = hb_font_create(face); // takes its metrics from the font's tables, in font units
   hb_ot_font_set_funcs(impl_->font);
   hb_font_set_scale(impl_->font, impl_->face->units_per_EM, impl_->face->units_per_EM);
   hb_face_destroy(face);

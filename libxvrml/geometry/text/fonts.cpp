@@ -1,4 +1,4 @@
-// fonts.cpp: families to font files by fontconfig, and the fonts in use.
+// fonts.cpp: finds font files by family with fontconfig, and keeps the fonts in use.
 #include "geometry/text/fonts.h"
 
 #include <fontconfig/fontconfig.h>
@@ -18,9 +18,9 @@ using Pattern = std::unique_ptr<FcPattern, Destroyer<FcPattern, FcPatternDestroy
 
 const FcChar8* fc(const char* s) { return reinterpret_cast<const FcChar8*>(s); }
 
-// A tree that brings fonts, as a wheel does, has them in share/xvrml/fonts beside lib; they serve
-// where the system has none. There is a configuration among them for a system without fontconfig's
-// own, of which fontconfig would complain on standard error.
+// Adds bundled fonts if the system has none. An installation such as a wheel may bring fonts in
+// share/xvrml/fonts beside lib. They include a configuration for systems without one of
+// fontconfig's own, about which fontconfig would complain on standard error.
 void addBundledFonts() {
   namespace fs = std::filesystem;
   static const char here = 0;
@@ -30,20 +30,20 @@ void addBundledFonts() {
   const fs::path folder =
       fs::canonical(fs::path(info.dli_fname).parent_path() / "../share/xvrml/fonts", error);
   if (error) return;
-  FcConfig* own =
-      FcConfigCreate(); // to ask it: without one fontconfig would load its own, and complain
+  // This is used for queries only. Without it fontconfig would load its own and complain.
+  FcConfig* own = FcConfigCreate();
   if (!own) return;
   if (FcChar8* installed = FcConfigGetFilename(own, nullptr)) {
     FcStrFree(installed);
     const FcFontSet* fonts = FcConfigGetFonts(nullptr, FcSetSystem);
     if (!fonts || fonts->nfont == 0) FcConfigAppFontAddDir(nullptr, fc(folder.c_str()));
   } else if (FcConfigParseAndLoad(own, fc((folder / "fonts.conf").c_str()), FcFalse)) {
-    FcConfigSetCurrent(own); // builds the list
+    FcConfigSetCurrent(own); // this builds the list
   }
   FcConfigDestroy(own);
 }
 
-// The standard's families by fontconfig's names.
+// Returns fontconfig's name of a standard family.
 std::string fontconfigName(const std::string& family) {
   if (family == "SERIF" || family.empty()) return "serif";
   if (family == "SANS") return "sans-serif";
@@ -54,7 +54,8 @@ std::string fontconfigName(const std::string& family) {
 struct Match {
   std::string file, family;
   int index = 0;
-  bool slant = false, embolden = false; // what the file lacks of the style asked for
+  // Style features that the file lacks and that are synthesised.
+  bool slant = false, embolden = false;
 };
 
 bool match(const std::string& name, bool bold, bool italic, const std::string& language,
@@ -95,8 +96,8 @@ bool sameFamily(const std::string& wanted, const std::string& found) {
   return FcStrCmpIgnoreCase(fc(wanted.c_str()), fc(found.c_str())) == 0;
 }
 
-// Fonts by file and style, and what was asked for before. A hostile world may ask for many names:
-// forget them in time.
+// Fonts by file and style, and earlier requests. Requests are forgotten from time to time, because
+// a hostile world may use many names.
 struct FontTable {
   std::map<std::string, std::shared_ptr<Font>> byFile;
   std::map<std::string, Font*> byRequest;
@@ -140,7 +141,7 @@ Font* findFont(std::span<const std::string> families, bool bold, bool italic,
     std::string name = fontconfigName(family);
     bool generic = name == "serif" || name == "sans-serif" || name == "monospace";
     Match m;
-    // fontconfig always answers with something: take it if it is what was asked for.
+    // Fontconfig always returns some font, so use it only if the family matches.
     if (match(name, bold, italic, language, m) && (generic || sameFamily(name, m.family)))
       font = open(m);
   }

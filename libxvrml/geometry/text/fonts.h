@@ -1,6 +1,6 @@
-// fonts.h: fonts found by fontconfig, read by FreeType, laid out by HarfBuzz, with glyphs kept as
-// triangles. Fonts live as long as the process; every call holds fontsMutex() (FreeType faces are
-// not shared between threads).
+// fonts.h: fonts found by fontconfig, read by FreeType and laid out by HarfBuzz; glyphs are cached
+// as triangles. Fonts live as long as the process. Callers hold fontsMutex() around every call,
+// because FreeType faces are not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 
 namespace xvrml {
 
-// A glyph in units of the font size (the em square is 1), counterclockwise triangles about +z.
+// A glyph in units of the font size (the em square is 1). Triangles are counterclockwise about +z.
 struct GlyphMesh {
   std::vector<Vec2f> points;
   std::vector<uint32_t> indices;
 };
 
-// A glyph of a line of text and where its origin stands, in em.
+// A glyph in a line of text and the position of its origin, in em.
 struct PlacedGlyph {
   uint32_t glyph;
   double x, y;
@@ -29,23 +29,23 @@ struct PlacedGlyph {
 
 struct ShapedLine {
   std::vector<PlacedGlyph> glyphs;
-  double advanceX = 0, advanceY = 0; // where the pen stands at the end
+  double advanceX = 0, advanceY = 0; // pen position at the end of the line
 };
 
 enum class TextDirection : uint8_t { leftToRight, rightToLeft, topToBottom, bottomToTop };
 
 class Font {
  public:
-  // Throws std::runtime_error if the file cannot be used.
+  // Throws std::runtime_error if the file is unusable.
   Font(const std::string& file, int faceIndex, bool slant, bool embolden);
   ~Font();
   Font(const Font&) = delete;
   Font& operator=(const Font&) = delete;
 
-  double ascender() const;  // above the baseline, em
-  double descender() const; // below it, negative
+  double ascender() const;  // em above the baseline
+  double descender() const; // em relative to the baseline, negative
   ShapedLine shape(const std::string& utf8, TextDirection direction, const std::string& language);
-  // Valid until the next call of glyph().
+  // Returns a mesh that is valid until the next call of glyph().
   const GlyphMesh& glyph(uint32_t id);
 
  private:
@@ -55,8 +55,8 @@ class Font {
 
 std::mutex& fontsMutex();
 
-// The font for FontStyle's family and style (clause 6.20.2): the first family that is there; SERIF,
-// SANS and TYPEWRITER always are as long as any font is installed. Null if none is.
+// Returns the font for FontStyle's family and style (clause 6.20.2): the first available family.
+// SERIF, SANS and TYPEWRITER are available if any font is installed. Returns null if there is none.
 Font* findFont(std::span<const std::string> families, bool bold, bool italic,
                const std::string& language);
 

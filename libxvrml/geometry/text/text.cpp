@@ -12,7 +12,7 @@ namespace {
 enum class Justify : uint8_t { first, begin, middle, end };
 
 Justify justifyFrom(const MFString& values, size_t i, Faults& faults) {
-  // Nothing said: BEGIN along the line, FIRST across the lines.
+  // Defaults: BEGIN along the line, FIRST across the lines.
   Justify otherwise = i == 0 ? Justify::begin : Justify::first;
   if (i >= values.size() || values[i].empty()) return otherwise;
   if (values[i] == "FIRST") return Justify::first;
@@ -23,7 +23,7 @@ Justify justifyFrom(const MFString& values, size_t i, Faults& faults) {
   return otherwise;
 }
 
-// FontStyle's fields, checked; the defaults where there is none.
+// FontStyle's fields, checked; defaults if there is no FontStyle.
 struct Style {
   std::vector<std::string> families;
   bool bold = false, italic = false, horizontal = true, leftToRight = true, topToBottom = true;
@@ -55,13 +55,13 @@ struct Style {
   }
 };
 
-// A line with its glyphs between 0 and `length` along the line's axis (whichever way they advance)
-// and its stretch.
+// A line of text and its stretch. Its glyphs lie between 0 and `length` along the line's axis,
+// whatever their direction.
 struct Line {
   ShapedLine shaped;
-  double length = 0; // em, along the axis, before stretching
+  double length = 0; // along the axis before stretching, in em
   double stretch = 1;
-  double start = 0; // smallest coordinate along the axis, em, after stretching
+  double start = 0; // smallest coordinate along the axis after stretching, in em
 };
 
 class Layout {
@@ -77,7 +77,7 @@ class Layout {
     for (size_t i = 0; i < lines_.size() && !full_; i++) addLine(i);
     if (mesh_.ownIndices.empty()) return {};
     mesh_.kind = Mesh::Kind::triangles;
-    mesh_.solid = false; // seen from both sides (clause 6.47)
+    mesh_.solid = false; // visible from both sides (clause 6.47)
     mesh_.viewOwn();
     return std::move(mesh_);
   }
@@ -93,7 +93,8 @@ class Layout {
     }
   }
 
-  // length stretches each line, maxExtent then compresses all alike (clause 6.47).
+  // Stretches each line to its length, then compresses all lines equally to maxExtent (clause
+  // 6.47).
   void fitLengths() {
     double longest = 0;
     for (size_t i = 0; i < lines_.size(); i++) {
@@ -110,7 +111,7 @@ class Layout {
     }
   }
 
-  // Major alignment, a line at a time: what of it lies at 0 (tables of clause 6.20.3).
+  // Returns the start of a line for the major alignment (tables of clause 6.20.3).
   double startAlong(double length) const {
     bool towardsPlus = style_.horizontal ? style_.leftToRight : !style_.topToBottom;
     switch (style_.major) {
@@ -120,13 +121,14 @@ class Layout {
     }
   }
 
-  // Minor alignment, the whole block: `offset_` is where the first line's baseline (horizontal) or
-  // left edge (vertical) lies.
+  // Applies the minor alignment to the whole block. `offset_` is the position of the first line's
+  // baseline (horizontal) or left edge (vertical).
   void placeAcross() {
     double extra = double(lines_.size() - 1) * style_.spacing;
     if (style_.horizontal) {
       step_ = style_.topToBottom ? -style_.spacing : style_.spacing;
-      double top = font_.ascender(), bottom = font_.descender(); // of a line, from its baseline
+      // Extents of a line, relative to its baseline.
+      double top = font_.ascender(), bottom = font_.descender();
       double high = style_.topToBottom ? top : top + extra,
              low = style_.topToBottom ? bottom - extra : bottom;
       switch (style_.minor) {
@@ -147,19 +149,19 @@ class Layout {
     }
   }
 
-  // Glyph origins in em: along the line stretched, across it from the baseline (vertical: the
-  // column's middle).
+  // Returns a glyph origin in em: stretched along the line; across it relative to the baseline, or
+  // to the column's middle if vertical.
   V2d place(const Line& line, size_t index, const V2d& p) const {
     double across = offset_ + double(index) * step_;
     if (style_.horizontal) return {line.start + p.x * line.stretch, across + p.y};
-    // The pen runs down from 0 (or up from 0): the line's lowest point is at -length (or 0).
+    // The pen runs down (or up) from 0, so the lowest point of the line is -length (or 0).
     double low = line.shaped.advanceY < 0 ? -line.length : 0;
     return {across + 0.5 + p.x, line.start + (p.y - low) * line.stretch};
   }
 
   void addLine(size_t index) {
     const Line& line = lines_[index];
-    // Where the texture has its origin: that of the first string (clause 6.47).
+    // The texture's origin is that of the first string (clause 6.47).
     V2d origin = place(lines_[0], 0, V2d(0, 0));
     for (const PlacedGlyph& placed : line.shaped.glyphs) {
       const GlyphMesh& glyph = font_.glyph(placed.glyph);
@@ -179,7 +181,7 @@ class Layout {
     }
   }
 
-  // Strong compression can leave a triangle without area.
+  // Adds a triangle unless strong compression has left it without area.
   void addTriangle(uint32_t first, const uint32_t* at) {
     const auto& p = mesh_.ownPoints;
     if (hasArea(p[first + at[0]], p[first + at[1]], p[first + at[2]]))

@@ -1,7 +1,7 @@
 // browser.h: a running VRML world: time, events, live editing, and the Browser object that Scripts
-// and programs see (ISO/IEC 14772-1 4.12.10). It has no clock, no window and no threads: time is an
-// argument, input is handed in, what changed is handed out. The same calls with the same arguments
-// give the same world. [one thread: the one that made it]
+// and programs see (ISO/IEC 14772-1 4.12.10). The class has no clock, no window and no threads: the
+// caller passes in time and user input and takes out the changes. The same calls with the same
+// arguments give the same world. [one thread: the one that made it]
 #pragma once
 
 #include <functional>
@@ -17,77 +17,83 @@
 
 namespace xvrml {
 
-// What Scripts have done since the world began.
+// Counts of what the world's Scripts have done since the world began.
 struct ScriptCounts {
-  uint64_t scripts = 0; // that have become part of the world
-  uint64_t started = 0; // whose program has been found and has begun
-  uint64_t waiting = 0; // that are still to be started, or are starting in their processes
-  uint64_t calls = 0;   // of their functions
-  double seconds = 0;   // that the world has waited for these
+  uint64_t scripts = 0; // Scripts that have become part of the world
+  uint64_t started = 0; // Scripts whose program was found and has begun
+  uint64_t waiting = 0; // Scripts not started yet, or starting in their processes
+  uint64_t calls = 0;   // calls of Script functions
+  double seconds = 0;   // seconds that the world has waited for these calls
 };
 
 struct BrowserOptions {
-  uint64_t maximumEvents = 1'000'000; // of one cascade
+  uint64_t maximumEvents = 1'000'000; // limit for one cascade
   bool runScripts = true;
-  std::string scriptPath;    // folders of script engines, separated by colons, before
-                             // $XVRML_SCRIPT_PATH and the installed one
+  // Folders of script engines, separated by colons. They come before $XVRML_SCRIPT_PATH and the
+  // installed folder.
+  std::string scriptPath;
   bool trustScripts = false; // Scripts may use engines whose programs can do whatever the user can
   bool allowNetwork = false; // tells script engines that their programs may use the network
-  uint64_t scriptSteps = 1'000'000'000; // that one call into a Script may take, as its engine
-                                        // counts them; then it is stopped
-  double scriptSeconds =
-      2; // for the same: of the processor if the program has a process of its own, else on the wall
+  // Limit for one call into a Script, counted by its engine; beyond it the Script is stopped.
+  uint64_t scriptSteps = 1'000'000'000;
+  // Time limit for one call into a Script: processor time if the program runs in a process of its
+  // own, wall-clock time otherwise.
+  double scriptSeconds = 2;
   uint64_t scriptMemory = 256 << 20; // bytes that one Script's program may use
-  // Programs of untrusted worlds run in processes of their own, which can do nothing but compute;
-  // never: in this one, where one that does not end, or takes all memory, takes the program with
-  // it; always: trusted ones, too, as far as they can.
+  // Selects the process for the programs of Scripts. A separate process can only compute.
+  // - automatic: programs of untrusted worlds run in processes of their own.
+  // - never: all programs run in this process. A program that does not end, or takes all memory,
+  //   takes the application with it.
+  // - always: programs of trusted worlds run in processes of their own, too, where their engine
+  //   can.
   enum class Isolation : uint8_t {
     automatic,
     never,
     always
   } scriptIsolation = Isolation::automatic;
-  // Seconds that a call waits for a Script in a process of its own; what it sends later belongs to
-  // a later tick. 0: as long as it runs, so that the same input gives the same world on any
-  // machine.
+  // Seconds that a call waits for a Script in a process of its own. Events that the Script sends
+  // later belong to a later tick. 0 waits until the Script returns, so that the same input gives
+  // the same world on any machine.
   double scriptPatience = 0;
-  std::function<void(const std::string& text)>
-      print; // what Scripts print; null: notes in world().diagnostics
-  // loadUrl asks here first: true: the application has taken care of it. base: file that relative
-  // URLs are relative to.
+  // Receives the text that Scripts print; null: the text becomes notes in world().diagnostics.
+  std::function<void(const std::string& text)> print;
+  // loadUrl calls this first. It returns true if the application has loaded the URL itself. base:
+  // the file that relative URLs are relative to.
   std::function<bool(const std::vector<std::string>& urls,
                      const std::vector<std::string>& parameters, const std::string& base)>
       loadUrl;
 };
 
-// Time 0 of a Browser in the world's own time, which is seconds since 1970-01-01 00:00 UTC (ISO/IEC
-// 14772-1 4.11.2): the beginning of 24 October 2024. A fixed number keeps pictures reproducible.
-// Most cycleIntervals divide it (2^9 3^3 5^3 7 11 13), so that a TimeSensor with startTime 0 and
-// loop TRUE is at the beginning of a cycle (decision 0014).
+// Time 0 of a Browser as world time, in seconds since 1970-01-01 00:00 UTC (ISO/IEC 14772-1
+// 4.11.2): the beginning of 24 October 2024. A fixed number keeps pictures reproducible. Most
+// cycleIntervals divide it (2^9 3^3 5^3 7 11 13), so that a TimeSensor with startTime 0 and loop
+// TRUE is at the beginning of a cycle (decision 0014).
 inline constexpr double worldEpoch = 1'729'728'000;
 
-// More options. A later version that adds members reads them only if size tells that the program
-// knows them.
+// More options. A later version that adds members reads them only if `size` shows that the program
+// was compiled with them.
 struct RunOptions {
   size_t size = sizeof(RunOptions);
-  double epoch = worldEpoch; // time 0 in seconds since 1970; 0: the times of this class are seconds
-                             // since 1970 themselves
-  // Every Script may send to other nodes and change routes, as the browsers of 1997 let them; else
-  // only those with directOutput TRUE (6.40).
+  // Time 0 in seconds since 1970. With 0, the times of this class are themselves seconds since
+  // 1970.
+  double epoch = worldEpoch;
+  // Lets every Script send to other nodes and change routes, as the browsers of 1997 did. If false,
+  // only Scripts with directOutput TRUE may (6.40).
   bool directOutputAlways = false;
-  // Seconds of processor time that calls of all Scripts may take together while scriptPatience is 0
-  // (ten times as many on the wall), and as many again for each second that the world's time moves
-  // on. Then all Scripts are stopped, with one error.
+  // Seconds of processor time that the calls of all Scripts may take together while scriptPatience
+  // is 0; on the wall clock ten times as many. The budget grows by the same amount for each second
+  // of world time. When it is used up, all Scripts are stopped with one error.
   double worldScriptSeconds = 30;
-  // Called after each Script that has been started, on the browser's thread, within its constructor
-  // too: to show how far it is.
+  // Called after each Script that has been started, so that an application can show progress. [the
+  // browser's thread; also within the constructor]
   std::function<void(const ScriptCounts& counts)> onScriptStart;
 };
 
 class Browser {
  public:
-  // Takes a loaded world over: sensors, Scripts, bindables and routes come alive at time `start`.
-  // The first tick shows the world at that time. All times of this class are seconds after the
-  // epoch; nodes and Scripts see epoch + time.
+  // Takes over a loaded world. Sensors, Scripts, bindable nodes and routes become active at time
+  // `start`; the first tick shows the world at that time. All times of this class are seconds after
+  // the epoch. Nodes and Scripts see epoch + time.
   explicit Browser(std::unique_ptr<World> world, BrowserOptions options = {}, double start = 0);
   Browser(std::unique_ptr<World> world, BrowserOptions options, double start,
           const RunOptions& run);
@@ -99,109 +105,115 @@ class Browser {
   Events& events();
   double now() const;   // seconds after epoch()
   double epoch() const; // seconds since 1970; startTime = epoch() + now() is "at once"
-  // Time has come to `time` (seconds after epoch(), not before now()): sensors send, routes carry,
-  // Scripts run, until nothing is left to do.
+  // Advances the world to `time` (seconds after epoch(), not before now()): sensors send events,
+  // routes deliver them and Scripts run until no event is left.
   void tick(double time);
-  // What changed since the last call; for OpenRTMapper::update. Another world (generation()) begins
-  // with an empty list.
+  // Returns the changes since the last call, for OpenRTMapper::update. The list starts empty when
+  // another world takes this one's place (see generation()).
   FieldChanges takeChanges();
-  bool hasChanges() const;      // takeChanges would return some
-  ScriptCounts scripts() const; // what its Scripts have done so far
-  // Grows by one with every world that takes the place of the former (loadUrl, replaceWorld): make
-  // a new mapper.
+  bool hasChanges() const;      // true if takeChanges would return any
+  ScriptCounts scripts() const; // what the world's Scripts have done so far
+  // Grows by one when another world takes the place of this one (loadUrl, replaceWorld). Make a new
+  // mapper then.
   uint64_t generation() const;
 
   // --- Fields and events ---
-  // The node that a DEF name of the file means; null if there is none.
+  // Returns the node that a DEF name of the file refers to; null if there is none.
   NodeRef node(std::string_view name) const;
   // Sends an event to an exposedField or eventIn (a cascade at now()), or sets a field directly.
   // False if there is no such field or the value is of another type.
   bool set(Node& node, std::string_view field, Value value);
-  // The value of a field or exposedField, or the last one an eventOut sent. Throws
-  // std::invalid_argument if there is none.
+  // Returns the value of a field or exposedField, or the last value that an eventOut sent. Throws
+  // std::invalid_argument if the node has no such field or event.
   Value get(const Node& node, std::string_view field) const;
-  // Calls back whenever an eventOut or exposedField has sent. Returns a number for unlisten; 0 if
-  // there is no such event.
+  // Registers a callback for each event that an eventOut or exposedField sends. Returns a number
+  // for unlisten, or 0 if there is no such event.
   using Callback = std::function<void(Node& node, const FieldInfo& out, const Value& value)>;
   uint64_t listen(Node& node, std::string_view out, Callback callback);
   void unlisten(Node& node, uint64_t number);
 
   // --- The viewer ---
   BoundNodes bound() const;
-  // Where the viewer is: the bound Viewpoint, and how far navigation has led away from it. aspect:
-  // width / height.
+  // Returns the camera at the viewer's position: the bound Viewpoint, plus the navigation since it
+  // was bound. aspect: width / height.
   CameraSettings camera(double aspect) const;
-  // Puts the viewer somewhere else, as navigation does. view: camera to world, column-major,
-  // rotation and translation only; one that is not finite is not taken.
+  // Moves the viewer to another place, as navigation does. view: camera to world, column-major,
+  // rotation and translation only. A matrix with a number that is not finite is ignored.
   void placeViewer(const double view[16]);
-  // The direction in the world that is up for navigation while no Viewpoint is bound; 0 1 0 at
-  // first. A vector that is not finite or has no length is not taken.
+  // Sets the direction in the world that is up for navigation while no Viewpoint is bound; 0 1 0 by
+  // default. A vector that is not finite or has no length is ignored.
   void setUp(const double up[3]);
-  // Seconds of the world's time in which the picture follows when the viewer jumps to another
-  // Viewpoint; 0, as at first: at once.
+  // Sets the seconds of world time in which the camera follows when the viewer jumps to another
+  // Viewpoint. With 0, the default, it jumps at once.
   void setTransition(double seconds);
-  std::vector<ViewpointName>
-  viewpoints() const; // in the order of the files, Inlines and prototypes included
-  bool bindViewpoint(
-      std::string_view name); // by its DEF name or else its description; false if there is none
-  // The nearest thing along a ray; false if there is none.
+  // Returns the Viewpoints in the order of the files, Inlines and prototypes included.
+  std::vector<ViewpointName> viewpoints() const;
+  // Binds a Viewpoint by its DEF name or else by its description. Returns false if there is none.
+  bool bindViewpoint(std::string_view name);
+  // Finds the nearest thing along a ray. Returns false if the ray hits nothing.
   bool pick(const double origin[3], const double direction[3], const PickOptions& options,
             PickHit& hit);
-  // The pointer is at (x, y) of the picture, from -1 at the left and bottom to 1 at the right and
-  // top; button: it is pressed. Sensors send at now().
+  // Places the pointer at (x, y) of the picture, from -1 at the left and bottom to 1 at the right
+  // and top. button: it is pressed. Pointing sensors send at now().
   void pointer(double x, double y, bool button);
-  void setAspect(double aspect); // of the picture that pointer and VisibilitySensors mean, width /
-                                 // height; 4/3 at first
-  void pointerRay(const double origin[3], const double direction[3], bool button); // in the world
-  void pointerLeave(); // it is outside of the picture, released
-  std::vector<NodeRef>
-  sensorsAtPointer() const; // pointing sensors and Anchors that it is over, or that have grabbed it
-  // Does what a click on an Anchor does (6.2): binds the Viewpoint that its first url names
-  // (#name), else calls back; without a callback as loadUrl.
+  // Sets width / height of the picture, for pointer() and VisibilitySensors; 4/3 by default.
+  void setAspect(double aspect);
+  // Does the same as pointer() for a ray in the world.
+  void pointerRay(const double origin[3], const double direction[3], bool button);
+  void pointerLeave(); // the pointer has left the picture, button released
+  // Returns the pointing sensors and Anchors that the pointer is over or that have grabbed it.
+  std::vector<NodeRef> sensorsAtPointer() const;
+  // Does what a click on an Anchor does (6.2). If the Anchor's first url names a Viewpoint (#name),
+  // it is bound. Otherwise the onAnchor callback is called, or loadUrl if none is set.
   void activate(Node& anchor);
-  // Its urls lead elsewhere. [within pointer or activate, outside of cascades]
+  // Sets the callback for an Anchor whose urls lead elsewhere. [called within pointer or activate,
+  // outside of cascades]
   void onAnchor(std::function<void(Node& anchor)> callback);
-  // Moves the viewer for a time. Between ticks: what the user does at now(). dt: seconds.
+  // Moves the viewer for dt seconds, at now(). Call it between ticks.
   void navigate(const NavigationInput& input, double dt);
-  void key(Key key, bool pressed); // ticks move the viewer while arrows are held
-  Navigation navigation() const;   // the way of moving in use
-  bool setNavigation(
-      Navigation type); // false if the bound NavigationInfo does not allow it; then its first holds
+  void key(Key key, bool pressed); // while an arrow key is held, ticks move the viewer
+  Navigation navigation() const;   // the navigation type in use
+  // Sets the navigation type. Returns false if the bound NavigationInfo does not allow it; its
+  // first type is used then.
+  bool setNavigation(Navigation type);
 
   // --- The Browser object (4.12.10) ---
   std::string name() const;
   std::string version() const;
   double currentSpeed() const;     // metres per second
-  double currentFrameRate() const; // what setFrameRate said last; 0 at first
+  double currentFrameRate() const; // the last value given to setFrameRate; 0 at first
   void setFrameRate(double framesPerSecond);
   std::string worldUrl() const;
   void setDescription(std::string text);
   std::string description() const;
-  // Nodes of a text, which has names, prototypes and routes of its own and needs no header. They
-  // are part of the world at once, though nowhere in its scene; routes live as long as the nodes
-  // they start from. What is wrong in the text is in world().diagnostics. Throws LoadError if
-  // nothing of it can be used.
+  // Makes nodes from VRML text. The text needs no header and has its own scope of names, prototypes
+  // and routes. The nodes are part of the world at once, but not of its scene. Routes live as long
+  // as the nodes they start from. Errors in the text are reported in world().diagnostics. Throws
+  // LoadError if nothing of the text can be used.
   MFNode createVrmlFromString(std::string_view text);
-  // The three below wait for the end of the cascade if one is under way. base: file that relative
-  // URLs are relative to; "": the world's. Sends the nodes of the first file that can be read as an
-  // MFNode to an eventIn, in a cascade of its own.
+  // The next three calls wait for the end of the cascade if one is under way. base: the file that
+  // relative URLs are relative to; "" means the world's file.
+  //
+  // Sends the nodes of the first file that can be read to an eventIn as an MFNode, in a cascade of
+  // its own.
   void createVrmlFromUrl(const std::vector<std::string>& urls, Node& node, std::string_view eventIn,
                          const std::string& base = "");
-  // Another world instead of this one; "#name" and "file#name" bind a viewpoint. If none can be
-  // read all stays as it is.
+  // Replaces this world by another. "#name" and "file#name" bind a viewpoint. If no URL can be
+  // read, this world stays as it is.
   void loadUrl(const std::vector<std::string>& urls,
                const std::vector<std::string>& parameters = {}, const std::string& base = "");
-  // These nodes, with what hangs below them and what their routes lead to, instead of all others.
+  // Replaces all nodes of the world by these, with their descendants and the targets of their
+  // routes.
   void replaceWorld(const MFNode& nodes);
 
   // --- Editing ---
-  NodeRef createNode(std::string_view type); // with default fields; throws std::invalid_argument
-                                             // for an unknown type
+  // Returns a node with default fields. Throws std::invalid_argument for an unknown type.
+  NodeRef createNode(std::string_view type);
   void addRoot(NodeRef node);
   void removeRoot(Node& node);
-  // Loads the content of an Inline that has none yet (LoadOptions::loadInlines), or of all that are
-  // in the world, and what these bring in. Returns how many got some; what could not be read is in
-  // the diagnostics.
+  // Loads the content of an Inline that has none yet (LoadOptions::loadInlines). loadInlines does
+  // so for all Inlines of the world and those inside their content, and returns how many it loaded.
+  // Failures are reported in the diagnostics.
   bool loadInline(Node& inlineNode);
   uint64_t loadInlines();
   bool addRoute(Node& from, std::string_view out, Node& to, std::string_view in);

@@ -1,4 +1,4 @@
-// camera.h: where a world is looked at from.
+// camera.h: the camera, bounds and bound nodes of a world.
 #pragma once
 
 namespace xvrml {
@@ -6,12 +6,14 @@ namespace xvrml {
 class Node;
 
 struct CameraSettings {
-  double matrix[16]; // camera to world, column-major, rotation and translation only; looks along
-                     // -z, +y up
+  // Camera to world, column-major, rotation and translation only. The camera looks along -z; +y is
+  // up.
+  double matrix[16];
   double fovy = 0.785398; // radians, vertical; 0: orthographic
-  double height = 0;      // orthographic: world units
-  Node* shader = nullptr; // an ORTShader that makes the rays; null: the stock camera. It must live
-                          // as long as the settings
+  double height = 0;      // height of an orthographic picture in world units
+  // An ORTShader that generates the rays; null: the built-in camera. It must outlive these
+  // settings.
+  Node* shader = nullptr;
 };
 
 struct Bounds {
@@ -19,8 +21,8 @@ struct Bounds {
   bool empty = true;
 };
 
-// The bindable nodes at the tops of their stacks (clause 4.6.10); null: none is bound, the
-// standard's defaults hold.
+// The bindable nodes at the tops of their stacks (clause 4.6.10). Null: none is bound, and the
+// standard's defaults apply.
 struct BoundNodes {
   Node *viewpoint = nullptr, *background = nullptr, *fog = nullptr, *navigationInfo = nullptr;
   bool operator==(const BoundNodes&) const = default;

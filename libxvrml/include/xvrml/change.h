@@ -1,5 +1,5 @@
-// change.h: what a running world tells those who draw it: which fields have new values, and which
-// ever may get some.
+// change.h: what a running world tells its renderer: which fields have new values, and which fields
+// may ever change.
 #pragma once
 
 #include <string>
@@ -9,27 +9,31 @@
 
 namespace xvrml {
 
-// A field or exposedField has a new value, or a bindable node was bound or unbound (field: its
-// set_bind). The kind of change is field->change; changes of kind `none` are not reported. Several
-// changes of one field between two readings are one. node and field null: the roots of the world
-// are others (world.scope.roots).
+// A field or exposedField has a new value, or a bindable node was bound or unbound (`field` is then
+// its set_bind). The kind of change is field->change; changes of kind `none` are not reported.
+// Several changes of one field between two calls of takeChanges are reported once. If node and
+// field are null, the world has other roots (world.scope.roots).
 struct FieldChange {
   NodeRef node;
   const FieldInfo* field;
 };
 using FieldChanges = std::vector<FieldChange>;
 
-// Which kinds of change events may bring to a node, seen from the world as it stands: ROUTEs
-// (through prototypes), the nodes that Scripts with directOutput refer to, and whatever has been
-// changed since the world runs. Bit 1 << int(Change::...); 0 for a node of a world that does not
-// run. Whoever groups static things splits here.
+// Returns the kinds of change that events may bring to a node: bit 1 << int(Change::...). It is 0
+// for a node of a world that does not run. The kinds come from the world as it stands:
+// - ROUTEs, also through prototypes;
+// - the nodes that Scripts with directOutput refer to;
+// - all fields that have changed since the world began to run.
+//
+// Code that groups static nodes splits the groups here.
 uint16_t reachOf(const Node& node);
 inline bool reaches(const Node& node, Change kind) { return reachOf(node) >> int(kind) & 1; }
-// Why a kind is in reachOf, for people: "ROUTE from Clock.fraction_changed"; empty if it is not.
+// Returns the reason why a kind is in reachOf, for messages: "ROUTE from Clock.fraction_changed".
+// "" if it is not.
 std::string reachReason(const Node& node, Change kind);
 
-// Appends the nodes of a running world that hold a node among their children (prototype instances
-// hold the nodes of their body, Inlines what they loaded), once for each time they do.
+// Appends the nodes of a running world that hold a node among their children, once for each time
+// they do. Prototype instances hold the nodes of their body, Inlines hold what they loaded.
 void holdersOf(const Node& node, std::vector<Node*>& holders);
 
 } // namespace xvrml

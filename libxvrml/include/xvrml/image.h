@@ -1,4 +1,4 @@
-// image.h: pictures of 8 bits a component, as ImageTexture reads them.
+// image.h: pictures of 8 bits per component, as ImageTexture reads them.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace xvrml {
 
-// Reads a PNG, JPEG or GIF file (its first frame), by content: rows from the bottom up, components
-// as the file has them (1 grey, 2 grey and alpha, 3 colours, 4 colours and alpha). Throws
-// std::runtime_error that says what is wrong with the file; at most limits.imagePixels pixels are
-// read. [any thread]
+// Reads a PNG or JPEG file, or the first frame of a GIF file. The format is recognised by the
+// content. Rows are stored from the bottom up, with the components of the file (1 grey, 2 grey and
+// alpha, 3 RGB, 4 RGB and alpha). Reads at most limits.imagePixels pixels. Throws
+// std::runtime_error with a text that says what is wrong with the file. [any thread]
 Image loadImage(const std::string& path, const Limits& limits = {});
 
 } // namespace xvrml

@@ -1,5 +1,5 @@
-// mapper.h: draws a world through the OpenRT API: the mapper of scene-graph nodes to rt* calls
-// (library xvrml_openrt).
+// mapper.h: draws a world through the OpenRT API (library xvrml_openrt). The mapper translates
+// scene-graph nodes to rt* calls.
 #pragma once
 
 #include <cstdint>
@@ -16,41 +16,41 @@
 namespace xvrml {
 
 struct ViewpointInfo {
-  std::string name; // DEF, may be empty
+  std::string name; // DEF name, may be empty
   std::string description;
   NodeRef node;
   double matrix[16]; // local to world, column-major
 };
 
 struct MapOptions {
-  bool linearColor = true; // decode sRGB (vv-cli.md "Colour"); false: the standard's equation on
-                           // the numbers as written
+  // Decodes sRGB colours (vv-cli.md "Colour"). If false, the standard's equation is applied to the
+  // numbers as written.
+  bool linearColor = true;
   enum class Headlight : uint8_t { automatic, on, off } headlight = Headlight::automatic;
-  double aspect =
-      4.0 /
-      3.0; // width / height: the smaller angle of view is the Viewpoint's fieldOfView (clause 6.53)
+  // aspect: width / height. The smaller angle of view is the Viewpoint's fieldOfView (clause 6.53).
+  double aspect = 4.0 / 3.0;
 };
 
-// A camera that looks along the view's -z (camera to world, column-major) from where all of bounds
-// is in the picture.
+// Returns a camera that looks along the view's -z (camera to world, column-major) and has all of
+// `bounds` in the picture.
 CameraSettings cameraAround(const Bounds& bounds, const double view[16], double fovy,
                             double aspect);
 
-// An axis of the world's coordinate system, in its direction or against it.
+// A signed axis of the world's coordinate system.
 enum class Axis : uint8_t { x, y, z, minusX, minusY, minusZ };
 // Writes the unit vector along an axis.
 void upVector(Axis axis, double up[3]);
 
-// Which axis points up in a world that has no Viewpoint, and what makes one think so (a clause of a
-// sentence). frontal: it is a figure in the x-y plane, to be looked at from the front.
+// A guess which axis points up in a world that has no Viewpoint, and the reason for it (a clause of
+// a sentence). frontal: the world is a figure in the x-y plane, to be seen from the front.
 struct UpGuess {
   Axis axis = Axis::y;
   std::string reason;
   bool frontal = false;
 };
 
-// The sphere about the middle of the bounds that reaches to what is drawn farthest from there.
-// empty: nothing is drawn.
+// The sphere around the centre of the bounds that encloses all that is drawn. empty: nothing is
+// drawn.
 struct BoundingSphere {
   double center[3] = {0, 0, 0};
   double radius = 0;
@@ -59,85 +59,85 @@ struct BoundingSphere {
 // Writes the rotation of a camera (camera to world, column-major) that looks at a model from 35
 // degrees to the right of its front and 25 degrees above.
 void threeQuarterView(Axis up, double view[16]);
-// A camera that looks along the view's -z at the middle of a sphere, from where the picture holds
-// all of it, with a margin.
+// Returns a camera that looks along the view's -z at the centre of a sphere. The picture holds the
+// whole sphere, with a margin.
 CameraSettings cameraAround(const BoundingSphere& sphere, const double view[16], double fovy,
                             double aspect);
 
 struct MapStats {
   uint64_t shapes = 0, triangles = 0, lights = 0, textures = 0, objects = 0, instances = 0;
-  uint64_t missingTextures = 0; // ImageTextures and panoramas without a picture that could be read
-  // Work done since the mapper was made.
+  uint64_t missingTextures = 0; // ImageTextures and panoramas without a readable picture
+  // Work done since the mapper was made:
   uint64_t objectsDefined = 0; // definitions of OpenRT objects, redefinitions included
-  uint64_t instancesMoved = 0; // rtInstanceMatrix
-  uint64_t parametersSet = 0;  // rtParameter* of shaders that were there already
-  uint64_t texturesLoaded = 0; // pictures handed over
+  uint64_t instancesMoved = 0; // calls of rtInstanceMatrix
+  uint64_t parametersSet = 0;  // calls of rtParameter* for shaders that already existed
+  uint64_t texturesLoaded = 0; // pictures passed to OpenRT
   uint64_t lightsChanged = 0;  // lights made, moved or removed
-  uint64_t regroupings = 0;    // updates that changed what is grouped with what
+  uint64_t regroupings = 0;    // updates that changed how static nodes are grouped into objects
 };
 
-// One OpenRT object and why it is one.
+// An OpenRT object and the reason why it is an object of its own.
 struct ExplainedObject {
-  std::string
-      name; // path of names from the root, "Town/House"; a node without a name: its type and line
+  // Path of names from the root, "Town/House". A node without a name appears as its type and line.
+  std::string name;
   std::string reason; // "static geometry of 5312 shapes", "ROUTE from Clock.fraction_changed" ...
-  uint64_t triangles = 0; // of one instance; without those of objects that it instantiates
+  uint64_t triangles = 0; // of one instance, without those of the objects that it instantiates
   uint64_t shapes = 0;
   uint64_t bytes = 0;     // estimated: arrays and acceleration structure
-  uint64_t instances = 0; // of this object, in all objects' definitions
+  uint64_t instances = 0; // instances of this object in the definitions of all objects
 };
 
-// Maps a world into the current OpenRT context. One mapper per context; every call on the context's
-// thread.
+// Maps a world into the current OpenRT context. There is one mapper per context. [the context's
+// thread]
 class OpenRTMapper {
  public:
   OpenRTMapper(World& world, const MapOptions& options);
   ~OpenRTMapper();
 
-  // Viewpoints in the order of the file (prototypes and Inlines expanded).
+  // Returns the viewpoints in the order of the file, prototypes and Inlines expanded.
   const std::vector<ViewpointInfo>& viewpoints() const;
-  // The viewpoint that is bound first: of the file itself, not of its Inlines (clause 4.6.10); -1
-  // if there is none.
+  // Returns the index of the viewpoint that is bound first, -1 if there is none. It belongs to the
+  // file itself, not to its Inlines (clause 4.6.10).
   int boundViewpoint() const;
-  // Camera of a viewpoint (index into viewpoints()); of the standard's default (0 0 10) if there is
-  // none.
+  // Returns the camera of a viewpoint (index into viewpoints()), or the standard's default camera
+  // (0 0 10) if the index is out of range.
   CameraSettings viewpointCamera(size_t index) const;
-  // A camera along -z of the first viewpoint (or the world) that shows all of it.
+  // Returns a camera along -z of the first viewpoint (or of the world) that shows the whole world.
   CameraSettings fitCamera(double fovy) const;
   Bounds bounds() const;
   BoundingSphere boundingSphere() const;
-  // By the rules of docs/decisions/0040-models.md.
+  // Guesses the axis that points up, by the rules of docs/decisions/0040-models.md.
   UpGuess guessUp() const;
 
-  // From here on these nodes (camera.h) are bound; without a call those that are first in the file
-  // are. Takes effect with the next map().
+  // Sets the bound nodes (camera.h); by default the first of each kind in the file. Takes effect
+  // with the next map().
   void bind(const BoundNodes& bound);
-  // Instead of MapOptions::headlight, from the next map() on.
+  // Overrides MapOptions::headlight from the next map() on.
   void setHeadlight(MapOptions::Headlight headlight);
-  // A colour texture multiplies diffuseColor (X3D's rule) instead of replacing it (clause 4.14.3).
-  // Before the first map().
+  // If true, a colour texture multiplies diffuseColor (X3D's rule) instead of replacing it (clause
+  // 4.14.3). Call it before the first map().
   void setMultiplyTextures(bool multiply);
-  // Whether an automatic headlight gives way to three soft lights about the camera in a world that
-  // leaves its light open: without Viewpoint, NavigationInfo, lights and nodes of this renderer's
-  // own. From the next map() on; false at first.
+  // If true, three soft lights around the camera replace the automatic headlight in a world that
+  // leaves its lighting open: one without Viewpoint, NavigationInfo, lights and ORT nodes. Takes
+  // effect with the next map(); false by default.
   void setModelLight(bool on);
-  // Whether the bound Background, or ORTBackground, is there, from the next map() on; true at
-  // first.
+  // Shows or hides the bound Background or ORTBackground from the next map() on; shown by default.
   void setBackground(bool on);
-  // Between frames, with what the world's takeChanges() returned: does what the changes cost, and
-  // no more. A world whose nodes change without records of it must get a mapper anew.
+  // Applies the changes that takeChanges() returned, between frames. Updates only what the changes
+  // affect. A world whose nodes change without such records needs a new mapper.
   void update(const FieldChanges& changes);
-  // The objects as they now are: those with the most triangles first. After map().
+  // Returns the present objects, those with the most triangles first. Call it after map().
   std::vector<ExplainedObject> explain() const;
 
-  // Makes all rt* calls for this camera: geometry once, then lights, environment, headlight,
-  // billboards and LODs for the camera.
+  // Makes all rt* calls for this camera: geometry once, then lights, environment, headlight, and
+  // the billboards and LODs for the camera.
   void map(const CameraSettings& camera);
   MapStats stats() const;
-  // What the numbers of the name channel (RT_NAME) stand for: each Shape node has one, wherever and
-  // however often it is drawn. It keeps it as long as it is there; the number of a shape that has
-  // gone is given to a new one. 0 is nothing. names(): the shape's DEF name, else that of the
-  // nearest group above it, else "Shape"; nodes(): the shape itself.
+  // The meaning of the numbers in the name channel (RT_NAME). Each Shape node has one number,
+  // wherever and however often it is drawn, and keeps it until the Shape is removed. The number may
+  // then be given to a new Shape. 0 means nothing.
+  // - names(): the Shape's DEF name, else that of the nearest group above it, else "Shape".
+  // - nodes(): the Shape itself.
   const std::vector<std::string>& names() const;
   std::vector<NodeRef> nodes() const;
 

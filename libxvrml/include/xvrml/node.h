@@ -1,6 +1,6 @@
 // node.h: nodes and the constant tables that describe them. nodegen writes one struct and one table
-// per node from libxvrml/nodes/*.node; prototypes and scripts make their tables at run time.
-// Everything generic (parser, writer, router, PROTO instancer, Python, --list-nodes) works through
+// per node from libxvrml/nodes/*.node. Prototypes and Scripts make their tables at run time. All
+// generic code (parser, writer, event engine, PROTO expansion, Python, --list-nodes) works through
 // these tables.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace xvrml {
 
 enum class Access : uint8_t { field, exposedField, eventIn, eventOut };
 
-// What a write to a field invalidates (architecture.md section 2).
+// The kind of scene data that a write to a field invalidates (architecture.md section 2).
 enum class Change : uint8_t {
   none,
   transform,
@@ -32,20 +32,20 @@ enum class Change : uint8_t {
   time
 };
 
-// Where something stands in a file. `file` is shared by all nodes of a file.
+// A position in a file. `file` is shared by all nodes of a file.
 struct SourcePosition {
   std::shared_ptr<const std::string> file;
-  uint32_t line = 0, column = 0; // from 1; 0: made by a program
+  uint32_t line = 0, column = 0; // counted from 1; 0: the node was made by a program
 };
 
-// The interval a number must lie in, as the standard prints it: (0,inf), [0,1]. SFRotation: of the
-// axis; its angle is free.
+// The interval that each number must lie in, as the standard prints it: (0,inf), [0,1]. For an
+// SFRotation it applies to the axis; the angle is free.
 struct FieldRange {
   double minimum = -std::numeric_limits<double>::infinity(),
          maximum = std::numeric_limits<double>::infinity();
   bool minimumOpen = true, maximumOpen = true;
-  double also = std::numeric_limits<double>::quiet_NaN(); // allowed besides when every number has
-                                                          // it (bboxSize -1 -1 -1); NaN: none
+  // A value that is allowed, too, if all numbers have it (bboxSize -1 -1 -1); NaN: none.
+  double also = std::numeric_limits<double>::quiet_NaN();
 
   bool bounded() const {
     return minimum > -std::numeric_limits<double>::infinity() ||
@@ -58,44 +58,49 @@ struct FieldInfo {
   FieldType type;
   Access access;
   Change change;
-  uint32_t offset; // static nodes: bytes from the Node; dynamic nodes: index of the value; events:
-                   // unused
-  Value defaultValue; // fields and exposedFields
+  // Static nodes: bytes from the start of the Node. Dynamic nodes: index of the value. Events:
+  // unused.
+  uint32_t offset;
+  Value defaultValue; // for fields and exposedFields
   FieldRange range;   // per number; finite ends are rounded to float for float fields
-  std::string
-      nodeTypes; // SFNode, MFNode: blank-separated abstract or concrete types accepted; empty: any
+  // SFNode and MFNode: accepted abstract or concrete node types, separated by blanks; empty: any.
+  std::string nodeTypes;
   std::string text; // one line of documentation
 };
 
-// A table row per field; how to make a node. Immutable and alive as long as any node of the type.
+// The description of a node type: one row per field, and how to make a node. Immutable; it lives as
+// long as any node of the type.
 struct NodeType {
   std::string name;
   int index; // position in the registry's list of static types; -1 for prototypes and scripts
-  std::vector<std::string> abstract; // what it may stand for: child, grouping, geometry,
-                                     // appearance, ... (models of SFNode constraints)
-  std::string component;             // file it comes from: grouping, geometry, lighting ...
+  // Roles that the node can take in SFNode and MFNode fields: child, grouping, geometry, appearance
+  // ...
+  std::vector<std::string> abstract;
+  std::string component; // .node file that describes it: grouping, geometry, lighting ...
   std::string text;
   std::vector<FieldInfo> fields;
   Node* (*create)(const NodeType& type);
-  std::string clause; // of ISO/IEC 14772-1, "6.6"; empty: not a standard node
-  NodeRef (*expand)(const Node& node) =
-      nullptr; // what a node of a plug-in stands for (xvrml/node_plugin.h); null: itself
+  std::string clause; // clause of ISO/IEC 14772-1, "6.6"; empty: not a standard node
+  // Returns the nodes that a plug-in's node stands for (xvrml/node_plugin.h). Null: the node itself
+  // is rendered.
+  NodeRef (*expand)(const Node& node) = nullptr;
 
-  bool is(std::string_view abstractName) const;            // one of `abstract`
+  bool is(std::string_view abstractName) const;            // whether `abstract` contains the name
   const FieldInfo* find(std::string_view fieldName) const; // exact name
-  // Also finds set_x and x_changed of an exposedField x (clause 4.7); wantInput: looked up as the
-  // target of a route.
+  // Also find set_x and x_changed of an exposedField x (clause 4.7).
   const FieldInfo* findEventIn(std::string_view name) const;
   const FieldInfo* findEventOut(std::string_view name) const;
 };
-// False if a number of the value lies outside the field's range (or is NaN and the field has one).
+// Returns false if a number of the value lies outside the field's range, or is NaN and the field
+// has a range.
 bool inRange(const FieldInfo& field, const Value& value);
 
 using NodeTypePtr = std::shared_ptr<const NodeType>;
 
-// What a running world knows of a node (event/live.h); plain files have none.
+// The part of a running world's node data that Node knows (event/live.h). Nodes of worlds that do
+// not run have none.
 struct LiveBase {
-  void (*forget)(LiveBase* live) noexcept; // the node is being destroyed
+  void (*forget)(LiveBase* live) noexcept; // called when the node is destroyed
 };
 
 class Node {
@@ -106,8 +111,8 @@ class Node {
   Node& operator=(const Node&) = delete;
 
   const NodeType& type() const { return *type_; }
-  // Storage of a field or exposedField; its C++ type is the alternative of Value with index
-  // field.type.
+  // Returns the address of a field's or exposedField's value. Its C++ type is the alternative of
+  // Value with index field.type.
   virtual void* storage(const FieldInfo& field) {
     return reinterpret_cast<char*>(this) + field.offset;
   }
@@ -115,19 +120,22 @@ class Node {
     return const_cast<Node*>(this)->storage(field);
   }
   Value get(const FieldInfo& field) const;
-  // The value's type must be the field's; false (and no change) otherwise.
+  // Sets a field. Returns false, and changes nothing, if the value's type is not the field's.
   bool set(const FieldInfo& field, Value value);
 
-  // Where a node that stands for others (NodeType::expand) keeps them; null for all others.
+  // Returns where a plug-in's node keeps its expansion (NodeType::expand); null for all other
+  // nodes.
   virtual NodeRef* expansion() { return nullptr; }
 
-  std::string defName; // DEF, empty if none (not `name`: nodes may have a field of that name)
+  // DEF name, "" if none (not called `name`: nodes may have a field of that name)
+  std::string defName;
   SourcePosition source;
-  LiveBase* live = nullptr; // set and read by the browser that the node lives in
+  LiveBase* live = nullptr; // set and read by the browser that runs the node's world
 
  private:
   friend class NodeRef;
-  static void destroy(Node* node) noexcept; // without recursion, however deep the graph below is
+  // Not recursive, so that a deep graph cannot overflow the stack.
+  static void destroy(Node* node) noexcept;
   const NodeType* type_;
   std::atomic<uint32_t> references_{0};
 };
@@ -141,24 +149,24 @@ inline NodeRef::~NodeRef() {
     Node::destroy(node_);
 }
 
-// The concrete type if node is exactly of it: nodeCast<nodes::Box>(ref). Generated structs have a
-// static `typeIndex`.
+// Returns the node if it is exactly of the concrete type, else null: nodeCast<nodes::Box>(ref).
+// Generated structs have a static `typeIndex`.
 template <class T> T* nodeCast(Node* node) {
   return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr;
 }
 template <class T> T* nodeCast(const NodeRef& ref) { return nodeCast<T>(ref.get()); }
 
-// A node whose fields are described at run time: Script nodes and PROTO instances keep their
-// interface's values here.
+// A node whose fields are described at run time: Script nodes and PROTO instances keep the values
+// of their interface here.
 class DynamicNode : public Node {
  public:
   explicit DynamicNode(NodeTypePtr type);
   void* storage(const FieldInfo& field) override;
-  std::vector<Value> values; // by FieldInfo::offset
+  std::vector<Value> values; // indexed by FieldInfo::offset
   const NodeTypePtr typePtr;
 };
 
-// Built-in and plug-in types. Iteration order is the order of the .node files and is stable.
+// Returns the built-in and plug-in types in the order of the .node files, which is stable.
 std::span<const NodeType* const> nodeTypes();
 const NodeType* findNodeType(std::string_view name);
 

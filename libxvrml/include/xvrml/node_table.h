@@ -1,5 +1,5 @@
-// node_table.h: the constant tables that nodegen writes, and what the library makes of them.
-// Included by generated sources.
+// node_table.h: the constant tables that nodegen writes, and their conversion to NodeType. Included
+// by generated sources.
 #pragma once
 
 #include <limits>
@@ -9,7 +9,7 @@
 
 namespace xvrml {
 
-// FieldInfo without its default, which a new node holds already.
+// FieldInfo as a constant. The default is left out: a new node holds it.
 struct FieldRow {
   const char* name;
   FieldType type;
@@ -32,11 +32,11 @@ struct NodeRow {
   Node* (*create)(const NodeType& type);
 };
 
-// A node as `create` makes it.
+// Makes a node; for NodeRow::create.
 template <class T> Node* createNode(const NodeType& type) { return new T(type); }
 
-// The description of a row's nodes at position `index` of the registry; defaults are read from a
-// new node.  [any thread]
+// Returns the description of a row's nodes, at position `index` of the registry. Defaults are read
+// from a new node.  [any thread]
 NodeType makeNodeType(const NodeRow& row, int index);
 
 } // namespace xvrml

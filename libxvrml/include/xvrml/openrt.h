@@ -1,4 +1,4 @@
-// openrt.h: the former name of xvrml/mapper.h, for programs that were written for it.
+// openrt.h: the former name of xvrml/mapper.h, kept for programs that include it.
 #pragma once
 
 #include "xvrml/mapper.h"

@@ -12,7 +12,7 @@ namespace xvrml {
 
 class Node;
 
-// Counted reference to a node; null is VRML's NULL.
+// A reference-counted pointer to a node; null is VRML's NULL.
 class NodeRef {
  public:
   NodeRef() = default;
@@ -79,7 +79,7 @@ using MFTime = std::vector<double>;
 using MFVec2f = std::vector<Vec2f>;
 using MFVec3f = std::vector<Vec3f>;
 
-// Index equals the alternative's index in Value.
+// Each value is the index of the alternative in Value.
 enum class FieldType : uint8_t {
   SFBool,
   SFColor,

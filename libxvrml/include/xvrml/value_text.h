@@ -1,4 +1,4 @@
-// value_text.h: field values from and to VRML97 text, for programs that get them from a person.
+// value_text.h: converts VRML97 text to field values, for programs that take values from a user.
 // [any thread]
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace xvrml {
 
-// The whole text as a value of the type, as a file would have it ("1 0 0", "TRUE", "[ 1, 2 ]"). Of
-// nodes only NULL and [ ]. Nothing if it is none; problem then says what was found and what was
-// expected.
+// Parses the whole text as a value of the type, written as in a file ("1 0 0", "TRUE", "[ 1, 2 ]").
+// Node fields accept only NULL and [ ]. Returns nothing if the text is no such value; `problem`
+// then says what was found and what was expected.
 std::optional<Value> parseValue(FieldType type, std::string_view text, std::string& problem,
                                 const Limits& limits = {});
 

@@ -1,7 +1,7 @@
-// viewed.h: lists of numbers that are looked at from outside, where they lie. What was viewed stays
-// where it is and as it was for as long as the view lives: a field that gets another value leaves
-// the old one to its views. For bindings of languages whose arrays share memory. [make a view while
-// the node does not change; let it end on any thread, before the node]
+// viewed.h: views of number lists in place, for bindings of languages whose arrays share memory. A
+// view is a snapshot: its data stays where it is and as it was for as long as the view lives. When
+// the field gets another value, the old one is left to the view. [make a view while the node does
+// not change; it may end on any thread, before the node]
 #pragma once
 
 #include <cstddef>
@@ -18,21 +18,22 @@ class ViewedField {
   ViewedField(const ViewedField&) = delete;
   ViewedField& operator=(const ViewedField&) = delete;
   const void* data() const { return data_; }
-  size_t size() const { return size_; } // elements: colours, vectors, numbers
+  size_t size() const { return size_; } // number of elements: colours, vectors, numbers
 
  private:
   friend void leaveToViews(Node& node, const FieldInfo& field);
   const void* storage_;
   const void* data_ = nullptr;
   size_t size_ = 0;
-  Value kept_; // what the field held, once it holds something else
+  Value kept_; // the former value of the field, once it holds another
 };
 
-// The field's value now, of a type of MFColor, MFFloat, MFInt32, MFRotation, MFTime, MFVec2f,
-// MFVec3f; null for others. Two calls give one view if nothing has changed between them.
+// Returns a view of the field's present value; null unless its type is MFColor, MFFloat, MFInt32,
+// MFRotation, MFTime, MFVec2f or MFVec3f. Two calls return one view if the field has not changed
+// between them.
 std::shared_ptr<const ViewedField> viewField(Node& node, const FieldInfo& field);
 
-// The field is about to get another value: called by Node::set.
+// Leaves the field's present value to its views. Node::set calls it before it sets another value.
 void leaveToViews(Node& node, const FieldInfo& field);
 
 } // namespace xvrml

@@ -1,5 +1,5 @@
-// viewer.h: what a window, a test or a program hands to a running world for the one who looks at
-// it, and what it may ask: keys, navigation, rays. Used with Browser.
+// viewer.h: the viewer's side of a running world: keys, navigation, picking rays, viewpoints.
+// Windows, tests and programs pass these to Browser.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace xvrml {
 
-// Ways to move (clause 6.29).
+// Navigation types (clause 6.29).
 enum class Navigation : uint8_t { none, walk, fly, examine };
 
-// What the user wants for the next moment. Everything in [-1,1], parts of full speed:
-// NavigationInfo.speed metres a second for walk and fly, a quarter turn a second. examine: turn and
-// tilt go round the centre, ahead comes nearer by a factor of e a second, right and up move the
-// picture.
+// The user's movement for the next moment. Each number lies in [-1,1] and is a part of full speed.
+// - walk and fly: NavigationInfo.speed metres a second, a quarter turn a second.
+// - examine: turn and tilt move around the centre; ahead comes nearer by a factor of e a second;
+//   right and up move the picture.
 struct NavigationInput {
   double ahead = 0, right = 0, up = 0;
   double turn = 0; // to the left
@@ -26,33 +26,36 @@ struct NavigationInput {
   double roll = 0; // clockwise; fly only
 };
 
-// Arrows walk and turn, with shift four times as fast, with alt sideways and up; page up and down
-// lead to the previous and next Viewpoint that has a description, home back to the bound one.
+// Keys that move the viewer:
+// - arrows walk and turn: four times as fast with shift, sideways and up with alt;
+// - page up and page down go to the previous and next Viewpoint that has a description;
+// - home goes back to the bound Viewpoint.
 enum class Key : uint8_t { left, right, up, down, pageUp, pageDown, home, shift, alt };
 
 struct PickOptions {
-  bool collision = false; // what the viewer collides with (clause 6.8) instead of what is seen
-  bool bothSides = false; // backs of solid geometry count
-  double nearest = 0,
-         farthest = std::numeric_limits<double>::infinity(); // in lengths of the direction
+  bool collision = false; // hits what the viewer collides with (clause 6.8), not what is visible
+  bool bothSides = false; // also hits the backs of solid geometry
+  // Interval along the ray, in lengths of the direction.
+  double nearest = 0, farthest = std::numeric_limits<double>::infinity();
 };
 
 struct PickHit {
-  double distance = 0;                     // in lengths of the direction
-  std::array<double, 3> point{}, normal{}; // in the world; normal: unit vector
+  double distance = 0;                     // in lengths of the ray's direction
+  std::array<double, 3> point{}, normal{}; // in world coordinates; normal: unit vector
   Vec2f texCoord;
   struct Step {
     NodeRef node;
-    std::array<double, 16>
-        toWorld; // of its children's coordinate system (a Shape: of its geometry), column-major
+    // Matrix of the children's coordinate system (for a Shape, of its geometry's) to the world,
+    // column-major.
+    std::array<double, 16> toWorld;
   };
-  std::vector<Step>
-      path; // from a root of the world to the Shape, prototype instances and Inlines included
+  // Nodes from a root of the world to the Shape, prototype instances and Inlines included.
+  std::vector<Step> path;
 };
 
 struct ViewpointName {
   NodeRef node;
-  std::string name, description; // DEF; both may be empty
+  std::string name, description; // DEF name and description; both may be empty
 };
 
 } // namespace xvrml

@@ -26,47 +26,48 @@ struct Route {
 struct ProtoDeclaration;
 using ProtoPtr = std::shared_ptr<ProtoDeclaration>;
 
-// "field IS interface" inside a prototype's body (clause 4.8.2).
+// A connection "field IS interface" inside a prototype's body (clause 4.8.2).
 struct IsConnection {
   NodeRef node;
   std::string field;
   std::string interfaceName;
 };
 
-// The statements of a file or of a prototype's body: a name space of its own
+// The statements of a file or of a prototype's body. Each scope has a name space of its own
 // (clauses 4.4.6, 4.8.4).
 struct Scope {
   std::vector<ProtoPtr> prototypes; // in order of declaration
   std::vector<NodeRef> roots;
   std::vector<Route> routes;
-  std::map<std::string, NodeRef, std::less<>>
-      names; // DEF; a name defined again names the last node
+  // DEF names; a name that is defined again refers to the last node.
+  std::map<std::string, NodeRef, std::less<>> names;
 };
 
 struct ProtoDeclaration {
-  NodeTypePtr type; // its interface, with defaults
+  NodeTypePtr type; // the interface, with defaults
   Scope body;       // empty for an EXTERNPROTO that is not loaded
   std::vector<IsConnection> is;
   bool isExtern = false;
-  std::vector<std::string> urls; // EXTERNPROTO
-  std::string baseUrl;           // file that holds the declaration
-  ProtoPtr resolved;             // EXTERNPROTO: the declaration found, null if none
+  std::vector<std::string> urls; // of an EXTERNPROTO
+  std::string baseUrl;           // the file that holds the declaration
+  ProtoPtr resolved;             // EXTERNPROTO: the declaration that was found, null if none
   SourcePosition source;
 };
 
-// An instance of a prototype: the interface's values, and a copy of the body made for it. Nodes of
-// the body that neither a connection, a route nor a Script reaches (shapes, geometry, appearances
-// and what holds only such) are one for all instances.
+// An instance of a prototype: the values of its interface, and a copy of the body. Instances share
+// those body nodes that no IS connection, route or Script reaches (shapes, geometry, appearances,
+// and nodes that hold only such).
 class ProtoInstance : public DynamicNode {
  public:
   ProtoInstance(NodeTypePtr type, ProtoPtr declaration)
       : DynamicNode(std::move(type)), declaration(std::move(declaration)) {}
   const ProtoPtr declaration;
-  Scope body; // body.roots[0] stands for the instance (clause 4.8.3); empty if it could not be
-              // expanded
-  std::vector<IsConnection> is; // in terms of body's nodes
-  std::vector<bool> given;      // by FieldInfo::offset: has a value of its own, not the prototype's
-                                // default; may be short
+  // body.roots[0] stands for the instance (clause 4.8.3); empty if the expansion failed.
+  Scope body;
+  std::vector<IsConnection> is; // refers to the nodes of `body`
+  // Indexed by FieldInfo::offset: the instance sets the field itself instead of using the
+  // prototype's default. May be shorter than the field list.
+  std::vector<bool> given;
 
   bool isGiven(const FieldInfo& field) const {
     return field.offset < given.size() && given[field.offset];
@@ -77,24 +78,26 @@ class ProtoInstance : public DynamicNode {
   }
 };
 
-// A Script node: fields url, directOutput, mustEvaluate and those it declares.
+// A Script node: fields url, directOutput and mustEvaluate, and those that it declares.
 class ScriptNode : public DynamicNode {
  public:
   using DynamicNode::DynamicNode;
-  std::vector<uint32_t> urlLines; // of the file, where the strings of url begin; may be short
+  // Line of the file at which each string of url begins. May be shorter than url.
+  std::vector<uint32_t> urlLines;
 };
 
-// The node that is rendered for `node`: itself, for a prototype instance its first body node, for a
-// node of a plug-in what it stands for (however deep); may be null.
+// Returns the node that is rendered in place of `node`. For a prototype instance it is the first
+// node of the body; for a plug-in's node, the node it expands to. Both are followed to any depth.
+// May be null.
 Node* renderedNode(Node* node);
 
 struct LoadOptions {
   Limits limits;
-  bool allowAbsolute = false; // absolute paths and file: URLs named inside a world
+  bool allowAbsolute = false; // allows absolute paths and file: URLs inside a world
   bool loadInlines = true;
 };
 
-// Where a URL inside a world leads: a file to read, or why not.
+// The target of a URL inside a world: a file to read, or the reason why it is refused.
 struct ResolvedUrl {
   std::string path;
   std::string fragment;
@@ -110,38 +113,40 @@ class World {
   World& operator=(const World&) = delete;
 
   Scope scope;
-  std::string path; // the file, or "-"
+  std::string path; // the file, or "-" for standard input
   Diagnostics diagnostics;
+  // Seconds: the parse of this file; the loading of Inlines and prototypes.
   LoadOptions options;
   struct Times {
     double parse = 0, load = 0;
-  } times;                // seconds: this file's parse; Inlines, prototypes
+  } times;
   uint64_t nodeCount = 0; // nodes made, expansions included
-  std::vector<NodeRef>
-      cyclic; // Scripts and prototype instances whose fields may hold a node they are part of
+  // Scripts and prototype instances whose fields may hold a node that they are part of.
+  std::vector<NodeRef> cyclic;
 };
 
-// Thrown when nothing of a file can be used: missing, unreadable, not VRML97, VRML 1.0.
+// Thrown if nothing of a file can be used: missing, unreadable, not VRML97, or VRML 1.0.
 struct LoadError {
   Diagnostic diagnostic;
 };
 
-// Loads a world from a file (plain or gzipped) or from memory. What is wrong inside is in
-// world.diagnostics; nodes that could not be read are lost, the rest is there. Throws LoadError if
-// nothing can be.  [any thread]
+// Loads a world from a file (plain or gzipped) or from memory. Errors in the file are reported in
+// world.diagnostics: nodes that could not be read are left out, the rest is loaded. Throws
+// LoadError if nothing can be used.  [any thread]
 std::unique_ptr<World> loadWorld(const std::string& path, const LoadOptions& options = {});
 std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::string& name,
                                            const LoadOptions& options = {});
 
-// An Inline node's loaded content: null before loading and when none of its URLs could be loaded.
+// Returns the loaded content of an Inline node. Null before loading, and if none of its URLs could
+// be loaded.
 const Scope* inlineScope(const Node& inlineNode);
 
-// VRML97 text of a world that parses to an equal graph. Numbers are the shortest that read back
-// equal.
+// Returns the world as VRML97 text that parses to an equal graph. Each number is the shortest that
+// reads back equal.
 std::string writeWorld(const World& world);
 
-// True if both scopes hold equal graphs: same nodes, fields, DEF/USE structure, prototypes, routes.
-// difference, if not null, says where not.
+// Returns true if both scopes hold equal graphs: the same nodes, fields, DEF/USE structure,
+// prototypes and routes. Writes the first difference to `difference`, if it is not null.
 bool equalScopes(const Scope& a, const Scope& b, std::string* difference = nullptr);
 
 } // namespace xvrml

@@ -1,20 +1,19 @@
-/* xscript.h: the SDK of script engines (C99, needs nothing but itself): what runs the Script nodes
- * of a VRML97 world (ISO/IEC 14772-1 4.12, 6.40) in some language.
+/* xscript.h: the SDK for script engines, which run the Script nodes of a VRML97 world (ISO/IEC
+ * 14772-1 4.12, 6.40) in some language. C99, no other header of XVRML needed.
  *
  * A plug-in is a shared library that exports one constant, `xsPlugin`, and links against nothing of
- * XVRML: what it needs of the host comes as a table of functions. It has engines; an engine makes
- * an interpreter for each Script node. Nodes are numbers (handles), values are plain typed arrays,
- * texts are counted UTF-8: nothing that crosses this border points into the scene graph, so an
- * engine can pass all of it on to another process.
+ * XVRML: it receives the host's functions as a table. A plug-in has engines; an engine makes an
+ * interpreter for each Script node. Nodes are numbers (handles), values are plain typed arrays,
+ * strings are UTF-8 with a length. Nothing in this interface points into the scene graph, so an
+ * engine can forward everything to another process.
  *
- * Thread: every function of both tables, host's and engine's, on the browser's thread. The host
- * never calls an interpreter while one of its functions, or another interpreter's, is running:
- * events that a script causes are delivered after it has returned. Nothing is thrown across this
- * border, and no function ends the process.
+ * Thread: every function of both tables, host's and engine's, is called on the browser's thread.
+ * The host never calls an interpreter while one of that interpreter's functions, or another
+ * interpreter's, is running: events that a script causes are delivered after its function has
+ * returned. No exception crosses this interface, and no function ends the process.
  *
- * Versions: structures grow at their end only, and begin with their size, so that each side knows
- * what the other has.
- */
+ * Versions: structures begin with their size and grow only at their end, so that each side knows
+ * which members the other has. */
 #ifndef XVRML_XSCRIPT_H
 #define XVRML_XSCRIPT_H
 
@@ -31,17 +30,16 @@ extern "C" {
 
 typedef struct XsHost XsHost;
 
-/* A node. 0 is VRML's NULL. A Script knows the nodes it was given: in its fields, in events, by
- * what it read or made; a number that it was not given is refused. A number is good until the
- * engine's function returns in which it was given; `retain` keeps it longer. While it is good, a
- * node has one number for a Script. The number of the Script's own node is always good. */
+/* A node; 0 is VRML's NULL. A Script may use the numbers that it was given: in its fields, in
+ * events, in what it read or made. Any other number is refused. A number is valid until the
+ * engine's function returns during which it was given; `retain` keeps it valid longer. While it is
+ * valid, a node has one number for a Script. The number of the Script's own node is always
+ * valid. */
 typedef uint64_t XsNode;
 
-/* Values
- * -----------------------------------------------------------------------------------------------------------------
- */
+/* --- Values --- */
 
-/* Type: what an array's element is in C */
+/* Field types, with the C type of an array's element */
 typedef enum XsType {
   XS_SFBOOL = 1, /* int32_t, 0 or 1 */
   XS_SFCOLOR,    /* float[3], rgb */
@@ -54,7 +52,7 @@ typedef enum XsType {
   XS_SFTIME,     /* double, seconds */
   XS_SFVEC2F,    /* float[2] */
   XS_SFVEC3F,    /* float[3] */
-  XS_MFCOLOR,    /* from here on: any number of the elements above */
+  XS_MFCOLOR,    /* from here on: arrays of the elements above */
   XS_MFFLOAT,
   XS_MFINT32,
   XS_MFNODE,
@@ -63,34 +61,32 @@ typedef enum XsType {
   XS_MFTIME,
   XS_MFVEC2F,
   XS_MFVEC3F,
-  XS_TYPE_32_BITS = 0x7fffffff /* no type: fixes the size of the enumeration */
+  XS_TYPE_32_BITS = 0x7fffffff /* not a type: fixes the size of the enumeration */
 } XsType;
 
-/* UTF-8. From the host it also ends with a zero byte, which `bytes` does not count. */
+/* UTF-8. A string from the host is also followed by a zero byte, which `bytes` does not count. */
 typedef struct XsString {
   const char* data;
   uint64_t bytes;
 } XsString;
 
-/* Rows from the bottom, `components` (0 to 4) bytes a pixel: width * height * components bytes in
- * all. */
+/* Pixels in rows from the bottom: width * height * components bytes. components is 0 to 4. */
 typedef struct XsImage {
   int32_t width, height, components;
   int32_t reserved; /* 0 */
   const uint8_t* pixels;
 } XsImage;
 
-/* A value of one of the 20 types. Who hands it over owns what it points to. */
+/* A value of one of the 20 types. The side that passes it owns the memory that it points to. */
 typedef struct XsValue {
   XsType type;
-  uint32_t count; /* elements: 1 for SF types */
+  uint32_t count; /* number of elements: 1 for SF types */
   union {
-    const void* data;      /* NULL only if count is 0 */
-    const int32_t* ints;   /* SFBool, SFInt32 */
-    const float* floats;   /* SFFloat, SFVec2f, SFVec3f, SFColor, SFRotation: count tuples one after
-                              the other */
-    const double* doubles; /* SFTime */
-    const XsNode* nodes;   /* SFNode */
+    const void* data;    /* NULL only if count is 0 */
+    const int32_t* ints; /* SFBool, SFInt32 */
+    const float* floats; /* SFFloat, SFVec2f, SFVec3f, SFColor, SFRotation: count tuples in a row */
+    const double* doubles;   /* SFTime */
+    const XsNode* nodes;     /* SFNode */
     const XsString* strings; /* SFString */
     const XsImage* images;   /* SFImage */
   } of;
@@ -105,104 +101,114 @@ typedef enum XsAccess {
 } XsAccess;
 
 typedef struct XsField {
-  const char* name; /* as declared; exposedField x: without set_ and _changed */
+  const char* name; /* as declared; an exposedField x: without set_ and _changed */
   XsType type;
   XsAccess access;
 } XsField;
 
-/* What functions answer. Everything but XS_OK changed nothing; `lastError` of the host says why. */
+/* Results of functions. If the result is not XS_OK, nothing was changed; the host's `lastError`
+ * gives the reason. */
 typedef enum XsResult {
   XS_OK = 0,
-  XS_NO_NODE = 1,  /* NULL, or a number this Script was not given */
-  XS_NO_FIELD = 2, /* no such field or event, or none that may be read (sent, written) from here */
-  XS_WRONG_TYPE = 3, /* the value is of another type, or no good value of its own (counts, UTF-8) */
+  XS_NO_NODE = 1, /* NULL, or a number that this Script was not given */
+  /* No such field or event, or one that cannot be read (sent, written) from here. */
+  XS_NO_FIELD = 2,
+  /* The value is of another type, or is not a valid value of its type (counts, UTF-8). */
+  XS_WRONG_TYPE = 3,
   XS_NOT_ALLOWED = 4, /* needs directOutput TRUE, or trust */
-  XS_STOPPED = 5,     /* the Script's time is up: return at once */
-  XS_FAILED =
-      6, /* of the engine: the script failed, details were logged; of the host: could not be done */
+  XS_STOPPED = 5,     /* the Script's time is up: the engine must return at once */
+  /* From an engine: the script failed, and the reason was logged. From the host: it could not be
+   * done. */
+  XS_FAILED = 6,
   XS_RESULT_32_BITS = 0x7fffffff
 } XsResult;
 
-/* Engine: what the host calls
- * --------------------------------------------------------------------------------------------- */
+/* --- Engine: functions that the host calls --- */
 
 /* XsScriptInfo.flags */
 enum {
-  XS_DIRECT_OUTPUT = 1, /* may post events to other nodes, add and delete routes (6.40) */
-  XS_MUST_EVALUATE =
-      2, /* events are delivered one by one as they arrive; else together at the end of a cascade */
+  XS_DIRECT_OUTPUT = 1, /* may post events to other nodes, and add and delete routes (6.40) */
+  /* Each event is delivered as it arrives; otherwise events come together at the end of a
+   * cascade. */
+  XS_MUST_EVALUATE = 2,
   XS_TRUSTED = 4, /* the user trusts this world: the program may do whatever the user may */
   XS_NETWORK = 8  /* the user allows the network */
 };
 
 typedef struct XsScriptInfo {
-  uint32_t size;  /* sizeof(XsScriptInfo) of the host's header */
+  uint32_t size;  /* sizeof(XsScriptInfo) in the host's header */
   uint32_t flags; /* XS_DIRECT_OUTPUT ... */
-  XsNode self; /* the Script's own node: first argument of all functions of the host that speak for
-                  this Script */
+  /* The Script's own node: the first argument of all host functions that act for this Script. */
+  XsNode self;
   const char* scheme; /* in lower case, "javascript"; "" for a program read from a file */
-  const char* origin; /* for messages: the file that holds the program, or the world that holds the
-                         Script */
-  XsString text;      /* the program: what stands behind the scheme, or the file's bytes */
+  /* For messages: the file that holds the program, or the world that holds the Script. */
+  const char* origin;
+  XsString text; /* the program: the text after the scheme, or the file's bytes */
   uint32_t fieldCount;
-  const XsField*
-      fields; /* what the Script declares, in order, without url, directOutput and mustEvaluate */
+  /* The fields and events that the Script declares, in order, without url, directOutput and
+   * mustEvaluate. */
+  const XsField* fields;
   /* --- 1.1 --- */
-  uint64_t memory; /* bytes that the program may use, if the engine can tell; beyond it fails as
-                      want of memory. 0: no limit */
+  /* Bytes that the program may use, if the engine can tell; beyond them it fails as if out of
+   * memory. 0: no limit. */
+  uint64_t memory;
 } XsScriptInfo;
 
 typedef struct XsEvent {
-  uint32_t size;    /* sizeof(XsEvent) of the host's header */
-  uint32_t index;   /* of the eventIn in XsScriptInfo.fields */
-  const char* name; /* and its name */
-  XsValue value;    /* good until the function returns */
+  uint32_t size;    /* sizeof(XsEvent) in the host's header */
+  uint32_t index;   /* index of the eventIn in XsScriptInfo.fields */
+  const char* name; /* name of the eventIn */
+  XsValue value;    /* valid until the function returns */
   double time;      /* the event's timestamp in seconds */
 } XsEvent;
 
-/* An engine's own number or pointer for an interpreter; the host only hands it back. */
+/* An engine's number or pointer for an interpreter. The host only passes it back. */
 typedef uint64_t XsInterpreter;
 
 /* XsEngine.flags */
 enum {
-  XS_NEEDS_TRUST =
-      1, /* its programs can do whatever the user can: they run in trusted worlds only */
-  XS_HARMLESS =
-      2 /* 1.1: its programs always end soon, use little memory and reach nothing but the host's
-           functions: they run in the browser's process in worlds that are not trusted, too */
+  /* Its programs can do whatever the user can. They run in trusted worlds only. */
+  XS_NEEDS_TRUST = 1,
+  /* 1.1: its programs always end soon, use little memory and can only call the host's functions.
+   * They run in the browser's process, even in worlds that are not trusted. */
+  XS_HARMLESS = 2
 };
 
 typedef struct XsEngine {
-  uint32_t size; /* sizeof(XsEngine) of the plug-in's header; optional functions are NULL */
+  uint32_t size; /* sizeof(XsEngine) in the plug-in's header; optional functions are NULL */
   uint32_t flags;
   const char* name; /* "ecmascript" */
   const char* text; /* one line for people: language, version */
-  /* What it serves: lists that end with NULL, in lower case; a list may be NULL. */
+  /* The Script urls that the engine serves: lists that end with NULL, in lower case. A list may be
+   * NULL. */
   const char* const* schemes;   /* URL schemes without the colon: "javascript", "vrmlscript" */
   const char* const* mimeTypes; /* of data: URLs: "application/javascript" */
   const char* const* suffixes;  /* of files: ".js" */
   /* Makes an interpreter, compiles the program and runs its outermost statements, if the language
-   * has such; no event yet. info and what it points to are good until `destroy`. XS_FAILED (after
-   * logging why): the Script's next URL is tried. */
+   * has such. No event is delivered yet. info and the memory it points to are valid until
+   * `destroy`. On XS_FAILED (the reason is logged), the host tries the Script's next URL. */
   XsResult (*create)(const XsHost* host, const XsScriptInfo* info, XsInterpreter* made);
-  /* Frees it. No call comes after it; the Script's handles are released by the host. */
+  /* Frees an interpreter. No call comes after it; the host releases the Script's handles. */
   void (*destroy)(XsInterpreter interpreter);
-  /* 4.12.3: before the first event and before the world is shown. Optional, as the four below. */
+  /* Called before the first event and before the world is shown (4.12.3). Optional, as are the next
+   * four. */
   XsResult (*initialize)(XsInterpreter interpreter, double time);
-  /* 4.12.2, one event. Not called for an eventIn of a Script that was stopped. */
+  /* Delivers one event (4.12.2). Not called for a Script that was stopped. */
   XsResult (*event)(XsInterpreter interpreter, const XsEvent* event);
-  /* 4.12.4: after the events of a cascade, or of a part of it that ended for want of events. */
+  /* Called after the events of a cascade, or of a part of it that ended because no event was left
+   * (4.12.4). */
   XsResult (*eventsProcessed)(XsInterpreter interpreter, double time);
-  /* 4.12.3: before the node, its url, or the world goes. Own fields can still be read; nothing can
-   * be sent. */
+  /* Called before the node, its url, or the world is removed (4.12.3). The Script's own fields can
+   * still be read; nothing can be sent. */
   XsResult (*shutdown)(XsInterpreter interpreter, double time);
-  /* Each time the world's time moves on, before its events: for engines with sources of events of
-   * their own, as windows or another process. What is sent belongs to this time. */
+  /* Called each time the world's time advances, before the events of that time. For engines with
+   * event sources of their own, such as windows or another process. Events sent here have this
+   * time. */
   XsResult (*tick)(XsInterpreter interpreter, double time);
   /* --- 1.1 --- */
-  /* Before the first `create` in a process for programs that are not trusted: afterwards no file
-   * can be opened, no thread or process started, no socket made, and memory is limited. What the
-   * language needs of these it does here. Optional. */
+  /* Called before the first `create` in a process for programs that are not trusted. Afterwards no
+   * file can be opened, no thread or process started and no socket made, and memory is limited. The
+   * engine does here whatever its language needs of these. Optional. */
   XsResult (*prepare)(void);
 } XsEngine;
 
@@ -214,69 +220,70 @@ typedef struct XsPlugin {
   const XsEngine* const* engines;
 } XsPlugin;
 
-/* Host: what an engine may call
- * ----------------------------------------------------------------------------------------------
- * `self` says for which Script. Values, texts and field descriptions that come out are good until
- * the next call for this Script that gives one out, and not longer than the engine's function that
- * asks. Counts as steps of the Script (see shouldStop). */
+/* --- Host: functions that an engine may call ---
+ *
+ * `self` says which Script calls. Values, strings and field descriptions that the host returns are
+ * valid until the next call for this Script that returns one, and at most until the engine's
+ * function returns. Each call counts as steps of the Script (see shouldStop). */
 
 typedef struct XsNodeInfo {
-  uint32_t size;        /* set by the engine: sizeof(XsNodeInfo) of its header */
-  uint32_t fieldCount;  /* for `field` */
+  uint32_t size;        /* set by the engine: sizeof(XsNodeInfo) in its header */
+  uint32_t fieldCount;  /* number of fields, for `field` */
   const char* typeName; /* "Transform", a prototype's name, "Script" */
   const char* defName;  /* "" if it has none */
 } XsNodeInfo;
 
 struct XsHost {
-  uint32_t size; /* sizeof(XsHost) of the host's header */
+  uint32_t size; /* sizeof(XsHost) in the host's header */
   uint16_t major, minor;
 
   /* --- The Script's own fields and events --- */
-  /* An event from one of its eventOuts. It leaves when the engine's function returns; of several
-   * from one eventOut the last one counts. At most one per eventOut and cascade: later ones are
-   * dropped (4.10.3). */
+  /* Sends an event from one of the Script's eventOuts when the engine's function returns. If one
+   * eventOut gets several, the last one counts. Each eventOut sends at most once per cascade; later
+   * events are dropped (4.10.3). */
   XsResult (*send)(const XsHost* host, XsNode self, const char* eventOut, const XsValue* value);
-  /* A new value for one of its own fields; no event. */
+  /* Sets one of the Script's own fields, without an event. */
   XsResult (*write)(const XsHost* host, XsNode self, const char* field, const XsValue* value);
 
   /* --- Nodes --- */
-  /* Own node: any field, or the value last sent of an eventOut. Other nodes: exposedFields and
-   * eventOuts (x and x_changed). */
+  /* Reads a field of a node. The Script's own node gives any field, or the last value that an
+   * eventOut sent. Other nodes give exposedFields and eventOuts (x and x_changed). */
   XsResult (*read)(const XsHost* host, XsNode self, XsNode node, const char* field, XsValue* out);
-  /* An event to an eventIn or exposedField (x and set_x); leaves when the engine's function
-   * returns. Other nodes than its own: with XS_DIRECT_OUTPUT only. */
+  /* Posts an event to an eventIn or exposedField (x and set_x); it leaves when the engine's
+   * function returns. Nodes other than the Script's own need XS_DIRECT_OUTPUT. */
   XsResult (*post)(const XsHost* host, XsNode self, XsNode node, const char* eventIn,
                    const XsValue* value);
   XsResult (*describe)(const XsHost* host, XsNode self, XsNode node, XsNodeInfo* out);
-  /* Field number index (0 <= index < fieldCount), and the one that an event or field name means. */
+  /* `field` describes the field with an index (0 <= index < fieldCount), findField the one that an
+   * event or field name refers to. */
   XsResult (*field)(const XsHost* host, XsNode self, XsNode node, uint32_t index, XsField* out);
   XsResult (*findField)(const XsHost* host, XsNode self, XsNode node, const char* name,
                         XsField* out);
-  /* Retained numbers stay good until they are released as often, whatever becomes of the node in
-   * the world. */
+  /* A retained number stays valid until it is released as often as it was retained, even if the
+   * node is removed from the world. */
   XsResult (*retain)(const XsHost* host, XsNode self, XsNode node);
   XsResult (*release)(const XsHost* host, XsNode self, XsNode node);
 
   /* --- The Browser object, 4.12.10 --- */
   XsResult (*getName)(const XsHost* host, XsNode self, XsString* out);
   XsResult (*getVersion)(const XsHost* host, XsNode self, XsString* out);
-  double (*getCurrentSpeed)(const XsHost* host,
-                            XsNode self); /* metres per second, in the viewer's coordinate system */
-  double (*getCurrentFrameRate)(const XsHost* host,
-                                XsNode self); /* frames per second; 0: not known */
+  /* Metres per second, in the viewer's coordinate system. */
+  double (*getCurrentSpeed)(const XsHost* host, XsNode self);
+  /* Frames per second; 0: not known. */
+  double (*getCurrentFrameRate)(const XsHost* host, XsNode self);
   XsResult (*getWorldUrl)(const XsHost* host, XsNode self, XsString* out);
   XsResult (*setDescription)(const XsHost* host, XsNode self, XsString text);
-  /* These three happen after the cascade. createVrmlFromUrl sends an MFNode to the event of a node.
-   */
+  /* The next three take effect after the cascade. createVrmlFromUrl sends an MFNode to an eventIn
+   * of `node`. */
   XsResult (*replaceWorld)(const XsHost* host, XsNode self, uint32_t count, const XsNode* nodes);
   XsResult (*loadUrl)(const XsHost* host, XsNode self, uint32_t urlCount, const XsString* urls,
                       uint32_t parameterCount, const XsString* parameters);
   XsResult (*createVrmlFromUrl)(const XsHost* host, XsNode self, uint32_t urlCount,
                                 const XsString* urls, XsNode node, const char* eventIn);
-  /* out: an MFNode. What is wrong in the text is logged; XS_FAILED if nothing of it can be used. */
+  /* out: an MFNode. Errors in the text are logged; XS_FAILED if nothing of it can be used. */
   XsResult (*createVrmlFromString)(const XsHost* host, XsNode self, XsString vrml, XsValue* out);
-  /* With XS_DIRECT_OUTPUT only, unless both nodes are the Script's own. At once, but not followed
-   * by events under way. */
+  /* Adding and deleting routes needs XS_DIRECT_OUTPUT, unless both nodes are the Script's own. A
+   * change takes effect at once, but not for events already on their way. */
   XsResult (*addRoute)(const XsHost* host, XsNode self, XsNode from, const char* eventOut,
                        XsNode to, const char* eventIn);
   XsResult (*deleteRoute)(const XsHost* host, XsNode self, XsNode from, const char* eventOut,
@@ -284,22 +291,22 @@ struct XsHost {
 
   /* --- Time, messages --- */
   double (*now)(const XsHost* host, XsNode self); /* the timestamp of the cascade */
-  /* Asked often by an interpreter: the number of its steps (instructions or so) since it asked
-   * last. Not 0: the function must return XS_STOPPED without running more of the program; the
-   * Script then gets no more events. */
+  /* An interpreter calls this often, with the number of its steps (such as instructions) since the
+   * last call. If the result is not 0, the engine's function must return XS_STOPPED without running
+   * more of the program; the Script then gets no more events. */
   int32_t (*shouldStop)(const XsHost* host, XsNode self, uint64_t steps);
-  /* severity 0 printed by the script, 1 note, 2 warning, 3 error; line of the program from 1, 0 if
-   * not known. */
+  /* Logs a text. severity: 0 printed by the script, 1 note, 2 warning, 3 error. line: line of the
+   * program, counted from 1; 0 if not known. */
   void (*log)(const XsHost* host, XsNode self, int32_t severity, uint32_t line, XsString text);
-  /* Why the last call that did not answer XS_OK could not be done. */
+  /* Gives the reason why the last call did not return XS_OK. */
   XsResult (*lastError)(const XsHost* host, XsNode self, XsString* out);
 
-  /* --- 1.1: for engines that share the host's own library, as Python's binding does. Trusted
-   * worlds in the browser's process only; else NULL and 0. --- */
-  /* The host's object (xvrml::Node*) of a node; of node 0 the xvrml::Browser* that runs the Script.
-   * It lives as long as the number is good. */
+  /* --- 1.1: for engines that share the host's own library, such as the Python binding. They work
+   * only in trusted worlds in the browser's process; elsewhere they are NULL or return 0. */
+  /* Returns the host's object (xvrml::Node*) for a node, or for node 0 the xvrml::Browser* that
+   * runs the Script. It lives as long as the number is valid. */
   void* (*object)(const XsHost* host, XsNode self, XsNode node);
-  /* The number of such a node, as if it had been read from a field; 0 if there is none. */
+  /* Returns the number of such a node, as if it had been read from a field; 0 if there is none. */
   XsNode (*number)(const XsHost* host, XsNode self, void* object);
 };
 
@@ -309,8 +316,8 @@ struct XsHost {
 #define XS_EXPORT __attribute__((visibility("default")))
 #endif
 /* The one symbol of a plug-in:
- *   XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR, sizeof(XsPlugin), n,
- * engines}; */
+ *    XS_EXPORT const XsPlugin xsPlugin = {XS_MAGIC, XS_ABI_MAJOR, XS_ABI_MINOR,
+ *                                         sizeof(XsPlugin), n, engines}; */
 #define XS_ENTRY_NAME "xsPlugin"
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-/* xscript_types.h: what the 20 types of xscript.h are made of, for script engines (C99; links
- * against nothing). [any thread] */
+/* xscript_types.h: a table of the 20 types of xscript.h, for script engines (C99, no library
+ * needed). [any thread] */
 #ifndef XVRML_XSCRIPT_TYPES_H
 #define XVRML_XSCRIPT_TYPES_H
 
@@ -7,13 +7,12 @@
 
 typedef struct XsTypeInfo {
   const char* name;   /* "MFVec3f" */
-  XsType element;     /* what an MF type holds many of; an SF type itself */
-  int32_t components; /* numbers of an element, 1 to 4; 0: it is no number (SFImage, SFNode,
-                         SFString) */
-  uint32_t bytes;     /* of an element in XsValue's array */
+  XsType element;     /* element type of an MF type; an SF type itself */
+  int32_t components; /* numbers per element, 1 to 4; 0: not a number (SFImage, SFNode, SFString) */
+  uint32_t bytes;     /* size of an element in XsValue's array */
 } XsTypeInfo;
 
-/* NULL for a number that is no type. */
+/* Returns NULL for a number that is no type. */
 static inline const XsTypeInfo* xsTypeInfo(XsType type) {
   static const XsTypeInfo table[] = {
       {"SFBool", XS_SFBOOL, 1, sizeof(int32_t)},

@@ -1,5 +1,5 @@
-// graph.cpp: builds the render graph and keeps it: one item a node, planned from a list of what is
-// to be planned; then an order for the passes by a walk with a stack of its own.
+// graph.cpp: builds and updates the render graph. A work list holds the items that still have to be
+// planned. A walk with an explicit stack then computes the order for the passes.
 #include "mapper/graph/graph.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace xvrml::mapper {
 
-Graph::Graph(World& world) : meshes(world), context_{world}, ration_(world, "nodes") {
+Graph::Graph(World& world) : meshes(world), context_{world}, quota_(world, "nodes") {
   items.resize(2);
   items[0].planned = true;
   names.emplace_back();
@@ -69,13 +69,13 @@ ItemId Graph::newItem() {
   return id;
 }
 
-// 0 if nothing is ever drawn for such a node.
+// Returns the item of a node as written in the file; 0 if such nodes are never drawn.
 ItemId Graph::itemFor(Node* written) {
   Node* node = renderedNode(written);
   if (!node || !planOf(node->type())) return 0;
   const auto [known, fresh] = known_.try_emplace(node, 0);
   if (!fresh) return known->second;
-  if (!ration_.take(bytesOfItem, node->source)) return 0;
+  if (!quota_.take(bytesOfItem, node->source)) return 0;
   const ItemId id = known->second = newItem();
   items[id].node = NodeRef(node);
   items[id].name = nameId(node->defName.empty() ? written->defName : node->defName);
@@ -96,7 +96,7 @@ void Graph::planItem(ItemId id) {
   children.reserve(plan.children.size());
   for (Node* written : plan.children)
     if (const ItemId child = itemFor(written); child != 0 || plan.keepEmpty)
-      children.push_back(child); // items may move
+      children.push_back(child); // this may reallocate `items`
   Item& item = items[id];
   item.planned = true;
   item.kind = plan.kind;
@@ -130,8 +130,8 @@ void Graph::settle() {
   std::erase_if(replanned_, [&](ItemId id) { return !items[id].planned; });
 }
 
-// A walk from the root, children in their order. An edge back to an item that is being walked would
-// close a circle: it is taken out.
+// Walks from the root, children in their order. An edge to an item that is still open would close a
+// cycle; it is removed.
 void Graph::sortItems() {
   enum : uint8_t { unseen, open, done };
   struct Open {
@@ -171,13 +171,13 @@ void Graph::sortItems() {
 void Graph::drop(ItemId id) {
   Item& item = items[id];
   known_.erase(item.node.get());
-  ration_.give(bytesOfItem);
+  quota_.give(bytesOfItem);
   if (item.mesh != none) meshes.drop(item.mesh);
   if (item.number != 0) {
     shapes[item.number] = 0;
     freeNumbers_.push_back(item.number);
   }
-  const int32_t part = item.part; // Objects clears it away
+  const int32_t part = item.part; // Objects removes it later
   item = Item();
   item.part = part;
   dropped_.push_back(id);
@@ -204,8 +204,8 @@ void Graph::linkParents() {
       if (child != 0) parents[items[child].firstParent + items[child].parentCount++] = id;
 }
 
-// A shape keeps its number as long as it is there. New ones are numbered in the order of the file,
-// and take free numbers first.
+// A shape keeps its number for its lifetime. New shapes are numbered in file order and take free
+// numbers first.
 void Graph::numberShapes() {
   std::sort(freeNumbers_.begin(), freeNumbers_.end(), std::greater<>());
   for (const ItemId id : order) {
@@ -223,7 +223,7 @@ void Graph::numberShapes() {
 }
 
 std::vector<std::string> Graph::shapeNames() const {
-  std::vector<uint32_t> nearest(items.size(), 0); // parents stand behind children
+  std::vector<uint32_t> nearest(items.size(), 0); // parents come after children in `order`
   for (size_t i = order.size(); i-- > 0;) {
     const Item& item = items[order[i]];
     uint32_t& name = nearest[order[i]];

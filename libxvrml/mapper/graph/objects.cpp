@@ -1,8 +1,7 @@
-// objects.cpp: the order in which objects are written. An object must exist before another
-// instantiates it and definitions do not nest: places are written from the last to the first
-// (children behind parents), items in the graph's postorder. The same order makes redefinition
-// safe: what an object is about to hold has its new content already, so no object ever holds
-// itself.
+// objects.cpp: the order in which objects are written. An object must exist before another one
+// instantiates it, and definitions do not nest. So places are written from last to first (children
+// come after parents), items in the graph's postorder. The same order makes redefinition safe: the
+// content of an object is up to date before it is written, so no object ever contains itself.
 #include "mapper/graph/objects.h"
 
 #include <algorithm>
@@ -12,26 +11,26 @@
 
 namespace xvrml::mapper {
 
-void Objects::follow() {
+void Objects::updateForFrame() {
   defineDirty();
   for (size_t i = places_.all.size(); i-- > 0;) {
     Place& place = places_.all[i];
     if (!place.split || !place.active) continue;
     const Kind kind = graph_.items[place.item].kind;
-    if (kind == Kind::lod && graph_.items[place.item].placed)
+    if (kind == Kind::lod && graph_.items[place.item].placeDependent)
       chooseLevel(i);
     else if (place.part == none || parts_[size_t(place.part)].dirty)
       definePlace(i);
     if (kind == Kind::billboard && place.instance != 0) {
-      const Matrix matrix =
-          compose(graph_.below(place.base, graph_.items[place.item]), places_.turns[i]);
+      const Matrix matrix = compose(graph_.below(place.base, graph_.items[place.item]),
+                                    places_.billboardRotations[i]);
       if (!finite(matrix)) continue;
       rtInstanceMatrix(place.instance, data(matrix));
       report(world_.diagnostics, graph_.items[place.item].node->source, "Billboard");
     }
   }
   Place& root = places_.all[0];
-  if (root.instance == 0) { // the world
+  if (root.instance == 0) { // the world itself
     rtLoadName(0);
     rtLoadIdentity();
     root.instance = rtInstantiateObject(parts_[size_t(root.part)].object);
@@ -40,15 +39,15 @@ void Objects::follow() {
   }
 }
 
-// Objects of items and meshes that were there before and are to be written again; those of places
-// follow with their places.
+// Rewrites dirty objects of items and meshes. Dirty objects of places are rewritten with their
+// places.
 void Objects::defineDirty() {
   std::vector<int32_t> items;
   for (const int32_t id : std::exchange(dirty_, {})) {
     const Part& part = parts_[size_t(id)];
     if (!part.dirty || !part.defined) continue;
-    if (part.of == Part::Of::mesh) defineMesh(part.mesh);
-    if (part.of == Part::Of::item) items.push_back(id);
+    if (part.kind == Part::Kind::mesh) defineMesh(part.mesh);
+    if (part.kind == Part::Kind::item) items.push_back(id);
   }
   std::sort(items.begin(), items.end(), [&](int32_t a, int32_t b) {
     return graph_.items[parts_[size_t(a)].item].position <
@@ -65,15 +64,15 @@ void Objects::definePlace(size_t index) {
   const int32_t part = partOfPlace(index);
   const Place place = places_.all[index];
   const Item& item = graph_.items[place.item];
-  const bool pure = !item.placed; // an LOD's level
+  const bool pure = !item.placeDependent; // a level of an LOD
   defineBelow(place.item, pure ? none : int32_t(index));
-  open(part, item.changes && item.own != Own::merged);
+  open(part, item.changes && item.objectReason != ObjectReason::merged);
   expand({place.item, pure ? none : int32_t(index), Matrix()});
   drain();
   close();
 }
 
-// The object of an LOD holds one instance: of the level that is in use.
+// Writes the object of an LOD. It holds one instance: the level in use.
 void Objects::chooseLevel(size_t index) {
   const int32_t part = partOfPlace(index);
   Place& lod = places_.all[index];
@@ -84,12 +83,12 @@ void Objects::chooseLevel(size_t index) {
                            : places_.children[lod.firstChild + size_t(level)];
     return at == none ? nullptr : &places_.all[size_t(at)];
   };
-  if (Place* before = levelAt(lod.drawn)) before->instance = 0; // it goes with the old content
-  forget(parts_[size_t(part)]);
+  if (Place* before = levelAt(lod.drawn)) before->instance = 0; // deleted with the old content
+  clearContent(parts_[size_t(part)]);
   open(part, false);
   lod.drawn = lod.chosen;
   if (Place* level = levelAt(lod.chosen)) {
-    const Matrix& turn = places_.turns[size_t(level - places_.all.data())];
+    const Matrix& turn = places_.billboardRotations[size_t(level - places_.all.data())];
     level->base = Matrix();
     level->instance = instantiate(
         level->part, compose(graph_.matrixOf(graph_.items[level->item]), turn), 0, live_);
@@ -97,8 +96,7 @@ void Objects::chooseLevel(size_t index) {
   close();
 }
 
-// Objects of items and geometry that an item's content needs, however deep, and that are not
-// written yet.
+// Defines the missing objects of items and geometry that an item's content needs, at any depth.
 void Objects::defineBelow(ItemId first, int32_t place) {
   struct Visit {
     ItemId item;
@@ -112,9 +110,9 @@ void Objects::defineBelow(ItemId first, int32_t place) {
     open.pop_back();
     const Item& item = graph_.items[visit.item];
     if (visit.place == none &&
-        visit.item != first) { // the first is being written: only what is below is meant
-      if (std::exchange(met_[visit.item], 1)) continue;
-      if (item.own != Own::none) items.push_back(visit.item);
+        visit.item != first) { // the first item itself is being written by the caller
+      if (std::exchange(definedBelow_[visit.item], 1)) continue;
+      if (item.objectReason != ObjectReason::none) items.push_back(visit.item);
     }
     if (item.viaMesh) meshes.push_back(graph_.meshes.equal(item.mesh));
     for (size_t c = 0; c < item.children.size(); ++c) {
@@ -135,7 +133,7 @@ void Objects::defineItem(ItemId id) {
   const int32_t part = partOfItem(id);
   if (!parts_[size_t(part)].dirty) return;
   const Item& item = graph_.items[id];
-  open(part, item.changes && item.own != Own::merged);
+  open(part, item.changes && item.objectReason != ObjectReason::merged);
   expand({id, none, Matrix()});
   drain();
   close();
@@ -164,8 +162,7 @@ void Objects::open(int32_t id, bool dynamic) {
   rtBeginObject(part.object);
 }
 
-// Redefining makes an object dynamic by itself; how it is kept must not depend on what it was
-// before.
+// Redefinition makes an object dynamic, so the hint is set again: it must not depend on history.
 void Objects::close() {
   rtEndObject();
   Part& part = parts_[size_t(writing_)];

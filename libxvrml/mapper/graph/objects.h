@@ -1,7 +1,7 @@
-// objects.h: shapes as OpenRT objects and instances. A part is one object: the world, each split
-// place, each item with an object of its own, each geometry that several shapes instantiate. A part
-// is written when it is first needed and again when what it holds is grouped or looks otherwise;
-// moving what it instantiates writes nothing. On the mapper's thread.
+// objects.h: writes shapes as OpenRT objects and instances. A part is one object. It belongs to the
+// world, a split place, an item with an object of its own, or a geometry that several shapes
+// instantiate. A part is written when it is first needed, and again when its content is regrouped
+// or looks different. Moving the parts it instantiates does not rewrite it. [the mapper's thread]
 #pragma once
 
 #include <string>
@@ -15,43 +15,47 @@
 namespace xvrml::mapper {
 
 struct Part {
-  enum class Of : uint8_t { nothing, place, item, mesh } of = Of::nothing;
-  ItemId item = 0; // place and item
+  enum class Kind : uint8_t { nothing, place, item, mesh } kind = Kind::nothing;
+  ItemId item = 0; // set for place and item
   int32_t mesh = none;
-  int32_t level = none; // place: of an LOD
+  int32_t level = none; // for a place: level of the LOD above it
   RTid object = 0;
   bool defined = false, dirty = true;
-  bool dynamic = false;   // as RT_DYNAMIC says
-  uint64_t instances = 0; // of it, in the parts that are defined
-  uint64_t shapes = 0, triangles = 0, primitives = 0, drawCalls = 0; // written into it
-  uint64_t bytes = 0; // taken from the world's budget for what it holds
-  uint64_t flat =
-      0; // instances that one of it comes to, once what it instantiates is flattened (decision 2)
-  double reach = 0;           // largest coordinate of what it holds
-  std::vector<int32_t> uses;  // parts it instantiates, once for each time
-  std::vector<ItemId> moving; // items of which it holds instances that are kept (Objects::placed_)
+  bool dynamic = false;   // hinted as RT_DYNAMIC
+  uint64_t instances = 0; // instances of this part in the defined parts
+  uint64_t shapes = 0, triangles = 0, primitives = 0, drawCalls = 0; // content written into it
+  uint64_t bytes = 0; // taken from the world's budget for its content
+  // Instances that one instance of this part becomes when everything below is flattened (decision
+  // 2).
+  uint64_t flattenedInstances = 0;
+  uint64_t records = 0;      // draw calls of these instances
+  double reach = 0;          // largest coordinate of its content
+  std::vector<int32_t> uses; // parts that it instantiates, one entry per instance
+  // Items with tracked instances in this part (Objects::trackedInstances_).
+  std::vector<ItemId> moving;
 };
 
 class Objects {
  public:
   Objects(World& world, bool linearColor, Graph& graph, Places& places, Surfaces& surfaces);
 
-  // Writes what is active and not yet there or not as it should be, moves what follows the camera.
-  // Places::follow must have run.
-  void follow();
+  // Writes the active parts that are missing or out of date and moves what depends on the camera.
+  // Places::updateForFrame must have run before.
+  void updateForFrame();
 
-  // After the world was grouped anew: parts that are not needed any more go, with what was in the
-  // places that are gone.
+  // Removes parts that are no longer needed after the world was regrouped, including those of the
+  // places in `gone`.
   void regrouped(const std::vector<Place>& gone);
-  // What these items hold is another: the objects that it is written into are to be written again.
-  // placing: they are placed otherwise; the same for the objects that they stand in.
+  // Marks objects as dirty. contentChanged: those that contain these items, whose content has
+  // changed. placingChanged: those that contain their parents, because the items are placed
+  // differently.
   void contentChanged(const std::vector<ItemId>& items);
   void placingChanged(const std::vector<ItemId>& items);
-  // The mesh of a geometry's own object. False if it has none.
+  // Marks the object of a geometry as dirty. Returns false if the geometry has none.
   bool meshChanged(int32_t mesh);
-  // The item's matrix: its instances are moved. False if it has none that could be.
+  // Applies a new matrix of the item to its instances. Returns false if it has no movable instance.
   bool moved(ItemId item);
-  // A shape's surface; as moved().
+  // Applies a new surface to the instances of a shape. Returns false as moved() does.
   bool recolored(ItemId shape);
 
   void clear(); // deletes everything
@@ -64,26 +68,26 @@ class Objects {
  private:
   struct Step {
     ItemId item;
-    int32_t place; // or `none`: an item whose meaning does not depend on the place
-    Matrix matrix; // that its content stands under, in the object being written
+    int32_t place; // index into Places::all; `none` if the item does not depend on its place
+    Matrix matrix; // from the item's content to the object being written
   };
-  struct Placed { // an instance that events move or colour
+  struct TrackedInstance { // an instance that events move or colour
     RTid instance;
-    int32_t part; // that holds it
+    int32_t part; // the part that holds the instance
     Matrix base;  // without the item's own matrix
   };
 
-  // Parts: parts.cpp.
-  int32_t newPart(Part::Of of);
+  // parts.cpp: the list of parts.
+  int32_t newPart(Part::Kind kind);
   void removePart(int32_t& part);
   int32_t partOfItem(ItemId item);
   int32_t partOfPlace(size_t place);
   int32_t partOfMesh(int32_t mesh);
   bool instantiated(const Item& item) const;
   void touch(int32_t part);
-  void forget(Part& part); // what it holds
+  void clearContent(Part& part); // drops the record of its content
 
-  // Definitions, in their order: objects.cpp.
+  // objects.cpp: definitions, in the order in which they are written.
   void definePlace(size_t place);
   void chooseLevel(size_t place);
   void defineDirty();
@@ -93,8 +97,8 @@ class Objects {
   void open(int32_t part, bool dynamic);
   void close();
 
-  // Writes what a step leads to into the open object; the stack holds what is still to come:
-  // shapes.cpp.
+  // shapes.cpp: writes the content of a step into the open object. The stack holds the remaining
+  // steps.
   void enter(ItemId item, int32_t place, const Matrix& matrix);
   void expand(const Step& step);
   void drain();
@@ -103,7 +107,7 @@ class Objects {
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
   bool tooFar(const Matrix& matrix, double reach, const SourcePosition& where,
               const std::string& what);
-  // number: of the shape that the instance is; 0: shapes below have their own.
+  // number: the number of the shape that the instance draws; 0 if the shapes below have their own.
   RTid instantiate(int32_t part, const Matrix& matrix, uint32_t number, bool dynamic);
   void keep(ItemId item, RTid instance, const Matrix& base);
 
@@ -112,16 +116,16 @@ class Objects {
   Graph& graph_;
   Places& places_;
   Surfaces& surfaces_;
-  Ration ration_;
+  Quota quota_;
   std::vector<Part> parts_;
   std::vector<int32_t> freeParts_, meshParts_, dirty_;
-  std::unordered_map<ItemId, std::vector<Placed>> placed_;
-  std::vector<uint8_t> met_; // items below which everything has been defined
+  std::unordered_map<ItemId, std::vector<TrackedInstance>> trackedInstances_;
+  std::vector<uint8_t> definedBelow_; // by item: 1 if everything below it has been defined
   std::vector<Step> stack_;
-  std::vector<uint32_t> seen_; // by item: number of the last walk upwards that met it
+  std::vector<uint32_t> seen_; // by item: number of the last upward walk that visited it
   uint32_t walk_ = 0;
   int32_t writing_ = none;    // the open part
-  bool live_ = false;         // the world runs: hints are given
+  bool live_ = false;         // the world is running, so dynamic hints are given
   std::vector<float> colors_; // scratch
   uint64_t objects_ = 0, instances_ = 0, definitions_ = 0, moves_ = 0;
 };

@@ -1,5 +1,5 @@
-// parts.cpp: which OpenRT objects there are, which of them a change makes dirty, and the instances
-// that events move. The bookkeeping of Objects.
+// parts.cpp: the list of OpenRT objects, the ones that a change makes dirty, and the instances that
+// events move. Part of class Objects.
 #include <algorithm>
 
 #include "mapper/graph/objects.h"
@@ -9,12 +9,12 @@ namespace xvrml::mapper {
 
 Objects::Objects(World& world, bool linearColor, Graph& graph, Places& places, Surfaces& surfaces)
     : world_(world), linear_(linearColor), graph_(graph), places_(places), surfaces_(surfaces),
-      ration_(world, "shapes") {
+      quota_(world, "shapes") {
   for (const NodeRef& root : world.scope.roots) live_ |= root && root->live;
-  met_.assign(graph.items.size(), 0);
+  definedBelow_.assign(graph.items.size(), 0);
 }
 
-int32_t Objects::newPart(Part::Of of) {
+int32_t Objects::newPart(Part::Kind kind) {
   int32_t id;
   if (freeParts_.empty()) {
     id = int32_t(parts_.size());
@@ -23,11 +23,11 @@ int32_t Objects::newPart(Part::Of of) {
     id = freeParts_.back();
     freeParts_.pop_back();
   }
-  parts_[size_t(id)].of = of;
+  parts_[size_t(id)].kind = kind;
   return id;
 }
 
-void Objects::forget(Part& part) {
+void Objects::clearContent(Part& part) {
   const auto id = int32_t(&part - parts_.data());
   for (const int32_t used : part.uses)
     if (uint64_t& count = parts_[size_t(used)].instances; count > 0) --count;
@@ -36,23 +36,24 @@ void Objects::forget(Part& part) {
   std::sort(part.moving.begin(), part.moving.end());
   part.moving.erase(std::unique(part.moving.begin(), part.moving.end()), part.moving.end());
   for (const ItemId item : part.moving) {
-    const auto found = placed_.find(item);
-    if (found == placed_.end()) continue;
-    std::erase_if(found->second, [id](const Placed& p) { return p.part == id; });
-    if (found->second.empty()) placed_.erase(found);
+    const auto found = trackedInstances_.find(item);
+    if (found == trackedInstances_.end()) continue;
+    std::erase_if(found->second, [id](const TrackedInstance& p) { return p.part == id; });
+    if (found->second.empty()) trackedInstances_.erase(found);
   }
   part.moving.clear();
   part.shapes = part.triangles = part.primitives = part.drawCalls = 0;
-  ration_.give(part.bytes);
-  part.bytes = part.flat = 0;
+  quota_.give(part.bytes);
+  part.bytes = part.flattenedInstances = part.records = 0;
   part.reach = 0;
 }
 
-// Parts that instantiate it are dirty, or go too: its instances vanish with it.
+// The instances of a part vanish with it: the caller also removes the parts that hold them or marks
+// them dirty.
 void Objects::removePart(int32_t& id) {
   if (id == none) return;
   Part& part = parts_[size_t(id)];
-  forget(part);
+  clearContent(part);
   if (part.object != 0) {
     rtDeleteObject(part.object);
     --objects_;
@@ -69,14 +70,14 @@ void Objects::clear() {
 
 int32_t Objects::partOfItem(ItemId id) {
   int32_t& part = graph_.items[id].part;
-  if (part == none) part = newPart(Part::Of::item);
+  if (part == none) part = newPart(Part::Kind::item);
   parts_[size_t(part)].item = id;
   return part;
 }
 
 int32_t Objects::partOfPlace(size_t index) {
   Place& place = places_.all[index];
-  if (place.part == none) place.part = newPart(Part::Of::place);
+  if (place.part == none) place.part = newPart(Part::Kind::place);
   Part& part = parts_[size_t(place.part)];
   part.item = place.item;
   part.level = place.level;
@@ -86,7 +87,7 @@ int32_t Objects::partOfPlace(size_t index) {
 int32_t Objects::partOfMesh(int32_t mesh) {
   if (meshParts_.size() < graph_.meshes.size()) meshParts_.resize(graph_.meshes.size(), none);
   int32_t& part = meshParts_[size_t(mesh)];
-  if (part == none) part = newPart(Part::Of::mesh);
+  if (part == none) part = newPart(Part::Kind::mesh);
   parts_[size_t(part)].mesh = mesh;
   return part;
 }
@@ -96,23 +97,23 @@ void Objects::touch(int32_t id) {
   Part& part = parts_[size_t(id)];
   if (part.dirty) return;
   part.dirty = true;
-  forget(part);
+  clearContent(part);
   dirty_.push_back(id);
 }
 
-// Reached other than as a level of an LOD, which is a place.
+// Returns whether the item is reached other than as an LOD level. Levels are places.
 bool Objects::instantiated(const Item& item) const {
   const auto first = graph_.parents.begin() + item.firstParent;
   return std::any_of(first, first + item.parentCount, [&](ItemId parent) {
-    return graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placed;
+    return graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placeDependent;
   });
 }
 
 void Objects::regrouped(const std::vector<Place>& gone) {
-  met_.assign(graph_.items.size(), 0);
+  definedBelow_.assign(graph_.items.size(), 0);
   for (const ItemId id : graph_.dropped()) {
     removePart(graph_.items[id].part);
-    placed_.erase(id);
+    trackedInstances_.erase(id);
   }
   for (Place place : gone) removePart(place.part);
   for (Place& place : places_.all)
@@ -126,7 +127,8 @@ void Objects::regrouped(const std::vector<Place>& gone) {
   std::vector<uint8_t> needed(meshParts_.size());
   for (const ItemId id : graph_.order) {
     Item& item = graph_.items[id];
-    if (item.part != none && (item.own == Own::none || item.placed || !instantiated(item)))
+    if (item.part != none &&
+        (item.objectReason == ObjectReason::none || item.placeDependent || !instantiated(item)))
       removePart(item.part);
     if (!item.viaMesh) continue;
     if (const auto mesh = size_t(graph_.meshes.equal(item.mesh)); mesh < needed.size())
@@ -136,7 +138,7 @@ void Objects::regrouped(const std::vector<Place>& gone) {
     if (!needed[mesh]) removePart(meshParts_[mesh]);
 }
 
-// Upwards from the item to the objects that hold it, each item once.
+// Walks up from the items to the objects that hold them, visiting each item once.
 void Objects::contentChanged(const std::vector<ItemId>& items) {
   seen_.resize(graph_.items.size(), 0);
   ++walk_;
@@ -148,14 +150,14 @@ void Objects::contentChanged(const std::vector<ItemId>& items) {
     seen_[id] = walk_;
     const Item& item = graph_.items[id];
     places_.each(id, [&](int32_t place) { touch(places_.all[places_.splitAbove(place)].part); });
-    if (item.placed) continue;
-    if (item.own != Own::none) {
+    if (item.placeDependent) continue;
+    if (item.objectReason != ObjectReason::none) {
       touch(item.part);
       continue;
     }
     for (uint32_t p = 0; p < item.parentCount; ++p) {
       const ItemId parent = graph_.parents[item.firstParent + p];
-      if (graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placed)
+      if (graph_.items[parent].kind != Kind::lod || !graph_.items[parent].placeDependent)
         open.push_back(parent);
     }
   }
@@ -178,18 +180,20 @@ bool Objects::meshChanged(int32_t mesh) {
 
 bool Objects::moved(ItemId id) {
   const Item& item = graph_.items[id];
-  if (!item.moves || item.own == Own::none) return false;
+  if (!item.moves || item.objectReason == ObjectReason::none) return false;
   const auto move = [&](RTid instance, const Matrix& matrix) {
     if (instance == 0) return;
     rtInstanceMatrix(instance, data(finite(matrix) ? matrix : scaling(Vector(0))));
     ++moves_;
   };
-  if (const auto found = placed_.find(id); found != placed_.end() && !item.placed)
-    for (const Placed& p : found->second) move(p.instance, graph_.below(p.base, item));
+  if (const auto found = trackedInstances_.find(id);
+      found != trackedInstances_.end() && !item.placeDependent)
+    for (const TrackedInstance& p : found->second) move(p.instance, graph_.below(p.base, item));
   places_.each(id, [&](int32_t index) {
     const Place& place = places_.all[size_t(index)];
     if (place.split)
-      move(place.instance, compose(graph_.below(place.base, item), places_.turns[size_t(index)]));
+      move(place.instance,
+           compose(graph_.below(place.base, item), places_.billboardRotations[size_t(index)]));
   });
   return true;
 }
@@ -197,11 +201,11 @@ bool Objects::moved(ItemId id) {
 bool Objects::recolored(ItemId id) {
   const Item& item = graph_.items[id];
   if (!item.recolored || !item.viaMesh) return false;
-  const auto found = placed_.find(id);
-  if (found == placed_.end()) return true;
+  const auto found = trackedInstances_.find(id);
+  if (found == trackedInstances_.end()) return true;
   Node* appearance = static_cast<nodes::Shape&>(*item.node).appearance.get();
-  const RTid shader = surfaces_.of(appearance, false).shader;
-  for (const Placed& p : found->second) rtInstanceShader(p.instance, shader);
+  const RTid shader = surfaces_.surfaceFor(appearance, false).shader;
+  for (const TrackedInstance& p : found->second) rtInstanceShader(p.instance, shader);
   return true;
 }
 

@@ -1,4 +1,5 @@
-// places.cpp: The walk has a stack of its own: nesting costs no C++ stack.
+// places.cpp: expands the render graph into places. The walk uses an explicit stack, so nesting
+// costs no C++ stack.
 #include "mapper/graph/places.h"
 
 #include <algorithm>
@@ -14,9 +15,9 @@ void Places::build(const Graph& graph, std::vector<Place>& gone) {
   const std::vector<int32_t> childrenBefore = std::move(children);
   all.clear();
   children.clear();
-  ration_.give(std::exchange(taken_, 0));
+  quota_.give(std::exchange(taken_, 0));
   expand(graph);
-  turns.assign(all.size(), Matrix());
+  billboardRotations.assign(all.size(), Matrix());
   inherit(before, childrenBefore, gone);
   index(graph.items.size());
 }
@@ -34,7 +35,7 @@ void Places::expand(const Graph& graph) {
     place.level = level;
     place.inlined = item.isInline || (parent != none && all[size_t(parent)].inlined);
     place.split = parent == none || level != none || item.kind == Kind::billboard ||
-                  item.kind == Kind::lod || item.scopesLight || isSplit(item.own);
+                  item.kind == Kind::lod || item.scopesLight || isSplit(item.objectReason);
     place.firstChild = uint32_t(children.size());
     place.childCount = uint32_t(item.children.size());
     children.resize(children.size() + item.children.size(), none);
@@ -52,26 +53,26 @@ void Places::expand(const Graph& graph) {
     }
     const uint32_t index = top.next++, slot = all[top.place].firstChild + index;
     const ItemId child = item.children[index];
-    const bool level = item.kind == Kind::lod && item.placed;
-    if (!level && !graph.items[child].placed) continue;
+    const bool level = item.kind == Kind::lod && item.placeDependent;
+    if (!level && !graph.items[child].placeDependent) continue;
     const Node* node = graph.items[child].node.get();
-    if (!ration_.take(bytesOfPlace, node ? node->source : SourcePosition())) continue;
+    if (!quota_.take(bytesOfPlace, node ? node->source : SourcePosition())) continue;
     taken_ += bytesOfPlace;
     children[slot] = open(child, int32_t(top.place), level ? int32_t(index) : none);
   }
 }
 
-// The places before and now side by side, from the root: a place goes on where its parent does and
-// its item is still there.
+// Matches previous and new places from the root down. A place is kept if its parent is kept and its
+// item is still there.
 void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& childrenBefore,
                      std::vector<Place>& gone) {
-  std::vector<int32_t> match(all.size(), none); // by place: what it was
-  std::vector<uint8_t> goesOn(before.size());
+  std::vector<int32_t> match(all.size(), none); // by place: the previous place
+  std::vector<uint8_t> isKept(before.size());
   const auto take = [&](size_t now, int32_t then) {
     Place &to = all[now], &from = before[size_t(then)];
     if (to.item != from.item) return false;
     match[now] = then;
-    goesOn[size_t(then)] = 1;
+    isKept[size_t(then)] = 1;
     to.drawn = from.drawn;
     to.part = from.part;
     to.instance = from.instance;
@@ -85,7 +86,8 @@ void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& chi
   for (size_t i = 0; i < all.size(); ++i) {
     if (match[i] == none) continue;
     const Place& then = before[size_t(match[i])];
-    std::unordered_multimap<ItemId, int32_t> others; // made when the two are out of step
+    // Previous children by item; filled once the two lists get out of step.
+    std::unordered_multimap<ItemId, int32_t> others;
     bool inStep = true;
     for (uint32_t c = 0, d = 0; c < all[i].childCount; ++c) {
       const int32_t now = children[all[i].firstChild + c];
@@ -95,7 +97,7 @@ void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& chi
       if (inStep && d < then.childCount && take(size_t(now), thenAt(d++))) continue;
       if (inStep)
         for (uint32_t slot = then.childCount; slot-- > 0;)
-          if (const int32_t old = thenAt(slot); old != none && !goesOn[size_t(old)])
+          if (const int32_t old = thenAt(slot); old != none && !isKept[size_t(old)])
             others.emplace(before[size_t(old)].item, old);
       inStep = false;
       if (const auto found = others.find(all[size_t(now)].item); found != others.end()) {
@@ -105,7 +107,7 @@ void Places::inherit(std::vector<Place>& before, const std::vector<int32_t>& chi
     }
   }
   for (size_t i = 0; i < before.size(); ++i)
-    if (!goesOn[i]) gone.push_back(before[i]);
+    if (!isKept[i]) gone.push_back(before[i]);
 }
 
 void Places::index(size_t items) {
@@ -125,10 +127,10 @@ size_t Places::splitAbove(int32_t place) const {
 size_t levelOfDetail(const MFFloat& range, double distance, size_t count) {
   size_t level = 0;
   while (level < range.size() && distance >= range[level]) ++level;
-  return std::min(level, count - 1); // too few levels: the last is used again
+  return std::min(level, count - 1); // with too few levels the last one is used again
 }
 
-void Places::follow(const Graph& graph, const CameraSettings& camera) {
+void Places::updateForFrame(const Graph& graph, const CameraSettings& camera) {
   const Matrix view = fromArray(camera.matrix);
   const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
       up(view.x[1][0], view.x[1][1], view.x[1][2]);
@@ -145,11 +147,11 @@ void Places::follow(const Graph& graph, const CameraSettings& camera) {
     const bool local = invert(outside, toLocal);
     if (item.kind == Kind::billboard) {
       auto& billboard = static_cast<nodes::Billboard&>(*item.node);
-      turns[i] =
+      billboardRotations[i] =
           local ? billboardMatrix(vector(billboard.axisOfRotation), transformPoint(toLocal, eye),
                                   transformDirection(toLocal, up))
                 : Matrix();
-      place.world = compose(place.world, turns[i]);
+      place.world = compose(place.world, billboardRotations[i]);
     } else {
       auto& lod = static_cast<nodes::LOD&>(*item.node);
       const double distance =

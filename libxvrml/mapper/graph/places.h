@@ -1,7 +1,8 @@
-// places.h: the part of the render graph whose meaning depends on the place, expanded: every way
-// that leads to a light, a bindable, a billboard, an LOD or a group that events change. Everything
-// else hangs below it unexpanded. Built anew when something placed is grouped anew, with what the
-// places were before; world matrices, billboards and levels follow the camera.
+// places.h: the place-dependent part of the render graph, expanded: one Place for every path to a
+// light, a bindable node, a Billboard, an LOD or a group that events change. Everything else hangs
+// below it unexpanded. It is rebuilt when a place-dependent item is regrouped; places that still
+// exist keep their objects and lights. World matrices, billboards and levels are updated for the
+// camera.
 #pragma once
 
 #include <vector>
@@ -15,20 +16,23 @@ namespace xvrml::mapper {
 struct Place {
   ItemId item = 0;
   int32_t parent = none;
-  uint32_t firstChild = 0; // in Places::children, one for each child of the item: a place or `none`
+  // Index into Places::children: one entry per child of the item, a place or `none`.
+  uint32_t firstChild = 0;
   uint32_t childCount = 0;
-  int32_t level = none; // child of an LOD: which
+  int32_t level = none; // for a child of an LOD: its level
   bool inlined = false; // below an Inline
-  bool split = false; // has an object of its own: root, billboards, LODs, their levels, what events
-                      // reach or scopes a light
-  bool active = true; // not in an LOD's level that is not chosen
-  int32_t chosen = none; // LOD: level in use
+  // Has an object of its own: the root, billboards, LODs, LOD levels, groups that events reach,
+  // groups that scope a light.
+  bool split = false;
+  bool active = true;    // not in an unselected level of an LOD
+  int32_t chosen = none; // for an LOD: the level in use
   Matrix world;          // of the item's children
-  Matrix base; // split: what the item stands under in the parent object, without its own matrix
+  // For a split place: the matrix of the item in the parent object, without the item's own matrix.
+  Matrix base;
 
-  // What has been made of it; goes on when places are built anew.
-  int32_t drawn = none; // LOD: level its object now holds
-  int32_t part = none;  // of Objects
+  // Objects and lights created for the place. A rebuild keeps them.
+  int32_t drawn = none; // for an LOD: the level that its object now holds
+  int32_t part = none;  // index into the parts of Objects
   RTid instance = 0;
   RTid light = 0, lightScope = 0;
   Matrix lightMatrix;
@@ -36,38 +40,37 @@ struct Place {
 
 class Places {
  public:
-  explicit Places(World& world)
-      : ration_(world, "lights, views, billboards and levels of detail") {}
-  // From nothing, or with what is left of the places before. gone: those of them that are no more,
-  // with what was made of them.
+  explicit Places(World& world) : quota_(world, "lights, views, billboards and levels of detail") {}
+  // Builds the places, keeping what exists of the previous ones. gone: previous places that no
+  // longer exist, with what was created for them.
   void build(const Graph& graph, std::vector<Place>& gone);
-  // World matrices, billboards' turns, levels of detail for a camera.
-  void follow(const Graph& graph, const CameraSettings& camera);
-  // The nearest place above (or at) `place` that has an object of its own.
+  // Updates world matrices, billboard rotations and LOD levels for a camera.
+  void updateForFrame(const Graph& graph, const CameraSettings& camera);
+  // Returns the nearest place at or above `place` that has an object of its own.
   size_t splitAbove(int32_t place) const;
-  // Of an item, in the order of the file.
+  // Visits the places of an item in file order.
   template <class Visit> void each(ItemId item, const Visit& visit) const {
     if (item >= firstOf_.size()) return;
     for (int32_t place = firstOf_[item]; place != none; place = nextOf_[size_t(place)])
       visit(place);
   }
 
-  std::vector<Place> all; // parents before children, in the order of the file; all[0] is the root
+  std::vector<Place> all; // parents before children, in file order; all[0] is the root
   std::vector<int32_t> children;
-  std::vector<Matrix> turns; // by place: a billboard's turn, identity elsewhere
+  std::vector<Matrix> billboardRotations; // by place: a billboard's rotation, identity elsewhere
 
  private:
-  Ration ration_;
-  uint64_t taken_ = 0; // of it
+  Quota quota_;
+  uint64_t taken_ = 0; // bytes taken from quota_
   void expand(const Graph& graph);
   void inherit(std::vector<Place>& before, const std::vector<int32_t>& childrenBefore,
                std::vector<Place>& gone);
   void index(size_t items);
 
-  std::vector<int32_t> firstOf_, nextOf_; // places of each item, as lists
+  std::vector<int32_t> firstOf_, nextOf_; // linked lists: the places of each item
 };
 
-// Clause 6.26: the level for a distance. count: levels there are (> 0).
+// Returns the LOD level for a distance (clause 6.26). count: number of levels, > 0.
 size_t levelOfDetail(const MFFloat& range, double distance, size_t count);
 
 } // namespace xvrml::mapper

@@ -1,5 +1,5 @@
-// plans.cpp: what each node type means for the picture: the dispatch table by type index, one small
-// function a type. Called while the render graph is built, on the mapper's thread.
+// plans.cpp: what each node type contributes to the picture: a dispatch table by type index with
+// one small function per type. Called while the render graph is built, on the mapper's thread.
 #include <algorithm>
 #include <span>
 
@@ -20,7 +20,7 @@ void planGroup(PlanContext&, Node& node, Plan& plan) {
 void planAnchor(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::Anchor&>(node).children);
 }
-// The proxy is for collision detection only (clause 6.8).
+// The proxy is used for collision detection only (clause 6.8).
 void planCollision(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::Collision&>(node).children);
 }
@@ -31,7 +31,7 @@ void planTransform(PlanContext&, Node& node, Plan& plan) {
   plan.matrix = transformMatrix({t.center, t.translation, t.scale, t.rotation, t.scaleOrientation});
 }
 
-// Clause 6.46: whichChoice below 0 or beyond the last choice draws nothing.
+// A whichChoice below 0 or beyond the last choice draws nothing (clause 6.46).
 void planSwitch(PlanContext&, Node& node, Plan& plan) {
   auto& s = static_cast<nodes::Switch&>(node);
   plan.kind = Kind::group;
@@ -50,8 +50,8 @@ void planBillboard(PlanContext&, Node& node, Plan& plan) {
   plan.add(static_cast<nodes::Billboard&>(node).children);
 }
 
-// Content that comes later (Browser::loadInline) gets an object of its own, so that nothing else is
-// made anew then.
+// Content that arrives later (Browser::loadInline) gets an object of its own, so that nothing else
+// has to be rewritten then.
 void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
   plan.isInline = true;
@@ -74,8 +74,8 @@ void planShape(PlanContext&, Node& node, Plan& plan) {
   if (renderedNode(static_cast<nodes::Shape&>(node).geometry.get())) plan.kind = Kind::shape;
 }
 
-// A light that is off lights nothing (clause 4.6.6); it is not there unless events may turn it on
-// (summary.cpp).
+// A light that is off illuminates nothing (clause 4.6.6). It is ignored unless events may turn it
+// on (summary.cpp).
 template <class Light> void planLight(Node& node, Kind kind, Plan& plan) {
   plan.kind = kind;
   plan.on = static_cast<Light&>(node).on;

@@ -1,19 +1,21 @@
-// summary.cpp: counts what each item of the render graph holds and decides what becomes an object
-// of its own. Called by the mapper when the world has been read and when something of it is grouped
-// anew.
+// summary.cpp: counts the content of each item of the render graph and decides which items get an
+// object of their own. Called by the mapper when the world has been read and on every regrouping.
 //
-// An item has an object of its own when events reach it (xvrml/change.h) or it is an Inline that is
-// still to be loaded, when an author wants it (ORTInstance, ORTStatic), or when it is shared:
-// reached several times, and
-//  - its content does not depend on the place: no lights, bindables, billboards or LODs below it
-//  (such an item has an object
-//    a place: see places.cpp);
-//  - it holds no lines and points, whose width is a matter of the place, unless there would be very
-//  many of them;
-//  - it is worth instances (cost.h).
-// Everything else is written into the object above: static geometry ends in few large objects.
-// Decisions follow from the world as it stands and what reaches it, never from what was mapped
-// before.
+// An item has an object of its own in these cases:
+// * events reach it (xvrml/change.h), or it is an Inline that is still to be loaded;
+// * the author wants it (ORTInstance, ORTStatic);
+// * it is shared.
+//
+// An item is shared if it is reached several times and all of these hold:
+// * its content does not depend on the place: no lights, bindables, billboards or LODs below it
+//   (such an item has one object per place, see places.cpp);
+// * it contains no lines or points, whose width depends on the place, unless there are very many of
+//   them;
+// * instances are worth their cost (cost.h).
+//
+// Everything else is written into the object above, so static geometry ends up in few large
+// objects. Decisions depend only on the current world and on what events reach, never on what was
+// mapped before.
 #include <algorithm>
 
 #include "mapper/graph/graph.h"
@@ -28,7 +30,8 @@ constexpr uint64_t placeLimit = 200'000;
 
 bool reachedBy(const Item& item, Change kind) { return item.node && reaches(*item.node, kind); }
 
-// A geometry node, or one that it holds: Coordinate, Color, FontStyle ...
+// Returns whether events reach a geometry node or a node it holds (Coordinate, Color, FontStyle
+// ...).
 bool geometryReached(Node& geometry) {
   if (!geometry.live) return false;
   if (reaches(geometry, Change::geometry)) return true;
@@ -42,7 +45,7 @@ bool geometryReached(Node& geometry) {
   return false;
 }
 
-// The colour of lines without colours of their own is the Material's.
+// Returns whether events reach the Material that colours lines without colours of their own.
 bool lineColorReached(Node* shape) {
   if (!shape->live) return false;
   Node* node = renderedNode(static_cast<nodes::Shape*>(shape)->appearance.get());
@@ -84,17 +87,17 @@ class Summary {
   }
 
  private:
-  // What an object's content, or the way it is placed, depends on.
+  // Packs everything that an object's content or placement depends on.
   uint64_t decisionsOf(const Item& item) const {
-    const bool flags[] = {item.placed,  item.scopesLight, item.moves,
-                          item.changes, item.recolored,   item.viaMesh};
-    uint64_t bits = uint64_t(item.own);
+    const bool flags[] = {item.placeDependent, item.scopesLight, item.moves,
+                          item.changes,        item.recolored,   item.viaMesh};
+    uint64_t bits = uint64_t(item.objectReason);
     for (const bool flag : flags) bits = bits << 1 | uint64_t(flag);
     const int32_t mesh = item.viaMesh ? graph_.meshes.equal(item.mesh) : none;
-    return bits << 33 | uint64_t(mesh + 1) << 1 | 1; // an item that was never looked at has 0
+    return bits << 33 | uint64_t(mesh + 1) << 1 | 1; // the last bit is set: a new item has 0
   }
 
-  // On how many ways each item is reached; whether an ORTStatic lies on all of them.
+  // Counts the paths to each item and computes whether an ORTStatic lies on all of them.
   void countPaths() {
     for (const ItemId id : graph_.order) graph_.items[id].merged = id != Graph::root;
     paths_[Graph::root] = 1;
@@ -109,7 +112,7 @@ class Summary {
     graph_.items[0].merged = false;
   }
 
-  void lookAtShape(Item& item) {
+  void summariseShape(Item& item) {
     Node& geometry = graph_.meshes.geometry(item.mesh);
     const bool reached = graph_.meshes.dynamic(item.mesh) && !item.merged;
     const bool lines = drawsLines(geometry);
@@ -119,37 +122,38 @@ class Summary {
     item.lines = lines || extent.kind == Mesh::Kind::lines || extent.kind == Mesh::Kind::points;
     item.draws = true;
     item.recolored = !lines && !item.merged && reachedBy(item, Change::appearance);
-    if (lines && reached) item.own = Own::geometry;
-    if (lines && !item.merged && lineColorReached(item.node.get())) item.own = Own::appearance;
+    if (lines && reached) item.objectReason = ObjectReason::geometry;
+    if (lines && !item.merged && lineColorReached(item.node.get()))
+      item.objectReason = ObjectReason::appearance;
     item.viaMesh = !lines && (reached || item.recolored);
-    item.changes = isSplit(item.own);
+    item.changes = isSplit(item.objectReason);
     item.primitives =
-        item.viaMesh ? 1 : std::max<uint64_t>(1, extent.primitives); // nothing is for nothing
+        item.viaMesh ? 1 : std::max<uint64_t>(1, extent.primitives); // even empty geometry counts
   }
 
-  void lookAtHints(Item& item) {
+  void applyHints(Item& item) {
     item.moves = !item.merged && reachedBy(item, Change::transform);
     const bool changes = !item.merged && (item.awaited || reachedBy(item, Change::children));
     item.changes |= changes;
     item.draws |= changes;
     if (!item.draws) return;
-    if (changes) item.own = Own::children;
-    if (item.moves) item.own = Own::transform;
-    if (item.hint == Hint::instantiate) item.own = Own::wanted;
-    if (item.hint == Hint::merge && !item.merged) item.own = Own::merged;
+    if (changes) item.objectReason = ObjectReason::children;
+    if (item.moves) item.objectReason = ObjectReason::transform;
+    if (item.hint == Hint::instantiate) item.objectReason = ObjectReason::wanted;
+    if (item.hint == Hint::merge && !item.merged) item.objectReason = ObjectReason::merged;
   }
 
   static bool shines(const Item& item) {
     return isLight(item.kind) && (item.on || reachedBy(item, Change::light));
   }
 
-  static bool placedByItself(const Item& item) {
+  static bool isPlaceDependent(const Item& item) {
     if (item.kind == Kind::billboard || item.kind == Kind::lod) return item.draws;
     return isBindable(item.kind) || shines(item);
   }
 
-  // Children stand before parents: one pass. strip: items reached on several ways lose what is
-  // placed in them.
+  // Counts bottom-up in one pass: children come before parents. strip: items with several paths
+  // lose their place-dependent content.
   void countUpwards(bool strip) {
     std::vector<uint8_t> reached(graph_.meshes.size());
     for (const ItemId id : graph_.order)
@@ -163,41 +167,42 @@ class Summary {
 
   void countItem(ItemId id, bool strip) {
     Item& item = graph_.items[id];
-    item.placed = item.draws = item.scopesLight = item.lines = item.viaMesh = item.recolored =
-        item.changes = false;
-    item.own = Own::none;
+    item.placeDependent = item.draws = item.scopesLight = item.lines = item.viaMesh =
+        item.recolored = item.changes = false;
+    item.objectReason = ObjectReason::none;
     item.primitives = item.triangles = item.shapes = item.places = 0;
-    if (item.kind == Kind::shape) lookAtShape(item);
+    if (item.kind == Kind::shape) summariseShape(item);
     for (size_t c = 0; c < item.children.size(); ++c) {
-      // The highest level of detail stands for all of them: only one is drawn.
+      // The highest level of detail stands for all levels, because only one is drawn.
       const Item& child = graph_.items[item.children[c]];
       const bool counts = item.kind != Kind::lod || c == 0;
       item.places = addSaturating(item.places, child.places);
-      item.placed |= child.placed;
+      item.placeDependent |= child.placeDependent;
       item.draws |= child.draws;
       item.lines |= child.lines;
-      item.scopesLight |= child.placed && child.kind == Kind::directionalLight;
+      item.scopesLight |= child.placeDependent && child.kind == Kind::directionalLight;
       if (!counts) continue;
-      item.primitives = addSaturating(item.primitives, isSplit(child.own) ? 1 : child.primitives);
+      item.primitives =
+          addSaturating(item.primitives, isSplit(child.objectReason) ? 1 : child.primitives);
       item.triangles = addSaturating(item.triangles, child.triangles);
       item.shapes = addSaturating(item.shapes, child.shapes);
     }
-    lookAtHints(item);
-    item.placed |= placedByItself(item);
-    // What events may put into it may have to be placed: decided now, so that the groups above stay
-    // as they are then.
-    item.placed |= item.changes && !nodeCast<nodes::Shape>(item.node) && paths_[id] == 1;
-    if (item.placed)
+    applyHints(item);
+    item.placeDependent |= isPlaceDependent(item);
+    // Events may later add place-dependent children. This is decided now, so that the groups above
+    // can stay as they are then.
+    item.placeDependent |= item.changes && !nodeCast<nodes::Shape>(item.node) && paths_[id] == 1;
+    if (item.placeDependent)
       item.places =
           addSaturating(item.places, item.kind == Kind::lod ? 1 + item.children.size() : 1);
-    if (strip && paths_[id] > 1 && item.placed) {
-      item.placed = item.scopesLight = false;
+    if (strip && paths_[id] > 1 && item.placeDependent) {
+      item.placeDependent = item.scopesLight = false;
       item.places = 0;
     }
   }
 
-  // Parents stand behind children: going backwards, the number of times an item would be written is
-  // known when it is met.
+  // Decides sharing top-down. Going backwards, parents come before children, so the number of times
+  // an item would be written is known when it is visited.
   void decideSharing() {
     std::vector<uint64_t> written(graph_.items.size(), 0);
     written[Graph::root] = 1;
@@ -205,15 +210,17 @@ class Summary {
       const ItemId id = graph_.order[i];
       Item& item = graph_.items[id];
       const uint64_t times = written[id];
-      if (item.own == Own::none && !item.placed && item.parentCount > 1) {
+      if (item.objectReason == ObjectReason::none && !item.placeDependent && item.parentCount > 1) {
         const bool linesAllow =
             !item.lines || multiplySaturating(item.primitives, times) > manyLines;
         if (linesAllow && worthInstances(item.primitives, times, item.merged))
-          item.own = Own::shared;
+          item.objectReason = ObjectReason::shared;
       }
       if (item.kind == Kind::shape && !item.lines && !item.viaMesh) item.viaMesh = sharesMesh(item);
-      const uint64_t own = item.own != Own::none && !item.placed ? 1 : times;
-      for (const ItemId child : item.children) written[child] = addSaturating(written[child], own);
+      const uint64_t childTimes =
+          item.objectReason != ObjectReason::none && !item.placeDependent ? 1 : times;
+      for (const ItemId child : item.children)
+        written[child] = addSaturating(written[child], childTimes);
     }
   }
 

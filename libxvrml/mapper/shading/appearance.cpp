@@ -1,5 +1,5 @@
-// appearance.cpp: The lighting model is that of clause 4.14; the parameters are
-// those of the class VRML97.
+// appearance.cpp: surfaces with the lighting model of clause 4.14. The parameters are those of the
+// class VRML97.
 #include "mapper/shading/appearance.h"
 
 #include <optional>
@@ -9,7 +9,7 @@
 namespace xvrml::mapper {
 namespace {
 
-// The parts of an Appearance or ORTAppearance, prototype instances resolved.
+// The parts of an Appearance or ORTAppearance, with prototype instances resolved.
 struct Parts {
   nodes::Material* material = nullptr;
   Node* texture = nullptr;
@@ -44,7 +44,7 @@ bool isTextured(Node* appearance) {
 }
 
 namespace {
-// Clause 4.14; a Material that is missing means: not lit.
+// Sets the material (clause 4.14). Without a Material the surface is unlit.
 void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
   shader.integer("lit", m ? 1 : 0);
   if (!m) return;
@@ -57,14 +57,14 @@ void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
 }
 } // namespace
 
-Surface Surfaces::of(Node* appearance, bool lines) {
+Surface Surfaces::surfaceFor(Node* appearance, bool lines) {
   Node* node = renderedNode(appearance);
   const auto [it, fresh] = (lines ? lines_ : surfaces_).try_emplace(node);
   Entry& entry = it->second;
   if (!fresh) return entry.surface;
   entry.appearance = NodeRef(node);
   entry.textured = isTextured(node);
-  entry.counted = ration_.take(bytesOfSurface, node ? node->source : SourcePosition());
+  entry.counted = quota_.take(bytesOfSurface, node ? node->source : SourcePosition());
   if (!entry.counted) return entry.surface;
   if (lines)
     entry.own = (entry.surface = makeLines(node)).shader;
@@ -73,7 +73,8 @@ Surface Surfaces::of(Node* appearance, bool lines) {
   return entry.surface;
 }
 
-// Clauses 6.24 and 6.36: unlit, in the colours of the geometry, else in emissiveColor.
+// Makes the surface of lines and points (clauses 6.24 and 6.36): unlit, in the colours of the
+// geometry, else in emissiveColor.
 Surface Surfaces::makeLines(Node* appearance) {
   Surface surface;
   ShaderSetup shader(classes_.get("VRML97", ""));
@@ -86,12 +87,13 @@ Surface Surfaces::makeLines(Node* appearance) {
   return surface;
 }
 
-// The shader of an ORTAppearance. Where the class has parameters that the appearance has fields
-// for, as VRML97 has, it gets their values: texture and textureTransform, those of a Material.
+// Returns the shader of an ORTAppearance. Fields of the appearance set the class's parameters of
+// the same name, where the class has them (as VRML97 does). These fields are texture,
+// textureTransform and those of the Material.
 RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
   const Parts parts = partsOf(&appearance);
   if (!parts.texture && !parts.textureTransform && !parts.material)
-    return custom_.of(node, RT_SURFACE);
+    return custom_.shaderFor(node, RT_SURFACE);
   const RTid texture = textures_.ofNode(parts.texture);
   const CustomShaders::Preset preset = [&](ShaderSetup& shader, const ShaderClass& shaderClass) {
     const auto takes = [&](const char* name, RTenum type) {
@@ -116,7 +118,7 @@ RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
         if (takes(name, RT_PARAM_FLOAT)) shader.number(name, value, 0, 1);
       };
       color(takes("diffuseColor", RT_PARAM_COLOR) ? "diffuseColor" : "color",
-            m->diffuseColor); // of Plastic, CarPaint
+            m->diffuseColor); // Plastic and CarPaint have "color"
       color("emissiveColor", m->emissiveColor);
       color("specularColor", m->specularColor);
       number("ambientIntensity", m->ambientIntensity);
@@ -124,10 +126,10 @@ RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
       number("transparency", m->transparency);
     }
   };
-  return custom_.of(node, RT_SURFACE, &appearance, preset);
+  return custom_.shaderFor(node, RT_SURFACE, &appearance, preset);
 }
 
-// Makes the surface, or gives the shader that it has its new parameters.
+// Makes the surface, or sets new parameters on its existing shader.
 void Surfaces::makeSurface(Entry& entry) {
   const Parts parts = partsOf(entry.appearance.get());
   if (parts.shader) {
@@ -136,7 +138,8 @@ void Surfaces::makeSurface(Entry& entry) {
       return;
     }
   }
-  const RTid texture = textures_.ofNode(parts.texture); // may bind another texture, but no shader
+  // This may bind another texture, but no shader.
+  const RTid texture = textures_.ofNode(parts.texture);
   std::optional<ShaderSetup> setup;
   if (entry.own == 0)
     setup.emplace(classes_.get("VRML97", ""));
@@ -145,8 +148,8 @@ void Surfaces::makeSurface(Entry& entry) {
   ShaderSetup& shader = *setup;
   entry.own = entry.surface.shader = shader.id();
   const nodes::Material standard(*findNodeType("Material"));
-  const bool fallback =
-      parts.shader != nullptr; // a shader that could not be had: shaded as a default Material
+  // The custom shader is unavailable, so the surface is shaded as a default Material.
+  const bool fallback = parts.shader != nullptr;
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
   if (multiplyTextures && shader.fresh()) shader.integer("multiplyTexture", 1);
@@ -184,7 +187,7 @@ void Surfaces::clear() {
 }
 
 void Surfaces::forget(const Entry& entry) {
-  if (entry.counted) ration_.give(bytesOfSurface);
+  if (entry.counted) quota_.give(bytesOfSurface);
   if (entry.own != 0) rtDeleteShader(entry.own);
   if (entry.appearance) custom_.forget(*entry.appearance);
 }

@@ -1,5 +1,5 @@
-// appearance.h: appearance nodes as surface shaders: one shader per appearance node. Made by the
-// mapper's thread when first used.
+// appearance.h: appearance nodes as surface shaders: one shader per appearance node, made on first
+// use. [the mapper's thread]
 #pragma once
 
 #include <unordered_map>
@@ -12,13 +12,13 @@
 
 namespace xvrml::mapper {
 
-// True if shapes of this appearance need texture coordinates: a texture, or a shader that may want
-// them.
+// Returns whether shapes of this appearance need texture coordinates: it has a texture, or a custom
+// shader that may use them.
 bool isTextured(Node* appearance);
 
 struct Surface {
   RTid shader = 0;
-  Color lineColor{1, 1, 1}; // of lines and points without colours of their own
+  Color lineColor{1, 1, 1}; // for lines and points without colours of their own
 };
 
 class Surfaces {
@@ -26,21 +26,23 @@ class Surfaces {
   Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
            CustomShaders& custom)
       : world_(world), linear_(linearColor), classes_(classes), textures_(textures),
-        custom_(custom), ration_(world, "appearances") {}
+        custom_(custom), quota_(world, "appearances") {}
 
-  // Of a Shape's appearance (may be null or a prototype instance). lines: for IndexedLineSet and
-  // PointSet, which are neither lit nor textured (clauses 6.24, 6.36).
-  Surface of(Node* appearance, bool lines);
+  // Returns the surface of a Shape's appearance, which may be null or a prototype instance. lines:
+  // for IndexedLineSet and PointSet, which are neither lit nor textured (clauses 6.24, 6.36).
+  Surface surfaceFor(Node* appearance, bool lines);
 
-  // What a change of an appearance node, or of a node it holds, means for shapes that use it.
+  // The effect that a change of an appearance node, or of a node it holds, has on the shapes that
+  // use it.
   struct Effect {
     bool other = false;    // they need another shader
     bool colored = false;  // lines need another colour
-    bool textured = false; // they have a texture, and had none
+    bool textured = false; // they now have a texture and had none before
   };
-  // Gives the shaders of an appearance (rendered) new parameters. No effect if no shape uses it.
+  // Updates the shader parameters of a rendered appearance. It has no effect if no shape uses it.
   Effect update(Node& appearance);
-  // Shaders of appearances that no shape uses any more; users: those that are used, rendered.
+  // Deletes the shaders of appearances that no shape uses any more. uses(appearance) returns
+  // whether a rendered appearance is used.
   template <class Uses> void forgetUnless(const Uses& uses);
   void clear(); // deletes everything
   size_t count() const { return surfaces_.size() + lines_.size(); }
@@ -51,7 +53,7 @@ class Surfaces {
   struct Entry {
     NodeRef appearance;
     Surface surface;
-    RTid own = 0; // of the class VRML97
+    RTid own = 0; // own shader of the class VRML97
     bool textured = false;
     bool counted = false; // its memory is taken from the budget
   };
@@ -66,7 +68,7 @@ class Surfaces {
   ShaderClasses& classes_;
   Textures& textures_;
   CustomShaders& custom_;
-  Ration ration_;
+  Quota quota_;
   Entries surfaces_, lines_;
   uint64_t sets_ = 0;
 };

@@ -18,7 +18,7 @@ const char* roleName(RTenum role) {
   }
 }
 
-// The whole of a regular file of text; why not, if that cannot be.
+// Reads a whole regular text file into `text`. Returns the error, or "".
 std::string readText(const std::string& path, uint64_t limit, std::string& text) {
   try {
     const RegularFile file(path);
@@ -32,14 +32,15 @@ std::string readText(const std::string& path, uint64_t limit, std::string& text)
 
 } // namespace
 
-bool CustomShaders::take(Made& made, uint64_t bytes) {
-  if (!ration_.take(bytes, made.node->source)) return false;
+bool CustomShaders::take(ShaderEntry& made, uint64_t bytes) {
+  if (!quota_.take(bytes, made.node->source)) return false;
   made.bytes += bytes;
   return true;
 }
 
-std::vector<ShaderOption> CustomShaders::optionsOf(Made& made, std::vector<std::string>& errors) {
-  ration_.give(std::exchange(made.bytes, 0));
+std::vector<ShaderOption> CustomShaders::optionsOf(ShaderEntry& made,
+                                                   std::vector<std::string>& errors) {
+  quota_.give(std::exchange(made.bytes, 0));
   std::vector<ShaderOption> options =
       parseShaderOptions(static_cast<const nodes::ORTShader&>(*made.node).options, errors);
   uint64_t bytes = 0;
@@ -50,7 +51,7 @@ std::vector<ShaderOption> CustomShaders::optionsOf(Made& made, std::vector<std::
   return options;
 }
 
-void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum role) {
+void CustomShaders::setOption(const ShaderOption& option, ShaderEntry& made, RTenum role) {
   const Node& node = *made.node;
   const int handle = rtParameterHandle(option.name.c_str());
   const std::vector<float>& n = option.numbers;
@@ -58,15 +59,15 @@ void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum rol
   case ShaderOption::Type::integer:
   case ShaderOption::Type::boolean: return rtParameter1i(handle, option.integer);
   case ShaderOption::Type::text: return rtParameterString(handle, option.text.c_str());
-  case ShaderOption::Type::texture: { // the zenith of a picture all around must not blend with its
-                                      // nadir
+  // The picture is clamped in t: the zenith of an environment map must not blend with its nadir.
+  case ShaderOption::Type::texture: {
     const RTid texture = textures_.ofUrls({option.text}, node, true, role != RT_ENVIRONMENT);
     return rtParameterTexture(handle,
                               texture == 0 && role == RT_ENVIRONMENT ? textures_.black() : texture);
   }
   case ShaderOption::Type::list: return rtParameterfv(handle, n.size(), n.data());
   case ShaderOption::Type::file: {
-    constexpr uint64_t longest = 1 << 24; // of a text that a parameter holds
+    constexpr uint64_t longest = 1 << 24; // bytes of text that a parameter may hold
     const std::string& base = node.source.file ? *node.source.file : world_.path;
     const ResolvedUrl resolved = resolveUrl(option.text, base, world_.options);
     std::string text, why = resolved.error;
@@ -89,10 +90,10 @@ void CustomShaders::setOption(const ShaderOption& option, Made& made, RTenum rol
   }
 }
 
-RTid CustomShaders::of(nodes::ORTShader& node, RTenum role, const Node* user,
-                       const Preset& preset) {
-  const auto [it, fresh] = made_.try_emplace({&node, user});
-  Made& made = it->second;
+RTid CustomShaders::shaderFor(nodes::ORTShader& node, RTenum role, const Node* user,
+                              const Preset& preset) {
+  const auto [it, fresh] = entries_.try_emplace({&node, user});
+  ShaderEntry& made = it->second;
   if (fresh) {
     made.node = NodeRef(&node);
     make(made, role, preset);
@@ -103,8 +104,8 @@ RTid CustomShaders::of(nodes::ORTShader& node, RTenum role, const Node* user,
   return made.shader;
 }
 
-// Class `name` of the library `file` (empty: stock).
-void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
+// Makes a shader of class node.name from the library node.file (empty: built in).
+void CustomShaders::make(ShaderEntry& made, RTenum role, const Preset& preset) {
   const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
   made.shader = 0;
   made.name = node.name;
@@ -119,7 +120,7 @@ void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
   }
   std::vector<std::string> errors;
   const std::vector<ShaderOption> options = optionsOf(made, errors);
-  if (told_.insert(&node).second)
+  if (reported_.insert(&node).second)
     for (const std::string& error : errors)
       world_.diagnostics.error(node.source, "ORTShader " + node.name + ": " + error);
   ShaderSetup shader(shaderClass.id);
@@ -133,8 +134,9 @@ void CustomShaders::make(Made& made, RTenum role, const Preset& preset) {
   }
 }
 
-// The same class and the same options: new values. Else a new shader takes its place.
-void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
+// Updates the parameters if class and options are the same; otherwise makes a new shader that
+// replaces the old one.
+void CustomShaders::refresh(ShaderEntry& made, RTenum role, const Preset& preset) {
   const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
   std::vector<std::string> errors, names;
   const std::vector<ShaderOption> options = optionsOf(made, errors);
@@ -157,17 +159,17 @@ void CustomShaders::refresh(Made& made, RTenum role, const Preset& preset) {
 }
 
 void CustomShaders::changed(const Node& node) {
-  told_.erase(&node);
-  for (auto it = made_.lower_bound({&node, nullptr}); it != made_.end() && it->first.first == &node;
-       ++it)
+  reported_.erase(&node);
+  for (auto it = entries_.lower_bound({&node, nullptr});
+       it != entries_.end() && it->first.first == &node; ++it)
     it->second.stale = true;
 }
 
 void CustomShaders::forget(const Node& user) {
-  std::erase_if(made_, [&](const auto& entry) {
+  std::erase_if(entries_, [&](const auto& entry) {
     if (entry.first.second != &user) return false;
     if (entry.second.shader != 0) rtDeleteShader(entry.second.shader);
-    ration_.give(entry.second.bytes);
+    quota_.give(entry.second.bytes);
     return true;
   });
 }
@@ -179,10 +181,10 @@ void CustomShaders::sweep() {
 
 void CustomShaders::clear() {
   sweep();
-  for (const auto& [key, made] : made_)
+  for (const auto& [key, made] : entries_)
     if (made.shader != 0) rtDeleteShader(made.shader);
-  made_.clear();
-  ration_.clear();
+  entries_.clear();
+  quota_.clear();
 }
 
 } // namespace xvrml::mapper

@@ -1,5 +1,4 @@
-// environment.cpp: Background and Fog as the class VRML97Environment. Clauses 6.5 and 6.19. See
-// views.h.
+// environment.cpp: Background and Fog as the class VRML97Environment (clauses 6.5 and 6.19).
 #include "mapper/views.h"
 
 #include "xvrml/nodes.h"
@@ -42,7 +41,7 @@ void Environment::setBackground(ShaderSetup& shader, const nodes::Background& no
     if (textures[i] != 0 || !shader.fresh()) shader.texture(pictures[i].name, textures[i]);
 }
 
-// Clause 6.19: distances are measured in the fog's own coordinate system.
+// Sets the fog. Distances are measured in the fog's own coordinate system (clause 6.19).
 void Environment::setFog(ShaderSetup& shader) {
   const auto& fog = static_cast<const nodes::Fog&>(*fog_);
   Matrix toFog;
@@ -74,13 +73,13 @@ void Environment::clear() {
 
 void Environment::useCustom(nodes::ORTBackground& node) {
   auto* shader = nodeCast<nodes::ORTShader>(renderedNode(node.shader.get()));
-  used_ = shader ? custom_.of(*shader, RT_ENVIRONMENT) : 0;
+  used_ = shader ? custom_.shaderFor(*shader, RT_ENVIRONMENT) : 0;
   load(matrix_);
   rtUseEnvironment(used_);
   if (fog_) world_.diagnostics.warn(fog_->source, "Fog is not drawn with an ORTBackground");
 }
 
-void Environment::follow(const Places& places, const Bound& bound) {
+void Environment::updateForFrame(const Places& places, const Bound& bound) {
   const auto worldOf = [&](int32_t place) {
     return place == none ? Matrix() : places.all[size_t(place)].world;
   };

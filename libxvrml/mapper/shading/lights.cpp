@@ -1,4 +1,4 @@
-// lights.cpp: Clauses 4.6.6 (lights and their scope), 6.16, 6.35 and 6.45.
+// lights.cpp: lights and their scope (clauses 4.6.6, 6.16, 6.35 and 6.45).
 #include "mapper/shading/lights.h"
 
 #include <algorithm>
@@ -55,9 +55,9 @@ RTid Lights::shaderOf(Node& light) {
   if (fresh && isCustom(light)) {
     auto* shader =
         nodeCast<nodes::ORTShader>(renderedNode(static_cast<nodes::ORTLight&>(light).shader.get()));
-    it->second = {shader ? custom_.of(*shader, RT_LIGHT) : 0, false};
+    it->second = {shader ? custom_.shaderFor(*shader, RT_LIGHT) : 0, false};
   } else if (fresh) {
-    if (!ration_.take(bytesOfLightShader, light.source)) {
+    if (!quota_.take(bytesOfLightShader, light.source)) {
       shaders_.erase(it);
       return 0;
     }
@@ -83,25 +83,25 @@ void Lights::changed(Node& light) {
   report(world_.diagnostics, light.source, light.type().name);
 }
 
-void Lights::takeAway(RTid& light, uint64_t bytes) {
+void Lights::removeLight(RTid& light, uint64_t bytes) {
   if (light == 0) return;
   rtRemoveLight(light);
   light = 0;
-  ration_.give(bytes);
+  quota_.give(bytes);
   ++changes_;
 }
 
 void Lights::remove(const std::vector<Place>& gone) {
-  for (Place place : gone) takeAway(place.light);
+  for (Place place : gone) removeLight(place.light);
 }
 
 void Lights::clear(Places& places) {
-  for (Place& place : places.all) takeAway(place.light);
-  takeFromCamera();
+  for (Place& place : places.all) removeLight(place.light);
+  removeCameraLights();
   for (const auto& [node, known] : shaders_)
     if (known.own) rtDeleteShader(known.shader);
   if (headlight_.shader != 0) rtDeleteShader(headlight_.shader);
-  for (const AtCamera& one : modelLights_)
+  for (const CameraAttachedLight& one : modelLights_)
     if (one.shader != 0) rtDeleteShader(one.shader);
 }
 
@@ -110,51 +110,53 @@ void Lights::forget(const Graph& graph) {
     if (graph.find(known.first) != 0) return false;
     if (known.second.own) {
       rtDeleteShader(known.second.shader);
-      ration_.give(bytesOfLightShader);
+      quota_.give(bytesOfLightShader);
     }
     return true;
   });
 }
 
-// The order in which lights are made is that in which they are summed up: it has to be the order of
-// the places, whatever was there before. Lights behind a new one are made again.
-void Lights::follow(const Graph& graph, Places& places) {
+// Creates, moves and removes lights. Lights are summed in the order of their creation, which must
+// be the order of the places, whatever existed before. So all lights after a new one are created
+// again.
+void Lights::updateForFrame(const Graph& graph, Places& places) {
   count_ = 0;
   bool behindNew = false;
   for (Place& place : places.all) {
     const Item& item = graph.items[place.item];
     if (!isLight(item.kind)) continue;
     if (!place.active || !item.on || !finite(place.world)) {
-      takeAway(place.light);
+      removeLight(place.light);
       continue;
     }
     ++count_;
-    if (behindNew || remade_.contains(item.node.get())) takeAway(place.light);
+    if (behindNew || remade_.contains(item.node.get())) removeLight(place.light);
     behindNew |= place.light == 0;
     makeOrMove(place, item);
-    // A DirectionalLight shines on the descendants of its parent group only. The group's object
-    // holds nothing else: see Places. At the top level of the file that is everything.
+    // A DirectionalLight illuminates only the descendants of its parent group. The group has an
+    // object of its own for this (see Places). At the top level of the file its scope is the whole
+    // world.
     if (item.kind == Kind::directionalLight && place.light != 0 && place.parent != 0)
       scope(place, places);
   }
   remade_.clear();
-  if (behindNew) takeFromCamera();
+  if (behindNew) removeCameraLights();
 }
 
 void Lights::makeOrMove(Place& place, const Item& item) {
   if (place.light != 0 && place.lightMatrix == place.world) return;
   if (place.light == 0) {
-    const bool allowed = ration_.take(bytesOfLight, item.node->source);
-    const RTid shader =
-        allowed ? shaderOf(*item.node) : 0; // a light that is left out takes no shader either
+    const bool allowed = quota_.take(bytesOfLight, item.node->source);
+    // A light beyond the budget gets no shader either.
+    const RTid shader = allowed ? shaderOf(*item.node) : 0;
     if (shader == 0) {
-      if (allowed) ration_.give(bytesOfLight);
+      if (allowed) quota_.give(bytesOfLight);
       --count_;
       return;
     }
     load(place.world);
     place.light = rtUseLight(shader);
-    if (place.light == 0) ration_.give(bytesOfLight);
+    if (place.light == 0) quota_.give(bytesOfLight);
     place.lightScope = 0;
   } else {
     rtLightMatrix(place.light, data(place.world));
@@ -167,32 +169,32 @@ void Lights::makeOrMove(Place& place, const Item& item) {
 void Lights::scope(Place& place, const Places& places) {
   const RTid scope = places.all[places.splitAbove(place.parent)].instance;
   if (scope == 0)
-    return takeAway(
-        place.light); // the group itself could not be placed: nothing is there to shine on
+    return removeLight(
+        place.light); // the group could not be placed, so there is nothing to illuminate
   if (scope == place.lightScope) return;
   rtLightScope(place.light, scope);
   place.lightScope = scope;
   ++changes_;
 }
 
-void Lights::takeFromCamera() {
-  takeAway(headlight_.light, 0);
-  for (AtCamera& one : modelLights_) takeAway(one.light, 0);
+void Lights::removeCameraLights() {
+  removeLight(headlight_.light, 0);
+  for (CameraAttachedLight& one : modelLights_) removeLight(one.light, 0);
 }
 
 void Lights::atCamera(CameraLight light, const CameraSettings& camera) {
   static constexpr Lamp headlamp[] = {{{0, 0, -1}, 1}};
-  if (light != atCamera_) takeFromCamera();
+  if (light != atCamera_) removeCameraLights();
   atCamera_ = light;
   if (light == CameraLight::none) return;
   const bool head = light == CameraLight::head;
   const std::span<const Lamp> lamps =
       head ? std::span<const Lamp>(headlamp) : std::span<const Lamp>(modelLamps);
-  const std::span<AtCamera> used =
-      head ? std::span<AtCamera>(&headlight_, 1) : std::span<AtCamera>(modelLights_);
+  const std::span<CameraAttachedLight> used = head ? std::span<CameraAttachedLight>(&headlight_, 1)
+                                                   : std::span<CameraAttachedLight>(modelLights_);
   const Matrix view = rigid(fromArray(camera.matrix));
   for (size_t i = 0; i < used.size(); ++i) {
-    AtCamera& one = used[i];
+    CameraAttachedLight& one = used[i];
     ++count_;
     if (one.light != 0) {
       if (view != view_) rtLightMatrix(one.light, data(view));

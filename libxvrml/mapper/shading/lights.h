@@ -18,19 +18,20 @@ class Lights {
  public:
   Lights(World& world, bool linearColor, ShaderClasses& classes, CustomShaders& custom)
       : world_(world), linear_(linearColor), classes_(classes), custom_(custom),
-        ration_(world, "lights") {}
+        quota_(world, "lights") {}
 
-  // Makes, moves or removes the lights of all places. Objects and instances of the places must be
-  // there: scopes name them.
-  void follow(const Graph& graph, Places& places);
+  // Makes, moves or removes the lights of all places. The places' objects and instances must exist,
+  // because light scopes refer to them.
+  void updateForFrame(const Graph& graph, Places& places);
   // The fields of a light node have changed.
   void changed(Node& light);
-  // Places that are no more, items that are no more.
+  // Removes the lights of places that are gone (remove) and the shaders of nodes without items
+  // (forget).
   void remove(const std::vector<Place>& gone);
   void forget(const Graph& graph);
-  void clear(Places& places); // takes everything away
-  // Directional lights that go with the camera and cast no shadows: the headlight, or the three of
-  // model.h.
+  void clear(Places& places); // removes everything
+  // Sets the directional lights that move with the camera and cast no shadows: the headlight, or
+  // the three lights of model.h.
   void atCamera(CameraLight light, const CameraSettings& camera);
   uint64_t count() const { return count_; }
   uint64_t changes() const { return changes_; }
@@ -39,31 +40,31 @@ class Lights {
  private:
   void makeOrMove(Place& place, const Item& item);
   void scope(Place& place, const Places& places);
-  // Removes a light; bytes: what of the world's budget it gives back (those at the camera took
+  // Removes a light. bytes: what it gives back to the world's budget (lights at the camera took
   // nothing).
-  void takeAway(RTid& light, uint64_t bytes = bytesOfLight);
+  void removeLight(RTid& light, uint64_t bytes = bytesOfLight);
   RTid shaderOf(Node& light);
 
   World& world_;
   bool linear_;
   ShaderClasses& classes_;
   CustomShaders& custom_;
-  struct AtCamera {
+  struct CameraAttachedLight {
     RTid light = 0, shader = 0;
   };
-  void takeFromCamera();
+  void removeCameraLights();
 
   CameraLight atCamera_ = CameraLight::none;
-  AtCamera headlight_, modelLights_[3];
-  Matrix view_; // of the lights at the camera
-  Ration ration_;
+  CameraAttachedLight headlight_, modelLights_[3];
+  Matrix view_; // camera matrix of the lights at the camera
+  Quota quota_;
   uint64_t count_ = 0, changes_ = 0, sets_ = 0;
-  struct Known {
+  struct LightShader {
     RTid shader = 0;
-    bool own = true; // not that of an ORTShader
+    bool own = true; // false for the shader of an ORTShader
   };
-  std::unordered_map<const Node*, Known> shaders_; // of nodes that have items
-  std::unordered_set<const Node*> remade_;         // ORTLights that have another shader than before
+  std::unordered_map<const Node*, LightShader> shaders_; // by node; only nodes that have items
+  std::unordered_set<const Node*> remade_;               // ORTLights whose shader has been replaced
 };
 
 } // namespace xvrml::mapper

@@ -1,5 +1,5 @@
-// shader_options.cpp: see shader_options.h.
-//   options := { option };  option := type name value*;  as many values as the type says.
+// shader_options.cpp: the parser of shader options.
+//   options := { option };  option := type name value*;  the type determines the number of values.
 #include "mapper/shading/shader_options.h"
 
 #include <charconv>
@@ -41,7 +41,7 @@ int floatsOf(std::string_view type) {
   return type == "16f" ? 16 : type == "color" ? 3 : 0;
 }
 
-// Reads the values of one option; the error, or empty.
+// Reads the values of one option. Returns the error, or "".
 std::string readValues(Words& words, std::string_view type, ShaderOption& option) {
   const auto missing = [&] {
     return "option " + option.name + ": too few values for " + std::string(type);
@@ -110,7 +110,7 @@ std::vector<ShaderOption> parseShaderOptions(const MFString& options,
             name ? "option type '" + std::string(*type) +
                        "': expected 1i 1f 2f 3f 4f 16f bool color string texture file or floats"
                  : "option '" + std::string(*type) + "' has no name");
-        break; // the rest of this string cannot be made sense of
+        break; // the rest of this string cannot be parsed
       }
       if (result.size() == maximumShaderOptions) {
         errors.push_back("more than " + std::to_string(maximumShaderOptions) +

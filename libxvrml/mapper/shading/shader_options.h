@@ -1,5 +1,5 @@
-// shader_options.h: the options of an ORTShader node: "3f reflectance .9 .9 .9", one or several in
-// a string. Pure, any thread.
+// shader_options.h: parses the options of an ORTShader node: "3f reflectance .9 .9 .9", one or
+// several in a string. Pure, any thread.
 #pragma once
 
 #include <string>
@@ -22,17 +22,18 @@ struct ShaderOption {
     file
   } type = Type::floats;
   std::string name;
-  std::vector<float> numbers; // 1f 2f 3f 4f 16f color floats; 1i and bool: integer below
+  std::vector<float> numbers; // for 1f 2f 3f 4f 16f color floats; 1i and bool use `integer`
   int integer = 0;
-  std::string text; // string, texture, file
+  std::string text; // for string, texture, file
 };
 
-// More options than any shader has parameters; an option takes twenty times the memory of its text.
+// More than any shader has parameters. An option takes twenty times the memory of its text.
 inline constexpr size_t maximumShaderOptions = 10'000;
 
-// What could be read, in order; what could not, in errors, one sentence each. Types: 1i 1f 2f 3f 4f
-// 16f bool color string texture file floats. A string or a URL runs to the next blank, or stands in
-// 'single quotes'; a list of floats goes on as long as numbers follow.
+// Returns the valid options in order; `errors` receives one sentence per invalid option.
+// Types: 1i 1f 2f 3f 4f 16f bool color string texture file floats.
+// A string or URL ends at the next blank or comma, or is enclosed in 'single quotes'. A list of
+// floats ends at the first word that is not a number.
 std::vector<ShaderOption> parseShaderOptions(const MFString& options,
                                              std::vector<std::string>& errors);
 

@@ -21,7 +21,7 @@ bool usable(const Image& image) {
 
 bool usable(const RadianceImage& image) { return image.width > 0 && image.height > 0; }
 
-// A node that gives its picture itself, now: the picture, or null if it has none at present.
+// The picture of a node that owns its pixels; `image` is null if it has none at present.
 struct OwnImage {
   const Image* image = nullptr;
   bool repeatS = true, repeatT = true;
@@ -44,7 +44,7 @@ bool ownImage(Node& node, OwnImage& own) {
 RTid Textures::ofNode(Node* texture) {
   Node* node = renderedNode(texture);
   if (!node) return 0;
-  const auto [it, fresh] = nodes_.try_emplace(node, Known{NodeRef(node), 0});
+  const auto [it, fresh] = nodes_.try_emplace(node, TextureEntry{NodeRef(node), 0});
   if (!fresh) return it->second.id;
   const RTid id = makeNode(*node);
   return nodes_[node].id = id;
@@ -84,19 +84,19 @@ void Textures::clear() {
 
 bool Textures::changed(Node& node) {
   const auto found = nodes_.find(&node);
-  if (found == nodes_.end()) return false; // read when it is first used
+  if (found == nodes_.end()) return false; // loaded on first use
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
     try {
       upload(before, *own.image);
-    } catch (const std::runtime_error& failure) { // the picture before stays
+    } catch (const std::runtime_error& failure) { // the previous picture stays
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
     }
     report(world_.diagnostics, node.source, node.type().name);
     return false;
   }
-  if (OwnImage own; before != 0 && ownImage(node, own)) { // it has none any more
+  if (OwnImage own; before != 0 && ownImage(node, own)) { // it has no picture any more
     remove(before);
     --count_;
   }
@@ -150,7 +150,8 @@ RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::
   return id;
 }
 
-// What pictures of files hold in all: 4 bytes for each pixel that a single one may have.
+// Returns how many bytes pictures from files may still take. All together may take 4 bytes for each
+// pixel that a single one may have.
 uint64_t Textures::room() const {
   const uint64_t pixels = world_.options.limits.imagePixels;
   const uint64_t most = pixels > ~uint64_t(0) / 4 ? ~uint64_t(0) : 4 * pixels;
@@ -165,7 +166,7 @@ void Textures::remove(RTid texture) {
   }
 }
 
-// Counts the bytes of a texture's pixels from now on.
+// Charges a texture's pixels to the budget.
 void Textures::take(RTid texture, uint64_t wanted) {
   uint64_t& bytes = bytes_[texture];
   if (wanted > bytes && !share_.take(wanted - bytes))

@@ -1,5 +1,5 @@
-// textures.h: the pictures of a world as OpenRT textures, one per node and one per file and way of
-// repeating. Made by the mapper's thread when first used.
+// textures.h: the pictures of a world as OpenRT textures: one per node, or one per file and repeat
+// mode. Made on first use. [the mapper's thread]
 #pragma once
 
 #include <map>
@@ -19,16 +19,16 @@ class Textures {
   Textures(World& world, bool linearColor)
       : world_(world), srgb_(linearColor), share_(budgetOf(world)) {}
 
-  // Of an ImageTexture, PixelTexture or MovieTexture node (or null); 0: there is none, or it could
-  // not be had (said once).
+  // Returns the texture of an ImageTexture, PixelTexture or MovieTexture node (or null). Returns 0
+  // if there is none or it cannot be loaded (reported once).
   RTid ofNode(Node* texture);
-  // The first URL of a list that leads to a picture. node: for messages and as the file that
-  // relative URLs mean.
+  // Returns the first URL of a list that leads to a picture. node: for messages, and its file is
+  // the base of relative URLs.
   RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
-  // A black texel: what is shown in place of a sky whose picture cannot be had.
+  // Returns a black texel, used for an environment whose picture cannot be loaded.
   RTid black();
-  // A texture node has another picture: it is handed over again, under the same id where the
-  // picture is the node's own. True if ofNode() now gives another id.
+  // Uploads the new picture of a texture node, under the same id if the node owns its picture.
+  // Returns true if ofNode() now returns another id.
   bool changed(Node& texture);
   void clear(); // deletes everything
   uint64_t loaded() const { return loaded_; }
@@ -40,13 +40,13 @@ class Textures {
   // Throws std::runtime_error if the world's budget does not allow the picture.
   template <class Picture> RTid make(const Picture& image, bool repeatS, bool repeatT);
   void upload(RTid texture, const Image& image);
-  void upload(RTid texture, const RadianceImage& image); // numbers are used as they are
+  void upload(RTid texture, const RadianceImage& image); // values are used unchanged
   void take(RTid texture, uint64_t bytes);
   void remove(RTid texture);
-  uint64_t room() const; // bytes that still pictures may still take
+  uint64_t room() const; // bytes that still images may still take
   RTid makeNode(Node& texture);
 
-  struct Known {
+  struct TextureEntry {
     NodeRef node;
     RTid id = 0;
   };
@@ -55,9 +55,9 @@ class Textures {
   Share share_;                              // of the world's budget
   std::unordered_map<RTid, uint64_t> bytes_; // of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
-  std::unordered_map<const Node*, Known> nodes_;
-  std::map<std::tuple<std::string, bool, bool>, std::pair<RTid, std::string>>
-      files_; // texture, or why there is none
+  std::unordered_map<const Node*, TextureEntry> nodes_;
+  // The texture of each file and repeat mode, or the reason why there is none.
+  std::map<std::tuple<std::string, bool, bool>, std::pair<RTid, std::string>> files_;
 };
 
 } // namespace xvrml::mapper

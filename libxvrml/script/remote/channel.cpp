@@ -1,4 +1,4 @@
-// channel.cpp: Part of the library and of xvrml-script-host.
+// channel.cpp: messages over a socket. Part of the library and of xvrml-script-host.
 #include "script/remote/channel.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t chunk = 64 << 10;
 
-// Waits until the socket is ready; false if it is not in time.
+// Waits until the socket is ready. Returns false on a timeout.
 bool wait(int socket, short what, Clock::time_point until) {
   for (;;) {
     const auto left =
@@ -23,7 +23,7 @@ bool wait(int socket, short what, Clock::time_point until) {
     const timespec time{time_t(left / 1'000'000'000), long(left % 1'000'000'000)};
     pollfd ready{socket, what, 0};
     const int count = ppoll(&ready, 1, &time, nullptr);
-    if (count > 0) return true; // errors, too: the call that follows tells
+    if (count > 0) return true; // also on errors, which the next call reports
     if (count < 0 && errno != EINTR) return true;
   }
 }
@@ -49,67 +49,69 @@ bool Channel::send(std::string_view message) {
   return true;
 }
 
-Channel::Got Channel::some(char* to, size_t room, Clock::time_point until, size_t& got) {
+Channel::Received Channel::receiveSome(char* to, size_t room, Clock::time_point until,
+                                       size_t& got) {
   for (;;) {
     const ssize_t count = recv(socket_, to, room, until == never ? 0 : MSG_DONTWAIT);
     if (count > 0) {
       got = size_t(count);
-      return Got::message;
+      return Received::message;
     }
-    if (count == 0) return Got::closed;
+    if (count == 0) return Received::closed;
     if (errno == EAGAIN) {
-      if (!wait(socket_, POLLIN, until)) return Got::nothing;
+      if (!wait(socket_, POLLIN, until)) return Received::nothing;
     } else if (errno != EINTR) {
-      return Got::closed;
+      return Received::closed;
     }
   }
 }
 
-// At least one byte to place arrived_ of `to`, at most as many as wanted: what has arrived before,
-// or from the socket.
-Channel::Got Channel::fill(char* to, size_t wanted, Clock::time_point until) {
+// Appends between one and `wanted` bytes at to + arrived_, from the buffer or from the socket.
+Channel::Received Channel::fill(char* to, size_t wanted, Clock::time_point until) {
   size_t got = 0;
-  if (used_ == filled_ && wanted >= chunk) { // not copied twice
-    const Got result = some(to + arrived_, wanted, until, got);
+  if (used_ == filled_ && wanted >= chunk) { // avoids a second copy
+    const Received result = receiveSome(to + arrived_, wanted, until, got);
     arrived_ += got;
     return result;
   }
   if (used_ == filled_) {
-    ahead_.resize(chunk);
+    buffer_.resize(chunk);
     used_ = filled_ = 0;
-    if (const Got result = some(ahead_.data(), chunk, until, filled_); result != Got::message)
+    if (const Received result = receiveSome(buffer_.data(), chunk, until, filled_);
+        result != Received::message)
       return result;
   }
   got = std::min(wanted, filled_ - used_);
-  std::memcpy(to + arrived_, ahead_.data() + used_, got);
+  std::memcpy(to + arrived_, buffer_.data() + used_, got);
   used_ += got;
   arrived_ += got;
-  return Got::message;
+  return Received::message;
 }
 
-Channel::Got Channel::receive(Message& message, Clock::time_point until) {
+Channel::Received Channel::receive(Message& message, Clock::time_point until) {
   while (!headed_) {
-    const Got got =
+    const Received got =
         fill(reinterpret_cast<char*>(&partial_.header), sizeof(Header) - arrived_, until);
-    if (got != Got::message) return got;
+    if (got != Received::message) return got;
     if (arrived_ < sizeof(Header)) continue;
-    if (partial_.header.bytes > maximumMessage || partial_.header.bytes % 8 != 0) return Got::bad;
+    if (partial_.header.bytes > maximumMessage || partial_.header.bytes % 8 != 0)
+      return Received::bad;
     headed_ = true;
     arrived_ = 0;
     partial_.bytes.clear();
   }
   while (arrived_ < partial_.header.bytes) {
-    // Memory as it arrives, not as it is claimed.
+    // Allocate memory as bytes arrive, not as the header claims.
     const size_t room =
         std::min<size_t>(partial_.header.bytes, std::max<size_t>(2 * arrived_, 16 * chunk));
     partial_.bytes.resize(room);
-    const Got got = fill(partial_.bytes.data(), room - arrived_, until);
-    if (got != Got::message) return got;
+    const Received got = fill(partial_.bytes.data(), room - arrived_, until);
+    if (got != Received::message) return got;
   }
   headed_ = false;
   arrived_ = 0;
   std::swap(message, partial_);
-  return Got::message;
+  return Received::message;
 }
 
 } // namespace xvrml::wire

@@ -26,10 +26,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* programName = "xvrml-script-host";
-// What engines may need of the environment while they are prepared; it is empty when a program of a
-// Script runs. No LD_LIBRARY_PATH: whoever sets it for another program, perhaps with an empty
-// element for the current folder, would choose this one's libraries.
-constexpr std::array passedOn = {"TCL_LIBRARY", "ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS"};
+// Environment variables that engines may need while they are prepared; the environment is empty
+// when a Script's program runs. LD_LIBRARY_PATH is not passed on. A user may have set it for
+// another program, perhaps with an empty element for the current folder, and it would choose this
+// program's libraries.
+constexpr std::array inheritedVariables = {"TCL_LIBRARY", "ASAN_OPTIONS", "UBSAN_OPTIONS",
+                                           "TSAN_OPTIONS"};
 
 bool usable(const fs::path& program, std::string& why) {
   if (access(program.c_str(), X_OK) != 0)
@@ -102,19 +104,19 @@ int Child::start(const std::string& program, std::string& why) {
   sigemptyset(&none);
   sigfillset(&all);
   posix_spawnattr_setflags(&actions.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
-                                                    POSIX_SPAWN_SETSID); // no Ctrl-C
+                                                    POSIX_SPAWN_SETSID); // not ended by Ctrl-C
   posix_spawnattr_setsigmask(&actions.attributes, &none);
   posix_spawnattr_setsigdefault(&actions.attributes, &all);
   std::string name = program, parent = std::to_string(getpid());
   char* arguments[] = {name.data(), parent.data(), nullptr};
   std::vector<std::string> variables;
-  for (const char* variable : passedOn)
+  for (const char* variable : inheritedVariables)
     if (const char* value = std::getenv(variable); value && *value)
       variables.push_back(fmt::format("{}={}", variable, value));
   std::vector<char*> environment;
   for (std::string& variable : variables) environment.push_back(variable.data());
   environment.push_back(nullptr);
-  // Not fork: that would copy the page tables of a browser with gigabytes of geometry.
+  // Use posix_spawn: fork would copy the page tables of a browser with gigabytes of geometry.
   const int error = posix_spawn(&pid_, program.c_str(), &actions.files, &actions.attributes,
                                 arguments, environment.data());
   close(ends[1]);
@@ -152,20 +154,21 @@ bool Child::computes() const {
   if (!file) return false;
   const size_t got = std::fread(line, 1, sizeof line - 1, file);
   std::fclose(file);
-  const size_t name =
-      std::string_view(line, got).rfind(") "); // the state follows on the program's name
+  // The state follows the program's name.
+  const size_t name = std::string_view(line, got).rfind(") ");
   return name != std::string_view::npos && name + 2 < got && line[name + 2] == 'R';
 }
 
 void Child::kill() noexcept {
-  if (pid_ <= 0 || ended_ || owner_ != getpid()) return; // not by a copy that fork() has made
+  if (pid_ <= 0 || ended_ || owner_ != getpid()) return; // not in a copy made by fork()
   if (descriptor_ >= 0)
     syscall(SYS_pidfd_send_signal, descriptor_, SIGKILL, nullptr, 0);
   else
     ::kill(pid_, SIGKILL);
 }
 
-// Somebody else may have waited for it: then nothing is known of its end.
+// Waits for the end. If the application has already waited for the process, the exit status stays
+// unknown.
 bool Child::reap(int milliseconds) noexcept {
   if (ended_ || pid_ <= 0 || owner_ != getpid()) return true;
   for (int left = milliseconds;; left -= 5) {
@@ -191,7 +194,7 @@ std::string Child::ending() {
   if (!known_) return "ended";
   if (WIFEXITED(status_)) return fmt::format("ended with code {}", WEXITSTATUS(status_));
   const int signal = WTERMSIG(status_);
-  constexpr long much = 64 * 1024; // kB, more than any language needs for itself
+  constexpr long much = 64 * 1024; // in kB, more than any language needs for itself
   return fmt::format("ended by signal {} ({})", signal,
                      sigdescr_np(signal) ? sigdescr_np(signal) : "?") +
          (peak_ > much ? fmt::format(", having used {} MB", peak_ / 1024) : "");

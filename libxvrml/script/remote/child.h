@@ -1,7 +1,7 @@
-// child.h: a process of the program xvrml-script-host: where the program is, starting it at one end
-// of a socket pair, its memory limit, its end. Everything of Linux that the browser's side needs is
-// in child.cpp. Other children of the program that uses the library are left alone: only own
-// processes are waited for. [the browser's thread]
+// child.h: a process of the program xvrml-script-host: finds the program, starts it at one end of a
+// socket pair, limits its memory and ends it. The Linux-specific code of the browser's side is in
+// child.cpp. It waits for its own processes only and leaves other children of the application
+// alone. [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,28 @@
 
 namespace xvrml {
 
-// $XVRML_SCRIPT_HOST, or the program that is installed (or built) with the library; "" if it is not
-// there, and why.
+// Returns $XVRML_SCRIPT_HOST, or the program installed (or built) with the library. Returns "",
+// with the reason, if there is none.
 std::string findScriptHostProgram(std::string& why);
 
 class Child {
  public:
   Child() = default;
-  ~Child(); // ends it
+  ~Child(); // kills the process
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Starts the program; its end of the socket pair is file descriptor 3, all others but the
-  // standard ones are closed, and these lead nowhere. It ends with this process. Returns the own
-  // end, or -1 and why.
+  // Starts the program. Its end of the socket pair is file descriptor 3. Standard input, output and
+  // error are /dev/null; all other descriptors are closed. The program ends with this process.
+  // Returns the browser's end, or -1 with the reason.
   int start(const std::string& program, std::string& why);
   void limitMemory(uint64_t bytes); // of address space
   void kill() noexcept;
-  // How it ended, for people: "ended with code 1"; waits for that for a moment, then kills it.
+  // Returns how the process ended, for messages: "ended with code 1". It waits briefly for the end,
+  // then kills the process.
   std::string ending();
   pid_t number() const { return pid_; }
-  // Returns the processor time that it has used, in seconds; 0 if that is not known.
+  // Returns the processor time used, in seconds; 0 if unknown.
   double processorSeconds() const;
   // Returns true if it computes, or would if a processor were free; false if it waits or sleeps.
   bool computes() const;
@@ -39,10 +40,10 @@ class Child {
  private:
   bool reap(int milliseconds) noexcept;
   pid_t pid_ = 0, owner_ = 0;
-  int descriptor_ = -1; // names this process and no later one of the same number
+  int descriptor_ = -1; // pidfd: refers to this process even if its number is reused
   bool ended_ = false, known_ = false;
   int status_ = 0;
-  long peak_ = 0; // kB
+  long peak_ = 0; // in kB
 };
 
 } // namespace xvrml

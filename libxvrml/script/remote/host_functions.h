@@ -1,9 +1,8 @@
 // host_functions.h: the functions of XsHost that go through a process's socket, in the order of
-// their numbers there, and how each is served in the browser: arguments read, the host's own
-// function called, its answer written. Coded by the C types of the arguments alone: nothing here
-// knows what a function does. The helper's side is in tools/script_host/forward.h. Functions that
-// the helper answers itself (now, shouldStop, lastError) and those of trusted worlds (object,
-// number) are not among them.
+// their numbers, and how the browser serves them: it reads the arguments, calls the host's function
+// and writes the answer. The coding depends only on the C types of the arguments. The helper's side
+// is in tools/script_host/forward.h. The list omits the functions that the helper answers itself
+// (now, shouldStop, lastError) and those of trusted worlds (object, number).
 #pragma once
 
 #include <cstring>
@@ -25,7 +24,7 @@ using HostFunctions = FunctionList<
     &XsHost::setDescription, &XsHost::replaceWorld, &XsHost::loadUrl, &XsHost::createVrmlFromUrl,
     &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute, &XsHost::log>;
 
-// Places for what a function gives out.
+// Output arguments.
 template <class T> constexpr bool isOut =
     std::is_same_v<T, XsValue*> || std::is_same_v<T, XsString*> || std::is_same_v<T, XsField*> ||
     std::is_same_v<T, XsNodeInfo*>;
@@ -48,7 +47,8 @@ struct Argument<T> {
   void write(Writer& out) const { out.put(value); }
 };
 
-// False if the message is none that this function can have. out: the answer, begun.
+// Serves one function. Returns false if the message does not fit it. out: the answer, already
+// begun.
 template <class R, class... A> bool serveOne(R (*XsHost::*function)(const XsHost*, XsNode, A...),
                                              const XsHost& host, XsNode self, Reader& in,
                                              Writer& out) {
@@ -83,10 +83,10 @@ template <class R, class... A> constexpr bool answers(R (*XsHost::*)(const XsHos
 
 struct Served {
   bool good;    // false: not a message of this protocol
-  bool answers; // whoever asked waits for it
+  bool answers; // the sender waits for the answer
 };
 
-// One message of a helper.
+// Serves one message of a helper.
 template <auto... Members>
 Served serve(FunctionList<Members...>, const XsHost& host, const Message& message, Writer& out) {
   using Serve = bool (*)(const XsHost&, XsNode, Reader&, Writer&);

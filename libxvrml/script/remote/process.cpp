@@ -14,7 +14,7 @@ using namespace wire;
 namespace {
 
 constexpr double startSeconds = 20;  // a process that is not ready by then never will be
-constexpr uint64_t slack = 64 << 20; // messages, and what a library takes when it is first used
+constexpr uint64_t slack = 64 << 20; // for messages, and for what a library allocates on first use
 
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 Clock::duration duration(double s) {
@@ -46,14 +46,14 @@ ScriptProcess::ScriptProcess(int socket, ProcessSettings settings, const XsHost&
 
 bool ScriptProcess::ready() {
   if (ready_ || dead()) return !dead();
-  const Channel::Got got = channel_->receive(message_, Clock::now() + duration(startSeconds));
+  const Channel::Received got = channel_->receive(message_, Clock::now() + duration(startSeconds));
   Reader in(message_);
-  if (got == Channel::Got::nothing) {
+  if (got == Channel::Received::nothing) {
     kill(fmt::format("is not ready after {} s", startSeconds));
-  } else if (got == Channel::Got::message && message_.header.op == uint16_t(Op::failed)) {
+  } else if (got == Channel::Received::message && message_.header.op == uint16_t(Op::failed)) {
     const auto why = in.take<XsString>();
     kill(in.complete() ? std::string(why.data, why.bytes) : "cannot serve");
-  } else if (got == Channel::Got::message && message_.header.op == uint16_t(Op::ready)) {
+  } else if (got == Channel::Received::message && message_.header.op == uint16_t(Op::ready)) {
     base_ = in.take<uint64_t>();
     ready_ = in.complete();
     if (!ready_) kill("broke the protocol");
@@ -70,7 +70,7 @@ void ScriptProcess::add() {
 }
 
 ScriptProcess::State ScriptProcess::lost(State state, std::string why) {
-  channel_.reset(); // first: it may be waiting for us
+  channel_.reset(); // first, because the process may be waiting for us
   if (why.empty())
     why = child_.ending();
   else
@@ -91,7 +91,7 @@ bool ScriptProcess::begin(Writer& call) {
     return false;
   }
   busy_ = true;
-  follows_ =
+  initializeFollows_ =
       call.header().op == uint16_t(Op::create) && (call.header().flags & Flags::thenInitialize);
   callBegins();
   return true;
@@ -100,55 +100,56 @@ bool ScriptProcess::begin(Writer& call) {
 void ScriptProcess::callBegins() {
   used_ = shared_ = 0;
   processor_ = child_.processorSeconds();
-  left_ = Clock::now();
+  lastServed_ = Clock::now();
 }
 
 double ScriptProcess::takeProcessorTime() {
-  const double now = dead() ? taken_ : child_.processorSeconds();
-  return std::max(0.0, now - std::exchange(taken_, now));
+  const double now = dead() ? reportedProcessor_ : child_.processorSeconds();
+  return std::max(0.0, now - std::exchange(reportedProcessor_, now));
 }
 
-double ScriptProcess::missing(double limit) {
+double ScriptProcess::grantExtraTime(double limit) {
   const double left = limit - (child_.processorSeconds() - processor_);
-  if (left <= 0 || shared_ >= mostShared * limit || !child_.computes()) return 0;
+  if (left <= 0 || shared_ >= maximumWaitFactor * limit || !child_.computes()) return 0;
   const double given = std::max(left, 0.01);
   shared_ += given;
   return given;
 }
 
-// The time on the wall counts, but not what the host's functions take, nor the time in which the
-// program waited for a processor, and little of what an application does between two ticks.
+// Serves the running call. Wall clock time counts, except the time spent in the host's functions
+// and the time in which the program waited for a processor. The application's time between two
+// ticks hardly counts.
 ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time_point until,
                                           double time) {
   constexpr double mostBetween = 0.1;
   const double limit = settings_.seconds + grace;
-  used_ += std::min(seconds(Clock::now() - left_), mostBetween);
+  used_ += std::min(seconds(Clock::now() - lastServed_), mostBetween);
   auto start = Clock::now();
   const auto leave = [&](State state) {
-    left_ = Clock::now();
-    used_ += seconds(left_ - start);
+    lastServed_ = Clock::now();
+    used_ += seconds(lastServed_ - start);
     return state;
   };
   for (double patience = first;; patience = next) {
     const auto now = Clock::now();
     const auto hard = start + duration(limit - used_);
-    const Channel::Got got = channel_->receive(
+    const Channel::Received got = channel_->receive(
         message_, std::max(now, std::min({until, hard, now + duration(patience)})));
-    if (got == Channel::Got::nothing && Clock::now() >= hard) {
-      const double more = missing(limit);
+    if (got == Channel::Received::nothing && Clock::now() >= hard) {
+      const double more = grantExtraTime(limit);
       if (more <= 0) return lost(State::tooLong, "took too long");
       start += duration(more);
       continue;
     }
-    if (got == Channel::Got::nothing) return leave(State::running);
-    if (got == Channel::Got::closed) return lost(State::died, {});
-    if (got == Channel::Got::bad) return lost(State::died, "sent a message that is too long");
+    if (got == Channel::Received::nothing) return leave(State::running);
+    if (got == Channel::Received::closed) return lost(State::died, {});
+    if (got == Channel::Received::bad) return lost(State::died, "sent a message that is too long");
     if (message_.header.op == uint16_t(Op::done)) {
       if (!message_.bytes.empty()) return lost(State::died, "broke the protocol");
       const int32_t answer = message_.header.result;
       result_ = answer >= XS_OK && answer <= XS_FAILED ? XsResult(answer) : XS_FAILED;
       stopped_ = message_.header.flags & Flags::stopped;
-      busy_ = std::exchange(follows_, false) && result_ == XS_OK && !stopped_;
+      busy_ = std::exchange(initializeFollows_, false) && result_ == XS_OK && !stopped_;
       if (busy_) callBegins();
       return State::returned;
     }
@@ -157,7 +158,7 @@ ScriptProcess::State ScriptProcess::serve(double first, double next, Clock::time
     const auto answered = Clock::now();
     start += answered - asked;
     if (answered >= start + duration(limit - used_)) {
-      const double more = missing(limit);
+      const double more = grantExtraTime(limit);
       if (more <= 0) return lost(State::tooLong, "took too long");
       start += duration(more);
     }

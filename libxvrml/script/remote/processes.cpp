@@ -7,7 +7,7 @@ namespace xvrml {
 
 ScriptProcesses::~ScriptProcesses() {
   for (const ProcessRef& process : all_)
-    process->kill("is not needed any more"); // all at once, then each is waited for
+    process->kill("is not needed any more"); // kill all at once, then wait for each
 }
 
 bool ScriptProcesses::start(const ProcessSettings& settings) {

@@ -1,5 +1,6 @@
-// processes.h: the processes of a world's Scripts. Each Script has one of its own up to a number,
-// then they share; those whose Scripts have ended are used again. [the browser's thread]
+// processes.h: the processes for a world's Scripts. Each Script gets a process of its own up to a
+// maximum number; then they share. A process whose Scripts have ended is reused. [the browser's
+// thread]
 #pragma once
 
 #include <map>
@@ -12,18 +13,19 @@ using ProcessRef = std::shared_ptr<ScriptProcess>;
 
 class ScriptProcesses {
  public:
-  static constexpr size_t most = 16; // of a world; an engine always gets one
-  static constexpr size_t mostEnded =
-      100; // by programs: starting ever more of them takes time, too
+  static constexpr size_t most = 16; // per world; every engine gets at least one
+  // The number of processes that programs may end. It bounds the time spent on starting new ones.
+  static constexpr size_t mostEnded = 100;
   explicit ScriptProcesses(const XsHost& host) : host_(host) {}
   ~ScriptProcesses();
   ScriptProcesses(const ScriptProcesses&) = delete;
   ScriptProcesses& operator=(const ScriptProcesses&) = delete;
 
-  // The process for another interpreter: ready, perhaps busy. coming: how many more will be asked
-  // for soon; they start side by side. Null if none can be started, and why.
+  // Returns a process for another interpreter: ready, perhaps busy. coming: how many more will be
+  // requested soon; they are started in parallel. Returns null, with the reason, if none can be
+  // started.
   ProcessRef choose(const ProcessSettings& settings, size_t coming, std::string& why);
-  void trim(); // of those that nobody is in, one is kept for the next Script
+  void trim(); // keeps only one of the unused processes, for the next Script
   void programEnded() { ++ended_; }
   void remove(const ScriptProcess& process);
   const std::vector<ProcessRef>& all() const { return all_; }
@@ -34,7 +36,8 @@ class ScriptProcesses {
   std::string program_, noProgram_;
   std::vector<ProcessRef> all_;
   size_t ended_ = 0;
-  std::map<std::string, std::string> unusable_; // library and engine: why no process can be started
+  // By library and engine: the reason why no process can be started.
+  std::map<std::string, std::string> unusable_;
 };
 
 } // namespace xvrml

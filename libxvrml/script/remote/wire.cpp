@@ -1,4 +1,4 @@
-// wire.cpp: Part of the library and of xvrml-script-host.
+// wire.cpp: message coding. Part of the library and of xvrml-script-host.
 #include "script/remote/wire.h"
 
 #include <cstring>
@@ -11,7 +11,7 @@ namespace xvrml::wire {
 namespace {
 
 constexpr uint64_t word = 8;
-constexpr uint64_t absent = ~uint64_t(0); // in place of a length: NULL
+constexpr uint64_t absent = ~uint64_t(0); // stands for NULL in place of a length
 constexpr uint64_t padding(uint64_t size) { return (word - size % word) % word; }
 
 } // namespace
@@ -34,7 +34,7 @@ const char* functionName(Op op) {
 // --- Writer ---
 
 void Writer::begin(Op op, uint32_t script, double time) {
-  constexpr size_t keep = 1 << 20; // memory of a long message is given back
+  constexpr size_t keep = 1 << 20; // larger buffers are freed
   if (bytes_.capacity() > keep) bytes_ = {};
   bytes_.resize(sizeof(Header));
   header() = {0, uint16_t(op), 0, script, 0, time};
@@ -56,7 +56,8 @@ void Writer::put(double number) { raw(&number, sizeof number); }
 
 void Writer::put(const char* name) { put(XsString{name, name ? std::strlen(name) : 0}); }
 
-// Length; claimed length of a text that is not there; characters with a zero.
+// Writes a text: its length, then its characters and a zero. A missing text is `absent` and its
+// claimed length.
 void Writer::put(const XsString& text) {
   if (!text.data) {
     put(absent);
@@ -67,7 +68,7 @@ void Writer::put(const XsString& text) {
   tooLong_ = tooLong_ || text.bytes >= maximumMessage;
   if (tooLong_) return;
   raw(text.data, text.bytes);
-  if (padding(text.bytes) == 0) put(uint64_t(0)); // else the zero is in the padding
+  if (padding(text.bytes) == 0) put(uint64_t(0)); // otherwise the padding contains the zero
 }
 
 void Writer::put(const XsValue* value) {
@@ -161,13 +162,13 @@ void Reader::get(XsString& text) {
   if (size == absent) return get(text.bytes);
   const char* data = good_ && size < maximumMessage
                          ? raw(size + 1)
-                         : nullptr; // its zero is in the padding, or the next word
+                         : nullptr; // the zero is in the padding or in the next word
   good_ = data && data[size] == 0;
   if (good_) text = {data, size};
 }
 
 const XsString* Reader::strings(uint64_t count) {
-  good_ = good_ && count <= uint64_t(end_ - at_) / (2 * word); // none is shorter
+  good_ = good_ && count <= uint64_t(end_ - at_) / (2 * word); // no text is shorter than two words
   if (!good_) return nullptr;
   std::vector<XsString>& list = strings_.emplace_back(count);
   for (XsString& text : list) get(text);
@@ -203,8 +204,8 @@ void Reader::get(const XsValue*& value) {
       if (size == absent) continue;
       const bool sizes =
           image.width >= 0 && image.height >= 0 && image.components >= 0 && image.components <= 4;
-      const uint64_t pixels =
-          sizes ? uint64_t(image.width) * uint64_t(image.height) : 0; // below 2^62
+      // This is below 2^62.
+      const uint64_t pixels = sizes ? uint64_t(image.width) * uint64_t(image.height) : 0;
       good_ = good_ && size == pixels * uint64_t(sizes ? image.components : 0);
       image.pixels = reinterpret_cast<const uint8_t*>(raw(size));
     }

@@ -1,7 +1,7 @@
-// wire.h: the messages between a browser and xvrml-script-host, coded once for both: a header, then
-// words of 8 bytes. What goes across is what the functions of xscript.h take and give: numbers,
-// texts, typed arrays. A Reader believes nothing: sizes, counts and texts are checked against what
-// has arrived. [one thread each]
+// wire.h: the messages between a browser and xvrml-script-host, coded once for both sides: a
+// header, then words of 8 bytes. They carry the arguments and results of the functions of
+// xscript.h: numbers, texts, typed arrays. A Reader trusts nothing: it checks sizes, counts and
+// texts against the bytes received. [one thread each]
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,10 @@
 namespace xvrml::wire {
 
 constexpr uint32_t version = 2;
-constexpr uint32_t maximumMessage = 256u << 20; // bytes of one message
+constexpr uint32_t maximumMessage = 256u << 20; // bytes per message
 
 enum class Op : uint16_t {
-  // to the helper: what the browser says before anything else, then calls of an engine's functions,
-  // one at a time
+  // To the helper: setup first, then calls of an engine's functions, one at a time.
   setup = 1,
   create,
   initialize,
@@ -28,31 +27,31 @@ enum class Op : uint16_t {
   tick,
   destroy,
   answer, // to a function of the host
-  // from the helper
-  ready = 20, // after setup
-  failed,     // it cannot serve; why
-  done,       // the function that was called has returned
-  host = 40 // and upwards: a function of the host, by its place in HostFunctions (host_functions.h)
+  // From the helper.
+  ready = 20, // reply to setup
+  failed,     // it cannot serve, with the reason
+  done,       // the called function has returned
+  host = 40   // and above: a function of the host, by its index in HostFunctions (host_functions.h)
 };
 
-const char* functionName(Op op); // "event"
+const char* functionName(Op op); // returns for example "event"
 
 enum Flags : uint16_t {
-  stopped = 1,        // of done: the program has used up its steps or its time
-  thenInitialize = 2, // of create: the helper goes on with initialize if create succeeds, and
-                      // answers each with a `done`
+  stopped = 1, // of done: the program has used up its steps or time
+  // In create: continue with initialize if create succeeds, and send a `done` for each.
+  thenInitialize = 2,
 };
 
 struct Header {
-  uint32_t bytes; // of what follows
+  uint32_t bytes; // size of the message after the header
   uint16_t op, flags;
-  uint32_t script; // the interpreter's number in its process
+  uint32_t script; // number of the interpreter in its process
   int32_t result;  // XsResult of done and answer
   double time;     // to the helper: the timestamp
 };
 static_assert(sizeof(Header) == 24);
 
-// How the elements of each type lie: bytes of one; 0 for texts, images.
+// The element layout of each type. bytes: size of one element; 0 for texts and images.
 enum class Kind : uint8_t { unknown, plain, texts, images };
 struct Element {
   Kind kind;
@@ -60,7 +59,7 @@ struct Element {
 };
 Element elementOf(XsType type);
 
-// Puts a message together.
+// Builds a message.
 class Writer {
  public:
   void begin(Op op, uint32_t script = 0, double time = 0);
@@ -72,15 +71,15 @@ class Writer {
   void put(double number);
   void put(const char* name); // may be null
   void put(const XsString& text);
-  void put(const XsValue* value); // may be null, and of any type that is claimed
+  void put(const XsValue* value); // may be null, and of any claimed type
   void put(const XsValue& value) { put(&value); }
   void put(const XsField& field);
   void put(const XsNodeInfo& info);
-  // Arrays, as long as the uint32_t that was put before them says.
+  // Arrays; their length is the last uint32_t that was put.
   void put(const XsNode* nodes);
   void put(const XsString* texts);
 
-  // The whole message. False if it is longer than messages may be: then it is nothing.
+  // Completes the message. Returns false if it is longer than allowed; it must not be sent then.
   bool finish();
   std::string_view bytes() const { return {bytes_.data(), bytes_.size()}; }
 
@@ -91,13 +90,13 @@ class Writer {
   bool tooLong_ = false;
 };
 
-// A message that has arrived.
+// A received message.
 struct Message {
   Header header{};
-  std::vector<char> bytes; // begins at an address that any element can have
+  std::vector<char> bytes; // aligned for any element
 };
 
-// Takes it apart. What it gives points into the message and into the reader.
+// Parses a message. Its results point into the message and into the reader.
 class Reader {
  public:
   explicit Reader(const Message& message)
@@ -122,7 +121,7 @@ class Reader {
   }
 
   bool good() const { return good_; }
-  bool complete() const { return good_ && at_ == end_; } // all of it has been used
+  bool complete() const { return good_ && at_ == end_; } // everything has been read
 
  private:
   const char* raw(uint64_t size);

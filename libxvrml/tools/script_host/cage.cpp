@@ -18,9 +18,9 @@
 namespace xvrml {
 namespace {
 
-// Core dumps hold what the program had in memory, and fill disks. Processor time: a day, so that no
-// process stays whatever happens. A new file descriptor would get the lowest free number, which is
-// the limit: there is none.
+// Sets resource limits. Core dumps are off, because they contain the program's memory and fill
+// disks. Processor time is limited to a day, so that no process stays for ever. New file
+// descriptors are forbidden: the limit is the lowest free number, which the next one would get.
 bool limitResources(std::string& why) {
   const int lowestFree = dup(0);
   if (lowestFree >= 0) close(lowestFree);
@@ -44,8 +44,8 @@ bool limitResources(std::string& why) {
 }
 
 #ifdef XVRML_WITH_SECCOMP
-// Memory, the time, what is open already, waiting, own signals (abort), the end. Everything else
-// fails with EPERM.
+// Allowed system calls: memory, time, files already open, waiting, own signals (abort), exit. All
+// others fail with EPERM.
 constexpr int allowed[] = {SCMP_SYS(brk),
                            SCMP_SYS(mmap),
                            SCMP_SYS(munmap),
@@ -103,11 +103,11 @@ bool filterCalls(std::string& why) {
     return false;
   }
   int error = seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC,
-                               1); // threads that an engine has made in prepare(), too
+                               1); // also for threads that an engine has made in prepare()
   seccomp_attr_set(filter, SCMP_FLTATR_CTL_OPTIMIZE, 2);
   for (const int call : allowed)
     if (error == 0) error = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0);
-  // Signals to this process only: abort().
+  // Allow signals to this process only, for abort().
   if (error == 0)
     error = seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1,
                              SCMP_A0(SCMP_CMP_EQ, uint64_t(getpid())));
@@ -122,8 +122,9 @@ bool filterCalls(std::string&) { return true; }
 
 } // namespace
 
-// The kernel tells the end of the thread that started this process. As long as the other end of the
-// socket is open, others go on.
+// Ends this process with its parent. The kernel sends the signal when the thread that started this
+// process ends. If the other end of the socket is still open, the parent's other threads continue,
+// and so does this process.
 bool bindToParent(long parent, int socket) {
   static int other;
   other = socket;
@@ -140,8 +141,8 @@ bool bindToParent(long parent, int socket) {
   return getppid() == parent && chdir("/") == 0;
 }
 
-bool closeCage(std::string& why) {
-  static char* empty[] = {nullptr}; // not clearenv(): Tcl wants a list
+bool enterSandbox(std::string& why) {
+  static char* empty[] = {nullptr}; // instead of clearenv(), because Tcl needs a list
   environ = empty;
   if (!limitResources(why)) return false;
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {

@@ -1,5 +1,5 @@
-// cage.h: what a process may do in which programs run that nobody trusts: compute, use its memory
-// and its socket. Linux only.
+// cage.h: the sandbox of a process that runs untrusted programs. They may compute, and use their
+// memory and the socket. Linux only.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,14 @@
 
 namespace xvrml {
 
-// First of all: the process ends with its parent, at the other end of the socket; false if that has
-// gone already.
+// Makes the process end with its parent, which holds the other end of the socket. Call it first.
+// Returns false if the parent has ended already.
 bool bindToParent(long parent, int socket);
-// From here on there are no files, sockets, threads or processes, and no way back. False, and why.
-bool closeCage(std::string& why);
-// Bytes of address space in use; 0 if it cannot be limited, as with the sanitizers, which reserve
-// terabytes.
+// Enters the sandbox for good: no files, sockets, threads or processes from here on. Returns false,
+// with the reason, on failure.
+bool enterSandbox(std::string& why);
+// Returns the bytes of address space in use; 0 if they cannot be limited, as with the sanitizers,
+// which reserve terabytes.
 uint64_t addressSpace();
 
 } // namespace xvrml

@@ -70,21 +70,22 @@ struct Forward::Function<Member> {
 
   static R call(const XsHost* host, XsNode self, A... arguments) noexcept {
     try {
-      return pass(of(host), self, arguments...);
-    } catch (const std::exception&) { return R(XS_FAILED); } // no memory
+      return pass(from(host), self, arguments...);
+    } catch (const std::exception&) { return R(XS_FAILED); } // out of memory
   }
 
   static R pass(Forward& host, XsNode self, A... arguments) {
-    Guest* guest = host.find(self);
-    if (!guest) return R(XS_NO_NODE);
+    HostedScript* hosted = host.find(self);
+    if (!hosted) return R(XS_NO_NODE);
     const auto refuse = [&](XsResult why, const char* text) {
-      guest->error = text;
+      hosted->error = text;
       return R(why);
     };
-    if (counted && host.spend(stepsOfCall)) return refuse(XS_STOPPED, "the Script's time is up");
+    if (counted && host.chargeSteps(stepsOfCall))
+      return refuse(XS_STOPPED, "the Script's time is up");
     if (!(present(arguments) && ...)) return refuse(XS_FAILED, "no place for the answer");
     Writer& out = host.writer_;
-    out.begin(Op::host, guest->number);
+    out.begin(Op::host, hosted->number);
     out.header().op = numberIn<Member>(HostFunctions{});
     out.put(self);
     (put(out, arguments), ...);
@@ -92,11 +93,11 @@ struct Forward::Function<Member> {
     if constexpr (std::is_void_v<R>) {
       if (!host.channel_.send(out.bytes())) _exit(0);
     } else {
-      return receive(host, *guest, arguments...);
+      return receive(host, *hosted, arguments...);
     }
   }
 
-  static R receive(Forward& host, Guest& guest, A... arguments) {
+  static R receive(Forward& host, HostedScript& hosted, A... arguments) {
     Message answer = host.ask();
     if constexpr (std::is_same_v<R, double>) {
       return Reader(answer).take<double>();
@@ -104,19 +105,20 @@ struct Forward::Function<Member> {
       const auto result = XsResult(answer.header.result);
       if (result != XS_OK) {
         const auto why = Reader(answer).take<XsString>();
-        guest.error.assign(why.data ? why.data : "", why.bytes);
+        hosted.error.assign(why.data ? why.data : "", why.bytes);
       } else if constexpr ((isOut<A> || ...)) {
-        guest.lent = std::move(answer);
-        guest.lentReader = Reader(guest.lent);
-        (takeOut(guest.lentReader, arguments), ...);
-        if (!guest.lentReader.complete()) _exit(1);
+        hosted.lent = std::move(answer);
+        hosted.lentReader = Reader(hosted.lent);
+        (takeOut(hosted.lentReader, arguments), ...);
+        if (!hosted.lentReader.complete()) _exit(1);
       }
       return result;
     }
   }
 };
 
-Guest::Guest(Message&& made) : message(std::move(made)), reader(message), lentReader(lent) {
+HostedScript::HostedScript(Message&& made)
+    : message(std::move(made)), reader(message), lentReader(lent) {
   number = message.header.script;
   info.size = sizeof info;
   info.flags = reader.take<uint32_t>();
@@ -142,14 +144,14 @@ Forward::Forward(Channel& channel, uint64_t steps, double seconds)
     ((this->*Members = Function<Members>::call), ...);
   }
   (HostFunctions{});
-  now = [](const XsHost* host, XsNode) { return of(host).now_; };
+  now = [](const XsHost* host, XsNode) { return from(host).now_; };
   shouldStop = [](const XsHost* host, XsNode self, uint64_t steps) -> int32_t {
-    return !of(host).find(self) || of(host).spend(steps) ? 1 : 0;
+    return !from(host).find(self) || from(host).chargeSteps(steps) ? 1 : 0;
   };
   lastError = [](const XsHost* host, XsNode self, XsString* text) {
-    const Guest* guest = of(host).find(self);
-    if (!guest || !text) return XS_NO_NODE;
-    *text = {guest->error.c_str(), guest->error.size()};
+    const HostedScript* hosted = from(host).find(self);
+    if (!hosted || !text) return XS_NO_NODE;
+    *text = {hosted->error.c_str(), hosted->error.size()};
     return XS_OK;
   };
 }
@@ -162,9 +164,10 @@ void Forward::enter(double time) {
   end_ = Clock::now() + duration(seconds_);
 }
 
-// A process that has to share the processors with others is slower, and its program is not to
-// blame: the seconds are those of the processor. A program that sleeps is ended by the browser.
-bool Forward::late() {
+// Returns whether the program's time is up. The limit counts processor time, because a process that
+// shares the processors with others is slower through no fault of its program. The browser ends
+// programs that sleep.
+bool Forward::isOverTime() {
   const auto now = Clock::now();
   if (now <= end_) return false;
   const double left = seconds_ - (processorSeconds() - processor_);
@@ -172,23 +175,24 @@ bool Forward::late() {
   return left <= 0;
 }
 
-Guest* Forward::find(XsNode self) const {
-  const auto found = guests.find(self);
-  return found == guests.end() ? nullptr : found->second;
+HostedScript* Forward::find(XsNode self) const {
+  const auto found = hostedScripts.find(self);
+  return found == hostedScripts.end() ? nullptr : found->second;
 }
 
-bool Forward::spend(uint64_t steps) {
+bool Forward::chargeSteps(uint64_t steps) {
   steps_ = steps_ + steps < steps_ ? UINT64_MAX : steps_ + steps;
-  return stopped_ = stopped_ || steps_ > mostSteps_ || late();
+  return stopped_ = stopped_ || steps_ > mostSteps_ || isOverTime();
 }
 
-// Time that the browser takes is not the program's.
+// Sends a request and waits for the answer. The browser's time does not count as the program's.
 Message Forward::ask() {
   const auto before = Clock::now();
   Message answer;
-  if (!channel_.send(writer_.bytes()) || channel_.receive(answer, never) != Channel::Got::message ||
+  if (!channel_.send(writer_.bytes()) ||
+      channel_.receive(answer, never) != Channel::Received::message ||
       answer.header.op != uint16_t(Op::answer))
-    _exit(0); // the browser has gone
+    _exit(0); // the browser has ended
   end_ += Clock::now() - before;
   now_ = answer.header.time;
   return answer;

@@ -1,6 +1,6 @@
-// forward.h: the table of functions that an engine gets in this process: each goes to the browser
-// as a message and waits for the answer. What needs no browser is answered here: time, budget, why
-// something was refused. [one thread]
+// forward.h: the function table of an engine in this process. Each function is sent to the browser
+// as a message and waits for the answer. Functions that need no browser are answered here: time,
+// budget, last error. [one thread]
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@
 
 namespace xvrml {
 
-// A Script whose interpreter is here.
-struct Guest {
-  explicit Guest(wire::Message&& made);
-  wire::Message message; // what it was made from; info points into it
+// A Script whose interpreter is in this process.
+struct HostedScript {
+  explicit HostedScript(wire::Message&& made);
+  wire::Message message; // the create message; info points into it
   wire::Reader reader;
   std::vector<XsField> fields;
   XsScriptInfo info{};
   bool good = false;
   uint32_t number = 0;
   XsInterpreter interpreter = 0;
-  wire::Message lent; // what was given out last
+  wire::Message lent; // the answer with the values given out last
   wire::Reader lentReader;
   std::string error;
 };
@@ -30,20 +30,20 @@ class Forward : public XsHost {
  public:
   Forward(wire::Channel& channel, uint64_t steps, double seconds);
 
-  // The budget of one call begins.
+  // Starts the budget of one call.
   void enter(double time);
   bool stopped() const { return stopped_; }
-  Guest* find(XsNode self) const;
+  HostedScript* find(XsNode self) const;
 
-  std::unordered_map<XsNode, Guest*> guests; // by their own nodes
+  std::unordered_map<XsNode, HostedScript*> hostedScripts; // by the handles of their own nodes
 
  private:
   template <auto Member> struct Function;
-  static Forward& of(const XsHost* host) {
+  static Forward& from(const XsHost* host) {
     return *const_cast<Forward*>(static_cast<const Forward*>(host));
   }
-  bool spend(uint64_t steps);
-  bool late();
+  bool chargeSteps(uint64_t steps);
+  bool isOverTime();
   wire::Message ask();
 
   wire::Channel& channel_;

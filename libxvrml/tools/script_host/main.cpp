@@ -1,7 +1,7 @@
-// main.cpp: xvrml-script-host: runs programs of Scripts for a browser that does not trust them. The
-// browser starts it with one end of a socket pair as file descriptor 3; it loads one engine, gives
-// up all it may do, and serves calls until the socket closes. See script/remote/wire.h for the
-// messages, docs/scripts.md for people.
+// main.cpp: xvrml-script-host: runs Scripts' programs for a browser that does not trust them. The
+// browser starts it with one end of a socket pair as file descriptor 3. It loads one engine, drops
+// its privileges and serves calls until the socket closes. The messages are described in
+// script/remote/wire.h, its use in docs/scripts.md.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -29,25 +29,25 @@ class Server {
 
   void run() {
     Message call;
-    while (channel_.receive(call, never) == Channel::Got::message) {
+    while (channel_.receive(call, never) == Channel::Received::message) {
       const wire::Header header = call.header;
       const bool begins = Op(header.op) == Op::create && (header.flags & Flags::thenInitialize);
-      if (!one(call)) return;
-      if (!begins || !lastGood_) continue;
+      if (!serveOne(call)) return;
+      if (!begins || !lastCallSucceeded_) continue;
       Message next;
       next.header = header;
       next.header.op = uint16_t(Op::initialize);
-      if (!one(next)) return;
+      if (!serveOne(next)) return;
     }
   }
 
  private:
-  // Serves a call and says that it is done. False: the browser has gone.
-  bool one(Message& call) {
+  // Serves a call and reports its end. Returns false if the browser has ended.
+  bool serveOne(Message& call) {
     const uint32_t script = call.header.script;
     host_.enter(call.header.time);
     const XsResult result = serve(call);
-    lastGood_ = result == XS_OK && !host_.stopped();
+    lastCallSucceeded_ = result == XS_OK && !host_.stopped();
     Writer done;
     done.begin(Op::done, script);
     done.header().result = result;
@@ -58,48 +58,48 @@ class Server {
 
   XsResult create(Message&& call) {
     const uint32_t number = call.header.script;
-    auto made = std::make_unique<Guest>(std::move(call));
-    if (!made->good || guests_.contains(number)) _exit(1);
-    Guest& guest = *(guests_[number] = std::move(made));
-    host_.guests[guest.info.self] = &guest;
-    const XsResult result = engine_.create(&host_, &guest.info, &guest.interpreter);
-    if (result != XS_OK) forget(guest);
+    auto made = std::make_unique<HostedScript>(std::move(call));
+    if (!made->good || hostedScripts_.contains(number)) _exit(1);
+    HostedScript& hosted = *(hostedScripts_[number] = std::move(made));
+    host_.hostedScripts[hosted.info.self] = &hosted;
+    const XsResult result = engine_.create(&host_, &hosted.info, &hosted.interpreter);
+    if (result != XS_OK) forget(hosted);
     return result;
   }
-  void forget(Guest& guest) {
-    host_.guests.erase(guest.info.self);
-    guests_.erase(guest.number);
+  void forget(HostedScript& hosted) {
+    host_.hostedScripts.erase(hosted.info.self);
+    hostedScripts_.erase(hosted.number);
   }
-  XsResult event(const Guest& guest, const Message& call) {
+  XsResult event(const HostedScript& hosted, const Message& call) {
     if (!engine_.event) return XS_OK;
     Reader in(call);
     XsEvent event{sizeof(XsEvent), in.take<uint32_t>(), nullptr, {}, call.header.time};
     in.get(event.value);
-    if (!in.complete() || event.index >= guest.fields.size()) _exit(1);
-    event.name = guest.fields[event.index].name;
-    return engine_.event(guest.interpreter, &event);
+    if (!in.complete() || event.index >= hosted.fields.size()) _exit(1);
+    event.name = hosted.fields[event.index].name;
+    return engine_.event(hosted.interpreter, &event);
   }
 
   XsResult serve(Message& call) {
     const double time = call.header.time;
     const auto op = Op(call.header.op);
     if (op == Op::create) return create(std::move(call));
-    const auto found = guests_.find(call.header.script);
-    if (found == guests_.end() && op == Op::destroy) return XS_OK; // it could not be made
-    if (found == guests_.end()) _exit(1);
-    Guest& guest = *found->second;
+    const auto found = hostedScripts_.find(call.header.script);
+    if (found == hostedScripts_.end() && op == Op::destroy) return XS_OK; // it could not be created
+    if (found == hostedScripts_.end()) _exit(1);
+    HostedScript& hosted = *found->second;
     const auto plain = [&](XsResult (*function)(XsInterpreter, double)) {
-      return function ? function(guest.interpreter, time) : XS_OK;
+      return function ? function(hosted.interpreter, time) : XS_OK;
     };
     switch (op) {
     case Op::initialize: return plain(engine_.initialize);
-    case Op::event: return event(guest, call);
+    case Op::event: return event(hosted, call);
     case Op::eventsProcessed: return plain(engine_.eventsProcessed);
     case Op::shutdown: return plain(engine_.shutdown);
     case Op::tick: return plain(engine_.tick);
     case Op::destroy:
-      engine_.destroy(guest.interpreter);
-      forget(guest);
+      engine_.destroy(hosted.interpreter);
+      forget(hosted);
       return XS_OK;
     default: _exit(1);
     }
@@ -108,8 +108,8 @@ class Server {
   Channel& channel_;
   const XsEngine& engine_;
   Forward host_;
-  std::unordered_map<uint32_t, std::unique_ptr<Guest>> guests_;
-  bool lastGood_ = false; // the last call has succeeded
+  std::unordered_map<uint32_t, std::unique_ptr<HostedScript>> hostedScripts_;
+  bool lastCallSucceeded_ = false; // the last call succeeded
 };
 
 const XsEngine& engineNamed(const std::vector<XsEngine>& engines, std::string_view name,
@@ -122,7 +122,7 @@ const XsEngine& engineNamed(const std::vector<XsEngine>& engines, std::string_vi
 
 void serve(Channel& channel) {
   Message setup;
-  if (channel.receive(setup, never) != Channel::Got::message ||
+  if (channel.receive(setup, never) != Channel::Received::message ||
       setup.header.op != uint16_t(Op::setup))
     return;
   Writer answer;
@@ -142,7 +142,7 @@ void serve(Channel& channel) {
       throw std::runtime_error(std::string("engine ") + engine.name + " cannot be prepared");
     const uint64_t base = addressSpace();
     std::string why;
-    if (!closeCage(why)) throw std::runtime_error("cannot be closed in: " + why);
+    if (!enterSandbox(why)) throw std::runtime_error("cannot be closed in: " + why);
     answer.begin(Op::ready);
     answer.put(base);
     answer.finish();
@@ -168,10 +168,10 @@ int main(int argc, char** argv) {
   }
   if (!xvrml::bindToParent(std::atol(argv[1]), xvrml::socketNumber)) return 0;
   {
-    // The browser may look after others for long before it reads; that it has ended is told by the
-    // socket and by the kernel.
+    // The browser may be busy for long before it reads, so the patience is unlimited. The socket
+    // and the kernel tell when the browser has ended.
     xvrml::wire::Channel channel(xvrml::socketNumber, std::chrono::hours(10000));
     xvrml::serve(channel);
   }
-  _exit(0); // nothing of an interpreter is of use any more
+  _exit(0); // nothing of an interpreter is needed any more
 }

@@ -1,7 +1,7 @@
-// assignments.cpp: `v = field` must copy, `field.x = 1` must change the field
-// (C.6.2): ECMAScript's getter cannot tell one from the other, the program's text can. The text is
-// taken apart into tokens; where a plain chain of names and indices is all that is assigned, it is
-// put into a call that gives a value of its own. What is not understood stays as it is.
+// assignments.cpp: Rewrites the program's assignments. `v = field` must copy, while `field.x = 1`
+// must change the field (C.6.2). ECMAScript's getter cannot tell these apart, but the program's
+// text can. The text is split into tokens. If a plain chain of names and indices is assigned, it is
+// wrapped in a call that copies. Other text stays unchanged.
 #include "assignments.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 struct Token {
   enum class Kind : uint8_t { name, keyword, literal, sign } kind;
   uint32_t start, end;
-  bool line; // a line ends before it
+  bool line; // a line ends before the token
 };
 
 bool isNameStart(char c) {
@@ -50,7 +50,7 @@ class Tokens {
   }
   bool begins(std::string_view what) const { return text_.substr(at_).starts_with(what); }
 
-  // Blanks and comments; false at the end.
+  // Skips blanks and comments; returns false at the end.
   bool skip() {
     while (at_ < text_.size()) {
       if (begins("//") || begins("<!--") || (begins("-->") && (line_ || list_.empty()))) {
@@ -112,7 +112,7 @@ class Tokens {
     at_ = std::min(at_ + 1, text_.size());
   }
 
-  // A / begins a pattern where no value stands before it.
+  // Returns whether a / begins a regular expression: this holds if no value precedes it.
   bool patternMayStand() const {
     if (list_.empty()) return true;
     const Token& last = list_.back();
@@ -149,10 +149,10 @@ struct Rewriter {
   }
   bool is(size_t i, std::string_view what) const { return i < tokens.size() && word(i) == what; }
 
-  // Behind the ] that belongs to the [ at i; 0 if there is none.
+  // Returns the index after the ] that matches the [ at i; 0 if there is none.
   size_t behindIndex(size_t i) const {
-    constexpr size_t longest =
-        200; // tokens of an index: a text of many open ones must not be read again and again
+    // Maximum tokens of an index, so that many unclosed brackets do not cause quadratic time.
+    constexpr size_t longest = 200;
     size_t depth = 0;
     for (const size_t last = std::min(tokens.size(), i + longest); i < last; ++i) {
       if (tokens[i].kind != Token::Kind::sign) continue;
@@ -164,14 +164,15 @@ struct Rewriter {
     return 0;
   }
 
-  // Components and other numbers are no objects.
+  // Returns whether a property is a component or another number, and so not an object.
   static bool isNumber(std::string_view property) {
     static constexpr std::string_view names[] = {"x", "y",     "z",      "r",   "g",
                                                  "b", "angle", "length", "comp"};
     return std::find(std::begin(names), std::end(names), property) != std::end(names);
   }
 
-  // The chain that begins at i: behind its end, if it may name an object of a field; else 0.
+  // Returns the end of the chain that begins at i, if it may name an object of a field; otherwise
+  // 0.
   size_t chain(size_t i) const {
     if (i >= tokens.size() || tokens[i].kind != Token::Kind::name || word(i) == "Math") return 0;
     bool object = objects.contains(word(i));

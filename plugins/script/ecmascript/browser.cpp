@@ -1,4 +1,4 @@
-// browser.cpp: the Browser object (C.6.3), print, and the constants TRUE and FALSE. See values.h.
+// browser.cpp: Defines the Browser object (C.6.3), print, and the constants TRUE and FALSE.
 #include <cstring>
 
 #include "slots.h"
@@ -44,7 +44,8 @@ duk_ret_t getCurrentFrameRate(duk_context* ctx) {
 }
 
 void check(duk_context* ctx, Interpreter& self, XsResult result, const char* name) {
-  // The host has told of missing directOutput itself; the program goes on, as in other browsers.
+  // The host has already reported a missing directOutput. The program continues, as in other
+  // browsers.
   if (result != XS_OK && result != XS_NOT_ALLOWED) throwHost(ctx, self, result, name);
 }
 
@@ -65,7 +66,7 @@ duk_ret_t replaceWorld(duk_context* ctx) {
   return 0;
 }
 
-duk_ret_t loadUrl(duk_context* ctx) { // urls, parameters
+duk_ret_t loadUrl(duk_context* ctx) { // arguments: urls, parameters
   Interpreter& self = begin(ctx);
   if (duk_is_null_or_undefined(ctx, 1)) {
     pushMf(ctx, self, XS_MFSTRING, 0);
@@ -74,8 +75,8 @@ duk_ret_t loadUrl(duk_context* ctx) { // urls, parameters
   textsForHost(ctx, self, 1, "Browser.loadURL");
   const auto parameterCount = uint32_t(self.strings.size());
   const size_t bytes = parameterCount * sizeof(XsString);
-  auto* parameters = static_cast<XsString*>(
-      duk_push_fixed_buffer(ctx, bytes + 1)); // the interpreter's list is needed again
+  // a copy, because the interpreter's list is reused below
+  auto* parameters = static_cast<XsString*>(duk_push_fixed_buffer(ctx, bytes + 1));
   if (bytes > 0) std::memcpy(parameters, self.strings.data(), bytes);
   textsForHost(ctx, self, 0, "Browser.loadURL");
   check(ctx, self,
@@ -96,7 +97,7 @@ duk_ret_t createVrmlFromString(duk_context* ctx) {
   return 1;
 }
 
-duk_ret_t createVrmlFromUrl(duk_context* ctx) { // urls, node, event
+duk_ret_t createVrmlFromUrl(duk_context* ctx) { // arguments: urls, node, event
   Interpreter& self = begin(ctx);
   constexpr const char* name = "Browser.createVrmlFromURL";
   const XsNode node = nodeOf(ctx, self, 1, name);
@@ -113,15 +114,16 @@ duk_ret_t createVrmlFromUrl(duk_context* ctx) { // urls, node, event
 using ChangeRoute = XsResult (*XsHost::*)(const XsHost*, XsNode, XsNode, const char*, XsNode,
                                           const char*);
 
-duk_ret_t changeRoute(duk_context* ctx, ChangeRoute function,
-                      const char* name) { // node, eventOut, node, eventIn
+// Arguments of the script's call: node, eventOut, node, eventIn.
+duk_ret_t changeRoute(duk_context* ctx, ChangeRoute function, const char* name) {
   Interpreter& self = begin(ctx);
   const XsNode from = nodeOf(ctx, self, 0, name), to = nodeOf(ctx, self, 2, name);
   pushText(ctx, 1, name);
   pushText(ctx, 3, name);
   const XsResult result = (self.host->*function)(
       self.host, self.self, from, duk_get_string(ctx, -2), to, duk_get_string(ctx, -1));
-  if (result != XS_FAILED) check(ctx, self, result, name); // else it is there, or gone, already
+  // XS_FAILED: the route existed already, or did not exist
+  if (result != XS_FAILED) check(ctx, self, result, name);
   return 0;
 }
 duk_ret_t addRoute(duk_context* ctx) {
@@ -131,7 +133,8 @@ duk_ret_t deleteRoute(duk_context* ctx) {
   return changeRoute(ctx, &XsHost::deleteRoute, "Browser.deleteRoute");
 }
 
-// C.6.2: what a field, an eventOut or an element holds, as a value of its own. See assignments.h.
+// Copies the value of a field, an eventOut or an element (C.6.2); calls are inserted by
+// assignments.cpp.
 duk_ret_t copyOf(duk_context* ctx) {
   Interpreter& self = Interpreter::of(ctx);
   if (SfData* sf = sfData(ctx, 0)) {
@@ -140,10 +143,10 @@ duk_ret_t copyOf(duk_context* ctx) {
       pushImage(ctx, self, sf->v, {});
       return 1;
     }
-    if (sf->type != XS_SFIMAGE) {
+    if (sf->type != XS_SFIMAGE) { // the object was created for this access: detach it
       sf->place = {};
       sf->hasParent = 0;
-    } // made for this very access
+    }
   } else if (const MfData* mf = mfData(ctx, 0); mf && isLive(self, mf->place)) {
     pushMfFrom(ctx, self, 0, mf->type, "assignment");
     return 1;
@@ -188,7 +191,7 @@ void registerBrowser(duk_context* ctx, Interpreter&) {
                                        {"deleteRoute", deleteRoute, 4},
                                        {"print", print, DUK_VARARGS},
                                        {"println", print, DUK_VARARGS}};
-  // Names of other browsers, which worlds use.
+  // Functions of other browsers that worlds use.
   static constexpr Method globals[] = {
       {"print", print, DUK_VARARGS}, {"println", print, DUK_VARARGS}, {"trace", print, DUK_VARARGS},
       {"addRoute", addRoute, 4},     {"deleteRoute", deleteRoute, 4}, {"__xvrmlCopy", copyOf, 1}};

@@ -1,5 +1,6 @@
-// engine.cpp: the plug-in: engine "ecmascript" for javascript:, vrmlscript:, ecmascript: and .js
-// files (ISO/IEC 14772-1 Annex C), on Duktape. See docs/scripts.md. [the browser's thread]
+// engine.cpp: Defines the plug-in with the engine "ecmascript" for javascript:, vrmlscript:,
+// ecmascript: and .js files (ISO/IEC 14772-1 Annex C), on Duktape. See docs/scripts.md. [the
+// browser's thread]
 #include <ctime>
 
 #include "interpreter.h"
@@ -31,14 +32,14 @@ XsResult shutdown(XsInterpreter interpreter, double time) {
   return callFunction(of(interpreter), "shutdown", nullptr, time, true);
 }
 
-// Where no file can be opened later on, Date must know the time zone before.
+// Loads the time zone for Date, because the sandbox cannot open files later.
 XsResult prepare() {
   tzset();
   return XS_OK;
 }
 
 const char* const schemes[] = {"javascript", "vrmlscript", "ecmascript", nullptr};
-// RFC 9239 lists what has been used; C.3.3 asks for application/x-javascript.
+// RFC 9239 lists the types in use; C.3.3 requires application/x-javascript.
 const char* const mimeTypes[] = {
     "application/javascript",   "application/x-javascript", "text/javascript", "text/x-javascript",
     "application/ecmascript",   "application/x-ecmascript", "text/ecmascript", "text/x-ecmascript",

@@ -1,4 +1,4 @@
-// errors.cpp: what goes wrong in a program, told with its line and the function; see interpreter.h.
+// errors.cpp: Reports errors of a program with line and function.
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -13,8 +13,8 @@ void logText(Interpreter& self, int severity, uint32_t line, const char* text, s
   self.host->log(self.host, self.self, severity, line, message);
 }
 
-// Duktape's trace has a line "at NAME (FILE:LINE) ..." for each function; the first one of the
-// program's own file counts.
+// Duktape's trace has a line "at NAME (FILE:LINE) ..." for each function. The first one in the
+// program's own file is reported.
 void reportError(Interpreter& self, const char* during) {
   duk_context* ctx = self.ctx;
   const duk_idx_t error = duk_get_top_index(ctx);
@@ -51,7 +51,7 @@ void throwType(duk_context* ctx, const char* format, ...) {
   va_start(arguments, format);
   duk_error_va(ctx, DUK_ERR_TYPE_ERROR, format, arguments);
   va_end(arguments);
-  __builtin_unreachable(); // Duktape has jumped
+  __builtin_unreachable(); // duk_throw does not return
 }
 
 void throwRange(duk_context* ctx, const char* format, ...) {
@@ -59,7 +59,7 @@ void throwRange(duk_context* ctx, const char* format, ...) {
   va_start(arguments, format);
   duk_error_va(ctx, DUK_ERR_RANGE_ERROR, format, arguments);
   va_end(arguments);
-  __builtin_unreachable(); // Duktape has jumped
+  __builtin_unreachable(); // duk_throw does not return
 }
 
 void throwHost(duk_context* ctx, Interpreter& self, XsResult result, const char* what) {

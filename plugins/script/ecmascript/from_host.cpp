@@ -1,4 +1,4 @@
-// from_host.cpp: values of the host as the program sees them; see slots.h.
+// from_host.cpp: Converts the host's values to the program's.
 #include <cstring>
 
 #include "slots.h"
@@ -7,8 +7,8 @@ namespace ecma {
 namespace {
 
 void pushString(duk_context* ctx, const XsString& text) {
-  // UTF-8 of the border; ECMAScript's strings are UTF-16: characters beyond its 16 bits are two
-  // (CESU-8 within Duktape).
+  // Converts the host's UTF-8. ECMAScript's strings are UTF-16, so characters beyond U+FFFF become
+  // two (CESU-8 inside Duktape).
   const auto* bytes = reinterpret_cast<const unsigned char*>(text.data);
   uint64_t beyond = 0;
   for (uint64_t i = 0; i < text.bytes; ++i) beyond += bytes[i] >= 0xf0;
@@ -45,10 +45,10 @@ void pushTuple(duk_context* ctx, Interpreter& self, const XsValue& value) {
   pushSf(ctx, self, value.type, v);
 }
 
-// Pixels of 0 to 4 bytes as numbers 0xRRGGBBAA, as VRML writes them (5.5).
+// Converts pixels of 0 to 4 bytes to numbers 0xRRGGBBAA, as VRML writes them (5.5).
 void pushPixels(duk_context* ctx, Interpreter& self, const XsImage& image, Place place) {
   const uint64_t count = image.components > 0 ? uint64_t(image.width) * uint64_t(image.height) : 0;
-  if (count > mostElements)
+  if (count > maxElements)
     throwRange(ctx, "an image of %d x %d", int(image.width), int(image.height));
   MfData* mf = pushMf(ctx, self, XS_MFINT32, uint32_t(count), place);
   for (uint64_t i = 0; i < count; ++i) {
@@ -60,7 +60,7 @@ void pushPixels(duk_context* ctx, Interpreter& self, const XsImage& image, Place
 }
 
 void pushNodes(duk_context* ctx, Interpreter& self, const XsValue& value, Place place) {
-  // What the host has lent is gone with its next answer.
+  // Copied, because the host's list is valid only until its next call.
   const uint32_t count = value.count;
   auto* nodes = static_cast<XsNode*>(duk_push_fixed_buffer(ctx, (count + 1) * sizeof(XsNode)));
   if (count > 0) std::memcpy(nodes, value.of.nodes, count * sizeof *nodes);
@@ -96,7 +96,7 @@ void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place 
   }
   case XS_MFNODE: return pushNodes(ctx, self, value, place);
   case XS_MFSTRING:
-    if (value.count > mostElements) throwRange(ctx, "more than %u elements", mostElements);
+    if (value.count > maxElements) throwRange(ctx, "more than %u elements", maxElements);
     pushMf(ctx, self, XS_MFSTRING, 0, place)->count = value.count;
     duk_get_prop_heapptr(ctx, -1, self.keyList);
     for (uint32_t i = 0; i < value.count; ++i) {
@@ -106,7 +106,7 @@ void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place 
     return duk_pop(ctx);
   default: break;
   }
-  if (value.count > mostElements) throwRange(ctx, "more than %u elements", mostElements);
+  if (value.count > maxElements) throwRange(ctx, "more than %u elements", maxElements);
   MfData* mf = pushMf(ctx, self, value.type, value.count, place);
   if (value.count > 0)
     std::memcpy(static_cast<void*>(mf + 1), value.of.data, elementBytes(value.type) * value.count);

@@ -1,6 +1,6 @@
-// interpreter.cpp: makes the heap of a Script, runs its program, calls its functions; see
-// interpreter.h. Every entry is protected: an error of the program, want of memory and even
-// Duktape's giving up end in a message and XS_FAILED.
+// interpreter.cpp: Creates the heap of a Script, runs its program and calls its functions. Every
+// entry is protected: an error of the program, missing memory and even a fatal error of Duktape
+// produce a message and XS_FAILED.
 #include "interpreter.h"
 
 #include <cstdlib>
@@ -12,9 +12,9 @@
 
 namespace ecma {
 
-// A piece of the heap's memory. Each is in a list, by which a heap is freed that Duktape has given
-// up.
-struct alignas(16) Block { // what follows has malloc's alignment
+// A block of the heap's memory. All blocks are in a list, so that a heap can be freed after a fatal
+// error of Duktape.
+struct alignas(16) Block { // the memory after the header has malloc's alignment
   Block *before, *after;
   duk_size_t bytes;
 };
@@ -29,7 +29,7 @@ bool fits(const Interpreter& self, uint64_t more) {
   return self.most == 0 || (more <= self.most && self.used <= self.most - more);
 }
 
-// Makes the neighbours of a block point to it.
+// Makes the neighbours in the list point to the block.
 void* link(Interpreter& self, Block* block) {
   (block->before ? block->before->after : self.blocks) = block;
   if (block->after) block->after->before = block;
@@ -72,24 +72,24 @@ void* reallocate(void* account, void* memory, duk_size_t bytes) {
   return link(self, block);
 }
 
-// Frees a heap that Duktape does not know any more, without asking it.
+// Frees all blocks of the heap without calling Duktape.
 void freeHeap(Interpreter& self) {
   while (self.blocks) release(&self, self.blocks + 1);
 }
 
-// Duktape cannot go on. It must not return from here; all entries have set a way out.
-void giveUp(void* account, const char* message) {
+// Called for a fatal error of Duktape. It must not return; every entry has set the jump target.
+void onFatalError(void* account, const char* message) {
   Interpreter& self = *static_cast<Interpreter*>(account);
   self.dead = true;
   logText(self, 3, 0, message ? message : "Duktape has given up",
           message ? std::strlen(message) : 20);
   if (self.fatalSet) std::longjmp(self.fatal, 1);
-  for (;;) {} // never: nothing is called outside of an entry
+  for (;;) {} // unreachable: Duktape is called only inside an entry
 }
 
 // --- Protected entries ---
 
-// nargs: what the function finds on its stack; its error is told.
+// Runs a function in a protected call and reports its error.
 bool guarded(Interpreter& self, duk_safe_call_function function, void* data, const char* during) {
   duk_context* ctx = self.ctx;
   if (duk_safe_call(ctx, function, data, 0, 1) == DUK_EXEC_SUCCESS) {
@@ -111,7 +111,7 @@ bool guarded(Interpreter& self, duk_safe_call_function function, void* data, con
 XsResult enter(Interpreter& self, duk_safe_call_function function, void* data, const char* during,
                bool flush) {
   if (self.dead) return XS_FAILED;
-  if (self.stopped) return XS_OK; // nothing of the program runs any more, neither does shutdown
+  if (self.stopped) return XS_OK; // the program is stopped; not even shutdown runs
   ++self.call;
   self.texts.clear();
   if (setjmp(self.fatal)) {
@@ -155,8 +155,9 @@ duk_ret_t setUp(duk_context* ctx, void* data) {
   return 0;
 }
 
-// The text with copies where C.6.2 wants them. If that is no program, then only because the text is
-// none, or was not understood. Returns false where there is no memory for it.
+// Inserts the copies that C.6.2 requires. If the result does not compile although the original
+// does, the text was misunderstood, and runProgram() uses the original. Returns false if there is
+// no memory.
 bool prepareProgram(Interpreter& self) noexcept {
   try {
     const XsString text = self.info->text;
@@ -236,20 +237,20 @@ void* keep(duk_context* ctx) {
 
 Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsResult& result) {
   result = XS_FAILED;
-  Interpreter* const self =
-      new (std::nothrow) Interpreter; // const: it is known after a longjmp, too
+  // const, so that it is still valid after a longjmp
+  Interpreter* const self = new (std::nothrow) Interpreter;
   if (!self) return nullptr;
   self->host = host;
   self->info = info;
   self->self = info->self;
   if (info->size >= offsetof(XsScriptInfo, memory) + sizeof info->memory) self->most = info->memory;
   if (setjmp(self->fatal)) {
-    freeHeap(*self); // half made
+    freeHeap(*self); // only partly constructed
     delete self;
     return nullptr;
   }
   self->fatalSet = true;
-  self->ctx = duk_create_heap(allocate, reallocate, release, self, giveUp);
+  self->ctx = duk_create_heap(allocate, reallocate, release, self, onFatalError);
   self->fatalSet = false;
   if (!self->ctx) {
     logText(*self, 3, 0, "no memory for an interpreter", 28);
@@ -276,7 +277,7 @@ void destroyInterpreter(Interpreter* self) {
       duk_destroy_heap(self->ctx);
     }
   }
-  freeHeap(*self); // what is left if Duktape has given up
+  freeHeap(*self); // what remains after a fatal error of Duktape
   delete self;
 }
 
@@ -288,10 +289,10 @@ XsResult callFunction(Interpreter& self, const char* name, const XsValue* value,
 
 void step(Interpreter& self) {
   constexpr uint32_t often = 256;
-  if (++self.natives >= often || self.stopped) {
-    if (!self.stopped && self.host->shouldStop(self.host, self.self, self.natives))
+  if (++self.nativeCalls >= often || self.stopped) {
+    if (!self.stopped && self.host->shouldStop(self.host, self.self, self.nativeCalls))
       self.stopped = true;
-    self.natives = 0;
+    self.nativeCalls = 0;
     if (self.stopped) throwRange(self.ctx, "the Script is stopped");
   }
 }

@@ -1,9 +1,9 @@
-// interpreter.h: one Script's interpreter: a Duktape heap with a cap on its memory, the Script's
-// fields and those of the nodes it uses ("slots"), and the nodes it holds. Every function of the
+// interpreter.h: Owns the interpreter of one Script: a Duktape heap with limited memory, the fields
+// of the Script and of the nodes it uses ("slots"), and the nodes it holds. Every function of the
 // engine has it as its context. [the browser's thread]
 //
-// Duktape reports errors by longjmp: no function that calls it may own anything that needs a
-// destructor. What must outlive a call of it lies in the Duktape heap or in members here.
+// Duktape reports errors with longjmp, so a function that calls Duktape must not own anything with
+// a destructor. Data that must survive a call belongs in the Duktape heap or in members here.
 #pragma once
 
 #include <csetjmp>
@@ -18,48 +18,49 @@
 
 namespace ecma {
 
-// A field or event of the Script or of a node it uses, and the value the program sees there. Own
-// ones are kept from call to call: nobody else writes them. Those of other nodes are read again in
-// each call of the host.
+// A field or event of the Script, or of a node it uses, with the value that the program sees. The
+// Script's own values are kept between calls, because nobody else writes them. Values of other
+// nodes are read again in each call of the host.
 struct Slot {
-  XsNode node = 0; // 0: the Script's own
+  XsNode node = 0; // 0: the Script itself
   std::string name;
   XsType type{};
   XsAccess access{};
   bool readable = false, writable = false;
-  bool dirty = false; // to be sent, posted or written when the function returns
-  uint32_t serial =
-      0; // another one once the place is used again: objects that still name the old one are free
-  uint64_t call = 0; // in which the value was read; own: 1 once it was
-  double plain[4] =
-      {}; // SFBool, SFInt32, SFFloat, SFTime, tuples; else the value is in the array `values`
+  bool dirty = false; // send, post or write the value when the function returns
+  // Changes when the slot is reused; objects with an old serial are detached.
+  uint32_t serial = 0;
+  // The host call in which the value was read; the Script's own slots have 1 after that.
+  uint64_t call = 0;
+  // Value of SFBool, SFInt32, SFFloat, SFTime and tuples; other values are in the array `values`.
+  double plain[4] = {};
 };
 
 struct NodeRecord {
   XsNode node = 0;
-  void* object = nullptr;                 // its wrapper, which the finalizer takes away
+  void* object = nullptr;                 // the wrapper object; its finalizer clears this
   std::vector<std::pair<int, int>> slots; // index of the name, slot
 };
 
 struct Block;
 
 struct Interpreter {
-  // Before all else: the allocator's account.
+  // Must come first: the allocator's counters.
   uint64_t used = 0, most = 0;
-  Block* blocks = nullptr; // all of the heap
+  Block* blocks = nullptr; // list of all blocks of the heap
 
   const XsHost* host = nullptr;
   const XsScriptInfo* info = nullptr;
   XsNode self = 0;
   duk_context* ctx = nullptr;
-  bool stopped = false; // the host said so: nothing of the program may run any more
-  bool ending = false;  // the heap is being destroyed
-  bool dead = false;    // Duktape has given up; the heap is freed without it
-  uint64_t call = 1;    // number of the host's call
-  uint32_t natives = 0; // calls of native functions since the host was asked
-  uint64_t random = 0;  // state of Math.random
+  bool stopped = false;     // the host has stopped the program; it must not run any more
+  bool ending = false;      // the heap is being destroyed
+  bool dead = false;        // Duktape had a fatal error; the heap is freed without it
+  uint64_t call = 1;        // number of the current call by the host
+  uint32_t nativeCalls = 0; // calls of native functions since shouldStop was last called
+  uint64_t random = 0;      // state of Math.random
 
-  // Hidden property keys, and objects that the stash holds.
+  // Hidden property keys, and objects that the stash keeps alive.
   void *keySf = nullptr, *keyMf = nullptr, *keyList = nullptr, *keyParent = nullptr,
        *keyNode = nullptr, *keyMatrix = nullptr, *keyRow = nullptr;
   void *values = nullptr, *held = nullptr, *types = nullptr, *mfHandler = nullptr,
@@ -67,19 +68,19 @@ struct Interpreter {
   void* prototypes[XS_MFVEC3F + 1] = {};
   void *componentGet[4] = {}, *componentSet[4] = {};
 
-  std::deque<Slot> slots; // they stay where they are
+  std::deque<Slot> slots; // a deque, because references to slots must stay valid
   std::vector<int> freeSlots, dirty;
   uint32_t nextSerial = 0;
   std::unordered_map<XsNode, NodeRecord*> nodes;
-  std::vector<std::string> names; // of fields of nodes: what accessors know by number
+  std::vector<std::string> names; // names of the nodes' fields; accessors refer to them by index
 
-  // What a value for the host points to while it is handed over.
+  // Storage that a value for the host points to during a call.
   std::vector<float> floats;
   std::vector<XsString> strings;
   std::vector<XsNode> handles;
-  std::deque<std::string> texts; // converted ones, of this call
+  std::deque<std::string> texts; // strings converted during this call
   std::vector<uint8_t> pixels;
-  std::string program; // as it is compiled
+  std::string program; // the program as compiled
   int32_t integer = 0;
   XsImage image{};
 
@@ -90,16 +91,16 @@ struct Interpreter {
   static Interpreter& of(duk_context* ctx);
 };
 
-// interpreter.cpp
+// --- interpreter.cpp ---
 Interpreter* createInterpreter(const XsHost* host, const XsScriptInfo* info, XsResult& result);
 void destroyInterpreter(Interpreter* interpreter);
-// Calls the global function of this name, if there is one, with the event's value, or with nothing;
-// sends what it has assigned.
+// Calls the global function of this name, if it exists, with the event's value or without
+// arguments, and then sends what it has assigned.
 XsResult callFunction(Interpreter& self, const char* name, const XsValue* value, double time,
                       bool shutdown = false);
 
-// At the start of every native function: asks the host now and then; does not return once the
-// Script is stopped.
+// Called at the start of every native function: calls shouldStop now and then. Does not return when
+// the Script is stopped.
 void step(Interpreter& self);
 
 // errors.cpp: says what the error on top of the stack is, with the program's line and the function.
@@ -109,13 +110,14 @@ void logText(Interpreter& self, int severity, uint32_t line, const char* text, s
     __attribute__((format(printf, 2, 3)));
 [[noreturn]] void throwRange(duk_context* ctx, const char* format, ...)
     __attribute__((format(printf, 2, 3)));
-// The host has refused something: an error with its reason; does not return.
+// Throws an error with the host's reason for a refusal; does not return.
 [[noreturn]] void throwHost(duk_context* ctx, Interpreter& self, XsResult result, const char* what);
 
-// sandbox.cpp: takes away what is not ECMAScript; random numbers and dates that replay.
+// sandbox.cpp: Removes everything that is not ECMAScript, and makes random numbers and dates
+// repeatable.
 void restrictGlobals(duk_context* ctx, Interpreter& self);
 
-// An array or object that lives as long as the heap; the pointer to it.
+// Keeps the array or object on top alive as long as the heap, and returns a pointer to it.
 void* keep(duk_context* ctx); // pops it
 
 } // namespace ecma

@@ -1,5 +1,4 @@
-// matrix.cpp: VrmlMatrix (C.6.19): 4 x 4, m[row][column], translation in the last row. See
-// values.h.
+// matrix.cpp: Implements VrmlMatrix (C.6.19): 4 x 4, m[row][column], translation in the last row.
 #include <cmath>
 #include <cstring>
 
@@ -54,7 +53,7 @@ Matrix translation(const double* t, double sign) {
   return a;
 }
 
-// For row vectors: the transpose of Rodrigues' matrix.
+// Returns the transpose of Rodrigues' matrix, for row vectors.
 Matrix rotation(const double* r, double sign) {
   const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
   if (!(length > 0)) return identity;
@@ -66,15 +65,16 @@ Matrix rotation(const double* r, double sign) {
            {0, 0, 0, 1}}};
 }
 
-// An argument that may be left out or null.
+// Reads an argument that may be missing or null.
 bool optional(duk_context* ctx, duk_idx_t index, XsType type, double* out) {
   if (duk_is_null_or_undefined(ctx, index)) return false;
   toPlain(ctx, index, type, out, "VrmlMatrix.setTransform");
   return true;
 }
 
-// As a Transform (6.52) with these fields.
-duk_ret_t setTransform(duk_context* ctx) { // translation, rotation, scale, scaleOrientation, center
+// Sets the matrix of a Transform (6.52) with these fields.
+// arguments: translation, rotation, scale, scaleOrientation, center
+duk_ret_t setTransform(duk_context* ctx) {
   Matrix& m = *receiver(ctx);
   double t[4] = {}, r[4] = {0, 0, 1, 0}, s[4] = {1, 1, 1, 0}, o[4] = {0, 0, 1, 0}, c[4] = {};
   optional(ctx, 0, XS_SFVEC3F, t);
@@ -91,7 +91,7 @@ duk_ret_t setTransform(duk_context* ctx) { // translation, rotation, scale, scal
   return 0;
 }
 
-bool invert(const Matrix& from, Matrix& out) { // Gauss and Jordan, with pivots
+bool invert(const Matrix& from, Matrix& out) { // Gauss-Jordan elimination with pivoting
   Matrix a = from;
   out = identity;
   for (int column = 0; column < 4; ++column) {
@@ -124,7 +124,7 @@ Matrix transposed(const Matrix& a) {
   return b;
 }
 
-// The rotation nearest to a matrix: N. Higham, "Computing the polar decomposition", 1986.
+// Returns the rotation nearest to a matrix: N. Higham, "Computing the polar decomposition", 1986.
 Matrix nearestRotation(const Matrix& linear) {
   Matrix q = linear;
   constexpr int rounds = 60;
@@ -149,7 +149,7 @@ Matrix nearestRotation(const Matrix& linear) {
   return q;
 }
 
-// Axis and angle of a rotation's matrix for row vectors.
+// Computes axis and angle of a rotation matrix for row vectors.
 void axisOf(const Matrix& q, double* r) {
   const double x = q.m[1][2] - q.m[2][1], y = q.m[2][0] - q.m[0][2], z = q.m[0][1] - q.m[1][0];
   const double sine = std::sqrt(x * x + y * y + z * z), trace = q.m[0][0] + q.m[1][1] + q.m[2][2];
@@ -162,7 +162,7 @@ void axisOf(const Matrix& q, double* r) {
     r[1] = y / sine;
     r[2] = z / sine;
     r[3] = std::atan2(sine, trace - 1);
-  } else if (trace < 0) { // half a turn: the axis is in the columns of q + 1
+  } else if (trace < 0) { // half a turn: the columns of q + 1 are parallel to the axis
     int k = 0;
     for (int i = 1; i < 3; ++i)
       if (q.m[i][i] > q.m[k][k]) k = i;
@@ -186,7 +186,8 @@ void give(duk_context* ctx, duk_idx_t index, XsType type, const double* v) {
   writeBack(ctx, Interpreter::of(ctx), index, sf, 0, components(type));
 }
 
-duk_ret_t getTransform(duk_context* ctx) { // translation, rotation, scale: objects that take them
+// arguments: objects that receive translation, rotation, scale
+duk_ret_t getTransform(duk_context* ctx) {
   const Matrix& m = *receiver(ctx);
   Matrix linear = m;
   for (int i = 0; i < 3; ++i) linear.m[i][3] = linear.m[3][i] = 0;
@@ -229,12 +230,10 @@ duk_ret_t multiplied(duk_context* ctx, const Matrix& m) {
   pushSf(ctx, Interpreter::of(ctx), XS_SFVEC3F, out);
   return 1;
 }
-duk_ret_t multVecMatrix(duk_context* ctx) {
-  return multiplied(ctx, *receiver(ctx));
-} // row times matrix
-duk_ret_t multMatrixVec(duk_context* ctx) {
-  return multiplied(ctx, transposed(*receiver(ctx)));
-} // matrix times column
+// Multiplies a row vector by the matrix.
+duk_ret_t multVecMatrix(duk_context* ctx) { return multiplied(ctx, *receiver(ctx)); }
+// Multiplies the matrix by a column vector.
+duk_ret_t multMatrixVec(duk_context* ctx) { return multiplied(ctx, transposed(*receiver(ctx))); }
 
 duk_ret_t toText(duk_context* ctx) {
   const Matrix& m = *receiver(ctx);
@@ -248,7 +247,7 @@ duk_ret_t toText(duk_context* ctx) {
   return 1;
 }
 
-// --- m[i] is a view of the row, m[i][j] its number ---
+// --- m[i] is a view of the row, m[i][j] a number in it ---
 
 duk_ret_t getRow(duk_context* ctx) {
   Interpreter& self = Interpreter::of(ctx);
@@ -268,7 +267,7 @@ duk_ret_t setRow(duk_context* ctx) {
   Matrix* m = matrixData(ctx, -1);
   double v[4];
   if (!m) return 0;
-  toPlain(ctx, 0, XS_SFROTATION, v, "a row of VrmlMatrix"); // four numbers
+  toPlain(ctx, 0, XS_SFROTATION, v, "a row of VrmlMatrix"); // reads four numbers
   std::memcpy(m->m[duk_get_current_magic(ctx)], v, sizeof v);
   return 0;
 }
@@ -292,7 +291,7 @@ duk_ret_t setElementOf(duk_context* ctx) {
   return 0;
 }
 
-duk_ret_t construct(duk_context* ctx) { // 16 numbers row by row, another matrix, or nothing
+duk_ret_t construct(duk_context* ctx) { // arguments: 16 numbers row by row, another matrix, or none
   step(Interpreter::of(ctx));
   Matrix m = identity;
   const duk_idx_t given = duk_get_top(ctx);

@@ -1,5 +1,5 @@
-// mf_objects.cpp: the arrays of VRML (C.6.10 to C.6.18): storage, elements, constructors. See
-// values.h; indexing is mf_traps.cpp.
+// mf_objects.cpp: Implements VRML's arrays (C.6.10 to C.6.18): storage, elements, constructors.
+// Indexing is in mf_traps.cpp.
 #include <cstring>
 
 #include "slots.h"
@@ -7,7 +7,7 @@
 namespace ecma {
 namespace {
 
-// Elements [from, to) as they are before anybody sets them.
+// Sets the elements [from, to) to their defaults.
 void clearElements(duk_context* ctx, Interpreter& self, duk_idx_t index, MfData* mf, uint32_t from,
                    uint32_t to) {
   if (const size_t bytes = elementBytes(mf->type)) {
@@ -45,10 +45,10 @@ duk_ret_t construct(duk_context* ctx) {
 } // namespace
 
 MfData* pushMf(duk_context* ctx, Interpreter& self, XsType type, uint32_t count, Place place) {
-  if (count > mostElements)
-    throwRange(ctx, "%s: more than %u elements", typeName(type), unsigned(mostElements));
+  if (count > maxElements)
+    throwRange(ctx, "%s: more than %u elements", typeName(type), unsigned(maxElements));
   const size_t bytes = elementBytes(type);
-  duk_push_bare_object(ctx); // what the proxy stands before
+  duk_push_bare_object(ctx); // the target of the proxy
   duk_push_heapptr(ctx, self.prototypes[type]);
   duk_set_prototype(ctx, -2);
   auto* mf = static_cast<MfData*>(duk_push_dynamic_buffer(ctx, sizeof(MfData) + bytes * count));
@@ -67,8 +67,8 @@ MfData* pushMf(duk_context* ctx, Interpreter& self, XsType type, uint32_t count,
 MfData* resizeMf(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t count) {
   index = duk_normalize_index(ctx, index);
   MfData* mf = mfData(ctx, index);
-  if (count > mostElements)
-    throwRange(ctx, "%s: more than %u elements", typeName(mf->type), unsigned(mostElements));
+  if (count > maxElements)
+    throwRange(ctx, "%s: more than %u elements", typeName(mf->type), unsigned(maxElements));
   const uint32_t before = mf->count;
   if (const size_t bytes = elementBytes(mf->type)) {
     duk_get_prop_heapptr(ctx, index, self.keyMf);
@@ -111,8 +111,8 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   double v[4] = {0, 0, element == XS_SFROTATION ? 1.0 : 0.0, 0};
   for (int k = 0; k < n && !beyond; ++k)
     v[k] = widen(floatsOf(mf)[size_t(i) * size_t(n) + size_t(k)]);
-  // A value of its own; what is written to it is written here, beyond the end too: mf[mf.length].x
-  // = 1 makes it longer.
+  // The element is a copy that writes changes back to the array, also beyond its end:
+  // mf[mf.length].x = 1 makes the array longer.
   SfData* sf = pushSf(ctx, self, element, v);
   sf->hasParent = 1;
   sf->index = i;
@@ -166,8 +166,8 @@ void pushMfFrom(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType typ
                        : list                                         ? duk_get_length(ctx, index)
                        : type == XS_MFNODE && duk_is_null(ctx, index) ? 0
                                                                       : 1;
-  if (count > mostElements)
-    throwRange(ctx, "%s: more than %u elements", what, unsigned(mostElements));
+  if (count > maxElements)
+    throwRange(ctx, "%s: more than %u elements", what, unsigned(maxElements));
   pushMf(ctx, self, type, uint32_t(count));
   const duk_idx_t made = duk_get_top_index(ctx);
   for (uint32_t i = 0; i < count; ++i) {
@@ -193,7 +193,7 @@ void registerMf(duk_context* ctx, Interpreter& self) {
   registerMfTraps(ctx, self);
   static constexpr Method methods[] = {{"toString", notationMethod, 0}};
   for (int type = XS_MFCOLOR; type <= XS_MFVEC3F; ++type) {
-    duk_push_object(ctx); // join, push, pop, slice, sort and others are those of Array
+    duk_push_object(ctx); // join, push, pop, slice, sort and others are inherited from Array
     duk_get_global_string(ctx, "Array");
     duk_get_prop_string(ctx, -1, "prototype");
     duk_remove(ctx, -2);

@@ -1,9 +1,9 @@
-// mf_traps.cpp: what happens at mf[i], mf.length and their assignment: traps of the proxies that MF
-// objects are. See values.h.
+// mf_traps.cpp: Implements mf[i], mf.length and their assignment as traps of the proxies that
+// represent MF objects.
 //
-// Within the elements an index gives the element, beyond them undefined, or a tuple that is not
-// there yet: assigning beyond them, or to a component of such a tuple, makes the array longer
-// (C.6.10).
+// An index inside the array returns the element. An index outside returns undefined, or a tuple
+// that does not exist yet. Assigning outside the array, or to a component of such a tuple, makes
+// the array longer (C.6.10).
 #include <cmath>
 #include <cstring>
 
@@ -14,7 +14,7 @@ namespace {
 
 enum class Key : uint8_t { element, length, none, other };
 
-// The traps' second argument is a number, or a text as "12" or "length".
+// Decodes the traps' second argument: a number, or a string such as "12" or "length".
 Key keyOf(duk_context* ctx, uint32_t& index) {
   double number = 0;
   if (duk_is_number(ctx, 1)) {
@@ -34,7 +34,7 @@ Key keyOf(duk_context* ctx, uint32_t& index) {
   return Key::element;
 }
 
-duk_ret_t get(duk_context* ctx) { // target, key, receiver
+duk_ret_t get(duk_context* ctx) { // arguments: target, key, receiver
   Interpreter& self = Interpreter::of(ctx);
   step(self);
   uint32_t index = 0;
@@ -49,21 +49,21 @@ duk_ret_t get(duk_context* ctx) { // target, key, receiver
   return 1;
 }
 
-duk_ret_t set(duk_context* ctx) { // target, key, value, receiver
+duk_ret_t set(duk_context* ctx) { // arguments: target, key, value, receiver
   Interpreter& self = Interpreter::of(ctx);
   step(self);
   const char* name = typeName(mfData(ctx, 0)->type);
   uint32_t index = 0;
   switch (keyOf(ctx, index)) {
   case Key::element:
-    if (index >= mostElements)
-      throwRange(ctx, "%s: more than %u elements", name, unsigned(mostElements));
+    if (index >= maxElements)
+      throwRange(ctx, "%s: more than %u elements", name, unsigned(maxElements));
     setElement(ctx, self, 0, index, 2, name);
     touchMf(ctx, self, 0);
     break;
   case Key::length: {
     const double count = toNumber(ctx, 2, XS_SFINT32, "length");
-    if (!(count >= 0 && count <= mostElements)) throwRange(ctx, "%s: length %g", name, count);
+    if (!(count >= 0 && count <= maxElements)) throwRange(ctx, "%s: length %g", name, count);
     resizeMf(ctx, self, 0, uint32_t(count));
     touchMf(ctx, self, 0);
     break;
@@ -79,7 +79,7 @@ duk_ret_t set(duk_context* ctx) { // target, key, value, receiver
   return 1;
 }
 
-duk_ret_t has(duk_context* ctx) { // target, key
+duk_ret_t has(duk_context* ctx) { // arguments: target, key
   uint32_t index = 0;
   switch (keyOf(ctx, index)) {
   case Key::element: duk_push_boolean(ctx, index < mfData(ctx, 0)->count); return 1;
@@ -92,8 +92,8 @@ duk_ret_t has(duk_context* ctx) { // target, key
   return 1;
 }
 
-duk_ret_t remove(duk_context* ctx) { // target, key: an element is there or not; only the program's
-                                     // own properties go
+// arguments: target, key. Elements cannot be deleted, only the program's own properties.
+duk_ret_t remove(duk_context* ctx) {
   uint32_t index = 0;
   if (keyOf(ctx, index) == Key::other) {
     duk_dup(ctx, 1);

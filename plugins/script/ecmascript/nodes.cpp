@@ -1,6 +1,5 @@
-// nodes.cpp: SFNode (C.6.6): one wrapper for each node that the program holds, so that == tells
-// whether two are one; fields and events are accessors of a prototype for each type of node
-// (C.5.2). See values.h.
+// nodes.cpp: Implements SFNode (C.6.6). Each node that the program holds has one wrapper, so that
+// == compares identity. Fields and events are accessors of one prototype per node type (C.5.2).
 #include <cstring>
 #include <new>
 
@@ -32,8 +31,8 @@ bool remember(NodeRecord& record, int name, int slot) noexcept {
   } catch (const std::bad_alloc&) { return false; }
 }
 
-// The slot of a field by any of its names: exposedField x, set_x and x_changed are one. -1: there
-// is none.
+// Returns the slot of a field under any of its names (exposedField x, set_x and x_changed share
+// one); -1 if there is none.
 int slotFor(duk_context* ctx, Interpreter& self, NodeRecord& record, int name) {
   for (const auto& [known, slot] : record.slots)
     if (known == name) return slot;
@@ -43,17 +42,17 @@ int slotFor(duk_context* ctx, Interpreter& self, NodeRecord& record, int name) {
   if (result == XS_NO_FIELD) return -1;
   if (result != XS_OK) throwHost(ctx, self, result, text);
   if (field.access == XS_FIELD && record.node != self.self) {
-    // coordIndex of an IndexedFaceSet is a field that only set_coordIndex changes; programs name it
-    // as if it were exposed.
+    // coordIndex of an IndexedFaceSet is a field that only set_coordIndex can change; programs use
+    // it like an exposedField.
     duk_push_sprintf(ctx, "set_%s", text);
     XsField in{};
     if (self.host->findField(self.host, self.self, record.node, duk_get_string(ctx, -1), &in) ==
             XS_OK &&
         in.access == XS_EVENT_IN)
       field = in;
+    // the lent name was invalidated
     else
-      self.host->findField(self.host, self.self, record.node, text,
-                           &field); // what was lent is gone
+      self.host->findField(self.host, self.self, record.node, text, &field);
     duk_pop(ctx);
   }
   int slot = -1;
@@ -93,7 +92,7 @@ duk_ret_t setField(duk_context* ctx) {
   return 0;
 }
 
-// The number of a name for accessors; -1 if there are too many, -2 if there is no memory for it.
+// Returns the number of a name for accessors; -1 if there are too many, -2 if there is no memory.
 int nameNumber(Interpreter& self, const char* name) noexcept {
   constexpr size_t most = 32'000;
   for (size_t i = 0; i < self.names.size(); ++i)
@@ -105,15 +104,15 @@ int nameNumber(Interpreter& self, const char* name) noexcept {
   return int(self.names.size()) - 1;
 }
 
-// Without memory there is no type: one that lacked a field would be kept.
+// Throws if there is no memory, because an incomplete prototype would be kept for the type.
 void putField(duk_context* ctx, Interpreter& self, const char* name) {
   const int number = nameNumber(self, name);
   if (number == -2) throwRange(ctx, "out of memory");
   if (number >= 0) putAccessor(ctx, name, getField, setField, number);
 }
 
-// Pushes the prototype of a node's type, made when the type is first met. Types that look alike
-// from outside are one: which field a name means is asked for each node.
+// Pushes the prototype of a node's type; it is created on first use. Types with the same interface
+// share a prototype, because the field is looked up in each node.
 void pushType(duk_context* ctx, Interpreter& self, XsNode node) {
   XsNodeInfo info{sizeof(XsNodeInfo), 0, nullptr, nullptr};
   XsResult result = self.host->describe(self.host, self.self, node, &info);
@@ -156,13 +155,14 @@ void pushType(duk_context* ctx, Interpreter& self, XsNode node) {
     }
     duk_pop_3(ctx);
   }
-  duk_insert(ctx, -3); // type, types, key
+  duk_insert(ctx, -3); // stack: type, types, key
   duk_dup(ctx, -3);
   duk_put_prop(ctx, -3);
   duk_pop(ctx);
 }
 
-// Of all that have the node's number: its wrapper, and whatever the program derived of it.
+// Called for every object with the node's number: the wrapper, and objects that the program derived
+// from it.
 duk_ret_t finalize(duk_context* ctx) {
   Interpreter& self = Interpreter::of(ctx);
   NodeRecord* record = recordOf(ctx, self, 0);
@@ -189,7 +189,7 @@ NodeRecord* makeRecord(Interpreter& self, XsNode node, void* object) noexcept {
   return record;
 }
 
-// new SFNode("VRML text"), new SFNode(node).
+// Handles new SFNode("VRML text") and new SFNode(node).
 duk_ret_t construct(duk_context* ctx) {
   Interpreter& self = Interpreter::of(ctx);
   step(self);
@@ -231,14 +231,14 @@ void pushNode(duk_context* ctx, Interpreter& self, XsNode node) {
     throwRange(ctx, "out of memory");
   }
   duk_insert(ctx, -2);
-  duk_set_prototype(ctx, -2); // from here on the finalizer is its own
+  duk_set_prototype(ctx, -2); // from here on the object has its own finalizer
 }
 
 bool isNode(duk_context* ctx, Interpreter& self, duk_idx_t index) {
   return recordOf(ctx, self, index) != nullptr;
 }
 
-// What `new SFNode()` gives, as nothing can give null.
+// Returns whether the value is the result of `new SFNode()`; a constructor cannot return null.
 bool isNull(duk_context* ctx, Interpreter& self, duk_idx_t index) {
   if (!duk_is_object(ctx, index)) return duk_is_null(ctx, index);
   duk_get_prototype(ctx, index);
@@ -251,8 +251,8 @@ XsNode nodeOf(duk_context* ctx, Interpreter& self, duk_idx_t index, const char* 
   if (isNull(ctx, self, index)) return 0;
   if (const NodeRecord* record = recordOf(ctx, self, index)) return record->node;
   index = duk_normalize_index(ctx, index);
-  if (const MfData* mf = mfData(ctx, index);
-      mf && mf->type == XS_MFNODE && mf->count > 0) { // createVrmlFromString's answer
+  // An MFNode is the result of createVrmlFromString.
+  if (const MfData* mf = mfData(ctx, index); mf && mf->type == XS_MFNODE && mf->count > 0) {
     pushElement(ctx, self, index, 0);
     const NodeRecord* record = recordOf(ctx, self, -1);
     duk_pop(ctx);

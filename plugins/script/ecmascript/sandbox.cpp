@@ -1,6 +1,6 @@
-// sandbox.cpp: takes from the global object what is not ECMAScript and could reach Duktape's
-// inside; dates and random numbers follow the world's time and text, so that a world that is played
-// again does the same. See interpreter.h.
+// sandbox.cpp: Removes from the global object everything that is not ECMAScript and could reach
+// Duktape's internals. Dates follow the world's time, and random numbers the program's text, so
+// that a replayed world does the same.
 #include "slots.h"
 
 namespace ecma {
@@ -23,7 +23,8 @@ duk_ret_t now(duk_context* ctx) {
   return 1;
 }
 
-// Date without arguments is the world's time. (The original is reached by nobody else.)
+// Replaces Date; without arguments it returns the world's time. Only this closure can reach the
+// original.
 const char* const dates =
     "(function(D,now){function Date(y,m,d,h,i,s,n){"
     "if(!(this instanceof Date))return new D(now()).toString();"
@@ -43,7 +44,8 @@ void removeProperty(duk_context* ctx, const char* object, const char* name) {
 } // namespace
 
 void restrictGlobals(duk_context* ctx, Interpreter& self) {
-  // Finalizers, threads, raw pointers; and makers of strings of any bytes, which hidden keys are.
+  // Remove finalizers, threads and raw pointers, and functions that make strings of arbitrary
+  // bytes, because such strings could be hidden keys.
   removeProperty(ctx, nullptr, "Duktape");
   removeProperty(ctx, nullptr, "CBOR");
   removeProperty(ctx, nullptr, "Buffer");
@@ -55,7 +57,7 @@ void restrictGlobals(duk_context* ctx, Interpreter& self) {
   duk_push_c_function(ctx, random, 0);
   duk_put_prop_string(ctx, -2, "random");
   duk_pop(ctx);
-  uint64_t seed = 0xcbf29ce484222325ULL ^ self.self; // FNV-1a of the program
+  uint64_t seed = 0xcbf29ce484222325ULL ^ self.self; // FNV-1a hash of the program
   for (uint64_t i = 0; i < self.info->text.bytes; ++i)
     seed = (seed ^ static_cast<unsigned char>(self.info->text.data[i])) * 0x100000001b3ULL;
   self.random = seed ? seed : 1;

@@ -1,5 +1,5 @@
-// sf_methods.cpp: methods of SFColor, SFRotation, SFVec2f, SFVec3f (C.6.4, C.6.7 to C.6.9). See
-// values.h.
+// sf_methods.cpp: Implements the methods of SFColor, SFRotation, SFVec2f and SFVec3f (C.6.4, C.6.7
+// to C.6.9).
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -9,7 +9,7 @@
 namespace ecma {
 namespace {
 
-// The object a method is called on; stays on the stack.
+// Returns the object that a method is called on; it stays on the stack.
 SfData* receiver(duk_context* ctx, XsType type, const char* method) {
   step(Interpreter::of(ctx));
   duk_push_this(ctx);
@@ -84,7 +84,7 @@ duk_ret_t length(duk_context* ctx) {
   duk_push_number(ctx, lengthOf(receiver(ctx, vectorType(ctx), "length")));
   return 1;
 }
-// A null vector stays one.
+// Normalizing a zero vector returns a zero vector.
 duk_ret_t normalize(duk_context* ctx) {
   const double n = lengthOf(receiver(ctx, vectorType(ctx), "normalize"));
   duk_pop(ctx);
@@ -175,7 +175,7 @@ duk_ret_t inverse(duk_context* ctx) {
   return answer(ctx, XS_SFROTATION, v);
 }
 
-// a.multiply(b) as quaternions a b: (a.multiply(b)).multVec(v) is a.multVec(b.multVec(v)).
+// Multiplies as quaternions a b: (a.multiply(b)).multVec(v) equals a.multVec(b.multVec(v)).
 duk_ret_t multiplyRotation(duk_context* ctx) {
   const Quaternion a = quaternionOf(receiver(ctx, XS_SFROTATION, "multiply")->v);
   double other[4], v[4];
@@ -202,7 +202,8 @@ duk_ret_t multVec(duk_context* ctx) {
   return answer(ctx, XS_SFVEC3F, v);
 }
 
-// The shorter way round (K. Shoemake, "Animating rotation with quaternion curves", 1985).
+// Interpolates along the shorter path (K. Shoemake, "Animating rotation with quaternion curves",
+// 1985).
 duk_ret_t slerp(duk_context* ctx) {
   const SfData* from = receiver(ctx, XS_SFROTATION, "slerp");
   double to[4], v[4];

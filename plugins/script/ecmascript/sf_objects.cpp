@@ -1,5 +1,5 @@
-// sf_objects.cpp: SFColor, SFRotation, SFVec2f, SFVec3f, SFImage (C.6.4 to C.6.9): constructors and
-// components. See values.h.
+// sf_objects.cpp: Implements the constructors and components of SFColor, SFRotation, SFVec2f,
+// SFVec3f and SFImage (C.6.4 to C.6.9).
 #include <cmath>
 #include <cstring>
 
@@ -50,7 +50,7 @@ duk_ret_t setPixels(duk_context* ctx) {
   return 0;
 }
 
-// The shortest rotation from one direction to another (C.6.7).
+// Computes the shortest rotation from one direction to another (C.6.7).
 void rotationBetween(const double* a, const double* b, double* out) {
   const double la = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]),
                lb = std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
@@ -58,7 +58,7 @@ void rotationBetween(const double* a, const double* b, double* out) {
          z = a[0] * b[1] - a[1] * b[0];
   const double dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
                sine = std::sqrt(x * x + y * y + z * z);
-  if (!(sine > 1e-12 * la * lb)) { // in line: any axis square to them
+  if (!(sine > 1e-12 * la * lb)) { // parallel: any perpendicular axis will do
     const bool alongX = std::fabs(a[0]) > 0.9 * la;
     x = alongX ? a[2] : 0;
     y = alongX ? 0 : -a[2];
@@ -127,7 +127,7 @@ void keepPrototype(duk_context* ctx, Interpreter& self, XsType type) {
   self.prototypes[type] = keep(ctx);
 }
 
-// The same two functions serve component `index` of all types.
+// Adds an accessor; the same two functions serve component `index` of all types.
 void putComponent(duk_context* ctx, Interpreter& self, const char* name, int index) {
   duk_push_string(ctx, name);
   duk_push_heapptr(ctx, self.componentGet[index]);

@@ -1,5 +1,5 @@
-// slots.cpp: see slots.h: reading, assigning and handing out; the Script's own fields as accessors
-// of the global object (C.5.1).
+// slots.cpp: Implements slots: reading, assigning and flushing. The Script's own fields are
+// accessors of the global object (C.5.1).
 #include "slots.h"
 
 #include <cstring>
@@ -10,13 +10,13 @@ namespace {
 
 bool isPlain(XsType type) { return !isMf(type) && components(type) > 0; }
 
-// What the array `values` holds for the slot; pushed.
+// Pushes the entry of the array `values` for the slot.
 void pushKept(duk_context* ctx, Interpreter& self, int slot) {
   duk_push_heapptr(ctx, self.values);
   duk_get_prop_index(ctx, -1, duk_uarridx_t(slot));
   duk_remove(ctx, -2);
 }
-// Pops it.
+// Pops the value into the array `values`.
 void keepValue(duk_context* ctx, Interpreter& self, int slot) {
   duk_push_heapptr(ctx, self.values);
   duk_dup(ctx, -2);
@@ -24,8 +24,8 @@ void keepValue(duk_context* ctx, Interpreter& self, int slot) {
   duk_pop_2(ctx);
 }
 
-// The object that stood for the slot's value keeps that value; what is done to it no longer
-// concerns the field.
+// Detaches the object of the slot's value: it keeps the value, but changes no longer affect the
+// field.
 void detachKept(duk_context* ctx, Interpreter& self, int slot) {
   pushKept(ctx, self, slot);
   if (MfData* mf = mfData(ctx, -1)) mf->place = {};
@@ -38,7 +38,8 @@ void detachKept(duk_context* ctx, Interpreter& self, int slot) {
   duk_pop(ctx);
 }
 
-// An MF object that is asked for in each call is one object, with the values of today.
+// Updates an existing MF object with the current values, so that the program gets the same object
+// in each call.
 bool refresh(duk_context* ctx, Interpreter& self, int slot, const XsValue& value) {
   pushKept(ctx, self, slot);
   MfData* mf = mfData(ctx, -1);
@@ -91,13 +92,13 @@ int makeSlot(Interpreter& self, XsNode node, const XsField& field, bool readable
   } catch (const std::bad_alloc&) { return -1; }
 }
 
-// From a finalizer: nothing of the heap is touched. What the slot kept is replaced when it is used
-// again.
+// Called from a finalizer, so it must not use the heap. The slot's kept value is replaced when the
+// slot is reused.
 void freeSlot(Interpreter& self, int slot) noexcept {
   try {
     self.slots[size_t(slot)] = Slot{};
     self.freeSlots.push_back(slot);
-  } catch (const std::bad_alloc&) {} // the place stays unused
+  } catch (const std::bad_alloc&) {} // the slot is never reused
 }
 
 Place placeOf(const Interpreter& self, int slot) { return {slot, self.slots[size_t(slot)].serial}; }
@@ -117,7 +118,7 @@ void markDirty(duk_context* ctx, Interpreter& self, int slot) {
   if (!it.writable) throwType(ctx, "%s cannot be written", it.name.c_str());
   it.call = it.node ? self.call : 1;
   if (it.dirty) return;
-  if (it.node) { // it stays until the event has left
+  if (it.node) { // keep the node until the event has been sent
     duk_push_heapptr(ctx, self.held);
     holdNode(ctx, self, slot);
     duk_put_prop_index(ctx, -2, duk_uarridx_t(duk_get_length(ctx, -2)));
@@ -207,7 +208,7 @@ duk_ret_t flushSlots(duk_context* ctx, void* data) {
   for (size_t i = 0; i < self.dirty.size(); ++i) {
     const int slot = self.dirty[i];
     Slot& it = self.slots[size_t(slot)];
-    if (!it.dirty) continue; // its node is gone
+    if (!it.dirty) continue; // its node has been collected
     it.dirty = false;
     XsValue value{};
     slotValue(ctx, self, slot, value);
@@ -218,8 +219,8 @@ duk_ret_t flushSlots(duk_context* ctx, void* data) {
                                 ? host.send(&host, self.self, name, &value)
                                 : host.write(&host, self.self, name, &value);
     if (result == XS_STOPPED) self.stopped = true;
-    if (result == XS_OK || result == XS_STOPPED || result == XS_NOT_ALLOWED)
-      continue; // the host has told of the last
+    // the host has already reported XS_NOT_ALLOWED
+    if (result == XS_OK || result == XS_STOPPED || result == XS_NOT_ALLOWED) continue;
     XsString why{"", 0};
     host.lastError(&host, self.self, &why);
     duk_push_lstring(ctx, why.data, why.bytes);
@@ -241,7 +242,7 @@ void registerFields(duk_context* ctx, Interpreter& self) {
   for (uint32_t i = 0; i < self.info->fieldCount; ++i) {
     const XsField& field = self.info->fields[i];
     if (field.access == XS_EVENT_IN) continue;
-    constexpr int most = 32'000; // numbers of accessors are short integers
+    constexpr int most = 32'000; // accessor numbers are 16-bit integers
     const int place = makeSlot(self, 0, field, true, true);
     if (place < 0) throwRange(ctx, "out of memory");
     if (place > most) break;

@@ -1,5 +1,5 @@
-// text.cpp: values in VRML's notation (toString, C.6): numbers as short as a float allows. See
-// values.h.
+// text.cpp: Writes values in VRML's notation (toString, C.6), with the shortest numbers that give
+// the same float.
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -10,7 +10,7 @@
 namespace ecma {
 namespace {
 
-// Texts grow piece by piece on the stack, joined before they are too many.
+// Builds long strings from pieces on the stack; joins them before there are too many.
 struct Pieces {
   duk_context* ctx;
   duk_idx_t count = 0;

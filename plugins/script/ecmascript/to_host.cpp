@@ -1,5 +1,5 @@
-// to_host.cpp: values of the program as the host takes them; see slots.h. What they point to lies
-// in the Duktape heap or in the interpreter's own arrays.
+// to_host.cpp: Converts the program's values for the host. The data lie in the Duktape heap or in
+// the interpreter's arrays.
 #include <cstring>
 #include <new>
 
@@ -8,7 +8,8 @@
 namespace ecma {
 namespace {
 
-// Something of C++ that may want memory, without an exception through Duktape.
+// Runs C++ code that may allocate; std::bad_alloc becomes a Duktape error, because exceptions must
+// not cross Duktape.
 template <class Work> void guardMemory(duk_context* ctx, Work&& work) {
   bool full = false;
   try {
@@ -21,7 +22,8 @@ bool isSurrogate(const unsigned char* at, const unsigned char* end) {
   return end - at >= 3 && at[0] == 0xed && at[1] >= 0xa0;
 }
 
-// Pairs of surrogates become one character; single ones, which no UTF-8 has, U+FFFD.
+// Converts surrogate pairs to one character each, and lone surrogates, which UTF-8 cannot encode,
+// to U+FFFD.
 void convertText(const unsigned char* at, const unsigned char* end, std::string& out) {
   while (at < end) {
     if (!isSurrogate(at, end)) {
@@ -63,7 +65,7 @@ void imageValue(duk_context* ctx, Interpreter& self, XsImage& image, const char*
   MfData* mf = mfData(ctx, -1);
   duk_pop(ctx);
   const double w = sf->v[0], h = sf->v[1], n = sf->v[2];
-  if (!mf || !(w >= 0 && h >= 0 && n >= 0 && n <= 4) || w * h > mostElements)
+  if (!mf || !(w >= 0 && h >= 0 && n >= 0 && n <= 4) || w * h > maxElements)
     throwType(ctx, "%s: no image: %g x %g x %g", name, w, h, n);
   image = {int32_t(w), int32_t(h), int32_t(n), 0, nullptr};
   const size_t count = size_t(image.width) * size_t(image.height), bytes = size_t(image.components);
@@ -126,10 +128,10 @@ void textsForHost(duk_context* ctx, Interpreter& self, duk_idx_t index, const ch
   for (uint32_t i = 0; i < count; ++i) {
     duk_get_prop_index(ctx, -1, i);
     addString(ctx, self, -1);
-    duk_pop(ctx); // the list holds it
+    duk_pop(ctx); // the list keeps it alive
   }
   duk_pop(ctx);
-  duk_replace(ctx, index); // and the list stays
+  duk_replace(ctx, index); // the list stays on the stack
 }
 
 void nodesForHost(duk_context* ctx, Interpreter& self, duk_idx_t index, const char* what) {
@@ -150,7 +152,7 @@ void nodesForHost(duk_context* ctx, Interpreter& self, duk_idx_t index, const ch
 void slotValue(duk_context* ctx, Interpreter& self, int slot, XsValue& out) {
   const Slot& it = self.slots[size_t(slot)];
   out = {it.type, 1, {nullptr}};
-  duk_set_top(ctx, 0); // what was pushed for the one before
+  duk_set_top(ctx, 0); // discards what was pushed for the previous slot
   switch (it.type) {
   case XS_SFBOOL:
   case XS_SFINT32:

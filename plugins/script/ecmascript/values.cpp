@@ -1,4 +1,5 @@
-// values.cpp: see values.h: types, what objects are, conversions of the program's values (C.6.2).
+// values.cpp: Implements values.h: types, object data, and conversions of the program's values
+// (C.6.2).
 #include "values.h"
 
 #include <charconv>
@@ -15,7 +16,7 @@ bool equalsWord(const char* text, const char* lower) {
   return *text == 0;
 }
 
-// Boxed and dated values as primitives; the value itself stays where it is. Pushes.
+// Pushes the primitive of a boxed value or a Date; the value itself stays in place.
 void pushPrimitive(duk_context* ctx, duk_idx_t index) {
   duk_dup(ctx, index);
   if (duk_is_object(ctx, -1)) duk_to_primitive(ctx, -1, DUK_HINT_NUMBER);
@@ -47,7 +48,8 @@ const char* typeName(XsType type) {
 }
 
 double widen(float value) {
-  const float scaled = value * 4096; // numbers of few bits are what they look like
+  // floats with few bits have a short decimal form as doubles too
+  const float scaled = value * 4096;
   if (scaled == std::trunc(scaled) || !std::isfinite(value)) return double(value);
   char text[32];
   double out = double(value);
@@ -60,7 +62,7 @@ SfData* sfData(duk_context* ctx, duk_idx_t index) {
   if (!duk_is_object(ctx, index)) return nullptr;
   duk_get_prop_heapptr(ctx, index, Interpreter::of(ctx).keySf);
   auto* data = static_cast<SfData*>(duk_get_buffer(ctx, -1, nullptr));
-  duk_pop(ctx); // the object holds it
+  duk_pop(ctx); // the object keeps it alive
   return data;
 }
 
@@ -106,7 +108,7 @@ void toPlain(duk_context* ctx, duk_idx_t index, XsType type, double* out, const 
   index = duk_normalize_index(ctx, index);
   switch (type) {
   case XS_SFBOOL:
-    if (duk_is_string(ctx, index)) { // scripts of 1997 hand texts around
+    if (duk_is_string(ctx, index)) { // scripts of 1997 use strings as booleans
       const char* text = duk_get_string(ctx, index);
       out[0] = *text && !equalsWord(text, "false") && !equalsWord(text, "0");
     } else {
@@ -160,8 +162,8 @@ void pushText(duk_context* ctx, duk_idx_t index, const char* what) {
 void putMethods(duk_context* ctx, const Method* methods, size_t count, int magic) {
   for (size_t i = 0; i < count; ++i) {
     const Method& m = methods[i];
-    duk_push_c_function(ctx, m.function,
-                        m.arguments); // no light function: its text shows an address
+    // not a light function: its toString would show an address
+    duk_push_c_function(ctx, m.function, m.arguments);
     duk_set_magic(ctx, -1, magic);
     duk_put_prop_string(ctx, -2, m.name);
   }

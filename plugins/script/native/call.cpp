@@ -8,7 +8,7 @@
 namespace native {
 namespace {
 
-constexpr uint32_t usualRoom = 65536; // elements, or characters, where nothing is said
+constexpr uint32_t defaultRoom = 65536; // default room in elements or characters
 
 ffi_type* typeOf(Number number) {
   switch (number) {
@@ -27,8 +27,8 @@ ffi_type* typeOf(Number number) {
   return &ffi_type_void;
 }
 
-// The C type of a VRML number; none for what is passed as a pointer.
-Number usual(XsType type) {
+// Returns the C type of a VRML number; none for types that are passed as pointers.
+Number defaultNumber(XsType type) {
   switch (type) {
   case XS_SFBOOL:
   case XS_SFINT32: return Number::i32;
@@ -43,12 +43,12 @@ bool isUnsigned(Number n) {
   return n == Number::u8 || n == Number::u16 || n == Number::u32 || n == Number::u64;
 }
 
-// A number in a range that its type has.
+// Clamps a number to the range of its type.
 double bounded(double v, double low, double high) {
   return v >= low && v <= high ? v : v > high ? high : v < low ? low : 0;
 }
 
-// A cell holds a number of `number` at its first bytes, as C does (little end first).
+// A cell holds a number of type `number` in its first bytes, like C (little-endian).
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
 void put(Cell& cell, Number number, double v) {
   cell.u = 0;
@@ -108,7 +108,7 @@ void PreparedCall::push(ffi_type* type, std::function<void(const World&, Cell&)>
   fill_.push_back(std::move(fill));
 }
 
-// x.data and x.count are one place.
+// Returns the place of a field; x.data and x.count share one.
 PreparedCall::Place& PreparedCall::place(const Argument& argument) {
   for (Place& known : places_)
     if (known.field == argument.field) return known;
@@ -116,7 +116,7 @@ PreparedCall::Place& PreparedCall::place(const Argument& argument) {
   made.field = argument.field;
   made.slot = Slot(info_.fields[argument.field].type);
   made.number = argument.number;
-  made.room = argument.room ? argument.room : usualRoom;
+  made.room = argument.room ? argument.room : defaultRoom;
   return made;
 }
 
@@ -150,7 +150,7 @@ void PreparedCall::add(const Argument& a) {
     }
     return;
   }
-  if (const Number own = usual(type); own != Number::none && !count) {
+  if (const Number own = defaultNumber(type); own != Number::none && !count) {
     const Number asked = a.number != Number::none ? a.number : own;
     return push(typeOf(asked), [this, a, asked, type](const World& w, Cell& cell) {
       Slot& slot = w.input(a.field);
@@ -177,7 +177,7 @@ PreparedCall::PreparedCall(const Call& call, void* function, const XsScriptInfo&
   ffi_type* result = &ffi_type_void;
   if (call.result) {
     const XsType type = info.fields[call.target.field].type;
-    if (call_.target.number == Number::none) call_.target.number = usual(type);
+    if (call_.target.number == Number::none) call_.target.number = defaultNumber(type);
     result = type == XS_SFSTRING ? &ffi_type_pointer : typeOf(call_.target.number);
   } else if (call.sends != Call::Sends::always) {
     result = &ffi_type_sint32;
@@ -196,7 +196,7 @@ XsResult PreparedCall::run(const World& world) {
     written.count = written.room;
     written.cell.u = 0;
     if (!state) continue;
-    Slot& now = world.input(written.field); // the function finds what the field holds
+    Slot& now = world.input(written.field); // initialize with the current value of the field
     const size_t bytes =
         written.slot.type() == XS_SFSTRING
             ? std::min<size_t>(std::strlen(now.text()), written.room)

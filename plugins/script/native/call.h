@@ -1,5 +1,5 @@
-// call.h: one C function, called with values of VRML's types: its frame by libffi, made once; its
-// memory. [the browser's thread]
+// call.h: Calls one C function with values of VRML's types: owns its libffi call frame, prepared
+// once, and its memory. [the browser's thread]
 #pragma once
 
 #include <deque>
@@ -14,44 +14,45 @@
 
 namespace native {
 
-// A value that goes into libffi, or comes out of it.
+// A value that is passed to or returned from libffi.
 union Cell {
   int64_t i;
   uint64_t u;
   float f;
   double d;
   void* p;
-  ffi_arg returned; // small results are widened to this
+  ffi_arg returned; // libffi widens small results to this type
 };
 
 class PreparedCall {
  public:
-  // What the function finds, and where its results go. The functions answer as the host does.
+  // Connects the function to its Script: the sources of arguments and the destinations of results.
+  // The callbacks return the host's results.
   struct World {
     const XsHost* host;
     XsNode self;
     double time;
-    std::function<Slot&(uint32_t field)> input; // its value now
-    std::function<XsResult(uint32_t field, const XsValue& value)>
-        give; // sends an eventOut, writes a field
+    std::function<Slot&(uint32_t field)> input; // returns the current value
+    // Sends an eventOut or writes a field.
+    std::function<XsResult(uint32_t field, const XsValue& value)> give;
     std::function<void(int32_t severity, uint32_t line, std::string what)> log;
   };
 
   PreparedCall(const Call& call, void* function, const XsScriptInfo& info); // throws ProgramError
-  // Calls it. XS_FAILED (after logging): it wrote more than there is room for, or the host refused
-  // a value.
+  // Calls the function. Returns XS_FAILED, after logging, if the function wrote more than there is
+  // room for, or if the host refused a value.
   XsResult run(const World& world);
   const Call& call() const { return call_; }
 
  private:
-  struct Place { // what the function writes to
+  struct Place { // memory that the function writes to
     uint32_t field;
     Slot slot;
     Number number = Number::none;
-    Cell cell{}; // a number in another type than VRML's
+    Cell cell{}; // a number whose C type differs from VRML's
     uint32_t room = 0;
-    uint32_t count = 0; // of an MF type: in: room, out: elements
-    bool fixed = true;  // the function does not say how many elements it wrote
+    uint32_t count = 0; // for MF types: room on input, number of elements on output
+    bool fixed = true;  // the function does not report how many elements it wrote
   };
   Place& place(const Argument& argument);
   void add(const Argument& argument);
@@ -65,7 +66,7 @@ class PreparedCall {
   std::vector<ffi_type*> types_;
   std::vector<std::function<void(const World&, Cell&)>> fill_;
   std::vector<Cell> cells_;
-  std::deque<Place> places_; // do not move: the function gets their addresses
+  std::deque<Place> places_; // a deque, because the function gets addresses of the elements
   ffi_cif frame_{};
 };
 

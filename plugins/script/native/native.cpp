@@ -1,6 +1,6 @@
-// native.cpp: the script engine `native`: C functions of shared libraries, called with VRML's
-// values (docs/scripts.md, "Native functions"). What such a function does cannot be bounded, so
-// only trusted worlds may name one. [the browser's thread]
+// native.cpp: Implements the script engine `native`, which calls C functions of shared libraries
+// with VRML's values (docs/scripts.md, "Native functions"). The effects of such functions cannot be
+// limited, so only trusted worlds may use them. [the browser's thread]
 #include <algorithm>
 #include <memory>
 #include <new>
@@ -24,7 +24,7 @@ class Interpreter {
     for (uint32_t i = 0; i < info_.fieldCount; ++i) inputs_[i] = Slot(info_.fields[i].type);
   }
   ~Interpreter() {
-    for (uint32_t i = 0; i < info_.fieldCount; ++i) letGo(i);
+    for (uint32_t i = 0; i < info_.fieldCount; ++i) releaseNodes(i);
   }
   Interpreter(const Interpreter&) = delete;
   Interpreter& operator=(const Interpreter&) = delete;
@@ -52,7 +52,7 @@ class Interpreter {
   }
 
   XsResult event(const XsEvent& event) {
-    letGo(event.index);
+    releaseNodes(event.index);
     inputs_[event.index].copy(event.value);
     if (elementType(event.value.type) == XS_SFNODE)
       for (uint32_t i = 0; i < event.value.count; ++i)
@@ -62,7 +62,7 @@ class Interpreter {
       return call.when == Call::When::event && call.event == event.index;
     });
   }
-  // Functions of several inputs are called once they are all there.
+  // Calls the functions with several inputs after all inputs have arrived.
   XsResult eventsProcessed(double time) {
     if (!std::exchange(arrived_, false)) return XS_OK;
     return run(time, [](const Call& call) { return call.when == Call::When::events; });
@@ -72,7 +72,8 @@ class Interpreter {
   }
 
  private:
-  // dlsym also finds what the library itself uses: every one has the C library's poll and shutdown.
+  // Returns whether the library itself defines a function. dlsym also finds functions of its
+  // dependencies; the C library has poll and shutdown.
   static bool isOwn(void* library, const std::string& name) {
     link_map* map = nullptr;
     Dl_info info{};
@@ -116,8 +117,8 @@ class Interpreter {
     return (to.access == XS_EVENT_OUT ? host_->send : host_->write)(host_, info_.self, to.name,
                                                                     &value);
   }
-  // The numbers of nodes in an eventIn's value are retained: a later function uses them.
-  void letGo(uint32_t field) {
+  // Releases the nodes of an eventIn's value; they are retained because a later call may use them.
+  void releaseNodes(uint32_t field) {
     if (info_.fields[field].access != XS_EVENT_IN ||
         elementType(inputs_[field].type()) != XS_SFNODE)
       return;
@@ -129,7 +130,7 @@ class Interpreter {
     host_->log(host_, info_.self, severity, line, {what.data(), what.size()});
   }
 
-  // An event that no function takes or gives is a slip of the pen.
+  // Warns about events that no function uses; they are probably mistakes.
   void warnUnused(const Program& program) const {
     std::set<uint32_t> used;
     for (const Call& call : program.calls) {
@@ -140,7 +141,7 @@ class Interpreter {
         host = host || argument.kind == Argument::Kind::host;
         if (argument.kind == Argument::Kind::field) used.insert(argument.field);
       }
-      if (host) return; // it may do anything
+      if (host) return; // the function gets the host and may use any event
     }
     for (uint32_t i = 0; i < info_.fieldCount; ++i)
       if (info_.fields[i].access != XS_FIELD && !used.contains(i))
@@ -152,7 +153,7 @@ class Interpreter {
 
   const XsHost* host_;
   const XsScriptInfo& info_;
-  std::vector<Slot> inputs_; // of fields and eventIns
+  std::vector<Slot> inputs_; // values of fields and eventIns
   std::vector<std::unique_ptr<PreparedCall>> calls_;
   bool arrived_ = false;
 };

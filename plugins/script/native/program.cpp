@@ -1,8 +1,9 @@
-// program.cpp: see program.h. The grammar is that of docs/scripts.md, "Native functions":
-//   program = library [ "#" call { (newline | ";") call } ]
-//   call    = [ when ":" ] [ "if" | "unless" | [type] name "=" ] function [ "(" [ argument { ","
-//   argument } ] ")" ] argument = number | [type] [ "&" ] name [ ".data" | ".count" | "[" number
-//   "]" ]
+// program.cpp: Implements program.h. The grammar is that of docs/scripts.md, "Native functions":
+//
+//   program  = library [ "#" call { (newline | ";") call } ]
+//   call     = [ when ":" ] [ "if" | "unless" | [type] name "=" ]
+//              function [ "(" [ argument { "," argument } ] ")" ]
+//   argument = number | [type] [ "&" ] name [ ".data" | ".count" | "[" number "]" ]
 #include "program.h"
 
 #include <algorithm>
@@ -13,8 +14,8 @@
 namespace native {
 namespace {
 
-constexpr size_t mostCalls = 1000, mostArguments = 100;
-constexpr uint32_t mostRoom = 1 << 24;
+constexpr size_t maxCalls = 1000, mostArguments = 100;
+constexpr uint32_t maxRoom = 1 << 24;
 
 struct Word {
   const char* name;
@@ -68,14 +69,14 @@ class Reader {
         if (!take(')')) fail("',' or ')' was expected");
       }
     } else {
-      leftOut(call);
+      deriveArguments(call);
     }
     if (more()) fail("unexpected '" + std::string(text_.substr(at_, 20)) + "'");
     return call;
   }
 
-  // Arguments that are not written down follow from the declarations.
-  void leftOut(Call& call) const {
+  // Derives arguments that are not written from the declarations.
+  void deriveArguments(Call& call) const {
     const bool quiet = call.when == Call::When::initialize || call.when == Call::When::shutdown;
     std::vector<Argument> outs;
     for (uint32_t i = 0; i < info_.fieldCount; ++i) {
@@ -189,8 +190,8 @@ class Reader {
     const bool real = written.find_first_of(".eE") != written.npos;
     argument.kind = real ? Argument::Kind::real : Argument::Kind::integer;
     argument.number = type != Number::none ? type : real ? Number::f64 : Number::i32;
-    const double most =
-        argument.number == Number::i32 ? 2147483647.0 : 9.0e15; // whole numbers of a double
+    // whole numbers that a double represents exactly
+    const double most = argument.number == Number::i32 ? 2147483647.0 : 9.0e15;
     if (!real && !(argument.value >= -most - 1 && argument.value <= most))
       fail("a number that is too large");
     return argument;
@@ -227,7 +228,7 @@ class Reader {
       if (!more()) fail("a number was expected");
       const double room = number();
       if (!argument.write || (field.type < XS_MFCOLOR && field.type != XS_SFSTRING) ||
-          !(room >= 1 && room <= mostRoom) || room != double(uint32_t(room)))
+          !(room >= 1 && room <= maxRoom) || room != double(uint32_t(room)))
         fail(std::string("'") + field.name +
              "[...]': a number of elements that the function writes to an MF type or an SFString");
       argument.room = uint32_t(room);
@@ -253,7 +254,8 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// The library alone: its functions with the names of the eventIns, and initialize, poll, shutdown.
+// Creates the calls for a program that names only a library: functions with the names of the
+// eventIns, and initialize, poll, shutdown.
 void callsByName(Program& program, const XsScriptInfo& info, const Lookup& own) {
   std::vector<std::string> names;
   for (uint32_t i = 0; i < info.fieldCount; ++i)
@@ -286,7 +288,7 @@ Program readProgram(std::string_view text, const XsScriptInfo& info, const Looku
     const size_t end = std::min(text.find_first_of("\n;", at), text.size());
     const std::string_view one = trimmed(text.substr(at, end - at));
     if (!one.empty() && !one.starts_with("//")) {
-      if (program.calls.size() >= mostCalls) throw ProgramError(line, "too many calls");
+      if (program.calls.size() >= maxCalls) throw ProgramError(line, "too many calls");
       program.calls.push_back(Reader(one, line, info).call());
       const std::string& function = program.calls.back().function;
       if (!exports(function))

@@ -18,7 +18,8 @@ Slot::Slot(XsType type) : type_(type) { makeRoom(xsIsMany(type) ? 0 : 1); }
 void Slot::makeRoom(uint32_t elements) {
   count_ = xsIsMany(type_) ? elements : 1;
   const size_t bytes = type_ == XS_SFSTRING ? elements + 1 : elementBytes(type_) * elements;
-  words_.assign(bytes / sizeof(uint64_t) + 1, 0); // a text ends even where the room does
+  // one more word, so that a string that fills the room is terminated
+  words_.assign(bytes / sizeof(uint64_t) + 1, 0);
   texts_.assign(elementType(type_) == XS_SFSTRING ? count_ : 0, "");
   pixels_.clear();
   image_ = {};

@@ -1,4 +1,4 @@
-// slots.h: the memory that C functions read and write: one slot for each field and event of a
+// slots.h: Owns the memory that C functions read and write: one slot for each field and event of a
 // Script. [the browser's thread]
 #pragma once
 
@@ -9,21 +9,22 @@
 
 namespace native {
 
-// Bytes of an element, as C sees it; 0 for SFString, MFString, SFImage.
+// Returns the bytes of an element in C; 0 for SFString, MFString, SFImage.
 size_t elementBytes(XsType type);
-// MF types have the SF type of their elements; SF types are their own.
+// Returns the SF type of an MF type's elements; an SF type returns itself.
 XsType elementType(XsType type);
 
-// A value as plain C arrays, owned. Of nodes it holds numbers that its owner has to retain.
+// A value stored as plain C arrays, which it owns. Nodes are stored as numbers, which the owner
+// must retain.
 class Slot {
  public:
   Slot() = default;
-  explicit Slot(XsType type); // zero, empty
+  explicit Slot(XsType type); // zero or empty
   void copy(const XsValue& from);
-  // Room for this many elements (characters of an SFString), all zero.
+  // Makes room for this many elements (characters of an SFString), all zero.
   void makeRoom(uint32_t elements);
-  // What the function wrote, as a value; good until the slot changes. count: elements of an MF
-  // type.
+  // Returns what the function wrote as a value, valid until the slot changes. count: elements of an
+  // MF type.
   XsValue value(uint32_t count);
   void setText(const char* text);
 
@@ -37,7 +38,7 @@ class Slot {
   void point();
   XsType type_ = XS_SFINT32;
   uint32_t count_ = 1;
-  std::vector<uint64_t> words_; // aligned for every type
+  std::vector<uint64_t> words_; // uint64_t is aligned for every type
   std::vector<std::string> texts_;
   std::vector<const char*> pointers_;
   std::vector<XsString> strings_;

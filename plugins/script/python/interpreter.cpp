@@ -9,14 +9,15 @@ namespace {
 
 thread_local Interpreter* current = nullptr;
 
-// Scripts of each browser: after the last one its nodes can no longer be changed from Python.
+// Counts the Scripts of each browser. After the last one has ended, Python can no longer change its
+// nodes.
 std::map<uintptr_t, int>& scriptsOf() {
   static auto& counts = *new std::map<uintptr_t, int>();
   return counts;
 }
 
-// An assignment to a node's attribute: of the Script that is running on this thread, if it is of
-// the same world.
+// Assigns to a node's attribute on behalf of the Script that is running on this thread, if it
+// belongs to the same world.
 bool assign(uintptr_t browser, uintptr_t node, const std::string& field, const py::object& value) {
   Interpreter* const script = Interpreter::running();
   if (!script || script->browser() != browser) return false;
@@ -26,15 +27,14 @@ bool assign(uintptr_t browser, uintptr_t node, const std::string& field, const p
   return true;
 }
 
-// In a world's file a program is indented as its surroundings are. Its first line stands behind
-// "python:".
+// Removes the common indentation of a program in a world's file. Its first line follows "python:".
 py::object dedented(const py::object& text) {
   const py::tuple parts = text.attr("partition")("\n");
   const py::object rest = py::module_::import("textwrap").attr("dedent")(parts[2]);
   return parts[0].attr("lstrip")() + parts[1] + rest;
 }
 
-// A function takes as many of the arguments as it declares.
+// Returns as many of the arguments as the function declares.
 py::tuple fitting(const py::object& function, const py::tuple& arguments) {
   if (!PyFunction_Check(function.ptr())) return arguments;
   const py::object code = function.attr("__code__");
@@ -71,20 +71,20 @@ Interpreter::~Interpreter() {
   if (globals_) {
     try {
       py::module_::import("sys").attr("modules").attr("pop")(name_, py::none());
-      globals_.attr("clear")(); // functions and their module hold each other
+      globals_.attr("clear")(); // functions and their module refer to each other
     } catch (py::error_already_set&) {}
   }
   globals_ = py::dict();
   module_ = py::none();
   if (!browser_ || --scriptsOf()[browser_] > 0) return;
   scriptsOf().erase(browser_);
-  if (!binding_) return; // it could not be imported
+  if (!binding_) return; // the binding could not be imported
   try {
     binding_.attr("_script_end")(browser_);
   } catch (py::error_already_set&) {}
 }
 
-// Every run of the program: in its time, within its memory; exceptions become messages.
+// Runs Python code with the Script's limits of time and memory; exceptions become messages.
 template <class Work> XsResult Interpreter::run(Work&& work) {
   if (ended_) return XS_OK;
   XsResult result = XS_OK;
@@ -92,7 +92,7 @@ template <class Work> XsResult Interpreter::run(Work&& work) {
   std::optional<py::error_already_set> error;
   {
     Interpreter* const outer = std::exchange(current, this);
-    const Watch watch(host_, info_.self);
+    const Watchdog watch(host_, info_.self);
     Account* const before = chargeTo(&memory_);
     try {
       work();
@@ -127,12 +127,13 @@ XsResult Interpreter::failed(py::error_already_set& error, bool stopped) {
     return XS_OK;
   }
   log(3, line, text);
-  if (isProgram() && error.matches(PyExc_KeyboardInterrupt))
-    PyErr_SetInterrupt(); // the user meant the whole program: it gets another one
+  // Ctrl-C was meant for the whole program: interrupt it again
+  if (isProgram() && error.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
   return XS_FAILED;
 }
 
-// "ZeroDivisionError: division by zero", and the last line of the program that led there.
+// Returns text such as "ZeroDivisionError: division by zero", and the last line of the program in
+// the traceback.
 std::string Interpreter::describe(py::error_already_set& error, uint32_t& line) const {
   std::string text = textOf(error.type().attr("__name__"));
   if (const std::string value = error.value() ? textOf(error.value()) : ""; !value.empty())
@@ -160,7 +161,8 @@ std::string Interpreter::describe(py::error_already_set& error, uint32_t& line) 
       }
     }
     return text + elsewhere;
-  } catch (const std::exception&) { return text; } // somebody's own exception that is none
+    // the program's own exception class failed while it was formatted
+  } catch (const std::exception&) { return text; }
 }
 
 void Interpreter::log(int32_t severity, uint32_t line, const std::string& text) const {
@@ -182,7 +184,7 @@ XsResult Interpreter::load() {
     name_ = "xvrml_script_" + std::to_string(++number);
     module_ = py::module_::import("types").attr("ModuleType")(name_);
     globals_ = module_.attr("__dict__");
-    py::module_::import("sys").attr("modules")[name_.c_str()] = module_; // dataclasses look there
+    py::module_::import("sys").attr("modules")[name_.c_str()] = module_; // needed by dataclasses
     globals_["__file__"] = info_.origin;
     globals_["__builtins__"] = py::module_::import("builtins");
     globals_["script"] = makeScriptObject(link_);
@@ -190,9 +192,10 @@ XsResult Interpreter::load() {
     const std::shared_ptr<Interpreter*> link = link_;
     globals_["print"] = py::cpp_function([link](const py::args& values, const py::kwargs& options) {
       if (*link && running() == *link) return (*link)->print(values, options);
-      py::module_::import("builtins").attr("print")(*values, **options); // a thread of the Script
+      // called on a thread that the Script started
+      py::module_::import("builtins").attr("print")(*values, **options);
     });
-    if (file_) { // its own modules lie beside it
+    if (file_) { // modules of the program are in the same folder
       const py::object folder = py::module_::import("os.path").attr("dirname")(info_.origin);
       py::list path = py::module_::import("sys").attr("path");
       if (!path.contains(folder)) path.append(folder);
@@ -265,7 +268,7 @@ void Interpreter::post(XsNode node, const std::string& event, const py::handle& 
 
 void Interpreter::check(XsResult result) const {
   if (result == XS_OK) return;
-  if (result == XS_STOPPED && Watch::mustEnd()) throw py::error_already_set();
+  if (result == XS_STOPPED && Watchdog::mustEnd()) throw py::error_already_set();
   XsString why{"", 0};
   host_->lastError(host_, info_.self, &why);
   const std::string text(why.data, why.bytes);
@@ -284,7 +287,7 @@ py::object Interpreter::nodeOf(XsNode number) const {
       browser_, reinterpret_cast<uintptr_t>(host_->object(host_, info_.self, number)));
 }
 
-// None, a Node, or `script`, which stands for the Script's own node.
+// Accepts None, a Node, or `script`, which means the Script's own node.
 XsNode Interpreter::numberOf(const py::handle& object) const {
   if (object.is_none()) return 0;
   if (const Interpreter* script = scriptOf(object); script && script->browser() == browser_)

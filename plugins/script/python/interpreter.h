@@ -1,5 +1,5 @@
-// interpreter.h: a Script in Python: its module, what its functions find there, and what becomes of
-// their exceptions. All members with Python's lock. [the browser's thread]
+// interpreter.h: Runs a Script in Python: owns its module, provides the objects its functions use,
+// and reports their exceptions. Every member needs Python's lock (GIL). [the browser's thread]
 #pragma once
 
 #include <memory>
@@ -23,14 +23,17 @@ class Interpreter {
 
   XsResult load(); // compiles the program and runs it as a module
   XsResult event(const XsEvent& event);
-  XsResult call(const char* function); // without arguments, if the module has one
+  // Calls the function without arguments, if the module has it.
+  XsResult call(const char* function);
 
-  // --- What the objects `script` and `browser` do. Raise Python exceptions. ---
-  py::object get(const std::string& name); // of a field, or what an eventOut sent last
+  // --- Implementation of the objects `script` and `browser`; these functions raise Python
+  // exceptions ---
+  // a field's value, or the last value that an eventOut sent
+  py::object get(const std::string& name);
   void set(const std::string& name, const py::handle& value);
   py::list names() const;
   void post(XsNode node, const std::string& event, const py::handle& value);
-  void check(XsResult result) const; // raises what the host's answer means
+  void check(XsResult result) const; // raises the exception for a result of the host
   void print(const py::args& values, const py::kwargs& options);
   const XsHost* host() const { return host_; }
   XsNode self() const { return info_.self; }
@@ -39,7 +42,7 @@ class Interpreter {
   py::object nodeOf(XsNode number) const;
   uintptr_t browser() const { return browser_; }
 
-  static Interpreter* running(); // whose function runs on this thread; null: none
+  static Interpreter* running(); // the Script whose function runs on this thread; null: none
 
  private:
   template <class Work> XsResult run(Work&& work);
@@ -51,24 +54,25 @@ class Interpreter {
 
   const XsHost* host_;
   const XsScriptInfo& info_;
-  const bool file_; // the program is a file of its own
+  const bool file_; // the program is in a file of its own
   uintptr_t browser_ = 0;
   Nodes nodes_;
   py::module_ binding_;
   std::unordered_map<std::string, const XsField*> fields_;
-  std::string name_; // of the module
+  std::string name_; // name of the module
   py::object module_;
   py::dict globals_;
-  std::shared_ptr<Interpreter*> link_; // what `script` and `browser` hold: null once this is gone
+  // Shared with `script` and `browser`; the pointer in it becomes null when this is destroyed.
+  std::shared_ptr<Interpreter*> link_;
   Account memory_;
-  std::string printed_; // a line that has no end yet
-  bool ended_ = false;  // by sys.exit
+  std::string printed_; // a printed line that is not finished
+  bool ended_ = false;  // the program has called sys.exit
 };
 
-// Makes the objects `script` and `browser` of a module.
+// Creates the objects `script` and `browser` of a module.
 py::object makeScriptObject(const std::shared_ptr<Interpreter*>& link);
 py::object makeBrowserObject(const std::shared_ptr<Interpreter*>& link);
-// The Script that an object `script` stands for; null if it is none.
+// Returns the Script that an object `script` represents; null for other objects.
 Interpreter* scriptOf(const py::handle& object);
 
 } // namespace python

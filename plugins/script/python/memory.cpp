@@ -1,6 +1,6 @@
-// memory.cpp: Small objects come from arenas of Python's own allocator, all others
-// from the raw one: these two are wrapped. The context stays that of the wrapped functions, so that
-// a thread that allocates while they change finds a good pair.
+// memory.cpp: Wraps Python's two allocators: small objects come from the arenas of Python's own
+// allocator, all others from the raw one. The context pointer stays that of the wrapped functions,
+// so that a thread that allocates during the change sees a matching pair.
 #include "memory.h"
 
 #include <cstdlib>
@@ -55,7 +55,8 @@ void arenaFree(void* context, void* arena, size_t bytes) {
   arenas.free(context, arena, bytes);
 }
 
-// Other wrappers hand out addresses within blocks, whose size cannot be asked for.
+// Returns whether Python uses debug wrappers; these return addresses inside blocks, so that the
+// size of a block cannot be determined.
 bool checksItself() {
 #ifdef Py_DEBUG
   return true;
@@ -64,7 +65,7 @@ bool checksItself() {
       std::getenv("PYTHONTRACEMALLOC"))
     return true;
   if (!Py_IsInitialized()) return false;
-  PyObject* flags = PySys_GetObject("flags"); // borrowed
+  PyObject* flags = PySys_GetObject("flags"); // borrowed reference
   PyObject* mode = flags ? PyObject_GetAttrString(flags, "dev_mode") : nullptr;
   const bool development = mode && PyObject_IsTrue(mode) == 1;
   Py_XDECREF(mode);

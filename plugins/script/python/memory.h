@@ -1,6 +1,6 @@
-// memory.h: how much memory the functions of a Script hold: Python's allocators are wrapped, and
-// answer NULL (MemoryError) beyond the Script's limit. What libraries allocate themselves, as numpy
-// does for its arrays, is not counted. Any thread.
+// memory.h: Counts the memory that the functions of a Script hold. Python's allocators are wrapped
+// and return NULL (MemoryError) beyond the Script's limit. Memory that libraries allocate
+// themselves, such as numpy's arrays, is not counted. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ struct Account {
   int64_t most = INT64_MAX;
 };
 
-// From now on allocations are counted; once in a process, before Python starts or with its lock.
-// Does nothing where Python checks its memory itself (PYTHONMALLOC, development mode).
+// Starts counting; call it once per process, before Python starts or with its lock. Does nothing if
+// Python checks its memory itself (PYTHONMALLOC, development mode).
 void countMemory();
 
-// The account of what this thread allocates; null: nobody's. Returns the one before.
+// Sets the account for allocations of this thread; null: none. Returns the previous one.
 Account* chargeTo(Account* account);
 
 } // namespace python

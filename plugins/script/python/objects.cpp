@@ -1,5 +1,5 @@
-// objects.cpp: the objects `script` and `browser` of a Script in Python. With Python's lock. [the
-// browser's thread]
+// objects.cpp: Defines the objects `script` and `browser` of a Script in Python. Needs Python's
+// lock (GIL). [the browser's thread]
 #include <pybind11/pybind11.h>
 
 #include "interpreter.h"
@@ -9,7 +9,7 @@ namespace {
 
 struct Linked {
   std::shared_ptr<Interpreter*> link;
-  // Of the Script whose function is running: the host knows no other.
+  // Returns the Script if its function is running; the host accepts calls only for that one.
   Interpreter& script() const {
     if (!*link) throw py::value_error("the Script has ended");
     if (Interpreter::running() != *link)

@@ -1,5 +1,5 @@
-// python.cpp: the script engine `python`: Python in trusted worlds (docs/scripts.md, "Python"). Its
-// programs can do whatever the user can. [the browser's thread]
+// python.cpp: Defines the script engine `python` for Python in trusted worlds (docs/scripts.md,
+// "Python"). Its programs can do everything that the user can. [the browser's thread]
 #include <new>
 
 #include "interpreter.h"
@@ -27,13 +27,14 @@ XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* mad
   }
 }
 
-// A Python program that ends may end its interpreter before its browsers.
+// Runs code with the GIL. A Python program may end its interpreter before its browsers; then this
+// fails.
 template <class Work> XsResult with(XsInterpreter interpreter, Work&& work) {
   if (!Py_IsInitialized()) return XS_FAILED;
   try {
     const Gil gil;
     return work(of(interpreter));
-  } catch (const std::exception&) { return XS_FAILED; } // no memory for a message
+  } catch (const std::exception&) { return XS_FAILED; } // there is no memory for a message
 }
 
 void destroy(XsInterpreter interpreter) {

@@ -13,18 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-unsigned long mainThread = 0; // as Python counts threads
+unsigned long mainThread = 0; // Python's identifier of the thread
 bool startedHere = false;
 
-// Python's own extension modules expect its functions among those of the whole program.
+// Makes Python's symbols global, because its extension modules expect them in the whole program.
 void shareSymbols() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<void*>(&Py_IsInitialized), &info) != 0 && info.dli_fname)
     dlopen(info.dli_fname, RTLD_NOW | RTLD_GLOBAL | RTLD_NOLOAD);
 }
 
-// The program that Python takes itself for, and finds its library by: that of an activated
-// environment of the same version, else the one that this was built with.
+// Returns the program name from which Python derives the place of its library: an activated
+// environment of the same version, otherwise the Python of the build.
 std::string programName() {
   const char* environment = std::getenv("VIRTUAL_ENV");
   const std::string version =
@@ -50,7 +50,7 @@ void initialize() {
   shareSymbols();
   PyPreConfig before;
   PyPreConfig_InitPythonConfig(&before);
-  before.configure_locale = 0; // the locale is the program's
+  before.configure_locale = 0; // the host owns the locale
   before.coerce_c_locale = 0;
   before.utf8_mode = 1;
   check(Py_PreInitialize(&before));
@@ -59,23 +59,23 @@ void initialize() {
   c.config.install_signal_handlers = 0;
   c.config.parse_argv = 0;
   c.config.configure_c_stdio = 0;
-  if (!std::getenv("PYTHONHASHSEED")) { // the same order of sets, and with it the same pictures, in
-                                        // every run
+  // The order of sets, and with it the pictures, must be the same in every run.
+  if (!std::getenv("PYTHONHASHSEED")) {
     c.config.use_hash_seed = 1;
     c.config.hash_seed = 0;
   }
   check(PyConfig_SetBytesString(&c.config, &c.config.program_name, programName().c_str()));
   check(Py_InitializeFromConfig(&c.config));
-  // Standard output may be a picture: what is not printed by a Script goes where messages go.
+  // Standard output may carry a picture, so print() outside of Scripts goes to standard error.
   if (PyObject* errors = PySys_GetObject("stderr")) PySys_SetObject("stdout", errors);
   if (PyRun_SimpleString("import random\nrandom.seed(0)") != 0)
     throw StartError("Python cannot start: no module random");
   mainThread = PyThread_get_thread_ident();
   startedHere = true;
-  PyEval_SaveThread(); // whoever needs the lock takes it
+  PyEval_SaveThread(); // release the lock
 }
 
-// Of the tree this library is installed in, or built in.
+// Returns the package folders of the tree in which this library is installed or built.
 std::vector<std::string> packageFolders() {
   static const char here = 0;
   Dl_info info{};
@@ -93,8 +93,8 @@ std::vector<std::string> packageFolders() {
 py::module_ importBinding() {
   py::list path = py::module_::import("sys").attr("path");
   const std::vector<std::string> folders = packageFolders();
-  // First the package that was built with the host's own library; it stays first only while it is
-  // imported.
+  // Prefer the package that was built with the host's library. It stays first only during the
+  // import.
   for (auto i = folders.rbegin(); i != folders.rend(); ++i) path.insert(0, *i);
   py::object module;
   std::string why;
@@ -132,7 +132,7 @@ void startPython() {
 }
 
 py::module_ binding() {
-  static PyObject* known = nullptr; // for the life of the interpreter
+  static PyObject* known = nullptr; // lives as long as the interpreter
   if (!known) known = importBinding().release().ptr();
   return py::reinterpret_borrow<py::module_>(known);
 }

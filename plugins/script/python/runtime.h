@@ -1,6 +1,5 @@
-// runtime.h: the one Python interpreter of a process: that of the program, where the host is a
-// Python program; else one that is started here, without handlers of signals. [the browser's
-// thread]
+// runtime.h: Provides the one Python interpreter of a process. A host that is a Python program has
+// one already; otherwise it is started here, without signal handlers. [the browser's thread]
 #pragma once
 
 #include <stdexcept>
@@ -12,7 +11,7 @@ namespace py = pybind11;
 
 namespace python {
 
-// The interpreter's lock, for as long as it lives. Any thread.
+// Holds the interpreter's lock (GIL) for its lifetime. Any thread.
 class Gil {
  public:
   Gil() : state_(PyGILState_Ensure()) {}
@@ -28,12 +27,14 @@ struct StartError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Starts Python if it does not run. Without the lock. Throws StartError.
+// Starts Python if it is not running. Call it without the lock. Throws StartError.
 void startPython();
-// The functions of the binding's module, from its package beside the engine or on Python's path.
-// With the lock. Throws StartError.
+// Returns the binding's module, from the package beside the engine or from Python's path. Call it
+// with the lock. Throws StartError.
 py::module_ binding();
-bool isProgram();    // it is a Python program that runs worlds
-bool isMainThread(); // of Python: the one that runs what others ask for (Py_AddPendingCall)
+bool isProgram(); // a Python program runs the worlds
+// Returns whether this is Python's main thread, which runs the calls ordered with
+// Py_AddPendingCall.
+bool isMainThread();
 
 } // namespace python

@@ -34,7 +34,7 @@ const char* expected(XsType type) {
   return texts[type - XS_SFBOOL];
 }
 
-// Who is to blame, for messages.
+// The field that is being assigned, for messages.
 struct Target {
   XsType type;
   const std::string& name;
@@ -77,7 +77,7 @@ template <class T> py::object arrayOf(const T* data, size_t count, size_t width)
   if (width > 1) shape.push_back(py::ssize_t(width));
   py::array_t<T> array(shape);
   if (count > 0) std::memcpy(array.mutable_data(), data, count * width * sizeof(T));
-  array.attr("setflags")(py::arg("write") = false); // a copy: what is written to it would be lost
+  array.attr("setflags")(py::arg("write") = false); // writes to this copy would be lost
   return array;
 }
 
@@ -149,8 +149,7 @@ py::handle itemOf(const py::object& fast, size_t i) {
   return PySequence_Fast_GET_ITEM(fast.ptr(), py::ssize_t(i));
 }
 
-// Numbers of an array, of any dense or sparse layout: rows of `width`, or of an SF type a single
-// row.
+// Reads numbers of an array with any strides: rows of `width`, or for an SF type a single row.
 template <class T> bool fromArray(const py::handle& object, size_t width, bool many,
                                   const Target& target, std::vector<T>& out) {
   if (!PyObject_CheckBuffer(object.ptr()) || py::isinstance<py::bytes>(object) || !hasNumpy())
@@ -309,10 +308,10 @@ Owned::Owned(const py::handle& object, XsType type, const std::string& name, con
     break;
   case XS_SFSTRING:
   case XS_MFSTRING:
-    if (!many)
-      texts_.push_back(textOf(object, target));
+    if (!many) texts_.push_back(textOf(object, target));
+    // its characters would be taken as elements
     else if (py::isinstance<py::str>(object))
-      target.wrongType(object); // its letters would be meant
+      target.wrongType(object);
     else
       texts_ = textsOf(object, name.c_str());
     for (const std::string& text : texts_) strings_.push_back({text.c_str(), text.size()});
@@ -343,7 +342,7 @@ Owned::Owned(const py::handle& object, XsType type, const std::string& name, con
       image_ = {int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), 0, nullptr};
     const py::array_t<int64_t, py::array::c_style | py::array::forcecast> dense(any);
     const size_t row = size_t(image_.width) * size_t(image_.components);
-    for (size_t y = size_t(image_.height); y-- > 0;) // rows run from the bottom in VRML
+    for (size_t y = size_t(image_.height); y-- > 0;) // VRML stores rows from the bottom
       for (size_t x = 0; x < row; ++x) {
         const int64_t v = dense.data()[y * row + x];
         if (v < 0 || v > 255) target.wrongValue("from 0 to 255, not " + std::to_string(v));

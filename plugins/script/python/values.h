@@ -1,5 +1,5 @@
-// values.h: VRML's values as Python objects and back, in the shapes of the Python binding. With
-// Python's lock. [the browser's thread]
+// values.h: Converts VRML's values to Python objects and back, in the shapes of the Python binding.
+// Needs Python's lock (GIL). [the browser's thread]
 #pragma once
 
 #include <functional>
@@ -14,14 +14,14 @@ namespace py = pybind11;
 
 namespace python {
 
-// Nodes of a Script: host's numbers and the binding's objects.
+// Converts between the host's node numbers and the binding's objects.
 struct Nodes {
   std::function<py::object(XsNode)> toPython;
-  std::function<XsNode(const py::handle&)> toHost; // raises TypeError, ValueError
+  std::function<XsNode(const py::handle&)> toHost; // raises TypeError or ValueError
 };
 
-// Numbers, tuples, str, Node; MF types of numbers are read-only arrays, tuples where there is no
-// numpy; images arrays of (height, width, components), rows from the top.
+// Converts to numbers, tuples, str or Node. MF types of numbers become read-only arrays, or tuples
+// without numpy. Images become arrays of (height, width, components), rows from the top.
 py::object toPython(const XsValue& value, const Nodes& nodes);
 
 // A value that owns its memory.
@@ -46,10 +46,10 @@ class Owned {
 };
 
 const char* typeName(XsType type);
-// Text may be anything; Python's own way to keep bytes that are not UTF-8.
+// Bytes that are not UTF-8 are kept by Python's surrogateescape.
 py::str toText(const XsString& bytes);
 std::string fromText(const py::handle& text);
-std::vector<std::string> textsOf(const py::handle& object,
-                                 const char* what); // a str or a sequence of them
+// Converts a str or a sequence of str.
+std::vector<std::string> textsOf(const py::handle& object, const char* what);
 
 } // namespace python

@@ -14,10 +14,10 @@ namespace {
 constexpr auto period = std::chrono::milliseconds(20);
 constexpr uint32_t linesBetween = 1000;
 
-thread_local Watch* running = nullptr;
+thread_local Watchdog* running = nullptr;
 
-// Orders a call on Python's main thread again and again while a function runs there. Never ends: it
-// sleeps when none does.
+// Repeatedly orders a call on Python's main thread while a function runs there. The timer thread
+// never ends; it sleeps while no function runs.
 class Timer {
  public:
   static Timer& get() {
@@ -45,20 +45,20 @@ class Timer {
       std::this_thread::sleep_for(period);
       lock.lock();
       if (active_ == 0 || ordered_.exchange(true)) continue;
-      lock.unlock(); // who ends a function holds Python's lock
+      lock.unlock(); // a thread that ends a function holds the GIL
       if (Py_AddPendingCall(&Timer::called, nullptr) != 0) ordered_ = false;
-      // Up to Python 3.11 the main thread looks for such calls only when it is asked to hand its
-      // lock over.
+      // Up to Python 3.11, the main thread checks for pending calls only when it is asked to
+      // release the GIL.
       if (Py_IsInitialized()) PyGILState_Release(PyGILState_Ensure());
       lock.lock();
     }
   }
   static int called(void*) {
     ordered_ = false;
-    return Watch::mustEnd() ? -1 : 0;
+    return Watchdog::mustEnd() ? -1 : 0;
   }
 
-  static inline std::atomic<bool> ordered_ = false; // and not called yet
+  static inline std::atomic<bool> ordered_ = false; // ordered and not called yet
   std::mutex mutex_;
   std::condition_variable wake_;
   int active_ = 0;
@@ -73,38 +73,39 @@ PyObject* stoppedType() {
   return type;
 }
 
-Watch::Watch(const XsHost* host, XsNode self) : host_(host), self_(self), outer_(running) {
-  stoppedType(); // made here, where there is room for it: a program may be stopped in the depth of
-                 // a recursion
+Watchdog::Watchdog(const XsHost* host, XsNode self) : host_(host), self_(self), outer_(running) {
+  // Create the class now: a program may be stopped deep in a recursion, where there is no room for
+  // it.
+  stoppedType();
   running = this;
   if (isMainThread()) {
     Timer::get().begin();
   } else if (py::module_::import("sys").attr("gettrace")().is_none()) {
     tracing_ = true;
-    PyEval_SetTrace(&Watch::trace, nullptr);
+    PyEval_SetTrace(&Watchdog::trace, nullptr);
   }
 }
 
-Watch::~Watch() {
+Watchdog::~Watchdog() {
   if (isMainThread()) Timer::get().end();
   if (tracing_) endTrace();
   running = outer_;
 }
 
-void Watch::endTrace() {
+void Watchdog::endTrace() {
   PyObject *type = nullptr, *value = nullptr, *traceback = nullptr;
   PyErr_Fetch(&type, &value, &traceback);
   PyEval_SetTrace(nullptr, nullptr);
   if (before_ && !before_.is_none()) {
     try {
       py::module_::import("sys").attr("settrace")(before_);
-    } catch (py::error_already_set&) {} // it would have to be the program's own
+    } catch (py::error_already_set&) {} // the program's own trace function could not be restored
   }
   PyErr_Restore(type, value, traceback);
 }
 
-bool Watch::mustEnd() {
-  Watch* const watch = running;
+bool Watchdog::mustEnd() {
+  Watchdog* const watch = running;
   if (!watch) return false;
   if (!watch->stopped_ && !watch->host_->shouldStop(watch->host_, watch->self_, 0)) return false;
   if (!watch->stopped_) {
@@ -112,17 +113,17 @@ bool Watch::mustEnd() {
     if (!watch->tracing_) {
       try {
         watch->before_ = py::module_::import("sys").attr("gettrace")();
-      } catch (py::error_already_set&) {} // none then
+      } catch (py::error_already_set&) {} // then there is none
       watch->tracing_ = true;
-      PyEval_SetTrace(&Watch::trace, nullptr);
+      PyEval_SetTrace(&Watchdog::trace, nullptr);
     }
   }
   PyErr_SetNone(stoppedType());
   return true;
 }
 
-int Watch::trace(PyObject*, PyFrameObject*, int what, PyObject*) {
-  Watch* const watch = running;
+int Watchdog::trace(PyObject*, PyFrameObject*, int what, PyObject*) {
+  Watchdog* const watch = running;
   if (!watch || (what != PyTrace_LINE && what != PyTrace_CALL)) return 0;
   if (!watch->stopped_ && ++watch->lines_ % linesBetween != 0) return 0;
   return mustEnd() ? -1 : 0;

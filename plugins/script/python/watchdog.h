@@ -1,8 +1,8 @@
-// watchdog.h: stops functions of Scripts whose time is up. Python cannot be interrupted from
-// outside; what runs too long is made to ask the host by itself: on Python's main thread by calls
-// that a timer's thread orders (Py_AddPendingCall), on others by a trace function, which is slower.
-// What may not run on gets an exception at each of its lines, which it cannot catch for long. [the
-// thread that holds Python's lock]
+// watchdog.h: Stops functions of Scripts that exceed their time. Python cannot be interrupted from
+// outside, so a running function is made to call the host's shouldStop. On Python's main thread a
+// timer thread orders calls (Py_AddPendingCall); on other threads a trace function does it, which
+// is slower. A stopped function gets an exception at each of its lines, so that it cannot catch it
+// for long. [the thread that holds Python's lock]
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,15 +11,16 @@
 
 namespace python {
 
-class Watch {
+class Watchdog {
  public:
-  Watch(const XsHost* host, XsNode self); // a function of the Script begins
-  ~Watch();
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
+  Watchdog(const XsHost* host, XsNode self); // a function of the Script begins
+  ~Watchdog();
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
   bool stopped() const { return stopped_; }
 
-  // The running function of this thread asks the host; true: it must end, an exception is set.
+  // Calls shouldStop for the running function of this thread. Returns true, with an exception set,
+  // if it must end.
   static bool mustEnd();
 
  private:
@@ -27,13 +28,14 @@ class Watch {
   void endTrace();
   const XsHost* host_;
   const XsNode self_;
-  Watch* const outer_; // of another browser
+  Watchdog* const outer_; // the Watchdog of another browser
   bool stopped_ = false, tracing_ = false;
   uint32_t lines_ = 0;
-  pybind11::object before_; // the trace function of the program's own
+  pybind11::object before_; // the program's own trace function
 };
 
-// The class of the exception: no Exception, so that `except Exception` lets it pass. Borrowed.
+// Returns the class of the exception (borrowed). It is not derived from Exception, so that `except
+// Exception` does not catch it.
 PyObject* stoppedType();
 
 } // namespace python

@@ -1,4 +1,5 @@
-// browser.cpp: the Browser object (4.12.10) as the command `Browser`. [the browser's thread]
+// browser.cpp: Implements the Browser object (4.12.10) as the command `Browser`. [the browser's
+// thread]
 #include "interpreter.h"
 #include "nodes.h"
 
@@ -95,8 +96,8 @@ int deleteRoute(Interpreter& i, Words words, int) {
 }
 
 struct Function {
-  const char* name; // first member: Tcl_GetIndexFromObjStruct
-  int least, most;  // arguments
+  const char* name; // must be the first member, for Tcl_GetIndexFromObjStruct
+  int least, most;  // number of arguments
   const char* usage;
   int (*run)(Interpreter&, Words, int);
 };

@@ -1,5 +1,5 @@
-// engine.cpp: the plug-in: Tcl as a script engine. See docs/scripts.md "Tcl/Tk". [the browser's
-// thread]
+// engine.cpp: Defines the plug-in with Tcl as a script engine. See docs/scripts.md "Tcl/Tk". [the
+// browser's thread]
 #include <clocale>
 #include <csignal>
 #include <new>
@@ -19,27 +19,29 @@ Interpreter& of(XsInterpreter interpreter) {
   return *reinterpret_cast<Interpreter*>(uintptr_t(interpreter));
 }
 
-// Nothing is thrown across the border.
+// Catches all exceptions: none may cross the plug-in interface.
 template <class Body> XsResult guarded(Body&& body) {
   try {
     return body();
   } catch (const std::exception&) { return XS_FAILED; }
 }
 
-// Tcl begins: it takes a signal and the locale for its own, which are the host's.
+// Initializes Tcl, which changes a signal handler and the locale; restores both, because the host
+// owns them.
 void begin() {
   struct sigaction pipe {};
   sigaction(SIGPIPE, nullptr, &pipe);
   const char* current = std::setlocale(LC_ALL, nullptr);
   const std::string locale = current ? current : "C";
-  // A program with Tk windows of its own, as Python's tkinter makes them, has begun to use Tcl: it
-  // goes on as it began.
+  // If the program has Tk windows of its own (for example Python's tkinter), Tcl has already been
+  // initialized and keeps its notifier.
   if (void* tk = dlopen("libtk" TCL_VERSION ".so", RTLD_LAZY | RTLD_NOLOAD))
     dlclose(tk);
   else
     tclscript::setNotifier();
-  Tcl_FindExecutable(nullptr); // finds nothing, so that no program can ask where the host is
-  Tcl_Interp* first = Tcl_CreateInterp(); // tables that the first one makes
+  // deliberately finds nothing, so that no program can ask for the host's path
+  Tcl_FindExecutable(nullptr);
+  Tcl_Interp* first = Tcl_CreateInterp(); // the first interpreter creates shared tables
   Tcl_Eval(first, "expr {1 + 1.5}; string is alpha x; regexp {a+} aa; clock seconds; lsort {b a}");
   Tcl_DeleteInterp(first);
   sigaction(SIGPIPE, &pipe, nullptr);
@@ -56,7 +58,7 @@ XsResult create(const XsHost* host, const XsScriptInfo* info, XsInterpreter* mad
   return guarded([&] {
     prepare();
     static char* none[] = {nullptr};
-    if (!environ) environ = none; // after clearenv; Tcl looks at the first
+    if (!environ) environ = none; // null after clearenv(); Tcl reads the first entry
     auto interpreter = std::make_unique<Interpreter>(host, info);
     const XsResult result = interpreter->create();
     if (result == XS_OK) *made = XsInterpreter(reinterpret_cast<uintptr_t>(interpreter.release()));
@@ -79,7 +81,7 @@ XsResult eventsProcessed(XsInterpreter interpreter, double time) {
 }
 XsResult shutdown(XsInterpreter interpreter, double time) {
   const XsResult result = call(interpreter, "shutdown", time);
-  return result == XS_STOPPED ? XS_OK : result; // it has been told of before
+  return result == XS_STOPPED ? XS_OK : result; // the host has already reported it
 }
 XsResult event(XsInterpreter interpreter, const XsEvent* event) {
   return guarded([&] { return of(interpreter).event(*event); });

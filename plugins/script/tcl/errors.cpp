@@ -1,6 +1,5 @@
-// errors.cpp: where in a program an error happened. Tcl counts lines within the body of a
-// procedure; its trace names the procedures that were under way, innermost first. See
-// interpreter.h. [the browser's thread]
+// errors.cpp: Finds the place of an error in a program. Tcl counts lines within the body of a
+// procedure; its trace names the active procedures, innermost first. [the browser's thread]
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -21,12 +20,12 @@ std::string_view tail(std::string_view name) {
   return colons == name.npos ? name : name.substr(colons + 2);
 }
 
-// The line on which the body of a procedure begins: `proc NAME ARGUMENTS BODY`, wherever it stands
-// in the program; 0: nowhere.
+// Returns the line on which the body of a procedure begins. Searches `proc NAME ARGUMENTS BODY`
+// anywhere in the program; 0: not found.
 uint32_t bodyLine(std::string_view program, std::string_view name) {
-  constexpr int mostCandidates = 200;
+  constexpr int maxCandidates = 200;
   int candidates = 0;
-  for (size_t at = program.find("proc"); at != program.npos && candidates < mostCandidates;
+  for (size_t at = program.find("proc"); at != program.npos && candidates < maxCandidates;
        at = program.find("proc", at + 4)) {
     if ((at > 0 && !isWordBreak(program[at - 1])) || at + 4 >= program.size() ||
         !std::strchr(" \t", program[at + 4]))

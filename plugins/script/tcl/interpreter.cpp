@@ -8,10 +8,10 @@
 namespace tclscript {
 namespace {
 
-constexpr int stepsAtOnce = 1000;          // commands between two questions whether to stop
-constexpr int microsecondsAtOnce = 20'000; // the same for a loop that calls no command
-constexpr int deepest = 1000;              // calls within calls
-constexpr size_t mostLate = 10'000;
+constexpr int commandsPerCheck = 1000;       // commands between two calls of shouldStop
+constexpr int microsecondsPerCheck = 20'000; // the same interval for a loop that calls no command
+constexpr int maxDepth = 1000;               // maximum recursion depth
+constexpr size_t maxPendingSets = 10'000;
 
 XsString view(std::string_view text) { return {text.data(), text.size()}; }
 
@@ -19,13 +19,13 @@ XsString view(std::string_view text) { return {text.data(), text.size()}; }
 
 thread_local Interpreter* Interpreter::running_ = nullptr;
 
-// While a function of the engine runs for a Script.
+// Exists while a function of the engine runs for a Script.
 struct Call {
   explicit Call(Interpreter& interpreter)
       : outer(std::exchange(Interpreter::running_, &interpreter)), interpreter(interpreter) {
     Tcl_Preserve(interpreter.tcl_);
     interpreter.startClock();
-    for (const Interpreter::Late& late : std::exchange(interpreter.late_, {}))
+    for (const Interpreter::PendingSet& late : std::exchange(interpreter.pendingSets_, {}))
       if (setField(interpreter, late.node, late.name, late.value.get()) != TCL_OK)
         interpreter.report(TCL_ERROR);
   }
@@ -43,7 +43,7 @@ struct Call {
 
 Interpreter::Interpreter(const XsHost* host, const XsScriptInfo* info)
     : host_(host), info_(info), tcl_(Tcl_CreateInterp()) {
-  Tcl_SetRecursionLimit(tcl_, deepest);
+  Tcl_SetRecursionLimit(tcl_, maxDepth);
 }
 
 Interpreter::~Interpreter() {
@@ -56,13 +56,14 @@ Interpreter::~Interpreter() {
 
 XsResult Interpreter::create() {
   const Call call(*this);
-  Tcl_LimitTypeReset(tcl_, TCL_LIMIT_TIME); // what follows is ours, and must not be broken off
-  Tcl_CmdInfo found;                        // what the commands that `proc` makes have in common
+  // the following commands are the engine's own and must not be interrupted
+  Tcl_LimitTypeReset(tcl_, TCL_LIMIT_TIME);
+  Tcl_CmdInfo found; // to find the function behind commands made by `proc`
   if (Tcl_Eval(tcl_, "proc ::xvrml_procedure {} {}") == TCL_OK &&
       Tcl_GetCommandInfo(tcl_, "::xvrml_procedure", &found))
     procedure_ = found.objProc;
   Tcl_DeleteCommand(tcl_, "::xvrml_procedure");
-  Tcl_Eval(tcl_, "expr {srand(1)}"); // the same world at each start
+  Tcl_Eval(tcl_, "expr {srand(1)}"); // a world behaves the same at each start
   if (trusted()) {
     if (makeTrusted(*this) != TCL_OK) {
       log(3, 0, Tcl_GetStringResult(tcl_));
@@ -76,13 +77,13 @@ XsResult Interpreter::create() {
   addTimers(*this);
   addBrowser(*this);
   addVariables(*this, linked_);
-  // From here on the program's commands count.
+  // From here on the program's commands are counted.
   Tcl_LimitAddHandler(tcl_, TCL_LIMIT_COMMANDS, onLimit, this, nullptr);
   Tcl_LimitAddHandler(tcl_, TCL_LIMIT_TIME, onLimit, this, nullptr);
   Tcl_Eval(tcl_, "info cmdcount");
   int count = 0;
   Tcl_GetIntFromObj(nullptr, Tcl_GetObjResult(tcl_), &count);
-  Tcl_LimitSetCommands(tcl_, count + stepsAtOnce);
+  Tcl_LimitSetCommands(tcl_, count + commandsPerCheck);
   Tcl_LimitTypeSet(tcl_, TCL_LIMIT_COMMANDS);
   startClock();
   const Object program = tclText({info_->text.data, size_t(info_->text.bytes)});
@@ -95,7 +96,7 @@ XsResult Interpreter::create() {
 void Interpreter::startClock() {
   Tcl_Time until;
   Tcl_GetTime(&until);
-  until.usec += microsecondsAtOnce;
+  until.usec += microsecondsPerCheck;
   if (until.usec >= 1'000'000) {
     until.sec += 1;
     until.usec -= 1'000'000;
@@ -104,18 +105,19 @@ void Interpreter::startClock() {
   Tcl_LimitTypeSet(tcl_, TCL_LIMIT_TIME);
 }
 
-// Commands or time are used up: the host says whether there are more. If not, Tcl unwinds the
-// program; `catch` does not hold it.
+// Called when the limit of commands or time is reached. Asks the host whether to continue. If not,
+// Tcl unwinds the program, and `catch` does not stop that.
 void Interpreter::onLimit(ClientData data, Tcl_Interp* tcl) {
   Interpreter& interpreter = *static_cast<Interpreter*>(data);
-  Interpreter& payer = running_ ? *running_ : interpreter; // whose tick serves an event of this one
+  // the Script whose tick serves an event of this one
+  Interpreter& charged = running_ ? *running_ : interpreter;
   const bool commands = Tcl_LimitTypeExceeded(tcl, TCL_LIMIT_COMMANDS);
-  if (payer.stopped_ ||
-      payer.host_->shouldStop(payer.host_, payer.self(), commands ? stepsAtOnce : 0)) {
-    payer.stopped_ = interpreter.stopped_ = true;
+  if (charged.stopped_ ||
+      charged.host_->shouldStop(charged.host_, charged.self(), commands ? commandsPerCheck : 0)) {
+    charged.stopped_ = interpreter.stopped_ = true;
     return;
   }
-  if (commands) Tcl_LimitSetCommands(tcl, Tcl_LimitGetCommands(tcl) + stepsAtOnce);
+  if (commands) Tcl_LimitSetCommands(tcl, Tcl_LimitGetCommands(tcl) + commandsPerCheck);
   interpreter.startClock();
 }
 
@@ -131,7 +133,7 @@ void Interpreter::exit() {
 void Interpreter::destroyWindows() {
   timers.clear();
   if (!trusted() || !hasTk()) return;
-  // Bindings to the end of a window may still do a little, whatever ended the program.
+  // Bindings to the destruction of a window may still run briefly, whatever ended the program.
   constexpr int few = 10'000;
   Tcl_LimitSetCommands(tcl_, Tcl_LimitGetCommands(tcl_) + few);
   startClock();
@@ -140,7 +142,7 @@ void Interpreter::destroyWindows() {
   const Object words[] = {Tcl_NewStringObj("destroy", -1), Tcl_NewStringObj(".", -1)};
   Tcl_Obj* objects[] = {words[0].get(), words[1].get()};
   info.objProc(info.objClientData, tcl_, 2, objects);
-  constexpr int rounds = 20; // so that the display hears of it: no tick comes any more
+  constexpr int rounds = 20; // so that the display is notified: no further tick will come
   for (int i = 0; i < rounds && Tcl_DoOneEvent(TCL_WINDOW_EVENTS | TCL_IDLE_EVENTS | TCL_DONT_WAIT);
        ++i) {}
 }
@@ -197,8 +199,8 @@ XsResult Interpreter::event(const XsEvent& event) {
 XsResult Interpreter::tick(double time) {
   if (stopped_) return XS_STOPPED;
   if (exited_) return XS_OK;
-  if (timers.empty() && late_.empty() && !trusted()) return XS_OK;
-  constexpr int most = 500; // of the queue's events at once
+  if (timers.empty() && pendingSets_.empty() && !trusted()) return XS_OK;
+  constexpr int most = 500; // maximum number of queued events per tick
   const Call call(*this);
   runTimers(*this, time);
   for (int i = 0; trusted() && i < most && !stopped_ && !exited_; ++i)
@@ -232,8 +234,9 @@ XsResult Interpreter::give(Output kind, XsNode node, const char* name, Converted
   return host_->post(host_, self(), node, name, &value.value);
 }
 
-void Interpreter::later(XsNode node, std::string name, Object value) {
-  if (late_.size() < mostLate) late_.push_back({node, std::move(name), std::move(value)});
+void Interpreter::postponeSet(XsNode node, std::string name, Object value) {
+  if (pendingSets_.size() < maxPendingSets)
+    pendingSets_.push_back({node, std::move(name), std::move(value)});
 }
 
 void Interpreter::log(int severity, uint32_t line, std::string_view text) {

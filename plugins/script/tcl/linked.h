@@ -1,5 +1,5 @@
-// linked.h: a field or eventOut of a Script and its Tcl variable; see variables.cpp. [the browser's
-// thread]
+// linked.h: Connects a field or eventOut of a Script with its Tcl variable (variables.cpp). [the
+// browser's thread]
 #pragma once
 
 #include "interpreter.h"
@@ -11,7 +11,7 @@ struct Linked {
   std::string variable;
   XsType type{};
   Interpreter::Output output{};
-  Object last; // value
+  Object last; // last value
 };
 
 } // namespace tclscript

@@ -1,4 +1,5 @@
-// nodes.cpp: A node's command keeps its number good, until it is deleted.
+// nodes.cpp: Implements the commands of nodes. A command keeps its node number valid until it is
+// deleted.
 #include "nodes.h"
 
 #include <cstring>
@@ -24,7 +25,7 @@ int get(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
 int set(Interpreter& interpreter, XsNode node, Tcl_Obj* const* words) {
   if (interpreter.isRunning())
     return setField(interpreter, node, Tcl_GetString(words[2]), words[3]);
-  interpreter.later(node, Tcl_GetString(words[2]), words[3]);
+  interpreter.postponeSet(node, Tcl_GetString(words[2]), words[3]);
   return TCL_OK;
 }
 
@@ -80,7 +81,7 @@ int release(Interpreter& interpreter, XsNode node, Tcl_Obj* const*) {
 }
 
 struct Subcommand {
-  const char* name; // first member: Tcl_GetIndexFromObjStruct
+  const char* name; // must be the first member, for Tcl_GetIndexFromObjStruct
   int arguments;
   const char* usage;
   int (*run)(Interpreter&, XsNode, Tcl_Obj* const*);
@@ -91,7 +92,8 @@ const Subcommand subcommands[] = {{"get", 1, "field", get},       {"set", 2, "fi
                                   {nullptr, 0, nullptr, nullptr}};
 
 int nodeCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
-  const NodeCommand command = *static_cast<NodeCommand*>(data); // `release` ends it
+  // a copy, because `release` deletes the command
+  const NodeCommand command = *static_cast<NodeCommand*>(data);
   int index;
   if (count < 2) {
     Tcl_WrongNumArgs(tcl, 1, words, "option ?arg ...?");
@@ -120,7 +122,7 @@ void nodeGone(ClientData data) {
 Object Interpreter::nodeName(XsNode node) {
   if (node == 0) return Tcl_NewStringObj("NULL", 4);
   const auto known = nodes.find(node);
-  if (known != nodes.end()) { // it may have been renamed
+  if (known != nodes.end()) { // the command may have been renamed
     const Object name = Tcl_NewObj();
     Tcl_GetCommandFullName(tcl_, known->second, name.get());
     const char* full = Tcl_GetString(name.get());
@@ -140,7 +142,7 @@ int setField(Interpreter& interpreter, XsNode node, const std::string& name, Tcl
   const XsResult found = interpreter.host()->findField(interpreter.host(), interpreter.self(), node,
                                                        name.c_str(), &field);
   if (found != XS_OK) return interpreter.answer(found);
-  const XsType type = field.type; // the name is good until the next call only
+  const XsType type = field.type; // the name is valid only until the next call
   const XsAccess access = field.access;
   Converted value;
   if (fromTcl(interpreter, object, type, value) != TCL_OK) return TCL_ERROR;

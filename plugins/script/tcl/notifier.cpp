@@ -1,4 +1,4 @@
-// notifier.cpp: poll(2) over the files of this thread.
+// notifier.cpp: Implements the notifier with poll(2) over the files of this thread.
 #include "notifier.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace {
 
 struct Watched {
   int file;
-  int mask;  // of TCL_READABLE, TCL_WRITABLE, TCL_EXCEPTION
-  int ready; // of the same, in an event that waits
+  int mask;  // TCL_READABLE, TCL_WRITABLE, TCL_EXCEPTION
+  int ready; // the bits that are set in a queued event
   Tcl_FileProc* call;
   ClientData data;
 };
@@ -42,7 +42,8 @@ int serve(Tcl_Event* event, int flags) {
   return 1;
 }
 
-void setTimer(CONST86 Tcl_Time*) {} // for programs whose loop is not Tcl's: the host ticks
+// needed only where another event loop drives Tcl; here the host ticks
+void setTimer(CONST86 Tcl_Time*) {}
 void serviceMode(int) {}
 
 void createFileHandler(int file, int mask, Tcl_FileProc* call, ClientData data) {
@@ -57,7 +58,7 @@ void deleteFileHandler(int file) {
                 watched.end());
 }
 
-// Other threads want this one to wake: it waits for a moment at most.
+// Another thread wants to wake this one; not needed, because this one waits only briefly.
 ClientData initialize() { return nullptr; }
 void finalize(ClientData) { watched.clear(); }
 void alert(ClientData) {}
@@ -70,12 +71,12 @@ int waitForEvent(CONST86 Tcl_Time* longest) {
                        (w.mask & TCL_EXCEPTION ? POLLPRI : 0);
     files.push_back({w.file, short(events), 0});
   }
-  // Never for ever: what calls Tcl is a frame of the host.
-  constexpr int mostMilliseconds = 20;
+  // Always limit the wait: Tcl is called from a frame of the host.
+  constexpr int maxMilliseconds = 20;
   const int milliseconds =
       longest
-          ? int(std::min<long long>(longest->sec * 1000LL + longest->usec / 1000, mostMilliseconds))
-          : mostMilliseconds;
+          ? int(std::min<long long>(longest->sec * 1000LL + longest->usec / 1000, maxMilliseconds))
+          : maxMilliseconds;
   if (poll(files.data(), nfds_t(files.size()), milliseconds) <= 0) return 0;
   for (const pollfd& p : files) {
     const int mask = (p.revents & (POLLIN | POLLHUP | POLLERR) ? TCL_READABLE : 0) |

@@ -1,5 +1,5 @@
-// output.cpp: `puts`, which writes to the host's log, and `exit`, which ends the Script and nothing
-// else. [the browser's thread]
+// output.cpp: Implements `puts`, which writes to the host's log, and `exit`, which ends only the
+// Script. [the browser's thread]
 #include <cstring>
 
 #include "interpreter.h"
@@ -7,7 +7,7 @@
 namespace tclscript {
 namespace {
 
-constexpr size_t longestLine = 1 << 20; // of puts -nonewline
+constexpr size_t longestLine = 1 << 20; // limit for puts -nonewline
 
 int putsCommand(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
   Interpreter& interpreter = *static_cast<Interpreter*>(data);

@@ -1,8 +1,8 @@
-// safe.cpp: the interpreter of a world that is not trusted. What is not named here is not there:
-// commands that reach files, sockets, processes, channels, other interpreters, the environment or
-// the queue of events are replaced by ones that say so, all others are deleted. What is left only
-// computes; its memory, and single commands that take long, are bounded by the process that it runs
-// in. [the browser's thread]
+// safe.cpp: Creates the interpreter of an untrusted world from a list of permitted commands.
+// Commands that reach files, sockets, processes, channels, other interpreters, the environment or
+// the event queue are replaced by commands that explain the refusal; all others are deleted. The
+// remaining commands only compute. Their memory, and single commands that take long, are limited by
+// the process that the engine runs in. [the browser's thread]
 #include <algorithm>
 #include <cstring>
 #include <iterator>
@@ -23,7 +23,7 @@ constexpr const char* allowed[] = {
     "puts",    "regexp",   "regsub",   "rename",    "return", "scan",    "set",       "split",
     "string",  "subst",    "switch",   "tailcall",  "throw",  "time",    "trace",     "try",
     "unset",   "uplevel",  "upvar",    "variable",  "while",  "yield",   "yieldto"};
-// Those that are missed are told why.
+// Refused commands that give an explanation.
 constexpr const char* refused[] = {
     "cd",         "chan",   "close",  "encoding",  "eof",           "exec",  "fblocked",
     "fconfigure", "fcopy",  "file",   "fileevent", "flush",         "gets",  "glob",
@@ -46,7 +46,7 @@ constexpr Ensemble ensembles[] = {
      "tclversion vars"},
     {"::clock", "::tcl::clock", "clicks microseconds milliseconds seconds"}};
 
-// What init.tcl would bring, from a file.
+// Replaces functions that init.tcl would load from a file.
 constexpr const char functions[] = R"tcl(
 namespace eval ::tcl::mathfunc {
   proc min {first args} {foreach x $args {if {$x < $first} {set first $x}}; expr {$first + 0}}
@@ -61,7 +61,7 @@ int refuse(ClientData data, Tcl_Interp* tcl, int, Tcl_Obj* const[]) {
   return TCL_ERROR;
 }
 
-// package require Tcl is harmless, and often written.
+// Implements `package require Tcl`, which is harmless and common; other packages are refused.
 int package(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
   const bool wanted = count >= 3 && std::strcmp(Tcl_GetString(words[1]), "require") == 0;
   if (wanted && std::strcmp(Tcl_GetString(words[2]), "Tcl") == 0) {
@@ -75,7 +75,7 @@ int package(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[])
   return TCL_ERROR;
 }
 
-// Runs a script of our own; one that fails leaves an interpreter that nobody may use.
+// Runs a script of the engine; an error makes the interpreter unusable.
 void run(Tcl_Interp* tcl, const std::string& script) {
   if (Tcl_Eval(tcl, script.c_str()) != TCL_OK) throw std::runtime_error(Tcl_GetStringResult(tcl));
 }
@@ -111,8 +111,8 @@ void keepOnly(Tcl_Interp* tcl, const Ensemble& ensemble) {
 
 void strip(Tcl_Interp* tcl) {
   if (Tcl_MakeSafe(tcl) != TCL_OK) throw std::runtime_error(Tcl_GetStringResult(tcl));
-  for (const std::string& hidden :
-       listOf(tcl, "interp hidden")) { // so that nothing is left to be brought back
+  // Deletes the hidden commands, so that they cannot be exposed again.
+  for (const std::string& hidden : listOf(tcl, "interp hidden")) {
     const std::string token = "xvrml_hidden";
     if (Tcl_ExposeCommand(tcl, hidden.c_str(), token.c_str()) != TCL_OK)
       throw std::runtime_error(Tcl_GetStringResult(tcl));

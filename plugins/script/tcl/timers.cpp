@@ -1,6 +1,6 @@
-// timers.cpp: `after`, by the world's clock, so that a world at a time is the same however it is
-// drawn; where Tk is in use by the clock on the wall, as its widgets want it. Served by the
-// engine's tick. [the browser's thread]
+// timers.cpp: Implements `after`. It uses the world's clock, so that a world at a given time is the
+// same however it is drawn. If Tk is in use, it uses the wall clock, because Tk's widgets expect
+// that. The engine's tick serves the timers. [the browser's thread]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,9 +11,9 @@
 namespace tclscript {
 namespace {
 
-constexpr size_t mostTimers = 10'000;
-constexpr int mostAtOnce = 1000;
-constexpr Tcl_WideInt longestSleep = 200; // milliseconds, of Tk's own procedures
+constexpr size_t maxTimers = 10'000;
+constexpr int maxAtOnce = 1000;
+constexpr Tcl_WideInt longestSleep = 200; // milliseconds; Tk's own procedures sleep
 
 double wallClock() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -27,7 +27,7 @@ Tcl_Obj* scriptOf(int count, Tcl_Obj* const* words) {
 
 int add(Interpreter& interpreter, double seconds, int count, Tcl_Obj* const* words) {
   Tcl_Interp* tcl = interpreter.tcl();
-  if (interpreter.timers.size() >= mostTimers) {
+  if (interpreter.timers.size() >= maxTimers) {
     Tcl_SetObjResult(tcl, Tcl_NewStringObj("after: more than 10000 scripts are waiting", -1));
     return TCL_ERROR;
   }
@@ -108,12 +108,12 @@ void addTimers(Interpreter& interpreter) {
   Tcl_CreateObjCommand(interpreter.tcl(), "::after", afterCommand, &interpreter, nullptr);
 }
 
-// Those that are due, the earliest first; those that they add wait for the next tick.
+// Runs the due timers, earliest first. Timers that they add wait for the next tick.
 void runTimers(Interpreter& interpreter, double time) {
   const uint64_t last = interpreter.lastTimer;
   const double wall = wallClock();
   Tcl_Interp* tcl = interpreter.tcl();
-  for (int i = 0; i < mostAtOnce && !Tcl_LimitExceeded(tcl); ++i) {
+  for (int i = 0; i < maxAtOnce && !Tcl_LimitExceeded(tcl); ++i) {
     auto& timers = interpreter.timers;
     auto next = timers.end();
     for (auto t = timers.begin(); t != timers.end(); ++t)

@@ -1,6 +1,6 @@
-// trusted.cpp: the interpreter of a trusted world: all of Tcl, Tk if the program asks for it. What
-// would hold the host up is done differently: `vwait` and `tkwait` wait within a coroutine, while
-// the world goes on. [the browser's thread]
+// trusted.cpp: Creates the interpreter of a trusted world: all of Tcl, and Tk if the program asks
+// for it. Commands that would block the host are replaced: `vwait` and `tkwait` wait inside a
+// coroutine while the world continues. [the browser's thread]
 #include <filesystem>
 
 #include <dlfcn.h>
@@ -10,9 +10,8 @@
 namespace tclscript {
 namespace {
 
-// A tree that brings Tcl's own library, as a wheel does, has it beside the folder of script
-// engines; it fits the libtcl that came with it, which an installed one need not. Empty if there is
-// none.
+// Returns the folder of a bundled Tcl library, as a wheel contains it, beside the folder of script
+// engines; empty if there is none. It matches the bundled libtcl; an installed library might not.
 std::filesystem::path bundledLibrary() {
   static const char here = 0;
   std::error_code error;
@@ -25,7 +24,7 @@ std::filesystem::path bundledLibrary() {
              : std::filesystem::path();
 }
 
-// Tcl's own procedures, found by Tcl itself unless they came with this.
+// Initializes Tcl's own procedures, from the bundled library if there is one.
 int initialize(Tcl_Interp* tcl) {
   static const std::filesystem::path library = bundledLibrary();
   if (library.empty()) return Tcl_Init(tcl);
@@ -33,14 +32,14 @@ int initialize(Tcl_Interp* tcl) {
   const Object encodings(Tcl_NewListObj(0, nullptr));
   Tcl_ListObjAppendElement(nullptr, encodings.get(), tclText((library / "encoding").c_str()).get());
   Tcl_SetEncodingSearchPath(encodings.get());
-  // Debian's Tcl knows the folder of its modules (msgcat, which `clock` needs) by an absolute path.
+  // Debian's Tcl has an absolute path for the folder of its modules (msgcat, which `clock` needs).
   return Tcl_Init(tcl) == TCL_OK
              ? Tcl_Eval(tcl, "::tcl::tm::path add [file join $tcl_library tcl8]")
              : TCL_ERROR;
 }
 
-// The prelude. vwait's trace starts the coroutine again in the event loop, not from within the
-// assignment.
+// The prelude. The trace of vwait resumes the coroutine from the event loop instead of from within
+// the assignment.
 constexpr const char prelude[] = R"tcl(
 namespace eval ::xvrml {
   variable tk 0
@@ -115,7 +114,7 @@ proc ::xvrml::resumeFor {wanted window coroutine} {
 }
 )tcl";
 
-// Errors of events that nobody waits for.
+// Reports errors of background events.
 int backgroundError(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[]) {
   Interpreter& interpreter = *static_cast<Interpreter*>(data);
   if (count == 3 && !interpreter.isOver()) {

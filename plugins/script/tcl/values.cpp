@@ -14,7 +14,7 @@
 namespace tclscript {
 namespace {
 
-// The shortest decimal that means this float, so that 0.1 is written 0.1.
+// Writes the shortest decimal number for this float, so that 0.1 is written 0.1.
 Tcl_Obj* number(float f) {
   char text[40];
   const auto [end, error] = std::to_chars(text, text + sizeof text, f);
@@ -65,7 +65,7 @@ Tcl_Obj* element(Interpreter& interpreter, const XsTypeInfo& kind, const XsValue
 // Reads objects of one type; messages go into the interpreter's result.
 struct Reader {
   Interpreter& interpreter;
-  const char* type; // for messages
+  const char* type; // name of the type, for messages
   const XsTypeInfo& kind;
   Converted& out;
 
@@ -176,7 +176,7 @@ struct Reader {
     }
   }
 
-  // A list of elements; of tuples also their numbers one after the other, as VRML writes them.
+  // Reads a list of elements. Tuples may also be flat lists of numbers, as in VRML.
   int many(Tcl_Obj* object, uint32_t& count) const {
     Tcl_Obj** parts;
     int length, first;
@@ -232,7 +232,7 @@ int fromTcl(Interpreter& interpreter, Tcl_Obj* object, XsType type, Converted& o
     Tcl_SetObjResult(interpreter.tcl(), Tcl_NewStringObj("a value of an unknown type", -1));
     return TCL_ERROR;
   }
-  const Object keep(object); // lists may be turned into something else under way
+  const Object keep(object); // lists may be converted to other representations meanwhile
   const Reader reader{interpreter, kind->name, *kind, out};
   out.value.type = type;
   out.value.count = 1;
@@ -277,10 +277,10 @@ std::string hostText(Tcl_Obj* object) {
     } else if (isThree(at, left) && unit(at) >= 0xd800 && unit(at) < 0xe000) {
       const bool pair = unit(at) < 0xdc00 && isThree(at + 3, left - 3) && unit(at + 3) >= 0xdc00 &&
                         unit(at + 3) < 0xe000;
-      if (pair)
-        append(out, 0x10000 + ((unit(at) - 0xd800) << 10) + (unit(at + 3) - 0xdc00));
+      if (pair) append(out, 0x10000 + ((unit(at) - 0xd800) << 10) + (unit(at + 3) - 0xdc00));
+      // a lone surrogate
       else
-        out += "\xef\xbf\xbd"; // half a character
+        out += "\xef\xbf\xbd";
       i += pair ? 6 : 3;
     } else {
       out += text[i++];

@@ -1,5 +1,5 @@
-// values.h: VRML's values and Tcl's: lists of numbers, booleans, strings, names of nodes. See
-// docs/scripts.md "Tcl/Tk". [the browser's thread]
+// values.h: Converts between VRML's values and Tcl's: lists of numbers, booleans, strings, names of
+// nodes. See docs/scripts.md "Tcl/Tk". [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace tclscript {
 
 class Interpreter;
 
-// Holds a Tcl object.
+// Owns a reference to a Tcl object.
 class Object {
  public:
   Object() = default;
@@ -38,10 +38,10 @@ class Object {
   Tcl_Obj* object_ = nullptr;
 };
 
-// A value on its way to the host, and what it points to.
+// A value for the host, and the storage it points to.
 struct Converted {
   Converted() = default;
-  Converted(Converted&&) = default; // vectors keep their places
+  Converted(Converted&&) = default; // moved vectors keep their storage
   Converted& operator=(Converted&&) = default;
   Converted(const Converted&) = delete;
   Converted& operator=(const Converted&) = delete;
@@ -54,18 +54,19 @@ struct Converted {
   std::vector<std::string> texts;
   std::vector<XsString> strings;
   std::vector<uint8_t> bytes;
-  std::vector<XsImage> images; // none or one
+  std::vector<XsImage> images; // contains at most one
 };
 
 const char* typeName(XsType type); // "SFVec3f"
 
-// A value of the host as Tcl has it; makes commands of nodes.
+// Converts a value of the host to Tcl; creates commands for nodes.
 Object toTcl(Interpreter& interpreter, const XsValue& value);
-// TCL_ERROR, with a message in the interpreter's result, if the object is no such value.
+// Returns TCL_ERROR, with a message in the interpreter's result, if the object has no value of this
+// type.
 int fromTcl(Interpreter& interpreter, Tcl_Obj* object, XsType type, Converted& out);
 
-// Tcl writes U+0000 in two bytes, and what is beyond U+FFFF as two surrogates of three bytes, at
-// times; the host does not.
+// Converts Tcl's UTF-8 to the host's. Tcl writes U+0000 in two bytes and sometimes writes
+// characters beyond U+FFFF as two surrogates of three bytes each.
 std::string hostText(Tcl_Obj* object);
 Object tclText(std::string_view text);
 

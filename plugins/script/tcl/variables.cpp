@@ -1,6 +1,6 @@
-// variables.cpp: the fields and eventOuts of a Script as global Tcl variables. Writing one writes
-// the field or sends the event; a value that it cannot have is a Tcl error, and the variable keeps
-// the one before. [the browser's thread]
+// variables.cpp: Exposes the fields and eventOuts of a Script as global Tcl variables. Writing a
+// variable writes the field or sends the event. An invalid value is a Tcl error, and the variable
+// keeps its previous value. [the browser's thread]
 #include "interpreter.h"
 #include "linked.h"
 
@@ -18,7 +18,7 @@ void link(Linked& linked) {
   Tcl_TraceVar2(tcl, linked.variable.c_str(), nullptr, traced, onChange, &linked);
 }
 
-// Tcl leaves the program's result alone; a message is given back as an object.
+// Returns the message as an object, because Tcl keeps the program's result.
 char* refused(Tcl_Interp* tcl) {
   Tcl_Obj* message = Tcl_DuplicateObj(Tcl_GetObjResult(tcl));
   Tcl_IncrRefCount(message);
@@ -29,7 +29,7 @@ char* onChange(ClientData data, Tcl_Interp* tcl, const char*, const char*, int f
   Linked& linked = *static_cast<Linked*>(data);
   if (flags & TCL_INTERP_DESTROYED) return nullptr;
   if (flags & TCL_TRACE_UNSETS) {
-    if (flags & TCL_TRACE_DESTROYED) link(linked); // it cannot be done away with
+    if (flags & TCL_TRACE_DESTROYED) link(linked); // the variable cannot be unset
     return nullptr;
   }
   Interpreter& interpreter = *linked.interpreter;
@@ -39,7 +39,7 @@ char* onChange(ClientData data, Tcl_Interp* tcl, const char*, const char*, int f
   Converted value;
   int code = fromTcl(interpreter, now.get(), linked.type, value);
   if (code == TCL_OK && !interpreter.isRunning())
-    interpreter.later(interpreter.self(), linked.variable, now);
+    interpreter.postponeSet(interpreter.self(), linked.variable, now);
   else if (code == TCL_OK)
     code = interpreter.answer(interpreter.give(linked.output, interpreter.self(),
                                                linked.variable.c_str(), std::move(value)));

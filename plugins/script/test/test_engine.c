@@ -1,11 +1,10 @@
-/* test_engine.c: a script engine for tests, and an example of one: scheme "test:". It calls every
- * function of the script ABI.
+/* test_engine.c: A script engine for tests, which is also an example: scheme "test:". It calls
+ * every function of the script ABI (xvrml/xscript.h). [the browser's thread]
  *
- * A program is lines "WHEN: COMMAND ARGUMENT...". WHEN is the name of an eventIn, or one of create,
- * initialize, eventsProcessed, shutdown, tick. NODE is a field of the Script of type SFNode,
- * `self`, `kept` (see keep), or `value`: the event's node. Everything that the host refuses is
- * printed. See xvrml/xscript.h; called on the browser's thread.
- */
+ * A program consists of lines "WHEN: COMMAND ARGUMENT...". WHEN is the name of an eventIn, or
+ * create, initialize, eventsProcessed, shutdown or tick. NODE is a field of the Script of type
+ * SFNode, `self`, `kept` (see keep), or `value`: the event's node. Refusals of the host are
+ * printed. */
 #include <xvrml/xscript.h>
 
 #include <stdio.h>
@@ -18,14 +17,14 @@ typedef struct Interpreter {
   const XsHost* host;
   const XsScriptInfo* info;
   XsNode kept;
-  int32_t count; /* of `add` */
+  int32_t count; /* events counted by `after` */
 } Interpreter;
 
 typedef struct Call {
   Interpreter* self;
   const XsEvent* event; /* NULL: none */
   char* words[MOST_ARGUMENTS];
-  const char* rest; /* of the line behind the command */
+  const char* rest; /* the line after the command */
 } Call;
 
 static XsString text(const char* string) {
@@ -37,7 +36,7 @@ static void say(Interpreter* self, int32_t severity, uint32_t line, const char* 
   self->host->log(self->host, self->info->self, severity, line, text(what));
 }
 
-/* Prints what the host did not want. Stops the program only if its time is up. */
+/* Prints why the host refused a call. Stops the program only if its time is up. */
 static XsResult answer(Call* call, XsResult result) {
   if (result == XS_OK || result == XS_STOPPED) return result;
   XsString why = {"", 0};
@@ -85,7 +84,7 @@ static XsResult sendText(Call* c) { /* OUT TEXT: an SFString */
   return answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[1], &value));
 }
 
-static XsResult add(Call* c) { /* FIELD OUT: adds the SFInt32 event to the field, sends the sum */
+static XsResult add(Call* c) { /* FIELD OUT: sends the SFInt32 field plus the event */
   const XsHost* host = c->self->host;
   const XsNode self = c->self->info->self;
   XsValue field;
@@ -98,7 +97,7 @@ static XsResult add(Call* c) { /* FIELD OUT: adds the SFInt32 event to the field
   return result != XS_OK ? result : answer(c, host->send(host, self, c->words[2], &value));
 }
 
-static XsResult after(Call* c) { /* N OUT: the Nth event is sent on, others are not */
+static XsResult after(Call* c) { /* N OUT: sends the Nth event and drops the others */
   return ++c->self->count == atoi(c->words[1])
              ? answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[2],
                                              &c->event->value))
@@ -114,12 +113,12 @@ static XsResult readNode(Call* c) { /* NODE FIELD OUT */
                                    : result);
 }
 
-static XsResult writeField(Call* c) { /* FIELD: the event's value into an own field */
+static XsResult writeField(Call* c) { /* FIELD: writes the event's value to a field of the Script */
   return answer(
       c, c->self->host->write(c->self->host, c->self->info->self, c->words[1], &c->event->value));
 }
 
-static XsResult post(Call* c) { /* NODE EVENTIN: the event's value; without an event TRUE */
+static XsResult post(Call* c) { /* NODE EVENTIN: posts the event, or TRUE without one */
   const int32_t yes = 1;
   XsValue value = {XS_SFBOOL, 1, {&yes}};
   if (c->event) value = c->event->value;
@@ -146,7 +145,7 @@ static XsResult describe(Call* c) { /* NODE: prints its type, name and fields */
   return XS_OK;
 }
 
-static XsResult find(Call* c) { /* NODE NAME: prints the field that is meant */
+static XsResult find(Call* c) { /* NODE NAME: prints the field with this name */
   XsField field;
   char line[300];
   const XsResult result = c->self->host->findField(c->self->host, c->self->info->self,
@@ -157,13 +156,13 @@ static XsResult find(Call* c) { /* NODE NAME: prints the field that is meant */
   return XS_OK;
 }
 
-static XsResult keep(Call* c) { /* the event's node is `kept` from now on */
+static XsResult keep(Call* c) { /* keeps the event's node as `kept` */
   const XsNode node = nodeOf(c, "value");
   c->self->kept = node;
   return answer(c, c->self->host->retain(c->self->host, c->self->info->self, node));
 }
 
-static XsResult borrow(Call* c) { /* `kept`, but not retained: no good later on */
+static XsResult borrow(Call* c) { /* sets `kept` without retaining the node: it is invalid later */
   c->self->kept = nodeOf(c, "value");
   return XS_OK;
 }
@@ -174,7 +173,7 @@ static XsResult drop(Call* c) {
 
 /* --- The Browser object --- */
 
-static XsResult browser(Call* c) { /* OUT: an MFString of what it knows */
+static XsResult browser(Call* c) { /* OUT: an MFString of the Browser's properties */
   const XsHost* host = c->self->host;
   const XsNode self = c->self->info->self;
   XsString s;
@@ -202,7 +201,7 @@ static XsResult description(Call* c) { /* TEXT */
                 c->self->host->setDescription(c->self->host, c->self->info->self, text(c->rest)));
 }
 
-static XsResult create(Call* c) { /* OUT VRML: sends what it makes */
+static XsResult create(Call* c) { /* OUT VRML: creates nodes and sends them */
   const XsHost* host = c->self->host;
   XsValue nodes;
   const XsResult result = host->createVrmlFromString(host, c->self->info->self,
@@ -223,7 +222,7 @@ static XsResult load(Call* c) { /* URL PARAMETER */
                                           *c->words[2] ? 1 : 0, &parameter));
 }
 
-static XsResult replace(Call* c) { /* the event's nodes are the world */
+static XsResult replace(Call* c) { /* replaces the world by the event's nodes */
   if (!c->event || c->event->value.type != XS_MFNODE) return XS_FAILED;
   return answer(c, c->self->host->replaceWorld(c->self->host, c->self->info->self,
                                                c->event->value.count, c->event->value.of.nodes));
@@ -242,7 +241,7 @@ static XsResult deleteRoute(Call* c) {
                 host->deleteRoute(host, c->self->info->self, from, c->words[2], to, c->words[4]));
 }
 
-/* --- Time, messages, misbehaviour --- */
+/* --- Time, messages, errors --- */
 
 static XsResult now(Call* c) { /* OUT: SFTime */
   const double time = c->self->host->now(c->self->host, c->self->info->self);
@@ -262,13 +261,12 @@ static XsResult fail(Call* c) {
   (void)c;
   return XS_FAILED;
 }
-static XsResult loop(Call* c) { /* for ever */
+static XsResult loop(Call* c) { /* runs until it is stopped */
   while (!c->self->host->shouldStop(c->self->host, c->self->info->self, 1000)) {}
   return XS_STOPPED;
 }
 
-static XsResult
-wrong(Call* c) { /* OUT: everything that the host must refuse of a value, OUT being an MFString */
+static XsResult wrong(Call* c) { /* OUT: sends values that the host must refuse */
   const XsHost* host = c->self->host;
   const XsNode self = c->self->info->self;
   const int32_t number = 1;
@@ -305,7 +303,7 @@ static const struct {
                 {"error", error},       {"fail", fail},
                 {"loop", loop},         {"wrong", wrong}};
 
-/* One line: the words of a copy, and the command. */
+/* Runs one line: splits a copy into words and calls the command. */
 static XsResult runLine(Call call, const char* line, size_t length) {
   char copy[2000], words[2000], *p;
   if (length >= sizeof copy) return XS_FAILED;
@@ -326,7 +324,7 @@ static XsResult runLine(Call call, const char* line, size_t length) {
   return XS_FAILED;
 }
 
-/* All lines for this event, in order. */
+/* Runs all lines for this event, in order. */
 static XsResult run(XsInterpreter interpreter, const char* when, const XsEvent* event) {
   Call call = {0};
   call.self = (Interpreter*)(uintptr_t)interpreter;

@@ -1,10 +1,9 @@
-// batch.h: what the loops of the VRML97 plug-in share: clones for several instruction sets, and
-// elementary functions that the compiler can put into vector lanes. Thread tag [render]; everything
-// here is a pure function of its arguments.
+// batch.h: support for the batch loops of the VRML97 plug-in: function clones for several
+// instruction sets, and elementary functions that the compiler can vectorise. All are pure
+// functions. [render]
 //
-// Loops run over n rounded up to whole lanes (the ABI allows it), so none has a remainder.
-// Contraction is off and no function of libm is called per lane, so every clone gives the same
-// bytes.
+// Loops run over n rounded up to whole vectors, as the ABI allows, so none has a remainder.
+// Contraction is off and no lane calls libm, so every clone gives the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +19,7 @@
 #else
 #define VRML97_CLONES
 #endif
-// Helpers have to disappear into the clones: called, they would be the baseline's code.
+// Helpers must be inlined into the clones; a call would run code for the baseline instruction set.
 #define VRML97_INLINE [[gnu::always_inline]] inline
 
 namespace vrml97 {
@@ -37,8 +36,9 @@ VRML97_INLINE float floatOf(uint32_t bits) { return __builtin_bit_cast(float, bi
 
 VRML97_INLINE float squareRoot(float x) { return __builtin_sqrtf(x); }
 
-// Natural logarithm of 1 - s for 0 <= s < 1, to about 1e-7 of its value: for small s the difference
-// is never formed. Polynomial of Cephes' logf (Moshier) on [sqrt(1/2), sqrt(2)].
+// Returns the natural logarithm of 1 - s for 0 <= s < 1, with a relative error of about 1e-7. For
+// small s it does not compute the difference. Polynomial of Cephes' logf (Moshier) on [sqrt(1/2),
+// sqrt(2)].
 VRML97_INLINE float logOneMinus(float s) {
   const float y = larger(1.0f - s, 1e-37f);
   const uint32_t shifted = bitsOf(y) - 0x3f3504f3u; // exponent steps at sqrt(1/2)
@@ -59,17 +59,18 @@ VRML97_INLINE float logOneMinus(float s) {
   return (p * x * z - 0.5f * z + e * -2.12194440e-4f) + x + e * 0.693359375f;
 }
 
-// expNegative of this and of anything below is 0. Choose among exponents, not results: a choice
-// among results becomes a branch around the work, and the loop stays scalar.
+// expNegative() returns 0 for this and for anything below. Callers select between exponents, not
+// between results: GCC turns a choice of results into a branch, and the loop stays scalar.
 inline constexpr float vanishing = -88.0f;
 
-// e to the power x for x <= 0; 0 where that is below the smallest normal number, and for NaN: the
-// power of two is then all zero bits. Polynomial of Cephes' expf (Moshier).
+// Returns e to the power x for x <= 0. Returns 0 for NaN and if the result is below the smallest
+// normal number: the bits of the power of two are then all zero. Polynomial of Cephes' expf
+// (Moshier).
 VRML97_INLINE float expNegative(float x) {
   const float safe = larger(x, vanishing);
   const float k = safe * 1.44269504088896341f - 0.5f;
-  const int32_t whole = static_cast<int32_t>(
-      k); // towards zero: rounds the value before the subtraction, as it is negative
+  // Truncation of a negative number minus 0.5 rounds the number to nearest.
+  const int32_t whole = static_cast<int32_t>(k);
   const float e = static_cast<float>(whole);
   const float r = (safe - e * 0.693359375f) + e * 2.12194440e-4f;
   float p = 1.9875691500e-4f;
@@ -83,8 +84,8 @@ VRML97_INLINE float expNegative(float x) {
   return m * power;
 }
 
-// Angle 0..pi of the vector (x, y) with y >= 0 to the x axis; 0 for the zero vector. Polynomial of
-// Cephes' atanf (Moshier).
+// Returns the angle 0..pi between the vector (x, y), y >= 0, and the x axis; 0 for the zero vector.
+// Polynomial of Cephes' atanf (Moshier).
 VRML97_INLINE float angleOf(float x, float y) {
   const float ax = x < 0.0f ? -x : x;
   const bool steep = y > ax;

@@ -1,5 +1,5 @@
-// cameras.cpp: the stock cameras. Local frame: looking down -z, +y up; pixel (0, 0) is the top left
-// corner of the picture, so y runs down. Thread tag [render].
+// cameras.cpp: the perspective and the orthographic camera. In local space they look along -z with
+// +y up. Pixel (0, 0) is the top left corner of the picture, so pixel y points down. [render]
 #include <cmath>
 
 #include "vrml97/batch.h"
@@ -31,8 +31,8 @@ const RtsParam orthographicParams[] = {{"height",
                                         noLimit,
                                         "height of the view, units of the camera's local space"}};
 
-// Pixels to the plane z = -1 (perspective) or to the origins (orthographic): position = (pixel -
-// middle) * step.
+// Maps pixels to the plane z = -1 (perspective) or to ray origins (orthographic): position = (pixel
+// - middle) * step.
 struct Raster {
   float middle[2];
   float step;
@@ -90,9 +90,9 @@ void generateOrthographic(const RtsHost*, RtsBatch*, const void* params, uint32_
                    out->direction[2]);
 }
 
-// Where points are in the picture, and pixels per unit of area that faces the eye. A surface of
-// area A at the distance r fills the solid angle A / r^2; on the plane z = -1 a solid angle seen at
-// the angle t to the axis covers its 1 / cos(t)^3.
+// Projects points to the picture. A surface of area A that faces the eye at distance r has the
+// solid angle A / r^2. On the plane z = -1 a solid angle at the angle t from the axis covers an
+// area larger by 1 / cos(t)^3.
 void projectPerspective(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
                         const float* const local[3], const float* const*, const float size[2],
                         RtsProjection* out) {
@@ -100,13 +100,13 @@ void projectPerspective(const RtsHost*, RtsBatch*, const void* params, uint32_t 
   const double height =
       2.0 * std::tan(static_cast<double>(static_cast<const PerspectiveParams*>(params)->fovy) *
                      halfDegree);
-  const double pixels = static_cast<double>(size[1]) / height; // of a unit of the plane
+  const double pixels = static_cast<double>(size[1]) / height; // pixels per unit of the plane
   for (uint32_t i = 0; i < n; i++) {
     const double x = local[0][i], y = local[1][i], depth = -static_cast<double>(local[2][i]);
     const double scale = depth > 0 ? pixels / depth : 0;
     const double weight = scale * scale * std::sqrt(x * x + y * y + depth * depth) / depth;
-    place(out, i, size, 0.5 * static_cast<double>(size[0]) + x * scale,
-          0.5 * static_cast<double>(size[1]) - y * scale, depth > 0 ? weight : 0);
+    writeProjection(out, i, size, 0.5 * static_cast<double>(size[0]) + x * scale,
+                    0.5 * static_cast<double>(size[1]) - y * scale, depth > 0 ? weight : 0);
     out->toEye[0][i] = -local[0][i];
     out->toEye[1][i] = -local[1][i];
     out->toEye[2][i] = -local[2][i];
@@ -121,9 +121,9 @@ void projectOrthographic(const RtsHost*, RtsBatch*, const void* params, uint32_t
                         static_cast<double>(static_cast<const OrthographicParams*>(params)->height);
   for (uint32_t i = 0; i < n; i++) {
     const double x = local[0][i], y = local[1][i];
-    place(out, i, size, 0.5 * static_cast<double>(size[0]) + x * pixels,
-          0.5 * static_cast<double>(size[1]) - y * pixels,
-          local[2][i] < 0 && local[2][i] >= -noLimit ? pixels * pixels : 0);
+    writeProjection(out, i, size, 0.5 * static_cast<double>(size[0]) + x * pixels,
+                    0.5 * static_cast<double>(size[1]) - y * pixels,
+                    local[2][i] < 0 && local[2][i] >= -noLimit ? pixels * pixels : 0);
     out->toEye[0][i] = out->toEye[1][i] = 0.0f;
     out->toEye[2][i] = 1.0f;
   }

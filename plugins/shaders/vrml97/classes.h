@@ -1,4 +1,4 @@
-// classes.h: the class tables of the VRML97 plug-in, one object each, gathered by vrml97.cpp.
+// classes.h: the classes of the VRML97 plug-in, collected by vrml97.cpp.
 #pragma once
 
 #include <cfloat>
@@ -13,7 +13,7 @@ extern const RtsClass directionalLightClass, pointLightClass, spotLightClass;
 extern const RtsClass environmentClass;
 extern const RtsClass perspectiveCameraClass, orthographicCameraClass, thinLensClass, panoramaClass;
 
-// The range of a number that may not be negative.
+// The maximum of parameters that have a minimum but no upper limit.
 inline constexpr float noLimit = FLT_MAX;
 
 } // namespace vrml97

@@ -1,6 +1,6 @@
 // environment.cpp: Background (ISO/IEC 14772-1 clause 6.5) and Fog (clause 6.19). Local space is
-// the background's: directions only, as a background ignores translation; the fog has a matrix of
-// its own. Thread tag [render].
+// that of the background. Only directions matter there, because a background ignores translation;
+// the fog has its own matrix. [render]
 #include <algorithm>
 #include <iterator>
 
@@ -94,11 +94,11 @@ const RtsParam environmentParams[] = {
      "from local vectors to the fog's space; only its 3x3 part counts"},
 };
 
-// Colours at angles from a pole. Angles count from 0 for the first colour and are made increasing,
-// within 0..limit.
+// Colours at angles from a pole. The first angle is 0; angles are clamped to 0..limit and never
+// decrease.
 struct Gradient {
-  const float* color; // 3 a stop
-  float* angle;       // of each stop
+  const float* color; // 3 floats for each stop
+  float* angle;       // angle of each stop, radians
   uint32_t stops;
 };
 
@@ -113,7 +113,7 @@ Gradient gradientOf(const RtsHost* host, RtsBatch* batch, const RtsFloats& color
   return g;
 }
 
-// Beyond the last angle the last colour goes on.
+// Writes the interpolated colour at an angle; beyond the last angle it is the last colour.
 void lookUp(const Gradient& g, float angle, float rgb[3]) {
   const auto above =
       static_cast<uint32_t>(std::upper_bound(g.angle, g.angle + g.stops, angle) - g.angle);
@@ -123,8 +123,8 @@ void lookUp(const Gradient& g, float angle, float rgb[3]) {
     for (int c = 0; c < 3; c++) rgb[c] = a[c];
     return;
   }
-  const float t =
-      (angle - g.angle[last]) / (g.angle[above] - g.angle[last]); // upper_bound: the stops differ
+  // The two angles differ, because upper_bound() returned `above`.
+  const float t = (angle - g.angle[last]) / (g.angle[above] - g.angle[last]);
   const float* b = g.color + 3 * size_t(above);
   for (int c = 0; c < 3; c++) rgb[c] = a[c] + t * (b[c] - a[c]);
 }
@@ -138,15 +138,15 @@ VRML97_CLONES void constant(float value, uint32_t n, float* __restrict out) {
   for (uint32_t i = 0; i < n; i++) out[i] = value;
 }
 
-// The colours behind the pictures. Without any, nothing is seen and the opacity is 0.
+// Writes the colours of sky and ground. Without any colours the result is black with opacity 0.
 void sky(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n,
          const float* const d[3], float* const rgba[4]) {
   constexpr float pi = 3.14159265358979f;
   const Gradient sky = gradientOf(host, batch, p.skyColor, p.skyAngle, pi);
   const Gradient ground = gradientOf(host, batch, p.groundColor, p.groundAngle, pi / 2);
   const uint32_t lanes = wholeLanes(n);
-  if (sky.stops <= 1 &&
-      ground.stops <= 1) { // one colour all around: ground of one colour ends where it begins
+  if (sky.stops <= 1 && ground.stops <= 1) {
+    // One colour in all directions: ground with a single colour has no extent.
     for (int c = 0; c < 3; c++) constant(sky.stops ? sky.color[c] : 0.0f, lanes, rgba[c]);
     constant(sky.stops ? 1.0f : 0.0f, lanes, rgba[3]);
     return;
@@ -166,25 +166,26 @@ void sky(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint3
   }
 }
 
-struct Look {
+struct FaceCoords {
   uint32_t face;
   float s, t;
 };
 
-// Which of the six pictures a direction meets and where: each is seen upright from inside when the
-// head turns from the front to it, 90 degrees left, right, up or down.
-Look lookOf(float x, float y, float z) {
+// Returns the face of the panorama's cube in a direction, and the texture coordinates there. Seen
+// from inside, each picture is upright after turning from the front by 90 degrees left, right, up
+// or down.
+FaceCoords faceCoordsOf(float x, float y, float z) {
   const float ax = larger(x, -x), ay = larger(y, -y), az = larger(z, -z);
   const auto place = [](uint32_t face, float right, float up, float depth) {
     const float scale = 0.5f / larger(depth, 1e-37f);
-    return Look{face, 0.5f + right * scale, 0.5f + up * scale};
+    return FaceCoords{face, 0.5f + right * scale, 0.5f + up * scale};
   };
   if (az >= ax && az >= ay) return z <= 0 ? place(0, x, y, az) : place(1, -x, y, az);
   if (ax >= ay) return x <= 0 ? place(2, -z, y, ax) : place(3, z, y, ax);
   return y >= 0 ? place(4, x, z, ay) : place(5, x, -z, ay);
 }
 
-// Lays the pictures over the colours, by their alpha.
+// Composites the pictures over the colours by their alpha.
 void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, uint32_t n,
               const float* const d[3], float* const rgba[4]) {
   const uint32_t lanes = wholeLanes(n);
@@ -195,7 +196,7 @@ void panorama(const RtsHost* host, RtsBatch* batch, const EnvironmentParams& p, 
   for (float*& c : picture) c = host->scratch(batch, lanes);
   for (uint32_t i = 0; i < lanes; i++) {
     const uint32_t from = std::min(i, n - 1);
-    const Look look = lookOf(d[0][from], d[1][from], d[2][from]);
+    const FaceCoords look = faceCoordsOf(d[0][from], d[1][from], d[2][from]);
     texture[i] = p.panorama[look.face];
     s[i] = look.s;
     t[i] = look.t;
@@ -230,7 +231,7 @@ VRML97_CLONES void fogDistances(const float* __restrict m, uint32_t n, const flo
   }
 }
 
-// Clause 4.14.4: (v - d) / v within the range, 0 beyond.
+// Linear fog, clause 4.14.4: (v - d) / v within the range, 0 beyond.
 VRML97_CLONES void linearFraction(float range, uint32_t n, const float* __restrict distance,
                                   float* __restrict fraction) {
   for (uint32_t i = 0; i < n; i++) {
@@ -239,7 +240,7 @@ VRML97_CLONES void linearFraction(float range, uint32_t n, const float* __restri
   }
 }
 
-// Clause 4.14.4: exp(-d / (v - d)) within the range, 0 beyond.
+// Exponential fog, clause 4.14.4: exp(-d / (v - d)) within the range, 0 beyond.
 VRML97_CLONES void exponentialFraction(float range, uint32_t n, const float* __restrict distance,
                                        float* __restrict fraction) {
   for (uint32_t i = 0; i < n; i++) {
@@ -261,7 +262,7 @@ void attenuate(const RtsHost* host, RtsBatch* batch, const void* params, uint32_
                                                                        fraction);
 }
 
-// Clause 6.5: a Background is seen and lights nothing.
+// A Background is visible but lights nothing (clause 6.5).
 uint32_t environmentTraits(const RtsHost*, const void*) { return RTS_BACKDROP; }
 
 constexpr RtsClass makeEnvironmentClass() {

@@ -1,14 +1,14 @@
-// film.h: what the cameras share. Thread tag [render].
+// film.h: functions shared by the cameras. [render]
 #pragma once
 
 #include "openrt/openrts.h"
 
 namespace vrml97 {
 
-// A point at the pixel coordinates x, y; weight 0 where that is not in the picture, or is no
-// number.
-inline void place(RtsProjection* out, uint32_t i, const float size[2], double x, double y,
-                  double weight) {
+// Writes the projection of point i: pixel coordinates x, y and the weight. The weight is 0 if the
+// point is outside the picture or not a number.
+inline void writeProjection(RtsProjection* out, uint32_t i, const float size[2], double x, double y,
+                            double weight) {
   const float px = static_cast<float>(x), py = static_cast<float>(y),
               w = static_cast<float>(weight);
   const bool seen =

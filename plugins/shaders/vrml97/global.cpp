@@ -1,12 +1,10 @@
-// global.cpp: a VRML97 surface as a sum of lobes: what path tracing asks of VRML97, and all of
-// GlobalIllumination, which is the same under a name that asks for path tracing. Thread tag
-// [render].
+// global.cpp: a VRML97 surface as a sum of lobes. Path tracing uses it for the class VRML97, and it
+// is all of the class GlobalIllumination, which requests path tracing. [render]
 //
-// The lighting equation (ISO/IEC 14772-1 clause 4.14) reflects more light than there is, and not
-// the same both ways. Its twin here is Lambert's law for the diffuse part, and for highlights OS
-// (N.H)^e (N.L): as bright at the brightest point, reciprocal; where both together would reflect
-// more than all light they are scaled. The ambient terms stand for the light of other surfaces,
-// which now comes by itself: they are left out.
+// The lighting equation (ISO/IEC 14772-1 clause 4.14) neither conserves energy nor is reciprocal.
+// It is replaced by a Lambertian lobe and, for highlights, the reciprocal OS (N.H)^e (N.L), which
+// is as bright at its peak. Where both together would reflect more than all light, they are scaled.
+// The ambient terms are left out: they approximate the indirect light that path tracing computes.
 #include "vrml97/global.h"
 
 #include <algorithm>
@@ -19,7 +17,7 @@ namespace vrml97 {
 namespace {
 
 struct Lobes {
-  RtsLobe *diffuse, *highlight, *behind; // null where no hit has one
+  RtsLobe *diffuse, *highlight, *behind; // null if no hit of the batch has the lobe
 };
 
 float atLeast0(float x) { return larger(x, 0.0f); }
@@ -28,10 +26,11 @@ void fill(const RtsHits* hits, const Terms& t, const Lobes& lobes) {
   for (uint32_t i = 0; i < hits->count; i++) {
     const float alpha = smaller(atLeast0(t.alpha[i]), 1.0f),
                 exponent = smaller(atLeast0(t.exponent[i]), blinn_phong::sharpest);
-    const float share = lobes.highlight ? blinn_phong::reflectance(exponent) : 0.0f;
+    const float peakReflectance = lobes.highlight ? blinn_phong::reflectance(exponent) : 0.0f;
     for (int c = 0; c < 3; c++) {
       const float diffuse = atLeast0(t.diffuse[c][i]),
-                  highlight = share * atLeast0(t.specular[c][i]), both = diffuse + highlight;
+                  highlight = peakReflectance * atLeast0(t.specular[c][i]),
+                  both = diffuse + highlight;
       const float scale = alpha * (both > 1.0f ? 1.0f / both : 1.0f);
       if (lobes.diffuse) lobes.diffuse->weight[c][i] = scale * diffuse;
       if (lobes.highlight) lobes.highlight->weight[c][i] = scale * highlight;

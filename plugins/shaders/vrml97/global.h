@@ -1,14 +1,14 @@
-// global.h: a VRML97 surface where light goes from surface to surface. Thread tag [render].
+// global.h: the VRML97 surface for global illumination: its lobes and traits. [render]
 #pragma once
 
 #include "vrml97/material.h"
 
 namespace vrml97 {
 
-// Traits that `scatter` adds to a shader.
+// Returns the traits of a shader that uses scatter().
 uint32_t scatterTraits(const SurfaceParams& params);
 
-// A function of RtsClass (surface).
+// Describes hits by lobes (RtsClass.surface).
 void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out);
 
 } // namespace vrml97

@@ -1,6 +1,5 @@
-// lenses.cpp: stock cameras beyond the standard: a thin lens with depth of field, and a panorama of
-// everything around. Local frame as of the others: looking down -z, +y up; pixel (0, 0) is the top
-// left corner. Thread tag [render].
+// lenses.cpp: stock cameras beyond the standard: a thin lens with depth of field, and a panorama.
+// As the others, they look along -z with +y up; pixel (0, 0) is the top left corner. [render]
 #include <cmath>
 
 #include "vrml97/classes.h"
@@ -11,8 +10,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// Thin lens
-// -------------------------------------------------------------------------------------------------
+// Thin lens ---------------------------------------------------------------------------------------
 
 struct ThinLensParams {
   float fovy, radius, focus;
@@ -49,14 +47,14 @@ const RtsParam thinLensParams[] = {
      64.0f,
      "corners of the opening, a regular polygon within the lens; below 3: round"}};
 
-struct Place {
+struct DiskPoint {
   double x, y;
 };
 
-// A point of the unit square to one of the unit disk, areas kept in proportion, the middle to the
-// middle (P. Shirley, K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997);
-// then, sector by sector, to the regular polygon in it.
-Place onLens(float u, float v, int32_t blades) {
+// Maps a point of the unit square to the unit disk, preserving ratios of areas and the centre (P.
+// Shirley, K. Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997). With 3 or more
+// blades the disk is then mapped, sector by sector, to the regular polygon in it.
+DiskPoint samplePointOnLens(float u, float v, int32_t blades) {
   const double a = 2.0 * static_cast<double>(u) - 1.0, b = 2.0 * static_cast<double>(v) - 1.0;
   if (a == 0 && b == 0) return {0, 0};
   const bool wide = a * a > b * b;
@@ -73,7 +71,8 @@ Place onLens(float u, float v, int32_t blades) {
 
 double planeHeight(float fovy) { return 2.0 * std::tan(static_cast<double>(fovy) * (pi / 360.0)); }
 
-// Rays start at a place on the lens and meet where the pinhole's ray meets the plane in focus.
+// Rays start at a sampled point of the lens and pass through the point where the pinhole camera's
+// ray hits the focal plane.
 void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
                       const float* const xy[2], const float size[2], RtsRays* out) {
   const auto& p = *static_cast<const ThinLensParams*>(params);
@@ -85,7 +84,8 @@ void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, 
     host->random(batch, 0, square);
   }
   for (uint32_t i = 0; i < n; i++) {
-    const Place unit = open ? onLens(square[0][i], square[1][i], p.blades) : Place{0, 0};
+    const DiskPoint unit =
+        open ? samplePointOnLens(square[0][i], square[1][i], p.blades) : DiskPoint{0, 0};
     const double lx = unit.x * static_cast<double>(p.radius),
                  ly = unit.y * static_cast<double>(p.radius);
     const double x =
@@ -102,25 +102,27 @@ void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, 
   }
 }
 
-// Through the place on the lens and the point to the plane in focus: that is the pixel. Weight as
-// of the perspective camera.
+// The line from the point on the lens through the given point hits the focal plane at the pixel.
+// The weight is that of the perspective camera.
 void projectThinLens(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
                      const float* const local[3], const float* const lens[2], const float size[2],
                      RtsProjection* out) {
   const auto& p = *static_cast<const ThinLensParams*>(params);
-  const double pixels = static_cast<double>(size[1]) / planeHeight(p.fovy),
-               focus = p.focus; // of a unit of the plane z = -1
+  // pixels: per unit of the plane z = -1.
+  const double pixels = static_cast<double>(size[1]) / planeHeight(p.fovy), focus = p.focus;
   for (uint32_t i = 0; i < n; i++) {
-    const Place unit = p.radius > 0 ? onLens(lens[0][i], lens[1][i], p.blades) : Place{0, 0};
+    const DiskPoint unit =
+        p.radius > 0 ? samplePointOnLens(lens[0][i], lens[1][i], p.blades) : DiskPoint{0, 0};
     const double lx = unit.x * static_cast<double>(p.radius),
                  ly = unit.y * static_cast<double>(p.radius);
     const double x = static_cast<double>(local[0][i]) - lx,
                  y = static_cast<double>(local[1][i]) - ly;
     const double depth = -static_cast<double>(local[2][i]);
     const double away = std::sqrt(x * x + y * y + depth * depth);
-    place(out, i, size, 0.5 * static_cast<double>(size[0]) + (lx / focus + x / depth) * pixels,
-          0.5 * static_cast<double>(size[1]) - (ly / focus + y / depth) * pixels,
-          depth > 0 ? pixels * pixels / (depth * depth) * away / depth : 0);
+    writeProjection(out, i, size,
+                    0.5 * static_cast<double>(size[0]) + (lx / focus + x / depth) * pixels,
+                    0.5 * static_cast<double>(size[1]) - (ly / focus + y / depth) * pixels,
+                    depth > 0 ? pixels * pixels / (depth * depth) * away / depth : 0);
     out->toEye[0][i] = static_cast<float>(-x);
     out->toEye[1][i] = static_cast<float>(-y);
     out->toEye[2][i] = static_cast<float>(depth);
@@ -128,8 +130,7 @@ void projectThinLens(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
   out->parallel = 0;
 }
 
-// Panorama
-// -------------------------------------------------------------------------------------------------
+// Panorama ----------------------------------------------------------------------------------------
 
 struct PanoramaParams {
   float horizontal, vertical;
@@ -150,7 +151,7 @@ const RtsParam panoramaParams[] = {{"horizontal",
                                     180.0f,
                                     "angle from the lower to the upper edge, degrees"}};
 
-// Equirectangular: longitude and latitude grow evenly with the pixels; the middle looks down -z.
+// Equirectangular: longitude and latitude are linear in the pixel; the middle looks along -z.
 void generatePanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
                       const float* const xy[2], const float size[2], RtsRays* out) {
   const auto& p = *static_cast<const PanoramaParams*>(params);
@@ -169,7 +170,7 @@ void generatePanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
   }
 }
 
-// A row of pixels is as long at any latitude, its circle shrinks with the cosine.
+// Every row has the same number of pixels, but its circle of latitude shrinks with the cosine.
 void projectPanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
                      const float* const local[3], const float* const*, const float size[2],
                      RtsProjection* out) {
@@ -180,9 +181,9 @@ void projectPanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
   for (uint32_t i = 0; i < n; i++) {
     const double x = local[0][i], y = local[1][i], z = local[2][i];
     const double level = std::sqrt(x * x + z * z), away2 = level * level + y * y;
-    place(out, i, size, 0.5 * static_cast<double>(size[0]) + std::atan2(x, -z) * across,
-          0.5 * static_cast<double>(size[1]) - std::atan2(y, level) * up,
-          across * up / (std::sqrt(away2) * level));
+    writeProjection(out, i, size, 0.5 * static_cast<double>(size[0]) + std::atan2(x, -z) * across,
+                    0.5 * static_cast<double>(size[1]) - std::atan2(y, level) * up,
+                    across * up / (std::sqrt(away2) * level));
     out->toEye[0][i] = -local[0][i];
     out->toEye[1][i] = -local[1][i];
     out->toEye[2][i] = -local[2][i];

@@ -1,6 +1,6 @@
-// lights.cpp: the lights of ISO/IEC 14772-1 clauses 6.16 (DirectionalLight), 6.35 (PointLight)
-// and 6.45 (SpotLight). Distances, angles and the radius are measured in the light's local space,
-// as the standard asks. Thread tag [render].
+// lights.cpp: the lights of ISO/IEC 14772-1 clauses 6.16 (DirectionalLight), 6.35 (PointLight) and
+// 6.45 (SpotLight). Distances, angles and the radius are measured in the light's local space, as
+// the standard requires. [render]
 #include <cmath>
 
 #include "vrml97/batch.h"
@@ -11,7 +11,8 @@ namespace {
 
 constexpr float pi = 3.14159265358979f;
 
-// What all three lights have; first, so that the traits need not know which light it is.
+// The parameters of all three lights. They come first in each struct, so that lightTraits() works
+// for every light.
 struct LightParams {
   float ambientIntensity;
   float color[3];
@@ -135,7 +136,7 @@ void illuminateDirectional(const RtsHost*, RtsBatch*, const void* params, uint32
   out->directional = 1;
 }
 
-// toLight, and in factor the attenuation, 0 beyond the radius.
+// Writes the vectors to the light, and the attenuation to `factor`: 0 beyond the radius.
 VRML97_CLONES void attenuation(const PointParams p, uint32_t n, const float* __restrict px,
                                const float* __restrict py, const float* __restrict pz,
                                float* __restrict tx, float* __restrict ty, float* __restrict tz,
@@ -176,7 +177,7 @@ void illuminatePoint(const RtsHost* host, RtsBatch* batch, const void* params, u
 }
 
 struct Cone {
-  float axis[3]; // unit; 0 if the direction is
+  float axis[3]; // unit; 0 if the direction is 0
   float cosCut;
   float cut, slope; // factor between the angles: (cut - angle) * slope
 };
@@ -187,14 +188,14 @@ Cone coneOf(const SpotParams& p) {
   const double length = std::sqrt(double(d[0]) * d[0] + double(d[1]) * d[1] + double(d[2]) * d[2]);
   for (int c = 0; c < 3 && length > 0; c++) cone.axis[c] = static_cast<float>(d[c] / length);
   cone.cut = p.cutOffAngle;
-  const float beam =
-      smaller(p.beamWidth, p.cutOffAngle); // clause 6.45: a wider beam gives a uniform cone
+  // A beam wider than the cut-off angle gives a uniform cone (clause 6.45).
+  const float beam = smaller(p.beamWidth, p.cutOffAngle);
   cone.slope = beam < cone.cut ? 1.0f / (cone.cut - beam) : 0.0f;
   cone.cosCut = static_cast<float>(std::cos(double(cone.cut)));
   return cone;
 }
 
-// A uniform cone needs no angle.
+// Applies a uniform cone, which needs only the cosine.
 VRML97_CLONES void hardCone(const Cone cone, uint32_t n, const float* __restrict tx,
                             const float* __restrict ty, const float* __restrict tz,
                             float* __restrict factor) {
@@ -205,7 +206,8 @@ VRML97_CLONES void hardCone(const Cone cone, uint32_t n, const float* __restrict
   }
 }
 
-// The angle comes from both products, since the cosine alone loses half the digits near the axis.
+// Applies a cone with a soft edge. The angle is computed from the dot and the cross product,
+// because the cosine alone loses half of the digits near the axis.
 VRML97_CLONES void softCone(const Cone cone, uint32_t n, const float* __restrict tx,
                             const float* __restrict ty, const float* __restrict tz,
                             float* __restrict factor) {
@@ -241,7 +243,8 @@ void putVector(const float from[3], float to[3]) {
   for (int c = 0; c < 3; c++) to[c] = from[c];
 }
 
-// A colour is that of a white surface that faces the light: pi of it arrive.
+// A light's colour is the radiance of a white Lambertian surface that faces it, so the irradiance
+// is pi times the colour.
 int directionalExtent(const RtsHost*, const void* params, RtsExtent* out) {
   const auto& p = *static_cast<const DirectionalParams*>(params);
   const float* d = p.direction;
@@ -255,8 +258,9 @@ int directionalExtent(const RtsHost*, const void* params, RtsExtent* out) {
   return 1;
 }
 
-// The flux at a distance where the attenuation has begun: of light that falls with the square of
-// the distance, all of it.
+// Estimates the flux from the irradiance at distance 10 (or at the radius, if smaller), where the
+// attenuation is effective. The estimate is exact for light that falls off with the square of the
+// distance.
 float flux(const PointParams& p, float solidAngle) {
   const float* a = p.attenuation;
   const double d = std::fmin(10.0, double(p.radius)),

@@ -1,6 +1,5 @@
-// material.cpp: Thread tag [render].
-//
-// Where the standard is silent: a colour's alpha is no part of VRML97.
+// material.cpp: parameters, textures and colours of VRML97 surfaces, by lane (material.h). The
+// alpha of the geometry's colours is not used, as the standard has none. [render]
 #include "vrml97/material.h"
 
 #include <algorithm>
@@ -112,13 +111,13 @@ Terms allocate(const RtsHost* host, RtsBatch* batch, uint32_t lanes) {
   return t;
 }
 
-// Texels of a batch: rgba, and components 0 where there is no texture.
+// The texels of a batch. Lanes without a texture have 0 components.
 struct Texels {
   float* rgba[4];
   uint32_t* components;
 };
 
-// Parameters of one lane, or the same ones of a block of lanes.
+// Copies one set of parameters to a lane or to a block of lanes.
 template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint32_t first,
                                                     const Terms& t, Summary& summary) {
   const auto fill = [first](float* array, float value) {
@@ -138,7 +137,8 @@ template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint
   summary.textured |= p.texture != 0;
 }
 
-// Lanes of the same parameters usually lie side by side: most blocks are filled from one set.
+// Fills the terms from the parameters. Neighbouring lanes usually have the same parameters, so most
+// blocks are filled from one set.
 Summary materials(const RtsHits* hits, uint32_t lanes, const Terms& t) {
   Summary summary;
   uint32_t flags = 0;
@@ -160,8 +160,8 @@ Summary materials(const RtsHits* hits, uint32_t lanes, const Terms& t) {
   return summary;
 }
 
-// The texture of each lane, or 0, and its transformed coordinates. Lines and points are never
-// textured.
+// Returns the texture of each lane, or 0, and its transformed coordinates. Lines and points have no
+// texture.
 TexturePlaces texturePlaces(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
                             uint32_t lanes) {
   float *s = host->scratch(batch, lanes), *t = host->scratch(batch, lanes);
@@ -188,8 +188,8 @@ Texels fetch(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, uint32_t
   return texels;
 }
 
-// Clauses 4.14.2 and 4.14.3, tables 4.5 (unlit) and 4.6 (lit), and the colours of lines and points
-// (clauses 6.24, 6.36).
+// Combines material, geometry and texture colours by clauses 4.14.2 and 4.14.3, tables 4.5 (unlit)
+// and 4.6 (lit). Lines and points follow clauses 6.24 and 6.36.
 void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, const Terms& t) {
   for (uint32_t i = 0; i < hits->count; i++) {
     const bool lit = paramsOf(hits, i).lit != 0, own = (hits->flags[i] & RTS_HIT_COLOR) != 0;

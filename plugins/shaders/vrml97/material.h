@@ -1,6 +1,6 @@
-// material.h: the first stages of a batch of hits of a VRML97 surface: parameters by lane, textures
-// and colours (ISO/IEC 14772-1 clause 4.14). What light does there is in surface.cpp (the lighting
-// equation) and global.cpp (lobes). Thread tag [render].
+// material.h: the first stages of shading a batch of VRML97 hits: parameters by lane, textures and
+// colours (ISO/IEC 14772-1 clause 4.14). surface.cpp (lighting equation) and global.cpp (lobes) use
+// the result. [render]
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ inline const SurfaceParams& paramsOf(const RtsHits* hits, uint32_t lane) {
 inline bool hasAlpha(uint32_t components) { return components == 2 || components == 4; }
 bool isTransparent(const RtsHost* host, const SurfaceParams& params);
 
-// The terms of the equation by lane: I = glow + sum over lights of (direct * diffuse * N.L + ...).
-// Unlit lanes have no diffuse and specular colour and glow in their own.
+// The terms of the lighting equation, by lane: I = glow + sum over lights of (direct * diffuse *
+// N.L + ...). Unlit lanes have only the term glow, which is their colour.
 struct Terms {
   float* glow[3];     // OE, or the colour of an unlit lane
   float* diffuse[3];  // OD
@@ -42,18 +42,20 @@ struct Terms {
   float* alpha;       // A
 };
 
-// What the textures and lights stages need to know about a whole batch.
+// Properties of a whole batch: whether any lane is lit, has a specular colour or a texture, or
+// needs the colours stage.
 struct Summary {
   bool lit = false, specular = false, textured = false, special = false;
 };
 
-// All stages, for a batch of at least one hit: wholeLanes(hits->count) lanes of terms.
+// Runs all stages for a batch of at least one hit and writes wholeLanes(hits->count) lanes of
+// terms.
 Summary makeTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Terms& out);
 
-// The albedo of a lit lane is its diffuse colour, of an unlit one the colour it shows.
+// Writes the albedo: the diffuse colour of lit lanes, the colour of unlit lanes.
 void albedo(const RtsHits* hits, const Terms& t, float* const* out);
 
-// Shadow rays: only 1 - A. A function of RtsClass.
+// Writes 1 - A for shadow rays (RtsClass.transmit).
 void transmit(const RtsHost* host, RtsBatch* batch, const RtsHits* hits,
               float* const transmission[3]);
 

@@ -1,10 +1,10 @@
-// surface.cpp: the lighting equation of ISO/IEC 14772-1 clause 4.14, for batches. Thread tag
-// [render].
+// surface.cpp: the lighting equation of ISO/IEC 14772-1 clause 4.14, for batches. [render]
 //
 // A batch passes four stages, each a loop over arrays: materials (parameters by lane), textures
-// (both in material.cpp), lights, result. Where the standard is silent: normals are interpolated by
-// pixel, not colours; there is no highlight where N.L <= 0, and a shininess of 0 then means one
-// everywhere; shadows take the direct part, never the ambient one.
+// (both in material.cpp), lights, and the result. Where the standard does not say:
+//   normals, not colours, are interpolated over a face
+//   there is no highlight where N.L <= 0; elsewhere a shininess of 0 gives a factor of 1
+//   shadows remove the direct part of a light, never the ambient part
 #include <algorithm>
 
 #include "vrml97/batch.h"
@@ -20,11 +20,11 @@ uint32_t traits(const RtsHost* host, const void* params) {
          (p.lit ? 0u : uint32_t(RTS_UNLIT)) | scatterTraits(p);
 }
 
-// N.L by lane into cosine, and where a shadow ray is worth its time: lit side, some light,
-// something to reflect it. Returns whether any lane is.
-VRML97_CLONES uint32_t facing(uint32_t n, const float* const* normalIn,
-                              const RtsIllumination& light, const Terms& t,
-                              float* __restrict cosine, uint8_t* __restrict wanted) {
+// Writes N.L to `cosine`, and to `wanted` whether a lane needs a shadow ray: it faces the light,
+// the light reaches it, and it reflects light. Returns whether any lane needs one.
+VRML97_CLONES uint32_t cosinesAndWanted(uint32_t n, const float* const* normalIn,
+                                        const RtsIllumination& light, const Terms& t,
+                                        float* __restrict cosine, uint8_t* __restrict wanted) {
   const float* __restrict nx = normalIn[0];
   const float* __restrict ny = normalIn[1];
   const float* __restrict nz = normalIn[2];
@@ -60,9 +60,9 @@ VRML97_CLONES void addDiffuse(uint32_t n, const float* __restrict cosine,
     radiance[i] += diffuse[i] * (direct[i] * cosine[i] + ambientLight[i] * ambient[i]);
 }
 
-// max(N.H, 0) to the power of the exponent, 0 where N.L <= 0. The sine of the angle between N and H
-// is used, because its square keeps the digits that the cosine loses near the top of a highlight,
-// where high exponents need them.
+// Writes max(N.H, 0) to the power of the exponent, 0 where N.L <= 0. It uses the sine of the angle
+// between N and H, which is more precise than the cosine near the peak of a highlight, where high
+// exponents need it.
 VRML97_CLONES void highlights(uint32_t n, const float* const* normalIn,
                               const float* const* directionIn, float* const* toLight,
                               const float* __restrict cosine, const float* __restrict exponent,
@@ -83,8 +83,8 @@ VRML97_CLONES void highlights(uint32_t n, const float* const* normalIn,
     const float length2 = larger(hx * hx + hy * hy + hz * hz, 1e-30f);
     const float sine2 = smaller((cx * cx + cy * cy + cz * cz) / length2, 1.0f);
     const float nh = nx[i] * hx + ny[i] * hy + nz[i] * hz;
-    const float power =
-        0.5f * exponent[i] * logOneMinus(sine2); // of cos^2; 0 for exponent 0, whatever the angle
+    // The logarithm of cos^exponent; 0 for exponent 0 at any angle.
+    const float power = 0.5f * exponent[i] * logOneMinus(sine2);
     const float back = nh > 0.0f ? 0.0f : larger(-exponent[i] * 1e30f, vanishing);
     const float dark = cosine[i] > 0.0f ? 0.0f : vanishing;
     factor[i] = expNegative(power + back + dark);
@@ -107,7 +107,7 @@ void lights(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, const Sum
   for (uint32_t k = 0; k < count; k++) {
     RtsIllumination light{};
     host->illuminate(batch, k, hits, &light);
-    if (facing(n, hits->normal, light, t, cosine, wanted))
+    if (cosinesAndWanted(n, hits->normal, light, t, cosine, wanted))
       host->shadow(batch, k, hits, wanted, &light);
     for (int c = 0; c < 3; c++)
       addDiffuse(n, cosine, light.color[c], light.ambient[c], t.diffuse[c], t.ambient, radiance[c]);

@@ -1,6 +1,6 @@
-// texture_groups.cpp: Most batches have one texture and are sampled in place;
-// others are sorted by texture, in scratch memory, so that the cost does not grow with the number
-// of textures.
+// texture_groups.cpp: batches with one texture, which is most of them, are sampled in place. The
+// lanes of other batches are sorted by texture in scratch memory, so the cost does not grow with
+// the number of textures. [render]
 #include "vrml97/texture_groups.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ bool sameEverywhere(const RtsTexture* texture, uint32_t count) {
   return different == 0;
 }
 
-// Lanes with a texture, ordered by texture, then by lane.
+// Writes the lanes that have a texture, sorted by texture and lane, and returns their number.
 uint32_t sortedKeys(const TexturePlaces& places, uint64_t* keys) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < places.count; i++)

@@ -1,5 +1,5 @@
-// texture_groups.h: samples a batch whose lanes may have different textures with one host call a
-// texture. Called by the surface and the environment. Thread tag [render].
+// texture_groups.h: samples a batch whose lanes may have different textures, with one host call for
+// each texture. Called by the surface and the environment. [render]
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace vrml97 {
 
-// Where and with which texture each lane looks; texture 0: the lane is left alone. count lanes.
+// The texture and texture coordinates of each of `count` lanes; lanes with texture 0 are skipped.
 struct TexturePlaces {
   uint32_t count;
   const RtsTexture* texture;
   const float* uv[2];
 };
 
-// Writes rgba and the number of components of the lanes that have a texture; other lanes keep what
-// they hold.
+// Writes rgba and the number of components for the lanes that have a texture. Other lanes keep
+// their values.
 void sampleGroups(const RtsHost* host, RtsBatch* batch, const TexturePlaces& places,
                   float* const rgba[4], uint32_t* components);
 

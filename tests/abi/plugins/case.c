@@ -1,6 +1,6 @@
-/* case.c: one plug-in per macro CASE_...: each differs from a good one in a single point.
- * CASE_older_class is a good one too: its class structure ends where an older header would have
- * ended it; so are CASE_minor_0, CASE_minor_1 and CASE_class_truncated. */
+/* case.c: one plug-in per macro CASE_... Each differs from a good one in a single point.
+ * Exceptions, which are good: CASE_older_class, whose class structure ends where an older header
+ * would have ended it, and CASE_minor_0, CASE_minor_1 and CASE_class_truncated. */
 #include <openrt/openrts.h>
 
 #include <math.h>
@@ -129,7 +129,7 @@ static const RtsClass example = {
 #endif
     .transmit = transmit,
 #if defined(CASE_minor_0) || defined(CASE_minor_1)
-    .prepare = nonsense, /* beyond what the older structures hold: must not be looked at */
+    .prepare = nonsense, /* beyond the end of the older structures: the host must not read it */
     .frequency = (const uint8_t*)1,
 #elif defined(CASE_frequency_value) || defined(CASE_frequency_type) || defined(CASE_frequency_size)
     .frequency = frequency,

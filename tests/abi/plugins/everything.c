@@ -1,5 +1,5 @@
-/* everything.c: a shader plug-in for tests: a class of each kind, and one parameter of each type.
- */
+/* everything.c: a shader plug-in for tests, with a class of each kind and one parameter of each
+ * type. */
 #include <openrt/openrts.h>
 
 #include <stddef.h>

@@ -1,12 +1,12 @@
 /* faulty.c: shaders that go wrong: one that crashes, one with NaN in its radiance, one with NaN in
- * a lobe, and some whose traits keep silent about what they do. */
+ * a lobe, and some whose traits omit what they do. */
 #include <openrt/openrts.h>
 
 #include <math.h>
 #include <stddef.h>
 
 static void crash(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
-  volatile uintptr_t place = 16; /* no page is there */
+  volatile uintptr_t place = 16; /* an unmapped page */
   volatile float* const nowhere = (volatile float*)place;
   (void)host;
   (void)batch;
@@ -15,7 +15,7 @@ static void crash(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Rts
   *nowhere = 1;
 }
 
-/* Never ends where x is above 0. */
+/* Does not return if x is above 0. */
 static void hang(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsShading* out) {
   static volatile int sink;
   (void)host;
@@ -68,7 +68,7 @@ static void gloss(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Rts
   }
 }
 
-/* A lobe of its own whose functions go wrong. */
+/* A custom lobe whose functions go wrong. */
 static void badEvaluate(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
                         const float* const direction[3], float* const value[3], float* density) {
   (void)lobe;

@@ -1,4 +1,4 @@
-/* mirror11.c: a mirror made for ABI 1.1, which knew no trait for that. */
+/* mirror11.c: a mirror built for ABI 1.1, which had no trait for mirrors. */
 #include <openrt/openrts.h>
 
 #include <stddef.h>

@@ -1,4 +1,5 @@
-// prepared.cc: a surface that works something out of its parameters before it is asked, and refuses some.
+// prepared.cc: a surface that computes values from its parameters in prepare() and refuses some
+// parameters.
 #include <openrt/openrts.hpp>
 
 namespace {
@@ -23,6 +24,4 @@ struct Tripled : rts::Surface<Tripled> {
 
 RTS_PLUGIN(Tripled)
 
-extern "C" RTS_EXPORT int preparedAndNotReleased() {
-  return alive;
-}
+extern "C" RTS_EXPORT int preparedAndNotReleased() { return alive; }

@@ -1,4 +1,4 @@
-/* stock_cameras.c: becomes the stock library of a test folder: the two camera classes that
+/* stock_cameras.c: the stock library of a test folder, with the two camera classes that
  * rtPerspective and rtOrtho use. */
 #include <openrt/openrts.h>
 

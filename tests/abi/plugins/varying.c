@@ -1,5 +1,5 @@
-/* varying.c: a surface whose parameters may change by vertex and by triangle, one of each type that
- * may; it shows one of them. */
+/* varying.c: a surface with one parameter of each type that may vary by vertex and by triangle. It
+ * shows one of them. */
 #include <openrt/openrts.h>
 
 #include <stddef.h>

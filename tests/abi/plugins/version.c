@@ -1,6 +1,6 @@
-/* version.c: the same library in three versions, for tests that load it anew. The second moves
- * `color`, has another parameter before it, one that changed its type and one that is gone; the
- * third lost the class. */
+/* version.c: the same library in three versions, for tests that reload it. The second version moves
+ * `color` behind a new parameter, changes one parameter's type and drops another. The third lacks
+ * the class. */
 #include <openrt/openrts.h>
 
 #include <stddef.h>

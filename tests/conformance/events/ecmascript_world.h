@@ -1,5 +1,5 @@
-// ecmascript_world.h: a small world whose Script S is ECMAScript, in this process; rows of programs
-// and what they print. Tests are skipped where the engine is not built.
+// ecmascript_world.h: a small world whose Script S is ECMAScript, run in this process, and tables
+// of programs with what they print. Tests are skipped if the engine is not built.
 #pragma once
 
 #include "conformance/events/tcl_world.h"
@@ -14,7 +14,7 @@ class EcmaWorld : public TclWorld {
     std::string text = TclWorld::script(declared, program, rest);
     return text.replace(text.find("\"tcl:") + 1, 4, "javascript:");
   }
-  // What was printed, and what went wrong, one line each.
+  // Returns what was printed and the errors, one line each.
   std::string told() {
     std::string out;
     for (const Log& log : {printed(), messages()})
@@ -32,7 +32,7 @@ class EcmaScript : public testing::Test {
   }
 };
 
-// One rule: a Script of these declarations, its program, what that prints.
+// One rule: a Script with these declarations, its program, and what it prints.
 struct EcmaRow {
   const char* name;
   const char* declared;

@@ -1,5 +1,5 @@
-// media_files.h: sounds and films made by the tests that play them, in a folder of their own;
-// worlds beside them.
+// media_files.h: sounds and films that tests write to a folder of their own and play, with worlds
+// beside them.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace xvrml {
 
-// A folder that is gone with the object.
+// A folder that is removed with the object.
 class Folder {
  public:
   Folder()
@@ -51,7 +51,7 @@ inline std::string little(uint32_t value, int bytes) {
   return out;
 }
 
-// PCM of 16 bits.
+// Returns a WAV file of 16-bit PCM.
 inline std::string wav(const std::vector<int16_t>& samples, int channels, int rate) {
   std::string data;
   for (const int16_t s : samples) data += little(uint16_t(s), 2);

@@ -1,6 +1,6 @@
-// scripted.h: a small world whose Scripts are run by the test engine (plugins/script/test); what
-// they print is kept. Tests of a fixture that derives from ScriptsSomewhere run twice: Scripts in
-// this process, and in processes of their own.
+// scripted.h: a small world whose Scripts are run by the test engine (plugins/script/test). What
+// they print is kept. Tests of a fixture derived from ScriptsSomewhere run twice: with Scripts in
+// this process and in processes of their own.
 #pragma once
 
 #include <cstdlib>
@@ -10,8 +10,8 @@
 
 namespace xvrml {
 
-// Where the Scripts of the present test run. ctest runs the tests of languages a second time with
-// $XVRML_TEST_ISOLATION=always.
+// Where the Scripts of the current test run. ctest runs the tests of the languages a second time
+// with $XVRML_TEST_ISOLATION=always.
 inline const bool everythingInProcesses = std::getenv("XVRML_TEST_ISOLATION") != nullptr;
 inline BrowserOptions::Isolation isolationOfTest = BrowserOptions::Isolation::automatic;
 
@@ -46,9 +46,9 @@ class Scripted : private Printed, public Running {
                     const RunOptions& run = {.epoch = 0})
       : Running(vrml, 0, with(std::move(options), lines), run) {}
 
-  // Lines since the last call.
+  // Returns the lines printed since the last call.
   Log printed() { return std::exchange(*lines, {}); }
-  // Messages of the world, since the last call: "line: text".
+  // Returns the messages of the world since the last call, as "line: text".
   Log messages() {
     Log result;
     const auto& list = browser.world().diagnostics.list();

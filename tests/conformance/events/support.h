@@ -1,4 +1,4 @@
-// support.h: a small world in a string, run by a Browser; events are written down as they leave.
+// support.h: a small world in a string, run by a Browser. Outgoing events are logged.
 #pragma once
 
 #include <string>
@@ -11,19 +11,20 @@
 
 namespace xvrml {
 
-// Text of a single value as a test expects it: "TRUE", "3", "0.5", "1 2 3", "[1 2]".
+// Returns the text of a single value in the form tests expect: "TRUE", "3", "0.5", "1 2 3", "[1
+// 2]".
 std::string textOf(const Value& value);
 
 class Running {
  public:
-  // The clock's own numbers: epoch 0, so that tests can speak of times 0, 1, 2.
+  // The clock has epoch 0, so that tests can use times 0, 1, 2.
   explicit Running(const std::string& vrml, double start = 0, BrowserOptions options = {},
                    const RunOptions& run = {.epoch = 0})
       : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), std::move(options),
                 start, run) {}
 
   Node& node(std::string_view name) { return *browser.node(name); }
-  // From now on every event of name.out is appended to log as "time name.out value".
+  // Appends every later event of name.out to the log as "time name.out value".
   void log(std::string_view name, std::string_view out) {
     const std::string prefix = std::string(name) + "." + std::string(out);
     ASSERT_NE(browser.listen(node(name), out,
@@ -42,7 +43,8 @@ class Running {
   }
   std::vector<std::string> take() { return std::exchange(events, {}); }
 
-  std::vector<std::string> events; // before the browser: listeners write here to its end
+  // declared before the browser, because listeners write here until it is destroyed
+  std::vector<std::string> events;
   Browser browser;
 };
 

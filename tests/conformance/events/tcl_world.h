@@ -1,5 +1,5 @@
-// tcl_world.h: a small world whose Scripts are Tcl, in this process (see scripted.h). Tests are
-// skipped where the engine is not built.
+// tcl_world.h: a small world whose Scripts are Tcl, run in this process (see scripted.h). Tests are
+// skipped if the engine is not built.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,8 @@ class TclWorld : public Scripted {
   explicit TclWorld(const std::string& vrml, BrowserOptions options = {})
       : Scripted(vrml, with(std::move(options))) {}
 
-  // A world with one Script S of these declarations and this program, which is quoted for VRML.
+  // Returns a world with one Script S of these declarations and this program, which is quoted for
+  // VRML.
   static std::string script(const std::string& declared, const std::string& program,
                             const std::string& rest = "") {
     std::string quoted;

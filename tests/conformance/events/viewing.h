@@ -1,5 +1,5 @@
-// viewing.h: what tests of the viewer ask for: where the camera is, as text, and the names of bound
-// nodes.
+// viewing.h: helpers for tests of the viewer: the position of the camera as text, and the names of
+// bound nodes.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace xvrml {
 
 inline double tidy(double v) { return std::abs(v) < 5e-6 ? 0 : std::round(v * 1e5) / 1e5; }
 
-// "x y z" of the eye, and of the direction it looks in; five decimals at most.
+// Returns "x y z" of the eye, and of its viewing direction, with at most five decimals.
 inline std::string eyeOf(const Browser& browser) {
   const CameraSettings c = browser.camera(1);
   return fmt::format("{:g} {:g} {:g}", tidy(c.matrix[12]), tidy(c.matrix[13]), tidy(c.matrix[14]));

@@ -1,5 +1,5 @@
-// input.h: what a hand does to the window, without any windowing system: made from SDL's events
-// (window.cpp) or from a script (input_script.h), understood by Pilot and Window. [plain data]
+// input.h: Represents user input independently of the windowing system. window.cpp makes it from
+// SDL's events, input_script.h from a script; Pilot and Window consume it. [plain data]
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct InputEvent {
     move,      // the pointer is at x, y
     press,     // button, at x, y
     release,   // button, at x, y
-    leave,     // the pointer is outside, or the window has lost it
+    leave,     // the pointer has left the window, or the window has lost it
     wheel,     // amount: notches, away from the user
     down,      // key
     up,        // key
@@ -24,10 +24,11 @@ struct InputEvent {
     quit
   };
   Kind kind = Kind::move;
-  double x = 0, y = 0; // in the picture, from -1 at the left and bottom to 1 at the right and top
+  // picture coordinates from -1 at the left and bottom to 1 at the right and top
+  double x = 0, y = 0;
   Button button = Button::left;
   double amount = 0;
-  std::string text; // of a key its name: "PageUp", "Left", "A", "["
+  std::string text; // name of a key: "PageUp", "Left", "A", "["
   bool shift = false, control = false, alt = false;
 };
 

@@ -1,5 +1,5 @@
-// keys.h: the window's keys: one table that Pilot and Window obey, and that F1, vv --list-keys and
-// docs/window.md show. [any thread]
+// keys.h: Defines the window's keys in one table. Pilot and Window use it, and F1, vv --list-keys
+// and docs/window.md show it. [any thread]
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ enum class Action : uint8_t {
   nextViewpoint,
   back,
   frameAll,
-  beginAgain, // the view that a world without Viewpoint begins with; no key of its own
+  beginAgain, // Shows the initial view of a world without a Viewpoint; it has no key of its own.
   examine,
   walk,
   fly,
@@ -38,12 +38,12 @@ enum class Action : uint8_t {
 
 struct KeyInfo {
   Action action;
-  const char* keys; // separated by blanks; "Shift+" in front: with shift
+  const char* keys; // separated by blanks; the prefix "Shift+" means with shift
   const char* text;
 };
 std::span<const KeyInfo> keyTable();
 
-// Of a key that goes down.
+// Returns the action for a key that goes down.
 Action actionOf(const InputEvent& event);
 
 struct MouseInfo {

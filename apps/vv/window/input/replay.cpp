@@ -9,7 +9,7 @@ bool Replay::step(double time) {
   while (!finished() && script_.events[next_].time <= time) {
     const InputEvent& event = script_.events[next_++].event;
     if (const Action action = pilot_.handle(event); action != Action::none)
-      business_(event, action);
+      onAction_(event, action);
     if (waiting_) return false;
   }
   return true;

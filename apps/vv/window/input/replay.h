@@ -1,6 +1,5 @@
-// replay.h: a world driven by a script: steps of 1/fps from 0, and the script's events at the steps
-// that they fall on. The same script gives the same world, with a window or without. [the browser's
-// thread]
+// replay.h: Drives a world with a script: steps of 1/fps from 0, with the script's events at their
+// steps. The same script gives the same world, with or without a window. [the browser's thread]
 #pragma once
 
 #include <functional>
@@ -12,15 +11,15 @@ namespace vv {
 
 class Replay {
  public:
-  // business: gets what Pilot::handle leaves to the window.
+  // onAction: receives the actions that Pilot::handle leaves to the window.
   Replay(Pilot& pilot, const InputScript& script,
-         std::function<void(const InputEvent&, Action)> business)
-      : pilot_(pilot), script_(script), business_(std::move(business)) {}
+         std::function<void(const InputEvent&, Action)> onAction)
+      : pilot_(pilot), script_(script), onAction_(std::move(onAction)) {}
 
-  // The clock has come to `time`; its events happen. False while wait() holds: call it again with
-  // the same time.
+  // Advances the clock to `time` and plays its events. Returns false while wait() is in effect;
+  // call it again with the same time then.
   bool step(double time);
-  // The events after this one wait for resume().
+  // Holds back the events after this one until resume().
   void wait() { waiting_ = true; }
   void resume() { waiting_ = false; }
   bool finished() const { return next_ >= script_.events.size(); }
@@ -28,7 +27,7 @@ class Replay {
  private:
   Pilot& pilot_;
   const InputScript& script_;
-  std::function<void(const InputEvent&, Action)> business_;
+  std::function<void(const InputEvent&, Action)> onAction_;
   size_t next_ = 0;
   double stepped_ = -1;
   bool waiting_ = false;

@@ -27,7 +27,7 @@ const OptionInfo* optionOf(std::string_view name) {
   return nullptr;
 }
 
-// Groups of options that a picture of the same view is made with.
+// Tells whether a picture of the same view needs this option.
 bool isKept(const OptionInfo& option) {
   const std::string_view group = option.group, names = option.names;
   if (names == "--colour,--color" || names == "--camera-shader" || names == "--background")
@@ -35,7 +35,7 @@ bool isKept(const OptionInfo& option) {
   return group == "Change" || group == "Quality" || group == "Trust";
 }
 
-// Position, target, up. 17 digits: the numbers themselves.
+// Returns position, target and up vector. 17 digits reproduce the numbers exactly.
 std::string placeOf(const xvrml::CameraSettings& camera) {
   const double* m = camera.matrix;
   const auto number = [](double v) {

@@ -1,4 +1,4 @@
-// view_command.h: the vv command that makes a picture of what the window shows. [any thread]
+// view_command.h: Builds the vv command line that renders what the window shows. [any thread]
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 namespace vv {
 
 struct ShownView {
-  std::string world; // its file
+  std::string world; // name of the world's file
   xvrml::CameraSettings camera;
   int width = 0, height = 0;
   double time = 0;             // seconds since the world was loaded
-  std::optional<double> epoch; // when it was, in seconds since 1970; none: as by default
+  std::optional<double> epoch; // loading time in seconds since 1970; none: the default
   std::optional<bool> headlight;
 };
 
-// A line for a shell. arguments: of this run; what they say about the quality, the world's changes
-// and whom to trust is kept.
+// Returns a line for a shell. `arguments` are those of this run; the ones about quality, changes of
+// the world and trust are kept.
 std::string viewCommand(const ShownView& view, const std::vector<std::string>& arguments);
 
 } // namespace vv

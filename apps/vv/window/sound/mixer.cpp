@@ -5,10 +5,10 @@
 
 namespace vv {
 
-void Mixer::set(const std::vector<xvrml::Heard>& heard) {
+void Mixer::set(const std::vector<xvrml::Heard>& audible) {
   std::vector<Voice> fresh;
-  fresh.reserve(heard.size());
-  for (const xvrml::Heard& one : heard) {
+  fresh.reserve(audible.size());
+  for (const xvrml::Heard& one : audible) {
     const int place =
         !fresh.empty() && fresh.back().sound == one.sound ? fresh.back().place + 1 : 0;
     fresh.push_back({one.sound, place, one.playing, {}, one.levels, true});
@@ -17,8 +17,9 @@ void Mixer::set(const std::vector<xvrml::Heard>& heard) {
   fresh_ = std::move(fresh);
 }
 
-// The world's clock and the device's drift, and ticks come late: only what is far off jumps.
-void Mixer::follow(std::vector<Voice>& fresh) {
+// Updates the voices. The clocks of world and device drift, and ticks are late, so a voice jumps to
+// the new position only if it is far off.
+void Mixer::updateVoices(std::vector<Voice>& fresh) {
   constexpr double farOff = 0.2; // seconds
   for (Voice& voice : voices_) {
     voice.wanted = false;
@@ -48,10 +49,10 @@ void Mixer::follow(std::vector<Voice>& fresh) {
 }
 
 void Mixer::fill(std::span<float> stereo, double rate) {
-  constexpr size_t piece = 64; // pairs with the same levels
+  constexpr size_t piece = 64; // pairs of samples with the same levels
   std::optional<std::vector<Voice>> fresh;
   if (const std::unique_lock lock(mutex_, std::try_to_lock); lock.owns_lock()) fresh.swap(fresh_);
-  if (fresh) follow(*fresh);
+  if (fresh) updateVoices(*fresh);
   std::fill(stereo.begin(), stereo.end(), 0.f);
   const size_t pairs = stereo.size() / 2;
   for (Voice& voice : voices_) {

@@ -1,5 +1,6 @@
-// mixer.h: the Sounds of a running world as samples. The browser's thread says after each tick what
-// is heard; the device's thread asks for samples and goes on by itself in between.
+// mixer.h: Mixes the Sounds of a running world into samples. The browser's thread sets the audible
+// sounds after each tick; the audio device's thread fetches samples and advances the sounds between
+// ticks.
 #pragma once
 
 #include <mutex>
@@ -13,27 +14,26 @@ namespace vv {
 
 class Mixer {
  public:
-  // What is heard from now on. [browser's thread]
-  void set(const std::vector<xvrml::Heard>& heard);
-  // Pairs of left and right samples in [-1,1], `rate` pairs a second; without memory of its own
-  // being asked for a block. What is new fades in, what has ended fades out, within the block.
-  // [device's thread]
+  // Sets the sounds that are audible from now on. [browser's thread]
+  void set(const std::vector<xvrml::Heard>& audible);
+  // Fills pairs of left and right samples in [-1,1], `rate` pairs per second. Allocates no memory.
+  // New sounds fade in, and ended sounds fade out, within the block. [device's thread]
   void fill(std::span<float> stereo, double rate);
 
  private:
   struct Voice {
-    const void* sound =
-        nullptr; // with `place` and the clip what tells voices apart; never looked at
+    // identifies a voice, together with `place` and the clip; never dereferenced
+    const void* sound = nullptr;
     int place = 0;
     xvrml::Playing playing;
     xvrml::SoundLevels now, next;
     bool wanted = true;
   };
-  void follow(std::vector<Voice>& fresh);
+  void updateVoices(std::vector<Voice>& fresh);
 
   std::mutex mutex_;
   std::optional<std::vector<Voice>> fresh_;
-  std::vector<Voice> voices_; // the device's thread's
+  std::vector<Voice> voices_; // used by the device's thread only
 };
 
 } // namespace vv

@@ -24,8 +24,8 @@ std::string Speaker::open() {
   wanted.samples = 1024;
   wanted.callback = fill;
   wanted.userdata = &mixer_;
-  device_ =
-      SDL_OpenAudioDevice(nullptr, 0, &wanted, nullptr, 0); // SDL converts to what the device wants
+  // SDL converts to the device's format
+  device_ = SDL_OpenAudioDevice(nullptr, 0, &wanted, nullptr, 0);
   if (device_ == 0) return SDL_GetError();
   SDL_PauseAudioDevice(device_, 0);
   return "";

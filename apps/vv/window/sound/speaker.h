@@ -1,5 +1,5 @@
-// speaker.h: the sound device, which plays what a Mixer has. [main thread; the device's own thread
-// asks the mixer]
+// speaker.h: Owns the audio device, which plays the samples of a Mixer. [main thread; the device's
+// own thread calls the mixer]
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ class Speaker {
   ~Speaker();
   Speaker(const Speaker&) = delete;
   Speaker& operator=(const Speaker&) = delete;
-  // Opens the device; once. Returns why there is none, or "".
+  // Opens the device; call it once. Returns why there is none, or "".
   std::string open();
   bool tried() const { return tried_; }
 

@@ -1,6 +1,6 @@
-// cluster.cpp: the backend that renders with the help of other machines. One thread speaks with
-// them (Wire, Master); the worker in this process has threads of its own (WorkerCore). Whoever
-// calls hands that thread a function, and waits if there is an answer.
+// cluster.cpp: the backend that renders with remote workers. One thread, the network thread, owns
+// the Wire and the Master. The local worker (WorkerCore) has its own threads. Other threads post
+// functions to the network thread and wait if they need an answer.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -38,14 +38,14 @@ Split splitOf(const std::string& word) {
   return Split::automatic;
 }
 
-// Does what would keep the network waiting, on so many threads; with one, in its order.
-class Background {
+// A thread pool for tasks that would hold up the network. With one thread, tasks run in order.
+class ThreadPool {
  public:
   using Task = std::function<void()>;
-  explicit Background(uint32_t threads) {
+  explicit ThreadPool(uint32_t threads) {
     for (uint32_t i = 0; i < threads; i++) threads_.emplace_back([this] { run(); });
   }
-  ~Background() {
+  ~ThreadPool() {
     {
       const std::lock_guard lock(mutex_);
       stop_ = true;
@@ -53,7 +53,7 @@ class Background {
     changed_.notify_all();
     for (std::thread& thread : threads_) thread.join();
   }
-  // Takes them all.
+  // Takes all tasks and leaves the vector empty.
   void add(std::vector<Task>& tasks) {
     if (tasks.empty()) return;
     {
@@ -84,8 +84,7 @@ class Background {
   std::vector<std::thread> threads_;
 };
 
-// Of the threads here, those that merge what comes from elsewhere while one speaks with the
-// network.
+// Returns the number of threads that merge remote results while one serves the network.
 uint32_t mergersOf(uint32_t threads) { return std::clamp(threads / 2, 1u, 8u); }
 
 class ClusterBackend final : public Backend, public SurfaceQueries, private WorkerSink {
@@ -117,11 +116,11 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     master.self = identity(self);
     master.close = [this](Peer peer, const std::string& why) { wire_->close(peer, why); };
     master.background = [this](std::function<void()> heavy, MasterOptions::Then then) {
-      std::vector<Background::Task> task{later(std::move(heavy), std::move(then))};
+      std::vector<ThreadPool::Task> task{taskFor(std::move(heavy), std::move(then))};
       background_.add(task);
     };
     master.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
-      results_.push_back(later(std::move(heavy), std::move(then)));
+      results_.push_back(taskFor(std::move(heavy), std::move(then)));
     };
     master_ = std::make_unique<Master>(
         master, [this](Peer peer, Frames&& frames) { return wire_->send(peer, std::move(frames)); },
@@ -145,22 +144,22 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
 
   void start() override {
     if (unsent_.empty()) unsent_.push_back(std::make_shared<Commit>());
-    Flight flight;
+    FrameInFlight flight;
     flight.epoch = epoch_ + unsent_.size();
     flight.begun = clockNow();
     {
       const std::lock_guard lock(mutex_);
-      flying_.push_back(flight);
+      framesInFlight_.push_back(flight);
     }
-    hand(true);
+    postCommits(true);
   }
 
   void wait() override {
     std::unique_lock lock(mutex_);
-    if (flying_.empty()) return;
-    changed_.wait(lock, [this] { return flying_.front().state.over || !broken_.empty(); });
-    finished_ = std::move(flying_.front());
-    flying_.pop_front();
+    if (framesInFlight_.empty()) return;
+    changed_.wait(lock, [this] { return framesInFlight_.front().state.over || !broken_.empty(); });
+    finished_ = std::move(framesInFlight_.front());
+    framesInFlight_.pop_front();
     const std::string broken = broken_;
     lock.unlock();
     if (!finished_.state.over) throw ClusterError(broken);
@@ -175,16 +174,16 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     Epoch last = 0;
     {
       const std::lock_guard lock(mutex_);
-      if (flying_.empty()) return;
-      last = flying_.back().epoch;
+      if (framesInFlight_.empty()) return;
+      last = framesInFlight_.back().epoch;
     }
     post([this, last](double now) { master_->cancel(last, now); });
   }
 
   float progress() const override {
     const std::lock_guard lock(mutex_);
-    if (flying_.empty()) return 1;
-    const Master::FrameState& state = flying_.front().state;
+    if (framesInFlight_.empty()) return 1;
+    const Master::FrameState& state = framesInFlight_.front().state;
     if (state.over || !broken_.empty()) return 1; // wait() returns at once
     return state.work ? state.work->progress() : 0;
   }
@@ -193,7 +192,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     std::shared_ptr<FrameWork> work;
     {
       const std::lock_guard lock(mutex_);
-      if (!flying_.empty()) work = flying_.front().state.work;
+      if (!framesInFlight_.empty()) work = framesInFlight_.front().state.work;
     }
     return work && work->snapshot(channel, out);
   }
@@ -206,12 +205,12 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     const uint64_t degenerate = s.degenerate;
     const size_t size = s.size;
     if (const Master::FrameState& state = finished_.state; state.work) {
-      s = state.prepared.stats; // of the scene
+      s = state.prepared.stats; // scene statistics
       s.size = size;
       s.degenerate += degenerate;
       for (char* text : {s.isa + sizeof s.isa, s.kernel + sizeof s.kernel,
                          s.transportReason + sizeof s.transportReason})
-        text[-1] = '\0'; // a worker may have said it
+        text[-1] = '\0'; // text from a remote worker may be unterminated
       const RayCounters counters = state.work->counters();
       s.cameraRays = counters.camera;
       s.shadowRays = counters.shadow;
@@ -241,7 +240,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   }
 
   std::vector<RTworker> workers() const override {
-    const std::lock_guard lock(mutex_); // the thread of the network may be in the application's log
+    // The network thread may be inside the application's log callback.
+    const std::lock_guard lock(mutex_);
     return workers_;
   }
 
@@ -269,14 +269,14 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
   }
 
  private:
-  struct Flight { // a frame that was begun
+  struct FrameInFlight { // a frame that was started
     Epoch epoch = 0;
     double begun = 0, ended = 0;
     Master::FrameState state;
   };
 
-  // Commits go to the thread of the network, the last perhaps as that of a frame.
-  void hand(bool frame) {
+  // Posts the commits to the network thread. If `frame`, the last one starts a frame.
+  void postCommits(bool frame) {
     while (!unsent_.empty()) {
       const bool last = unsent_.size() == 1;
       post([this, epoch = ++epoch_, commit = std::move(unsent_.front()),
@@ -285,18 +285,18 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     }
   }
 
-  // About the last committed scene. The worker here has it once the frames before are finished.
+  // Queries the last committed scene. The local worker has it once all earlier frames are finished.
   void ask(const std::function<void(Backend&)>& question) {
-    hand(false);
+    postCommits(false);
     for (;;) {
-      if (call([this](double) { return master_->bringHere(); })) break;
+      if (call([this](double) { return master_->sendSceneToLocal(); })) break;
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, std::chrono::milliseconds(20)); // a frame has ended, perhaps
+      changed_.wait_for(lock, std::chrono::milliseconds(20)); // perhaps a frame has ended
     }
     core_->ask(question);
   }
 
-  // [any]
+  // [any] Runs a function on the network thread.
   void post(std::function<void(double)> command) const {
     bool first = false;
     {
@@ -308,7 +308,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     if (first) wire_->wake();
   }
 
-  // The answer of a function on the thread of the network.
+  // Returns the result of a function that runs on the network thread.
   template <class F> auto call(const F& function) const -> decltype(function(0.0)) {
     using Result = decltype(function(0.0));
     auto promise = std::make_shared<std::promise<Result>>();
@@ -318,7 +318,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
         promise->set_value(function(now));
       } catch (...) { promise->set_exception(std::current_exception()); }
     });
-    promise.reset(); // if the command is thrown away, the future knows
+    promise.reset(); // the future fails if the command is dropped
     try {
       return answer.get();
     } catch (const std::future_error&) {
@@ -327,26 +327,26 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     }
   }
 
-  // The worker here, on threads of its own.
+  // WorkerSink, called on the local worker's threads.
   void ready(Epoch epoch, const Prepared& prepared) override {
-    post([this, epoch, prepared](double now) { master_->readyHere(epoch, prepared, now); });
+    post([this, epoch, prepared](double now) { master_->localReady(epoch, prepared, now); });
   }
   void failed(Epoch epoch, const std::string& why) override {
-    post([this, epoch, why](double now) { master_->failedHere(epoch, why, now); });
+    post([this, epoch, why](double now) { master_->localFailed(epoch, why, now); });
   }
   void done(Epoch epoch, const LeasedJob& job, JobResult&& result) override {
     post([this, epoch, job, result = std::make_shared<JobResult>(std::move(result))](double now) {
-      master_->doneHere(epoch, job, std::move(*result), now);
+      master_->localDone(epoch, job, std::move(*result), now);
     });
   }
 
   void run() noexcept {
     try {
       while (!stop_) {
-        obey();
+        runCommands();
         const double next = master_->advance(clockNow());
         publish();
-        listen(std::clamp(next - clockNow(), 0.0, 0.1));
+        receiveMessages(std::clamp(next - clockNow(), 0.0, 0.1));
         master_->busy(clockNow() - waited_);
         waited_ = clockNow();
       }
@@ -360,18 +360,18 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       closed_ = true;
       left.swap(commands_);
     }
-    left.clear(); // whoever waits for one of them hears that it is gone
+    left.clear(); // threads that wait for a command get an exception
     changed_.notify_all();
   }
 
-  Background::Task later(std::function<void()> heavy, std::function<void(double)> then) {
+  ThreadPool::Task taskFor(std::function<void()> heavy, std::function<void(double)> then) {
     return [this, heavy = std::move(heavy), then = std::move(then)]() mutable {
       heavy();
       post(std::move(then));
     };
   }
 
-  void obey() {
+  void runCommands() {
     std::vector<std::function<void(double)>> commands;
     {
       const std::lock_guard lock(commandMutex_);
@@ -381,11 +381,11 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     mergers_.add(results_);
   }
 
-  // What has come, and what comes at once behind it.
-  void listen(double seconds) {
-    constexpr int most = 256; // messages before anything is handed out
-    constexpr size_t together =
-        16; // results for those who merge: waking somebody for each would take longer
+  // Handles the messages that have arrived and those that follow at once.
+  void receiveMessages(double seconds) {
+    constexpr int most = 256; // messages before jobs are handed out
+    // Results per batch for the merging threads: waking a thread for each one would take longer.
+    constexpr size_t together = 16;
     for (int i = 0; i < most; i++) {
       if (results_.size() >= together) mergers_.add(results_);
       const double asked = clockNow();
@@ -406,14 +406,14 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     mergers_.add(results_);
   }
 
-  // What has become of the frames in flight, for those who look or wait.
+  // Publishes the state of the frames in flight to the threads that poll or wait.
   void publish() {
-    constexpr double often = 0.1; // seconds between counts while nothing ends
+    constexpr double often = 0.1; // seconds between counts while no frame ends
     bool ended = false;
     std::vector<std::shared_ptr<FrameWork>> works;
     {
       const std::lock_guard lock(mutex_);
-      for (Flight& flight : flying_) {
+      for (FrameInFlight& flight : framesInFlight_) {
         if (flight.state.over) continue;
         flight.state = master_->frame(flight.epoch);
         if (!flight.state.over) continue;
@@ -421,10 +421,10 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
         ended = true;
         if (flight.state.work) works.push_back(flight.state.work);
       }
-      if (const double now = clockNow(); ended || now > counted_ + often) {
+      if (const double now = clockNow(); ended || now > totalsAt_ + often) {
         totals_ = master_->totals();
         workers_ = master_->workers();
-        counted_ = now;
+        totalsAt_ = now;
       }
     }
     if (log_)
@@ -434,32 +434,33 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
 
   RTlogCallback log_;
   void* logUser_;
-  // Of the application's thread.
+  // Application thread.
   std::deque<std::shared_ptr<const Commit>> unsent_;
   Epoch epoch_ = 0;
-  Flight finished_;
+  FrameInFlight finished_;
   double commitSeconds_ = 0;
 
-  mutable std::mutex mutex_; // of these
+  mutable std::mutex mutex_; // guards the members up to totalsAt_
   std::condition_variable changed_;
-  std::deque<Flight> flying_;
-  std::string broken_; // why no frame is made any more
+  std::deque<FrameInFlight> framesInFlight_;
+  std::string broken_; // reason why no more frames are rendered
   Master::Totals totals_;
   std::vector<RTworker> workers_;
-  double counted_ = 0; // when these two were
+  double totalsAt_ = 0; // when totals_ and workers_ were updated
 
-  mutable std::mutex commandMutex_; // commands_, closed_
+  mutable std::mutex commandMutex_; // guards commands_ and closed_
   mutable std::vector<std::function<void(double)>> commands_;
   mutable bool closed_ = false;
 
-  // Of the network's thread.
+  // Network thread.
   bool stop_ = false;
-  double waited_ = clockNow(); // since when it has been busy, without the time in which it waited
-  std::vector<Background::Task> results_; // for those who merge
+  // Start of the current busy period, moved forward by the time spent waiting.
+  double waited_ = clockNow();
+  std::vector<ThreadPool::Task> results_; // for the merging threads
   std::unique_ptr<Wire> wire_;
   std::unique_ptr<WorkerCore> core_;
   std::unique_ptr<Master> master_;
-  Background background_{1}, mergers_{mergersOf(availableThreads())};
+  ThreadPool background_{1}, mergers_{mergersOf(availableThreads())};
   std::thread thread_;
 };
 

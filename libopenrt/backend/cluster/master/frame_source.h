@@ -1,6 +1,6 @@
-// frame_source.h: a frame's work as the scheduler asks for it. For whoever tells the scheduler of
-// frames; apart from scheduler.h so that the scheduler itself can be linked without anything that
-// renders. One thread's.
+// frame_source.h: adapts a frame's work (FrameWork) to the scheduler's JobSource. It is separate
+// from scheduler.h so that the scheduler can be linked without the renderer. Used by the master;
+// one thread.
 #pragma once
 
 #include <utility>

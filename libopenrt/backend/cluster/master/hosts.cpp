@@ -21,7 +21,7 @@ std::string trimmed(std::string line) {
 } // namespace
 
 std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
-  constexpr size_t most = 65536; // of workers
+  constexpr size_t most = 65536; // workers
   std::vector<std::string> hosts;
   for (const std::string& entry : entries) {
     if (!entry.starts_with('@')) {
@@ -34,7 +34,7 @@ std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
       throw ClusterError(entry.substr(1) + ": the list of workers cannot be read: " +
                          std::strerror(errno ? errno : EIO));
     const size_t before = hosts.size();
-    size_t number = 1; // of the line
+    size_t number = 1; // line number
     for (std::string line; hosts.size() < most && std::getline(file, line); ++number) {
       std::string host = trimmed(std::move(line));
       if (host.empty()) continue;

@@ -1,4 +1,4 @@
-// hosts.h: the workers that a user names: a list, or a file of them. Pure functions. [any]
+// hosts.h: reads the user's list of workers, given directly or in a file. Pure functions. [any]
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace openrt::cluster {
 
-// Entries of the form @FILE are replaced by those that the file lists, one a line; what follows a #
-// is a comment. Throws ClusterError if a file cannot be read, or names nobody.
+// Replaces entries of the form @FILE by the entries listed in that file, one per line; # starts a
+// comment. Throws ClusterError if a file cannot be read or lists no worker.
 std::vector<std::string> readHosts(const std::vector<std::string>& entries);
 
 } // namespace openrt::cluster

@@ -1,5 +1,5 @@
-// job_costs.cpp: The median comes from a histogram of logarithms, eight bins an
-// octave: exact to 5 %, which is far less than jobs differ by, and of constant size.
+// job_costs.cpp: the median comes from a histogram of logarithms with eight bins per octave. It is
+// exact to 5 %, far less than jobs differ by, and its size is constant.
 #include "backend/cluster/master/job_costs.h"
 
 #include <algorithm>
@@ -8,14 +8,14 @@
 namespace openrt::cluster {
 
 namespace {
-constexpr double priorJobs =
-    8; // as many jobs of this frame count as much as all of the frame before
-}
+// This many jobs of the current frame weigh as much as all jobs of the frame before.
+constexpr double priorJobs = 8;
+} // namespace
 
 JobCosts JobCosts::ofNextFrame() const {
   JobCosts next;
   next.median_ = median_;
-  next.dear_ = dear_;
+  next.expensive_ = expensive_;
   if (jobs_ == 0) {
     next.priorSeconds_ = priorSeconds_;
     next.priorUnits_ = priorUnits_;
@@ -36,10 +36,10 @@ void JobCosts::add(double units, double seconds) {
   counts_[size_t(std::clamp(bin, 0.0, double(counts_.size() - 1)))]++;
   if (jobs_ < next_) return;
   next_ = jobs_ + std::max(jobs_ / 16, 1u);
-  // Few jobs of this frame say less than all of the last one.
+  // A few jobs of this frame tell less than all jobs of the last one.
   if (median_ == 0 || jobs_ >= priorJobs) median_ = quantile(0.5);
-  // Places that cost much may come late in a frame.
-  if (dear_ == 0 || jobs_ >= 50 * priorJobs) dear_ = quantile(0.98);
+  // Expensive tiles may come late in a frame.
+  if (expensive_ == 0 || jobs_ >= 50 * priorJobs) expensive_ = quantile(0.98);
 }
 
 double JobCosts::quantile(double share) const {

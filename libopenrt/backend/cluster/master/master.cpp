@@ -1,4 +1,4 @@
-// master.cpp: the master's events. Workers: master_workers.cpp; frames: master_frames.cpp.
+// master.cpp: the master's event handlers. Workers: master_workers.cpp; frames: master_frames.cpp.
 #include "backend/cluster/master/master.h"
 
 #include <cmath>
@@ -11,8 +11,8 @@ namespace {
 
 uint64_t largestResultOf(const edit::FrameSettingsT& frame) {
   constexpr uint64_t tile = uint64_t(largestTile) * largestTile * sizeof(PixelSums), beside = 4096;
-  const uint64_t light = uint64_t(frame.width) * frame.height * 3 *
-                         sizeof(float); // runs of zeros are shorter than these
+  // Run-length encoded zeros are shorter than this.
+  const uint64_t light = uint64_t(frame.width) * frame.height * 3 * sizeof(float);
   return std::max(tile, light) + beside;
 }
 
@@ -46,18 +46,19 @@ void Master::left(Peer peer, const std::string& why, double now) {
 
 void Master::message(Peer peer, Frames&& frames, double now) {
   const auto found = impl_->remotes.find(peer);
-  if (found == impl_->remotes.end())
-    return; // it has left: whatever this was, somebody else does it
+  // The worker has left; another one does its jobs.
+  if (found == impl_->remotes.end()) return;
   Remote& remote = found->second;
   remote.bytesReceived += bytesOf(frames);
   Message message;
   if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult);
+      // The intended message is unknown.
       !wrong.empty())
-    return impl_->refuse(peer, "a message that cannot be read: " + wrong,
-                         now); // nobody knows what it should have been
+    return impl_->refuse(peer, "a message that cannot be read: " + wrong, now);
   if (auto* hello = std::get_if<message::Hello>(&message.body))
     return impl_->hello(remote, std::move(*hello), now);
-  if (!remote.welcome || message.session != remote.session) return; // of a session that has ended
+  // The message belongs to a session that has ended.
+  if (!remote.welcome || message.session != remote.session) return;
   struct {
     Impl& m;
     Remote& remote;
@@ -67,15 +68,15 @@ void Master::message(Peer peer, Frames&& frames, double now) {
       if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO ||
           ready.transport > RT_TRANSPORT_LIGHT)
         return m.strike(remote, "a scene that it cannot have prepared", now);
-      remote.offered.erase(remote.offered.begin(),
-                           remote.offered.upper_bound(ready.epoch)); // it has all of that
+      // The worker has all arrays of these scenes.
+      remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(ready.epoch));
       m.ready(remote.id, remote.name(), ready.epoch, ready.facts, ready.transport, ready.stats,
               now);
     }
     void operator()(message::Failed& failed) const {
       m.logOnce(2, "worker " + remote.name() + ": " + failed.why);
       m.lastRefusal = remote.name() + ": " + failed.why;
-      remote.sent = 0; // whatever it has of the scene
+      remote.sent = 0; // it may have any part of the scene
       remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(failed.epoch));
       remote.out.erase(failed.epoch);
       m.scheduler.unable(remote.id, failed.epoch, now);
@@ -100,49 +101,49 @@ void Master::message(Peer peer, Frames&& frames, double now) {
   std::visit(handler, message.body);
 }
 
-void Master::readyHere(Epoch epoch, const Prepared& prepared, double now) {
-  impl_->ready(hereId, "here", epoch, prepared.facts, prepared.frame.transport, prepared.stats,
+void Master::localReady(Epoch epoch, const Prepared& prepared, double now) {
+  impl_->ready(localId, "here", epoch, prepared.facts, prepared.frame.transport, prepared.stats,
                now);
 }
 
-// What cannot be made here could not be made without the others either.
-void Master::failedHere(Epoch epoch, const std::string& why, double now) {
+// A frame that the local worker cannot render fails. Remote workers could not render it either.
+void Master::localFailed(Epoch epoch, const std::string& why, double now) {
   Impl& m = *impl_;
   m.fail(epoch, why, false);
-  m.here.sent = 0; // it begins anew with the next frame, which may be better
+  m.here.sent = 0; // it starts anew with the next frame, which may succeed
   if (!m.hereJoined) return;
-  m.scheduler.leave(hereId, now);
+  m.scheduler.leave(localId, now);
   m.hereJoined = false;
-  m.joinHere(now);
+  m.joinLocal(now);
 }
 
-void Master::doneHere(Epoch epoch, const LeasedJob& job, JobResult&& result, double now) {
+void Master::localDone(Epoch epoch, const LeasedJob& job, JobResult&& result, double now) {
   Impl& m = *impl_;
   if (auto out = m.here.out.find(epoch); out != m.here.out.end() && out->second > 0) out->second--;
   m.here.rays += result.counters.camera + result.counters.shadow + result.counters.secondary;
   FrameEntry* entry = m.unfinished(epoch);
-  if (!entry || !entry->state.work || !m.scheduler.find(hereId, epoch, job.lease)) {
-    m.scheduler.done(hereId, epoch, job.lease, result.seconds, now);
+  if (!entry || !entry->state.work || !m.scheduler.find(localId, epoch, job.lease)) {
+    m.scheduler.done(localId, epoch, job.lease, result.seconds, now);
     return;
   }
-  const auto arrival = std::make_shared<Arrival>();
-  arrival->epoch = epoch;
-  arrival->job = job;
-  arrival->result = std::move(result);
-  m.arrive(*entry, arrival, now);
+  const auto incoming = std::make_shared<IncomingResult>();
+  incoming->epoch = epoch;
+  incoming->job = job;
+  incoming->result = std::move(result);
+  m.startMerge(*entry, incoming, now);
 }
 
 void Master::commit(Epoch epoch, std::shared_ptr<const Commit> commit, bool frame, double now) {
   Impl& m = *impl_;
   m.firstCommit = std::min(m.firstCommit, now);
   for (const auto& entry : commit->edits.edits)
-    if (entry && entry->any.AsReloadShaders()) m.leaveWorkersOut(now);
+    if (entry && entry->any.AsReloadShaders()) m.refuseAllWorkers(now);
   m.scenes.add(epoch, std::move(commit));
   if (frame) {
     FrameEntry& entry = m.frames[epoch];
     entry.settings = m.scenes.frame();
     m.largestResult = std::max(m.largestResult, largestResultOf(entry.settings));
-    m.joinHere(now);
+    m.joinLocal(now);
     m.scheduler.announce(epoch, now);
   }
   m.settle();
@@ -152,7 +153,7 @@ void Master::cancel(Epoch epoch, double) {
   Impl& m = *impl_;
   for (auto& [number, entry] : m.frames) {
     if (number > epoch || entry.state.over) continue;
-    if (!entry.state.work) { // a picture in which nothing is finished
+    if (!entry.state.work) { // a picture without any result
       entry.state.prepared.frame = entry.settings;
       if (entry.settings.transport == RT_TRANSPORT_AUTO)
         entry.state.prepared.frame.transport = RT_TRANSPORT_DIRECT;
@@ -167,16 +168,17 @@ void Master::cancel(Epoch epoch, double) {
 
 double Master::advance(double now) {
   Impl& m = *impl_;
-  m.joinHere(now);
+  m.joinLocal(now);
   double next = std::numeric_limits<double>::infinity();
   bool ended = false;
-  for (auto& [epoch, entry] : m.frames) // those with a time limit end by themselves
+  // Frames with a time limit end by themselves.
+  for (auto& [epoch, entry] : m.frames)
     if (!entry.state.over && entry.complete()) {
       m.end(epoch);
       ended = true;
     }
   if (ended) m.settle();
-  if (m.enough(now)) {
+  if (m.hasEnoughWorkers(now)) {
     m.handOut(now);
     next = m.scheduler.wake(now);
   } else if (m.oldest() != 0) {
@@ -187,16 +189,16 @@ double Master::advance(double now) {
     m.flush(remote);
     if (remote.outbox.overfull()) m.refuse(peer, "it does not read what it is sent", now);
   }
-  if (!m.waiting.empty()) next = std::min(next, now + 0.001); // a queue has room again
+  if (!m.waiting.empty()) next = std::min(next, now + 0.001); // the queue may have room again
   if (!m.hereJoined && m.core && std::isfinite(m.firstCommit))
     next = std::min(next, m.firstCommit + m.options.grace);
   return std::max(next, now);
 }
 
 void Master::busy(double seconds) {
-  constexpr double memory = 5000; // jobs
+  constexpr double memory = 5000; // time constant of the average, in jobs
   Impl& m = *impl_;
-  if (m.jobsSince == 0) return; // scenes and the like
+  if (m.jobsSince == 0) return; // only scenes and other messages
   const double keep = std::exp(-m.jobsSince / memory);
   m.busySeconds = m.busySeconds * keep + seconds;
   m.busyJobs = m.busyJobs * keep + m.jobsSince;
@@ -204,7 +206,7 @@ void Master::busy(double seconds) {
   m.scheduler.pace(m.busySeconds / m.busyJobs);
 }
 
-bool Master::bringHere() {
+bool Master::sendSceneToLocal() {
   Impl& m = *impl_;
   const Epoch last = m.scenes.last();
   if (!m.core || last == 0) return false;

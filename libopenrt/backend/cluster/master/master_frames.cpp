@@ -1,5 +1,4 @@
-// master_frames.cpp: who prepares what, how jobs go out and results come home, and how a frame
-// ends.
+// master_frames.cpp: sends scenes and jobs, merges results and ends frames.
 #include <algorithm>
 #include <utility>
 
@@ -42,14 +41,15 @@ Epoch Master::Impl::oldest() const {
   return 0;
 }
 
-// The scene of an epoch, with all that a worker has missed, and the order to prepare it.
-void Master::Impl::bring(WorkerId worker, Epoch epoch) {
+// Sends the scene of an epoch, with every commit the worker has missed, and the order to prepare
+// it.
+void Master::Impl::sendScene(WorkerId worker, Epoch epoch) {
   Remote* remote = remoteOf(worker);
   if (!remote) return;
   const std::vector<SceneLog::Step> steps = scenes.steps(remote->sent, epoch);
   for (const SceneLog::Step& step : steps) {
     const bool prepare = step.epoch == epoch;
-    if (worker == hereId) {
+    if (worker == localId) {
       core->scene(step.epoch, step.parcel->commit, step.whole, prepare);
       continue;
     }
@@ -61,13 +61,13 @@ void Master::Impl::bring(WorkerId worker, Epoch epoch) {
     scene.libraries = step.parcel->libraries;
     scene.edits = step.parcel->edits;
     remote->offered[step.epoch] = step.parcel->offers;
-    say(*remote, std::move(scene));
+    queueMessage(*remote, std::move(scene));
   }
   if (steps.empty() || steps.back().epoch != epoch) {
-    if (worker == hereId)
+    if (worker == localId)
       core->prepare(epoch);
     else
-      say(*remote, message::Prepare{epoch});
+      queueMessage(*remote, message::Prepare{epoch});
   }
   remote->sent = epoch;
   remote->furthest = std::max(remote->furthest, epoch);
@@ -85,36 +85,37 @@ void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch,
   prepared.frame.transport = uint8_t(transport);
   if (entry->state.work && !agree(*entry, worker, who, prepared, now)) return;
   scheduler.ready(worker, epoch, now);
-  entry->all.insert(worker);
+  entry->preparedWorkers.insert(worker);
   if (entry->state.work) return;
-  uint32_t crew = hereJoined && options.localThreads > 0 ? here.threads : 0;
-  for (const auto& [id, peer] : peers) crew += remotes.at(peer).threads;
-  entry->who = who;
+  uint32_t totalThreads = hereJoined && options.localThreads > 0 ? here.threads : 0;
+  for (const auto& [id, peer] : peers) totalThreads += remotes.at(peer).threads;
+  entry->preparedBy = who;
   entry->state.prepared = prepared;
-  entry->state.work = std::make_shared<FrameWork>(prepared.frame, facts, std::max(crew, 1u));
+  entry->state.work =
+      std::make_shared<FrameWork>(prepared.frame, facts, std::max(totalThreads, 1u));
   scheduler.frame(epoch, std::make_shared<FrameSource>(entry->state.work), now);
-  taken(epoch); // there may be nothing to do
+  endIfComplete(epoch); // there may be no jobs at all
 }
 
-// Everybody must have found the same in the scene. Who differs goes; it is the others if this
-// process is the one that differs.
+// All workers must report the same facts about the scene. A worker that differs is refused. If the
+// local worker differs, the remote ones are refused.
 bool Master::Impl::agree(FrameEntry& entry, WorkerId worker, const std::string& who,
                          const Prepared& prepared, double now) {
   if (same(entry.state.prepared, prepared)) return true;
-  const std::string both = who + " has found " + whatOf(prepared) + ", " + entry.who + " " +
+  const std::string both = who + " has found " + whatOf(prepared) + ", " + entry.preparedBy + " " +
                            whatOf(entry.state.prepared);
-  if (worker != hereId) {
+  if (worker != localId) {
     refuse(peers.at(worker), "another scene: " + both, now);
     return false;
   }
-  for (WorkerId other : std::set<WorkerId>(entry.all))
+  for (WorkerId other : std::set<WorkerId>(entry.preparedWorkers))
     if (const auto found = peers.find(other); found != peers.end())
       refuse(found->second, "another scene: " + both, now);
   for (auto& [epoch, candidate] : frames) {
     if (&candidate != &entry) continue;
     scheduler.end(epoch);
-    entry.state.work = nullptr; // what they have made of it is of no use
-    entry.all.clear();
+    entry.state.work = nullptr; // their results are of no use
+    entry.preparedWorkers.clear();
     scheduler.announce(epoch, now);
   }
   return true;
@@ -125,27 +126,27 @@ void Master::Impl::result(Remote& remote, message::Result&& message, double now)
     out->second--;
   const Job* job = scheduler.find(remote.id, message.epoch, message.lease);
   FrameEntry* entry = unfinished(message.epoch);
-  if (!job || !entry || !entry->state.work) { // too late
+  if (!job || !entry || !entry->state.work) { // the result came too late
     scheduler.done(remote.id, message.epoch, message.lease, message.seconds, now);
     return;
   }
-  if (!remote.arriving.insert(message.lease).second) return; // it says so twice
-  const auto arrival = std::make_shared<Arrival>();
-  arrival->worker = remote.id;
-  arrival->epoch = message.epoch;
-  arrival->job = {message.lease, *job};
-  arrival->result.counters.camera = message.camera;
-  arrival->result.counters.shadow = message.shadow;
-  arrival->result.counters.secondary = message.secondary;
+  if (!remote.merging.insert(message.lease).second) return; // duplicate message
+  const auto incoming = std::make_shared<IncomingResult>();
+  incoming->worker = remote.id;
+  incoming->epoch = message.epoch;
+  incoming->job = {message.lease, *job};
+  incoming->result.counters.camera = message.camera;
+  incoming->result.counters.shadow = message.shadow;
+  incoming->result.counters.secondary = message.secondary;
   if (options.local.shaders)
-    arrival->result.counters.faults = faultsFrom(message.faults, *options.local.shaders);
-  arrival->result.seconds = message.seconds;
-  arrival->message = std::move(message);
-  arrive(*entry, arrival, now);
+    incoming->result.counters.faults = faultsFrom(message.faults, *options.local.shaders);
+  incoming->result.seconds = message.seconds;
+  incoming->message = std::move(message);
+  startMerge(*entry, incoming, now);
 }
 
-void Arrival::merge() {
-  if (worker != hereId) {
+void IncomingResult::merge() {
+  if (worker != localId) {
     unreadable = unpack(message);
     const Tile tile = job.job.kind == Job::Kind::samples ? work->tile(job.job.number) : Tile{};
     fits = unreadable.empty() && decodeResult(frame, job.job, tile, message.bytes, result);
@@ -153,56 +154,58 @@ void Arrival::merge() {
   }
   if (fits) first = work->take(job.job, std::move(result));
   result.sums = {};
-  result.light = {}; // memory is given back here, not by the master's thread
+  // Frees the memory on this thread, to relieve the master's thread.
+  result.light = {};
 }
 
-// What others may do at the same time: the picture does not depend on who comes first.
-void Master::Impl::arrive(FrameEntry& entry, const std::shared_ptr<Arrival>& arrival, double now) {
-  arrival->work = entry.state.work;
-  arrival->frame = entry.state.prepared.frame;
-  entry.arriving++;
-  const auto merge = [arrival]() noexcept {
+// Starts merging a result, on any thread: the picture does not depend on the order of results.
+void Master::Impl::startMerge(FrameEntry& entry, const std::shared_ptr<IncomingResult>& incoming,
+                              double now) {
+  incoming->work = entry.state.work;
+  incoming->frame = entry.state.prepared.frame;
+  entry.merging++;
+  const auto merge = [incoming]() noexcept {
     try {
-      arrival->merge();
-    } catch (...) { arrival->failure = std::current_exception(); }
+      incoming->merge();
+    } catch (...) { incoming->failure = std::current_exception(); }
   };
-  const auto then = [this, arrival](double later) { arrived(*arrival, later); };
+  const auto then = [this, incoming](double later) { finishMerge(*incoming, later); };
   if (options.results) return options.results(merge, then);
   merge();
   then(now);
 }
 
-void Master::Impl::arrived(const Arrival& a, double now) {
+void Master::Impl::finishMerge(const IncomingResult& a, double now) {
   if (a.failure) std::rethrow_exception(a.failure);
   jobsSince++;
-  if (const auto found = frames.find(a.epoch); found != frames.end()) found->second.arriving--;
+  if (const auto found = frames.find(a.epoch); found != frames.end()) found->second.merging--;
   Remote* remote = remoteOf(a.worker);
-  if (remote) remote->arriving.erase(a.job.lease);
+  if (remote) remote->merging.erase(a.job.lease);
   if (!a.fits) {
     if (a.unreadable.empty()) scheduler.failed(a.worker, a.epoch, a.job.lease, now);
     if (remote && a.unreadable.empty()) strike(*remote, "a result that is none of its job", now);
     if (remote && !a.unreadable.empty())
       refuse(remote->peer, "a message that cannot be read: " + a.unreadable, now);
-    return taken(a.epoch);
+    return endIfComplete(a.epoch);
   }
   scheduler.done(a.worker, a.epoch, a.job.lease, a.result.seconds, now);
   if (a.first) {
     const RayCounters& rays = a.result.counters;
-    if (remote && a.worker != hereId) remote->rays += rays.camera + rays.shadow + rays.secondary;
-    (a.worker == hereId ? jobsHere : jobsRemote)++;
+    if (remote && a.worker != localId) remote->rays += rays.camera + rays.shadow + rays.secondary;
+    (a.worker == localId ? jobsHere : jobsRemote)++;
   }
-  taken(a.epoch);
+  endIfComplete(a.epoch);
 }
 
-void Master::Impl::taken(Epoch epoch) {
+void Master::Impl::endIfComplete(Epoch epoch) {
   FrameEntry* entry = unfinished(epoch);
   if (!entry || !entry->complete()) return;
   end(epoch);
   settle();
 }
 
-// Jobs of it that are still out are of no use. They are taken back together with those of all
-// earlier frames, once these are over.
+// Ends a frame. Its outstanding jobs are dropped together with those of all earlier frames, once
+// these are over.
 void Master::Impl::end(Epoch epoch) {
   frames.at(epoch).state.over = true;
   scheduler.end(epoch);
@@ -216,7 +219,8 @@ void Master::Impl::end(Epoch epoch) {
   };
   if (core && takeBack(here)) core->drop(until);
   for (const auto& [id, peer] : peers)
-    if (Remote& remote = remotes.at(peer); takeBack(remote)) say(remote, message::Drop{until});
+    if (Remote& remote = remotes.at(peer); takeBack(remote))
+      queueMessage(remote, message::Drop{until});
 }
 
 void Master::Impl::fail(Epoch epoch, const std::string& why, bool missing) {
@@ -229,7 +233,7 @@ void Master::Impl::fail(Epoch epoch, const std::string& why, bool missing) {
   settle();
 }
 
-// Which scenes may still be asked for: those from the oldest unfinished frame on.
+// Drops the scenes that no worker can ask for any more: those before the oldest unfinished frame.
 void Master::Impl::settle() {
   const Epoch first = oldest(), now = first ? first : scenes.last();
   scenes.settle(now);
@@ -246,14 +250,15 @@ uint32_t Master::Impl::able() const {
   return uint32_t(std::count_if(peers.begin(), peers.end(), can));
 }
 
-// Workers that come and go without doing anything are too few workers all the time.
-bool Master::Impl::enough(double now) {
+// Returns true if there are enough workers. Workers that join and leave without a result count as
+// too few workers all the time.
+bool Master::Impl::hasEnoughWorkers(double now) {
   const uint32_t can = options.require == 0 ? 0 : able();
   if (can >= options.require) {
-    if (options.require == 0 || oldest() == 0 || scheduler.progressed(oldest()) > fewSince)
+    if (options.require == 0 || oldest() == 0 || scheduler.lastProgressAt(oldest()) > fewSince)
       fewSince = std::numeric_limits<double>::infinity();
-    if (alive() == 0 && everJoined && !saidAlone && core && oldest() != 0) {
-      saidAlone = true;
+    if (alive() == 0 && everJoined && !loggedAlone && core && oldest() != 0) {
+      loggedAlone = true;
       log(2, "all workers have gone: this process goes on alone");
     }
     return true;
@@ -279,18 +284,18 @@ void Master::Impl::handOut(double now) {
   Epoch epoch = 0;
   bool moved = false;
   for (; scheduler.move(now, worker, epoch); moved = true) {
-    if (worker == hereId && scheduler.stuck(epoch))
+    if (worker == localId && scheduler.stuck(epoch))
       logOnce(2, "the workers that are there get nowhere: this process helps");
-    else if (worker == hereId && options.localThreads == 0 && alive() > 0 && able() == 0)
+    else if (worker == localId && options.localThreads == 0 && alive() > 0 && able() == 0)
       logOnce(2, "none of the workers can make this picture: this process goes on alone");
-    bring(worker, epoch);
+    sendScene(worker, epoch);
   }
   if (moved) settle();
   while (handSomeOut(now)) {}
 }
 
-// Few messages, each with all that one worker gets; but they leave before the last of thousands of
-// threads has its job.
+// Hands out up to `most` jobs. Each worker gets one message with all of its jobs. The limit makes
+// the messages leave before the last of thousands of threads has its job.
 bool Master::Impl::handSomeOut(double now) {
   constexpr size_t most = 512;
   std::map<std::pair<WorkerId, Epoch>, std::vector<LeasedJob>> jobs;
@@ -302,11 +307,11 @@ bool Master::Impl::handSomeOut(double now) {
     Remote* remote = remoteOf(to.first);
     if (!remote) continue;
     remote->out[to.second] += uint32_t(list.size());
-    if (to.first == hereId) {
+    if (to.first == localId) {
       core->work(to.second, list);
       continue;
     }
-    say(*remote, message::Jobs{to.second, std::move(list)});
+    queueMessage(*remote, message::Jobs{to.second, std::move(list)});
     flush(*remote);
   }
   return count == most;

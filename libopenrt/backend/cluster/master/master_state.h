@@ -1,5 +1,5 @@
-// master_state.h: what the master knows of workers and frames. Only master.cpp and its parts
-// include it.
+// master_state.h: the master's state: workers and frames. Only the master*.cpp files include it.
+// One thread, except IncomingResult::merge.
 #pragma once
 
 #include <deque>
@@ -16,25 +16,25 @@
 
 namespace openrt::cluster {
 
-inline constexpr WorkerId hereId = 0; // the worker in this process; others count from 1
+inline constexpr WorkerId localId = 0; // the worker in this process; remote workers count from 1
 
-// A worker, here or elsewhere.
+// A worker, local or remote.
 struct Remote {
   Peer peer = 0;
-  WorkerId id = hereId;
+  WorkerId id = localId;
   std::string address, host;
-  bool welcome = false; // has said what it is, and may work
+  bool welcome = false; // Hello was accepted; it may work
   uint64_t session = 0;
   uint32_t threads = 0;
-  uint32_t strikes = 0; // messages that were nonsense
-  uint64_t logged = 0;  // lines that it has said
-  Epoch sent = 0;       // it has the scene up to here, or will; 0: none
-  Epoch furthest = 0;   // that it was sent
+  uint32_t strikes = 0; // invalid messages
+  uint64_t logged = 0;  // log lines it has sent
+  Epoch sent = 0;       // epoch of the scene it has or is being sent; 0: none
+  Epoch furthest = 0;   // newest epoch it was ever sent
   Outbox outbox;
-  std::map<Epoch, std::vector<OfferPtr>>
-      offered;                   // arrays of scenes for which it has not said yet what it lacks
-  std::map<Epoch, uint32_t> out; // jobs it has, by frame
-  std::unordered_set<Lease> arriving; // of results that are being merged
+  // Arrays of scenes for which the worker has not said yet which ones it lacks.
+  std::map<Epoch, std::vector<OfferPtr>> offered;
+  std::map<Epoch, uint32_t> out;     // outstanding jobs by frame
+  std::unordered_set<Lease> merging; // leases whose results are being merged
   uint64_t bytesSent = 0, bytesReceived = 0, rays = 0;
   std::string name() const {
     return host.empty() ? address : address.empty() ? host : host + " (" + address + ")";
@@ -44,26 +44,26 @@ struct Remote {
 struct FrameEntry {
   edit::FrameSettingsT settings;
   Master::FrameState state;
-  std::string who;        // prepared it first
-  std::set<WorkerId> all; // that have prepared it
-  uint32_t arriving = 0;  // results that are being merged
-  // All is merged, and everybody's share in it is known.
-  bool complete() const { return state.work && arriving == 0 && state.work->over(); }
+  std::string preparedBy;             // the worker that prepared it first
+  std::set<WorkerId> preparedWorkers; // workers that have prepared it
+  uint32_t merging = 0;               // results that are being merged
+  // Returns true if all results are merged and the part of every worker is counted.
+  bool complete() const { return state.work && merging == 0 && state.work->over(); }
 };
 
-struct Arrival { // a job that was done, on its way into the picture
-  WorkerId worker = hereId;
+struct IncomingResult { // a result on its way into the film
+  WorkerId worker = localId;
   Epoch epoch = 0;
   LeasedJob job;
   std::shared_ptr<FrameWork> work;
   edit::FrameSettingsT frame;
-  message::Result message; // from elsewhere: packed
+  message::Result message; // packed, from a remote worker
   JobResult result;
-  std::string unreadable;     // why
-  bool fits = true;           // its job
-  std::exception_ptr failure; // what went wrong here
-  bool first = false;         // nobody had done this job before
-  void merge();               // [any]
+  std::string unreadable;     // reason why unpacking failed
+  bool fits = true;           // the result matches its job
+  std::exception_ptr failure; // exception of merge()
+  bool first = false;         // first result of this job
+  void merge();               // [any] unpacks, decodes and merges the result
 };
 
 struct Master::Impl {
@@ -74,12 +74,12 @@ struct Master::Impl {
   void depart(Remote& remote, double now);
   void strike(Remote& remote, const std::string& what, double now);
   void refuse(Peer peer, const std::string& why, double now);
-  void leaveWorkersOut(double now);
-  void say(Remote& remote, message::Body&& body);
+  void refuseAllWorkers(double now);
+  void queueMessage(Remote& remote, message::Body&& body);
   void flush(Remote& remote);
   bool deliver(Remote& remote, Frames&& frames);
   void need(Remote& remote, const message::Need& need, double now);
-  void joinHere(double now);
+  void joinLocal(double now);
   RTworker describe(const Remote& remote, bool alive) const;
   Remote* remoteOf(WorkerId id);
   uint32_t alive() const { return uint32_t(peers.size()); }
@@ -87,49 +87,52 @@ struct Master::Impl {
   void logOnce(int level, const std::string& text);
 
   // Frames (master_frames.cpp).
-  void bring(WorkerId worker, Epoch epoch);
+  void sendScene(WorkerId worker, Epoch epoch);
   void ready(WorkerId worker, const std::string& who, Epoch epoch, const FrameFacts& facts,
              uint32_t transport, const RTstats& stats, double now);
   bool agree(FrameEntry& entry, WorkerId worker, const std::string& who, const Prepared& prepared,
              double now);
   void result(Remote& remote, message::Result&& result, double now);
-  void arrive(FrameEntry& entry, const std::shared_ptr<Arrival>& arrival, double now);
-  void arrived(const Arrival& arrival, double now);
-  void taken(Epoch epoch);
+  void startMerge(FrameEntry& entry, const std::shared_ptr<IncomingResult>& incoming, double now);
+  void finishMerge(const IncomingResult& incoming, double now);
+  void endIfComplete(Epoch epoch);
   void end(Epoch epoch);
   void fail(Epoch epoch, const std::string& why, bool missing);
   void settle();
   void handOut(double now);
   bool handSomeOut(double now);
-  bool enough(double now);
-  uint32_t able() const; // workers elsewhere that can make the oldest frame, as far as is known
+  bool hasEnoughWorkers(double now);
+  // Returns how many remote workers can render the oldest frame, as far as is known.
+  uint32_t able() const;
   FrameEntry* unfinished(Epoch epoch);
-  Epoch oldest() const; // unfinished; 0: none
+  Epoch oldest() const; // oldest unfinished epoch; 0: none
 
   MasterOptions options;
   Send send;
-  WorkerCore* core; // here; may be null
+  WorkerCore* core; // the local worker; may be null
   Scheduler scheduler;
   SceneLog scenes;
   std::unordered_map<Peer, Remote> remotes;
-  std::unordered_map<WorkerId, Peer> peers; // of those that are welcome
+  std::unordered_map<WorkerId, Peer> peers; // accepted workers
   Remote here;
   bool hereJoined = false;
-  std::map<Epoch, FrameEntry> frames; // also finished ones that were not forgotten
-  std::vector<RTworker> gone;         // workers that have left, the last few
-  std::set<std::string> said;
-  std::set<Peer> waiting; // whose outbox is not empty
+  std::map<Epoch, FrameEntry> frames; // includes finished frames until forget()
+  std::vector<RTworker> gone;         // the last workers that have left
+  std::set<std::string> loggedTexts;
+  std::set<Peer> waiting; // peers whose outbox is not empty
   WorkerId nextWorker = 1;
   uint64_t nextSession;
-  double busySeconds = 5e-3, busyJobs = 500,
-         jobsSince = 0; // of this thread, of late; jobs since it was told
+  // Smoothed busy seconds and jobs of this thread, and the jobs since the last busy().
+  double busySeconds = 5e-3, busyJobs = 500, jobsSince = 0;
   uint64_t jobsHere = 0, jobsRemote = 0, goneSent = 0, goneReceived = 0;
   double firstCommit = std::numeric_limits<double>::infinity();
-  double fewSince = std::numeric_limits<double>::infinity(); // fewer workers than required
-  bool everJoined = false, saidAlone = false, reloaded = false;
-  uint64_t largestResult =
-      0; // bytes of a job's, of any frame so far: nothing small is unpacked to something huge
-  std::string lastRefusal; // for who waits for workers in vain
+  // Since when there are fewer workers than required.
+  double fewSince = std::numeric_limits<double>::infinity();
+  bool everJoined = false, loggedAlone = false, reloaded = false;
+  // Largest size in bytes of a job's result in any frame so far. It limits unpacking, so that no
+  // small message becomes a huge one.
+  uint64_t largestResult = 0;
+  std::string lastRefusal; // reported when a user waits for workers in vain
 };
 
 } // namespace openrt::cluster

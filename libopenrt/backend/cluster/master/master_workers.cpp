@@ -1,4 +1,4 @@
-// master_workers.cpp: how workers come, what they lack, and how they go.
+// master_workers.cpp: how remote workers join, get the arrays they lack, and leave.
 #include <algorithm>
 #include <cstdio>
 
@@ -7,9 +7,9 @@
 
 namespace openrt::cluster {
 namespace {
-constexpr uint32_t mostStrikes = 3;    // messages that are nonsense
-constexpr uint32_t mostThreads = 4096; // of a worker
-constexpr size_t mostGone = 256;       // workers that have left and are remembered
+constexpr uint32_t mostStrikes = 3;    // invalid messages before a worker is refused
+constexpr uint32_t mostThreads = 4096; // threads of a worker
+constexpr size_t mostGone = 256;       // departed workers that are remembered
 constexpr size_t mostSaid = 1000;
 constexpr const char* reloadedWhy =
     "the master has loaded shader libraries anew, and renders alone from there on";
@@ -21,37 +21,37 @@ void Master::Impl::log(int level, const std::string& text) const {
 }
 
 void Master::Impl::logOnce(int level, const std::string& text) {
-  if (said.size() < mostSaid && said.insert(text).second) log(level, text);
+  if (loggedTexts.size() < mostSaid && loggedTexts.insert(text).second) log(level, text);
 }
 
 Remote* Master::Impl::remoteOf(WorkerId id) {
-  if (id == hereId) return &here;
+  if (id == localId) return &here;
   const auto found = peers.find(id);
   return found == peers.end() ? nullptr : &remotes.at(found->second);
 }
 
-// A reserve waits a little: workers that are called need some time to answer.
-void Master::Impl::joinHere(double now) {
+// A reserve joins after a grace period, because remote workers need some time to answer.
+void Master::Impl::joinLocal(double now) {
   if (hereJoined || !core) return;
   const bool reserve = options.localThreads == 0;
   if (reserve && !everJoined && now < firstCommit + options.grace) return;
   if (reserve && !everJoined && options.require == 0)
     log(2, "no worker has answered yet: this process goes on alone");
-  scheduler.join(hereId, core->threads(), true, now, reserve);
+  scheduler.join(localId, core->threads(), true, now, reserve);
   hereJoined = true;
 }
 
-// Shader libraries that are loaded anew keep the numbers of their parameters from one version to
-// the next; a worker that has not seen all versions would take them for others, and one that has
-// does not load its own anew.
-void Master::Impl::leaveWorkersOut(double now) {
+// Refuses all workers. Shader libraries that are loaded again keep their parameter numbers from
+// version to version. A worker that has not seen all versions would confuse the parameters, and one
+// that has does not load its own libraries again.
+void Master::Impl::refuseAllWorkers(double now) {
   reloaded = true;
   for (const auto& [id, peer] : std::unordered_map<WorkerId, Peer>(peers))
     refuse(peer, reloadedWhy, now);
 }
 
 void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
-  if (remote.welcome) { // it has begun anew, which it should do with another connection
+  if (remote.welcome) { // a restarted worker should use a new connection
     const Peer peer = remote.peer;
     strike(remote, "Hello again", now);
     if (!remotes.contains(peer)) return;
@@ -71,10 +71,10 @@ void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
   remote.sent = remote.furthest = 0;
   peers[remote.id] = remote.peer;
   everJoined = true;
-  saidAlone = false;
+  loggedAlone = false;
   log(1, "worker " + remote.name() + " has joined: " + std::to_string(remote.threads) +
              (remote.threads == 1 ? " thread, " : " threads, ") + hello.isa);
-  say(remote, message::Welcome{.session = remote.session});
+  queueMessage(remote, message::Welcome{.session = remote.session});
   scheduler.join(remote.id, remote.threads, false, now);
 }
 
@@ -94,7 +94,7 @@ void Master::Impl::depart(Remote& remote, double now) {
   remote.outbox.clear();
   remote.offered.clear();
   remote.out.clear();
-  remote.arriving.clear();
+  remote.merging.clear();
   remote.bytesSent = remote.bytesReceived = remote.rays = 0;
 }
 
@@ -113,7 +113,7 @@ void Master::Impl::refuse(Peer peer, const std::string& why, double now) {
   if (options.close) options.close(peer, why);
 }
 
-void Master::Impl::say(Remote& remote, message::Body&& body) {
+void Master::Impl::queueMessage(Remote& remote, message::Body&& body) {
   remote.outbox.add(encode(remote.session, std::move(body)));
   waiting.insert(remote.peer);
 }
@@ -128,7 +128,7 @@ bool Master::Impl::deliver(Remote& remote, Frames&& frames) {
 void Master::Impl::flush(Remote& remote) {
   const bool idle = remote.outbox.flush(
       remote.session, [&](Frames&& frames) { return deliver(remote, std::move(frames)); });
-  if (idle) waiting.erase(remote.peer); // what is being packed comes back by itself
+  if (idle) waiting.erase(remote.peer); // pack() makes a worker that waits for it active again
 }
 
 void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
@@ -143,14 +143,14 @@ void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
     if (found == offers.end())
       return strike(remote, "it needs an array that it was not offered", now);
     const OfferPtr offer = std::move(found->second);
-    offers.erase(found); // once
+    offers.erase(found); // each array is sent once
     remote.outbox.add(offer);
     waiting.insert(remote.peer);
-    if (offer->ready || offer->asked) continue;
-    offer->asked = true;
+    if (offer->ready || offer->packRequested) continue;
+    offer->packRequested = true;
     const auto then = [this, offer](double) {
       offer->ready = true;
-      for (auto& [peer, other] : remotes) // whoever waits for it
+      for (auto& [peer, other] : remotes) // workers that wait for it
         if (!other.outbox.empty()) waiting.insert(peer);
     };
     if (options.background) {

@@ -9,7 +9,7 @@ void Outbox::add(Frames&& frames) {
 }
 
 bool Outbox::flush(uint64_t session, const Send& send) {
-  if (!piece_.empty()) { // it is older than all else that waits
+  if (!piece_.empty()) { // older than everything else that waits
     if (!send(std::move(piece_))) return false;
     piece_.clear();
   }
@@ -19,7 +19,7 @@ bool Outbox::flush(uint64_t session, const Send& send) {
     messages_.pop_front();
   }
   while (!arrays_.empty() && arrays_.front().array->ready) {
-    Travelling& next = arrays_.front();
+    QueuedArray& next = arrays_.front();
     const Offer& offer = *next.array;
     Frames frames =
         encode(session, pieceOf(offer.hash, offer.array->size(), offer.packed, next.offset));

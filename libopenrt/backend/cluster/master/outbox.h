@@ -1,5 +1,6 @@
-// outbox.h: what is to be sent to one worker: messages in their order, and arrays piece by piece
-// behind them, as fast as its queue takes them. A piece is made when it is sent. One thread's.
+// outbox.h: everything still to be sent to one worker. Messages go first, in order; arrays follow
+// piece by piece, as fast as the worker's queue accepts them. A piece is made when it is sent. One
+// thread.
 #pragma once
 
 #include <deque>
@@ -11,11 +12,13 @@ namespace openrt::cluster {
 
 class Outbox {
  public:
-  using Send = std::function<bool(Frames&&)>; // false: not now; the frames are left as they were
+  // Returns false if the queue is full; the frames are then unchanged.
+  using Send = std::function<bool(Frames&&)>;
 
   void add(Frames&& frames);
   void add(OfferPtr array) { arrays_.push_back({std::move(array), 0}); }
-  // True: nothing waits that could go. Arrays that are not packed yet are left for later.
+  // Returns true if nothing is left that could be sent now. Arrays that are not packed yet stay for
+  // later.
   bool flush(uint64_t session, const Send& send);
   bool empty() const { return piece_.empty() && messages_.empty() && arrays_.empty(); }
   bool overfull() const {
@@ -29,18 +32,18 @@ class Outbox {
   }
 
  private:
-  struct Waiting {
+  struct QueuedMessage {
     Frames frames;
     size_t bytes = 0;
   };
-  struct Travelling {
+  struct QueuedArray {
     OfferPtr array;
-    uint64_t offset = 0; // in what is packed
+    uint64_t offset = 0; // into the packed bytes
   };
-  std::deque<Waiting> messages_;
-  size_t bytes_ = 0; // of these
-  std::deque<Travelling> arrays_;
-  Frames piece_; // made, but the queue was full
+  std::deque<QueuedMessage> messages_;
+  size_t bytes_ = 0; // sum over messages_
+  std::deque<QueuedArray> arrays_;
+  Frames piece_; // a piece that was made when the queue turned out to be full
 };
 
 } // namespace openrt::cluster

@@ -11,7 +11,7 @@ void Offer::pack() { packed = packArray({array->data(), array->size()}); }
 
 OfferPtr Packer::offer(const ArrayPtr& array) {
   auto& [owner, hash] = hashes_[array.get()];
-  if (owner.expired()) { // not seen before, or another one at the same address
+  if (owner.expired()) { // not seen before, or a new array at the same address
     hash = hashOf({array->data(), array->size()});
     owner = array;
   }
@@ -26,8 +26,8 @@ OfferPtr Packer::offer(const ArrayPtr& array) {
   return offer;
 }
 
-// Of classes that the commit names for the first time; who cannot say where a class is from lets
-// the worker find out.
+// Adds the libraries of the shader classes that the commit names for the first time. A class whose
+// library is unknown here is skipped; the worker looks for it itself.
 void Packer::addLibraries(const Commit& commit, Parcel& parcel) {
   if (!shaders_) return;
   for (const auto& entry : commit.edits.edits) {

@@ -1,6 +1,6 @@
-// parcel.h: commits made ready to travel: the edits as bytes, the arrays by what is in them, the
-// shader libraries by name and hash. Made once, sent to many. Arrays are packed once, when a worker
-// turns out to need them. One thread's, but for Offer::pack.
+// parcel.h: commits in the form in which they are sent: the edits as bytes, the arrays by content
+// hash, the shader libraries by name and hash. A commit is packed once and sent to many workers. An
+// array is compressed once, when the first worker needs it. One thread, except Offer::pack.
 #pragma once
 
 #include <map>
@@ -19,23 +19,23 @@ class ShaderRegistry;
 
 namespace openrt::cluster {
 
-// An array that workers may need. It lives as long as one of them may, or gets it.
+// An array that workers may need. It lives as long as a worker may need it or is receiving it.
 struct Offer {
   ArrayPtr array;
   Hash hash;
-  std::vector<std::byte> packed;     // after pack()
-  bool asked = false, ready = false; // to be packed; it is
-  void pack();                       // [any], once
+  std::vector<std::byte> packed;             // compressed content, filled by pack()
+  bool packRequested = false, ready = false; // packing was requested; it is done
+  void pack();                               // [any], called once
 };
 using OfferPtr = std::shared_ptr<Offer>;
 
 struct Parcel {
   std::shared_ptr<const Commit> commit;
-  std::vector<message::ArrayName> arrays; // by their numbers
-  std::vector<OfferPtr> offers;           // each array once
+  std::vector<message::ArrayName> arrays; // sorted by array number
+  std::vector<OfferPtr> offers;           // one per distinct content
   std::vector<message::Library> libraries;
   std::vector<std::byte> edits;
-  size_t bytes = 0; // about, of edits and arrays
+  size_t bytes = 0; // approximate size of edits and arrays
 };
 using ParcelPtr = std::shared_ptr<const Parcel>;
 
@@ -50,10 +50,10 @@ class Packer {
 
   const ShaderRegistry* shaders_;
   std::map<Hash, std::weak_ptr<Offer>> offers_;
-  std::unordered_map<const Array*, std::pair<std::weak_ptr<const Array>, Hash>>
-      hashes_; // of arrays that were seen
+  // Hashes of arrays seen before.
+  std::unordered_map<const Array*, std::pair<std::weak_ptr<const Array>, Hash>> hashes_;
   size_t sweepAt_ = 64;
-  FileHashes files_; // of shader libraries
+  FileHashes files_; // hashes of the shader library files
 };
 
 } // namespace openrt::cluster

@@ -37,8 +37,8 @@ std::vector<SceneLog::Step> SceneLog::steps(Epoch has, Epoch wanted) {
   std::vector<Step> result;
   const bool fresh = has == 0;
   if (has < gone_ || (fresh && base_ > 0)) {
-    const bool onlyOne = gone_ == 0 && !log_.empty() &&
-                         log_.front().epoch == base_; // which is the whole scene itself
+    // The only commit is the whole scene.
+    const bool onlyOne = gone_ == 0 && !log_.empty() && log_.front().epoch == base_;
     if (!whole_) whole_ = onlyOne ? log_.front().parcel : packer_.pack(wholeScene(scene_));
     result.push_back({base_, whole_, true});
     has = base_;

@@ -1,5 +1,5 @@
-// scene_log.h: the commits that workers may still need, and the scene as it was at the oldest of
-// them, so that one who joins in the middle of a frame gets the scene of that frame. One thread's.
+// scene_log.h: the commits that workers may still need, and the scene at the oldest of them. A
+// worker that joins in the middle of a frame gets the scene of that frame. One thread.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,7 @@ class SceneLog {
   void add(Epoch epoch, std::shared_ptr<const Commit> commit);
   // No worker asks for the scene of an earlier epoch from now on.
   void settle(Epoch epoch);
-  // All workers have what is up to here: it need not be kept.
+  // All workers have the commits up to `epoch`; they can be dropped.
   void trim(Epoch epoch);
 
   struct Step {
@@ -25,15 +25,15 @@ class SceneLog {
     ParcelPtr parcel;
     bool whole = false;
   };
-  // What brings somebody who has the scene of epoch `has` (0: none) to that of `wanted`, in order.
-  // wanted: not settled.
+  // Returns the steps, in order, that bring a worker from the scene of epoch `has` (0: none) to
+  // that of `wanted`, which must not be settled.
   std::vector<Step> steps(Epoch has, Epoch wanted);
   Epoch last() const { return log_.empty() ? base_ : log_.back().epoch; }
-  const edit::FrameSettingsT& frame() const { return frame_; } // of the last commit
+  const edit::FrameSettingsT& frame() const { return frame_; } // settings of the last commit
 
  private:
-  static constexpr size_t mostCommits = 256, mostBytes = size_t(64)
-                                                         << 20; // kept for those who lag behind
+  // Limits on the commits kept for workers that lag behind.
+  static constexpr size_t mostCommits = 256, mostBytes = size_t(64) << 20;
   struct Entry {
     Epoch epoch = 0;
     ParcelPtr parcel;
@@ -43,9 +43,10 @@ class SceneLog {
   Packer packer_;
   std::deque<Entry> log_;
   size_t bytes_ = 0;
-  Scene scene_;               // at base_
-  Epoch base_ = 0, gone_ = 0; // gone_: commits up to here are not in the log
-  ParcelPtr whole_;           // scene_ as one commit; null: not made
+  // scene_ is the scene at base_; commits up to gone_ are no longer in the log.
+  Scene scene_;
+  Epoch base_ = 0, gone_ = 0;
+  ParcelPtr whole_; // scene_ as one commit; null until it is needed
   edit::FrameSettingsT frame_;
 };
 

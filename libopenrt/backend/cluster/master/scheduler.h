@@ -1,19 +1,21 @@
-// scheduler.h: who does which job next, and which scene a worker prepares. Pure decisions: no
-// sockets, no threads, no clock; time is told in seconds of any steady clock. Workers come, work,
-// are slow, are lost; frames begin one after the other and are finished in that order. The same
-// calls, the same answers. One thread's. What each call costs grows with the logarithm of the
-// number of workers and jobs, so that 4,096 workers of 16 threads can be served.
+// scheduler.h: decides which worker does which job next and which scene a worker prepares. It has
+// no sockets, threads or clock; callers pass the time in seconds of any steady clock. The same
+// calls give the same answers. Frames begin one after the other and are finished in that order;
+// workers may join, be slow and be lost. One thread. The cost of a call grows with the logarithm of
+// the number of workers and jobs, so that 4,096 workers of 16 threads can be served.
 //
-// Of a job that comes back: find() it, decode what came, then done(); give it to the frame's work
-// if that says so. What cannot be decoded has failed().
+// To take a result: find() the job, decode the result, call done(), and add the result to the
+// frame's work if done() returns true. Call failed() if the result cannot be decoded.
 //
-// How a frame is shared out (Split). tiles: a job has all samples of a tile. samples: a tile's
-// samples are shared by all workers. frames: a frame is one worker's; others help once no frame is
-// without a worker, and only if more is left than preparing the scene costs. automatic: tiles,
-// whose samples are divided where a whole tile would take longer than a fair part of what is left;
-// a frame goes to one worker if three frames or more are in flight, preparing costs P, the frame R
-// seconds of one worker, and frames of their own come out of N workers faster by a tenth: (P + R) /
-// min(N, frames in flight) < 0.9 (P + R / N).
+// Split says how a frame is divided:
+// * tiles: a job has all samples of a tile.
+// * samples: the samples of each tile are divided among all workers.
+// * frames: each frame goes to one worker. Others help once every frame has a worker, and only if
+//   more work is left than preparing the scene costs.
+// * automatic: tiles, and the samples of a tile are divided where a whole tile would take longer
+//   than a fair part of what is left. A frame goes to one worker if at least three frames are in
+//   flight, preparing costs P, the frame takes R seconds of one worker, and N workers finish frames
+//   faster by a tenth that way: (P + R) / min(N, frames in flight) < 0.9 (P + R / N).
 #pragma once
 
 #include <cstdint>
@@ -31,51 +33,52 @@ enum class Split : uint8_t { automatic, tiles, samples, frames };
 
 struct SchedulerOptions {
   Split split = Split::automatic;
-  double patience = 2; // a job that waits longer than so many times what the median lets expect is
-                       // handed out again
-  uint32_t inFlight = 3; // jobs for each thread of a worker: one is done, the others wait; up to 4
-                         // where the link is slow, fewer when little is left or jobs are long. Jobs
-                         // shorter than `shortest` count together
-  double shortest = 0.002; // seconds that a job should take at least, if there is a choice
-  double longest = 0.25;   // and at most
-  double soonest = 0.02;   // no job is late before
-  uint32_t mostAgain = 3;  // a job is handed out again so often
-  double stuck = 10; // seconds after which the worker here helps with the oldest frame, if it has
-                     // not progressed
-  uint32_t mostFailed = 3; // a worker gets nothing more after so many failed jobs
+  // A job is copied to another worker once it takes this many times what the median cost predicts.
+  double patience = 2;
+  // Jobs per thread of a worker: one runs, the others wait. Up to 4 over a slow link, fewer when
+  // little work is left or jobs are long. Jobs shorter than `shortest` are counted in bundles.
+  uint32_t inFlight = 3;
+  double shortest = 0.002; // seconds a job should take at least, if there is a choice
+  double longest = 0.25;   // seconds a job should take at most
+  double soonest = 0.02;   // seconds before which no job counts as late
+  uint32_t maxCopies = 3;  // limit on the copies of a job
+  // Seconds without progress after which the local worker helps with the oldest frame.
+  double stuck = 10;
+  uint32_t mostFailed = 3; // failed jobs after which a worker gets no more jobs
 };
 
-// What the scheduler asks of a frame's work.
+// The scheduler's view of a frame's work (implemented by FrameSource).
 class JobSource {
  public:
   virtual ~JobSource() = default;
   virtual FrameWork::Next next(Job& job, uint32_t largest) = 0;
   virtual void giveBack(const Job& job) = 0;
-  virtual double undone() const = 0;  // pixels times samples that nobody has yet, about
-  virtual uint32_t tiles() const = 0; // of the picture
-  virtual uint32_t pixels(uint32_t tile) const = 0; // of a tile
-  virtual void order(std::vector<uint32_t>) {}      // all tiles, in which they are to be given out
-  virtual uint32_t upcoming() const {
-    return ~0u;
-  } // the tile that next() comes to; none such: it is open
+  // Returns the approximate work, pixels times samples, that has not been handed out.
+  virtual double undone() const = 0;
+  virtual uint32_t tiles() const = 0;               // number of tiles in the picture
+  virtual uint32_t pixels(uint32_t tile) const = 0; // pixels of a tile
+  // Sets the order in which all tiles are handed out.
+  virtual void order(std::vector<uint32_t>) {}
+  // Returns the tile that next() takes next, or a value beyond all tiles if that is open.
+  virtual uint32_t upcoming() const { return ~0u; }
 };
 
 struct Handout {
   WorkerId worker = 0;
   Epoch epoch = 0;
   LeasedJob job;
-  bool again = false; // somebody else has it, too
+  bool again = false; // speculative copy: another worker has the job, too
 };
 
-struct WorkerTally { // of one worker, since it joined
-  uint64_t jobs = 0, again = 0, late = 0,
-           lost = 0;    // done; done for others; done in vain; taken away from it
-  uint64_t failed = 0;  // jobs, and scenes it could not prepare
-  bool blocked = false; // has failed too often: gets nothing more
-  double busy = 0;      // seconds of all its threads
-  double latency =
-      0; // seconds of the link, there and back, smoothed: of jobs that found a free thread
-  uint32_t out = 0; // jobs it has now
+struct WorkerTally { // counters of one worker since it joined
+  // Finished jobs, speculative copies among them, duplicate results, jobs taken away from it.
+  uint64_t jobs = 0, again = 0, late = 0, lost = 0;
+  uint64_t failed = 0;  // failed jobs and scenes it could not prepare
+  bool blocked = false; // failed too often: gets no more jobs
+  double busy = 0;      // busy seconds, summed over its threads
+  // Smoothed round-trip seconds of the link, from jobs that found a free thread.
+  double latency = 0;
+  uint32_t out = 0; // outstanding jobs
 };
 
 class Scheduler {
@@ -83,60 +86,72 @@ class Scheduler {
   explicit Scheduler(const SchedulerOptions& options);
   ~Scheduler();
 
-  // here: in the master's process, no link between; it stays at the oldest unfinished frame, so
-  // that whatever is lost can be done. reserve: only if nobody else can, or does.
+  // Adds a worker. here: it is in the master's process, without a link, and stays at the oldest
+  // unfinished frame so that every lost job can be done. reserve: it works only if no other worker
+  // can or does.
   void join(WorkerId worker, uint32_t threads, bool here, double now, bool reserve = false);
-  void leave(WorkerId worker, double now); // its jobs are free at once
-  // A frame of this epoch is wanted; in order of their epochs. Its work is told by frame() once a
-  // worker has prepared the scene.
+  void leave(WorkerId worker, double now); // its jobs can be handed out at once
+  // Announces the frame of an epoch; epochs ascend. frame() passes the frame's work once a worker
+  // has prepared the scene.
   void announce(Epoch epoch, double now);
-  void frame(Epoch epoch, std::shared_ptr<JobSource> work,
-             double now); // announces it, if it was not
-  inline void frame(Epoch epoch, std::shared_ptr<FrameWork> work, double now); // frame_source.h
-  void changed(Epoch epoch); // its work may have new jobs, though nothing was told here: what was
-                             // done() was taken later
-  void end(Epoch epoch);     // finished or cancelled: its leases are forgotten
+  // Passes the work of a frame; announces the frame if necessary.
+  void frame(Epoch epoch, std::shared_ptr<JobSource> work, double now);
+  // Defined in frame_source.h.
+  inline void frame(Epoch epoch, std::shared_ptr<FrameWork> work, double now);
+  // Tells that the work may have new jobs without a call here: a result that was done() was merged
+  // later.
+  void changed(Epoch epoch);
+  void end(Epoch epoch); // the frame is finished or cancelled; drops its leases
 
-  // Which worker is to prepare which epoch's scene now; call until false. It gets no more jobs of
-  // earlier epochs, and none of this one until it is ready(). Edits of epochs between go before.
+  // Returns which worker is to prepare which epoch's scene now; call it until it returns false. The
+  // worker gets no more jobs of earlier epochs, and none of this epoch until ready(). The edits of
+  // the epochs between must be sent first.
   bool move(double now, WorkerId& worker, Epoch& epoch);
-  // The worker has prepared this epoch's scene, and works on no earlier one from now on.
+  // Tells that the worker has prepared this epoch's scene. It works on no earlier epoch from now
+  // on.
   void ready(WorkerId worker, Epoch epoch, double now);
-  // It cannot make this epoch's frame: its jobs of it are free at once.
+  // Tells that the worker cannot render this epoch's frame; its jobs of that frame can be handed
+  // out at once.
   void unable(WorkerId worker, Epoch epoch, double now);
 
-  // What to hand out now; call until false. Oldest frame first; the next frame's jobs once no
-  // worker can be given more of the oldest. A job that is late is handed out again, to a worker
-  // with an idle thread, at most three times; then once more to the worker here, which no other
-  // machine can hold up.
+  // Returns the next job to hand out; call it until it returns false. The oldest frame comes first;
+  // the next frame's jobs follow once no worker can get more of the oldest. A late job is copied to
+  // a worker with an idle thread, at most three times, and then once more to the local worker,
+  // which no other machine can hold up.
   bool next(double now, Handout& out);
-  // A result. True: the lease is known, and its job has not been done before: give it to the
-  // frame's work. seconds: on one thread.
+  // Takes a result; seconds: of one thread. Returns true if the lease is known and the job was not
+  // done before: the caller then adds the result to the frame's work.
   bool done(WorkerId worker, Epoch epoch, Lease lease, double seconds, double now);
-  // What came for this lease is of no use: the job is free at once, and the worker gets nothing
-  // more after three.
+  // Tells that the result of this lease is useless. The job can be handed out at once; a worker
+  // gets no more jobs after three failures.
   void failed(WorkerId worker, Epoch epoch, Lease lease, double now);
-  // The job of a lease; null: unknown, done or forgotten.
+  // Returns the job of a lease, or null if the lease is unknown, done or dropped.
   const Job* find(WorkerId worker, Epoch epoch, Lease lease) const;
-  // Workers that work on this epoch's frame, or can come to: 0 and nobody joins: it never ends.
+  // Returns the number of workers that work on this epoch's frame or can still reach it. At 0 the
+  // frame only ends if another worker joins.
   uint32_t able(Epoch epoch) const;
-  // What handing a job out and taking its result costs whoever asks, in seconds: jobs are made so
-  // long that there is time for all.
+  // Sets the seconds the master spends to hand out a job and take its result. Jobs are made long
+  // enough that it has time for all of them.
   void pace(double secondsOfJob);
-  // When next() may have something new although nothing has happened; infinite: never.
+  // Returns when next() may have a job although nothing has happened; infinite if never.
   double wake(double now) const;
-  bool usable(WorkerId worker, Epoch epoch) const; // neither blocked nor unable to make this frame
-  double progressed(Epoch epoch) const; // when it was announced, first prepared, became the oldest
-                                        // or got a result, last of these
-  bool stuck(Epoch epoch) const; // it has not progressed for so long that the worker here helps
-  // How long a usual job takes at most before it is handed out again; infinite as long as nothing
-  // is known.
+  // Returns true if the worker is neither blocked nor unable to render this frame.
+  bool usable(WorkerId worker, Epoch epoch) const;
+  // Returns when the frame was announced, first prepared, became the oldest or got a result,
+  // whichever was last.
+  double lastProgressAt(Epoch epoch) const;
+  // Returns true if the frame made no progress for so long that the local worker helps.
+  bool stuck(Epoch epoch) const;
+  // Returns the longest time a usual job takes before it is copied; infinite as long as nothing is
+  // known.
   double lateAfter(Epoch epoch) const;
 
-  const WorkerTally& tally(WorkerId worker) const; // of one that has left: zeros
+  // Returns the counters of a worker; zeros if it has left.
+  const WorkerTally& tally(WorkerId worker) const;
   uint64_t reissued() const, duplicates() const;
-  Split split(Epoch epoch)
-      const; // tiles, samples or frames: as it is shared out; automatic: tiles of divided samples
+  // Returns how the frame is divided: tiles, samples or frames; automatic means tiles whose samples
+  // may be divided.
+  Split split(Epoch epoch) const;
 
  private:
   struct Impl;

@@ -1,7 +1,7 @@
-// scheduler_handout.cpp: which job goes to whom, how large it is, and when it is late. Jobs are
-// large as long as much is left and small towards the end (factoring: S. Hummel, E. Schonberg, L.
-// Flynn, "Factoring: a method for scheduling parallel loops", CACM 35(8), 1992); late ones are
-// given to idle threads as well, as in J. Dean, S. Ghemawat, "MapReduce", OSDI 2004, 3.6.
+// scheduler_handout.cpp: decides which worker gets which job, how large the job is and when it is
+// late. Jobs are large while much work is left and small towards the end (factoring: S. Hummel, E.
+// Schonberg, L. Flynn, "Factoring: a method for scheduling parallel loops", CACM 35(8), 1992). Late
+// jobs are copied to idle threads (J. Dean, S. Ghemawat, "MapReduce", OSDI 2004, 3.6).
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,65 +11,68 @@
 namespace openrt::cluster {
 
 namespace {
-constexpr uint32_t fewest = 32;    // samples: a tile's are not divided further (frame_work.h)
-constexpr double mostInFlight = 4; // jobs for a thread, or bundles of them
+constexpr uint32_t minSamples = 32; // samples below which a tile is not divided (frame_work.h)
+constexpr double mostInFlight = 4;  // jobs, or bundles of jobs, per thread
 constexpr double largestBundle = 64;
-constexpr double spare =
-    1.75; // of the master's time for a job: it is busy for at most so many times less
-constexpr double turnaround =
-    8e-3; // for which a worker has something to do when it has told of a job, but for its link
-constexpr double leastWaiting = 0.25; // jobs for a thread behind that which it does
-constexpr double mixedUntil = 0.7;    // of a frame's work
-constexpr double unequal = 32;        // of so many tiles one may cost as much as all
-constexpr double parts = 4;           // of what is left for a thread, a job is one of so many
+// Jobs are made long enough that the master is busy for at most 1/1.75 of the time.
+constexpr double masterHeadroom = 1.75;
+// Seconds of work that a worker keeps waiting when it reports a result, besides its link.
+constexpr double turnaround = 8e-3;
+constexpr double leastWaiting = 0.25; // jobs per thread waiting behind the running one
+constexpr double mixedUntil = 0.7;    // part of the frame's work in which cheap tiles are mixed
+// A tile may cost this many times the average: one in 32 may cost as much as all the others.
+constexpr double maxTileCostRatio = 32;
+constexpr double parts = 4; // a job is one of this many parts of the work left for a thread
 } // namespace
 
-void Scheduler::Impl::plan(Frame& f) {
+void Scheduler::Impl::orderTiles(Frame& f) {
   const uint32_t tiles = f.work->tiles();
-  if (std::find(f.places.begin(), f.places.end(), 0.0f) != f.places.end()) return;
+  if (std::find(f.tileCosts.begin(), f.tileCosts.end(), 0.0f) != f.tileCosts.end()) return;
   std::vector<uint32_t> order(tiles);
   std::vector<float> cost(tiles);
   for (uint32_t i = 0; i < tiles; i++) {
     const float pixels = float(f.work->pixels(i));
     order[i] = i;
-    cost[i] = f.places[i] * pixels;
-    f.aheadUnits += pixels;
-    f.aheadSeconds += cost[i];
+    cost[i] = f.tileCosts[i] * pixels;
+    f.unassignedUnits += pixels;
+    f.unassignedSeconds += cost[i];
   }
-  const double samples = f.work->undone() / std::max(f.aheadUnits, 1.0);
-  f.aheadUnits *= samples;
-  f.aheadSeconds *= samples;
+  const double samples = f.work->undone() / std::max(f.unassignedUnits, 1.0);
+  f.unassignedUnits *= samples;
+  f.unassignedSeconds *= samples;
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return cost[a] > cost[b]; });
-  // Those that take less time than a job should are no use at the end, where the master would be
-  // asked for too many of them.
-  const double least = std::max(options.shortest, spare * pace * threads) / samples;
+  // Tiles that take less time than a job should are not kept for the end, because the master would
+  // have to hand out too many of them at once.
+  const double least = std::max(options.shortest, masterHeadroom * pace * threads) / samples;
   const auto cheap =
       std::find_if(order.begin(), order.end(), [&](uint32_t tile) { return cost[tile] < least; });
-  const size_t dear = size_t(cheap - order.begin());
+  const size_t expensive = size_t(cheap - order.begin());
   std::vector<uint32_t> mixed;
   mixed.reserve(tiles);
-  size_t next = dear;
+  size_t next = expensive;
   double given = 0;
-  for (size_t i = 0; i < dear; i++) {
+  for (size_t i = 0; i < expensive; i++) {
     mixed.push_back(order[i]);
     given += cost[order[i]] * samples;
-    const double share = std::min(given / (mixedUntil * f.aheadSeconds), 1.0);
-    while (double(next - dear) < share * double(tiles - dear)) mixed.push_back(order[next++]);
+    const double share = std::min(given / (mixedUntil * f.unassignedSeconds), 1.0);
+    while (double(next - expensive) < share * double(tiles - expensive))
+      mixed.push_back(order[next++]);
   }
   mixed.insert(mixed.end(), order.begin() + ptrdiff_t(next), order.end());
   f.work->order(std::move(mixed));
 }
 
-double Scheduler::Impl::secondsOf(const Frame& f) const {
+double Scheduler::Impl::usualJobSeconds(const Frame& f) const {
   if (f.lastSeconds > 0) return f.lastSeconds;
-  const double units =
-      f.lastUnits > 0 ? f.lastUnits : f.tilePixels * std::min(f.perPixel, double(fewest));
+  const double units = f.lastUnits > 0
+                           ? f.lastUnits
+                           : f.tilePixels * std::min(f.samplesPerPixel, double(minSamples));
   return f.costs.mean() * units;
 }
 
-double Scheduler::Impl::bundle(const Frame& f) const {
-  const double usual = secondsOf(f);
+double Scheduler::Impl::jobsPerBundle(const Frame& f) const {
+  const double usual = usualJobSeconds(f);
   return usual > 0 ? std::clamp(std::floor(options.shortest / usual), 1.0, largestBundle) : 1;
 }
 
@@ -77,144 +80,148 @@ double Scheduler::Impl::threadsFor(Epoch epoch) const {
   const auto own = groups.find(epoch);
   const Frame& f = frames.at(epoch);
   uint32_t all = own == groups.end() ? 0 : own->second.threads;
-  if (f.split != Split::frames) // those of earlier epochs are still to come
+  if (f.split != Split::frames) // workers of earlier epochs are still to come
     for (auto g = groups.begin(); g != groups.end() && g->first < epoch; ++g)
       all += g->second.threads;
   return std::max(all, 1u);
 }
 
-double Scheduler::Impl::level(const Frame& f) const {
-  const double together = bundle(f);
+double Scheduler::Impl::queueDepth(const Frame& f) const {
+  const double together = jobsPerBundle(f);
   const double left =
-      (f.lastSeconds > 0
-           ? f.left() / f.lastSeconds
-           : f.work->undone() / (f.lastUnits > 0 ? f.lastUnits : f.tilePixels * f.perPixel)) /
-      threadsFor(f.epoch); // jobs for a thread
+      (f.lastSeconds > 0 ? f.remainingSeconds() / f.lastSeconds
+                         : f.work->undone() /
+                               (f.lastUnits > 0 ? f.lastUnits : f.tilePixels * f.samplesPerPixel)) /
+      threadsFor(f.epoch); // jobs per thread
   double most = std::clamp(options.inFlight, 1u, uint32_t(mostInFlight));
+  // With few waiting jobs, other workers get theirs sooner.
   if (f.lastSeconds > 0)
-    most = std::min(most,
-                    1 + std::max(leastWaiting, turnaround / f.lastSeconds)); // others begin sooner
+    most = std::min(most, 1 + std::max(leastWaiting, turnaround / f.lastSeconds));
   return std::clamp(std::ceil(left / together), 1.0, most) * together;
 }
 
-uint32_t Scheduler::Impl::largest(const Frame& f, const Worker& w) const {
-  if (f.wholeTiles || f.perPixel <= fewest) return ~0u;
-  double samples = fewest;
+uint32_t Scheduler::Impl::maxSamplesOf(const Frame& f, const Worker& w) const {
+  if (f.wholeTiles || f.samplesPerPixel <= minSamples) return ~0u;
+  double samples = minSamples;
   if (f.spread) {
-    samples = f.perPixel / std::max(usable, 1u);
+    samples = f.samplesPerPixel / std::max(usable, 1u);
   } else if (f.costs.known()) {
-    const double left = f.left() / threadsFor(f.epoch);
-    // A slow link is worth larger jobs: no more of them are in flight.
+    const double left = f.remainingSeconds() / threadsFor(f.epoch);
+    // A slow link gets larger jobs, because the number of jobs in flight is limited.
     const double least = std::max({options.shortest, w.tally.latency / (mostInFlight - 1),
-                                   spare * pace * threadsFor(f.epoch)});
+                                   masterHeadroom * pace * threadsFor(f.epoch)});
     const double seconds = std::clamp(left / parts, least, std::max(options.longest, least));
-    const double place = f.place(f.work->upcoming());
-    if (place > 0)
-      samples = seconds / place / f.tilePixels;
-    else // nobody knows what the next tile costs: one of the dear ones must not take longer than
-         // half of what is left, nor much longer than the frame if all of its work lies in a few of
-         // the tiles
-      samples = std::min({seconds / f.costs.mean() / f.tilePixels,
-                          std::max(left / 2, least) / f.costs.dear() / f.tilePixels,
-                          f.perPixel * f.work->tiles() / (unequal * threadsFor(f.epoch))});
+    const double tileCost = f.tileCost(f.work->upcoming());
+    if (tileCost > 0)
+      samples = seconds / tileCost / f.tilePixels;
+    else
+      // The cost of the next tile is unknown. An expensive tile must not take longer than half of
+      // what is left, nor much longer than the frame if all its work lies in a few of the tiles.
+      samples = std::min(
+          {seconds / f.costs.mean() / f.tilePixels,
+           std::max(left / 2, least) / f.costs.expensive() / f.tilePixels,
+           f.samplesPerPixel * f.work->tiles() / (maxTileCostRatio * threadsFor(f.epoch))});
   }
-  if (samples >= f.perPixel) return ~0u;
-  return std::bit_floor(std::max(uint32_t(samples), fewest));
+  if (samples >= f.samplesPerPixel) return ~0u;
+  return std::bit_floor(std::max(uint32_t(samples), minSamples));
 }
 
-Worker* Scheduler::Impl::roomiest(const Frame& f, Group& g) {
-  const double most = level(f), cap = mostInFlight * bundle(f);
-  while (!g.room.empty()) {
-    const auto [key, id] = *g.room.begin();
+Worker* Scheduler::Impl::leastLoaded(const Frame& f, Group& g) {
+  const double most = queueDepth(f), cap = mostInFlight * jobsPerBundle(f);
+  while (!g.byLoad.empty()) {
+    const auto [key, id] = *g.byLoad.begin();
     if (key >= most) return nullptr;
     Worker& w = workers.at(id);
-    if (w.tally.out < w.hands() * cap && !waits(f, g, w)) return &w;
-    g.room.erase(g.room.begin()); // until something happens to it
-    w.roomKey = never;
+    if (w.tally.out < w.effectiveThreads() * cap && !mustWait(f, g, w)) return &w;
+    g.byLoad.erase(g.byLoad.begin()); // until the worker's state changes
+    w.loadKey = never;
   }
   return nullptr;
 }
 
-void Scheduler::Impl::hand(Frame& f, Worker& w, uint64_t id, bool again, double now, Handout& out) {
-  Flight& flight = f.flights.at(id);
+void Scheduler::Impl::issue(Frame& f, Worker& w, uint64_t id, bool speculative, double now,
+                            Handout& out) {
+  OutstandingJob& outstanding = f.outstandingJobs.at(id);
   const Lease lease = ++lastLease;
-  flight.since = now;
-  flight.turns = 1 + std::floor(w.tally.out / double(w.threads));
-  flight.link = w.tally.latency;
-  flight.holders.insert(lease);
-  f.leases[lease] = {w.id, id, now, again, w.tally.out < w.threads};
+  outstanding.since = now;
+  outstanding.queuePosition = 1 + std::floor(w.tally.out / double(w.threads));
+  outstanding.linkLatency = w.tally.latency;
+  outstanding.holders.insert(lease);
+  f.leases[lease] = {w.id, id, now, speculative, w.tally.out < w.threads};
   w.leases.insert({f.epoch, lease});
   w.tally.out = uint32_t(w.leases.size());
-  rekey(f, id, flight);
-  sort(w);
-  out = {w.id, f.epoch, {lease, flight.job}, again};
+  updateDeadline(f, id, outstanding);
+  rank(w);
+  out = {w.id, f.epoch, {lease, outstanding.job}, speculative};
 }
 
-double Scheduler::Impl::span(Frame& f, const Flight& flight) {
-  const double median = f.costsOf(flight.job).median();
+double Scheduler::Impl::lateLimit(Frame& f, const OutstandingJob& outstanding) {
+  const double median = f.costsOf(outstanding.job).median();
   if (median <= 0) return options.stuck;
-  const double usual = flight.seconds > 0 ? flight.seconds : median * flight.units;
-  return std::max(options.patience * (usual * flight.turns + flight.link), options.soonest);
+  const double usual = outstanding.seconds > 0 ? outstanding.seconds : median * outstanding.units;
+  return std::max(options.patience * (usual * outstanding.queuePosition + outstanding.linkLatency),
+                  options.soonest);
 }
 
-void Scheduler::Impl::rekey(Frame& f, uint64_t id, Flight& flight) {
-  unschedule(f, id, flight);
-  flight.deadline = flight.since + span(f, flight);
-  if (flight.deadline < never)
-    (flight.again < options.mostAgain ? f.deadlines : f.spent).insert({flight.deadline, id});
+void Scheduler::Impl::updateDeadline(Frame& f, uint64_t id, OutstandingJob& outstanding) {
+  eraseDeadline(f, id, outstanding);
+  outstanding.deadline = outstanding.since + lateLimit(f, outstanding);
+  if (outstanding.deadline < never)
+    (outstanding.copies < options.maxCopies ? f.deadlines : f.noMoreCopies)
+        .insert({outstanding.deadline, id});
 }
 
 bool Scheduler::Impl::reissue(Frame& f, Group& g, double now, Handout& out) {
   while (!g.idle.empty() && !f.deadlines.empty()) {
     const auto [deadline, id] = *f.deadlines.begin();
     if (deadline > now) return false;
-    Flight& flight = f.flights.at(id);
-    rekey(f, id, flight);
-    if (flight.deadline > now) continue;
+    OutstandingJob& outstanding = f.outstandingJobs.at(id);
+    updateDeadline(f, id, outstanding);
+    if (outstanding.deadline > now) continue;
     const auto has = [&](WorkerId w) {
-      return std::any_of(flight.holders.begin(), flight.holders.end(),
+      return std::any_of(outstanding.holders.begin(), outstanding.holders.end(),
                          [&](Lease l) { return f.leases.at(l).worker == w; });
     };
-    const auto idle = std::find_if(
-        g.idle.begin(), g.idle.end(), [&](const auto& entry) { // at most four are passed over
-          return !has(entry.second) && !waits(f, g, workers.at(entry.second));
-        });
+    // At most four are passed over.
+    const auto idle = std::find_if(g.idle.begin(), g.idle.end(), [&](const auto& entry) {
+      return !has(entry.second) && !mustWait(f, g, workers.at(entry.second));
+    });
     if (idle == g.idle.end()) return false;
-    for (const Lease l : flight.holders) // one that has not even been heard of since gets less
-      if (Worker& w = workers.at(f.leases.at(l).worker); w.heard < flight.since) {
-        w.slips = std::min(w.slips + 1, 8u);
-        sort(w);
+    // A holder without any result since it got the job gets a smaller share.
+    for (const Lease l : outstanding.holders)
+      if (Worker& w = workers.at(f.leases.at(l).worker); w.lastResultAt < outstanding.since) {
+        w.recentLate = std::min(w.recentLate + 1, 8u);
+        rank(w);
       }
-    flight.again++;
+    outstanding.copies++;
     reissued++;
-    hand(f, workers.at(idle->second), id, true, now, out);
+    issue(f, workers.at(idle->second), id, true, now, out);
     return true;
   }
   return false;
 }
 
-// Gives the worker here, which cannot be lost, a job that many workers have had and none has
-// answered; in a frame that is stuck any job that others have, however long they were expected to
-// take.
-bool Scheduler::Impl::reissueHere(Frame& f, Group& g, double now, Handout& out) {
-  for (const WorkerId id : g.tied) {
+// Gives the local worker, which cannot be lost, a job that many workers have had without a result.
+// In a stuck frame it gets any job that others have, whatever its expected duration.
+bool Scheduler::Impl::reissueLocally(Frame& f, Group& g, double now, Handout& out) {
+  for (const WorkerId id : g.pinned) {
     Worker& w = workers.at(id);
-    if (w.idleKey == never || waits(f, g, w)) continue;
+    if (w.idleKey == never || mustWait(f, g, w)) continue;
     const auto takes = [&](const auto& late) {
-      const auto& holders = f.flights.at(late.second).holders;
+      const auto& holders = f.outstandingJobs.at(late.second).holders;
       return (f.stuck || late.first <= now) &&
              std::none_of(holders.begin(), holders.end(),
                           [&](Lease l) { return f.leases.at(l).worker == id; });
     };
-    auto found = std::find_if(f.spent.begin(), f.spent.end(), takes);
-    if (found == f.spent.end()) {
+    auto found = std::find_if(f.noMoreCopies.begin(), f.noMoreCopies.end(), takes);
+    if (found == f.noMoreCopies.end()) {
       if (!f.stuck) continue;
       found = std::find_if(f.deadlines.begin(), f.deadlines.end(), takes);
       if (found == f.deadlines.end()) continue;
     }
-    const uint64_t flight = found->second; // hand() changes the set
+    const uint64_t outstanding = found->second; // issue() changes the set
     reissued++;
-    hand(f, w, flight, true, now, out);
+    issue(f, w, outstanding, true, now, out);
     return true;
   }
   return false;
@@ -225,33 +232,34 @@ bool Scheduler::Impl::next(double now, Handout& out) {
     const auto it = groups.find(epoch);
     if (!f.work || it == groups.end()) continue;
     Group& g = it->second;
-    Worker* w = f.maybe ? roomiest(f, g) : nullptr;
+    Worker* w = f.mayHaveJobs ? leastLoaded(f, g) : nullptr;
     Job job;
-    if (w && f.work->next(job, largest(f, *w)) == FrameWork::Next::job) {
-      Flight& flight = f.flights[++lastFlight];
-      flight.job = job;
+    if (w && f.work->next(job, maxSamplesOf(f, *w)) == FrameWork::Next::job) {
+      OutstandingJob& outstanding = f.outstandingJobs[++lastOutstanding];
+      outstanding.job = job;
       const bool ofLight = job.kind == Job::Kind::light;
-      flight.units = std::max(1.0, double(job.count) * (ofLight ? 1 : f.work->pixels(job.number)));
+      outstanding.units =
+          std::max(1.0, double(job.count) * (ofLight ? 1 : f.work->pixels(job.number)));
       if (!ofLight) {
-        flight.seconds = f.place(job.number) * flight.units;
-        f.lastUnits = flight.units;
-        f.lastSeconds = flight.seconds;
-        if (flight.seconds > 0) {
-          f.aheadUnits = std::max(f.aheadUnits - flight.units, 0.0);
-          f.aheadSeconds = std::max(f.aheadSeconds - flight.seconds, 0.0);
+        outstanding.seconds = f.tileCost(job.number) * outstanding.units;
+        f.lastUnits = outstanding.units;
+        f.lastSeconds = outstanding.seconds;
+        if (outstanding.seconds > 0) {
+          f.unassignedUnits = std::max(f.unassignedUnits - outstanding.units, 0.0);
+          f.unassignedSeconds = std::max(f.unassignedSeconds - outstanding.seconds, 0.0);
         }
       }
-      hand(f, *w, lastFlight, false, now, out);
-      if (f.exhausted()) moves = true;
+      issue(f, *w, lastOutstanding, false, now, out);
+      if (f.exhausted()) mayMove = true;
       return true;
     }
-    if (w) { // there is a place, but no job
-      f.maybe = false;
-      moves = true;
+    if (w) { // a worker has room, but there is no job
+      f.mayHaveJobs = false;
+      mayMove = true;
     }
-    if (reissue(f, g, now, out) || reissueHere(f, g, now, out)) return true;
-    if (!f.rescue && rescuers > 0 && g.tied.empty() && f.firstLate() <= now)
-      f.rescue = moves = true; // once, by who is here
+    if (reissue(f, g, now, out) || reissueLocally(f, g, now, out)) return true;
+    if (!f.needsPinned && pinnedWorkers > 0 && g.pinned.empty() && f.firstLate() <= now)
+      f.needsPinned = mayMove = true; // once, for the local worker
   }
   return false;
 }

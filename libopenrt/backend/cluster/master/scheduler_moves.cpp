@@ -1,8 +1,8 @@
-// scheduler_moves.cpp: which worker prepares which scene. Workers stand in groups, by the epoch
-// that they have or prepare; a group moves on when its frame has nothing more to give, one worker
-// at a time. Those in the master's process are tied to the oldest unfinished frame; without any of
-// them the last one of a group stays until its frame is over: somebody must be able to do what is
-// lost.
+// scheduler_moves.cpp: decides which worker prepares which scene. Workers form groups by the epoch
+// that they have or prepare. They leave a group one at a time once its frame has no more jobs.
+// Workers in the master's process are pinned to the oldest unfinished frame. If there are none, the
+// last worker of a group stays until its frame is over, because lost jobs must be done by some
+// worker.
 #include <algorithm>
 #include <utility>
 
@@ -10,74 +10,74 @@
 
 namespace openrt::cluster {
 
-void Scheduler::Impl::weigh(const Worker& w, int sign) {
+void Scheduler::Impl::updateTotals(const Worker& w, int sign) {
   if (w.tally.blocked) return;
-  if (w.tied()) rescuers += uint32_t(sign);
+  if (w.pinned()) pinnedWorkers += uint32_t(sign);
   if (w.reserve) return;
   usable += uint32_t(sign);
   threads += uint32_t(sign) * w.threads;
   if (!w.unable) groups[w.epoch].threads += uint32_t(sign) * w.threads;
 }
 
-void Scheduler::Impl::depart(Worker& w) {
+void Scheduler::Impl::leaveGroup(Worker& w) {
   const auto it = groups.find(w.epoch);
   if (it == groups.end() || it->second.members.erase(w.id) == 0) return;
-  weigh(w, -1);
+  updateTotals(w, -1);
   Group& g = it->second;
   g.movable.erase(w.id);
-  g.tied.erase(w.id);
-  g.room.erase({w.roomKey, w.id});
+  g.pinned.erase(w.id);
+  g.byLoad.erase({w.loadKey, w.id});
   g.idle.erase({w.idleKey, w.id});
-  w.roomKey = w.idleKey = never;
-  if (g.able.erase(w.id) && g.able.empty()) sortTied(w.epoch); // a reserve has its turn
+  w.loadKey = w.idleKey = never;
+  if (g.able.erase(w.id) && g.able.empty()) rankPinned(w.epoch); // now the reserve works
   if (g.members.empty() && !frames.contains(w.epoch)) groups.erase(it);
-  moves = true;
+  mayMove = true;
 }
 
-void Scheduler::Impl::enter(Worker& w, Epoch epoch, bool ready) {
-  depart(w);
+void Scheduler::Impl::joinGroup(Worker& w, Epoch epoch, bool ready) {
+  leaveGroup(w);
   if (epoch != w.epoch) w.unable = false;
   w.epoch = epoch;
   w.ready = ready;
   Group& g = groups[epoch];
   g.members.insert(w.id);
-  if (w.tied())
-    g.tied.insert(w.id);
+  if (w.pinned())
+    g.pinned.insert(w.id);
   else if (ready && !w.tally.blocked)
     g.movable.insert(w.id);
-  if (!w.tied() && ready && w.usable()) g.able.insert(w.id);
-  weigh(w, 1);
-  sort(w);
-  moves = true;
+  if (!w.pinned() && ready && w.usable()) g.able.insert(w.id);
+  updateTotals(w, 1);
+  rank(w);
+  mayMove = true;
 }
 
-void Scheduler::Impl::sort(Worker& w) {
+void Scheduler::Impl::rank(Worker& w) {
   const auto it = groups.find(w.epoch);
   if (it == groups.end()) return;
   Group& g = it->second;
-  g.room.erase({w.roomKey, w.id});
+  g.byLoad.erase({w.loadKey, w.id});
   g.idle.erase({w.idleKey, w.id});
-  w.roomKey = w.idleKey = never;
+  w.loadKey = w.idleKey = never;
   const Frame* f = frame(w.epoch);
   if (!f || !w.ready || !w.usable()) return;
-  const double share = w.tally.out / w.hands(), usual = secondsOf(*f);
-  // What is on its way while a thread would wait for it.
+  const double share = w.tally.out / w.effectiveThreads(), usual = usualJobSeconds(*f);
+  // Jobs that are on the link while a thread would be idle.
   const double hidden =
-      usual > 0 ? std::min(std::round(w.tally.latency / usual), 3 * bundle(*f)) : 0;
-  w.roomKey = share - hidden;
-  g.room.insert({w.roomKey, w.id});
+      usual > 0 ? std::min(std::round(w.tally.latency / usual), 3 * jobsPerBundle(*f)) : 0;
+  w.loadKey = share - hidden;
+  g.byLoad.insert({w.loadKey, w.id});
   if (share < 1) {
     w.idleKey = share;
     g.idle.insert({w.idleKey, w.id});
   }
 }
 
-void Scheduler::Impl::sortTied(Epoch epoch) {
+void Scheduler::Impl::rankPinned(Epoch epoch) {
   if (const auto g = groups.find(epoch); g != groups.end())
-    for (const WorkerId id : std::set<WorkerId>(g->second.tied)) sort(workers.at(id));
+    for (const WorkerId id : std::set<WorkerId>(g->second.pinned)) rank(workers.at(id));
 }
 
-bool Scheduler::Impl::waits(const Frame& f, const Group& g, const Worker& w) const {
+bool Scheduler::Impl::mustWait(const Frame& f, const Group& g, const Worker& w) const {
   return w.reserve && !f.stuck && !g.able.empty();
 }
 
@@ -87,7 +87,7 @@ Split Scheduler::Impl::splitOf() const {
   if (options.split != Split::automatic || inFlight < 3 || n < 2 || prepare <= 0 ||
       frameSeconds <= 0)
     return Split::tiles;
-  const double alone = frameSeconds * n / threads; // of one worker for a frame
+  const double alone = frameSeconds * n / threads; // seconds of one worker per frame
   return (prepare + alone) / std::min(n, inFlight) < 0.9 * (prepare + alone / n) ? Split::frames
                                                                                  : Split::tiles;
 }
@@ -99,71 +99,72 @@ bool Scheduler::Impl::worthHelping(const Frame& f) const {
   return at == 0 || f.work->undone() * f.costs.mean() / at > 2 * prepare;
 }
 
-// Of a worker that has nothing more to do in an epoch; 0: it stays.
-Epoch Scheduler::Impl::target(Epoch epoch) {
+// Returns the epoch to which a worker without jobs in `epoch` moves; 0: it stays.
+Epoch Scheduler::Impl::nextEpoch(Epoch epoch) {
   Epoch help = 0;
   for (auto it = frames.upper_bound(epoch); it != frames.end(); ++it) {
     const Frame& f = it->second;
     if (f.exhausted()) continue;
     if (f.split != Split::frames) return f.epoch;
     const auto g = groups.find(f.epoch);
-    if (g == groups.end() || g->second.members.size() == g->second.tied.size()) return f.epoch;
+    if (g == groups.end() || g->second.members.size() == g->second.pinned.size()) return f.epoch;
     if (help == 0 && worthHelping(f)) help = f.epoch;
   }
   return help;
 }
 
-Epoch Scheduler::Impl::targetOfTied(const Worker& w) {
+Epoch Scheduler::Impl::nextEpochOfPinned(const Worker& w) {
   if (frames.empty() || w.tally.blocked || !w.ready) return 0;
-  const Frame& f = frames.begin()->second; // the oldest one
+  const Frame& f = frames.begin()->second; // oldest frame
   if (f.epoch <= w.epoch) return 0;
   if (f.stuck) return f.epoch;
-  uint32_t others = 0; // that can do it
+  uint32_t others = 0; // threads that can render it
   for (auto g = groups.begin(); g != groups.end() && g->first <= f.epoch; ++g)
     others += g->second.threads;
   if (others > 0 && w.here && !w.reserve) others -= w.unable ? 0 : w.threads;
-  if (others == 0) return w.reserve && f.exhausted() && !f.rescue ? 0 : f.epoch;
+  if (others == 0) return w.reserve && f.exhausted() && !f.needsPinned ? 0 : f.epoch;
   if (w.reserve) return 0;
-  if (f.split != Split::frames || f.rescue) return f.epoch;
+  if (f.split != Split::frames || f.needsPinned) return f.epoch;
   const auto g = groups.find(f.epoch);
   return g == groups.end() || g->second.threads == 0 || worthHelping(f) ? f.epoch : 0;
 }
 
 double Scheduler::Impl::stuckAt() const {
-  if (rescuers == 0 || frames.empty() || frames.begin()->second.stuck) return never;
-  return frames.begin()->second.progressed + options.stuck;
+  if (pinnedWorkers == 0 || frames.empty() || frames.begin()->second.stuck) return never;
+  return frames.begin()->second.lastProgressAt + options.stuck;
 }
 
-// A picture after one that was stuck does not wait again, as long as nothing comes from elsewhere.
-void Scheduler::Impl::watch(double now) {
-  if (frames.empty() || rescuers == 0) return;
+// A frame after a stuck one is treated as stuck at once, as long as no remote result comes.
+void Scheduler::Impl::checkProgress(double now) {
+  if (frames.empty() || pinnedWorkers == 0) return;
   Frame& f = frames.begin()->second;
-  if (std::exchange(watched, f.epoch) != f.epoch) f.progressed = std::max(f.progressed, now);
-  if (f.stuck || !(helpless || now >= f.progressed + options.stuck)) return;
-  f.stuck = helpless = moves = true;
-  sortTied(f.epoch);
+  if (std::exchange(checkedEpoch, f.epoch) != f.epoch)
+    f.lastProgressAt = std::max(f.lastProgressAt, now);
+  if (f.stuck || !(noRemoteResults || now >= f.lastProgressAt + options.stuck)) return;
+  f.stuck = noRemoteResults = mayMove = true;
+  rankPinned(f.epoch);
 }
 
 bool Scheduler::Impl::move(double now, WorkerId& worker, Epoch& epoch) {
-  watch(now);
-  if (!moves) return false;
+  checkProgress(now);
+  if (!mayMove) return false;
   const auto go = [&](WorkerId id, Epoch to) {
     Worker& w = workers.at(id);
-    w.asked = now;
-    enter(w, to, false);
+    w.prepareSentAt = now;
+    joinGroup(w, to, false);
     worker = id;
     epoch = to;
     return true;
   };
   for (const auto& [at, g] : groups) {
-    for (const WorkerId id : g.tied)
-      if (const Epoch to = targetOfTied(workers.at(id))) return go(id, to);
+    for (const WorkerId id : g.pinned)
+      if (const Epoch to = nextEpochOfPinned(workers.at(id))) return go(id, to);
     if (g.movable.empty()) continue;
     const Frame* f = frame(at);
-    if (f && (!f->exhausted() || (rescuers == 0 && g.members.size() == 1))) continue;
-    if (const Epoch to = target(at)) return go(*g.movable.begin(), to);
+    if (f && (!f->exhausted() || (pinnedWorkers == 0 && g.members.size() == 1))) continue;
+    if (const Epoch to = nextEpoch(at)) return go(*g.movable.begin(), to);
   }
-  moves = false;
+  mayMove = false;
   return false;
 }
 

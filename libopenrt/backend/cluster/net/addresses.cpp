@@ -23,8 +23,8 @@ bool v4(const std::string& host, in_addr& out) {
   return inet_pton(AF_INET, host.c_str(), &out) == 1;
 }
 bool v6(const std::string& host, in6_addr& out) {
-  return inet_pton(AF_INET6, host.substr(0, host.find('%')).c_str(), &out) ==
-         1; // the rest names an interface
+  // After % comes the name of an interface.
+  return inet_pton(AF_INET6, host.substr(0, host.find('%')).c_str(), &out) == 1;
 }
 
 } // namespace
@@ -114,7 +114,7 @@ std::string shownEndpoint(std::string_view endpoint) {
          (end == rest.npos ? "" : std::string(rest.substr(end + 1)));
 }
 
-// In the form that getaddrinfo_a writes to until it is done.
+// Kept at a fixed address: getaddrinfo_a writes to it until the lookup is done.
 struct Lookup::Request {
   std::string host;
   addrinfo hints{};
@@ -134,7 +134,7 @@ Lookup::Lookup(const Address& address) : request_(std::make_unique<Request>()), 
 Lookup::~Lookup() {
   if (gai_error(&request_->block) == EAI_INPROGRESS &&
       gai_cancel(&request_->block) == EAI_NOTCANCELED) {
-    static_cast<void>(request_.release()); // somebody is writing to it
+    static_cast<void>(request_.release()); // the lookup still writes to it
     return;
   }
   if (gai_error(&request_->block) == 0 && request_->block.ar_result)

@@ -1,5 +1,5 @@
-// addresses.h: where a wire calls or listens: HOST[:PORT], a public key with it if the other side
-// has one of its own; names looked up without waiting. Used by the Wire, on its thread.
+// addresses.h: addresses that a wire calls or listens at: HOST[:PORT], with a public key if the
+// other side has its own. Names are looked up in the background. Used by the Wire, on its thread.
 #pragma once
 
 #include <memory>
@@ -10,32 +10,33 @@
 namespace openrt::cluster {
 
 struct Address {
-  std::string host; // a name, or digits (no brackets); a path if ipc
+  std::string host; // name or numeric address (no brackets); the path for ipc
   uint16_t port = 0;
-  std::string key; // Z85; empty: one's own
+  std::string key; // public key of the other side (Z85); empty: the same as ours
   bool ipc = false;
 
-  // HOST, HOST:PORT, [V6]:PORT, :PORT (loopback), ipc://PATH; followed by =KEY if there is one.
+  // Reads HOST, HOST:PORT, [V6]:PORT, :PORT (loopback) or ipc://PATH, each with an optional =KEY.
   // Throws std::runtime_error.
   static Address parse(std::string_view text);
-  std::string shown() const; // HOST:PORT
-  // On this machine beyond doubt: 127.0.0.0/8, ::1, localhost, ipc.
+  std::string shown() const; // returns HOST:PORT
+  // Returns true if the address is certainly on this machine: 127.0.0.0/8, ::1, localhost, ipc.
   bool loopback() const;
-  bool numeric() const;         // nothing to look up
-  std::string endpoint() const; // of ZeroMQ; numeric ones
+  bool numeric() const; // returns true if no lookup is needed
+  // Returns the ZeroMQ endpoint of a numeric address.
+  std::string endpoint() const;
 };
 
-// An address as ZeroMQ writes it, for people: without the scheme, and IPv4 as itself where a socket
-// of IPv6 carries it.
+// Formats a ZeroMQ endpoint for the user: without the scheme, and with IPv4 addresses mapped into
+// IPv6 as plain IPv4.
 std::string shownEndpoint(std::string_view endpoint);
 
-// Looks a name up in the background.
+// Looks up a name in the background.
 class Lookup {
  public:
   explicit Lookup(const Address& address);
   ~Lookup();
   bool ready() const;
-  // Once ready. Nothing: it is unknown; why: for people.
+  // Call once ready. Returns nothing if the name is unknown; why: the reason, for the user.
   std::optional<Address> result(std::string& why) const;
 
  private:

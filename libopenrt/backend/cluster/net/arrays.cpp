@@ -1,4 +1,4 @@
-// arrays.cpp: names of arrays by what they hold, and how they are packed (messages.h). [any]
+// arrays.cpp: content hashes and compression of arrays (messages.h). [any]
 #include <cstdio>
 
 #include <xxhash.h>
@@ -21,7 +21,8 @@ std::string hex(const Hash& hash) {
 }
 
 bool plausible(uint64_t bytes, uint64_t stored) {
-  constexpr uint64_t bestRatio = 1 << 16; // zstd makes 4 bytes of a block of 128 KiB at best
+  // zstd compresses a block of 128 KiB to 4 bytes at best.
+  constexpr uint64_t bestRatio = 1 << 16;
   return stored > 0 && stored <= ZSTD_compressBound(bytes) && bytes <= bestRatio * stored;
 }
 
@@ -30,7 +31,8 @@ std::vector<std::byte> packArray(std::span<const std::byte> array) {
   std::vector<std::byte> packed(ZSTD_compressBound(array.size()));
   const size_t stored =
       ZSTD_compress(packed.data(), packed.size(), array.data(), array.size(), fastest);
-  if (ZSTD_isError(stored)) throw std::bad_alloc(); // it has room enough, so nothing else is left
+  // The buffer is large enough, so only memory can be missing.
+  if (ZSTD_isError(stored)) throw std::bad_alloc();
   packed.resize(stored);
   packed.shrink_to_fit();
   return packed;

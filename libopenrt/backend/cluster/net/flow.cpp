@@ -9,9 +9,10 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr double least = 8192; // bytes a second; ten beats and their answers have about 1500
+// Bytes per second. Ten heartbeats and their answers per second have about 1500.
+constexpr double least = 8192;
 
-// So far, over a connection; 0 where it cannot be known.
+// Returns the bytes received so far over a connection; 0 if unknown.
 uint64_t received(int fd) {
   tcp_info info{};
   socklen_t size = sizeof info;

@@ -1,5 +1,4 @@
-// flow.h: whether a connection carries a message that has not come whole: a large one on a slow
-// line. [wire]
+// flow.h: detects whether a connection is still receiving a large message over a slow link. [wire]
 #pragma once
 
 #include <cstdint>
@@ -8,10 +7,11 @@ namespace openrt::cluster {
 
 class Flow {
  public:
-  // To be called often; looks at the file of a connection once in `window` seconds.
+  // Checks the connection's file descriptor once every `window` seconds; call it often.
   void look(int fd, double now, double window);
-  // Much more came in the last window than beats: these also come where a damaged length has the
-  // connection wait for a frame that never ends.
+  // Returns true if much more than heartbeats arrived in the last window. Heartbeats alone do not
+  // count: they also arrive while a damaged length makes the connection wait for a frame that never
+  // ends.
   bool flowing() const { return flowing_; }
 
  private:

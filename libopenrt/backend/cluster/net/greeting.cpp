@@ -17,7 +17,8 @@ std::string version() {
          std::to_string(OPENRT_VERSION_PATCH);
 }
 
-// Sines and logarithms are the C library's, and differ in last bits from one to the next.
+// Returns the C library and its version: its sines and logarithms differ in the last bits between
+// versions.
 std::string platform() {
 #if defined(__GLIBC__)
   return std::string("glibc ") + gnu_get_libc_version();

@@ -1,5 +1,5 @@
-// greeting.h: who may work for whom: what master and worker must have in common so that their
-// pictures are the same bytes. [any]
+// greeting.h: the handshake: compares what a master and a worker must have in common so that they
+// render identical bytes. [any]
 #pragma once
 
 #include <string>
@@ -8,12 +8,13 @@
 
 namespace openrt::cluster {
 
-// What this process is, apart from its number of threads. local: as a local backend tells it (isa,
-// kernel).
+// Returns the Hello of this process, without its number of threads. local: statistics of a local
+// backend (isa, kernel).
 message::Hello identity(const RTstats& local);
 
-// Empty, or why `worker` cannot work for `master`, both sides named; tolerant: another instruction
-// set, version of the kernel, of the library or of the system's mathematics will do.
+// Returns why `worker` cannot work for `master`, naming the values of both; empty if it can.
+// tolerant: accepts another instruction set, and other versions of the kernel, the library and the
+// system's math library.
 std::string difference(const message::Hello& worker, const message::Hello& master, bool tolerant);
 
 } // namespace openrt::cluster

@@ -1,4 +1,4 @@
-// keys.cpp: [any]
+// keys.cpp: reads, checks and writes key files. [any]
 #include "backend/cluster/net/keys.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ bool isKey(std::string_view text) {
   return text.size() == keyLength && zmq_z85_decode(bytes, std::string(text).c_str()) != nullptr;
 }
 
-// A file descriptor that is closed.
+// Closes its file descriptor.
 struct File {
   int fd;
   ~File() {
@@ -55,8 +55,7 @@ std::string readSmall(const std::string& path, bool secret) {
   return text;
 }
 
-// Calls a function with each line's first two words and its number. Blanks at the ends do not
-// count.
+// Calls take(first word, second word, line number) for each line that is not blank.
 template <class Take> void forLines(std::string_view text, const Take& take) {
   for (size_t number = 1; !text.empty(); number++) {
     std::string_view line = text.substr(0, text.find('\n'));
@@ -76,10 +75,10 @@ std::vector<std::string> readAllowed(const std::string& path) {
   std::vector<std::string> keys;
   forLines(readSmall(path, false),
            [&](std::string_view first, std::string_view second, size_t number) {
-             if (first == "public") first = second; // a line of a key file
+             if (first == "public") first = second; // the line comes from a key file
              if (isKey(first))
                keys.emplace_back(first);
-             else if (first.front() != '#') // no key begins with it
+             else if (first.front() != '#') // no key begins with #
                failed(path, "line " + std::to_string(number) +
                                 ": not a public key (40 characters, then a comment if you like)");
            });

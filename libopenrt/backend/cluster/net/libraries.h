@@ -1,6 +1,6 @@
-// libraries.h: shader libraries that a scene needs against those that this machine has: found by
-// bare name in the folders that are configured here, compared by what is in the file. Nothing
-// executable travels. One thread's.
+// libraries.h: checks the shader libraries that a scene needs against those of this machine.
+// Libraries are found by bare name in the configured folders and compared by file hash. No
+// executable code is sent. One thread.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@ class ShaderRegistry;
 
 namespace openrt::cluster {
 
-// What is in files: read again only when one has changed.
+// Content hashes of files. A file is read again only after it has changed.
 class FileHashes {
  public:
   const Hash& of(const std::string& path);
@@ -32,7 +32,7 @@ class FileHashes {
 class LibraryCheck {
  public:
   explicit LibraryCheck(const ShaderRegistry* shaders) : shaders_(shaders) {}
-  // Empty, or which of them are missing or different, for people.
+  // Returns which libraries are missing or different, as a message for the user; empty if none.
   std::string problem(std::span<const message::Library> wanted);
 
  private:

@@ -1,4 +1,4 @@
-// messages.cpp: messages to frames. Reading: messages_read.cpp. [any]
+// messages.cpp: encodes messages into frames. Decoding: messages_read.cpp. [any]
 #include "backend/cluster/net/messages.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::string cut(std::string text) {
   return text;
 }
 
-// Cuts bytes into frames of at most so many.
+// Splits bytes into frames of at most `most` bytes.
 void append(Frames& frames, std::vector<std::byte>&& bytes, size_t most) {
   if (bytes.size() <= most) {
     frames.push_back(std::move(bytes));
@@ -33,8 +33,8 @@ void append(Frames& frames, std::vector<std::byte>&& bytes, size_t most) {
   }
 }
 
-// Packs if that saves more than a tenth; empty: it does not.
-std::vector<std::byte> squeeze(std::span<const std::byte> bytes) {
+// Compresses the bytes with LZ4. Returns an empty vector if that saves less than a tenth.
+std::vector<std::byte> compressLz4(std::span<const std::byte> bytes) {
   const size_t most = bytes.size() - bytes.size() / 10;
   std::vector<std::byte> packed(most);
   const int size =
@@ -44,7 +44,7 @@ std::vector<std::byte> squeeze(std::span<const std::byte> bytes) {
   return packed;
 }
 
-// One function for each kind: its table, and what follows it as bulk frames.
+// One function per message kind: fills its table and its bulk frames.
 struct Encoder {
   Frames& bulk;
 
@@ -107,9 +107,9 @@ struct Encoder {
     t.hash = XXH3_64bits(m.bytes.data(), m.bytes.size());
     Frames packed;
     for (size_t at = 0; at < m.bytes.size(); at += limits::chunkBytes) {
-      packed.push_back(squeeze(
+      packed.push_back(compressLz4(
           std::span(m.bytes).subspan(at, std::min(limits::chunkBytes, m.bytes.size() - at))));
-      if (packed.back().empty()) break; // all or none
+      if (packed.back().empty()) break; // all chunks are compressed, or none
     }
     t.packed = !packed.empty() && !packed.back().empty();
     if (t.packed)
@@ -193,7 +193,7 @@ Frames encode(uint64_t session, message::Body&& body) {
 std::vector<message::Fault> faultsOf(const ShaderFaults& faults) {
   std::vector<message::Fault> result;
   for (const auto& entry : faults.entries()) {
-    const std::string label = labelOf(*entry.shaderClass); // "CLASS of LIBRARY"
+    const std::string label = labelOf(*entry.shaderClass); // has the form "CLASS of LIBRARY"
     const size_t at = label.rfind(" of ");
     result.push_back({entry.shaderClass->name, at == label.npos ? "" : label.substr(at + 4),
                       uint8_t(entry.fault), entry.hits});

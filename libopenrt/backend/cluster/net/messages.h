@@ -1,7 +1,7 @@
-// messages.h: every message of the protocol (docs/protocol.md), made and read in one place: structs
-// on this side, a header (messages.fbs) and bulk frames on the other. Reading believes nothing:
-// what does not verify, exceeds a limit or contradicts itself is refused with a reason, before
-// memory is taken for it. Pure functions. [any]
+// messages.h: encodes and decodes all messages of the protocol (docs/protocol.md): structs in
+// memory, a header (messages.fbs) and bulk frames on the wire. Decoding trusts nothing: it refuses
+// messages that do not verify, exceed a limit or contradict themselves, with a reason and before
+// memory is allocated for them. Pure functions. [any]
 #pragma once
 
 #include <compare>
@@ -19,27 +19,30 @@
 
 namespace openrt::cluster {
 
-inline constexpr uint32_t protocolVersion = 2; // another one is refused
+inline constexpr uint32_t protocolVersion = 2; // other versions are refused
 
 namespace limits {
-inline constexpr size_t headerBytes = size_t(64) << 20; // of a Scene: two million arrays
-inline constexpr size_t frames = 130;                   // of a message, the header included
-inline constexpr size_t editBytes = size_t(1) << 30;    // of the edits of one commit
-inline constexpr size_t textBytes = 4096; // of a text in a header; longer ones are cut when sent
-inline constexpr size_t libraries = 1000; // of a scene
-inline constexpr size_t jobs = 4096;      // of a message
-inline constexpr uint64_t epochs = uint64_t(1) << 40; // of a session
+// Enough for a Scene with two million arrays.
+inline constexpr size_t headerBytes = size_t(64) << 20;
+inline constexpr size_t frames = 130;                // frames of a message, including the header
+inline constexpr size_t editBytes = size_t(1) << 30; // edits of one commit
+// A text in a header; longer ones are cut when sent.
+inline constexpr size_t textBytes = 4096;
+inline constexpr size_t libraries = 1000;             // shader libraries of a scene
+inline constexpr size_t jobs = 4096;                  // jobs in one message
+inline constexpr uint64_t epochs = uint64_t(1) << 40; // epochs in one session
 inline constexpr uint64_t arrayBytes = uint64_t(1) << 34;
-inline constexpr uint64_t sceneBytes = uint64_t(1) << 36; // of all arrays of one commit
-inline constexpr size_t arraysAtOnce = 16;                // that are in the middle of their pieces
-inline constexpr size_t scenesAtOnce = 1024; // that a worker has been sent and has not made yet
-inline constexpr size_t scenesBytes = 2 * editBytes;      // of the edits of these
-inline constexpr size_t outboxMessages = size_t(1) << 16; // that a worker has not read
-inline constexpr size_t outboxBytes = size_t(1) << 32;    // of these
-inline constexpr uint64_t logLines = 1000;                // of a connection
+inline constexpr uint64_t sceneBytes = uint64_t(1) << 36; // all arrays of one commit
+inline constexpr size_t arraysAtOnce = 16;                // arrays that are partly received
+// Scenes that a worker was sent and has not applied yet.
+inline constexpr size_t scenesAtOnce = 1024;
+inline constexpr size_t scenesBytes = 2 * editBytes;      // edits of these scenes
+inline constexpr size_t outboxMessages = size_t(1) << 16; // messages that a worker has not read
+inline constexpr size_t outboxBytes = size_t(1) << 32;    // bytes of these messages
+inline constexpr uint64_t logLines = 1000;                // log lines of one connection
 inline constexpr uint64_t resultBytes = uint64_t(1) << 32;
-inline constexpr size_t chunkBytes = size_t(32)
-                                     << 20; // of a result that a frame holds, before it is packed
+// Bytes of a result in one frame, before compression.
+inline constexpr size_t chunkBytes = size_t(32) << 20;
 } // namespace limits
 
 struct Hash {
@@ -47,16 +50,16 @@ struct Hash {
   auto operator<=>(const Hash&) const = default;
 };
 Hash hashOf(std::span<const std::byte> bytes); // XXH3, 128 bits
-std::string hex(const Hash& hash);             // for people
+std::string hex(const Hash& hash);             // for messages to the user
 
 namespace message {
 
-struct Unknown {}; // of a later version: to be ignored
+struct Unknown {}; // a message of a later version; ignored
 
-// From the worker.
+// Worker to master.
 struct Hello {
   uint32_t protocol = protocolVersion;
-  std::string library; // version of OpenRT
+  std::string library; // OpenRT version
   uint32_t api = 0, shaderAbi = 0;
   std::string isa, kernel, platform;
   uint32_t threads = 0;
@@ -70,14 +73,14 @@ struct Need {
 struct Ready {
   Epoch epoch = 0;
   FrameFacts facts;
-  uint8_t transport = 0; // that was chosen
+  uint8_t transport = 0; // the transport that was chosen
   RTstats stats{};
 };
 struct Failed {
   Epoch epoch = 0;
   std::string why;
 };
-struct Fault { // openrt::Fault, of a shader class of the scene
+struct Fault { // openrt::Fault of a shader class of the scene
   std::string name, library;
   uint8_t kind = 0;
   uint64_t hits = 0;
@@ -86,10 +89,10 @@ struct Result {
   Epoch epoch = 0;
   Lease lease = 0;
   double seconds = 0;
-  uint64_t camera = 0, shadow = 0, secondary = 0; // rays
+  uint64_t camera = 0, shadow = 0, secondary = 0; // rays traced
   std::vector<Fault> faults;
-  std::vector<std::byte> bytes; // of encodeResult; empty before unpack()
-  struct Packed {               // as it came
+  std::vector<std::byte> bytes; // output of encodeResult; empty before unpack()
+  struct Packed {               // the frames as received
     Frames frames;
     uint64_t bytes = 0, hash = 0;
     bool lz4 = false;
@@ -100,7 +103,7 @@ struct Log {
   std::string text;
 };
 
-// From the master.
+// Master to worker.
 struct Welcome {
   uint32_t protocol = protocolVersion;
   uint64_t session = 0;
@@ -112,19 +115,21 @@ struct ArrayName {
   Hash hash;
 };
 struct Library {
-  std::string name; // bare, as plug-ins are named
-  Hash hash;        // of its file
+  std::string name; // bare name, like that of a plug-in
+  Hash hash;        // content hash of its file
 };
 struct Scene {
   Epoch epoch = 0;
-  bool whole = false, prepare = false; // as of WorkerCore::scene
-  std::vector<ArrayName> arrays;       // that the commit brings
-  std::vector<Library> libraries;      // that are new in the commit
-  std::vector<std::byte> edits;        // packEdits (backend/record/edits_bytes.h)
+  bool whole = false, prepare = false; // as in WorkerCore::scene
+  std::vector<ArrayName> arrays;       // arrays that the commit adds
+  std::vector<Library> libraries;      // libraries that the commit adds
+  std::vector<std::byte> edits;        // output of packEdits (backend/record/edits_bytes.h)
 };
 struct Piece {
   Hash hash;
-  uint64_t bytes = 0, stored = 0, offset = 0; // of the array; of packArray; in that
+  // bytes: size of the array; stored: its size as packed by packArray; offset: into the packed
+  // bytes.
+  uint64_t bytes = 0, stored = 0, offset = 0;
   std::vector<std::byte> data;
 };
 struct Prepare {
@@ -138,7 +143,7 @@ struct Drop {
   Epoch epoch = 0;
 };
 
-// From both. Seen by the Wire, not by those behind it.
+// Both directions. Handled inside the Wire.
 struct Beat {
   double sent = 0;
   bool answer = false;
@@ -158,28 +163,27 @@ struct Message {
 };
 
 Frames encode(uint64_t session, message::Body&& body);
-// Empty, or what is wrong with it. What frames hold is taken from them.
+// Decodes a message; consumes the frames. Returns an empty string, or what is wrong.
 std::string decode(Frames&& frames, Message& out, uint64_t largestResult = limits::resultBytes);
-// As decode(), but a Result stays packed: what costs time is left to unpack(), on another thread.
+// Like decode(), but leaves a Result packed: the expensive unpack() can then run on another thread.
 std::string decodePacked(Frames&& frames, Message& out,
                          uint64_t largestResult = limits::resultBytes);
 std::string unpack(message::Result& result);
-// Whether a frame is a Header whose tables lie within it; empty, or what is wrong. kind: number of
-// its member of the union.
+// Verifies that a frame is a Header whose tables lie within it. Returns an empty string, or what is
+// wrong. kind: index of the union member.
 std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind);
 
-// How an array travels: packed by zstd, level 1, then piece by piece.
+// Compresses an array for sending (zstd, level 1).
 std::vector<std::byte> packArray(std::span<const std::byte> array);
-// Null: not an array of so many bytes and of this hash.
+// Returns null if the result does not have this size and hash.
 ArrayPtr unpackArray(std::span<const std::byte> packed, uint64_t bytes, const Hash& hash);
-// Whether an array of so many bytes can have become so few.
+// Returns true if an array of `bytes` can be compressed to `stored` bytes.
 bool plausible(uint64_t bytes, uint64_t stored);
-// One piece of a packed array; offset: a multiple of pieceBytes, smaller than packed.size().
+// Returns one piece of a packed array; offset: a multiple of pieceBytes, less than packed.size().
 message::Piece pieceOf(const Hash& hash, uint64_t bytes, std::span<const std::byte> packed,
                        uint64_t offset);
 
-// Faults by the names of their classes, and back; those of classes that are not loaded are left
-// out.
+// Convert faults to class names and back. Faults of classes that are not loaded are dropped.
 std::vector<message::Fault> faultsOf(const ShaderFaults& faults);
 ShaderFaults faultsFrom(std::span<const message::Fault> faults, const ShaderRegistry& shaders);
 

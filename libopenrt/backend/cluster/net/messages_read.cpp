@@ -1,5 +1,5 @@
-// messages_read.cpp: frames to messages. What comes may be anybody's: the flatbuffer is verified,
-// then sizes and counts, and only then is anything copied. [any]
+// messages_read.cpp: decodes frames into messages. The sender is not trusted: the flatbuffer is
+// verified first, then sizes and counts are checked, and only then data is copied. [any]
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,7 @@
 namespace openrt::cluster {
 namespace {
 
-// Thrown and caught in this file: what is wrong with a message.
+// Reason why a message is invalid; thrown and caught in this file.
 struct Bad {
   std::string why;
 };
@@ -27,7 +27,7 @@ Hash from(const wire::Hash* hash) {
   return {hash->low(), hash->high()};
 }
 
-// Bytes of the UTF-8 character at the beginning (RFC 3629); 0: it is none.
+// Returns the length of the UTF-8 character at the beginning (RFC 3629); 0 if it is invalid.
 size_t characterAt(std::string_view text) {
   const auto byte = [&](size_t i) {
     return i < text.size() ? static_cast<uint8_t>(text[i]) : uint8_t(0);
@@ -41,15 +41,14 @@ size_t characterAt(std::string_view text) {
                                        : 0;
   for (size_t i = 1; i < length; i++)
     if ((byte(i) & 0xc0) != 0x80) return 0;
-  const bool outside =
-      (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
-      (first == 0xf0 && second < 0x90) ||
-      (first == 0xf4 && second >= 0x90); // overlong, halves of pairs, beyond Unicode
+  // Overlong forms, surrogate halves, beyond Unicode.
+  const bool outside = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+                       (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
   return outside ? 0 : length;
 }
 
-// Texts are shown to people: no characters that move a terminal's cursor (C0, DEL, C1), and nothing
-// but UTF-8.
+// Replaces everything in a text that must not reach a user's terminal: control characters that move
+// the cursor (C0, DEL, C1) and invalid UTF-8.
 void clean(std::span<char> text) {
   for (size_t i = 0; i < text.size();) {
     const size_t length = characterAt({text.data() + i, text.size() - i});
@@ -132,9 +131,9 @@ void read(const wire::Failed& t, Frames&, message::Failed& m) {
   m.why = text(t.why());
 }
 
-// Frames of chunks; sizes follow from that of the whole.
+// Decompresses a result from its chunks. The chunk sizes follow from the total size.
 std::vector<std::byte> unpackResult(const Frames& frames, uint64_t bytes) {
-  constexpr uint64_t bestRatio = 255; // of lz4
+  constexpr uint64_t bestRatio = 255; // best compression ratio of LZ4
   const auto chunkOf = [&](size_t i) {
     return size_t(std::min<uint64_t>(limits::chunkBytes, bytes - i * limits::chunkBytes));
   };
@@ -173,7 +172,7 @@ void read(const wire::Result& t, Frames& frames, message::Result& m) {
   m.packed.bytes = t.bytes();
   m.packed.hash = t.hash();
   m.packed.lz4 = t.packed();
-  m.packed.frames.swap(frames); // the header that is read here lies in them
+  m.packed.frames.swap(frames); // last, because the header being read lies in the frames
 }
 
 void unpackBytes(message::Result& m) {
@@ -270,7 +269,7 @@ void read(const wire::Beat& t, Frames&, message::Beat& m) {
 }
 void read(const wire::Bye& t, Frames&, message::Bye& m) { m.why = text(t.why()); }
 
-// How many bulk frames a kind has.
+// Limits on the number of bulk frames of a message kind.
 struct Kind {
   size_t least, most;
 };
@@ -313,10 +312,8 @@ void readBody(const wire::Header& header, Frames& frames, message::Body& body) {
 } // namespace
 
 std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind) {
-  constexpr flatbuffers::uoffset_t depth = 4,
-                                   tables =
-                                       2 +
-                                       2 * limits::libraries; // the header, its content, libraries
+  // The header, its body, and the libraries.
+  constexpr flatbuffers::uoffset_t depth = 4, tables = 2 + 2 * limits::libraries;
   if (frame.size() > limits::headerBytes)
     return "a header of " + std::to_string(frame.size()) + " bytes";
   const auto* bytes = reinterpret_cast<const uint8_t*>(frame.data());

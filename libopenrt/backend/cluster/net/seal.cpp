@@ -1,5 +1,5 @@
-// seal.cpp: Bulk frames count by their sizes alone: what is in them has a checksum of
-// its own in the header, that is looked at where there is time. [any]
+// seal.cpp: the seal covers the header, and only the sizes of the bulk frames. Their content has
+// its own checksum in the header, which is verified where there is time for it. [any]
 #include "backend/cluster/net/seal.h"
 
 #include <array>

@@ -1,16 +1,17 @@
-// seal.h: the last frame of every message: its number and a checksum, so that one that was lost,
-// repeated or damaged on the way is noticed whatever carries it (docs/protocol.md, "Seals"). The
-// Wire puts them on and takes them off.
+// seal.h: the last frame of every message: its number and a checksum. It detects messages that were
+// lost, repeated or damaged, whatever transport carries them (docs/protocol.md, "Seals"). Added and
+// removed by the Wire.
 #pragma once
 
 #include "backend/cluster/net/wire.h"
 
 namespace openrt::cluster {
 
-// Of the message with this number of its peer and direction, counted from 1: appended to its
-// frames.
+// Appends the seal of a message to its frames. number: counts the messages of one peer and
+// direction from 1.
 void seal(Frames& frames, uint64_t number);
-// Takes the seal off. False: it is not that of this message; the frames are of no use.
+// Removes the seal. Returns false if it does not belong to this message; the frames are then
+// useless.
 bool unseal(Frames& frames, uint64_t number);
 
 } // namespace openrt::cluster

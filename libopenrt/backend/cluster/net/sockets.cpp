@@ -1,5 +1,5 @@
-// sockets.cpp: What ZeroMQ does by itself: no heartbeats, messages of any size,
-// waiting for ever at the end, 1000 messages of any size in each queue.
+// sockets.cpp: replaces ZeroMQ's defaults, which are: no heartbeats, messages of any size, an
+// endless wait at the end, and queues of 1000 messages of any size.
 #include "backend/cluster/net/sockets.h"
 
 #include <algorithm>
@@ -18,7 +18,8 @@ constexpr size_t curveBytes = 32;
 
 std::string_view textOf(const zmq::message_t& m) { return {m.data<char>(), m.size()}; }
 
-// Why a handshake failed. After a close in mid-handshake ZeroMQ has no more to say than that.
+// Returns why a handshake failed. If the other side closes during the handshake, ZeroMQ reports no
+// more than that.
 std::string failureText(uint16_t event, int value, bool withKeys) {
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH)
     return "our key is not on its list of keys that are let in";
@@ -59,9 +60,10 @@ zmq::socket_t makeSocket(zmq::context_t& context, zmq::socket_type type, const K
   s.set(opt::backlog, backlog);
   s.set(opt::connect_timeout, 4 * milliseconds);
   s.set(opt::handshake_ivl, 5 * milliseconds);
-  s.set(opt::reconnect_ivl, -1); // the Wire makes a new socket: nothing old is in its queue
-  // Only for connections that nobody hears of any more: the wire's own beats (Beat) notice much
-  // sooner. A message of 64 MiB may be on the way meanwhile.
+  // The Wire makes a new socket, so that no old messages are in its queue.
+  s.set(opt::reconnect_ivl, -1);
+  // Only for connections that no peer uses any more: the Wire's own heartbeats (Beat) notice a loss
+  // much sooner. A message of 64 MiB may be in transit meanwhile.
   s.set(opt::heartbeat_ivl, 5 * milliseconds);
   s.set(opt::heartbeat_timeout, 120 * milliseconds);
   s.set(opt::heartbeat_ttl, 120 * milliseconds);
@@ -99,7 +101,7 @@ Monitor::Monitor(zmq::context_t& context, zmq::socket_t& socket, bool withKeys)
 
 Monitor::~Monitor() { zmq_socket_monitor(watched_.handle(), nullptr, 0); }
 
-std::optional<Happening> Monitor::next() {
+std::optional<ConnectionEvent> Monitor::next() {
   for (;;) {
     zmq::message_t event, address;
     if (!pair_.recv(event, zmq::recv_flags::dontwait)) return std::nullopt;
@@ -109,27 +111,27 @@ std::optional<Happening> Monitor::next() {
     if (event.size() < sizeof number + sizeof value) continue;
     std::memcpy(&number, event.data(), sizeof number);
     std::memcpy(&value, event.data<char>() + sizeof number, sizeof value);
-    using Kind = Happening::Kind;
+    using Kind = ConnectionEvent::Kind;
     switch (number) {
-    case ZMQ_EVENT_CONNECTED: return Happening{Kind::connected, value, {}};
-    case ZMQ_EVENT_ACCEPTED: return Happening{Kind::accepted, value, {}};
-    case ZMQ_EVENT_HANDSHAKE_SUCCEEDED: return Happening{Kind::opened, -1, {}};
-    case ZMQ_EVENT_CLOSED: return Happening{Kind::closed, -1, {}};
-    case ZMQ_EVENT_DISCONNECTED: return Happening{Kind::disconnected, value, {}};
-    default: return Happening{Kind::failed, -1, failureText(number, value, withKeys_)};
+    case ZMQ_EVENT_CONNECTED: return ConnectionEvent{Kind::connected, value, {}};
+    case ZMQ_EVENT_ACCEPTED: return ConnectionEvent{Kind::accepted, value, {}};
+    case ZMQ_EVENT_HANDSHAKE_SUCCEEDED: return ConnectionEvent{Kind::opened, -1, {}};
+    case ZMQ_EVENT_CLOSED: return ConnectionEvent{Kind::closed, -1, {}};
+    case ZMQ_EVENT_DISCONNECTED: return ConnectionEvent{Kind::disconnected, value, {}};
+    default: return ConnectionEvent{Kind::failed, -1, failureText(number, value, withKeys_)};
     }
   }
 }
 
-Gate::Gate(zmq::context_t& context, const KeyRing& keys)
+Authenticator::Authenticator(zmq::context_t& context, const KeyRing& keys)
     : socket_(context, zmq::socket_type::rep), keys_(keys) {
   socket_.set(zmq::sockopt::linger, 0);
   socket_.bind("inproc://zeromq.zap.01");
 }
 
-// Request: version, number, domain, address, identity, mechanism, credentials. Answer: version,
-// number, status, text, user, data.
-bool Gate::answer(const std::function<void(const std::string&)>& refused) {
+// Request: version, number, domain, address, identity, mechanism, credentials. Reply: version,
+// number, status, text, user, metadata.
+bool Authenticator::answer(const std::function<void(const std::string&)>& refused) {
   constexpr size_t fields = 7;
   std::string request[fields];
   size_t count = 0;

@@ -1,6 +1,5 @@
-// sockets.h: ZeroMQ sockets as the wire wants them: every default that is unsafe is set, keys are
-// put in, what happens to their connections is told, and who is let in is decided. Used by the
-// Wire, on its thread.
+// sockets.h: ZeroMQ sockets with safe settings and keys, a monitor that reports connection events,
+// and the authenticator that decides which callers are let in. Used by the Wire, on its thread.
 #pragma once
 
 #include <chrono>
@@ -21,12 +20,12 @@ inline double steadyNow() {
 }
 
 zmq::context_t makeContext();
-// serverKey: of the side to call; empty where one listens.
+// Makes a socket. serverKey: key of the side to call; empty for a listening socket.
 zmq::socket_t makeSocket(zmq::context_t& context, zmq::socket_type type, const KeyRing& keys,
                          const std::string& serverKey);
 
-// What happens to the connections of a socket.
-struct Happening {
+// An event of a socket's connections.
+struct ConnectionEvent {
   enum class Kind : uint8_t {
     connected,
     accepted,
@@ -35,17 +34,17 @@ struct Happening {
     closed,
     disconnected
   } kind = Kind::closed;
-  int fd = -1;     // connected, accepted, disconnected
-  std::string why; // failed: of the handshake, for people
+  int fd = -1;     // for connected, accepted, disconnected
+  std::string why; // failed: why the handshake failed, for the user
 };
 
 class Monitor {
  public:
   Monitor(zmq::context_t& context, zmq::socket_t& socket, bool withKeys);
-  ~Monitor(); // before the socket is closed
+  ~Monitor(); // must run before the socket is closed
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
-  std::optional<Happening> next();
+  std::optional<ConnectionEvent> next();
   zmq::socket_ref socket() { return pair_; }
 
  private:
@@ -54,12 +53,13 @@ class Monitor {
   bool withKeys_;
 };
 
-// Who may call: answers ZeroMQ's questions (ZAP, RFC 27) with the allow-list.
-class Gate {
+// Decides which callers are let in: answers ZeroMQ's requests (ZAP, RFC 27) from the list of
+// allowed keys.
+class Authenticator {
  public:
-  Gate(zmq::context_t& context, const KeyRing& keys);
+  Authenticator(zmq::context_t& context, const KeyRing& keys);
   zmq::socket_ref socket() { return socket_; }
-  // Answers one question if there is one. The reason of a refusal goes to `refused`.
+  // Answers one request if there is one. Passes the reason of a refusal to `refused`.
   bool answer(const std::function<void(const std::string&)>& refused);
 
  private:

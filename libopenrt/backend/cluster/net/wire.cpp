@@ -1,6 +1,5 @@
-// wire.cpp: the loop of the Wire: waits, lets the calls (wire_calls.cpp) and the peers
-// (wire_peers.cpp) do their part, and hands out what has happened. The owner's thread; wake() from
-// any.
+// wire.cpp: the event loop of the Wire: waits, runs the calls (wire_calls.cpp) and the peers
+// (wire_peers.cpp), and returns events. The owner's thread; wake() from any.
 #include "backend/cluster/net/wire.h"
 
 #include <algorithm>
@@ -16,7 +15,7 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr int byeMilliseconds = 500; // that a last word may take
+constexpr int byeMilliseconds = 500; // limit for sending the last message
 
 std::string remedy(const std::string& what) {
   return what + " is not this machine's loopback, so keys are needed: make one with "
@@ -44,7 +43,7 @@ Wire::Impl::Impl(const WireOptions& options)
       throw std::runtime_error(address.shown() + ": a port to call cannot be 0");
     calls.emplace_back().address = std::move(address);
   }
-  if (!keys.empty() && !options.listen.empty()) gate.emplace(context, keys);
+  if (!keys.empty() && !options.listen.empty()) authenticator.emplace(context, keys);
   if (!options.listen.empty()) {
     checkAddress(Address::parse(options.listen), keys);
     listen(options.listen);
@@ -56,9 +55,9 @@ Wire::Impl::Impl(const WireOptions& options)
 Wire::Impl::~Impl() {
   const double now = steadyNow();
   for (auto& [id, peer] : peers)
-    if (!peer.gone) sayBye(peer, "the other side has ended", now);
-  doorMonitor.reset();
-  if (door) door->set(zmq::sockopt::linger, byeMilliseconds);
+    if (!peer.hasLeft) sayBye(peer, "the other side has ended", now);
+  listenMonitor.reset();
+  if (listenSocket) listenSocket->set(zmq::sockopt::linger, byeMilliseconds);
   for (Call& call : calls) {
     call.monitor.reset();
     if (call.socket && call.peer) call.socket->set(zmq::sockopt::linger, byeMilliseconds);
@@ -66,31 +65,34 @@ Wire::Impl::~Impl() {
   if (wakeFd >= 0) ::close(wakeFd);
 }
 
-void Wire::Impl::push(Event::Kind kind, Peer peer, std::string text) {
+void Wire::Impl::pushEvent(Event::Kind kind, Peer peer, std::string text) {
   Event& event = events.emplace_back();
   event.kind = kind;
   event.peer = peer;
   event.text = std::move(text);
 }
 
-// Said once in a while only, and not by crowds: who knocks is not ours to choose.
+// Reports a refusal at most once in a while and only for a limited number of texts, because anyone
+// may try to connect.
 void Wire::Impl::refused(const std::string& text) {
   constexpr double again = 10;
   constexpr size_t crowd = 100;
   const double now = steadyNow();
   std::erase_if(refusals, [&](const auto& entry) { return now - entry.second > again; });
   if (refusals.size() < crowd && refusals.emplace(text, now).second)
-    push(Event::Kind::refused, 0, text);
+    pushEvent(Event::Kind::refused, 0, text);
 }
 
-// What time brings: calls, beats, silence.
-void Wire::Impl::keep(double now) {
-  if (now - kept < heartbeat / 4) return;
-  if (now - kept > silence / 2) // we were away ourselves; what came meanwhile has not been read
-    for (auto& [id, peer] : peers) peer.heard = std::max(peer.heard, now - silence / 2);
-  kept = now;
-  keepCalls(now);
-  keepPeers(now);
+// Does what depends on time: calls, heartbeats, silent peers.
+void Wire::Impl::runTimers(double now) {
+  if (now - timersRunAt < heartbeat / 4) return;
+  // This side was busy; what arrived meanwhile has not been read.
+  if (now - timersRunAt > silence / 2)
+    for (auto& [id, peer] : peers)
+      peer.lastReceivedAt = std::max(peer.lastReceivedAt, now - silence / 2);
+  timersRunAt = now;
+  updateCalls(now);
+  checkPeers(now);
 }
 
 void Wire::Impl::poll(double seconds) {
@@ -99,9 +101,9 @@ void Wire::Impl::poll(double seconds) {
     items.push_back({socket, 0, ZMQ_POLLIN, 0});
     return items.size() - 1;
   };
-  const size_t atGate = gate ? add(gate->socket().handle()) : 0;
-  const size_t atDoor = door ? add(door->handle()) : 0;
-  const size_t atDoorMonitor = door ? add(doorMonitor->socket().handle()) : 0;
+  const size_t atAuthenticator = authenticator ? add(authenticator->socket().handle()) : 0;
+  const size_t atListenSocket = listenSocket ? add(listenSocket->handle()) : 0;
+  const size_t atListenMonitor = listenSocket ? add(listenMonitor->socket().handle()) : 0;
   std::vector<std::pair<Call*, size_t>> atCalls;
   for (Call& call : calls) {
     if (!call.socket) continue;
@@ -110,15 +112,16 @@ void Wire::Impl::poll(double seconds) {
   }
   if (zmq_poll(items.data(), int(items.size()), long(std::ceil(std::max(0.0, seconds) * 1000))) <=
       0)
-    return; // also a signal
+    return; // also after a signal
   const double now = steadyNow();
   if (items[0].revents) {
     uint64_t count = 0;
-    if (read(wakeFd, &count, sizeof count) == sizeof count) push(Event::Kind::woken, 0, {});
+    if (read(wakeFd, &count, sizeof count) == sizeof count) pushEvent(Event::Kind::woken, 0, {});
   }
-  if (gate && items[atGate].revents)
-    while (gate->answer([this](const std::string& text) { refused(text); })) {}
-  if (door && (items[atDoor].revents || items[atDoorMonitor].revents)) readCallers(now);
+  if (authenticator && items[atAuthenticator].revents)
+    while (authenticator->answer([this](const std::string& text) { refused(text); })) {}
+  if (listenSocket && (items[atListenSocket].revents || items[atListenMonitor].revents))
+    readCallers(now);
   for (const auto& [call, at] : atCalls)
     if (items[at].revents || items[at + 1].revents) readCall(*call, now);
 }
@@ -127,14 +130,14 @@ Event Wire::Impl::receive(double seconds) {
   const double until = steadyNow() + std::max(0.0, seconds);
   for (bool polled = false;; polled = true) {
     const double now = steadyNow();
-    keep(now);
+    runTimers(now);
     if (!events.empty()) {
       Event event = std::move(events.front());
       events.pop_front();
       return event;
     }
     if (polled && now >= until) return {};
-    poll(closing.empty() ? std::min(until, kept + heartbeat / 4) - now : 0);
+    poll(closing.empty() ? std::min(until, timersRunAt + heartbeat / 4) - now : 0);
     if (!closing.empty()) readCallers(steadyNow());
   }
 }
@@ -151,26 +154,26 @@ Event Wire::receive(double seconds) { return impl_->receive(seconds); }
 
 bool Wire::send(Peer peer, Frames&& frames) {
   Impl::PeerState* state = impl_->find(peer);
-  return state && !state->gone && !frames.empty() &&
+  return state && !state->hasLeft && !frames.empty() &&
          impl_->sendTo(*state, std::move(frames), steadyNow());
 }
 
 void Wire::close(Peer peer, const std::string& why) {
   constexpr double again = 5;
   Impl::PeerState* state = impl_->find(peer);
-  if (!state || state->gone) return;
+  if (!state || state->hasLeft) return;
   impl_->sayBye(*state, why, steadyNow());
   if (state->call) {
     Impl::Call& call = *state->call;
     impl_->forget(peer);
     impl_->hangUp(call, again, true);
   } else {
-    state->gone = true;
+    state->hasLeft = true;
   }
 }
 
 void Wire::bad(Peer peer, const std::string& why) {
-  if (Impl::PeerState* state = impl_->find(peer); state && !state->gone)
+  if (Impl::PeerState* state = impl_->find(peer); state && !state->hasLeft)
     impl_->countBad(*state, why, steadyNow());
 }
 
@@ -180,14 +183,14 @@ void Wire::pace(double heartbeat, double silence) {
 }
 
 std::string Wire::address() const {
-  if (!impl_->door) return {};
-  return shownEndpoint(impl_->door->get(zmq::sockopt::last_endpoint));
+  if (!impl_->listenSocket) return {};
+  return shownEndpoint(impl_->listenSocket->get(zmq::sockopt::last_endpoint));
 }
 
 void Wire::wake() {
   const uint64_t one = 1;
-  static_cast<void>(write(impl_->wakeFd, &one, sizeof one) ==
-                    sizeof one); // full: it wakes up anyway
+  // If the counter is full, the thread wakes up anyway.
+  static_cast<void>(write(impl_->wakeFd, &one, sizeof one) == sizeof one);
 }
 
 Wire::Traffic Wire::traffic(Peer peer) const {

@@ -1,5 +1,5 @@
-// wire_calls.cpp: those whom the Wire calls: from the name to a connection that speaks, and again
-// after every loss. Each attempt has a socket of its own. [wire]
+// wire_calls.cpp: outgoing calls: from the name lookup to an open connection, and again after every
+// loss. Each attempt has its own socket. [wire]
 #include <algorithm>
 
 #include "backend/cluster/net/wire_impl.h"
@@ -7,12 +7,11 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr double attempt = 8;                        // seconds until one has failed
-constexpr double firstPause = 0.1, longestPause = 2; // between them
+constexpr double attempt = 8;                        // seconds until an attempt has failed
+constexpr double firstPause = 0.1, longestPause = 2; // seconds between attempts
 constexpr int byeMilliseconds = 500;
-constexpr size_t mostAtOnce = 64,
-                 bytesAtOnce = size_t(64)
-                               << 20; // messages of one peer before it is another one's turn
+// Limits on messages read from one peer before the next one's turn.
+constexpr size_t mostAtOnce = 64, bytesAtOnce = size_t(64) << 20;
 
 } // namespace
 
@@ -31,7 +30,7 @@ void Wire::Impl::dial(Call& call, const Address& address, double now) {
   } catch (const zmq::error_t& e) { failCall(call, e.what(), now); }
 }
 
-void Wire::Impl::keepCalls(double now) {
+void Wire::Impl::updateCalls(double now) {
   for (Call& call : calls) {
     if (call.lookup && call.lookup->ready()) {
       std::string why;
@@ -50,10 +49,10 @@ void Wire::Impl::keepCalls(double now) {
 }
 
 void Wire::Impl::readCall(Call& call, double now) {
-  using Kind = Happening::Kind;
-  std::string end; // of the connection; empty: it goes on
+  using Kind = ConnectionEvent::Kind;
+  std::string end; // why the connection ended; empty while it is open
   while (end.empty()) {
-    const std::optional<Happening> h = call.monitor->next();
+    const std::optional<ConnectionEvent> h = call.monitor->next();
     if (!h) break;
     if (h->kind == Kind::connected) call.fd = h->fd;
     if (h->kind == Kind::failed) end = h->why;
@@ -62,17 +61,17 @@ void Wire::Impl::readCall(Call& call, double now) {
     if (h->kind != Kind::opened || call.peer) continue;
     call.failures = 0;
     call.joined = now;
-    call.told.clear();
+    call.lastFailure.clear();
     PeerState& peer = peers[++lastPeer];
     peer.id = call.peer = lastPeer;
     peer.call = &call;
     peer.fd = call.fd;
     peer.address = call.address.shown();
-    peer.heard = now;
-    peer.met = true;
-    push(Event::Kind::joined, peer.id, peer.address);
-    sendTo(peer, encode(0, message::Beat{now, false}), now); // so that the other side knows of us
-    peer.asked = now;
+    peer.lastReceivedAt = now;
+    peer.joinReported = true;
+    pushEvent(Event::Kind::joined, peer.id, peer.address);
+    sendTo(peer, encode(0, message::Beat{now, false}), now); // tells the other side that we exist
+    peer.beatSentAt = now;
   }
   size_t bytes = 0;
   for (size_t n = 0; call.peer && ((n < mostAtOnce && bytes < bytesAtOnce) || !end.empty()); n++) {
@@ -82,8 +81,8 @@ void Wire::Impl::readCall(Call& call, double now) {
     bool tooMany = false;
     if (!readFrames(*call.socket, frames, fd, address, tooMany)) break;
     bytes += bytesOf(frames);
-    take(peers.at(call.peer), std::move(frames), tooMany, now);
-    if (!call.socket) return; // it was hung up
+    handleMessage(peers.at(call.peer), std::move(frames), tooMany, now);
+    if (!call.socket) return; // the peer was closed
   }
   if (end.empty()) return;
   if (call.peer)
@@ -107,9 +106,9 @@ void Wire::Impl::failCall(Call& call, const std::string& why, double) {
       std::min(longestPause, firstPause * double(uint64_t(1) << std::min(call.failures, 10u)));
   call.failures++;
   hangUp(call, pause, false);
-  if (call.told == why) return;
-  call.told = why;
-  push(Event::Kind::refused, 0, call.address.shown() + ": " + why);
+  if (call.lastFailure == why) return;
+  call.lastFailure = why;
+  pushEvent(Event::Kind::refused, 0, call.address.shown() + ": " + why);
 }
 
 } // namespace openrt::cluster

@@ -1,6 +1,6 @@
-// wire_impl.h: what the Wire is made of: those it calls (a socket each, so that nothing old waits
-// in a queue after a loss), those who call (one socket for all), and the peers that come of both.
-// For wire.cpp, wire_calls.cpp and wire_peers.cpp alone.
+// wire_impl.h: the parts of the Wire: outgoing calls (a socket each, so that no old messages wait
+// in a queue after a loss), one listening socket for all callers, and the peers behind both. Only
+// for wire.cpp, wire_calls.cpp and wire_peers.cpp.
 #pragma once
 
 #include <deque>
@@ -16,33 +16,34 @@
 namespace openrt::cluster {
 
 struct Wire::Impl {
-  // Somebody to call, again and again.
+  // An address that is called again after every loss.
   struct Call {
     Address address;
     std::unique_ptr<Lookup> lookup;
     std::optional<zmq::socket_t> socket;
-    std::optional<Monitor> monitor; // of it, so it is closed first
-    double next = 0, deadline = 0;  // when to try; when an attempt has failed
-    uint32_t failures = 0;          // in a row
-    uint32_t byes = 0; // connections in a row that the other side has soon ended by a Bye
-    double joined = 0; // when the connection stood
+    std::optional<Monitor> monitor; // monitors `socket` and is closed first
+    double next = 0, deadline = 0;  // time of the next attempt; time limit of this one
+    uint32_t failures = 0;          // failed attempts in a row
+    // Connections in a row that the other side ended soon with a Bye.
+    uint32_t byes = 0;
+    double joined = 0; // when the connection was established
     int fd = -1;
-    Peer peer = 0; // once it has answered
-    std::string told;
+    Peer peer = 0;           // set once the other side has answered
+    std::string lastFailure; // the failure reported last
   };
 
   struct PeerState {
     Peer id = 0;
-    Call* call = nullptr; // null: it has called
-    std::string route;    // then its name at the socket
+    Call* call = nullptr; // null if the peer has called us
+    std::string route;    // routing id at the listening socket, for callers
     std::string address;
     int fd = -1;
-    bool met = false;  // `joined` was told
-    bool gone = false; // has left as far as others know; what it says is not heard
-    double told = 0;   // a Bye, last time
-    double heard = 0, said = 0, asked = 0, measured = 0;
-    uint64_t messagesSent = 0, messagesReceived = 0; // numbers of the last ones (seal.h)
-    Flow flow;                                       // of a message that has not come whole
+    bool joinReported = false; // `joined` was reported
+    bool hasLeft = false;      // reported as left; its messages are ignored
+    double byeSentAt = 0;      // when the last Bye was sent
+    double lastReceivedAt = 0, lastSentAt = 0, beatSentAt = 0, latencyMeasuredAt = 0;
+    uint64_t messagesSent = 0, messagesReceived = 0; // numbers of the last messages (seal.h)
+    Flow flow;                                       // detects a message that is still arriving
     int badOnes = 0;
     Traffic traffic;
   };
@@ -52,15 +53,15 @@ struct Wire::Impl {
 
   // wire.cpp
   Event receive(double seconds);
-  void keep(double now);
+  void runTimers(double now);
   void poll(double seconds);
-  void push(Event::Kind kind, Peer peer, std::string text);
+  void pushEvent(Event::Kind kind, Peer peer, std::string text);
   void refused(const std::string& text);
 
   // wire_calls.cpp
   void startCall(Call& call, double now);
   void dial(Call& call, const Address& address, double now);
-  void keepCalls(double now);
+  void updateCalls(double now);
   void readCall(Call& call, double now);
   void hangUp(Call& call, double delay, bool sayBye);
   void failCall(Call& call, const std::string& why, double now);
@@ -73,33 +74,33 @@ struct Wire::Impl {
   PeerState& caller(const std::string& route, int fd, const std::string& address, double now);
   bool readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std::string& address,
                   bool& tooMany);
-  void take(PeerState& peer, Frames&& frames, bool tooMany, double now);
+  void handleMessage(PeerState& peer, Frames&& frames, bool tooMany, double now);
   void countBad(PeerState& peer, const std::string& why, double now);
-  void shutOut(PeerState& peer, const std::string& why, double now);
+  void block(PeerState& peer, const std::string& why, double now);
   bool sendTo(PeerState& peer, Frames&& frames, double now);
   void sayBye(PeerState& peer, const std::string& why, double now);
-  // Tells it, and forgets or blocks the peer. bye: it has said so.
+  // Reports that the peer has left, and forgets or blocks it. bye: the peer has sent a Bye.
   void leave(PeerState& peer, const std::string& why, double now, bool bye = false);
   void forget(Peer peer);
-  void keepPeers(double now);
+  void checkPeers(double now);
 
   KeyRing keys;
   double heartbeat, silence;
   zmq::context_t context;
-  std::optional<Gate> gate;
-  std::deque<Call> calls; // addresses stay
-  std::optional<zmq::socket_t> door;
-  std::optional<Monitor> doorMonitor;
+  std::optional<Authenticator> authenticator;
+  std::deque<Call> calls; // a deque, because addresses must stay valid
+  std::optional<zmq::socket_t> listenSocket;
+  std::optional<Monitor> listenMonitor;
   std::map<Peer, PeerState> peers;
   std::unordered_map<std::string, Peer> routes;
   std::map<int, Peer> callersByFd;
-  std::vector<Peer>
-      closing; // callers whose connection is closed; what they have sent before counts
+  // Callers whose connection is closed. Messages they sent before still count.
+  std::vector<Peer> closing;
   std::map<Peer, Traffic> former;
   Peer lastPeer = 0;
   std::deque<Event> events;
-  std::map<std::string, double> refusals; // when they were told
-  double kept = 0;
+  std::map<std::string, double> refusals; // reasons and when they were reported
+  double timersRunAt = 0;
   int wakeFd = -1;
 };
 

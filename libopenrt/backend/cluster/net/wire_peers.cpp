@@ -1,6 +1,6 @@
-// wire_peers.cpp: peers: what they say, whether they live, and the socket of those who call by
-// themselves. A caller's connection cannot be closed by us (ZeroMQ has no such call): one that is
-// shut out is not listened to any more. [wire]
+// wire_peers.cpp: peers: their messages, their heartbeats, and the socket of the callers. The
+// connection of a caller cannot be closed from here (ZeroMQ has no such call), so messages of a
+// blocked caller are ignored. [wire]
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -13,15 +13,16 @@ namespace openrt::cluster {
 namespace {
 
 constexpr int mostBad = 3;
-constexpr size_t mostAtOnce = 64,
-                 bytesAtOnce = size_t(64) << 20; // that are read before it is another socket's turn
-constexpr size_t smallFrame = 4096;              // copied, not handed over
+// Limits on what is read before another socket's turn.
+constexpr size_t mostAtOnce = 64, bytesAtOnce = size_t(64) << 20;
+constexpr size_t smallFrame = 4096; // smaller frames are copied instead of handed over
 constexpr size_t mostFormer = 4096;
-constexpr double measureAgain =
-    1; // seconds after which the way there and back is measured though there is traffic
-constexpr double tellAgain = 1; // seconds after which one that has left is told so again
+// Seconds after which the round trip is measured although there is traffic.
+constexpr double measureAgain = 1;
+// Seconds after which a peer that has left is told so again.
+constexpr double tellAgain = 1;
 
-// A frame as ZeroMQ's; large ones are handed over, and freed when they are sent.
+// Makes a ZeroMQ message. Large frames are handed over without a copy and freed after sending.
 zmq::message_t messageOf(std::vector<std::byte>&& frame) {
   if (frame.size() <= smallFrame) return zmq::message_t(frame.data(), frame.size());
   auto* owned = new std::vector<std::byte>(std::move(frame));
@@ -39,10 +40,10 @@ Wire::Impl::PeerState* Wire::Impl::find(Peer peer) {
 
 void Wire::Impl::listen(const std::string& where) {
   const Address address = Address::parse(where);
-  door.emplace(makeSocket(context, zmq::socket_type::router, keys, ""));
-  doorMonitor.emplace(context, *door, !keys.empty());
+  listenSocket.emplace(makeSocket(context, zmq::socket_type::router, keys, ""));
+  listenMonitor.emplace(context, *listenSocket, !keys.empty());
   try {
-    door->bind(address.endpoint());
+    listenSocket->bind(address.endpoint());
   } catch (const zmq::error_t& e) {
     throw std::system_error(e.num(), std::generic_category(),
                             "cannot listen at " + address.shown());
@@ -50,11 +51,11 @@ void Wire::Impl::listen(const std::string& where) {
 }
 
 void Wire::Impl::watchCallers() {
-  while (const std::optional<Happening> h = doorMonitor->next()) {
-    if (h->kind == Happening::Kind::failed)
-      refused("somebody who calls " + shownEndpoint(door->get(zmq::sockopt::last_endpoint)) + ": " +
-              h->why);
-    if (h->kind != Happening::Kind::disconnected) continue;
+  while (const std::optional<ConnectionEvent> h = listenMonitor->next()) {
+    if (h->kind == ConnectionEvent::Kind::failed)
+      refused("somebody who calls " +
+              shownEndpoint(listenSocket->get(zmq::sockopt::last_endpoint)) + ": " + h->why);
+    if (h->kind != ConnectionEvent::Kind::disconnected) continue;
     const auto found = callersByFd.find(h->fd);
     if (found == callersByFd.end()) continue;
     closing.push_back(found->second);
@@ -62,15 +63,15 @@ void Wire::Impl::watchCallers() {
   }
 }
 
-// First who has gone, then what there is to read: so all that somebody has sent before it went
-// counts, but not that of the next one who happens to have the same number of a file.
+// Reads the closed connections first, then the messages. So all messages sent before a close count,
+// but none of a new connection that got the same file descriptor.
 void Wire::Impl::readCallers(double now) {
   watchCallers();
   size_t bytes = 0;
   bool drained = false;
   for (size_t n = 0; n < mostAtOnce && bytes < bytesAtOnce && !drained; n++) {
     zmq::message_t route;
-    if (!door->recv(route, zmq::recv_flags::dontwait)) {
+    if (!listenSocket->recv(route, zmq::recv_flags::dontwait)) {
       drained = true;
       break;
     }
@@ -78,14 +79,15 @@ void Wire::Impl::readCallers(double now) {
     int fd = -1;
     std::string address;
     bool tooMany = false;
-    if (!route.more() || !readFrames(*door, frames, fd, address, tooMany)) continue;
+    if (!route.more() || !readFrames(*listenSocket, frames, fd, address, tooMany)) continue;
     bytes += bytesOf(frames);
-    take(caller(route.to_string(), fd, address, now), std::move(frames), tooMany, now);
+    handleMessage(caller(route.to_string(), fd, address, now), std::move(frames), tooMany, now);
   }
   if (!drained) return;
   for (Peer id : std::exchange(closing, {}))
     if (PeerState* peer = find(id)) {
-      if (!peer->gone && peer->met) push(Event::Kind::left, id, "the connection was closed");
+      if (!peer->hasLeft && peer->joinReported)
+        pushEvent(Event::Kind::left, id, "the connection was closed");
       forget(id);
     }
 }
@@ -95,21 +97,21 @@ Wire::Impl::PeerState& Wire::Impl::caller(const std::string& route, int fd,
   if (const auto found = routes.find(route); found != routes.end()) {
     PeerState& known = peers.at(found->second);
     if (known.fd == fd) return known;
-    closing.push_back(known.id); // another connection that gives itself the same name
+    closing.push_back(known.id); // another connection uses the same routing id
   }
-  watchCallers(); // whoever had this file before has been told of by now
+  watchCallers(); // reports the earlier owner of this descriptor first
   PeerState& peer = peers[++lastPeer];
   peer.id = lastPeer;
   peer.route = route;
   peer.fd = fd;
   peer.address = address.empty() ? "this machine" : address;
-  peer.heard = now;
+  peer.lastReceivedAt = now;
   routes[route] = peer.id;
   if (fd >= 0) callersByFd[fd] = peer.id;
   return peer;
 }
 
-// One message; of a socket that names senders the name has been read. False: there is none.
+// Reads one message; the routing id, if any, has been read before. Returns false if there is none.
 bool Wire::Impl::readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std::string& address,
                             bool& tooMany) {
   for (bool more = true; more;) {
@@ -121,7 +123,7 @@ bool Wire::Impl::readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std:
       if (const char* place = zmq_msg_gets(part.handle(), "Peer-Address"))
         address = shownEndpoint(place);
     }
-    if (frames.size() > limits::frames) { // and the seal
+    if (frames.size() > limits::frames) { // the seal is the extra frame
       tooMany = true;
       continue;
     }
@@ -131,22 +133,23 @@ bool Wire::Impl::readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std:
   return true;
 }
 
-void Wire::Impl::take(PeerState& peer, Frames&& frames, bool tooMany, double now) {
-  if (peer.gone) {
-    if (now - peer.told > tellAgain)
+void Wire::Impl::handleMessage(PeerState& peer, Frames&& frames, bool tooMany, double now) {
+  if (peer.hasLeft) {
+    if (now - peer.byeSentAt > tellAgain)
       sayBye(peer, "this side was not heard of for too long; say Hello again", now);
     return;
   }
-  peer.heard = now;
+  peer.lastReceivedAt = now;
   peer.traffic.received += bytesOf(frames);
   peer.messagesReceived++;
   uint8_t kind = 0;
   if (tooMany) return countBad(peer, "too many frames", now);
   if (!unseal(frames, peer.messagesReceived))
-    return shutOut(peer, "a message was lost, repeated or damaged on the way", now);
+    return block(peer, "a message was lost, repeated or damaged on the way", now);
   if (std::string why = verifyHeader(frames[0], kind); !why.empty())
     return countBad(peer, why, now);
-  if (!std::exchange(peer.met, true)) push(Event::Kind::joined, peer.id, peer.address);
+  if (!std::exchange(peer.joinReported, true))
+    pushEvent(Event::Kind::joined, peer.id, peer.address);
   if (wire::Any(kind) != wire::Any::Beat && wire::Any(kind) != wire::Any::Bye) {
     Event& event = events.emplace_back();
     event.kind = Event::Kind::message;
@@ -165,24 +168,24 @@ void Wire::Impl::take(PeerState& peer, Frames&& frames, bool tooMany, double now
   } else if (const double way = now - beat.sent; way >= 0 && way < 600) {
     constexpr double fresh = 0.2;
     peer.traffic.latency =
-        peer.measured == 0 ? way : peer.traffic.latency * (1 - fresh) + way * fresh;
-    peer.measured = now;
+        peer.latencyMeasuredAt == 0 ? way : peer.traffic.latency * (1 - fresh) + way * fresh;
+    peer.latencyMeasuredAt = now;
   }
 }
 
 void Wire::Impl::countBad(PeerState& peer, const std::string& why, double now) {
   if (++peer.badOnes < mostBad) return;
-  shutOut(peer, "three messages that are none, the last one: " + why, now);
+  block(peer, "three messages that are none, the last one: " + why, now);
 }
 
-void Wire::Impl::shutOut(PeerState& peer, const std::string& why, double now) {
+void Wire::Impl::block(PeerState& peer, const std::string& why, double now) {
   sayBye(peer, why, now);
-  if (!peer.met) refused(peer.address + ": " + why);
+  if (!peer.joinReported) refused(peer.address + ": " + why);
   leave(peer, why, now);
 }
 
 bool Wire::Impl::sendTo(PeerState& peer, Frames&& frames, double now) {
-  zmq::socket_t& socket = peer.call ? *peer.call->socket : *door;
+  zmq::socket_t& socket = peer.call ? *peer.call->socket : *listenSocket;
   seal(frames, peer.messagesSent + 1);
   const uint64_t bytes = bytesOf(frames);
   const auto flags = [&](size_t i) {
@@ -199,33 +202,35 @@ bool Wire::Impl::sendTo(PeerState& peer, Frames&& frames, double now) {
     }
     if (!peer.call) socket.send(header, flags(0));
     for (size_t i = 1; i < frames.size(); i++)
-      socket.send(messageOf(std::move(frames[i])), flags(i)); // goes where the first went
-  } catch (const zmq::error_t&) { return false; } // no way there any more: the monitor tells
+      socket.send(messageOf(std::move(frames[i])), flags(i)); // follows the first frame
+    // The connection is lost; the monitor will report it.
+  } catch (const zmq::error_t&) { return false; }
   peer.messagesSent++;
   peer.traffic.sent += bytes;
-  peer.said = now;
+  peer.lastSentAt = now;
   return true;
 }
 
 void Wire::Impl::sayBye(PeerState& peer, const std::string& why, double now) {
   sendTo(peer, encode(0, message::Bye{why}), now);
-  peer.told = now;
+  peer.byeSentAt = now;
 }
 
-// By itself or because we think so. A caller that is still connected is kept in mind, so that it
-// can be told if it comes to life.
+// Ends a peer, because it has left or because this side thinks so. A caller that is still connected
+// is remembered, so that it can be told if it sends again.
 void Wire::Impl::leave(PeerState& peer, const std::string& why, double now, bool bye) {
   constexpr double again = 0.1, shunned = 4, afterJunk = 5, soon = 10; // seconds
-  if (peer.gone) return;
-  if (peer.met) push(Event::Kind::left, peer.id, why);
+  if (peer.hasLeft) return;
+  if (peer.joinReported) pushEvent(Event::Kind::left, peer.id, why);
   if (!peer.call) {
-    peer.gone = true;
-    if (bye) peer.told = now + shunned; // it knows
+    peer.hasLeft = true;
+    if (bye) peer.byeSentAt = now + shunned; // it knows that it has left
     return;
   }
   Call& call = *peer.call;
   const bool junk = peer.badOnes >= mostBad;
-  // Who ends may come again at once; who does not want us is not to be asked all the time.
+  // A peer that ends may be called again at once. One that refuses us is called less and less
+  // often.
   call.byes = bye && now - call.joined < soon ? std::min(call.byes + 1, 10u) : 0;
   forget(peer.id);
   hangUp(call,
@@ -248,21 +253,22 @@ void Wire::Impl::forget(Peer peer) {
   peers.erase(found);
 }
 
-void Wire::Impl::keepPeers(double now) {
+void Wire::Impl::checkPeers(double now) {
   std::vector<PeerState*> silent;
   for (auto& [id, peer] : peers) {
-    if (peer.gone) continue;
-    const bool measure = now - std::max(peer.asked, peer.measured) >= measureAgain;
-    if (now - peer.said >= heartbeat || measure) {
+    if (peer.hasLeft) continue;
+    const bool measure = now - std::max(peer.beatSentAt, peer.latencyMeasuredAt) >= measureAgain;
+    if (now - peer.lastSentAt >= heartbeat || measure) {
       sendTo(peer, encode(0, message::Beat{now, false}), now);
-      peer.asked = now;
+      peer.beatSentAt = now;
     }
     peer.flow.look(peer.fd, now, silence);
-    if (now - peer.heard > silence && !peer.flow.flowing()) silent.push_back(&peer);
+    if (now - peer.lastReceivedAt > silence && !peer.flow.flowing()) silent.push_back(&peer);
   }
   char text[64];
   for (PeerState* peer : silent) {
-    std::snprintf(text, sizeof text, "nothing was heard of it for %.2g s", now - peer->heard);
+    std::snprintf(text, sizeof text, "nothing was heard of it for %.2g s",
+                  now - peer->lastReceivedAt);
     leave(*peer, text, now);
   }
 }

@@ -22,7 +22,7 @@ void ArrayCache::put(const Hash& hash, ArrayPtr array) {
 void ArrayCache::trim() {
   for (auto age = ages_.begin(); bytes_ > limit_ && age != ages_.end();) {
     const auto entry = entries_.find(*age);
-    if (entry->second.array.use_count() > 1) { // of the scene, or of one that comes
+    if (entry->second.array.use_count() > 1) { // used by the scene or by one that waits for arrays
       ++age;
       continue;
     }
@@ -38,11 +38,11 @@ struct ArrayStream::Impl {
     void operator()(XXH3_state_t* s) const { XXH3_freeState(s); }
   };
   Hash hash;
-  std::shared_ptr<Array>
-      array; // none before the first piece, which says how many bytes there are of it
+  // Null before the first piece, which tells the packed size.
+  std::shared_ptr<Array> array;
   uint64_t bytes = 0, written = 0, stored = 0, received = 0;
-  std::unique_ptr<ZSTD_DStream, Free>
-      zstd; // a hundred thousand bytes, so they are made for those that come only
+  // About 100 kB, so it is made only for arrays that are really sent.
+  std::unique_ptr<ZSTD_DStream, Free> zstd;
   std::unique_ptr<XXH3_state_t, Free> state;
   bool ended = false;
 
@@ -76,7 +76,7 @@ std::string ArrayStream::put(const message::Piece& piece) {
     const size_t rest = ZSTD_decompressStream(s.zstd.get(), &out, &in);
     if (ZSTD_isError(rest)) return std::string("zstd: ") + ZSTD_getErrorName(rest);
     s.ended = rest == 0;
-    if (in.pos == before && out.pos == filled) break; // more than the array can hold
+    if (in.pos == before && out.pos == filled) break; // the data exceeds the array
   }
   XXH3_128bits_update(s.state.get(), s.array->data() + s.written, out.pos - s.written);
   s.written = out.pos;

@@ -1,6 +1,6 @@
-// array_cache.h: a worker's arrays by what they hold, and how they come piece by piece. One that
-// the scene uses is never thrown away; of the others, those that were of no use for longest go
-// first. One thread's.
+// array_cache.h: a worker's arrays by content hash, and arrays that arrive piece by piece. Arrays
+// used by the scene are never dropped; of the others, the least recently used are dropped first.
+// One thread.
 #pragma once
 
 #include <list>
@@ -14,10 +14,10 @@ namespace openrt::cluster {
 class ArrayCache {
  public:
   explicit ArrayCache(size_t limit) : limit_(limit) {}
-  // Null: it is not there, or is of another size.
+  // Returns null if it is not cached or has another size.
   ArrayPtr find(const Hash& hash, uint64_t bytes);
   void put(const Hash& hash, ArrayPtr array);
-  void trim(); // to the limit, if what is in use leaves it
+  void trim(); // drops unused arrays down to the limit
   size_t bytes() const { return bytes_; }
   size_t count() const { return entries_.size(); }
 
@@ -27,21 +27,22 @@ class ArrayCache {
     std::list<Hash>::iterator age;
   };
   std::map<Hash, Entry> entries_;
-  std::list<Hash> ages_; // the one last asked for at the end
+  std::list<Hash> ages_; // least recently used first
   size_t limit_, bytes_ = 0;
 };
 
-// An array that comes: unpacked as its pieces arrive, in their order.
+// An array that is being received; pieces are unpacked in the order in which they arrive.
 class ArrayStream {
  public:
   ArrayStream(const Hash& hash, uint64_t bytes);
   ~ArrayStream();
   ArrayStream(ArrayStream&&) noexcept;
-  // Empty, or what is wrong with the piece.
+  // Adds a piece. Returns an empty string, or what is wrong with the piece.
   std::string put(const message::Piece& piece);
-  bool begun() const; // memory has been taken for it
+  bool begun() const; // its memory has been allocated
   bool complete() const;
-  ArrayPtr take(); // once complete; null: not what its name says
+  // Call once complete. Returns null if the content does not match the hash.
+  ArrayPtr take();
 
  private:
   struct Impl;

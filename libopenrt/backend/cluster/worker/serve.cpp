@@ -1,4 +1,4 @@
-// serve.cpp: Tasks for the session wait in one queue, what it has to say in another.
+// serve.cpp: tasks for the session wait in one queue, its messages to the wire in another.
 #include "backend/cluster/worker/serve.h"
 
 #include <atomic>
@@ -16,16 +16,16 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr size_t mostWaiting = size_t(512)
-                               << 20; // bytes that the session has not read; then the wire waits
-constexpr size_t overhead = 512;      // about, of a message that waits
-constexpr double idle = 0.05,
-                 hurry = 0.001; // seconds to wait for messages; while something could not be sent
+// Bytes that the session has not read. Above this limit nothing is received.
+constexpr size_t mostWaiting = size_t(512) << 20;
+constexpr size_t overhead = 512; // approximate size of a waiting message besides its frames
+// Seconds to wait for messages; `hurry` while a message could not be sent.
+constexpr double idle = 0.05, hurry = 0.001;
 
 } // namespace
 
-struct WorkerService::Impl final : WorkerSink, Machine {
-  struct Saying { // frames to a peer, or something else to do with the wire
+struct WorkerService::Impl final : WorkerSink, JobExecutor {
+  struct WireTask { // frames for a peer, or another action on the wire
     Peer peer = 0;
     Frames frames;
     std::function<void(Wire&)> act;
@@ -33,7 +33,7 @@ struct WorkerService::Impl final : WorkerSink, Machine {
 
   explicit Impl(const ServeOptions& o) : options(o), wire(o.wire) {
     options.backend.log = [](int level, const char* text, void* user) {
-      static_cast<Impl*>(user)->backendSays(level, text);
+      static_cast<Impl*>(user)->backendLog(level, text);
     };
     options.backend.logUser = this;
     core = std::make_unique<WorkerCore>(options.backend, *this);
@@ -48,14 +48,14 @@ struct WorkerService::Impl final : WorkerSink, Machine {
     w.log = options.log;
     worker = std::make_unique<Worker>(w, link(), *this);
   }
-  ~Impl() override { core.reset(); } // nothing is told any more
+  ~Impl() override { core.reset(); } // stops all callbacks first
 
   WorkerLink link() {
     const auto does = [this](Peer peer, std::function<void(Wire&)> act) {
-      say({peer, {}, std::move(act)});
+      postToWire({peer, {}, std::move(act)});
     };
     return {[this](Peer peer, Frames&& frames) {
-              say({peer, std::move(frames), {}});
+              postToWire({peer, std::move(frames), {}});
             },
             [this, does](Peer peer, const std::string& why) {
               does(peer, [=, this](Wire& w) {
@@ -73,7 +73,7 @@ struct WorkerService::Impl final : WorkerSink, Machine {
             }};
   }
 
-  // To the session. [any]
+  // [any] Posts a task to the session.
   void post(std::function<void(Worker&)> task, size_t bytes = 0) {
     {
       const std::lock_guard lock(mutex);
@@ -82,20 +82,20 @@ struct WorkerService::Impl final : WorkerSink, Machine {
     }
     changed.notify_one();
   }
-  // To the wire. [session]
-  void say(Saying&& saying) {
+  // [session] Posts a message or action to the wire.
+  void postToWire(WireTask&& wireTask) {
     {
       const std::lock_guard lock(mutex);
-      sayings.push_back(std::move(saying));
+      wireTasks.push_back(std::move(wireTask));
     }
     wire.wake();
   }
-  void backendSays(int level, const std::string& text) {
+  void backendLog(int level, const std::string& text) {
     if (options.log) options.log(level, text);
     post([=](Worker& w) { w.log(level, text); });
   }
 
-  // WorkerSink: on the core's threads.
+  // WorkerSink, called on the core's threads.
   void ready(Epoch epoch, const Prepared& prepared) override {
     post([=](Worker& w) { w.ready(epoch, prepared); });
   }
@@ -107,7 +107,7 @@ struct WorkerService::Impl final : WorkerSink, Machine {
     post([=](Worker& w) { w.done(epoch, job, std::move(*kept)); });
   }
 
-  // Machine: for the session.
+  // JobExecutor, called by the session.
   void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare) override {
     core->scene(epoch, std::move(commit), whole, prepare);
   }
@@ -136,21 +136,23 @@ struct WorkerService::Impl final : WorkerSink, Machine {
     }
   }
 
-  // What the session has said, in its order, as far as the queues take it.
+  // Sends the session's messages in order, as far as the queues accept them. Returns true if all
+  // were sent.
   bool flush() {
     for (;;) {
-      Saying saying;
+      WireTask wireTask;
       {
         const std::lock_guard lock(mutex);
-        if (sayings.empty()) return true;
-        saying = std::move(sayings.front());
-        sayings.pop_front();
+        if (wireTasks.empty()) return true;
+        wireTask = std::move(wireTasks.front());
+        wireTasks.pop_front();
       }
-      if (saying.act) {
-        saying.act(wire);
-      } else if (!wire.send(saying.peer, std::move(saying.frames)) && alive.contains(saying.peer)) {
+      if (wireTask.act) {
+        wireTask.act(wire);
+      } else if (!wire.send(wireTask.peer, std::move(wireTask.frames)) &&
+                 alive.contains(wireTask.peer)) {
         const std::lock_guard lock(mutex);
-        sayings.push_front(std::move(saying));
+        wireTasks.push_front(std::move(wireTask));
         return false;
       }
     }
@@ -166,7 +168,7 @@ struct WorkerService::Impl final : WorkerSink, Machine {
           [=, address = std::move(event.text)](Worker& w) { w.joined(peer, address, now); });
     case Event::Kind::left: {
       const std::lock_guard lock(mutex);
-      std::erase_if(sayings, [&](const Saying& s) { return s.peer == peer; });
+      std::erase_if(wireTasks, [&](const WireTask& s) { return s.peer == peer; });
       break;
     }
     case Event::Kind::message: {
@@ -199,11 +201,11 @@ struct WorkerService::Impl final : WorkerSink, Machine {
       }
     }
     {
-      const std::lock_guard lock(mutex); // so that nobody misses it
+      const std::lock_guard lock(mutex); // no waiter can miss the notification
     }
     changed.notify_all();
     session.join();
-    flush(); // the last words
+    flush(); // last messages
   }
 
   size_t bytesWaiting() {
@@ -221,9 +223,9 @@ struct WorkerService::Impl final : WorkerSink, Machine {
   std::condition_variable changed;
   std::deque<std::pair<std::function<void(Worker&)>, size_t>> tasks;
   size_t waiting = 0;
-  std::deque<Saying> sayings;
+  std::deque<WireTask> wireTasks;
   std::atomic<bool> stopping{false}, serving{false};
-  std::set<Peer> alive; // as the wire has it
+  std::set<Peer> alive; // peers that the wire reports as connected
   Wire wire;
   std::unique_ptr<Worker> worker;
   std::unique_ptr<WorkerCore> core;

@@ -1,6 +1,6 @@
-// serve.h: a worker, whole: the wire, the session and the machine that does the jobs, put together.
-// In openrt-worker, and in tests. Three kinds of threads: run() is on its caller's, which does
-// nothing but move messages, so that heartbeats never wait; the session has one; jobs have theirs.
+// serve.h: a complete worker: the wire, the session (Worker) and the jobs (WorkerCore). Used by
+// openrt-worker and by tests. Three kinds of threads: the caller of run() only moves messages, so
+// that heartbeats are never delayed; the session has one thread; jobs have their own.
 #pragma once
 
 #include <functional>
@@ -14,24 +14,24 @@ namespace openrt::cluster {
 
 struct ServeOptions {
   WireOptions wire;
-  BackendOptions backend; // threads, shaders; its log is not used
+  BackendOptions backend; // threads and shaders; its log is not used
   size_t cacheBytes = size_t(1) << 30;
-  bool once = false;                                           // end with the first master
-  std::function<void(int level, const std::string& text)> log; // [any thread], for people
+  bool once = false;                                           // stop after the first master
+  std::function<void(int level, const std::string& text)> log; // [any thread] messages for the user
 };
 
 class WorkerService {
  public:
-  // Throws std::runtime_error as Wire and makeLocalBackend do.
+  // Throws std::runtime_error like Wire and makeLocalBackend.
   explicit WorkerService(const ServeOptions& options);
   ~WorkerService();
   WorkerService(const WorkerService&) = delete;
   WorkerService& operator=(const WorkerService&) = delete;
 
-  std::string address() const; // where it listens, with the port
-  void run();                  // until stop()
+  std::string address() const; // returns the listening address with its port
+  void run();                  // returns after stop()
   void stop();                 // [any], also from a signal handler
-  bool serving() const;        // [any] a master is there
+  bool serving() const;        // [any] returns true while a master is connected
 
  private:
   struct Impl;

@@ -1,4 +1,5 @@
-// worker.cpp: a worker's session: masters come and go, jobs, results. Scenes: worker_scenes.cpp.
+// worker.cpp: a worker's session: masters connect and leave; jobs and results. Scenes:
+// worker_scenes.cpp.
 #include "backend/cluster/worker/worker.h"
 
 #include <algorithm>
@@ -11,28 +12,30 @@ namespace openrt::cluster {
 namespace {
 
 constexpr double patience = 5;       // seconds that a master may take to answer
-constexpr size_t mostJobs = 1 << 16; // that are out
-constexpr size_t mostFrames = 256;   // that are prepared and not dropped
+constexpr size_t mostJobs = 1 << 16; // outstanding jobs
+constexpr size_t mostFrames = 256;   // frames that are prepared and not dropped
 
 } // namespace
 
-Worker::Worker(const WorkerOptions& options, WorkerLink link, Machine& machine)
-    : options_(options), link_(std::move(link)), machine_(machine), cache_(options.cacheBytes),
+Worker::Worker(const WorkerOptions& options, WorkerLink link, JobExecutor& executor)
+    : options_(options), link_(std::move(link)), executor_(executor), cache_(options.cacheBytes),
       libraries_(options.shaders) {}
 
 Worker::~Worker() = default;
 
-void Worker::tell(int level, const std::string& text) const {
+void Worker::report(int level, const std::string& text) const {
   if (options_.log) options_.log(level, text);
 }
 
-void Worker::say(message::Body&& body) { link_.send(peer_, encode(session_, std::move(body))); }
+void Worker::sendMessage(message::Body&& body) {
+  link_.send(peer_, encode(session_, std::move(body)));
+}
 
 void Worker::joined(Peer peer, const std::string& address, double now) {
   if (peer_ != 0) return link_.close(peer, "busy: this worker serves another master");
   peer_ = peer;
   address_ = address;
-  asked_ = now;
+  helloSentAt_ = now;
   link_.send(peer, encode(0, message::Hello(options_.self)));
 }
 
@@ -40,25 +43,23 @@ void Worker::left(Peer peer, const std::string& why, double) {
   if (peer != peer_) return;
   const std::string text =
       "master " + address_ + (serving() ? " has left: " : " has not taken us: ") + why;
-  tell(serving()       ? 1
-       : text == told_ ? 0
-                       : 2,
-       text); // one that asks again and again is heard of once
-  told_ = text;
+  // A master that calls again and again is reported once.
+  report(serving() ? 1 : text == lastReport_ ? 0 : 2, text);
+  lastReport_ = text;
   endSession();
 }
 
-// What is out is given up; arrays stay.
+// Gives up outstanding jobs; keeps the arrays.
 void Worker::endSession() {
   if (serving()) {
-    machine_.drop(newest_);
+    executor_.drop(newest_);
     link_.pace(0, 0);
   }
   peer_ = 0;
   session_ = 0;
   base_ = newest_;
   logged_ = 0;
-  coming_.clear();
+  pendingScenes_.clear();
   streams_.clear();
   frames_.clear();
   leases_.clear();
@@ -70,19 +71,19 @@ void Worker::endSession() {
 }
 
 void Worker::advance(double now) {
-  if (peer_ == 0 || serving() || now - asked_ < patience) return;
+  if (peer_ == 0 || serving() || now - helloSentAt_ < patience) return;
   link_.close(peer_, "no Welcome has come");
   endSession();
 }
 
 void Worker::giveUp(const std::string& why) {
-  tell(3, "master " + address_ + ": " + why);
+  report(3, "master " + address_ + ": " + why);
   link_.close(peer_, why);
   endSession();
 }
 
 void Worker::bad(const std::string& why) {
-  tell(2, "master " + address_ + " has sent nonsense: " + why);
+  report(2, "master " + address_ + " has sent nonsense: " + why);
   link_.bad(peer_, why);
 }
 
@@ -90,9 +91,10 @@ void Worker::message(Peer peer, Frames&& frames, double) {
   if (peer != peer_) return;
   Message m;
   if (const std::string why = decode(std::move(frames), m);
-      !why.empty()) { // nobody knows what it should have been
+      // The intended message is unknown.
+      !why.empty()) {
     const std::string text = "a message that cannot be read: " + why;
-    tell(2, "master " + address_ + " has sent " + text);
+    report(2, "master " + address_ + " has sent " + text);
     link_.close(peer_, text);
     return endSession();
   }
@@ -101,7 +103,8 @@ void Worker::message(Peer peer, Frames&& frames, double) {
     if (hail->session == 0 || m.session != hail->session) return bad("a Welcome without a session");
     return welcome(*hail);
   }
-  if (!serving() || m.session != session_) return; // of a session that has ended
+  // The message belongs to a session that has ended.
+  if (!serving() || m.session != session_) return;
   struct {
     Worker& w;
     void operator()(message::Scene& m) const { w.scene(std::move(m)); }
@@ -132,17 +135,17 @@ void Worker::welcome(const message::Welcome& m) {
   masters_++;
   broken_ = "no scene has come yet";
   link_.pace(m.heartbeat, m.silence);
-  tell(1, "serving " + address_);
+  report(1, "serving " + address_);
 }
 
 void Worker::jobs(const message::Jobs& m) {
   if (m.epoch == 0 || m.epoch > newest_ - base_) return bad("jobs of a scene that has not come");
   const Epoch epoch = base_ + m.epoch;
   const auto frame = frames_.find(epoch);
-  if (frame == frames_.end()) return; // dropped
+  if (frame == frames_.end()) return; // the frame was dropped
   const edit::FrameSettingsT& f = frame->second;
   const uint64_t pixels = uint64_t(f.width) * f.height;
-  constexpr uint64_t mostSamples = uint64_t(1) << 17; // of a pixel
+  constexpr uint64_t mostSamples = uint64_t(1) << 17; // per pixel
   for (const LeasedJob& job : m.jobs) {
     const bool samples = job.job.kind == Job::Kind::samples;
     if (samples ? job.job.number >= pixels || uint64_t(job.job.first) + job.job.count > mostSamples
@@ -154,12 +157,12 @@ void Worker::jobs(const message::Jobs& m) {
   if (out > mostJobs) return bad("more jobs than a worker takes");
   for (const LeasedJob& job : m.jobs)
     if (!leases_[epoch].insert(job.lease).second) return bad("a lease that is out already");
-  machine_.work(epoch, m.jobs);
+  executor_.work(epoch, m.jobs);
 }
 
 void Worker::drop(const message::Drop& m) {
   const Epoch epoch = base_ + std::min(m.epoch, newest_ - base_);
-  machine_.drop(epoch);
+  executor_.drop(epoch);
   frames_.erase(frames_.begin(), frames_.upper_bound(epoch));
   leases_.erase(leases_.begin(), leases_.upper_bound(epoch));
 }
@@ -170,7 +173,7 @@ void Worker::answered(Epoch epoch) {
 }
 
 void Worker::ready(Epoch epoch, const Prepared& prepared) {
-  if (epoch <= base_ || !serving()) return; // of a former master
+  if (epoch <= base_ || !serving()) return; // from the session of a former master
   answered(epoch);
   frames_[epoch] = prepared.frame;
   if (frames_.size() > mostFrames) frames_.erase(frames_.begin());
@@ -179,21 +182,21 @@ void Worker::ready(Epoch epoch, const Prepared& prepared) {
   m.facts = prepared.facts;
   m.transport = prepared.frame.transport;
   m.stats = prepared.stats;
-  say(std::move(m));
+  sendMessage(std::move(m));
 }
 
 void Worker::failed(Epoch epoch, const std::string& why) {
   if (epoch <= base_ || !serving()) return;
   answered(epoch);
   leases_.erase(epoch);
-  say(message::Failed{epoch - base_, why});
+  sendMessage(message::Failed{epoch - base_, why});
 }
 
 void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
   if (epoch <= base_ || !serving()) return;
   if (const auto out = leases_.find(epoch); out != leases_.end()) out->second.erase(job.lease);
   const auto frame = frames_.find(epoch);
-  if (frame == frames_.end()) return; // dropped meanwhile
+  if (frame == frames_.end()) return; // the frame was dropped meanwhile
   message::Result m;
   m.epoch = epoch - base_;
   m.lease = job.lease;
@@ -203,11 +206,11 @@ void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
   m.secondary = result.counters.secondary;
   m.faults = faultsOf(result.counters.faults);
   m.bytes = encodeResult(frame->second, job.job, result);
-  say(std::move(m));
+  sendMessage(std::move(m));
 }
 
 void Worker::log(int level, const std::string& text) {
-  if (serving() && logged_ < limits::logLines) say(message::Log{level, text});
+  if (serving() && logged_ < limits::logLines) sendMessage(message::Log{level, text});
   logged_++;
 }
 

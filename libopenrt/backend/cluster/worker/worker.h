@@ -1,6 +1,6 @@
-// worker.h: the worker's side of the protocol (docs/protocol.md): what the master's messages mean,
-// and what to say. One master at a time; when it is lost the arrays are kept for the next one. Pure
-// events: no sockets, no threads, no clock. One thread's.
+// worker.h: the worker's side of the protocol (docs/protocol.md): handles the master's messages and
+// sends answers. It serves one master at a time. When the master is lost, the arrays are kept for
+// the next one. It has no sockets, threads or clock. One thread.
 #pragma once
 
 #include <deque>
@@ -20,10 +20,10 @@ class CommitValidator;
 
 namespace openrt::cluster {
 
-// What does the jobs: a WorkerCore, or what a test puts in its place. As there.
-class Machine {
+// Executes jobs: a WorkerCore, or a substitute in tests. See WorkerCore for the functions.
+class JobExecutor {
  public:
-  virtual ~Machine() = default;
+  virtual ~JobExecutor() = default;
   virtual void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole,
                      bool prepare) = 0;
   virtual void prepare(Epoch epoch) = 0;
@@ -32,48 +32,48 @@ class Machine {
 };
 
 struct WorkerOptions {
-  message::Hello self; // who we are (greeting.h)
+  message::Hello self; // Hello of this process (greeting.h)
   const ShaderRegistry* shaders = nullptr;
   size_t cacheBytes = size_t(1) << 30;
   std::function<void(int level, const std::string& text)> log; // may be empty
 };
 
-// What the Wire does for it.
+// Functions of the Wire.
 struct WorkerLink {
   std::function<void(Peer, Frames&&)> send;
   std::function<void(Peer, const std::string& why)> close;
-  std::function<void(Peer, const std::string& why)> bad;      // a message that is none
-  std::function<void(double heartbeat, double silence)> pace; // 0: as before any Welcome
+  std::function<void(Peer, const std::string& why)> bad;      // reports an invalid message
+  std::function<void(double heartbeat, double silence)> pace; // 0 restores the value before Welcome
 };
 
 class Worker {
  public:
-  Worker(const WorkerOptions& options, WorkerLink link, Machine& machine);
+  Worker(const WorkerOptions& options, WorkerLink link, JobExecutor& executor);
   ~Worker();
 
-  // What the wire tells.
+  // Events of the wire.
   void joined(Peer peer, const std::string& address, double now);
   void left(Peer peer, const std::string& why, double now);
   void message(Peer peer, Frames&& frames, double now);
-  void advance(double now); // every second or so
-  // What the machine tells; its epochs.
+  void advance(double now); // call about once a second
+  // Events of the executor, with its epochs.
   void ready(Epoch epoch, const Prepared& prepared);
   void failed(Epoch epoch, const std::string& why);
   void done(Epoch epoch, const LeasedJob& job, JobResult&& result);
-  void log(int level, const std::string& text); // to the master
+  void log(int level, const std::string& text); // sends a log line to the master
 
   bool serving() const { return session_ != 0; }
-  uint64_t masters() const { return masters_; } // that have come so far
+  uint64_t masters() const { return masters_; } // number of masters served so far
   const ArrayCache& cache() const { return cache_; }
 
  private:
-  struct Coming { // scenes and what depends on them, in their order
+  struct PendingScene { // a scene, or an order to prepare, that waits for arrays
     message::Scene scene;
-    std::map<Hash, ArrayPtr> arrays; // those that are here
+    std::map<Hash, ArrayPtr> arrays; // arrays that have arrived
     std::set<Hash> missing;
     bool prepareOnly = false;
   };
-  void say(message::Body&& body);
+  void sendMessage(message::Body&& body);
   void welcome(const message::Welcome& m);
   void scene(message::Scene&& m);
   void piece(const message::Piece& m);
@@ -81,36 +81,38 @@ class Worker {
   void jobs(const message::Jobs& m);
   void drop(const message::Drop& m);
   void bad(const std::string& why);
-  void applyComing();
-  void apply(Coming& coming);
+  void applyPendingScenes();
+  void apply(PendingScene& pending);
   void refuse(Epoch epoch, const std::string& why);
   void endSession();
-  void giveUp(const std::string& why); // this master
-  void answered(Epoch epoch);          // by the machine
-  void tell(int level, const std::string& text) const;
+  void giveUp(const std::string& why); // ends the session with this master
+  void answered(Epoch epoch);          // the executor has reported on this epoch
+  void report(int level, const std::string& text) const;
 
   WorkerOptions options_;
   WorkerLink link_;
-  Machine& machine_;
+  JobExecutor& executor_;
   ArrayCache cache_;
   LibraryCheck libraries_;
   std::unique_ptr<CommitValidator> validator_;
   Peer peer_ = 0;
-  std::string address_, told_;
-  double asked_ = 0; // when Hello was said
+  std::string address_, lastReport_;
+  double helloSentAt_ = 0; // when Hello was sent
   uint64_t session_ = 0, masters_ = 0;
-  // The machine's epochs go on where those of the former master ended, so that what comes late is
-  // seen to be late.
+  // The executor's epochs continue after those of the former master, so that late results of the
+  // former session can be recognised.
   Epoch base_ = 0, newest_ = 0;
-  std::string broken_; // why nothing can be made until a whole scene comes
-  std::deque<Coming> coming_;
+  // Reason why no scene can be made until a whole scene arrives.
+  std::string broken_;
+  std::deque<PendingScene> pendingScenes_;
   std::map<Hash, ArrayStream> streams_;
-  size_t begun_ = 0; // of these
-  std::deque<std::pair<Epoch, size_t>>
-      unanswered_; // scenes of which the machine has not spoken yet, bytes of their edits
+  size_t begun_ = 0; // streams that have begun
+  // Scenes on which the executor has not reported, with the bytes of their edits.
+  std::deque<std::pair<Epoch, size_t>> unanswered_;
   size_t unansweredBytes_ = 0;
-  std::map<Epoch, edit::FrameSettingsT> frames_; // of what is prepared; the machine's epochs
-  std::map<Epoch, std::set<Lease>> leases_;      // of jobs that are out
+  // Settings of prepared frames, by the executor's epoch.
+  std::map<Epoch, edit::FrameSettingsT> frames_;
+  std::map<Epoch, std::set<Lease>> leases_; // leases of outstanding jobs
   uint64_t logged_ = 0;
 };
 

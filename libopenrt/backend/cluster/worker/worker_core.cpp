@@ -1,6 +1,6 @@
-// worker_core.cpp: What is asked stands in one queue. Threads take jobs from its
-// front as long as there are any; what changes the scene, and questions, are done by the control
-// thread alone once they have come to the front and no job runs any more.
+// worker_core.cpp: all requests wait in one queue. Threads take jobs from its front. Changes of the
+// scene and queries are run by the control thread alone, once they are at the front and no job
+// runs.
 #include "backend/cluster/worker/worker_core.h"
 
 #include <algorithm>
@@ -45,10 +45,10 @@ struct WorkerCore::Impl {
   void push(Command&& command);
   void work(uint32_t thread);
   void control();
-  void obey(const Command& command); // without the lock, alone
+  void runCommands(const Command& command); // the control thread runs it alone, without the lock
   void applyCommit(const Command& command);
   void makeReady(Epoch epoch);
-  void tellFailed(Epoch epoch, const std::string& why);
+  void reportFailure(Epoch epoch, const std::string& why);
   bool jobInFront() const {
     return !alone && !queue.empty() && queue.front().kind == Command::Kind::job;
   }
@@ -59,27 +59,27 @@ struct WorkerCore::Impl {
   BackendOptions options;
   WorkerSink& sink;
   const uint32_t count;
-  std::mutex sinkMutex; // one call at a time
+  std::mutex sinkMutex; // serialises the calls of the sink
 
-  struct Running { // a thread's job
+  struct Running { // the job of a thread
     Epoch epoch = 0;
     std::atomic<bool> stop{false};
-    std::unique_ptr<JobRunner> runner; // of the scene that is prepared; null: none yet
+    std::unique_ptr<JobRunner> runner; // uses the prepared scene; null: none yet
   };
-  std::unique_ptr<Running[]>
-      running; // by thread; runners: the thread's, the control thread's when it is alone
+  // One per thread. A runner belongs to its thread, or to the control thread while that is alone.
+  std::unique_ptr<Running[]> running;
 
-  // The control thread's; read by others only while it is not alone.
+  // Owned by the control thread. Other threads read it only while the control thread is not alone.
   std::unique_ptr<LocalBackend> backend;
-  bool intact = true;                       // all commits since a whole scene have been applied
-  std::shared_ptr<const RenderScene> scene; // prepared; null: not
-  Epoch applied = 0;                        // the last commit
-  Epoch broken = 0;                         // of the last failure that was told
+  bool intact = true;                       // all commits since the last whole scene were applied
+  std::shared_ptr<const RenderScene> scene; // null until it is prepared
+  Epoch applied = 0;                        // epoch of the last commit
+  Epoch broken = 0;                         // epoch of the last reported failure
 
-  std::mutex mutex; // all below, and Running::epoch
+  std::mutex mutex; // guards all members below and Running::epoch
   std::condition_variable jobsCame, controlCame, answers;
   std::deque<Command> queue;
-  uint32_t busy = 0; // threads with a job
+  uint32_t busy = 0; // threads that run a job
   bool alone = false, closing = false;
 
   std::vector<std::thread> threads;
@@ -105,7 +105,7 @@ void WorkerCore::Impl::push(Command&& command) {
   controlCame.notify_one();
 }
 
-void WorkerCore::Impl::tellFailed(Epoch epoch, const std::string& why) {
+void WorkerCore::Impl::reportFailure(Epoch epoch, const std::string& why) {
   std::lock_guard lock(sinkMutex);
   if (broken == epoch && epoch != 0) return;
   broken = epoch;
@@ -134,11 +134,11 @@ void WorkerCore::Impl::work(uint32_t thread) {
           sink.done(command.epoch, command.job, std::move(result));
         }
       } else {
-        tellFailed(command.epoch, "a job of a scene that is not prepared");
+        reportFailure(command.epoch, "a job of a scene that is not prepared");
       }
     } catch (const std::exception& e) {
-      mine.runner = nullptr; // what it holds is of no use now
-      tellFailed(command.epoch, std::string("rendering failed: ") + e.what());
+      mine.runner = nullptr; // it may be in an undefined state
+      reportFailure(command.epoch, std::string("rendering failed: ") + e.what());
     }
     lock.lock();
     busy--;
@@ -156,7 +156,7 @@ void WorkerCore::Impl::control() {
     queue.pop_front();
     alone = true;
     lock.unlock();
-    obey(command);
+    runCommands(command);
     lock.lock();
     alone = false;
     if (command.answered) *command.answered = true, answers.notify_all();
@@ -164,7 +164,7 @@ void WorkerCore::Impl::control() {
   }
 }
 
-void WorkerCore::Impl::obey(const Command& command) {
+void WorkerCore::Impl::runCommands(const Command& command) {
   try {
     switch (command.kind) {
     case Command::Kind::job: return;
@@ -180,7 +180,7 @@ void WorkerCore::Impl::obey(const Command& command) {
     if (command.failure)
       *command.failure = std::current_exception();
     else
-      tellFailed(command.epoch, e.what());
+      reportFailure(command.epoch, e.what());
   }
 }
 
@@ -192,7 +192,7 @@ void WorkerCore::Impl::applyCommit(const Command& command) {
     throw std::runtime_error("an earlier change of the scene could not be made");
   intact = false;
   if (command.whole) {
-    backend = nullptr; // its memory first
+    backend = nullptr; // frees its memory first
     backend = std::make_unique<LocalBackend>(options);
   }
   backend->apply(command.commit);

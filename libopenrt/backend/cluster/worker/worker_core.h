@@ -1,6 +1,6 @@
-// worker_core.h: a machine that does jobs: applies commits in their order to a local backend,
-// prepares the scene, runs jobs on its threads. In openrt-worker behind a socket, in the master's
-// own process without.
+// worker_core.h: executes jobs: applies commits in order to a local backend, prepares the scene and
+// runs jobs on its threads. Used by openrt-worker behind a socket, and by the master's process
+// directly.
 #pragma once
 
 #include <cstdint>
@@ -16,47 +16,47 @@
 
 namespace openrt::cluster {
 
-using Epoch = uint64_t; // number of a commit; a frame has that of the commit before it
-using Lease =
-    uint64_t; // number of a job that was handed to a worker; never used again in a session
+// Number of a commit. A frame has the number of the commit before it.
+using Epoch = uint64_t;
+// Number of a job handed to a worker; never reused in a session.
+using Lease = uint64_t;
 
 struct LeasedJob {
   Lease lease = 0;
   Job job;
 };
 
-struct Prepared { // what a worker knows of a frame once its scene is prepared
+struct Prepared { // facts about a frame, known once its scene is prepared
   FrameFacts facts;
-  edit::FrameSettingsT frame; // with the transport that was chosen
-  RTstats stats{};            // of the scene
+  edit::FrameSettingsT frame; // includes the transport that was chosen
+  RTstats stats{};            // scene statistics
 };
 
-// Called from the core's threads, one call at a time. Must not call the core.
+// Receives results. Called on the core's threads, one call at a time. Must not call the core.
 class WorkerSink {
  public:
   virtual ~WorkerSink() = default;
   virtual void ready(Epoch epoch, const Prepared& prepared) = 0;
-  virtual void
-  failed(Epoch epoch,
-         const std::string& why) = 0; // of preparing, or of a job: the frame cannot be made here
+  // Preparing the scene or a job has failed: this worker cannot render the frame.
+  virtual void failed(Epoch epoch, const std::string& why) = 0;
   virtual void done(Epoch epoch, const LeasedJob& job, JobResult&& result) = 0;
 };
 
 class WorkerCore {
  public:
   WorkerCore(const BackendOptions& options, WorkerSink& sink);
-  ~WorkerCore(); // gives up what it does, and waits
+  ~WorkerCore(); // stops the running jobs and waits
   uint32_t threads() const;
-  // These return at once. [any], in the order of their effects.
-  // whole: forget the scene that was before. prepare: build it, and say ready(); else later edits
-  // may save the work. Jobs of earlier epochs are finished first.
+  // [any] These return at once and take effect in order. whole: drops the scene before. prepare:
+  // builds the scene and calls ready(); without it, later edits may save the work. Jobs of earlier
+  // epochs are finished first.
   void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare);
-  void prepare(Epoch epoch); // the last scene, if it was not
+  void prepare(Epoch epoch); // prepares the last scene, if it is not prepared
   void work(Epoch epoch, std::span<const LeasedJob> jobs);
-  void
-  drop(Epoch epoch); // jobs of this and earlier epochs: not begun ones never, others are given up
-  // Runs a function on the local backend after all that was asked before, while no job runs; waits
-  // for it. Rethrows.
+  // Drops jobs of this and earlier epochs: removes waiting ones and stops running ones.
+  void drop(Epoch epoch);
+  // Runs a function on the local backend, after all earlier requests and while no job runs; waits
+  // for it and rethrows its exceptions.
   void ask(const std::function<void(Backend&)>& question);
 
  private:

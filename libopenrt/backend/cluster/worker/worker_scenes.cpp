@@ -1,5 +1,5 @@
-// worker_scenes.cpp: scenes of a worker's session: which arrays are here, which must come, and the
-// commit that becomes of it. What comes is checked as a recording is. [worker]
+// worker_scenes.cpp: the scenes of a worker's session: which arrays are cached, which must be sent,
+// and the commit made from them. Received data is validated like a recording. [worker]
 #include <algorithm>
 #include <stdexcept>
 
@@ -16,7 +16,7 @@ void Worker::refuse(Epoch epoch, const std::string& why) {
     unansweredBytes_ -= scene.second;
     return true;
   });
-  say(message::Failed{epoch, why});
+  sendMessage(message::Failed{epoch, why});
 }
 
 void Worker::scene(message::Scene&& m) {
@@ -28,20 +28,20 @@ void Worker::scene(message::Scene&& m) {
   unanswered_.emplace_back(newest_, m.edits.size());
   unansweredBytes_ += m.edits.size();
   message::Need need{m.epoch, {}};
-  Coming& coming = coming_.emplace_back();
-  coming.scene = std::move(m);
-  for (const message::ArrayName& name : coming.scene.arrays) {
-    if (coming.arrays.contains(name.hash) || coming.missing.contains(name.hash)) continue;
+  PendingScene& pending = pendingScenes_.emplace_back();
+  pending.scene = std::move(m);
+  for (const message::ArrayName& name : pending.scene.arrays) {
+    if (pending.arrays.contains(name.hash) || pending.missing.contains(name.hash)) continue;
     if (ArrayPtr array = cache_.find(name.hash, name.bytes)) {
-      coming.arrays.emplace(name.hash, std::move(array));
+      pending.arrays.emplace(name.hash, std::move(array));
       continue;
     }
-    coming.missing.insert(name.hash);
+    pending.missing.insert(name.hash);
     if (streams_.try_emplace(name.hash, name.hash, name.bytes).second)
       need.arrays.push_back(name.hash);
   }
-  say(std::move(need));
-  applyComing();
+  sendMessage(std::move(need));
+  applyPendingScenes();
 }
 
 void Worker::piece(const message::Piece& m) {
@@ -61,50 +61,50 @@ void Worker::piece(const message::Piece& m) {
   if (why.empty() && !array) why = "an array with a wrong checksum";
   streams_.erase(stream);
   begun_--;
-  if (!array) { // scenes without it cannot be made
+  if (!array) { // scenes that use it cannot be made
     bad(why);
-    for (Coming& coming : coming_)
-      if (coming.missing.erase(m.hash)) coming.arrays.emplace(m.hash, nullptr);
-    return applyComing();
+    for (PendingScene& pending : pendingScenes_)
+      if (pending.missing.erase(m.hash)) pending.arrays.emplace(m.hash, nullptr);
+    return applyPendingScenes();
   }
   cache_.put(m.hash, array);
-  for (Coming& coming : coming_)
-    if (coming.missing.erase(m.hash)) coming.arrays.emplace(m.hash, array);
-  applyComing();
+  for (PendingScene& pending : pendingScenes_)
+    if (pending.missing.erase(m.hash)) pending.arrays.emplace(m.hash, array);
+  applyPendingScenes();
 }
 
 void Worker::prepare(const message::Prepare& m) {
   if (m.epoch == 0 || m.epoch > newest_ - base_)
     return bad("a scene that has not come is to be prepared");
-  if (coming_.empty()) {
-    if (!broken_.empty()) return say(message::Failed{m.epoch, broken_});
-    return machine_.prepare(base_ + m.epoch);
+  if (pendingScenes_.empty()) {
+    if (!broken_.empty()) return sendMessage(message::Failed{m.epoch, broken_});
+    return executor_.prepare(base_ + m.epoch);
   }
-  if (coming_.size() >= 2 * limits::scenesAtOnce)
+  if (pendingScenes_.size() >= 2 * limits::scenesAtOnce)
     return giveUp("it asks for more scenes than can be made");
-  Coming& coming = coming_.emplace_back();
-  coming.scene.epoch = m.epoch;
-  coming.prepareOnly = true;
+  PendingScene& pending = pendingScenes_.emplace_back();
+  pending.scene.epoch = m.epoch;
+  pending.prepareOnly = true;
 }
 
-void Worker::applyComing() {
-  while (!coming_.empty() && coming_.front().missing.empty()) {
-    Coming next = std::move(coming_.front());
-    coming_.pop_front();
+void Worker::applyPendingScenes() {
+  while (!pendingScenes_.empty() && pendingScenes_.front().missing.empty()) {
+    PendingScene next = std::move(pendingScenes_.front());
+    pendingScenes_.pop_front();
     try {
       apply(next);
     } catch (const std::bad_alloc&) {
       refuse(next.scene.epoch, "out of memory");
     } catch (const std::exception& e) { refuse(next.scene.epoch, e.what()); }
   }
-  if (coming_.empty()) cache_.trim();
+  if (pendingScenes_.empty()) cache_.trim();
 }
 
-void Worker::apply(Coming& coming) {
-  const message::Scene& m = coming.scene;
-  if (coming.prepareOnly) {
+void Worker::apply(PendingScene& pending) {
+  const message::Scene& m = pending.scene;
+  if (pending.prepareOnly) {
     if (!broken_.empty()) return refuse(m.epoch, broken_);
-    return machine_.prepare(base_ + m.epoch);
+    return executor_.prepare(base_ + m.epoch);
   }
   if (m.whole) {
     broken_.clear();
@@ -115,14 +115,14 @@ void Worker::apply(Coming& coming) {
     throw std::runtime_error(problem);
   auto commit = std::make_shared<Commit>();
   for (const message::ArrayName& name : m.arrays) {
-    const ArrayPtr& array = coming.arrays.at(name.hash);
+    const ArrayPtr& array = pending.arrays.at(name.hash);
     if (!array) throw std::runtime_error("an array did not come as it should");
     if (array->size() != name.bytes || !commit->arrays.emplace(name.id, array).second)
       throw std::runtime_error("array " + std::to_string(name.id) + " twice, or of two sizes");
   }
   unpackEdits(m.edits, commit->edits);
   validator_->check(*commit);
-  machine_.scene(base_ + m.epoch, std::move(commit), m.whole, m.prepare);
+  executor_.scene(base_ + m.epoch, std::move(commit), m.whole, m.prepare);
 }
 
 } // namespace openrt::cluster

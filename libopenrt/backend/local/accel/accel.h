@@ -1,11 +1,12 @@
-// accel.h: the scene as Embree holds it, in two scenes. The static one: what never moves, baked
-// relative to the render origin, with instances of what stands there often. The top level: an
-// instance for every cluster (scene/flatten.h) and the lines and points, which change with the
-// camera; it is rebuilt when one of them moves, and it is small. A ray meets both, the static one
-// first: it is traced as if nothing else were there, in packets of 16, and shortens the ray for the
-// other. (One top level over an instance of everything static costs as little to rebuild, but
-// packets of 16 on instances are slow, and with the coherent flag Embree 3.13 does not come back
-// from some.) Changed between frames by AccelBuilder, traced by render threads.
+// accel.h: the acceleration structure of a scene: two Embree scenes, traced one after the other.
+//   static     everything that never moves, baked relative to the render origin, with instances of
+//              objects that occur often
+//   top level  an instance for every moving cluster (scene/flatten.h), and the lines and points,
+//              which change with the camera; it is small and rebuilt when one of them moves
+// A ray is first traced through the static scene, in packets of 16; its hit shortens the ray for
+// the top level. (A single top level with an instance of everything static would cost as little to
+// rebuild. But packets of 16 on instances are slow, and with the coherent flag Embree 3.13 never
+// returns from some.) Changed between frames by AccelBuilder, traced by render threads.
 #pragma once
 
 #include <atomic>
@@ -34,30 +35,29 @@ class Accel final : public Intersector {
   void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const override;
   void bounds(float low[3], float high[3]) const override;
 
-  // A surface that a ray passes.
-  struct Passed {
+  // One of all the hits along a ray.
+  struct MultiHit {
     uint32_t ray, record, primitive;
     float t, u, v, ng[3];
   };
-  // All that the rays pass, by ray and distance. [any thread]
-  void passed(const Rays& rays, std::vector<Passed>& out) const;
-  // The surface point next to a place of render space, not farther than `distance`; false if there
-  // is none. [any thread]
+  // Finds all hits along the rays, sorted by ray and distance. [any thread]
+  void allHits(const Rays& rays, std::vector<MultiHit>& out) const;
   struct Nearest {
     uint32_t record = noHit, primitive = 0;
-    double distance = 0, point[3] = {}, normal[3] = {}, u = 0, v = 0; // normal: outwards, unit
+    double distance = 0, point[3] = {}, normal[3] = {}, u = 0, v = 0; // normal: outward, unit
   };
-  // round: spheres().
+  // Finds the surface point closest to a point of render space, within `distance`. Returns false if
+  // there is none. round: the result of spheres(). [any thread]
   bool nearest(const double place[3], double distance, std::span<const uint32_t> round,
                Nearest& out) const;
-  std::vector<uint32_t> spheres() const; // records of those in sight
+  std::vector<uint32_t> spheres() const; // returns the records of all visible spheres
 
  private:
   friend class AccelBuilder;
   struct Level { // one of the two scenes
     const PartScene* scene = nullptr;
-    uint32_t masks = 0; // of what is in it; 0: nothing
-    bool instances = false;
+    uint32_t masks = 0;     // union of the masks of its geometries; 0: it is empty
+    bool instances = false; // it contains instances
   };
   template <class Packet> void intersectPackets(const Level& level, const Rays& rays, uint32_t mask,
                                                 const QueryOptions& options, bool first,
@@ -68,42 +68,42 @@ class Accel final : public Intersector {
                       bool first, RayHits& hits) const;
   void occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
                      uint8_t* blocked) const;
-  struct Found {
+  struct PrimitiveId {
     uint32_t record, primitive;
   };
-  // Embree's numbers to ours.
-  static Found find(const PartScene& scene, uint32_t instance, uint32_t geometry,
-                    uint32_t primitive);
-  struct Filtered {
+  // Maps Embree's ids to record and primitive.
+  static PrimitiveId find(const PartScene& scene, uint32_t instance, uint32_t geometry,
+                          uint32_t primitive);
+  struct FilterContext {
     const Accel* accel;
     const Level* level;
-    const uint32_t* record = nullptr; // by lane: the one that does not count
-    std::vector<Passed>* all = nullptr;
+    const uint32_t* record = nullptr;     // for each ray the record to ignore
+    std::vector<MultiHit>* all = nullptr; // receives all hits
   };
   void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
                          const uint32_t* record, RayHits& hits,
-                         std::vector<Passed>* all = nullptr) const;
-  static void collect(const RTCFilterFunctionNArguments* a);
-  void settlePassed(const Rays& rays, Passed& p) const;
+                         std::vector<MultiHit>* all = nullptr) const;
+  static void collectHit(const RTCFilterFunctionNArguments* a);
+  void refineMultiHit(const Rays& rays, MultiHit& p) const;
   struct PointSearch;
-  bool measure(const Found& found, const Vec3d& p, Nearest& best) const;
+  bool updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& best) const;
   static bool visitNear(RTCPointQueryFunctionArguments* a);
-  static Found foundBy(const RTCFilterFunctionNArguments* a, unsigned i);
+  static PrimitiveId primitiveOfHit(const RTCFilterFunctionNArguments* a, unsigned i);
   static void rejectBacks(const RTCFilterFunctionNArguments* a);
   static void rejectRecord(const RTCFilterFunctionNArguments* a);
 
-  struct Placed { // a cluster
+  struct PlacedCluster {
     uint32_t firstRecord = 0, firstSlot = 0;
     bool shown = false, instances = false, transparent = false;
-    uint32_t rejected = 0; // items in sight whose matrix is not usable
+    uint32_t rejected = 0; // visible items whose matrix is unusable
   };
   std::shared_ptr<EmbreeDevice> device_;
-  std::shared_ptr<const Body> static_;
+  std::shared_ptr<const Blas> static_;
   PartScene top_;
   Level staticLevel_, topLevel_;
-  std::vector<Placed> placed_; // by cluster
-  Vec3d origin_;
-  float scale_ = 1; // render space x scale = the space of both scenes; a power of two
+  std::vector<PlacedCluster> placed_; // by cluster
+  Vec3d origin_;                      // of render space, in the world
+  float scale_ = 1; // render space x scale = the space of both Embree scenes; a power of two
 };
 
 } // namespace openrt

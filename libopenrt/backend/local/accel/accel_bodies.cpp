@@ -1,6 +1,6 @@
-// accel_bodies.cpp: the Embree scenes of parts and objects, made once for each signature. Objects
-// placed once, or small ones, are baked into the scene of their part; those with many copies have
-// one of their own, which the copies are instances of.
+// accel_bodies.cpp: the Embree scenes (Blas) of parts and objects, built once for each signature.
+// Small objects, and objects that occur once, are baked into the scene of their part. Large objects
+// with several copies have a scene of their own, which the copies instance.
 #include <algorithm>
 
 #include <xxhash.h>
@@ -10,7 +10,7 @@
 namespace openrt {
 namespace {
 
-// XXH3 over everything that goes into an Embree scene.
+// XXH3 hash over all input of an Embree scene.
 class Hash {
  public:
   Hash() : state_(XXH3_createState()) {
@@ -38,45 +38,46 @@ class Hash {
 } // namespace
 
 uint32_t AccelBuilder::maskOf(uint32_t shader) const {
-  return in_->shaders[in_->shaders.slotOf(shader)].traits & RTS_TRANSPARENT ? maskTransparent
-                                                                            : maskOpaque;
+  return input_->shaders[input_->shaders.slotOf(shader)].traits & RTS_TRANSPARENT ? maskTransparent
+                                                                                  : maskOpaque;
 }
 
 uint32_t AccelBuilder::maskOf(const Item& item, const Geometry& g, uint32_t override) const {
   return override ? override : maskOf(item.path.shader ? item.path.shader : g.shader);
 }
 
-// The signature is worked out once a build or update.
-template <class Sign, class Make> std::shared_ptr<const Body>
+// Returns the cached Blas of a key, or makes it if its signature changed. The signature is computed
+// once per build or update.
+template <class Sign, class Make> std::shared_ptr<const Blas>
 AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
-  Cached& entry = bodies_[key];
-  if (entry.checked == number_ && entry.body) return entry.body;
-  entry.checked = number_;
-  if (const Signature signature = sign(); !entry.body || entry.signature != signature) {
-    entry.body = make();
+  Cached& entry = blases_[key];
+  if (entry.checked == buildNumber_ && entry.blas) return entry.blas;
+  entry.checked = buildNumber_;
+  if (const Signature signature = sign(); !entry.blas || entry.signature != signature) {
+    entry.blas = make();
     entry.signature = signature;
     objectBuilds++;
   }
-  return entry.body;
+  return entry.blas;
 }
 
-// Bodies that the last build did not ask for and whose object is gone; those of parts out of sight
-// stay.
-void AccelBuilder::sweep() {
-  std::erase_if(bodies_, [&](const auto& entry) {
+// Drops the scenes that this build did not use, except those of parts that still exist: they may be
+// hidden.
+void AccelBuilder::evictUnused() {
+  std::erase_if(blases_, [&](const auto& entry) {
     const Key& key = entry.first;
     const bool kept =
-        entry.second.checked == number_ || (key.part && survey.partOf(key.object) != ~0u);
+        entry.second.checked == buildNumber_ || (key.part && survey.partOf(key.object) != ~0u);
     return !kept;
   });
 }
 
-std::shared_ptr<const Body> AccelBuilder::objectBody(uint32_t object, uint32_t override) {
-  const Object& source = in_->scene.objects.at(object);
+std::shared_ptr<const Blas> AccelBuilder::objectBlas(uint32_t object, uint32_t override) {
+  const Object& source = input_->scene.objects.at(object);
   const Item item;
   if (std::all_of(source.geometries.begin(), source.geometries.end(),
                   [&](const Geometry& g) { return maskOf(item, g, 0) == override; }))
-    override = 0; // it changes no mask
+    override = 0; // the override changes no mask
   const auto sign = [&] {
     Hash hash;
     hash << source.version;
@@ -86,24 +87,25 @@ std::shared_ptr<const Body> AccelBuilder::objectBody(uint32_t object, uint32_t o
   return cached({object, false, override}, sign, [&] {
     const Box& box = survey.object(object).bounds;
     const Matrix4d fromKernel = kernelFrame(box.low, box.high), toKernel = inverse(fromKernel);
-    BodyBuilder builder(*device_, spheres_, source.geometries.size());
+    BlasBuilder builder(*device_, spheres_, source.geometries.size());
     for (uint32_t g = 0; g < source.geometries.size(); g++)
       builder.add(source.geometries[g], toKernel * source.geometries[g].matrix, g,
                   maskOf(item, source.geometries[g], override));
-    const std::shared_ptr<Body> body = builder.finish();
-    body->fromKernel = fromKernel;
-    return body;
+    const std::shared_ptr<Blas> blas = builder.finish();
+    blas->fromKernel = fromKernel;
+    return blas;
   });
 }
 
-// What is baked of a part other than the static scene; null if nothing is.
-std::shared_ptr<const Body> AccelBuilder::partBody(uint32_t part, uint32_t override) {
-  const ScenePart& source = in_->flat.parts[part];
+// Returns the Embree scene of the baked geometry of a part other than the static one; null if it
+// has none.
+std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t override) {
+  const ScenePart& source = input_->flat.parts[part];
   const PartInfo& info = survey.parts()[part];
   if (!info.baked) return nullptr;
   const auto forEachBaked = [&](const auto& f) {
     for (uint32_t i = 0; i < source.items.size(); i++) {
-      const Object& object = in_->scene.objects.at(source.items[i].object);
+      const Object& object = input_->scene.objects.at(source.items[i].object);
       for (uint32_t g = 0; g < object.geometries.size(); g++)
         if (const uint32_t entry = info.firstEntry[i] + g; info.drawn[entry] == DrawnAs::baked)
           f(source.items[i], object, object.geometries[g], entry);
@@ -129,53 +131,53 @@ std::shared_ptr<const Body> AccelBuilder::partBody(uint32_t part, uint32_t overr
       box.add(survey.object(item.object).boxes[size_t(&g - object.geometries.data())], item.matrix);
     });
     const Matrix4d fromKernel = kernelFrame(box.low, box.high), toKernel = inverse(fromKernel);
-    BodyBuilder builder(*device_, spheres_, info.entries());
+    BlasBuilder builder(*device_, spheres_, info.entries());
     forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t entry) {
       builder.add(g, toKernel * item.matrix * g.matrix, entry, maskOf(item, g, override));
     });
-    const std::shared_ptr<Body> body = builder.finish();
-    body->fromKernel = fromKernel;
-    return body;
+    const std::shared_ptr<Blas> blas = builder.finish();
+    blas->fromKernel = fromKernel;
+    return blas;
   });
 }
 
-// Everything static, relative to the render origin, with instances of what is there many times. Its
-// entries are records.
-std::shared_ptr<const Body> AccelBuilder::staticBody() {
-  const ScenePart& source = in_->flat.parts[0];
+// Returns the Embree scene of everything static, relative to the render origin, with instances of
+// objects that occur often. Its entries are records.
+std::shared_ptr<const Blas> AccelBuilder::staticBlas() {
+  const ScenePart& source = input_->flat.parts[0];
   const PartInfo& info = survey.parts()[0];
   Hash hash;
-  hash << in_->origin << in_->scale;
-  std::vector<std::shared_ptr<const Body>> heavy;
+  hash << input_->origin << input_->scale;
+  std::vector<std::shared_ptr<const Blas>> shared;
   for (uint32_t i = 0; i < source.items.size(); i++) {
     const Item& item = source.items[i];
-    const Object& object = in_->scene.objects.at(item.object);
+    const Object& object = input_->scene.objects.at(item.object);
     hash << object.version << item.matrix;
     for (uint32_t g = 0; g < object.geometries.size(); g++)
       hash << info.drawn[info.firstEntry[i] + g] << maskOf(item, object.geometries[g], 0);
   }
-  for (uint32_t i : info.heavyItems)
-    heavy.push_back(objectBody(source.items[i].object, overrideMask(source.items[i].path.shader)));
+  for (uint32_t i : info.sharedItems)
+    shared.push_back(objectBlas(source.items[i].object, overrideMask(source.items[i].path.shader)));
   const auto signature = hash.digest<Signature>();
-  if (static_.body && static_.signature == signature) return static_.body;
-  static_.body.reset(); // before the next one takes its room
-  const Matrix4d toKernel = uniformScale(in_->scale) * worldToRender_;
-  BodyBuilder builder(*device_, spheres_, info.entries());
+  if (static_.blas && static_.signature == signature) return static_.blas;
+  static_.blas.reset(); // frees its memory before the next one is built
+  const Matrix4d toKernel = uniformScale(input_->scale) * worldToRender_;
+  BlasBuilder builder(*device_, spheres_, info.entries());
   for (uint32_t i = 0; i < source.items.size(); i++) {
-    const auto& geometries = in_->scene.objects.at(source.items[i].object).geometries;
+    const auto& geometries = input_->scene.objects.at(source.items[i].object).geometries;
     for (uint32_t g = 0; g < geometries.size(); g++)
       if (const uint32_t entry = info.firstEntry[i] + g; info.drawn[entry] == DrawnAs::baked)
         builder.add(geometries[g], toKernel * source.items[i].matrix * geometries[g].matrix, entry,
                     maskOf(source.items[i], geometries[g], 0));
   }
-  for (size_t k = 0; k < heavy.size(); k++) {
-    const uint32_t i = info.heavyItems[k];
-    builder.addInstance(heavy[k], toKernel * source.items[i].matrix * heavy[k]->fromKernel,
+  for (size_t k = 0; k < shared.size(); k++) {
+    const uint32_t i = info.sharedItems[k];
+    builder.addInstance(shared[k], toKernel * source.items[i].matrix * shared[k]->fromKernel,
                         info.firstEntry[i]);
   }
-  static_ = {signature, builder.finish(), number_};
+  static_ = {signature, builder.finish(), buildNumber_};
   if (!source.items.empty()) objectBuilds++;
-  return static_.body;
+  return static_.blas;
 }
 
 } // namespace openrt

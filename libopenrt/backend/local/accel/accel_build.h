@@ -1,8 +1,8 @@
-// accel_build.h: keeps an Accel in step with the scene. What Embree scenes hold is cached under a
-// signature of everything that goes into them: after any edit those whose signature is unchanged
-// are used again. Moves of clusters and redefinitions of dynamic objects change the Accel in place;
-// everything else makes a new one out of cached bodies. Either way the result is what a first build
-// of the same scene gives. Application thread, between frames.
+// accel_build.h: builds and updates the Accel of a scene. Embree scenes (Blas) are cached with a
+// hash of all their input; after an edit those with an unchanged hash are reused. Moved clusters
+// and redefined dynamic objects change the Accel in place; every other edit makes a new Accel from
+// cached scenes. The result is always the same as that of a first build. Called on the application
+// thread, between frames.
 #pragma once
 
 #include <map>
@@ -19,7 +19,7 @@ struct BuildInput {
   const Scene& scene;
   Flattened& flat; // light sets may be added
   const ShaderTable& shaders;
-  Vec3d origin; // of render space, in the world
+  Vec3d origin; // origin of render space, in the world
   double scale = 1;
   PixelFootprint footprint;
 };
@@ -29,21 +29,23 @@ class AccelBuilder {
   explicit AccelBuilder(std::shared_ptr<EmbreeDevice> device)
       : device_(std::move(device)), spheres_(*device_) {}
 
-  Survey survey; // of the scene as of the last build or update
+  Survey survey; // of the scene at the last build or update
 
   std::shared_ptr<Accel> build(const BuildInput& input);
-  // clusters: those that were placed anew, ascending; objects: redefined ones, which the survey has
-  // taken. thin: the camera's pixels changed.
+  // Changes an Accel in place.
+  //   clusters  those that moved, ascending
+  //   objects   those that were redefined; the survey already knows them
+  //   thin      the pixel footprint changed, so all lines and points are rebuilt
   void update(Accel& accel, const BuildInput& input, const std::vector<uint32_t>& clusters,
               const std::vector<uint32_t>& objects, bool thin);
-  // Whether an Accel stands at this origin and scale.
-  static bool standsAt(const Accel& accel, const Vec3d& origin, double scale);
+  // Returns whether an Accel has this origin and scale.
+  static bool hasFrame(const Accel& accel, const Vec3d& origin, double scale);
 
-  struct Counts { // of what an Accel shows
+  struct Counts { // of the visible parts of an Accel
     uint64_t triangles = 0, uniqueTriangles = 0, degenerate = 0, rejectedInstances = 0;
   };
   Counts count(const Accel& accel, const Flattened& flat) const;
-  uint64_t objectBuilds = 0, topLevelBuilds = 0; // since it was made
+  uint64_t objectBuilds = 0, topLevelBuilds = 0; // since the builder was created
 
  private:
   struct Signature {
@@ -52,40 +54,39 @@ class AccelBuilder {
   };
   struct Cached {
     Signature signature;
-    std::shared_ptr<const Body> body;
-    uint64_t checked = 0; // the build or update that last asked for it
+    std::shared_ptr<const Blas> blas;
+    uint64_t checked = 0; // number of the build or update that last used it
   };
-  struct Key { // of a body: its object, whether it is the part rooted there or the object alone,
-               // and the mask of an override
+  struct Key {
     uint32_t object = 0;
-    bool part = false;
-    uint32_t mask = 0;
+    bool part = false; // true: the part rooted at the object; false: the object alone
+    uint32_t mask = 0; // the mask of a shader override, 0: none
     auto operator<=>(const Key&) const = default;
   };
 
-  // Bodies. (accel_bodies.cpp)
-  uint32_t maskOf(uint32_t shader) const; // of a surface shader's id
+  // Embree scenes of parts and objects (accel_bodies.cpp).
+  uint32_t maskOf(uint32_t shader) const; // shader: id of a surface shader
   uint32_t overrideMask(uint32_t shader) const { return shader ? maskOf(shader) : 0; }
   uint32_t maskOf(const Item& item, const Geometry& geometry, uint32_t override) const;
-  std::shared_ptr<const Body> staticBody();
-  std::shared_ptr<const Body> partBody(uint32_t part, uint32_t override);
-  std::shared_ptr<const Body> objectBody(uint32_t object, uint32_t override);
+  std::shared_ptr<const Blas> staticBlas();
+  std::shared_ptr<const Blas> partBlas(uint32_t part, uint32_t override);
+  std::shared_ptr<const Blas> objectBlas(uint32_t object, uint32_t override);
   template <class Sign, class Make>
-  std::shared_ptr<const Body> cached(const Key& key, const Sign& signature, const Make& make);
-  void sweep();
+  std::shared_ptr<const Blas> cached(const Key& key, const Sign& signature, const Make& make);
+  void evictUnused();
 
-  // Clusters. (accel_clusters.cpp)
+  // Clusters (accel_clusters.cpp).
   void begin(Accel& accel, const BuildInput& input);
   void layOut();
   void place(uint32_t cluster);
   void placeInstances(uint32_t cluster);
-  bool placeInstance(uint32_t slot, std::shared_ptr<const Body> body, uint32_t record,
+  bool placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas, uint32_t record,
                      const Matrix4d& toRender);
   void placeThin(uint32_t cluster);
   void hide(uint32_t cluster);
   void finish();
 
-  // Records. (accel_records.cpp)
+  // Records (accel_records.cpp).
   void writeRecords(uint32_t cluster);
   bool carriesParameters(const Geometry& g, uint32_t slot) const;
   Record recordOf(const Inherited& path, const Geometry& geometry, const Matrix4d& toRender);
@@ -93,15 +94,15 @@ class AccelBuilder {
 
   std::shared_ptr<EmbreeDevice> device_;
   UnitSpheres spheres_;
-  std::map<Key, Cached> bodies_;
+  std::map<Key, Cached> blases_;
   Cached static_;
   std::map<std::pair<const RtsClass*, uint32_t>, uint32_t> buckets_;
-  // Of the build or update at hand:
-  const BuildInput* in_ = nullptr;
+  // State of the current build or update.
+  const BuildInput* input_ = nullptr;
   Accel* accel_ = nullptr;
   Matrix4d worldToRender_;
-  bool changed_ = false; // something of the top level
-  uint64_t number_ = 0;
+  bool changed_ = false;     // the top level changed
+  uint64_t buildNumber_ = 0; // counts builds and updates
 };
 
 } // namespace openrt

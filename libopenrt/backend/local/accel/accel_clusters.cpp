@@ -1,6 +1,6 @@
-// accel_clusters.cpp: the top level: which slots (Embree geometry ids) a cluster has, and what
-// stands in them. Slots follow from the scene alone, never from the order of edits. A cluster that
-// was never seen costs no acceleration structure.
+// accel_clusters.cpp: the top level: the slots (Embree geometry ids) of each cluster and their
+// contents. Slots depend only on the scene, never on the order of edits. A cluster that was never
+// visible has no acceleration structure.
 #include <algorithm>
 
 #include "backend/local/accel/accel_build.h"
@@ -8,13 +8,13 @@
 namespace openrt {
 namespace {
 
-// In this order: what is baked, heavy items, ellipsoids, lines, points. The static scene has the
-// first three elsewhere.
+// The slots of a cluster, in this order: the baked scene, shared items, ellipsoids, lines, points.
+// For the root part the first three are in the static scene and have no slots.
 struct Slots {
-  uint32_t heavy, ellipsoids, lines, points, end; // where they begin
+  uint32_t shared, ellipsoids, lines, points, end; // first slot of each kind
   Slots(const PartInfo& part, bool root) {
-    heavy = !root && part.baked ? 1 : 0;
-    ellipsoids = heavy + (root ? 0 : uint32_t(part.heavyItems.size()));
+    shared = !root && part.baked ? 1 : 0;
+    ellipsoids = shared + (root ? 0 : uint32_t(part.sharedItems.size()));
     lines = ellipsoids + (root ? 0 : uint32_t(part.ellipsoids.size()));
     points = lines + part.lines;
     end = points + part.points;
@@ -25,14 +25,14 @@ struct Slots {
 
 void AccelBuilder::begin(Accel& accel, const BuildInput& input) {
   accel_ = &accel;
-  in_ = &input;
+  input_ = &input;
   worldToRender_ = {};
   worldToRender_.translate(input.origin * -1.0);
   changed_ = false;
-  number_++;
+  buildNumber_++;
 }
 
-bool AccelBuilder::standsAt(const Accel& accel, const Vec3d& origin, double scale) {
+bool AccelBuilder::hasFrame(const Accel& accel, const Vec3d& origin, double scale) {
   return accel.origin_.x == origin.x && accel.origin_.y == origin.y &&
          accel.origin_.z == origin.z && accel.scale_ == float(scale);
 }
@@ -45,15 +45,15 @@ std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
   accel->scale_ = float(input.scale);
   buckets_.clear();
   layOut();
-  accel->static_ = staticBody();
+  accel->static_ = staticBlas();
   accel->staticLevel_ = {accel->static_.get(),
                          accel->static_->parts.empty() ? 0u : maskOpaque | maskTransparent,
                          accel->static_->instances};
   for (uint32_t c = 0; c < input.flat.clusters.size(); c++) place(c);
   if (accel->buckets.empty()) accel->buckets.push_back({input.shaders[0].shaderClass, 0});
-  if (!changed_) topLevelBuilds++; // of the static scene alone
+  if (!changed_) topLevelBuilds++; // there is only the static scene
   finish();
-  sweep();
+  evictUnused();
   return accel;
 }
 
@@ -78,7 +78,7 @@ void AccelBuilder::update(Accel& accel, const BuildInput& input,
 }
 
 void AccelBuilder::layOut() {
-  const auto& clusters = in_->flat.clusters;
+  const auto& clusters = input_->flat.clusters;
   uint64_t records = 0, slots = 0;
   accel_->placed_.resize(clusters.size());
   for (uint32_t c = 0; c < clusters.size(); c++) {
@@ -94,23 +94,23 @@ void AccelBuilder::layOut() {
   if (slots) accel_->top_.scene = newScene(*device_);
 }
 
-// A cluster where it now stands, or out of sight.
+// Writes a cluster's records and instances for its current place, or hides it.
 void AccelBuilder::place(uint32_t c) {
-  if (!in_->flat.clusters[c].visible) {
+  if (!input_->flat.clusters[c].visible) {
     hide(c);
     return;
   }
   writeRecords(c);
   accel_->placed_[c].shown = true;
-  if (in_->flat.clusters[c].part != 0) placeInstances(c);
+  if (input_->flat.clusters[c].part != 0) placeInstances(c);
   placeThin(c);
 }
 
 void AccelBuilder::hide(uint32_t c) {
-  Accel::Placed& placed = accel_->placed_[c];
+  Accel::PlacedCluster& placed = accel_->placed_[c];
   if (!placed.shown) return;
-  const PartInfo& part = survey.parts()[in_->flat.clusters[c].part];
-  const Slots slots(part, in_->flat.clusters[c].part == 0);
+  const PartInfo& part = survey.parts()[input_->flat.clusters[c].part];
+  const Slots slots(part, input_->flat.clusters[c].part == 0);
   for (uint32_t s = 0; s < slots.lines; s++)
     if (accel_->top_.parts[placed.firstSlot + s])
       setEnabled(accel_->top_, placed.firstSlot + s, false);
@@ -121,28 +121,28 @@ void AccelBuilder::hide(uint32_t c) {
 }
 
 void AccelBuilder::placeInstances(uint32_t c) {
-  const Cluster& cluster = in_->flat.clusters[c];
-  const ScenePart& part = in_->flat.parts[cluster.part];
+  const Cluster& cluster = input_->flat.clusters[c];
+  const ScenePart& part = input_->flat.parts[cluster.part];
   const PartInfo& info = survey.parts()[cluster.part];
-  Accel::Placed& placed = accel_->placed_[c];
+  Accel::PlacedCluster& placed = accel_->placed_[c];
   const Slots slots(info, false);
   const Matrix4d partToRender = worldToRender_ * cluster.world;
   const uint32_t override = overrideMask(cluster.path.shader);
   uint32_t slot = placed.firstSlot;
   bool any = false;
   if (info.baked) {
-    const auto body = partBody(cluster.part, override);
-    any |= placeInstance(slot++, body, placed.firstRecord, partToRender * body->fromKernel);
+    const auto blas = partBlas(cluster.part, override);
+    any |= placeInstance(slot++, blas, placed.firstRecord, partToRender * blas->fromKernel);
   }
-  for (uint32_t i : info.heavyItems) {
+  for (uint32_t i : info.sharedItems) {
     const Item& item = part.items[i];
-    const auto body = objectBody(item.object, override ? override : overrideMask(item.path.shader));
-    any |= placeInstance(slot++, body, placed.firstRecord + info.firstEntry[i],
-                         partToRender * item.matrix * body->fromKernel);
+    const auto blas = objectBlas(item.object, override ? override : overrideMask(item.path.shader));
+    any |= placeInstance(slot++, blas, placed.firstRecord + info.firstEntry[i],
+                         partToRender * item.matrix * blas->fromKernel);
   }
   for (const auto& [i, k] : info.ellipsoids) {
     const Item& item = part.items[i];
-    const Geometry& g = in_->scene.objects.at(item.object).geometries[k];
+    const Geometry& g = input_->scene.objects.at(item.object).geometries[k];
     any |= placeInstance(slot++, consistent(g) ? spheres_.get(maskOf(item, g, override)) : nullptr,
                          placed.firstRecord + info.firstEntry[i] + k,
                          partToRender * item.matrix * g.matrix * uniformScale(g.width));
@@ -150,44 +150,44 @@ void AccelBuilder::placeInstances(uint32_t c) {
   placed.instances = any;
 }
 
-// Whether it can be seen.
-bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Body> body, uint32_t record,
+// Returns whether the instance is visible.
+bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas, uint32_t record,
                                  const Matrix4d& toRender) {
   PartScene& top = accel_->top_;
-  const Matrix4d toRoot = uniformScale(in_->scale) * toRender;
+  const Matrix4d toRoot = uniformScale(input_->scale) * toRender;
   changed_ = true;
-  if (!body || body->parts.empty() || !toRoot.usable()) {
+  if (!blas || blas->parts.empty() || !toRoot.usable()) {
     if (top.parts[slot]) setEnabled(top, slot, false);
     return false;
   }
-  if (top.parts[slot] && top.parts[slot]->object == body) {
+  if (top.parts[slot] && top.parts[slot]->object == blas) {
     setTransform(top, slot, toRoot);
     setEnabled(top, slot, true);
     return true;
   }
   auto part = std::make_unique<Part>();
   part->record = record;
-  part->object = std::move(body);
+  part->object = std::move(blas);
   attachInstance(top, *device_, std::move(part), toRoot, slot);
   return true;
 }
 
 void AccelBuilder::placeThin(uint32_t c) {
-  const Cluster& cluster = in_->flat.clusters[c];
+  const Cluster& cluster = input_->flat.clusters[c];
   const PartInfo& info = survey.parts()[cluster.part];
   if (!info.lines && !info.points) return;
-  const ScenePart& part = in_->flat.parts[cluster.part];
-  const Accel::Placed& placed = accel_->placed_[c];
+  const ScenePart& part = input_->flat.parts[cluster.part];
+  const Accel::PlacedCluster& placed = accel_->placed_[c];
   const Slots slots(info, cluster.part == 0);
-  const Matrix4d toKernel = uniformScale(in_->scale) * worldToRender_ * cluster.world;
+  const Matrix4d toKernel = uniformScale(input_->scale) * worldToRender_ * cluster.world;
   auto lines = std::make_unique<Part>(), points = std::make_unique<Part>();
   for (uint32_t i = 0; i < part.items.size(); i++) {
-    const auto& geometries = in_->scene.objects.at(part.items[i].object).geometries;
+    const auto& geometries = input_->scene.objects.at(part.items[i].object).geometries;
     for (uint32_t k = 0; k < geometries.size(); k++)
       if (info.drawn[info.firstEntry[i] + k] == DrawnAs::thin)
         addThin(geometries[k].primitive == edit::Primitive::Lines ? *lines : *points, geometries[k],
                 toKernel * part.items[i].matrix * geometries[k].matrix,
-                placed.firstRecord + info.firstEntry[i] + k, in_->footprint, accel_->scale_);
+                placed.firstRecord + info.firstEntry[i] + k, input_->footprint, accel_->scale_);
   }
   const auto put = [&](std::unique_ptr<Part> made, uint32_t slot, RTCGeometryType type) {
     if (made->vertices.empty())
@@ -202,16 +202,16 @@ void AccelBuilder::placeThin(uint32_t c) {
   changed_ = true;
 }
 
-// Builds the top level if something of it changed, and says what there is now to meet.
+// Rebuilds the top level if it changed, and updates the masks of its contents.
 void AccelBuilder::finish() {
   Accel& a = *accel_;
   a.hasTransparent = false;
   uint32_t masks = 0;
   bool instances = false;
   for (uint32_t c = 0; c < a.placed_.size(); c++) {
-    const Accel::Placed& placed = a.placed_[c];
+    const Accel::PlacedCluster& placed = a.placed_[c];
     if (!placed.shown) continue;
-    const PartInfo& part = survey.parts()[in_->flat.clusters[c].part];
+    const PartInfo& part = survey.parts()[input_->flat.clusters[c].part];
     a.hasTransparent |= placed.transparent;
     if (placed.instances) {
       instances = true;
@@ -225,7 +225,7 @@ void AccelBuilder::finish() {
     topLevelBuilds++;
   }
   changed_ = false;
-  in_ = nullptr;
+  input_ = nullptr;
   accel_ = nullptr;
 }
 
@@ -237,9 +237,9 @@ AccelBuilder::Counts AccelBuilder::count(const Accel& accel, const Flattened& fl
     counts.triangles += survey.parts()[flat.clusters[c].part].triangles;
     counts.rejectedInstances += accel.placed_[c].rejected;
   }
-  counts.degenerate = static_.body ? static_.body->degenerate : 0;
-  for (const auto& [key, entry] : bodies_)
-    counts.degenerate += entry.body ? entry.body->degenerate : 0;
+  counts.degenerate = static_.blas ? static_.blas->degenerate : 0;
+  for (const auto& [key, entry] : blases_)
+    counts.degenerate += entry.blas ? entry.blas->degenerate : 0;
   return counts;
 }
 

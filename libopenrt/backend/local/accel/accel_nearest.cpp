@@ -1,6 +1,6 @@
-// accel_nearest.cpp: the surface point next to a place: Embree finds the primitives whose boxes are
-// near enough, each is measured here in double precision, in render space. Called by the threads of
-// a query.
+// accel_nearest.cpp: finds the surface point closest to a given point. Embree finds the primitives
+// whose bounding boxes are near enough; their distances are computed here in double precision, in
+// render space. Called by the threads of a query.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 
 using Weights = std::array<double, 3>;
 
-// C. Ericson: Real-Time Collision Detection (2005), 5.1.5: weights of the corners at the triangle's
-// point next to p.
+// Returns the barycentric weights of the triangle's point closest to p (C. Ericson: Real-Time
+// Collision Detection (2005), 5.1.5).
 Weights closestOnTriangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -38,7 +38,8 @@ Weights closestOnTriangle(const Vec3d& p, const Vec3d& a, const Vec3d& b, const 
   return {va / sum, vb / sum, vc / sum};
 }
 
-// Eigenvalues and -vectors (columns of v) of a symmetric matrix, by Jacobi's rotations.
+// Computes the eigenvalues (diagonal of a) and eigenvectors (columns of v) of a symmetric matrix by
+// Jacobi rotations.
 void eigen(double a[3][3], double v[3][3]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) v[i][j] = i == j;
@@ -68,9 +69,9 @@ void eigen(double a[3][3], double v[3][3]) {
       }
 }
 
-// The unit vector s that brings m s (m: the linear part of an ellipsoid's map) next to p: (G + l) s
-// = b with G = m'm, b = m'p and the one l for which |s| = 1 and G + l is positive (J. More, D.
-// Sorensen: Computing a trust region step, 1983).
+// Returns the unit vector s whose image m s is closest to p; m is the linear part of an ellipsoid's
+// map. s solves (G + l) s = b with G = m'm and b = m'p, for the only l with |s| = 1 and G + l
+// positive (J. More, D. Sorensen: Computing a trust region step, 1983).
 Vec3d closestOnEllipsoid(const Affine& map, const double p[3]) {
   double g[3][3], v[3][3], b[3], y[3];
   for (int i = 0; i < 3; i++)
@@ -105,7 +106,7 @@ Vec3d closestOnEllipsoid(const Affine& map, const double p[3]) {
   }
   const double sum = high > floor ? square(high) : 0;
   if (high == floor) y[0] = y[1] = y[2] = 0;
-  if (sum < 1) { // on the plane of symmetry: either side is as near
+  if (sum < 1) { // p is on the plane of symmetry: both sides are equally close
     const double rest = std::sqrt(std::max(0.0, 1 - sum + y[smallest] * y[smallest]));
     y[smallest] = std::copysign(rest, y[smallest]);
   }
@@ -135,8 +136,8 @@ bool Accel::visitNear(RTCPointQueryFunctionArguments* a) {
   const PointSearch& search = *static_cast<const PointSearch*>(a->userPtr);
   const uint32_t instance =
       a->context->instStackSize > 0 ? a->context->instID[0] : RTC_INVALID_GEOMETRY_ID;
-  if (!search.accel->measure(find(*search.level->scene, instance, a->geomID, a->primID),
-                             search.place, *search.best))
+  if (!search.accel->updateNearest(find(*search.level->scene, instance, a->geomID, a->primID),
+                                   search.place, *search.best))
     return false;
   const double reach = search.best->distance * search.accel->scale_ * (1 + 1e-6);
   if (!(reach < a->query->radius)) return false;
@@ -144,8 +145,8 @@ bool Accel::visitNear(RTCPointQueryFunctionArguments* a) {
   return true;
 }
 
-// True if the primitive is nearer than the best.
-bool Accel::measure(const Found& found, const Vec3d& p, Nearest& best) const {
+// Computes the closest point of a primitive. Updates `best` and returns true if it is closer.
+bool Accel::updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& best) const {
   const Record& r = records[found.record];
   Vec3d at, normal;
   double u = 0, v = 0;
@@ -166,7 +167,7 @@ bool Accel::measure(const Found& found, const Vec3d& p, Nearest& best) const {
           r.vertices + 3 * size_t(r.indices[3 * size_t(found.primitive) + size_t(k)]);
       corner[k] = {vertex[0], vertex[1], vertex[2]};
     }
-    normal = cross(corner[1] - corner[0], corner[2] - corner[0]); // of the kernel's frame
+    normal = cross(corner[1] - corner[0], corner[2] - corner[0]); // in the kernel's frame
     if (r.instanced) {
       const auto& n = r.kernelNormal;
       normal = {n[0][0] * normal.x + n[0][1] * normal.y + n[0][2] * normal.z,
@@ -233,7 +234,8 @@ bool Accel::nearest(const double place[3], double distance, std::span<const uint
     rtcPointQuery(level->scene->scene, &query, &context, visitNear, &search);
   }
   for (const uint32_t record : round)
-    measure({record, 0}, {place[0], place[1], place[2]}, out); // Embree has no queries for them
+    // Embree has no point queries for spheres.
+    updateNearest({record, 0}, {place[0], place[1], place[2]}, out);
   return out.record != noHit;
 }
 

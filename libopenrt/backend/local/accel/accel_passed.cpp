@@ -1,6 +1,6 @@
-// accel_passed.cpp: every surface along a ray, for queries. A filter that takes no hit sees them
-// all; what is seen twice (in a tree that splits triangles) is dropped. Called by the threads of a
-// query.
+// accel_passed.cpp: finds all hits along a ray, for queries. A filter that rejects every hit sees
+// them all. Hits that are reported twice, because the BVH splits triangles, are dropped. Called by
+// the threads of a query.
 #include <algorithm>
 #include <tuple>
 
@@ -9,13 +9,13 @@
 
 namespace openrt {
 
-void Accel::collect(const RTCFilterFunctionNArguments* a) {
-  const Filtered& self =
-      *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+void Accel::collectHit(const RTCFilterFunctionNArguments* a) {
+  const FilterContext& self =
+      *static_cast<const FilterContext*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++) {
     if (a->valid[i] != -1) continue;
     a->valid[i] = 0;
-    const Found found = foundBy(a, i);
+    const PrimitiveId found = primitiveOfHit(a, i);
     const edit::Primitive kind = self.accel->records[found.record].primitive;
     if (kind != edit::Primitive::Triangles && kind != edit::Primitive::Sphere) continue;
     self.all->push_back({RTCRayN_id(a->ray, a->N, i),
@@ -29,29 +29,29 @@ void Accel::collect(const RTCFilterFunctionNArguments* a) {
   }
 }
 
-// As of hits that shading sees: a triangle that the ray grazes is met again in double precision.
-void Accel::settlePassed(const Rays& rays, Passed& p) const {
+// Recomputes hits at grazing angles in double precision, as is done for hits that are shaded.
+void Accel::refineMultiHit(const Rays& rays, MultiHit& p) const {
   const Record& r = records[p.record];
   const float d[3] = {rays.dir[0][p.ray], rays.dir[1][p.ray], rays.dir[2][p.ray]};
   float n[3] = {p.ng[0], p.ng[1], p.ng[2]};
   if (r.instanced) normalToRender(r, p.ng, n);
   if (r.primitive == edit::Primitive::Triangles && grazes(n, d))
-    settle(r, p.primitive, {rays.org[0][p.ray], rays.org[1][p.ray], rays.org[2][p.ray]},
-           {d[0], d[1], d[2]}, rays.tnear[p.ray], rays.tfar[p.ray], p.t, p.u, p.v);
+    refineHit(r, p.primitive, {rays.org[0][p.ray], rays.org[1][p.ray], rays.org[2][p.ray]},
+              {d[0], d[1], d[2]}, rays.tnear[p.ray], rays.tfar[p.ray], p.t, p.u, p.v);
 }
 
-void Accel::passed(const Rays& rays, std::vector<Passed>& out) const {
+void Accel::allHits(const Rays& rays, std::vector<MultiHit>& out) const {
   out.clear();
   Arena arena;
-  RayHits none; // what the filter leaves over: nothing
+  RayHits none; // stays empty, because the filter rejects every hit
   none.allocate(arena, rays.count);
-  intersectFiltered(rays, maskAll, collect, nullptr, none, &out);
-  for (Passed& p : out) settlePassed(rays, p);
-  const auto key = [](const Passed& p) { return std::tuple(p.ray, p.t, p.record, p.primitive); };
+  intersectFiltered(rays, maskAll, collectHit, nullptr, none, &out);
+  for (MultiHit& p : out) refineMultiHit(rays, p);
+  const auto key = [](const MultiHit& p) { return std::tuple(p.ray, p.t, p.record, p.primitive); };
   std::sort(out.begin(), out.end(),
-            [&](const Passed& a, const Passed& b) { return key(a) < key(b); });
+            [&](const MultiHit& a, const MultiHit& b) { return key(a) < key(b); });
   out.erase(std::unique(out.begin(), out.end(),
-                        [&](const Passed& a, const Passed& b) { return key(a) == key(b); }),
+                        [&](const MultiHit& a, const MultiHit& b) { return key(a) == key(b); }),
             out.end());
 }
 

@@ -1,5 +1,5 @@
-// accel_records.cpp: records of clusters: what shading needs to know of each geometry where it
-// stands.
+// accel_records.cpp: writes the records of clusters: the data that shading needs for each placed
+// geometry.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,8 @@
 namespace openrt {
 namespace {
 
-// Inverse transpose up to a positive factor, its largest element 1: directions only.
+// Computes the inverse transpose up to a positive factor: its largest element is 1. For directions
+// only.
 void normalMatrixOf(const Matrix4d& m, float out[3][3]) {
   const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
   const Vec3d r[3] = {cross(b, c), cross(c, a), cross(a, b)}; // columns of the cofactor matrix
@@ -39,20 +40,20 @@ bool flipped(const Geometry& g, const Matrix4d& asTheKernelSeesIt) {
 } // namespace
 
 uint32_t AccelBuilder::bucketOf(uint32_t slot, uint32_t lightSet) {
-  const auto key = std::make_pair(in_->shaders[slot].shaderClass, lightSet);
+  const auto key = std::make_pair(input_->shaders[slot].shaderClass, lightSet);
   const auto [found, fresh] = buckets_.try_emplace(key, uint32_t(accel_->buckets.size()));
   if (fresh) accel_->buckets.push_back({key.first, lightSet});
   return found->second;
 }
 
-// Whether the values that a geometry has for parameters hold where it is drawn: with a shader of
-// the class that they are of.
+// Returns whether the parameter values of a geometry are valid for the shader it is drawn with: the
+// classes must be the same, and the arrays long enough.
 bool AccelBuilder::carriesParameters(const Geometry& g, uint32_t slot) const {
-  const uint32_t own = in_->shaders.slotOf(g.shader);
+  const uint32_t own = input_->shaders.slotOf(g.shader);
   if (g.parameters.empty() || own == 0 ||
-      in_->shaders[own].shaderClass != in_->shaders[slot].shaderClass)
+      input_->shaders[own].shaderClass != input_->shaders[slot].shaderClass)
     return false;
-  const RtsClass& table = *in_->shaders[own].shaderClass;
+  const RtsClass& table = *input_->shaders[own].shaderClass;
   return std::all_of(g.parameters.begin(), g.parameters.end(), [&](const GeometryParameter& p) {
     const size_t count =
         p.perVertex ? (g.points ? g.points->count<float>() / 3 : 0) : g.primitives();
@@ -62,14 +63,14 @@ bool AccelBuilder::carriesParameters(const Geometry& g, uint32_t slot) const {
   });
 }
 
-// toRender: the geometry's local frame to render space.
+// toRender: from the geometry's local frame to render space.
 Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Matrix4d& toRender) {
   Record r;
   r.primitive = g.primitive;
   r.primitives = uint32_t(g.primitives());
-  r.shader = in_->shaders.slotOf(path.shader ? path.shader : g.shader);
-  // A body that light passes through has an inside, whatever its maker thought of its backs.
-  r.cull = g.cull && !in_->shaders[r.shader].shaderClass->medium;
+  r.shader = input_->shaders.slotOf(path.shader ? path.shader : g.shader);
+  // The back faces of a body with a medium are needed, even if the geometry asks for culling.
+  r.cull = g.cull && !input_->shaders[r.shader].shaderClass->medium;
   r.bucket = bucketOf(r.shader, path.lightSet);
   r.name = g.name ? g.name : path.name;
   r.instance = path.instance;
@@ -88,25 +89,25 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
 }
 
 void AccelBuilder::writeRecords(uint32_t c) {
-  const Cluster& cluster = in_->flat.clusters[c];
-  const ScenePart& part = in_->flat.parts[cluster.part];
+  const Cluster& cluster = input_->flat.clusters[c];
+  const ScenePart& part = input_->flat.parts[cluster.part];
   const PartInfo& info = survey.parts()[cluster.part];
-  Accel::Placed& placed = accel_->placed_[c];
+  Accel::PlacedCluster& placed = accel_->placed_[c];
   const bool root = cluster.part == 0;
   const Matrix4d partToRender = worldToRender_ * cluster.world;
-  const std::shared_ptr<const Body> body =
-      root ? accel_->static_ : partBody(cluster.part, overrideMask(cluster.path.shader));
+  const std::shared_ptr<const Blas> blas =
+      root ? accel_->static_ : partBlas(cluster.part, overrideMask(cluster.path.shader));
   placed.transparent = false;
   placed.rejected = 0;
   for (uint32_t i = 0; i < part.items.size(); i++) {
     const Item& item = part.items[i];
-    const auto& geometries = in_->scene.objects.at(item.object).geometries;
-    const Inherited path = in_->flat.inherit(cluster.path, item.path);
+    const auto& geometries = input_->scene.objects.at(item.object).geometries;
+    const Inherited path = input_->flat.inherit(cluster.path, item.path);
     const Matrix4d itemToRender = partToRender * item.matrix;
     placed.rejected += !itemToRender.usable();
-    std::shared_ptr<const Body> heavy;
-    if (info.drawn[info.firstEntry[i]] == DrawnAs::heavy)
-      heavy = objectBody(item.object, overrideMask(path.shader));
+    std::shared_ptr<const Blas> shared;
+    if (info.drawn[info.firstEntry[i]] == DrawnAs::shared)
+      shared = objectBlas(item.object, overrideMask(path.shader));
     for (uint32_t k = 0; k < geometries.size(); k++) {
       const Geometry& g = geometries[k];
       const uint32_t entry = info.firstEntry[i] + k;
@@ -118,17 +119,17 @@ void AccelBuilder::writeRecords(uint32_t c) {
       switch (info.drawn[entry]) {
       case DrawnAs::baked:
         if (!root)
-          setInstance(r, partToRender * body->fromKernel);
-        else if (sphere && !similarity(uniformScale(in_->scale) * toRender) &&
-                 !isHugeSphere(uniformScale(in_->scale) * unit))
-          setInstance(r, unit); // it is an instance even so
+          setInstance(r, partToRender * blas->fromKernel);
+        else if (sphere && !similarity(uniformScale(input_->scale) * toRender) &&
+                 !isHugeSphere(uniformScale(input_->scale) * unit))
+          setInstance(r, unit); // baked as an instance of the unit sphere
         r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
-        r.vertices = body->vertices[entry];
+        r.vertices = blas->vertices[entry];
         break;
-      case DrawnAs::heavy:
-        setInstance(r, itemToRender * heavy->fromKernel);
+      case DrawnAs::shared:
+        setInstance(r, itemToRender * shared->fromKernel);
         r.flip = flipped(g, g.matrix);
-        r.vertices = heavy->vertices[k];
+        r.vertices = shared->vertices[k];
         break;
       case DrawnAs::ellipsoid: setInstance(r, unit); break;
       case DrawnAs::thin: break;
@@ -137,7 +138,7 @@ void AccelBuilder::writeRecords(uint32_t c) {
         r.toRender = Affine::from(unit);
         r.fromRender = Affine::from(inverse(unit));
       }
-      placed.transparent |= (in_->shaders[r.shader].traits & RTS_TRANSPARENT) != 0;
+      placed.transparent |= (input_->shaders[r.shader].traits & RTS_TRANSPARENT) != 0;
       accel_->records[placed.firstRecord + entry] = r;
     }
   }

@@ -1,5 +1,6 @@
-// accel_trace.cpp: rays in, hits out. Every ray is checked before Embree sees it: a build with
-// assertions would end the process on one that is not finite.
+// accel_trace.cpp: traces rays through both Embree scenes. Every ray is checked first, because an
+// Embree build with assertions aborts the process on a ray that is not finite. Called by render
+// threads and the threads of queries.
 #include <cmath>
 #include <limits>
 
@@ -24,8 +25,8 @@ struct Packet8 {
   static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded8(s, v, r, c); }
 };
 
-// A triangle that the ray grazes is met again in double precision.
-void settleGrazing(const Record& r, const Rays& rays, float far, RayHits& hits, uint32_t lane) {
+// Recomputes a hit at a grazing angle in double precision.
+void refineGrazingHit(const Record& r, const Rays& rays, float far, RayHits& hits, uint32_t lane) {
   if (r.primitive != edit::Primitive::Triangles) return;
   float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
   const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
@@ -34,12 +35,12 @@ void settleGrazing(const Record& r, const Rays& rays, float far, RayHits& hits, 
     normalToRender(r, k, n);
   }
   if (!grazes(n, d)) return;
-  settle(r, hits.primitive[lane], {rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]},
-         {d[0], d[1], d[2]}, rays.tnear[lane], far, hits.t[lane], hits.u[lane], hits.v[lane]);
+  refineHit(r, hits.primitive[lane], {rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]},
+            {d[0], d[1], d[2]}, rays.tnear[lane], far, hits.t[lane], hits.u[lane], hits.v[lane]);
 }
 
-// Fills a packet from lane `first` on; returns how many of its rays were refused. Refused and
-// absent rays are made harmless. ends: where the rays end, from that lane on.
+// Fills a packet with the rays from number `first` on and returns how many were rejected. Rejected
+// and absent rays get harmless values. ends: tfar of these rays.
 template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* ends, uint32_t first,
                                                float scale, uint32_t mask, int* valid, Ray& to) {
   const float limit = 1e18f / scale;
@@ -51,7 +52,7 @@ template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* en
     const float near = rays.tnear[lane], far = ends[i];
     const float ax = std::fabs(ox), ay = std::fabs(oy), az = std::fabs(oz),
                 d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
-    // Comparisons are false for NaN: whatever is not a number is refused.
+    // Comparisons with NaN are false, so NaN is rejected.
     const bool good = (ax <= limit) & (ay <= limit) & (az <= limit) & (d > 0) & (d <= 1e18f) &
                       (near >= 0) & (near <= far) & (near < std::numeric_limits<float>::infinity());
     const bool present = lane < rays.count;
@@ -75,8 +76,8 @@ template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* en
 
 } // namespace
 
-Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry,
-                         uint32_t primitive) {
+Accel::PrimitiveId Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry,
+                               uint32_t primitive) {
   uint32_t base = 0;
   const PartScene* scene = &root;
   if (instance != RTC_INVALID_GEOMETRY_ID) {
@@ -89,21 +90,21 @@ Accel::Found Accel::find(const PartScene& root, uint32_t instance, uint32_t geom
   return {base + part.recordOf[primitive], part.primitiveOf[primitive]};
 }
 
-Accel::Found Accel::foundBy(const RTCFilterFunctionNArguments* a, unsigned i) {
-  const Filtered& self =
-      *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+Accel::PrimitiveId Accel::primitiveOfHit(const RTCFilterFunctionNArguments* a, unsigned i) {
+  const FilterContext& self =
+      *static_cast<const FilterContext*>(static_cast<const QueryContext*>(a->context)->user);
   return find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0),
               RTCHitN_geomID(a->hit, a->N, i), RTCHitN_primID(a->hit, a->N, i));
 }
 
-// Ray and normal are both in the frame of the instance that is being met, if any: the sign of their
-// product is the same in all.
+// Ray and normal are both in the frame of the instance, if any; the sign of their dot product is
+// the same in every frame.
 void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
-  const Filtered& self =
-      *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  const FilterContext& self =
+      *static_cast<const FilterContext*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++) {
     if (a->valid[i] != -1) continue;
-    const Record& r = self.accel->records[foundBy(a, i).record];
+    const Record& r = self.accel->records[primitiveOfHit(a, i).record];
     if (!r.cull) continue;
     const float along = RTCHitN_Ng_x(a->hit, a->N, i) * RTCRayN_dir_x(a->ray, a->N, i) +
                         RTCHitN_Ng_y(a->hit, a->N, i) * RTCRayN_dir_y(a->ray, a->N, i) +
@@ -113,14 +114,16 @@ void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
 }
 
 void Accel::rejectRecord(const RTCFilterFunctionNArguments* a) {
-  const Filtered& self =
-      *static_cast<const Filtered*>(static_cast<const QueryContext*>(a->context)->user);
+  const FilterContext& self =
+      *static_cast<const FilterContext*>(static_cast<const QueryContext*>(a->context)->user);
   for (unsigned i = 0; i < a->N; i++)
-    if (a->valid[i] == -1 && foundBy(a, i).record == self.record[RTCRayN_id(a->ray, a->N, i)])
+    if (a->valid[i] == -1 &&
+        primitiveOfHit(a, i).record == self.record[RTCRayN_id(a->ray, a->N, i)])
       a->valid[i] = 0;
 }
 
-// first: the hits are written; else they hold what the other level found, which ends the rays.
+// first: the hits are overwritten. Otherwise they hold the hits of the other level, which end the
+// rays.
 template <class Packet> void Accel::intersectPackets(const Level& level, const Rays& rays,
                                                      uint32_t mask, const QueryOptions& options,
                                                      bool first, RayHits& hits) const {
@@ -149,7 +152,7 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
         hits.t[lane] = std::numeric_limits<float>::infinity();
         continue;
       }
-      const Found found =
+      const PrimitiveId found =
           find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
       hits.record[lane] = found.record;
       hits.primitive[lane] = found.primitive;
@@ -159,7 +162,7 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
       hits.ng[0][lane] = packet.hit.Ng_x[i];
       hits.ng[1][lane] = packet.hit.Ng_y[i];
       hits.ng[2][lane] = packet.hit.Ng_z[i];
-      settleGrazing(records[found.record], rays, first ? rays.tfar[lane] : ends[i], hits, lane);
+      refineGrazingHit(records[found.record], rays, first ? rays.tfar[lane] : ends[i], hits, lane);
     }
   }
   if (refused) rejectedRays += refused;
@@ -190,7 +193,7 @@ template <class Packet> void Accel::occludedPackets(const Level& level, const Ra
 
 void Accel::intersectLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
                            bool first, RayHits& hits) const {
-  if (device_->wide && !level.instances)
+  if (device_->hasNativePackets16 && !level.instances)
     intersectPackets<Packet16>(level, rays, mask, {coherent}, first, hits);
   else
     intersectPackets<Packet8>(level, rays, mask, {coherent && !level.instances}, first, hits);
@@ -198,7 +201,7 @@ void Accel::intersectLevel(const Level& level, const Rays& rays, uint32_t mask, 
 
 void Accel::occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
                           bool first, uint8_t* blocked) const {
-  if (device_->wide && !level.instances)
+  if (device_->hasNativePackets16 && !level.instances)
     occludedPackets<Packet16>(level, rays, mask, coherent, first, blocked);
   else
     occludedPackets<Packet8>(level, rays, mask, coherent && !level.instances, first, blocked);
@@ -213,11 +216,11 @@ void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayH
 
 void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
                               const uint32_t* record, RayHits& hits,
-                              std::vector<Passed>* all) const {
+                              std::vector<MultiHit>* all) const {
   bool first = true;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (level == &topLevel_ && !(level->masks & mask)) continue;
-    const Filtered filtered{this, level, record, all};
+    const FilterContext filtered{this, level, record, all};
     intersectPackets<Packet8>(*level, rays, mask, {false, filter, &filtered}, first, hits);
     first = false;
   }

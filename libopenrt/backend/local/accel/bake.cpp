@@ -1,5 +1,5 @@
-// bake.cpp: Large arrays are worked on in parallel; every element is independent, so
-// the result is the same.
+// bake.cpp: bounds, checks and baking of geometries. Large arrays are processed in parallel; every
+// element is independent, so the result does not depend on the number of threads.
 #include "backend/local/accel/bake.h"
 
 #include <tbb/blocked_range.h>

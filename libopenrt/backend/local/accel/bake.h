@@ -1,6 +1,7 @@
-// bake.h: one placed geometry as the vertex and index arrays that Embree reads: transformed in
-// double, rounded once; checked for what must not reach the kernels (indices out of range,
-// degenerate triangles) and for slivers, which are met in double precision.
+// bake.h: converts a placed geometry to the vertex and index arrays that Embree reads. Vertices are
+// transformed in double precision and rounded once. Degenerate triangles and indices out of range
+// are kept from the ray kernels; slivers are separated for intersection in double precision. Called
+// between frames, on the application thread.
 #pragma once
 
 #include <vector>
@@ -10,22 +11,23 @@
 namespace openrt {
 
 struct BakedTriangles {
-  std::vector<float> vertices;    // stride 3
-  std::vector<uint32_t> indices;  // 3 a triangle that is kept in the main list; empty: the
-                                  // geometry's own indices serve
-  std::vector<uint32_t> kept;     // original triangle of each kept one, when indices is not empty
-  std::vector<uint32_t> slivers;  // original triangles to be met in double precision
-  std::vector<uint8_t> openEdges; // of each of these: sliver_edges.h
-  uint64_t degenerate = 0;        // dropped
+  std::vector<float> vertices; // stride 3
+  // 3 for each triangle of the main list. Empty: all triangles, with the geometry's own indices.
+  std::vector<uint32_t> indices;
+  std::vector<uint32_t> kept;     // original number of each triangle in `indices`
+  std::vector<uint32_t> slivers;  // original numbers of triangles for double precision
+  std::vector<uint8_t> openEdges; // for each sliver (sliver_edges.h)
+  uint64_t degenerate = 0;        // number of dropped triangles
 };
 
-// toKernel: the geometry's local frame -> the kernel's frame.
+// toKernel: from the geometry's local frame to the kernel's frame.
 BakedTriangles bakeTriangles(const Geometry& geometry, const Matrix4d& toKernel);
 
-// Points of a geometry in the kernel's frame, stride 3.
+// Returns the points of a geometry in the kernel's frame, stride 3.
 std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& toKernel);
 
-// True if indices are all below the number of points and attribute arrays are long enough.
+// Returns true if all indices are below the number of points and the attribute arrays are long
+// enough.
 bool consistent(const Geometry& geometry);
 
 struct Box {
@@ -34,6 +36,6 @@ struct Box {
   void add(const Vec3d& p);
   void add(const Box& box, const Matrix4d& matrix); // the transformed corners
 };
-Box boundsOf(const Geometry& geometry); // under its own matrix
+Box boundsOf(const Geometry& geometry); // transformed by the geometry's own matrix
 
 } // namespace openrt

@@ -1,5 +1,5 @@
-// body.cpp: Small geometries share one Embree geometry, large ones have their own;
-// slivers are met in double.
+// body.cpp: builds a Blas. Small geometries share one Embree geometry, large ones have their own.
+// Slivers and huge spheres go to user geometries that intersect in double precision.
 #include "backend/local/accel/body.h"
 
 #include <algorithm>
@@ -12,50 +12,50 @@
 namespace openrt {
 namespace {
 
-constexpr size_t mergeBelow =
-    4096; // triangles of a geometry that shares an Embree geometry with others
-constexpr size_t mergedVertices = 8 << 20;
+// A geometry with fewer triangles shares an Embree geometry with others.
+constexpr size_t mergeBelow = 4096;
+constexpr size_t mergedVertices = 8 << 20; // a merged geometry with more vertices is closed
 
 } // namespace
 
-std::shared_ptr<const Body> UnitSpheres::get(uint32_t mask) {
+std::shared_ptr<const Blas> UnitSpheres::get(uint32_t mask) {
   auto& known = spheres_[mask];
   if (known) return known;
-  auto body = std::make_shared<Body>();
-  body->scene = newScene(device_);
+  auto blas = std::make_shared<Blas>();
+  blas->scene = newScene(device_);
   auto part = std::make_unique<Part>();
   part->vertices = {0, 0, 0, 1};
-  attachRound(*body, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  rtcCommitScene(body->scene);
-  return known = std::move(body);
+  attachRound(*blas, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  rtcCommitScene(blas->scene);
+  return known = std::move(blas);
 }
 
-BodyBuilder::BodyBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries)
-    : device_(device), unitSpheres_(spheres), body_(std::make_shared<Body>()) {
-  body_->scene = newScene(device);
-  body_->vertices.resize(entries);
+BlasBuilder::BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries)
+    : device_(device), unitSpheres_(spheres), blas_(std::make_shared<Blas>()) {
+  blas_->scene = newScene(device);
+  blas_->vertices.resize(entries);
 }
 
-void BodyBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entry, uint32_t mask) {
+void BlasBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entry, uint32_t mask) {
   if (!consistent(g) || !toKernel.usable()) return;
   if (g.primitive == edit::Primitive::Triangles) addTriangles(g, toKernel, entry, mask);
   if (g.primitive == edit::Primitive::Sphere) addSphere(g, toKernel, entry, mask);
 }
 
-void BodyBuilder::addInstance(std::shared_ptr<const Body> body, const Matrix4d& toKernel,
+void BlasBuilder::addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel,
                               uint32_t entry) {
-  if (!toKernel.usable() || body->parts.empty()) return;
+  if (!toKernel.usable() || blas->parts.empty()) return;
   auto part = std::make_unique<Part>();
   part->record = entry;
-  part->object = std::move(body);
-  body_->instances = true;
-  attachInstance(*body_, device_, std::move(part), toKernel);
+  part->object = std::move(blas);
+  blas_->instances = true;
+  attachInstance(*blas_, device_, std::move(part), toKernel);
 }
 
-void BodyBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
+void BlasBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
                                uint32_t mask) {
   BakedTriangles baked = bakeTriangles(g, toKernel);
-  body_->degenerate += baked.degenerate;
+  blas_->degenerate += baked.degenerate;
   const bool whole = baked.indices.empty() && baked.slivers.empty() && baked.degenerate == 0;
   const size_t kept = whole ? g.primitives() : baked.kept.size();
   const uint32_t* index = g.indices->as<uint32_t>();
@@ -78,16 +78,16 @@ void BodyBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint
     part->indices = std::move(baked.indices);
   }
   vertexOf_.push_back({entry, part.get(), 0});
-  attachTriangles(*body_, device_, std::move(part), mask, false);
+  attachTriangles(*blas_, device_, std::move(part), mask, false);
 }
 
-// Triangles of `which` (null: the first count) join the merged geometry of their kind.
-Part& BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* index,
+// Adds the triangles in `which` (null: the first `count`) to the merged geometry of their kind.
+Part& BlasBuilder::merge(const std::vector<float>& vertices, const uint32_t* index,
                          const std::vector<uint32_t>* which, size_t count, uint32_t entry,
                          uint32_t mask, bool slivers) {
   auto& part = merged_[{mask, slivers}];
   if (part && part->vertices.size() / 3 > mergedVertices)
-    attachTriangles(*body_, device_, std::move(part), mask, slivers);
+    attachTriangles(*blas_, device_, std::move(part), mask, slivers);
   if (!part) part = std::make_unique<Part>();
   const uint32_t base = uint32_t(part->vertices.size() / 3);
   part->vertices.insert(part->vertices.end(), vertices.begin(), vertices.end());
@@ -102,7 +102,7 @@ Part& BodyBuilder::merge(const std::vector<float>& vertices, const uint32_t* ind
   return *part;
 }
 
-void BodyBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
+void BlasBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
                             uint32_t mask) {
   const Matrix4d unit = toKernel * uniformScale(g.width);
   if (isHugeSphere(unit)) {
@@ -126,17 +126,17 @@ void BodyBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_
   part->primitiveOf.push_back(0);
 }
 
-// Vertices stay where they are from here on.
-std::shared_ptr<Body> BodyBuilder::finish() {
+// From here on the vertices keep their addresses.
+std::shared_ptr<Blas> BlasBuilder::finish() {
   for (auto& [key, part] : merged_)
-    if (part) attachTriangles(*body_, device_, std::move(part), key.first, key.second);
+    if (part) attachTriangles(*blas_, device_, std::move(part), key.first, key.second);
   for (auto& [mask, part] : spheres_)
-    if (part) attachRound(*body_, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    if (part) attachRound(*blas_, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
   for (auto& [mask, part] : hugeSpheres_)
-    if (part) attachHugeSpheres(*body_, device_, std::move(part), mask);
-  for (const VertexOf& v : vertexOf_) body_->vertices[v.entry] = v.part->vertices.data() + v.offset;
-  rtcCommitScene(body_->scene);
-  return std::move(body_);
+    if (part) attachHugeSpheres(*blas_, device_, std::move(part), mask);
+  for (const VertexOf& v : vertexOf_) blas_->vertices[v.entry] = v.part->vertices.data() + v.offset;
+  rtcCommitScene(blas_->scene);
+  return std::move(blas_);
 }
 
 Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high) {

@@ -1,6 +1,7 @@
-// body.h: one Embree scene made of geometries that keep their places to each other: the static
-// world, the part under a dynamic instance, an object with many copies. Made between frames,
-// immutable afterwards; shared by all places where it stands.
+// body.h: a bottom-level acceleration structure (Blas): one Embree scene of geometries that do not
+// move relative to each other. There is one for the static world, one for each part below a dynamic
+// instance, and one for each object with many copies. Built between frames, immutable afterwards
+// and shared by all its instances.
 #pragma once
 
 #include <map>
@@ -12,33 +13,33 @@
 
 namespace openrt {
 
-struct Body : PartScene {
-  Matrix4d fromKernel; // the scene's frame, scaled near 1, to the frame of what it holds
-  std::vector<const float*> vertices; // of triangles, by entry, in the scene's frame
-  uint64_t degenerate = 0;            // triangles dropped
-  bool instances = false;             // it holds some: it cannot be instanced itself
+struct Blas : PartScene {
+  Matrix4d fromKernel; // from the Embree scene's frame, scaled near 1, to that of its contents
+  std::vector<const float*> vertices; // of triangles, by entry, in the Embree scene's frame
+  uint64_t degenerate = 0;            // number of dropped triangles
+  bool instances = false;             // contains instances, so it cannot be instanced itself
 };
 
-// The unit sphere, by mask: ellipsoids are instances of it.
+// The unit sphere for each mask; ellipsoids are instances of it.
 class UnitSpheres {
  public:
   explicit UnitSpheres(const EmbreeDevice& device) : device_(device) {}
-  std::shared_ptr<const Body> get(uint32_t mask);
+  std::shared_ptr<const Blas> get(uint32_t mask);
 
  private:
   const EmbreeDevice& device_;
-  std::map<uint32_t, std::shared_ptr<const Body>> spheres_;
+  std::map<uint32_t, std::shared_ptr<const Blas>> spheres_;
 };
 
-class BodyBuilder {
+class BlasBuilder {
  public:
-  BodyBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries);
-  // A geometry, triangles or sphere, under an entry's number. toKernel: its local frame to the
-  // scene's.
+  BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries);
+  // Adds a geometry (triangles or a sphere) as entry number `entry`. toKernel: from its local frame
+  // to the Embree scene's.
   void add(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
-  // Another body within this one, its entries numbered from `entry` on.
-  void addInstance(std::shared_ptr<const Body> body, const Matrix4d& toKernel, uint32_t entry);
-  std::shared_ptr<Body> finish();
+  // Adds an instance of another Blas; its entries are numbered from `entry` on.
+  void addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel, uint32_t entry);
+  std::shared_ptr<Blas> finish();
 
  private:
   void addTriangles(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry,
@@ -50,11 +51,11 @@ class BodyBuilder {
 
   const EmbreeDevice& device_;
   UnitSpheres& unitSpheres_;
-  std::shared_ptr<Body> body_;
-  std::map<std::pair<uint32_t, bool>, std::unique_ptr<Part>>
-      merged_; // triangles of small geometries, by (mask, slivers)
+  std::shared_ptr<Blas> blas_;
+  // Triangles of small geometries, by (mask, slivers).
+  std::map<std::pair<uint32_t, bool>, std::unique_ptr<Part>> merged_;
   std::map<uint32_t, std::unique_ptr<Part>> spheres_, hugeSpheres_; // by mask
-  struct VertexOf {                                                 // where an entry's vertices lie
+  struct VertexOf { // where an entry's vertices are stored
     uint32_t entry;
     const Part* part;
     size_t offset;
@@ -62,7 +63,8 @@ class BodyBuilder {
   std::vector<VertexOf> vertexOf_;
 };
 
-// The frame in which bounds are scaled near 1 around their centre, to the bounds' own frame.
+// Returns the map to the frame of the bounds from a frame in which they are centred and have a size
+// near 1.
 Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high);
 
 } // namespace openrt

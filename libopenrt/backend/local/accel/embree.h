@@ -1,9 +1,9 @@
-// embree.h: the only place that knows which Embree this is. Packets of 16 rays; contexts and
-// arguments of both major versions.
+// embree.h: hides the differences between Embree 3 and 4: contexts, arguments and calls for packets
+// of 8 and 16 rays. No other file depends on the major version.
 #pragma once
 
-// The library's build says which; what else includes this (tests) finds the same, in the order of
-// cmake/Dependencies.cmake.
+// The library's build defines the major version. Other includers (tests) find the same one, because
+// this order is that of cmake/Dependencies.cmake.
 #ifndef OPENRT_EMBREE_MAJOR
 #if __has_include(<embree3/rtcore.h>)
 #define OPENRT_EMBREE_MAJOR 3
@@ -20,8 +20,8 @@
 
 namespace openrt {
 
-// What an intersection query may ask for: `filter` is called for every candidate hit, with `user`
-// in its context.
+// Options of an intersection query. `filter` is called for every candidate hit, with `user` in its
+// context.
 struct QueryOptions {
   bool coherent = false;
   RTCFilterFunctionN filter = nullptr;
@@ -33,7 +33,7 @@ inline const RTCSceneFlags sceneFlags =
     RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
 struct QueryContext : RTCRayQueryContext {
   const void* user;
-  RTCFilterFunctionN takes; // the query's filter, for geometries of our own
+  RTCFilterFunctionN queryFilter; // the query's filter, for geometries of our own
 };
 struct Query {
   QueryContext context;
@@ -41,7 +41,7 @@ struct Query {
   explicit Query(const QueryOptions& options) {
     rtcInitRayQueryContext(&context);
     context.user = options.user;
-    context.takes = options.filter;
+    context.queryFilter = options.filter;
     rtcInitIntersectArguments(&arguments);
     arguments.context = &context;
     arguments.filter = options.filter;
@@ -75,14 +75,14 @@ inline const RTCSceneFlags sceneFlags =
     RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
 struct QueryContext : RTCIntersectContext {
   const void* user;
-  RTCFilterFunctionN takes; // the query's filter, for geometries of our own
+  RTCFilterFunctionN queryFilter; // the query's filter, for geometries of our own
 };
 struct Query {
   QueryContext context;
   explicit Query(const QueryOptions& options) {
     rtcInitIntersectContext(&context);
     context.user = options.user;
-    context.takes = options.filter;
+    context.queryFilter = options.filter;
     context.filter = options.filter;
     context.flags = options.coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
                                      : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;

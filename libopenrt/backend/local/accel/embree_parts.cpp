@@ -1,3 +1,5 @@
+// embree_parts.cpp: creates the Embree device, and attaches geometries and instances to Embree
+// scenes. Called between frames.
 #include "backend/local/accel/body.h"
 #include "render/rays.h"
 
@@ -43,7 +45,7 @@ EmbreeDevice::EmbreeDevice(uint32_t threads) {
         return true;
       },
       &bytes);
-  wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
+  hasNativePackets16 = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
 }
 
 RTCScene newScene(const EmbreeDevice& device) {
@@ -62,7 +64,7 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
   }
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const size_t points = part->vertices.size() / 3;
-  part->vertices.resize(part->vertices.size() + 4); // kernels read past the end
+  part->vertices.resize(part->vertices.size() + 4); // padding: the kernels read past the end
   part->indices.reserve(part->indices.size() + 4);
   const size_t corners =
       part->sharedIndices ? part->sharedIndices->count<uint32_t>() : part->indices.size();

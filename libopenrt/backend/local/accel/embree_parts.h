@@ -1,5 +1,6 @@
-// embree_parts.h: Embree geometries made from parts. Each attaches a part under the geometry id
-// that is its index in PartScene::parts and keeps it alive there.
+// embree_parts.h: creates Embree geometries from parts. The attach functions add a part to an
+// Embree scene. Its geometry id is its index in PartScene::parts, which owns it. Called between
+// frames.
 #pragma once
 
 #include <atomic>
@@ -18,29 +19,31 @@ struct EmbreeDevice {
   EmbreeDevice(const EmbreeDevice&) = delete;
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
   RTCDevice device;
-  bool wide = true;                           // packets of 16 are native
-  std::atomic<int64_t> bytes{0};              // held by acceleration structures
-  mutable std::atomic<uint64_t> wrongHits{0}; // on slivers, of single precision, not taken
+  bool hasNativePackets16 = true;             // packets of 16 are native
+  std::atomic<int64_t> bytes{0};              // memory of all acceleration structures
+  mutable std::atomic<uint64_t> wrongHits{0}; // rejected hits of single precision on slivers
 };
 
-struct Body;
+struct Blas;
 
-// How one Embree geometry's primitives lead to records and primitives of ours.
+// The buffers of one Embree geometry, and the map from its primitives to records and primitives of
+// the scene.
 struct Part {
-  uint32_t record = 0;            // of every primitive, or
-  std::vector<uint32_t> recordOf; // one a primitive (merged geometries)
+  // The record of every primitive is `record`, or recordOf[i] in merged geometries. For an instance
+  // `record` is the first of the instance's records.
+  uint32_t record = 0;
+  std::vector<uint32_t> recordOf;
   std::vector<uint32_t> primitiveOf;
-  std::vector<float> vertices; // as Embree reads them
+  std::vector<float> vertices; // in the layout that Embree reads
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;
-  std::vector<uint8_t>
-      openEdges; // of slivers, a triangle each: bits of edges that it shares with what is none
-  std::vector<Matrix4d> spheres; // huge ones: the unit sphere's frame to that of the geometry
-  std::atomic<uint64_t>* wrongHits = nullptr; // of slivers: the device's, which outlives it
-  std::shared_ptr<const Body> object;         // an instance of it; record is the first of the place
+  std::vector<uint8_t> openEdges; // for each sliver bits of its open edges (sliver_edges.h)
+  std::vector<Matrix4d> spheres;  // for huge spheres: unit sphere's frame to the geometry's frame
+  std::atomic<uint64_t>* wrongHits = nullptr; // for slivers: the device's; it outlives the part
+  std::shared_ptr<const Blas> object;         // for an instance: the instanced scene
 };
 
-// An Embree scene with its parts by geometry id.
+// An Embree scene and its parts, indexed by geometry id.
 struct PartScene {
   PartScene() = default;
   PartScene(const PartScene&) = delete;
@@ -52,27 +55,28 @@ struct PartScene {
   std::vector<std::unique_ptr<Part>> parts;
 };
 
-inline constexpr uint32_t nextSlot = ~0u; // behind the parts there are
+inline constexpr uint32_t nextSlot = ~0u; // the first id after the existing parts
 
-RTCScene newScene(const EmbreeDevice& device); // robust mode
-// slivers: they are met in double precision.
+RTCScene newScene(const EmbreeDevice& device); // in robust mode
+// Attaches triangles; if `slivers`, as a user geometry that intersects in double precision.
 void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                      uint32_t mask, bool slivers);
-// The geometry of slivers, not yet attached; the part stays where it is.
+// Creates the user geometry of slivers without attaching it. The part must keep its address.
 RTCGeometry newSlivers(const EmbreeDevice& device, Part& part);
-// Huge spheres and ellipsoids (render/huge_spheres.h): part.spheres, met in double precision.
+// Attaches huge spheres and ellipsoids (render/huge_spheres.h) from part.spheres, intersected in
+// double precision.
 void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                        uint32_t mask);
 RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part); // not yet attached
-// Spheres or round linear curves; part.vertices have stride 4: centre and radius. slot: the
-// geometry id, of those in parts.
+// Attaches spheres or round linear curves. part.vertices have stride 4: centre and radius. slot:
+// the geometry id.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                  uint32_t mask, RTCGeometryType type, uint32_t slot = nextSlot);
-// An instance of part->object.
+// Attaches an instance of part->object.
 void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                     const Matrix4d& matrix, uint32_t slot = nextSlot);
-void detach(PartScene& from, uint32_t slot); // nothing if the slot is empty
-// Of the instance in a slot: places it, or takes it out of sight.
+void detach(PartScene& from, uint32_t slot); // does nothing if the slot is empty
+// These place or hide the instance in a slot.
 void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix);
 void setEnabled(PartScene& in, uint32_t slot, bool enabled);
 

@@ -1,3 +1,5 @@
+// survey.cpp: measures objects and parts of a scene, and chooses the origin and the scale of render
+// space. Called on the application thread, between frames.
 #include "backend/local/accel/survey.h"
 
 #include <algorithm>
@@ -6,9 +8,10 @@
 namespace openrt {
 namespace {
 
-constexpr uint64_t bakedTriangles = 50000; // copies that are cheaper than an instance
+// Up to this number of copied triangles, baked copies of an object are cheaper than instances.
+constexpr uint64_t bakedTriangles = 50000;
 
-// log2 of a length, within what the kernels accept.
+// Returns log2 of a length, clamped to the range that the kernels accept.
 int exponent(double length) { return std::ilogb(std::clamp(length, 1e-30, 1e30)); }
 
 double halfDiagonal(const Box& box) { return box.empty() ? 0 : length(box.high - box.low) / 2; }
@@ -48,13 +51,13 @@ void Survey::measure(const Scene& scene, uint32_t id) {
   }
 }
 
-bool Survey::isHeavy(uint32_t id) const {
+bool Survey::isShared(uint32_t id) const {
   const ObjectInfo& info = objects_.at(id);
   const uint64_t uses = uses_.at(id);
   return !info.bakeOnly && uses > 1 && info.triangles * (uses - 1) > bakedTriangles;
 }
 
-PartInfo Survey::weigh(const Scene& scene, const ScenePart& part, bool root) const {
+PartInfo Survey::measurePart(const Scene& scene, const ScenePart& part, bool root) const {
   PartInfo info;
   for (uint32_t i = 0; i < part.items.size(); i++) {
     const Item& item = part.items[i];
@@ -62,8 +65,8 @@ PartInfo Survey::weigh(const Scene& scene, const ScenePart& part, bool root) con
     info.firstEntry.push_back(info.entries());
     info.bounds.add(object.bounds, item.matrix);
     info.triangles += object.triangles;
-    const bool heavy = isHeavy(item.object);
-    if (heavy) info.heavyItems.push_back(i);
+    const bool shared = isShared(item.object);
+    if (shared) info.sharedItems.push_back(i);
     const auto& geometries = scene.objects.at(item.object).geometries;
     for (uint32_t g = 0; g < geometries.size(); g++) {
       DrawnAs drawn = DrawnAs::baked;
@@ -77,12 +80,12 @@ PartInfo Survey::weigh(const Scene& scene, const ScenePart& part, bool root) con
         drawn = DrawnAs::thin;
         break;
       case edit::Primitive::Sphere:
-        if (!heavy && !root && !similarity(item.matrix * geometries[g].matrix))
+        if (!shared && !root && !similarity(item.matrix * geometries[g].matrix))
           drawn = DrawnAs::ellipsoid;
         break;
       case edit::Primitive::Triangles: break;
       }
-      if (heavy) drawn = DrawnAs::heavy;
+      if (shared) drawn = DrawnAs::shared;
       if (drawn == DrawnAs::ellipsoid) info.ellipsoids.emplace_back(i, g);
       info.baked |= drawn == DrawnAs::baked;
       info.drawn.push_back(drawn);
@@ -101,7 +104,7 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
   std::erase_if(objects_, [&](const auto& entry) { return !uses_.contains(entry.first); });
   for (uint32_t p = 0; p < flat.parts.size(); p++) {
     partOf_[flat.parts[p].object] = p;
-    parts_.push_back(weigh(scene, flat.parts[p], p == 0));
+    parts_.push_back(measurePart(scene, flat.parts[p], p == 0));
   }
   boxes_.assign(flat.clusters.size(), {});
   for (uint32_t c = 0; c < flat.clusters.size(); c++)
@@ -110,7 +113,7 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
   for (uint32_t c = 0; c < all.size(); c++) all[c] = c;
   place(flat, all);
 
-  std::map<int, uint64_t> sizes; // primitives by size
+  std::map<int, uint64_t> sizes; // number of primitives for each size (log2)
   uint64_t total = 0;
   for (const Item& item : flat.parts[0].items) {
     const auto& geometries = scene.objects.at(item.object).geometries;
@@ -131,13 +134,13 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
   }
 }
 
-bool Survey::retake(const Scene& scene, const Flattened& flat, uint32_t object) {
+bool Survey::resurveyObject(const Scene& scene, const Flattened& flat, uint32_t object) {
   const uint32_t p = partOf(object);
   if (p == ~0u || flat.parts[p].items.empty() || flat.parts[p].items[0].object != object)
     return false;
   if (scene.objects.at(object).geometries.empty()) return false;
   measure(scene, object);
-  PartInfo fresh = weigh(scene, flat.parts[p], false);
+  PartInfo fresh = measurePart(scene, flat.parts[p], false);
   fresh.clusters = std::move(parts_[p].clusters);
   const bool same = fresh.drawn == parts_[p].drawn && fresh.lines == parts_[p].lines &&
                     fresh.points == parts_[p].points;
@@ -181,7 +184,7 @@ Vec3d Survey::origin(const Vec3d& eye) const {
   if (!(radius > 0) || !std::isfinite(radius)) return {};
   const double cell = std::ldexp(1.0, std::min(exponent(radius) + 2, detail_ + 16));
   const auto snap = [cell](double x) {
-    // The steps lie beside the round numbers on which cameras like to stand and to turn.
+    // The offset keeps the grid lines away from round numbers, where cameras often stand and turn.
     const double at = std::floor(x / cell + 0.43) * cell;
     return std::isfinite(at) ? at : 0.0;
   };
@@ -196,11 +199,11 @@ double Survey::scale(const Vec3d& origin) const {
                                std::fabs(b.y), std::fabs(b.z)});
   if (!(far > 0)) return 1;
   const auto powerOfTwo = [](double x) { return std::exp2(std::floor(std::log2(x))); };
-  if (far < 1e-4) return powerOfTwo(1 / far); // small scenes grow to about 1
-  // Large ones shrink to the upper end of what the kernels do well (sizes of 1e-10 to 1e12), but no
-  // further than what most of the scene is made of stays above 1e-3: one thing put out of sight
-  // must not change everything else. Distances of 1e17 are the kernels' limit. Beyond 1e20 things
-  // are not drawn at all.
+  if (far < 1e-4) return powerOfTwo(1 / far); // small scenes are scaled up to about 1
+  // Large scenes are scaled down to the upper end of the range in which the kernels work well
+  // (1e-10 to 1e12). The median size of the geometry stays above 1e-3, so that one object placed
+  // far away does not change everything else. The kernels' limit is a distance of 1e17. Geometry
+  // beyond 1e20 is not drawn.
   const double reach = std::min(far, 1e20), comfortable = 1e10 / reach;
   if (comfortable >= 1) return 1;
   return powerOfTwo(

@@ -1,7 +1,7 @@
-// survey.h: what the parts of a flattened scene weigh: bounds, triangles, which objects are drawn
-// as instances of their own, how each geometry is drawn; and from that the origin and the scale of
-// render space. All of it is a function of the committed scene and the camera alone: nothing
-// depends on what was rendered before. Kept by the builder; application thread, between frames.
+// survey.h: statistics of a flattened scene: bounds, triangle counts, how each geometry is built
+// into the acceleration structure, and from these the origin and the scale of render space. The
+// results depend only on the committed scene and the camera, never on earlier frames. Owned by
+// AccelBuilder; called on the application thread, between frames.
 #pragma once
 
 #include <map>
@@ -13,11 +13,12 @@
 
 namespace openrt {
 
-enum class DrawnAs : uint8_t { // within its part
-  baked,                       // in the Embree scene of the part
-  heavy,                       // in the Embree scene of its object, which many places share
-  ellipsoid,                   // an instance of the unit sphere
-  thin                         // line or point: pixels wide, so it changes with the camera
+// How a geometry is built into its part.
+enum class DrawnAs : uint8_t {
+  baked,     // in the Embree scene of the part
+  shared,    // in the Embree scene of its object, which has many instances
+  ellipsoid, // as an instance of the unit sphere
+  thin       // as lines or points, whose width in pixels depends on the camera
 };
 
 struct ObjectInfo {
@@ -25,16 +26,16 @@ struct ObjectInfo {
   std::vector<Box> boxes; // by geometry
   Box bounds;
   uint64_t triangles = 0;
-  bool bakeOnly = false; // lines, points and ellipsoids cannot be instanced
+  bool bakeOnly = false; // has lines, points or ellipsoids, which cannot be instanced
 };
 
 struct PartInfo {
-  std::vector<uint32_t> firstEntry; // by item; an entry is a geometry of an item
+  std::vector<uint32_t> firstEntry; // for each item; an entry is one geometry of one item
   std::vector<DrawnAs> drawn;       // by entry
   Box bounds;                       // in the part's frame
   uint64_t triangles = 0;
   bool baked = false, lines = false, points = false;
-  std::vector<uint32_t> heavyItems;                      // in order
+  std::vector<uint32_t> sharedItems;                     // in order
   std::vector<std::pair<uint32_t, uint32_t>> ellipsoids; // (item, geometry), in order
   std::vector<uint32_t> clusters;                        // ascending
   uint32_t entries() const { return uint32_t(drawn.size()); }
@@ -42,29 +43,31 @@ struct PartInfo {
 
 class Survey {
  public:
+  // Surveys the whole scene.
   void take(const Scene& scene, const Flattened& flat);
-  // After an object, dynamic before and after, was redefined. False if more follows from it than a
-  // new Embree scene.
-  bool retake(const Scene& scene, const Flattened& flat, uint32_t object);
-  // After these clusters have moved.
+  // Updates the survey after an object, dynamic before and after, was redefined. Returns false if
+  // rebuilding its Embree scene is not enough.
+  bool resurveyObject(const Scene& scene, const Flattened& flat, uint32_t object);
+  // Updates the bounds of clusters that moved.
   void place(const Flattened& flat, const std::vector<uint32_t>& clusters);
 
   const ObjectInfo& object(uint32_t id) const { return objects_.at(id); }
   const std::vector<PartInfo>& parts() const { return parts_; }
-  uint32_t partOf(uint32_t object) const; // ~0: it is the root of no part
+  uint32_t partOf(uint32_t object) const; // ~0: the object is not the root of a part
   uint64_t uniqueTriangles() const;
 
-  // Of render space, for an eye. The eye's place on a grid: what is near it keeps its digits, and
-  // few moves of the camera round the scene anew. The cell is a power of two, as large as the
-  // scene; smaller where most of what is there is far smaller.
+  // Returns the origin of render space for an eye: the eye's position, snapped to a grid. So
+  // coordinates near the eye keep their precision, and few camera moves rebuild the scene. The cell
+  // is a power of two, about as large as the scene, or smaller if most geometry is much smaller.
   Vec3d origin(const Vec3d& eye) const;
-  // Render space x scale = the kernels' space; a power of two, 1 for all but extreme sizes.
+  // Returns the factor from render space to the space of the ray kernels: a power of two, 1 except
+  // for extreme sizes.
   double scale(const Vec3d& origin) const;
 
  private:
   void measure(const Scene& scene, uint32_t object);
-  PartInfo weigh(const Scene& scene, const ScenePart& part, bool root) const;
-  bool isHeavy(uint32_t object) const;
+  PartInfo measurePart(const Scene& scene, const ScenePart& part, bool root) const;
+  bool isShared(uint32_t object) const;
   Box bounds() const;
   std::map<uint32_t, ObjectInfo> objects_;
   std::unordered_map<uint32_t, uint64_t> uses_; // items of an object over all parts
@@ -74,7 +77,7 @@ class Survey {
   int detail_ = 0;         // log2 of the median size of static geometry
 };
 
-// Whether lengths keep their ratios: a sphere stays one.
+// Returns whether the matrix scales all directions equally, so that a sphere stays a sphere.
 bool similarity(const Matrix4d& m);
 Matrix4d uniformScale(double s);
 
