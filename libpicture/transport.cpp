@@ -1,23 +1,38 @@
 #include "libpicture/transport.h"
 
-#include <iterator>
+#include <algorithm>
+#include <span>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "libpicture/quality.h"
 
 namespace picture {
 
 namespace {
-// indexed by RT_TRANSPORT_*
-constexpr const char* names[] = {"auto", "direct", "whitted", "path", "light"};
+
+// Returns the names, indexed by RT_TRANSPORT_*.
+const std::vector<std::string>& names() {
+  static const std::vector<std::string> choices = qualityChoices(RT_TRANSPORT);
+  return choices;
+}
+
 } // namespace
 
+std::string transportNames() {
+  const std::span<const std::string> all(names());
+  return fmt::format("{} or {}", fmt::join(all.first(all.size() - 1), ", "), all.back());
+}
+
 std::optional<int> transportNamed(std::string_view name) {
-  for (size_t i = 0; i < std::size(names); ++i)
-    if (name == names[i]) return int(i);
-  return std::nullopt;
+  const auto found = std::find(names().begin(), names().end(), name);
+  if (found == names().end()) return std::nullopt;
+  return int(found - names().begin());
 }
 
 const char* transportName(RTenum transport) {
-  return transport < std::size(names) ? names[transport] : "plug-in";
+  return transport < names().size() ? names()[transport].c_str() : "plug-in";
 }
 
 std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves) {

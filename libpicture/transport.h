@@ -10,7 +10,7 @@
 
 namespace picture {
 
-inline constexpr const char* transportNames = "auto, direct, whitted, path or light";
+std::string transportNames(); // "auto, direct, whitted, path or light"
 
 std::optional<int> transportNamed(std::string_view name); // RT_TRANSPORT_*
 // "path" for RT_TRANSPORT_PATH and so on; "plug-in" for others

@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 
 #include "cluster_object.h"
+#include "libpicture/quality.h"
 #include "libpicture/transport.h"
 #include "numbers.h"
 #include "picture_object.h"
@@ -14,6 +15,15 @@
 using namespace xvrml;
 
 namespace {
+
+// Checks a value against the range that the library gives a quality setting (RT_*).
+int inRange(const char* name, RTenum quality, long long value) {
+  const RTqualityInfo info = picture::qualityInfo(quality);
+  if (!picture::isQualityInRange(quality, double(value)))
+    throw py::value_error(fmt::format("{}: {:.10g} to {:.10g} expected, not {}", name, info.minimum,
+                                      info.maximum, value));
+  return int(value);
+}
 
 int inRange(const char* name, long long value, long long minimum, long long maximum) {
   if (value < minimum || value > maximum)
@@ -242,9 +252,9 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.height = inRange("size", height, 1, 65536);
   if (int64_t(settings.width) * settings.height > (int64_t(1) << 28))
     throw py::value_error("size: at most 2^28 pixels expected");
-  settings.seed = inRange("seed", seed, 0, 2147483647);
+  settings.seed = inRange("seed", RT_SEED, seed);
   settings.threads = inRange("threads", threads, 0, 1024);
-  settings.depth = inRange("depth", depth, 0, 10000);
+  settings.depth = inRange("depth", RT_MAX_DEPTH, depth);
   settings.shadows = shadows;
   if (colour != "linear" && colour != "vrml97")
     throw py::value_error("colour: 'linear' or 'vrml97' expected, not '" + colour + "'");
@@ -253,19 +263,19 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   const std::optional<int> following = picture::transportNamed(transport);
   if (!following)
     throw py::value_error(
-        fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
+        fmt::format("transport: {} expected, not '{}'", picture::transportNames(), transport));
   settings.transport = *following;
-  const auto limited = [](const char* name, double value, double maximum) {
-    if (value >= 0 && value <= maximum) return value;
-    throw py::value_error(fmt::format("{}: a number from 0 to {} expected", name, maximum));
+  const auto limited = [](const char* name, RTenum quality, double value) {
+    if (picture::isQualityInRange(quality, value)) return value;
+    throw py::value_error(fmt::format("{}: {} expected", name, picture::qualityRange(quality)));
   };
-  settings.error = limited("error", error, 1);
-  settings.timeLimit = limited("time_limit", timeLimit, 1e6);
-  settings.clamp = limited("clamp", clamp, 1e30);
+  settings.error = limited("error", RT_TARGET_ERROR, error);
+  settings.timeLimit = limited("time_limit", RT_TIME_LIMIT, timeLimit);
+  settings.clamp = limited("clamp", RT_CLAMP, clamp);
   const long long most = settings.timeLimit > 0 ? 65536
                          : settings.error > 0   ? 4096
                                                 : settings.samples;
-  settings.samples = inRange("spp", spp.value_or(most), 1, 65536);
+  settings.samples = inRange("spp", RT_SAMPLES_PER_PIXEL, spp.value_or(most));
   settings.channels =
       channels.is_none()
           ? uint32_t(RT_RGBA | RT_DEPTH | (settings.error > 0 ? RT_ERROR | RT_TRUST : 0))

@@ -45,7 +45,7 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
   const std::optional<int> following = picture::transportNamed(transport);
   if (!following)
     throw py::value_error(
-        fmt::format("transport: {} expected, not '{}'", picture::transportNames, transport));
+        fmt::format("transport: {} expected, not '{}'", picture::transportNames(), transport));
   uint32_t bits = uint32_t(
       RT_RGBA | (channels.is_none() ? RT_DEPTH | (error > 0 ? RT_ERROR | RT_TRUST : 0) : 0));
   if (!channels.is_none()) bits |= channelsOf(channels);

@@ -7,6 +7,7 @@
 
 #include "api/guard.h"
 #include "scene/channels.h"
+#include "scene/quality.h"
 
 using namespace openrt;
 
@@ -32,75 +33,17 @@ void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {
   c.scene.frameDirty = true;
 }
 
-void setQuality(Context& c, RTenum name, int value) {
-  edit::FrameSettingsT& frame = c.scene.frame;
-  const auto within = [value](int low, int high) {
-    require(value >= low && value <= high, RT_INVALID_VALUE, "out of range");
-  };
-  switch (name) {
-  case RT_FRAMES_IN_FLIGHT: // affects how frames are started, not their content
-    within(1, 64);
+// real: the caller is rtQualityf.
+void setQuality(Context& c, RTenum name, double value, bool real) {
+  const QualitySetting* setting = findQuality(name);
+  if (!setting || (setting->info.isReal != 0) != real)
+    fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
+  require(setting->allows(value), RT_INVALID_VALUE, "out of range");
+  if (name == RT_FRAMES_IN_FLIGHT) { // affects how frames are started, not their content
     c.framesInFlight = static_cast<uint32_t>(value);
     return;
-  case RT_SAMPLES_PER_PIXEL:
-    within(1, 65536);
-    frame.samples = static_cast<uint32_t>(value);
-    break;
-  case RT_MAX_DEPTH:
-    within(0, 10000);
-    frame.depth = static_cast<uint32_t>(value);
-    break;
-  case RT_SEED: frame.seed = static_cast<uint32_t>(value); break;
-  case RT_SHADOWS:
-    within(0, 1);
-    frame.shadows = value == 1;
-    break;
-  case RT_TRANSPORT:
-    within(RT_TRANSPORT_AUTO, RT_TRANSPORT_LIGHT);
-    frame.transport = static_cast<uint8_t>(value);
-    break;
-  case RT_REPLICATES:
-    within(0, maxReplicates);
-    frame.replicates = static_cast<uint32_t>(value);
-    break;
-  case RT_PROGRESSIVE:
-    within(0, 1);
-    frame.progressive = value == 1;
-    break;
-  case RT_TILE_SIZE:
-    require(value == 0 || (value >= int(smallestTile) && value <= int(largestTile)),
-            RT_INVALID_VALUE, "out of range");
-    frame.tile = static_cast<uint8_t>(value);
-    break;
-  default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
   }
-  c.scene.frameDirty = true;
-}
-
-void setQuality(Context& c, RTenum name, double value) {
-  edit::FrameSettingsT& frame = c.scene.frame;
-  const auto within = [value](double high) {
-    require(value >= 0 && value <= high, RT_INVALID_VALUE, "out of range");
-  };
-  switch (name) {
-  case RT_TARGET_ERROR:
-    within(1);
-    frame.targetError = static_cast<float>(value);
-    break;
-  case RT_TIME_LIMIT:
-    within(maxTimeLimit);
-    frame.timeLimit = static_cast<float>(value);
-    break;
-  case RT_ENERGY_CUT:
-    within(1);
-    frame.energyCut = static_cast<float>(value);
-    break;
-  case RT_CLAMP:
-    within(std::numeric_limits<float>::max());
-    frame.clamp = static_cast<float>(value);
-    break;
-  default: fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
-  }
+  setting->set(c.scene.frame, value);
   c.scene.frameDirty = true;
 }
 
@@ -180,11 +123,21 @@ void rtFrameBuffer(int width, int height, uint32_t channels) {
 }
 
 void rtQuality(RTenum name, int value) {
-  guarded("rtQuality", [&](Context& c) { setQuality(c, name, value); });
+  guarded("rtQuality", [&](Context& c) { setQuality(c, name, value, false); });
 }
 
 void rtQualityf(RTenum name, double value) {
-  guarded("rtQualityf", [&](Context& c) { setQuality(c, name, value); });
+  guarded("rtQualityf", [&](Context& c) { setQuality(c, name, value, true); });
+}
+
+int rtGetQualityInfo(int number, RTqualityInfo* info) {
+  const auto settings = qualitySettings();
+  if (!info || info->size < sizeof(size_t) || number < 0 || size_t(number) >= settings.size())
+    return 0;
+  const size_t size = info->size; // an older program's structure ends earlier
+  std::memcpy(info, &settings[size_t(number)].info, std::min(size, sizeof(*info)));
+  info->size = size;
+  return 1;
 }
 
 void rtSwapBuffers(void) {

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "scene/quality.h"
+
 namespace openrt {
 namespace {
 
@@ -27,8 +29,8 @@ template <class State> State& insert(Table<State>& table, RTid id) {
 } // namespace
 
 SceneState::SceneState() {
-  frame.samples = 16;
-  frame.depth = 25;
+  for (const QualitySetting& setting : qualitySettings())
+    if (setting.set) setting.set(frame, setting.info.defaultValue);
 }
 
 ObjectState& SceneState::object(RTid id) { return lookup(objects, id, "an object"); }

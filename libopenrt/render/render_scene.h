@@ -11,7 +11,7 @@
 
 #include "openrt/openrt.h"
 #include "render/lights/emitters.h"
-#include "render/lights/many_lights.h"
+#include "render/lights/light_sampler.h"
 #include "render/rays.h"
 #include "render/records.h"
 #include "shading/texture.h"

@@ -12,11 +12,6 @@ inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBE
                                         RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
 inline constexpr uint32_t channelBits = 10;
 
-// Limits of a frame's quality (openrt.h).
-inline constexpr uint32_t maxReplicates = 1024;
-inline constexpr float maxTimeLimit = 1e6f;
-inline constexpr uint32_t smallestTile = 4, largestTile = 128; // tile edge in pixels
-
 // Returns the floats per pixel of one channel; 0 if there is no such channel.
 constexpr uint32_t channelComponents(uint32_t channel) {
   switch (channel) {

@@ -281,8 +281,8 @@ Value Expander::copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inl
   return value;
 }
 
-// Finds a field as NodeType::find does, in constant time for types of many fields: instances of such
-// a prototype ask for every one of them.
+// Finds a field as NodeType::find does, but in constant time for types of many fields: instances of
+// such a prototype look up every one of them.
 const FieldInfo* Expander::fieldOf(const NodeType& type, std::string_view name) {
   constexpr size_t few = 32;
   if (type.fields.size() <= few) return type.find(name);

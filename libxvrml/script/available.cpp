@@ -1,3 +1,4 @@
+// available.cpp: lists the installed script engines (xvrml/script_engines.h). [any thread]
 #include "xvrml/script_engines.h"
 
 #include <filesystem>

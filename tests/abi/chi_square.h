@@ -57,14 +57,14 @@ class SphereHistogram {
               j = std::clamp(int(phi / (2 * M_PI) * around), 0, around - 1);
     seen_[size_t(i * around + j)]++;
   }
-  Expected expect(const std::function<double(rts::Vec3)>& density) const {
+  Expected expect(const std::function<double(rts::Vec3)>& pdf) const {
     Expected e{std::vector<double>(seen_.size()), 0};
     for (int i = 0; i < across; i++)
       for (int j = 0; j < around; j++) {
         const Bin bin{M_PI * i / across, M_PI / across, 2 * M_PI * j / around - M_PI,
                       2 * M_PI / around};
         e.total += e.bins[size_t(i * around + j)] =
-            integral(density, bin, rule(density, bin, 2), 0);
+            integral(pdf, bin, rule(pdf, bin, 2), 0);
       }
     return e;
   }
@@ -96,7 +96,7 @@ class SphereHistogram {
     double theta, height, phi, width;
   };
   // Midpoint rule with n x n parts.
-  double rule(const std::function<double(rts::Vec3)>& density, const Bin& b, int n) const {
+  double rule(const std::function<double(rts::Vec3)>& pdf, const Bin& b, int n) const {
     double sum = 0;
     for (int i = 0; i < n; i++) {
       const double t = b.theta + b.height * (i + .5) / n, s = std::sin(t);
@@ -106,21 +106,21 @@ class SphereHistogram {
           b.width / n;
       for (int j = 0; j < n; j++) {
         const double p = b.phi + b.width * (j + .5) / n;
-        sum += area * density(frame_.toWorld(
+        sum += area * pdf(frame_.toWorld(
                           {float(s * std::cos(p)), float(s * std::sin(p)), float(std::cos(t))}));
       }
     }
     return sum;
   }
-  double integral(const std::function<double(rts::Vec3)>& density, const Bin& b, double coarse,
+  double integral(const std::function<double(rts::Vec3)>& pdf, const Bin& b, double coarse,
                   int depth) const {
-    const double fine = rule(density, b, 4);
+    const double fine = rule(pdf, b, 4);
     if (depth == 6 || std::fabs(fine - coarse) < 1e-7 + 2e-3 * fine) return fine;
     double sum = 0;
     for (int k = 0; k < 4; k++) {
       const Bin part{b.theta + (k & 1) * b.height / 2, b.height / 2, b.phi + (k >> 1) * b.width / 2,
                      b.width / 2};
-      sum += integral(density, part, rule(density, part, 2), depth + 1);
+      sum += integral(pdf, part, rule(pdf, part, 2), depth + 1);
     }
     return sum;
   }

@@ -63,7 +63,7 @@ struct FakeHost : RtsHost {
   float normal[3] = {0, 0, 1}; // normal of new lobes
   // z of the plane that rays hit; the hit has radiance .25 .5 .75, alpha 1 and name 7
   float floor = -1;
-  std::vector<uint32_t> askedBy; // RtsRequest.hit of each ray so far
+  std::vector<uint32_t> requestHits; // RtsRequest.hit of each ray so far
   uint32_t randomCalls = 0;
 
   FakeHost();
@@ -101,7 +101,7 @@ inline float fakeDistance(const FakeHost& host, const RtsRequest* rays, uint32_t
 inline void addRays(RtsHost& host) {
   host.trace = [](RtsBatch* b, const RtsRequest* rays, float* const rgba[4]) {
     for (uint32_t i = 0; i < rays->count; i++) {
-      fake(b).askedBy.push_back(rays->hit[i]);
+      fake(b).requestHits.push_back(rays->hit[i]);
       const float met = std::isfinite(fakeDistance(fake(b), rays, i)) ? 1 : 0;
       for (uint32_t k = 0; k < 3; k++) rgba[k][i] = met * 0.25f * float(k + 1);
       if (rgba[3]) rgba[3][i] = met;
@@ -109,7 +109,7 @@ inline void addRays(RtsHost& host) {
   };
   host.findHit = [](RtsBatch* b, const RtsRequest* rays, RtsFound* out) {
     for (uint32_t i = 0; i < rays->count; i++) {
-      fake(b).askedBy.push_back(rays->hit[i]);
+      fake(b).requestHits.push_back(rays->hit[i]);
       const float t = fakeDistance(fake(b), rays, i);
       if (out->distance) out->distance[i] = t;
       if (!std::isfinite(t)) continue;

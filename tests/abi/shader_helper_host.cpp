@@ -262,8 +262,8 @@ TEST(ShaderHelper12, EveryQuestionIsAskedOnceABatchAndRaysBearTheirHit) {
   EXPECT_EQ(b.host.randomCalls, 2u);
   b.params.setInt("what", 0);
   c.shade(&b.host, b.host.batch(), &b.hits, &b.shading);
-  ASSERT_EQ(b.host.askedBy.size(), 20u);
-  EXPECT_EQ(b.host.askedBy[13], 13u);
+  ASSERT_EQ(b.host.requestHits.size(), 20u);
+  EXPECT_EQ(b.host.requestHits[13], 13u);
 }
 
 TEST(ShaderHelper12, ExtentsAndProjections) {

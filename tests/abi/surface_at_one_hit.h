@@ -28,16 +28,16 @@ struct LobeAtHit {
   RtsLobeKind kind() const { return lobe->kind; }
   rts::Color weight() const { return {lobe->weight[0][0], lobe->weight[1][0], lobe->weight[2][0]}; }
   rts::Vec3 normal() const { return {lobe->normal[0][0], lobe->normal[1][0], lobe->normal[2][0]}; }
-  bool scatters() const { return scatteringOf(*lobe) != nullptr; }
+  bool scatters() const { return nonSpecularFunctions(*lobe) != nullptr; }
 
   // Returns the BSDF times cosine, without the lobe's weight, and the pdf of `sample`.
-  rts::Color value(rts::Vec3 direction, float* density = nullptr) const {
+  rts::Color value(rts::Vec3 direction, float* pdf = nullptr) const {
     const uint32_t hit = 0;
     float out[4] = {};
     const float* const d[3] = {&direction.x, &direction.y, &direction.z};
     float* const values[3] = {&out[0], &out[1], &out[2]};
-    scatteringOf(*lobe)->evaluate(lobe, hits, 1, &hit, d, values, &out[3]);
-    if (density) *density = out[3];
+    nonSpecularFunctions(*lobe)->evaluate(lobe, hits, 1, &hit, d, values, &out[3]);
+    if (pdf) *pdf = out[3];
     return {out[0], out[1], out[2]};
   }
   rts::Sample sample(rts::Vec2 square) const {
@@ -46,7 +46,7 @@ struct LobeAtHit {
     const float* const at[2] = {&square.x, &square.y};
     float* const direction[3] = {&out[0], &out[1], &out[2]};
     float* const quotient[3] = {&out[3], &out[4], &out[5]};
-    scatteringOf(*lobe)->sample(lobe, hits, 1, &hit, at, direction, quotient, &out[6]);
+    nonSpecularFunctions(*lobe)->sample(lobe, hits, 1, &hit, at, direction, quotient, &out[6]);
     return {{out[0], out[1], out[2]}, {out[3], out[4], out[5]}, out[6]};
   }
 };

@@ -2,8 +2,9 @@
 // 64 and with 512 samples, it prints:
 // * the fraction of pixels that are trusted;
 // * the coverage of their 95 % intervals, with its own interval, and its 5th percentile over tiles;
-// * how many pictures were off by errorMean +- errorMeanInterval. It then lists which promises
-//   hold. The exit code is 1 if one does not.
+// * how many pictures were off by errorMean +- errorMeanInterval.
+//
+// It then lists which promises hold. The exit code is 1 if one does not.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -14,7 +15,7 @@
 
 namespace {
 
-struct Held { // a promise, and in how many scenes it held
+struct Promise { // a promise, and in how many scenes it held
   const char* promise;
   int held = 0, all = 0;
   std::string not_;
@@ -24,7 +25,7 @@ struct Held { // a promise, and in how many scenes it held
     if (!good) not_ += (not_.empty() ? "" : ", ") + name;
   }
 };
-Held coverage{"of the trusted intervals 93 to 97 % hold", 0, 0, {}},
+Promise coverage{"of the trusted intervals 93 to 97 % hold", 0, 0, {}},
     tiles{"in 95 % of the tiles at least 90 % do", 0, 0, {}},
     exact{"of the pixels called exact one in a thousand is not", 0, 0, {}},
     whole{"the picture is off by errorMean +- errorMeanInterval in 90 % of the pictures", 0, 0, {}},
@@ -38,7 +39,7 @@ bool atLeast(double share, double p, double count) {
 void print(const audit::Scenario& s, const char* use, int samples, const audit::Coverage& c) {
   std::string wrong;
   const std::string name = s.name + " " + std::to_string(samples);
-  const auto judge = [&](Held& promise, bool good, const char* word) {
+  const auto judge = [&](Promise& promise, bool good, const char* word) {
     promise.add(good, name);
     if (!good) wrong += std::string(wrong.empty() ? "!" : ", ") + word;
   };
@@ -94,7 +95,7 @@ int main(int argc, char** argv) {
       !run(audit::judgingScenes(), "judging", seeds, edge, only))
     return 1;
   bool good = true;
-  for (const Held& h : {coverage, tiles, exact, whole, safe}) {
+  for (const Promise& h : {coverage, tiles, exact, whole, safe}) {
     std::printf("# %d of %d: %s%s%s\n", h.held, h.all, h.promise, h.not_.empty() ? "" : "; not at ",
                 h.not_.c_str());
     good &= h.held == h.all;

@@ -338,7 +338,7 @@ class Simulation {
       std::erase_if(m.queue,
                     [&](const Item& item) { return !item.scene && item.epoch <= drop->epoch; });
       for (const auto& [number, running] : m.running)
-        if (running.item.epoch <= drop->epoch) giveUp(w, number, running);
+        if (running.item.epoch <= drop->epoch) abandonJob(w, number, running);
     }
     begin(w);
   }
@@ -395,7 +395,7 @@ class Simulation {
   }
   // Abandons a job that is no longer needed. A worker's thread checks for this after each bounce; a
   // wave is a leaf of samples.
-  void giveUp(uint32_t w, uint64_t number, const Running& running) {
+  void abandonJob(uint32_t w, uint64_t number, const Running& running) {
     constexpr double leaf = 32, bounces = 4;
     const double until =
         events_.now + running.seconds / running.item.job.job.count * leaf / bounces;

@@ -178,7 +178,7 @@ class Looking {
   }
 
   // Measures how long a cancelled frame still runs.
-  void giveUp() {
+  void measureCancel() {
     double most = 0, all = 0;
     constexpr int times = 10;
     for (int i = 0; i < times; i++) {
@@ -314,7 +314,7 @@ int main(int argc, char** argv) {
           for (const bool overlapping : {false, true}) looking.follow(overlapping, paced);
       if (cluster) continue;
       looking.move();
-      looking.giveUp();
+      looking.measureCancel();
       looking.refine();
       looking.rounds(16);
       looking.rounds(64);

@@ -1,35 +1,38 @@
-"""The code blocks of the documents: where they are, and how each is checked. Used by run_blocks.py, package_test.py and make_docs.py.
+"""Finds the code blocks of the documents and says how each is checked. Used by run_blocks.py,
+package_test.py and make_docs.py.
 
-A block is a fence with a language. What a reader does with it decides what the test does:
+A block is a fence with a language. The test does with it what a reader would do:
 
-  sh        is run, all blocks of a page in one folder with the programs of the build and a copy of examples/, each where the one
-            before has gone by cd; pictures are made small
-  python    is run, all blocks of a page in one interpreter
-  c, cpp    is compiled, and run if it has a main
-  vrml      is read by vv --check --strict
-  js, tcl   is read by the language's engine, or by tclsh
-  X file=N  is written to N for the blocks that follow
-Comments before a fence say what differs:
-  <!-- unchecked: WHY -->         nothing is done; text needs it, too: it is no code
-  <!-- syntax only: WHY -->       python, sh: compiled, not run
-  <!-- in: FOLDER -->             done in this folder
-  <!-- inside: SIGNATURE -->      c, cpp: the block is the body of this function
-  <!-- with: TEXT -->             vrml: this stands before it
-  <!-- part of: FILE -->          any: it stands so, blanks apart, in this file of the repository
-"""
+sh        is run, all blocks of a page in one folder with the programs of the build and a copy of
+          examples/; each starts in the folder to which the one before has changed; pictures are
+          made small
+python    is run, all blocks of a page in one interpreter
+c, cpp    is compiled, and run if it has a main
+vrml      is read by vv --check --strict
+js, tcl   is read by the language's engine, or by tclsh
+X file=N  is written to N for the blocks that follow
+
+Comments before a fence state exceptions:
+
+<!-- unchecked: WHY -->         nothing is checked; text needs it, too, because it is not code
+<!-- syntax only: WHY -->       python, sh: compiled, not run
+<!-- in: FOLDER -->             checked in this folder
+<!-- inside: SIGNATURE -->      c, cpp: the block is the body of this function
+<!-- with: TEXT -->             vrml: TEXT is put before it
+<!-- part of: FILE -->          any: this file of the repository contains it, up to blanks"""
 import dataclasses
 import pathlib
 import re
 
-# Pages that `package` follows step by step, against the installed package
+# Pages that the test `package` follows step by step with the installed package
 TUTORIALS = ("docs/node-plugins.md", "docs/shaders.md", "docs/script-engines.md")
 RUN = {"sh", "python"}
 COMPILED = {"c", "cpp"}
 READ = {"vrml", "js", "tcl"}
-# Pages that a test of their own runs
+# Pages that have a test of their own
 BY_TESTS = {"docs/python.md": "tests/python/test_docs_python.py", "docs/ray-queries.md": "tests/python/test_docs_python.py"}
 MARKS = ("unchecked", "syntax only", "in", "inside", "with", "part of")
-# What installs or builds the project is the business of other tests
+# Commands that install or build the project are covered by other tests
 OTHERS = re.compile(r"(make|git|sudo|apt|apt-get|pip|docker|podman)\b")
 
 
@@ -44,7 +47,8 @@ class Block:
 
     @property
     def way(self):
-        """What is done with it: followed, run, compiled, read, written, compared, syntax, unchecked, or what is wrong."""
+        """Returns how it is checked: followed, run, compiled, read, written, compared, syntax or
+        unchecked; otherwise what is wrong."""
         if self.page in TUTORIALS and (self.file or self.language in RUN):
             return "followed"
         if self.page in BY_TESTS and self.language == "python":
@@ -69,7 +73,7 @@ class Block:
 
 
 def pages(root):
-    """Documents with blocks to check."""
+    """Returns the documents whose blocks are checked."""
     found = [root / "README.md", root / "HACKING.md", root / "CHANGELOG.md", *sorted((root / "docs").rglob("*.md")),
              *sorted((root / "examples").rglob("*.md"))]
     return [p for p in found if p.exists()]
@@ -88,7 +92,8 @@ def blocks_of(root, page):
             words, end = fence.group(3).split(), i + 1
             while end < len(lines) and lines[end].strip() != fence.group(2):
                 end += 1
-            if not words or not words[0].startswith("{"):  # {toctree} and its like are no code
+            # {toctree} and other directives are not code
+            if not words or not words[0].startswith("{"):
                 file = next((w[5:] for w in words if w.startswith("file=")), "")
                 margin = len(fence.group(1))
                 text = "\n".join(text[margin:] for text in lines[i + 1:end]) + "\n"
@@ -101,7 +106,7 @@ def blocks_of(root, page):
 
 
 def small(command):
-    """A line of shell: pictures are made small, except those that are."""
+    """Returns a shell line with a small picture size, unless its pictures are small already."""
     if not re.search(r"(^|[\s;|&])vv .*-o ", command) or re.search(r"--(compare|audit)\b", command):
         return command
     size = re.search(r"--size (\d+)x(\d+)", command)
@@ -116,13 +121,14 @@ def small(command):
 
 
 def shell(text, change=small):
-    """The lines of a block of shell that are run, each changed (made small for a test), or nothing."""
+    """Returns the lines of a shell block that are run, each passed through `change`; empty if there
+    are none."""
     joined = re.sub(r"\\\n\s*", "", text)
     return "\n".join(change(line) for line in joined.split("\n") if line.strip() and not OTHERS.match(line.strip()))
 
 
 def table(root):
-    """Markdown: for each page how many blocks are checked how."""
+    """Returns a Markdown table: how many blocks of each page are checked in which way."""
     ways = ["run", "followed", "compiled", "read", "compared", "written", "syntax", "unchecked"]
     rows = ["| page | " + " | ".join(ways) + " |", "| --- |" + " --- |" * len(ways)]
     for page in pages(root):

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""The templates of contrib/ are what they say: contrib.py ROOT BUILD
+"""Checks that the templates of contrib/ work: contrib.py ROOT BUILD
 
-Every option that they give to vv and openrt-worker is one that these have; bash and systemd-analyze read what is theirs; the YAML files
-parse, and what one object says of another holds. A tool that is absent is named and left out.
-"""
+* Every option that they pass to vv and openrt-worker exists.
+* bash and systemd-analyze accept their files.
+* The YAML files parse, and their objects agree with each other.
+
+A tool that is not installed is named and skipped."""
 import pathlib
 import re
 import shlex
@@ -26,7 +28,7 @@ def run(*command, **how):
 
 
 def options_of(program):
-    """What --help lists; None if the program is not there."""
+    """Returns the options that --help lists; None if the program is not there."""
     if not (build / "bin" / program).exists():
         skipped.append(f"{program} is not built")
         return None
@@ -37,7 +39,7 @@ known = {program: options_of(program) for program in ("vv", "openrt-worker")}
 
 
 def check_command(path, words):
-    """Options behind the first word that is one of our programs."""
+    """Checks the options after the first word that is one of our programs."""
     for program in known:
         if program in words and known[program] is not None:
             for word in words[words.index(program):]:
@@ -77,7 +79,8 @@ for needed in ("DynamicUser", "ProtectSystem", "NoNewPrivileges", "SystemCallFil
     if not re.search(rf"^{needed}=", text, re.M):
         complain(unit, f"no {needed}")
 if shutil.which("systemd-analyze"):
-    with tempfile.TemporaryDirectory() as folder:  # the program need not be installed, nor the manual page
+    # Neither the program nor the manual page needs to be installed.
+    with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder) / "openrt-worker@7447.service"
         copy.write_text(re.sub(r"^Documentation=.*\n", "", re.sub(r"^ExecStart=\S+", "ExecStart=/bin/true", text, flags=re.M), flags=re.M))
         done = run("systemd-analyze", "verify", "--man=no", copy)

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""What the documents name must be there: docs.py ROOT
+"""Checks that everything the documents refer to exists: docs.py ROOT
 
-Checks paths of the repository in back quotes (globs and {a,b} too), relative links and their anchors, `make` targets and presets,
-and that every page of docs/ stands in the contents of docs/index.md.
-"""
+Checks paths of the repository in back quotes (also globs and {a,b}), relative links and their
+anchors, `make` targets and presets, and that docs/index.md lists every page of docs/."""
 import itertools
 import json
 import pathlib
@@ -17,7 +16,7 @@ presets = {p["name"] for p in json.loads((root / "CMakePresets.json").read_text(
 
 
 def braces(text):
-    """a{b,c}d -> abd, acd."""
+    """Expands a{b,c}d to abd and acd."""
     pieces = re.split(r"\{([^}]*)\}", text)
     choices = [piece.split(",") if i % 2 else [piece] for i, piece in enumerate(pieces)]
     return ["".join(choice) for choice in itertools.product(*choices)]
@@ -46,7 +45,7 @@ def missing(document, text):
 
 
 def anchors(document):
-    """Of the headings, as GitHub and MyST make them."""
+    """Returns the anchors of the headings, as GitHub and MyST make them."""
     text = re.sub(r"^```.*?^```", "", document.read_text(encoding="utf-8"), flags=re.M | re.S)
     found, seen = set(), {}
     for title in re.findall(r"^#+ (.+?)\s*$", text, re.M):
@@ -56,12 +55,12 @@ def anchors(document):
     return found
 
 
-# Pages that other work brings, and pages that are made
+# Pages that are generated or not written yet
 COMING = re.compile(r"reference/.*|readme|hacking|changelog|python|ray-queries|cluster|protocol")
 
 
 def contents():
-    """What the contents of the site leave out, or name in vain."""
+    """Yields pages missing from the contents of the site, and entries without a page."""
     index = (root / "docs/index.md").read_text(encoding="utf-8")
     listed = {line for toc in re.findall(r"```\{toctree\}\n(.*?)```", index, re.S) for line in toc.split("\n") if re.fullmatch(r"[\w/-]+", line)}
     there = {p.relative_to(root / "docs").with_suffix("").as_posix() for p in (root / "docs").rglob("*.md")}

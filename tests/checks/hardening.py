@@ -1,20 +1,24 @@
 #!/usr/bin/env python3
-"""Reads with readelf what the programs and libraries ask of the loader and how they were compiled.
+"""Checks with readelf how programs and libraries were compiled and what they ask of the loader.
 
 hardening.py [--plain] [--partial] PLACE...
-    PLACE      a file, a folder (all programs and shared libraries below it), a wheel, a Debian package
-    --plain    no stack protector, no _FORTIFY_SOURCE and no endbr64 asked for: debug builds, plug-ins of other people's projects
-    --partial  places that need not hold all programs and libraries of the project: one package, a plug-in
-hardening.py --self    the check itself, on programs made for it
+PLACE      a file, a folder (all programs and shared libraries below it), a wheel, a Debian package
+--plain    does not require stack protector, _FORTIFY_SOURCE and endbr64: for debug builds and
+           plug-ins of other projects
+--partial  PLACE need not hold all programs and libraries of the project: one package, a plug-in
+hardening.py --self    tests this check with programs made for it
 
-Every file: each element of RUNPATH and RPATH begins with $ORIGIN, or is a folder that only root and the user can write to
-(libraries that are installed in /opt); in packages only $ORIGIN. An empty element is the current folder: whoever starts a program in
-a folder of downloads would run what lies there. Full RELRO (GNU_RELRO and BIND_NOW), a stack and data that are not executable, no
-text relocations, programs at any address (PIE).
-Ours (libraries that a wheel brings of others are theirs): the stack protector wherever more than a little code is, checked string
-functions, endbr64 at every exported function on x86-64 (CET); the CET note where the compiler's start files have it, because the
-linker drops it otherwise.
-"""
+For every file:
+* Each element of RUNPATH and RPATH begins with $ORIGIN, or is a folder that only root and the user
+  can write to (libraries installed in /opt). In packages only $ORIGIN is allowed. An empty element
+  means the current folder: starting a program in a folder of downloads would run code from there.
+* Full RELRO (GNU_RELRO and BIND_NOW), stack and data not executable, no text relocations,
+  position-independent programs (PIE).
+
+For our own files, but not the third-party libraries in a wheel:
+* The stack protector, in files with more than a little code, and checked string functions.
+* endbr64 at every exported function on x86-64 (CET), and the CET note if the compiler's start files
+  have it; otherwise the linker drops it."""
 import functools
 import os
 import pathlib
@@ -26,7 +30,7 @@ import sys
 import tempfile
 import zipfile
 
-LARGE = 64 << 10  # bytes of code: some function has an array on its stack
+LARGE = 64 << 10  # bytes of code: large enough that some function has an array on its stack
 WANTED = ("libopenrt.so", "libxvrml.so", "libxvrml_openrt.so", "vv", "openrt-replay", "xvrml-script-host", "vrml97.so")
 OURS = re.compile(r"lib(openrt|xvrml)[\w]*\.so|_xvrml|vv$|openrt-|xvrml-|nodegen$")
 PRINTERS = {"printf", "fprintf", "sprintf", "snprintf", "vsnprintf"}
@@ -38,7 +42,7 @@ def readelf(*arguments):
 
 
 def is_loadable(path):
-    """Whether it is a program or a shared library: not an object file, not an archive."""
+    """Returns whether the file is a program or a shared library, not an object file or archive."""
     if path.is_symlink() or not path.is_file():
         return False
     with path.open("rb") as file:
@@ -47,7 +51,8 @@ def is_loadable(path):
 
 
 def loadable_below(folder):
-    """Programs and libraries below a folder, without what CMake compiles to know the compiler."""
+    """Returns programs and libraries below a folder, except those that CMake compiles to identify
+    the compiler."""
     found = []
     for place, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if name not in ("CMakeFiles", "CMakeTmp")]
@@ -57,7 +62,8 @@ def loadable_below(folder):
 
 @functools.cache
 def start_files_have_cet():
-    """Whether the C library's start files carry the CET note: without it there the linker gives it to no file."""
+    """Returns whether the C library's start files carry the CET note. If they do not, the linker
+    adds it to no file."""
     compiler = os.environ.get("CC", "cc")
     for name in ("crti.o", "Scrt1.o"):
         done = subprocess.run([compiler, f"-print-file-name={name}"], capture_output=True, text=True)
@@ -69,7 +75,8 @@ def start_files_have_cet():
 
 @functools.cache
 def guarded(folder):
-    """Whether nobody but root and the user can put files into an absolute folder, or take another one's place."""
+    """Returns whether only root and the user can put files into an absolute folder or replace one
+    of its parents."""
     path = pathlib.Path(folder)
     if not path.is_absolute() or not path.is_dir():
         return False
@@ -94,8 +101,9 @@ def path_complaints(dynamic, packed):
 
 
 def functions_without_endbr(path, symbols):
-    """Exported functions that do not begin with endbr64. Weak ones are left out: they are inline functions and templates, of which
-    the linker may have taken the copy of a static library of others (GoogleTest's)."""
+    """Returns exported functions that do not begin with endbr64. Weak symbols are skipped: for
+    inline functions and templates the linker may have used the copy of a third-party static library
+    (GoogleTest)."""
     segments = [tuple(int(x, 16) for x in m) for m in
                 re.findall(r"^\s+LOAD\s+(0x\w+) (0x\w+) 0x\w+ (0x\w+) 0x\w+ R E", readelf("-l", path), re.M)]
     content = path.read_bytes()
@@ -146,7 +154,7 @@ def complaints(path, ours, plain=False, packed=False):
 
 
 def unpacked(place, scratch):
-    """The folder of a wheel's or a package's content."""
+    """Returns the folder with the contents of a wheel or package."""
     folder = scratch / place.name
     if place.suffix == ".deb":
         subprocess.run(["dpkg-deb", "-x", place, folder], check=True)
@@ -164,7 +172,8 @@ def check(places, plain, partial):
             folder = unpacked(place, pathlib.Path(scratch)) if packed else place
             files = [folder] if folder.is_file() else loadable_below(folder)
             for path in files:
-                foreign = any(part.endswith(".libs") for part in path.parts)  # where a wheel has libraries of others
+                # Where a wheel keeps third-party libraries.
+                foreign = any(part.endswith(".libs") for part in path.parts)
                 ours = not foreign and (place.suffix != ".whl" or bool(OURS.match(path.name)) or path.parent.name in ("shaders", "scripts"))
                 for complaint in complaints(path, ours, plain, packed):
                     print(f"{place if packed else ''}{'/' if packed else ''}{path.relative_to(folder) if packed else path}: {complaint}")
@@ -182,7 +191,7 @@ def check(places, plain, partial):
 
 
 def check_self():
-    """Programs that have each fault are found, and one without any is not."""
+    """Checks that programs with each fault are found and that one without faults passes."""
     source = "#include <stdio.h>\nint main(int n, char **v) { char b[64]; sprintf(b, \"%s %d\", v[0], n); return puts(b); }\n"
     hard = ["-O2", "-U_FORTIFY_SOURCE", "-D_FORTIFY_SOURCE=2", "-fstack-protector-strong", "-fPIE", "-pie", "-Wl,-z,relro,-z,now,-z,noexecstack"]
     faults = {None: [], "empty element": ["-Wl,-rpath,$ORIGIN/../lib::"], "neither below": ["-Wl,-rpath,lib"], "which is neither": ["-Wl,-rpath,/nonexistent/libraries"],

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Compiles every public header alone, with nothing but the include folders a user has, and warnings as errors.
+"""Compiles every public header alone, with only the include folders that a user has, and warnings
+as errors.
 
 headers.py ROOT GENERATED CC CXX   GENERATED: folder that holds xvrml/nodes.h
-C headers: C99 -pedantic and C++17; openrts.hpp: C++17; xvrml: C++20, every one also twice in one file.
-"""
+
+C headers: C99 -pedantic and C++17. openrts.hpp: C++17. xvrml: C++20. Each is also included twice in
+one file."""
 import pathlib
 import subprocess
 import sys

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
-"""Rules that every file of the repository keeps: hygiene.py ROOT
+"""Checks rules for every file of the repository: hygiene.py ROOT
 
-No source over 500 lines that does not say why, no line over 100 characters in C and C++ (worlds and programs in raw strings
-aside), no absolute path of somebody's machine, no left-over notes to self, no trailing blanks, a first comment in every C and
-C++ file (that of the header of the same name serves a .cpp file, too).
-"""
+* No source over 500 lines without a stated reason.
+* No line over 100 characters in C and C++, except in worlds and programs in raw strings.
+* No absolute path of a developer's machine, no left-over notes to self, no trailing blanks.
+* A first comment in every C and C++ file. That of the header of the same name also serves a .cpp
+  file."""
 import pathlib
 import re
 import sys
 
 SOURCE = {".c", ".cpp", ".h", ".hpp", ".py", ".cmake", ".fbs", ".node", ".sh"}
 TEXT = SOURCE | {".md", ".txt", ".json", ".in", ".wrl"}
-# Files that must look odd: inputs of tests that hold what a rule forbids.
+# Files that may break a rule: inputs of tests.
 EXCEPT = ("tests/conformance/", "tests/fuzz/", "tests/nodegen/", "tests/checks/hygiene.py")
 HOMES = re.compile(r"(?<![\w.:/$}])/(?:home|root|work|Users|mnt|tmp)/[\w.-]+")
 NOTES = re.compile(r"\b(?:TODO|FIXME|XXX|HACK)\b")

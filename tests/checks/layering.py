@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Reads every #include of the sources and fails on any arrow that docs/architecture.md section 1 does not draw.
+"""Reads every #include of the sources and fails on any dependency that docs/architecture.md section
+1 does not show.
 
-layering.py ROOT           checks the tree, and that the map in docs/architecture.md is the one that follows from TABLE
+layering.py ROOT           checks the tree, and that the map in docs/architecture.md matches TABLE
 layering.py ROOT --write   writes that map
-layering.py --self         feeds the checker includes that must be refused, and some that must pass
+layering.py --self         tests the check with includes that must be refused and some that must pass
 """
 import dataclasses
 import pathlib
@@ -13,8 +14,8 @@ import textwrap
 
 @dataclasses.dataclass(frozen=True)
 class Part:
-    """A part of the project: the files below `prefixes` (a file belongs to the longest prefix of all), and the parts whose
-    headers they may include besides their own."""
+    """A part of the project: the files below `prefixes` (a file belongs to the longest prefix of
+    all), and the other parts whose headers they may include."""
     name: str
     prefixes: tuple
     purpose: str
@@ -25,7 +26,7 @@ def part(name, prefixes, purpose, includes=""):
     return Part(name, tuple(prefixes.split()), purpose, frozenset(includes.split()))
 
 
-# From the ground up: public headers first, then each library, then what is built on them.
+# From the bottom up: public headers first, then each library, then what is built on them.
 TABLE = [
     part("api-h", " ".join(f"libopenrt/include/openrt/{name}.h" for name in
                            ("openrt", "context", "geometry", "shader", "frame", "query", "worker", "queries")), "the application API, C99"),
@@ -91,7 +92,7 @@ PARTS = {prefix: p.name for p in TABLE for prefix in p.prefixes}
 ARROWS = {p.name: p.includes for p in TABLE}
 ARROWS["test"] = frozenset(ARROWS)
 PUBLIC = {"api-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
-# Headers of other people that only some parts may know.
+# Third-party headers that only some parts may include.
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
     (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"), {"backend-cluster", "script-remote", "test"}, "sockets"),
@@ -103,11 +104,11 @@ FOREIGN = [
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
     (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),
 ]
-# A public header includes the language's own headers and nothing else of others.
+# A public header includes only the language's own headers and no third-party ones.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
 LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")  # of the languages that script engines run
 SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps/vv", "tests", "common", "."]
-# Made at build time -> the part that they belong to.
+# Generated at build time -> the part that they belong to.
 GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"messages_generated\.h$"), "backend-cluster"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
 SUFFIXES = {".c", ".cpp", ".h", ".hpp"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
@@ -119,7 +120,7 @@ def part_of(path):
 
 
 def target(path, name, quoted, files):
-    """Part that the included header belongs to, or None for a header of others."""
+    """Returns the part that the included header belongs to, or None for a third-party header."""
     places = [str(pathlib.PurePosixPath(path).parent)] if quoted else []
     for place in places + SEARCH:
         candidate = normal(f"{place}/{name}")
@@ -142,7 +143,7 @@ def normal(path):
 
 
 def check(files):
-    """files: path -> text. Returns the list of complaints."""
+    """Returns the list of violations. files: path -> text."""
     complaints = []
     for path, text in sorted(files.items()):
         part = part_of(path)
@@ -220,7 +221,8 @@ BEGIN, END = "<!-- begin of the map: tests/checks/layering.py --write makes it -
 
 
 def levels():
-    """Lists the parts (tests aside) by height: each includes parts of lower rows only. Parts that include each other share a row."""
+    """Lists the parts (except tests) by height: each includes only parts of lower rows. Parts that
+    include each other share a row."""
     names = [p.name for p in TABLE if p.name != "test"]
     reach = {name: set(ARROWS[name]) for name in names}
     for via in names:  # Warshall's transitive closure
@@ -245,7 +247,7 @@ def wrapped(names, width):
 
 
 def map_text():
-    """Returns the drawing and the table of docs/architecture.md, section 1."""
+    """Returns the diagram and the table of docs/architecture.md, section 1."""
     lines = [BEGIN, "<!-- unchecked: a drawing made from the table below -->", "```text"]
     columns = [("libopenrt", 36), ("libxvrml", 36), ("", 28)]
     lines.append("".join(f"{name or 'beside and above both':<{width}}" for name, width in columns).rstrip())

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""Every function that the headers declare is exported by the library, says on which thread it may be called, and has a manual page
-that says something about it.
+"""Checks every function that the headers declare: the library exports it, its comment states on
+which thread it may be called, and it has a manual page that describes it.
 
-man_pages.py LIBRARY FOLDER HEADER...
-"""
+man_pages.py LIBRARY FOLDER HEADER..."""
 import ctypes
 import pathlib
 import re

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Manual pages and completions of the programs: every option that --help lists is in the page and in all three completions, the
-page is good roff, the completions are good shell, and bash completes options, words and worlds.
+"""Checks the manual pages and completions of the programs. Every option that --help lists is in the
+page and in all three completions. The page is valid roff, the completions are valid shell, and bash
+completes options, words and worlds.
 
-program_docs.py FOLDER PROGRAM...      FOLDER is <build>/share
-"""
+program_docs.py FOLDER PROGRAM...      FOLDER is <build>/share"""
 import pathlib
 import re
 import shutil
@@ -19,7 +19,7 @@ def run(*command, **more):
 
 
 def completed(script, function, words):
-    """What bash offers for the last word."""
+    """Returns bash's completions for the last word."""
     quoted = " ".join(f"'{w}'" for w in words)
     code = f'source "{script}"; COMP_WORDS=({quoted}); COMP_CWORD={len(words) - 1}; {function}; printf "%s\\n" "${{COMPREPLY[@]}}"'
     done = run("bash", "-uc", code, cwd=scratch)

@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
-"""Checks the code blocks of a document as blocks.py says: run_blocks.py ROOT BUILD CC CXX INCLUDES PAGE
+"""Checks the code blocks of a document as blocks.py says: run_blocks.py ROOT BUILD CC CXX INCLUDES
+PAGE
 
-BUILD: programs, libraries and the Python package of a build; INCLUDES: its folder of generated headers; PAGE: relative to ROOT, or
-`--marks`: all pages, only whether every block is checked or says why not. Exit code 77: everything was left out (no Python package).
-With `--times` behind the page the commands of vv run as they stand, not made small, and their seconds are printed.
-"""
+* BUILD: programs, libraries and the Python package of a build.
+* INCLUDES: its folder of generated headers.
+* PAGE: relative to ROOT, or `--marks`: only checks, for all pages, that every block is checked or
+  says why not.
+
+Exit code 77: everything was skipped (no Python package). With `--times` after the page the commands
+of vv run as they stand, with full-size pictures, and their seconds are printed."""
 import ast
 import contextlib
 import json
@@ -53,16 +57,19 @@ class Runner:
         self.env = dict(os.environ, PATH=f"{build}/bin:{root}/tools:" + os.environ["PATH"], PYTHONPATH=f"{build}/python",
                         PYTHONDONTWRITEBYTECODE="1", NO_COLOR="1")
         self.interpreter = None
-        self.place = scratch  # the folder in which the page's shell stands
-        self.times = None  # a file: the commands run as they stand, and their seconds are written into it
-        self.ports = {"7447": free_port(), "7448": free_port()}  # workers of the pages listen on ports that are free
+        self.place = scratch  # the current folder of the page's shell
+        self.times = None  # a file: commands run unchanged, and their seconds are written to it
+        # The pages' workers listen on free ports.
+        self.ports = {"7447": free_port(), "7448": free_port()}
         self.has_worker = (build / "bin/openrt-worker").exists()
         self.has_python = not self.call([self.python, "-c", "import xvrml"], scratch)
         shutil.copytree(root / "examples", scratch / "examples")
 
     def call(self, command, folder):
-        """What a command says if it fails, else nothing. What it leaves running is ended."""
-        with tempfile.TemporaryFile() as talk:  # no pipe: a worker in the background would hold it open
+        """Runs a command. Returns its output if it fails, otherwise "". Processes that it leaves
+        running are ended."""
+        # Not a pipe: a worker in the background would hold it open.
+        with tempfile.TemporaryFile() as talk:
             done = subprocess.Popen([str(c) for c in command], cwd=folder, env=self.env, stdin=subprocess.DEVNULL, stdout=talk,
                                     stderr=talk, start_new_session=True)
             try:
@@ -76,7 +83,8 @@ class Runner:
             return f"exit code {code}\n{talk.read().decode('utf-8', 'replace')[-4000:]}" if code else ""
 
     def timed(self, line):
-        """A line as it stands; if it calls vv, with the seconds that it takes written into the file of times."""
+        """Returns the line. If it calls vv, commands that write its seconds to the file of times
+        are added."""
         if not line.startswith("vv "):
             return line
         command = line.partition(" #")[0].strip()
@@ -92,7 +100,8 @@ class Runner:
         text = re.sub(r"\b744[78]\b", lambda port: self.ports[port.group()], text)
         if "syntax only" in block.marks:
             return self.call(["bash", "-nc", text], folder)
-        # A reader pastes the blocks of a page into one shell: each begins where the one before has gone.
+        # A reader pastes all blocks of a page into one shell, so each starts where the one before
+        # has ended.
         start = folder if "in" in block.marks else self.place
         place = self.scratch.parent / (self.scratch.name + ".place")
         wrong = self.call(["bash", "-euo", "pipefail", "-c", f"trap 'pwd >{place}' EXIT\n{text}"], start)
@@ -125,7 +134,7 @@ class Runner:
         source.write_text(text)
         flags = ["-std=c++20" if cpp else "-std=c99", "-Wall", "-Wextra", "-Wno-unused-function", "-Wno-unused-variable", *self.includes]
         compiler = self.cxx if cpp else self.cc
-        if "int main" not in text:  # declarations without their bodies are allowed here
+        if "int main" not in text:  # declarations without bodies are allowed here
             return self.call([compiler, *flags, "-fsyntax-only", source], folder)
         libraries = [f"-L{self.build}/lib", f"-Wl,-rpath,{self.build}/lib", *(["-lxvrml_openrt", "-lxvrml"] if cpp else []), "-lopenrt", "-lm"]
         program = source.with_suffix("")
@@ -158,7 +167,8 @@ class Runner:
         return self.call([tclsh, "test.tcl"], folder)
 
     def check(self, block):
-        """Nothing if it is as it must be, "left" if that is others' business, None if something is not installed, else what is wrong."""
+        """Returns None if something is not installed, "left" if other tests cover it, "" if it is
+        correct, otherwise what is wrong."""
         way = block.way
         if way.startswith("wrong: "):
             return way[len("wrong: "):]

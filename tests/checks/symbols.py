@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""The binary interface of the libraries: every symbol of a stored list is still exported, with the same version; nothing without a
-version is; C++ internals of others (std, fmt, ...) are not at all.
+"""Checks the binary interface of the libraries. Every symbol of a stored list is still exported,
+with the same version. Every exported symbol has a version. No C++ internals of other libraries
+(std, fmt, ...) are exported.
 
 symbols.py LIST_FOLDER LIBRARY...            LIST_FOLDER/<name>.symbols, e.g. libopenrt.symbols
-symbols.py --update LIST_FOLDER LIBRARY...   writes the lists anew: after a symbol was added, or removed together with SOVERSION
+symbols.py --update LIST_FOLDER LIBRARY...   writes the lists again: after a symbol was added,
+                                             or removed together with SOVERSION
 
-Symbols that are there and not in a list are named, and no fault. Those of a private version (what the project's own libraries take
-from each other, of one release) are in no list.
-"""
+Exported symbols that are missing from a list are named, but are no error. Symbols of a private
+version, which the project's libraries of one release use among themselves, are in no list."""
 import pathlib
 import re
 import subprocess
@@ -15,7 +16,7 @@ import sys
 
 
 def exported(library):
-    """{symbol@@VERSION} of public versions, and complaints."""
+    """Returns {symbol@@VERSION} of the public versions, and the violations."""
     text = subprocess.run(["nm", "-D", "--defined-only", "--with-symbol-versions", library], capture_output=True, text=True,
                           check=True).stdout
     found, complaints = set(), []
@@ -29,7 +30,7 @@ def exported(library):
         elif "PRIVATE" not in version:
             if re.match(r"_ZN?K?(St|9__gnu_cxx|3fmt|3tbb)", symbol):
                 complaints.append(f"{symbol} is another library's")
-            if kind in "TDBR":  # weak ones come and go with the compiler
+            if kind in "TDBR":  # weak symbols come and go with the compiler
                 found.add(f"{symbol}@@{version}")
     return found, complaints
 

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""The slow part of what the cluster is held to; `make cluster-campaign`. Prints a table of what was measured; fails where bytes
-differ or memory grows.
+"""Runs the slow part of the cluster's acceptance tests (`make cluster-campaign`). Prints a table of
+measurements; fails if bytes differ or memory grows.
 
-campaign.py [--kills N] [--frames N] [--partition SECONDS]
-"""
+campaign.py [--kills N] [--frames N] [--partition SECONDS]"""
 import argparse
 import random
 import sys
@@ -23,7 +22,8 @@ def note(what, text, good=True):
 
 
 def frames_until(context, expected, over):
-    """Renders until over() says so; how many were made, how many were wrong, and the longest."""
+    """Renders until over() is true. Returns the number of frames, the number of wrong ones, and the
+    longest time."""
     made = wrong = 0
     longest = 0.0
     while not over():
@@ -35,7 +35,7 @@ def frames_until(context, expected, over):
 
 
 def random_kills(expected, kills):
-    """Workers are killed at random moments and started again; frames go on."""
+    """Kills workers at random moments and restarts them while frames are rendered."""
     rng = random.Random(11)
     with farm(4) as workers, openrt_c.context(cluster(workers), **FRAME) as c:
         begin = time.monotonic()
@@ -77,7 +77,8 @@ def long_partition(expected, seconds):
 
 
 def stopped(expected):
-    """One of two stands still for three seconds: what a frame takes then, against one worker alone."""
+    """One of two workers is stopped for three seconds. Compares the time of such a frame with that
+    of one worker alone."""
     with farm(2) as workers, openrt_c.context(cluster(workers, local=0), **FRAME) as c:
         c.render()
         begin = time.monotonic()
@@ -104,7 +105,8 @@ def latency(expected):
 
 
 def many_frames(frames):
-    """An animation with workers coming and going: memory and descriptors of the master."""
+    """Renders an animation while workers join and leave. Measures memory and descriptors of the
+    master."""
     small = {"width": 32, "height": 24, "spp": 2}
     rng = random.Random(5)
     with openrt_c.context("threads=1", **small) as alone, farm(3) as workers, openrt_c.context(cluster(workers), **small) as c:
@@ -123,7 +125,7 @@ def many_frames(frames):
                 worker.kill()
                 worker.start()
                 sizes.append((resident(), descriptors(), max(resident(w.process.pid) for w in workers)))
-        half = sizes[len(sizes) // 4:]  # after warming up
+        half = sizes[len(sizes) // 4:]  # skips the warm-up
         slope = (half[-1][0] - half[0][0]) / (500 * max(len(half) - 1, 1))
         note("animation", f"{frames} frames; master {half[0][0] >> 20} to {half[-1][0] >> 20} MB ({slope:.0f} bytes a frame), "
              f"{half[0][1]} to {half[-1][1]} descriptors; workers up to {max(s[2] for s in sizes) >> 20} MB",

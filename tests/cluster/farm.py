@@ -1,4 +1,5 @@
-"""Workers as processes on the loopback, each behind a fault proxy if asked for; and what is to be known of processes."""
+"""Runs workers as processes on loopback, each behind a fault proxy if requested, and measures
+processes."""
 import contextlib
 import os
 import pathlib
@@ -29,7 +30,8 @@ def listening(port, process, seconds=30):
 
 
 class Worker:
-    """One openrt-worker. It listens, and address is where the master is to call, or its arguments say whom to call."""
+    """One openrt-worker process. It listens at `address`, where the master connects, or its
+    arguments name the master to call."""
 
     def __init__(self, *arguments, listen=True, threads=1, proxy=False):
         self.port = free_port() if listen else None
@@ -84,13 +86,13 @@ def addresses(workers):
 
 
 def cluster(workers, **options):
-    """The configuration of a context."""
+    """Returns the configuration of a context."""
     words = {"workers": addresses(workers), **options}
     return "backend=cluster " + " ".join(f"{key}={value}" for key, value in words.items())
 
 
 def resident(pid="self"):
-    """Bytes of memory that a process holds."""
+    """Returns the resident memory of a process in bytes."""
     for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines():
         if line.startswith("VmRSS:"):
             return int(line.split()[1]) * 1024

@@ -1,5 +1,6 @@
-"""A TCP proxy with faults, between a master and a worker. Each link can be slowed down, held up, cut, or have its bytes changed,
-while it runs; what it does is counted. Everything happens on threads of its own; close() ends them."""
+"""A TCP proxy between a master and a worker that injects faults. While it runs, each link can be
+slowed down, delayed, cut, or have its bytes changed; faults are counted. It uses threads of its
+own; close() ends them."""
 import collections
 import random
 import socket
@@ -11,12 +12,12 @@ CHUNK = 1 << 16
 
 
 class FaultProxy:
-    """Listens on a free port of the loopback and passes on to target, a (host, port).
+    """Listens on a free port of loopback and forwards to target, a (host, port).
 
-    delay        seconds that every byte is late
-    bandwidth    bytes a second of each direction; 0: no limit
-    loss         probability that a chunk is lost: as TCP repairs it, it and all after it come `repair` seconds later
-    """
+    delay        seconds by which every byte is delayed
+    bandwidth    bytes per second in each direction; 0: no limit
+    loss         probability that a chunk is lost; as with TCP's retransmission, it and all later
+                 chunks arrive `repair` seconds later"""
 
     def __init__(self, target, seed=1):
         self.target = target
@@ -43,35 +44,36 @@ class FaultProxy:
     # Faults -----------------------------------------------------------------------------------------------------------
 
     def partition(self):
-        """From now on nothing passes and nothing is lost, as when a switch goes down."""
+        """Stops all forwarding without loss, as when a switch goes down."""
         self._flowing.clear()
 
     def heal(self):
         self._flowing.set()
 
     def cut(self):
-        """Resets all connections; new ones are accepted."""
+        """Resets all connections. New ones are accepted."""
         with self._lock:
             links = list(self._links)
         for pair in links:
             for end in pair:
                 try:
                     end.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-                    end.shutdown(socket.SHUT_RD)  # wakes who reads it, else close() would wait for them
+                    # Wakes its reader, for which close() would wait otherwise.
+                    end.shutdown(socket.SHUT_RD)
                     end.close()
                 except OSError:
                     pass
 
     def corrupt(self, chunks=1):
-        """A byte in each of the next chunks is changed."""
+        """Changes a byte in each of the next chunks."""
         self._flip += chunks
 
     def swallow(self, chunks=1):
-        """The next chunks vanish: what follows is out of step."""
+        """Drops the next chunks, so that the following bytes are out of step."""
         self._swallow += chunks
 
     def repeat(self, chunks=1):
-        """The next chunks are sent twice."""
+        """Sends the next chunks twice."""
         self._twice += chunks
 
     def close(self):
@@ -116,7 +118,7 @@ class FaultProxy:
         try:
             while True:
                 with arrived:
-                    while len(queue) > 256:  # the sender is held back
+                    while len(queue) > 256:  # flow control: the sender has to wait
                         arrived.wait(1)
                 data = source.recv(CHUNK)
                 if not data:

@@ -1,10 +1,11 @@
-"""A network namespace with one cable to the outside: another machine, as far as TCP can tell. Needs root and iproute2."""
+"""A network namespace with one virtual cable to the outside: for TCP it is another machine. Needs
+root and iproute2."""
 import contextlib
 import os
 import shutil
 import subprocess
 
-HERE, THERE = "198.51.100.1", "198.51.100.2"  # RFC 5737: documentation
+HERE, THERE = "198.51.100.1", "198.51.100.2"  # RFC 5737: addresses for documentation
 
 
 def ip(*arguments):
@@ -42,7 +43,7 @@ class Namespace:
 
 @contextlib.contextmanager
 def namespace():
-    """Yields a Namespace, or None where this machine does not let us."""
+    """Yields a Namespace, or None if this machine does not permit one."""
     made = None
     with contextlib.suppress(OSError, subprocess.CalledProcessError):
         if os.geteuid() == 0 and shutil.which("ip"):

@@ -1,5 +1,6 @@
-"""The C API by ctypes, as much of it as the cluster's tests need, and a scene that any of them can render: a box of diffuse walls
-with a lamp, balls of glass and metal, thirty of them moving. Calls release the interpreter's lock: other threads go on."""
+"""Wraps the part of the C API that the cluster's tests need with ctypes. Also a scene that any of
+them can render: a box of diffuse walls with a lamp and balls of glass and metal, thirty of them
+moving. Calls release the GIL, so other threads continue."""
 import array
 import contextlib
 import ctypes
@@ -17,7 +18,7 @@ QUADS = 7
 
 
 def build():
-    """The folder with bin/ and lib/."""
+    """Returns the folder with bin/ and lib/."""
     if "OPENRT_BUILD" in os.environ:
         return pathlib.Path(os.environ["OPENRT_BUILD"])
     for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep):
@@ -49,7 +50,7 @@ class RtError(RuntimeError):
 
 
 class Context:
-    """A context; everything is called on the thread that made it, but cancel()."""
+    """A context. All methods except cancel() are called on the thread that made it."""
 
     def __init__(self, config):
         self.rt = ctypes.CDLL(str(build() / "lib/libopenrt.so"))
@@ -103,14 +104,14 @@ class Context:
         return {name: getattr(out, name) for name, _ in Stats._fields_}
 
     def workers(self):
-        """What rtGetWorkers knows of each."""
+        """Returns the records of rtGetWorkers."""
         out = (Worker * 64)()
         out[0].size = ctypes.sizeof(Worker)
         count = self("GetWorkers", self.handle, out, len(out))
         return [{name: getattr(w, name) for name, _ in Worker._fields_} for w in out[:count]]
 
     def wait_for(self, count, seconds=20):
-        """Whether so many workers are there before the time is up."""
+        """Returns whether this many workers joined before the time was up."""
         end = time.monotonic() + seconds
         while sum(w["alive"] for w in self.workers() if w["name"] != b"here") < count:
             if time.monotonic() > end:
@@ -136,7 +137,7 @@ class Context:
         self("End")
 
     def scene(self, balls=30):
-        """Walls, a lamp, balls; self.moving: instances for move()."""
+        """Draws walls, a lamp and balls. self.moving: the instances for move()."""
         room = self("BeginObject", 0)
         for color, corners in (((.7, .7, .7), ((-2, -1, 2), (2, -1, 2), (2, -1, -2), (-2, -1, -2))),
                                ((.7, .2, .2), ((-2, -1, 2), (-2, -1, -2), (-2, 2, -2), (-2, 2, 2))),
@@ -180,7 +181,7 @@ class Context:
             self("Quality", name, value)
 
     def read(self):
-        """The bytes of all channels."""
+        """Returns the bytes of all channels."""
         out = b""
         for channel, components in COMPONENTS.items():
             if self.channels & channel:
@@ -204,6 +205,6 @@ def context(config, **frame):
 
 
 def reference(**frame):
-    """What one thread of this machine alone makes."""
+    """Returns the picture of a single thread of this machine."""
     with context("threads=1", **frame) as c:
         return c.render()

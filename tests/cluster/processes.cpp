@@ -1,5 +1,5 @@
-// processes.cpp: pictures with the help of real worker processes on loopback: the same bytes as one
-// thread whoever takes part, whenever they come and however they go.
+// processes.cpp: pictures rendered with real worker processes on loopback. They have the same bytes
+// as with one thread, whichever workers take part, whenever they join and however they end.
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -23,7 +23,7 @@ Workers start(int count) {
   return workers;
 }
 
-// Waits until so many workers have joined.
+// Waits until this many workers have joined.
 void join(uint32_t count) {
   EXPECT_TRUE(until([&] { return statistics().workers >= count; }))
       << statistics().workers << " of " << count << " workers";
@@ -36,14 +36,14 @@ uint64_t jobsOf(const std::vector<RTworker>& workers) {
 }
 
 TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
-  for (const Look& look : {Look{}, Look{.samples = 70, .transport = RT_TRANSPORT_AUTO}}) {
+  for (const FrameOptions& look : {FrameOptions{}, FrameOptions{.samples = 70, .transport = RT_TRANSPORT_AUTO}}) {
     const Picture one = expected(look);
     for (int count = 0; count <= 3; count++) {
       SCOPED_TRACE(count);
       const Workers helping = start(count);
       const Context context(
           "backend=cluster threads=1 " +
-          (count ? calling(helping) : "listen=127.0.0.1:" + std::to_string(freePort())));
+          (count ? workersOption(helping) : "listen=127.0.0.1:" + std::to_string(freePort())));
       World world;
       world.look(look);
       join(uint32_t(count));
@@ -59,7 +59,7 @@ TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
 
 TEST(ClusterProcesses, WithoutThreadsOfItsOwnTheMasterLeavesAllToTheWorkers) {
   const Workers helping = start(2);
-  const Context context("backend=cluster local=0 " + calling(helping));
+  const Context context("backend=cluster local=0 " + workersOption(helping));
   World world;
   for (const double time : {0.0, .5}) {
     if (time > 0) world.move(time);
@@ -73,8 +73,8 @@ TEST(ClusterProcesses, WithoutThreadsOfItsOwnTheMasterLeavesAllToTheWorkers) {
   EXPECT_GT(stats.bytesReceived, 10000u);
 }
 
-// More than the test waits for if nobody helps, but not much.
-Look longer() {
+// Settings for a frame that takes longer than the test waits without workers, but not much longer.
+FrameOptions longer() {
   return {.width = 120, .height = 90, .samples = 256, .channels = RT_RGBA | RT_ERROR | RT_SAMPLES};
 }
 
@@ -98,7 +98,7 @@ TEST(ClusterProcesses, AWorkerThatIsKilledInMidFrameIsMadeUpFor) {
     SCOPED_TRACE(victims);
     Workers helping = start(3);
     Context context("backend=cluster threads=1 local=" + std::string(victims == 1 ? "0 " : "1 ") +
-                    calling(helping));
+                    workersOption(helping));
     World world;
     world.look(longer());
     join(3);
@@ -115,7 +115,7 @@ TEST(ClusterProcesses, AWorkerThatIsKilledInMidFrameIsMadeUpFor) {
 TEST(ClusterProcesses, AllGoneAndNoThreadsOfItsOwnTheMasterFinishesAllTheSame) {
   const Picture one = expected(longer());
   Workers helping = start(2);
-  Context context("backend=cluster local=0 threads=1 " + calling(helping));
+  Context context("backend=cluster local=0 threads=1 " + workersOption(helping));
   World world;
   world.look(longer());
   rtSwapBuffers();
@@ -139,7 +139,7 @@ TEST(ClusterProcesses, NobodyToCallIsNoReasonToFail) {
 TEST(ClusterProcesses, AWorkerThatIsStoppedIsLeftOutUntilItGoesOn) {
   const Picture one = expected(longer());
   Workers helping = start(2);
-  const Context context("backend=cluster threads=1 " + calling(helping));
+  const Context context("backend=cluster threads=1 " + workersOption(helping));
   World world;
   world.look(longer());
   join(2);
@@ -157,7 +157,7 @@ TEST(ClusterProcesses, AWorkerThatIsStoppedIsLeftOutUntilItGoesOn) {
 
 TEST(ClusterProcesses, AnAnimationIsTheSameFrameByFrame) {
   constexpr int frames = 100;
-  const Look look{
+  const FrameOptions look{
       .width = 32, .height = 24, .samples = 2, .channels = RT_RGBA | RT_DEPTH | RT_NAME};
   std::vector<Picture> alone;
   {
@@ -173,7 +173,7 @@ TEST(ClusterProcesses, AnAnimationIsTheSameFrameByFrame) {
   for (const char* how : {"split=auto", "split=frames", "split=samples local=0"}) {
     SCOPED_TRACE(how);
     Workers helping = start(2);
-    const Context context("backend=cluster threads=1 " + calling(helping) + " " + how);
+    const Context context("backend=cluster threads=1 " + workersOption(helping) + " " + how);
     World world;
     world.look(look);
     rtQuality(RT_FRAMES_IN_FLIGHT, 4);
@@ -198,7 +198,7 @@ TEST(ClusterProcesses, AnAnimationIsTheSameFrameByFrame) {
 
 TEST(ClusterProcesses, ACancelledFrameEndsAndTheNextIsRight) {
   const Workers helping = start(2);
-  const Context context("backend=cluster threads=1 " + calling(helping));
+  const Context context("backend=cluster threads=1 " + workersOption(helping));
   World world;
   world.look({.width = 800, .height = 600, .samples = 4096, .channels = RT_RGBA});
   join(2);
@@ -219,11 +219,11 @@ TEST(ClusterProcesses, RaysAreAskedAboutTheLastScene) {
   RTclosest closest[2];
   for (int i = 0; i < 2; i++) {
     const Context context(i == 0 ? "threads=1"
-                                 : "backend=cluster threads=1 local=0 " + calling(helping));
+                                 : "backend=cluster threads=1 local=0 " + workersOption(helping));
     World world;
     rtSwapBuffers();
     world.move(1.3);
-    rtSwapBuffers(); // in flight, perhaps with the one before
+    rtSwapBuffers(); // in flight, perhaps together with the one before
     const RTray rays[2] = {{{0, 0, 6}, 0, {0, -.1f, -1}, INFINITY},
                            {{-2.5f, 9, 0}, 0, {0, -1, 0}, INFINITY}};
     rtCastRays(2, rays, hits[i]);
@@ -256,7 +256,7 @@ TEST(ClusterProcesses, ARecordingBesideIsThatOfTheSameScene) {
   {
     const Workers helping = start(1);
     const Context context("backend=cluster threads=1 record=" + file.string() + " " +
-                          calling(helping));
+                          workersOption(helping));
     World world;
     rtRender();
     EXPECT_EQ(different(pixels({}), expected({})), 0u);
@@ -279,9 +279,8 @@ TEST(ClusterProcesses, RequiredWorkersThatAreMissingAreAnError) {
                         std::to_string(freePort()));
   World world;
   rtSwapBuffers();
-  EXPECT_TRUE(until([&] {
-    return rtProgress(context.handle) == 1;
-  })); // who waits without waiting hears of it, too
+  // The error also ends a frame that is only polled.
+  EXPECT_TRUE(until([&] { return rtProgress(context.handle) == 1; }));
   rtFinishFrame();
   EXPECT_EQ(rtGetError(), RTenum(RT_CLUSTER_ERROR));
   EXPECT_NE(std::string(rtGetErrorMessage()).find("2 workers are needed, there are 0"),

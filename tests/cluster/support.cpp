@@ -96,7 +96,7 @@ World::World() {
   look({});
 }
 
-void World::look(const Look& look) {
+void World::look(const FrameOptions& look) {
   rtFrameBuffer(look.width, look.height, look.channels);
   rtQuality(RT_SAMPLES_PER_PIXEL, look.samples);
   rtQuality(RT_TRANSPORT, look.transport);
@@ -135,7 +135,7 @@ void World::move(double time) {
 
 void World::slow(int depth) { rtQuality(RT_MAX_DEPTH, depth); }
 
-Picture pixels(const Look& look) {
+Picture pixels(const FrameOptions& look) {
   const size_t n = size_t(look.width) * size_t(look.height);
   Picture all;
   for (uint32_t channel = 1; channel <= look.channels; channel <<= 1) {
@@ -152,7 +152,7 @@ Picture pixels(const Look& look) {
   return all;
 }
 
-Picture expected(const Look& look, double time) {
+Picture expected(const FrameOptions& look, double time) {
   const RTcontext before = rtGetCurrent();
   Picture picture;
   {

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
                                         RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
 
-struct Look { // settings of a frame
+struct FrameOptions { // settings of a frame
   int width = 61, height = 45;
   int samples = 4;
   uint32_t channels = allChannels;
@@ -49,7 +49,7 @@ class Context {
 class World {
  public:
   World(); // into the current context
-  void look(const Look& look);
+  void look(const FrameOptions& look);
   // Makes the edits of an animation: matrices, a parameter, the camera, sometimes geometry.
   void move(double time);
   void slow(int depth); // makes a frame slow: paths of many bounces between mirrors
@@ -61,9 +61,9 @@ class World {
 };
 
 using Picture = std::vector<float>; // all channels of a frame, one after the other
-Picture pixels(const Look& look);
+Picture pixels(const FrameOptions& look);
 // Renders the frame of a World locally with one thread.
-Picture expected(const Look& look, double time = 0);
+Picture expected(const FrameOptions& look, double time = 0);
 // Returns how many values differ; 0: the pictures are identical.
 size_t different(const Picture& a, const Picture& b);
 
@@ -91,7 +91,7 @@ class Worker {
 };
 int freePort();
 // Returns the context option that lists the addresses of the workers.
-template <class Workers> std::string calling(const Workers& workers) {
+template <class Workers> std::string workersOption(const Workers& workers) {
   std::string list;
   for (const auto& worker : workers) list += (list.empty() ? "workers=" : ",") + worker->address();
   return list;

@@ -1,6 +1,6 @@
 // corpus.cpp: real files of many authors (the corpus beside the repository, or $OPENRT_CORPUS;
-// skipped where there is none): what each class of them must do, and that all survive writing and
-// reading again.
+// skipped if there is none). Each class of files has a promise to keep, and all files must survive
+// writing and reading again.
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -18,8 +18,8 @@ std::string corpusFolder() {
   return folder ? folder : "../shared/corpus";
 }
 
-// Paths of a class (second column: path, third: class of FEATURES.tsv); empty if there is no
-// corpus.
+// Returns the paths of a class (second column: path, third: class of FEATURES.tsv); empty if there
+// is no corpus.
 std::vector<std::string> filesOfClass(const std::string& wanted) {
   std::vector<std::string> paths;
   std::ifstream table(corpusFolder() + "/FEATURES.tsv");
@@ -71,8 +71,8 @@ TEST(Corpus, StrictFilesLoadAndRoundTrip) {
       expectRoundTrip(*world, path);
     } catch (const LoadError& error) { ADD_FAILURE() << error.diagnostic.text(); }
   }
-  // Some of them use fields of X3D or break rules; what was counted when the parser was written
-  // must not get worse.
+  // Some files use X3D fields or break rules. The share counted when the parser was written must
+  // not get worse.
   EXPECT_GE(silent, files.size() * 85 / 100);
 }
 

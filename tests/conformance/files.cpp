@@ -1,7 +1,6 @@
-// files.cpp: the files of good/ load without a word and survive writing; those of bad/ give the
-// messages their second line says:
-// "# expect LINE:COLUMN SEVERITY MESSAGE | ...". The names of the files say which rule they are
-// about.
+// files.cpp: the files of good/ load without messages and survive writing. Those of bad/ give the
+// messages stated in their second line: "# expect LINE:COLUMN SEVERITY MESSAGE | ...". The file
+// names state the rule that they test.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
-// Clause 7.3.3, table 7.1: the sizes that every browser must bear, written as files, loaded and run
-// without a word.
+// minimum_limits.cpp: clause 7.3.3, table 7.1: the sizes that every browser must support, written
+// as files, loaded and run without messages.
 #include <functional>
 
 #include <fmt/format.h>

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""Runs the animated files of a folder of real VRML files for ten seconds of their own time, and says which script engines they
-and the others need.
+"""Runs animated VRML files for ten seconds of their own time and lists the script engines.
+
+The files are those of a folder of real VRML files. The list says which engines they need.
 
 animated.py --vv build/release/bin/vv [--corpus FOLDER] [--out build/corpus]
 
-Each file whose features hold `animated` runs at 10 Hz, mapped once a second (vv --check: no pictures). A crash, a time-out, an
-error of the program or a runaway cascade fails; problems of the file itself do not. Each file with Scripts
-must have them counted by protocol in vv --info, unless the Script itself is wrong and lost (0 in the table). Each file with
-ECMAScript runs for ten seconds, too: an error of a Script fails, unless the file stands in script_errors.tsv with the reason why its
-program is wrong; so does a file that stands there in vain. Writes OUT/scripts.tsv. Exit code 77: there is no such folder.
-"""
+Each file with the feature `animated` runs at 10 Hz and is mapped once a second (vv --check: no
+pictures). A crash, a time-out, an error of the program or a runaway cascade fails the test;
+problems of the file itself do not. vv --info must count the Scripts of each file by protocol,
+unless the Script itself is wrong and lost (0 in the table).
+
+Each file with ECMAScript also runs for ten seconds. An error of a Script fails the test, unless
+script_errors.tsv lists the file with the reason why its program is wrong. A file that is listed
+without need fails, too. Writes OUT/scripts.tsv. Exit code 77: there is no such folder."""
 import argparse
 import concurrent.futures
 import json
@@ -21,13 +24,13 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TIMEOUT = 40  # seconds a run
+TIMEOUT = 40  # seconds per run
 DONE, PROBLEMS = 0, 4  # exit codes of vv --check
 ECMASCRIPT = {"script:javascript", "script:vrmlscript", "script:ecmascript", "script:js-file"}
 
 
 def run(*command):
-    """Exit code (None: timed out), output, messages."""
+    """Returns the exit code (None: timed out), the output and the messages."""
     try:
         done = subprocess.run([str(c) for c in command], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT)
     except subprocess.TimeoutExpired:
@@ -53,25 +56,25 @@ def play(args, row):
 
 
 def scripts_of(args, row):
-    """Scripts by protocol, as vv counts them."""
+    """Returns the number of Scripts by protocol, as counted by vv."""
     code, out, talk = run(args.vv, args.corpus / row["file"], "--info", "--json", "-q")
     if code != DONE:
         return row, None, complaint(code, talk)
     told = json.loads(out)
-    if not told["scripts"] and told["errors"]:  # an error of the file has cost the Script itself
+    if not told["scripts"] and told["errors"]:  # the Script itself was lost to an error of the file
         lost = sorted(f.removeprefix("script:") for f in row["features"] if f.startswith("script:"))
         return row, [{"protocol": p, "count": 0, "declared": 0, "engine": False} for p in lost], ""
     return row, told["scripts"], ""
 
 
 def expected_errors():
-    """File to the reason why a Script in it fails."""
+    """Returns a dictionary from file to the reason why a Script in it fails."""
     lines = (pathlib.Path(__file__).parent / "script_errors.tsv").read_text(encoding="utf-8").rstrip("\n").split("\n")
     return dict(line.split("\t") for line in lines)
 
 
 def run_scripts(args, row):
-    """What is wrong with the run of a file's ECMAScript."""
+    """Returns what is wrong with the run of a file's ECMAScript."""
     code, _, talk = run(args.vv, args.corpus / row["file"], "--check", "--frames", "0-100/10", "--fps", "10")
     wrong = complaint(code, talk)
     failed = re.findall(r"^.*: error: Script(?: \S+)?: .*", talk, re.M)

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Runs vv over a folder of real VRML files and compares the pictures with those of two other browsers.
+"""Runs vv on real VRML files and compares the pictures with those of two other browsers.
 
-corpus.py --vv build/release/bin/vv --corpus FOLDER --out build/corpus   table, contact sheets, report  (`make corpus`)
-corpus.py --vv build/release/bin/vv --quick                              only: what each class promises (the ctest `corpus`)
+corpus.py --vv build/release/bin/vv --corpus FOLDER --out build/corpus
+    table, contact sheets, report  (`make corpus`)
+corpus.py --vv build/release/bin/vv --quick
+    only the promises of each class (the ctest `corpus`)
 
-The folder (default $OPENRT_CORPUS or ../shared/corpus) holds FEATURES.tsv, which says for each file its class, and
-pictures/{view3dscene,x_ite}. Exit code 0: every file keeps its class's promise; 77: there is no such folder.
-"""
+The folder of files (default $OPENRT_CORPUS or ../shared/corpus) holds FEATURES.tsv, which gives the
+class of each file, and pictures/{view3dscene,x_ite}. Exit code 0: every file keeps its class's
+promise; 77: there is no such folder."""
 import argparse
 import concurrent.futures
 import os
@@ -20,7 +22,7 @@ import time
 import promises
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TIMEOUT = 30  # seconds a run
+TIMEOUT = 30  # seconds per run
 
 
 def arguments():
@@ -36,7 +38,7 @@ def arguments():
 
 
 def files(corpus, only):
-    """Rows of FEATURES.tsv as dictionaries."""
+    """Returns the rows of FEATURES.tsv as dictionaries."""
     lines = (corpus / "FEATURES.tsv").read_text(encoding="utf-8").rstrip("\n").split("\n")
     names = lines[0].split("\t")
     rows = [dict(zip(names, line.split("\t"))) for line in lines[1:]]
@@ -68,21 +70,23 @@ def vv(program, world, picture, *options):
 
 
 def without_viewpoint(corpus, row):
-    """True if neither the file nor what it names can hold a Viewpoint, and X_ITE has drawn it."""
+    """Returns True if neither the file nor its Inlines can hold a Viewpoint, and X_ITE has drawn
+    it."""
     nodes = row["standard_nodes"].split(",")
     return not ({"Viewpoint", "Inline"} & set(nodes) or "EXTERNPROTO" in row["features"]
                 or not (corpus / "pictures/x_ite" / (row["file"] + ".png")).exists())
 
 
 def draw(args, row, out):
-    """One file: the runs, and what they say about its promise."""
+    """Runs one file and returns the results with respect to its promise."""
     world = args.corpus / row["file"]
     picture = out / (row["file"] + ".png")
     picture.parent.mkdir(parents=True, exist_ok=True)
     if args.quick:
         runs = [vv(args.vv, world, picture, "--size", "32x24", "--spp", "1")]
     else:
-        # Where a file has no Viewpoint vv fits a camera of its own; X_ITE draws from the standard's place (clause 6.53), so do we.
+        # For a file without a Viewpoint vv fits a camera of its own. X_ITE uses the standard's
+        # default position (clause 6.53), so the test sets the same.
         place = ["--camera", "0,0,10:0,0,0:0,1,0"] if without_viewpoint(args.corpus, row) else []
         plain = picture.with_suffix(".default.png")
         runs = [vv(args.vv, world, plain, "--size", "160x120", "--spp", "1"),

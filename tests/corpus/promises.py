@@ -1,11 +1,12 @@
-"""What vv promises for each class of file in the corpus. Used by corpus.py."""
+"""Defines what vv promises for each class of file in the corpus. Used by corpus.py."""
 import re
 
 PLACE = re.compile(r":\d+:\d+: (error|warning): ")
 
 
 def broken(kind, code, log, timeout):
-    """The promises that a run of vv with this exit code and these messages breaks, in words."""
+    """Returns, in words, the promises that a run of vv with this exit code and these messages
+    breaks."""
     if code is None:
         return [f"still running after {timeout} s"]
     if code < 0 or code >= 128:

@@ -1,9 +1,10 @@
-"""Table and contact sheets of a corpus run: ours beside two other browsers', farthest first. Used by corpus.py.
+"""Makes the table and contact sheets of a corpus run: our pictures beside those of two other
+browsers, largest distance first. Used by corpus.py.
 
-Distance: root mean square difference of the three colours, in units of full scale, after a small blur, so that half a
-pixel's shift of an edge does not count. view3dscene's empty background (a dark grey) counts as black, as the standard's
-is; the corner where X_ITE may write the viewpoint's name does not count. Ours is held against the nearer of the two.
-"""
+The distance is the root mean square difference of the three colours, in units of full scale. It is
+computed after a small blur, so that shifting an edge by half a pixel does not count. view3dscene's
+empty background (a dark grey) counts as black, like the standard's. The corner where X_ITE may
+write the viewpoint's name does not count. The smaller of the two distances is used."""
 import html
 import pathlib
 
@@ -20,7 +21,7 @@ LABEL = (slice(0, 30), slice(100, 240))
 
 
 def load(path):
-    """RGB on black, or None."""
+    """Returns RGB on black, or None."""
     if not path or not path.exists():
         return None
     picture = Image.open(path).convert("RGBA")
@@ -50,7 +51,7 @@ def distance(a, b, without_label):
 
 
 def notes():
-    """Hand-written remarks: path, tab, text."""
+    """Reads hand-written remarks: path, tab, text."""
     path = pathlib.Path(__file__).with_name("notes.tsv")
     if not path.exists():
         return {}
@@ -58,7 +59,7 @@ def notes():
 
 
 def waits(row):
-    """What of the file is not drawn yet for want of time, events or scripts."""
+    """Returns which parts of the file are not drawn because they need time, events or scripts."""
     features = row["features"].split(",")
     what = [name for name in ("animated", "sensor") if name in features] + [f for f in features if f.startswith("script:")]
     return "moves: " + ", ".join(what) if what else ""

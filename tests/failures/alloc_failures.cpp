@@ -1,18 +1,21 @@
-// alloc_failures.cpp: every allocation fails once. A small world with textures, text, prototypes,
-// an Inline, a Script that adds and removes nodes, instances and moving parts is loaded, run, drawn
-// and written; then again for each allocation that the project's libraries make on the way, with
-// this one failing. What must hold each time: the process lives and does not hang; an error is told
-// by an exception, a message or rtGetError(), or the picture is the same as ever; what was
-// allocated is freed; the next picture is right again. Allocations that Embree, TBB and other
-// libraries make for themselves never fail here.
+// alloc_failures.cpp: makes every allocation fail once. A small world with textures, text,
+// prototypes, an Inline, a Script that adds and removes nodes, instances and moving parts is
+// loaded, run, drawn and written. This is repeated for each allocation that the project's libraries
+// make, with this one failing. Each time:
+// * the process does not crash or hang;
+// * an exception, a message or rtGetError() reports the error, or the picture is unchanged;
+// * everything allocated is freed;
+// * the next picture is correct again.
 //
-// The work is done in a process of its own: where it crashes or hangs, that is told, and another
-// one goes on with the next number.
+// Allocations that Embree, TBB and other libraries make for themselves never fail here.
+//
+// The work is done in a process of its own. If it crashes or hangs, that is reported, and another
+// process continues with the next number.
 //
 // alloc_failures [--quick] [--from N] [--to N] [--here] [--verbose]
 //   --quick        every n-th allocation only, about 120 of them
 //   --from, --to   these allocations only
-//   --here         in this process: for a debugger
+//   --here         in this process, for a debugger
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -113,7 +116,7 @@ struct Outcome {
   RTenum error = RT_NO_ERROR;
   std::string messages;
   std::vector<float> pixels;
-  std::string written; // the world, as a file
+  std::string written; // the world as a file
   bool same(const Outcome& other) const {
     return pixels == other.pixels && written == other.written;
   }
@@ -195,10 +198,10 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-// What the working processes have found, in memory that they share with the one that watches them.
+// Results of the working processes, in memory shared with the process that watches them.
 struct Tally {
-  std::atomic<uint64_t> all{0}, next{1},
-      at{0}; // allocations: how many, the next to fail, the one that fails (0: none)
+  // Allocation numbers: the total, the next to fail, the one that fails now (0: none).
+  std::atomic<uint64_t> all{0}, next{1}, at{0};
   std::atomic<uint64_t> runs{0}, threw{0}, errors{0}, messages{0}, same{0}, faults{0};
 };
 static_assert(std::atomic<uint64_t>::is_always_lock_free);
@@ -210,7 +213,7 @@ void fault(Tally& tally, uint64_t number, const std::string& what) {
   std::fflush(stdout);
 }
 
-// Lets one allocation after the other fail, from tally.next on. [a working process]
+// Makes one allocation after the other fail, from tally.next on. [a working process]
 class Sweep {
  public:
   Sweep(std::string path, const Options& options, Tally& tally)
@@ -218,7 +221,7 @@ class Sweep {
 
   int run() {
     for (int i = 0; i < 3; ++i)
-      reference_ = work(path_); // fills what is kept for the life of the process: fonts, plug-ins
+      reference_ = work(path_); // fills caches that live as long as the process: fonts, plug-ins
     if (reference_.told() || reference_.pixels.empty()) {
       std::printf("fault: without any failure: %s\n", reference_.messages.c_str());
       return 1;
@@ -227,7 +230,7 @@ class Sweep {
     failing_allocator::arm(0);
     const bool repeated = work(path_).same(reference_);
     const uint64_t all = failing_allocator::disarm();
-    constexpr uint64_t least = 1000; // fewer: the project's libraries were not recognized
+    constexpr uint64_t least = 1000; // fewer mean that the project's libraries were not recognized
     if (all < least) {
       std::printf("fault: only %llu allocations were seen\n", static_cast<unsigned long long>(all));
       return 1;
@@ -249,7 +252,7 @@ class Sweep {
       std::vector<uint64_t> tried;
       while (tried.size() < batch && tally_.next <= last) {
         tried.push_back(tally_.next.fetch_add(
-            step)); // where this one ends the process, the next begins behind it
+            step)); // if this one ends the process, the next process starts after it
         count(tried.back(), attempt(tried.back()));
       }
       if (!isSound(before)) lookAtEach(tried);
@@ -258,7 +261,7 @@ class Sweep {
   }
 
  private:
-  static constexpr size_t batch = 8; // failures between two looks at whether all is as before
+  static constexpr size_t batch = 8; // failures between two checks that everything is as before
 
   Outcome attempt(uint64_t number) {
     if (options_.verbose) {
@@ -274,7 +277,8 @@ class Sweep {
   }
 
   void count(uint64_t number, const Outcome& outcome) {
-    if (!failing_allocator::failed()) return; // threads: there may be some fewer this time
+    // With threads there may be fewer allocations this time.
+    if (!failing_allocator::failed()) return;
     ++tally_.runs;
     if (outcome.threw)
       ++tally_.threw;
@@ -290,15 +294,16 @@ class Sweep {
                                                 : "another picture, and nothing told");
   }
 
-  // Without a failure: the picture is right, and nothing is left behind. A cache that was being
-  // filled may hold something for the first time; that this run fills it, too, shows that it was
-  // not lost.
+  // Returns whether a run without failure gives the right picture and leaves nothing behind. A
+  // cache may hold something new that an earlier run was filling. If this run fills it as well, it
+  // was not lost.
   bool isSound(int64_t before) {
     const bool same = work(path_).same(reference_);
     return same && failing_allocator::blocks() <= before;
   }
 
-  // Something has gone wrong with one of these, or a cache has grown.
+  // Checks these numbers one by one, because something went wrong with one of them or a cache has
+  // grown.
   void lookAtEach(const std::vector<uint64_t>& numbers) {
     for (const uint64_t number : numbers) {
       const int64_t before = failing_allocator::blocks();
@@ -318,10 +323,10 @@ class Sweep {
   Outcome reference_;
 };
 
-// Has the work done by processes, one after the other, and says how those end that do not return.
-// Returns false where nothing can be tried.
+// Runs the work in one process after the other and reports processes that crash or hang. Returns
+// false if nothing could be tested.
 bool watch(Sweep& sweep, Tally& tally) {
-  constexpr int patience = 120; // seconds for one allocation: the machine may be busy
+  constexpr int patience = 120; // seconds for one allocation, long enough for a busy machine
   constexpr uint64_t mostDeaths = 50;
   for (uint64_t deaths = 0; deaths < mostDeaths;) {
     std::fflush(stdout);

@@ -1,6 +1,6 @@
-// failing_allocator.cpp: The program's operator new and malloc take the
-// place of everybody's. Who asks is told by the return address; where the standard library asks for
-// somebody (std::string, std::vector out of line), by the stack.
+// failing_allocator.cpp: the program's operator new and malloc replace those of all libraries. The
+// return address identifies the caller. If the standard library allocates on behalf of a caller
+// (std::string, std::vector out of line), the stack does.
 #include "failures/failing_allocator.h"
 
 #include <atomic>
@@ -38,10 +38,10 @@ std::atomic<uint64_t> count{0}, target{0};
 std::atomic<int64_t> live{0};
 thread_local bool inside = false;
 
-// Libraries of the build tree are the project's. Of others the C libraries that decode pictures and
-// glyphs take part with malloc.
+// Libraries of the build tree belong to the project. Of the others, the C libraries that decode
+// pictures and glyphs take part with malloc.
 Owner ownerOf(const char* path) {
-  if (!path || !*path) return Owner::other; // the test
+  if (!path || !*path) return Owner::other; // the test itself
   char real[PATH_MAX];                      // without the .. of a run path
   if (realpath(path, real)) path = real;
   if (std::strstr(path, FAILURES_BUILD "/")) return Owner::project;
@@ -71,7 +71,7 @@ Owner ownerAt(const void* address) {
   return Owner::other;
 }
 
-// Who asks through the standard library: the next frame that is not its own.
+// Returns the owner that calls through the standard library: the first frame outside of it.
 Owner ownerOnStack() {
   constexpr int deepest = 24;
   void* frames[deepest];
@@ -89,7 +89,7 @@ bool ofProject(const void* caller) {
   if (inside) return false;
   Owner owner = ownerAt(caller);
   if (owner == Owner::standard) {
-    inside = true; // the walk may allocate
+    inside = true; // walking the stack may allocate
     owner = ownerOnStack();
     inside = false;
   }
@@ -103,7 +103,7 @@ bool fails() {
   return now;
 }
 
-// Blocks of operator new: a header before them says whether they are the project's.
+// Blocks of operator new have a header that says whether they belong to the project.
 constexpr size_t headerBytes = 16;
 
 void* allocate(size_t size, size_t alignment, const void* caller) {
@@ -146,7 +146,7 @@ namespace failing_allocator {
 
 void locate() {
   void* frames[2];
-  backtrace(frames, 2); // loads what it needs
+  backtrace(frames, 2); // loads the libraries that it needs
   rangeCount = 0;
   dl_iterate_phdr(addRanges, nullptr);
 }

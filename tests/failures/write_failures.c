@@ -1,12 +1,15 @@
 /* write_failures.c: a library for LD_PRELOAD that makes one write to a file fail as on a full disk.
- * write_failures.py uses it.
+ * Used by write_failures.py.
  *
- * Calls that can fail for want of space are counted: open and fopen that make a file, write, writev
- * and pwrite to regular files, fwrite, fflush and fclose of streams on such files, close and fsync
- * of them, rename. Standard output and standard error are not counted. WRITE_FAILURE=N makes the
- * N-th of them fail with ENOSPC (0: none). WRITE_FAILURE_STICKS=1 makes all after it fail as well,
- * except for those that give space back. The number of calls so far is kept in the file named by
- * WRITE_FAILURE_COUNT, which is itself not counted; one process at a time. */
+ * It counts the calls that can fail for lack of space: open and fopen that create a file; write,
+ * writev and pwrite to regular files; fwrite, fflush and fclose of streams on such files; close and
+ * fsync of them; rename. Standard output and standard error are not counted.
+ *
+ * Environment variables:
+ * - WRITE_FAILURE=N makes the N-th call fail with ENOSPC (0: none).
+ * - WRITE_FAILURE_STICKS=1 makes all later calls fail as well, except for those that release space.
+ * - WRITE_FAILURE_COUNT names the file that keeps the number of calls so far. This file itself is
+ *   not counted. One process at a time. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -41,7 +44,7 @@ static void keep(long number) {
   syscall(SYS_close, file);
 }
 
-/* Counts a call. 1: it is to fail; errno says why. */
+/* Counts a call. Returns 1 if the call must fail, with the reason in errno. */
 static int fails(void) {
   const char* which = getenv("WRITE_FAILURE");
   const char* sticks = getenv("WRITE_FAILURE_STICKS");
@@ -65,7 +68,7 @@ static int absent(const char* path) {
   return stat(path, &status) != 0 && errno == ENOENT;
 }
 
-/* A new file needs room, too. */
+/* A new file needs space, too. */
 static int opens(const char* name, const char* path, int flags, va_list more) {
   REAL(int, name, const char*, int, ...);
   const unsigned mode = (flags & O_CREAT) ? va_arg(more, unsigned) : 0;
@@ -123,7 +126,7 @@ ssize_t pwrite(int descriptor, const void* bytes, size_t count, off_t at) {
   return real(descriptor, bytes, count, at);
 }
 
-/* A disk that fills up in the middle: a part of the bytes is there. */
+/* Simulates a disk that fills up half way: some of the bytes are written. */
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* stream) {
   REAL(size_t, "fwrite", const void*, size_t, size_t, FILE*);
   if (regular(fileno(stream)) && fails()) {

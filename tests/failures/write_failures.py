@@ -1,14 +1,19 @@
 #!/usr/bin/env python3
-"""Every write fails once: each program that writes files, on a disk that is full at the first, second, third ... write.
+"""Makes every write fail once: each program that writes files runs on a disk that is full at the
+first, second, third ... write.
 
 write_failures.py BIN LIBRARY [--python FOLDER] [--quick]
 
-BIN is the folder of the programs, LIBRARY the one that write_failures.c makes, FOLDER the one of the Python package. For each kind
-of output the calls that write are counted first. Then the program runs once for each of them, with this call failing (ENOSPC),
-and once more with all later ones failing, too. What must hold each time: the exit code is the one for files that cannot be written
-and a message says so; the file that was there before is as it was, or whole and new; nothing else is left in the folder. --quick
-tries the first, the middle and the last call of each kind. What goes to standard output is tried with /dev/full.
-"""
+BIN is the folder of the programs, LIBRARY the one built from write_failures.c, FOLDER the one of
+the Python package. For each kind of output the calls that write are counted first. The program then
+runs once for each of them with this call failing (ENOSPC), and once more with all later ones
+failing, too. Each time:
+* the exit code is the one for files that cannot be written, and a message says so;
+* the previous file is unchanged, or whole and new;
+* nothing else is left in the folder.
+
+--quick tries the first, the middle and the last call of each kind. Standard output is tested with
+/dev/full."""
 import argparse
 import dataclasses
 import json
@@ -42,7 +47,8 @@ def is_json(data):
 
 
 def is_recording(data):
-    """A header and whole chunks (libopenrt/backend/record/format.h)."""
+    """Returns whether the data is a header and complete chunks (libopenrt/backend/record/format.h).
+    """
     at = 16
     while at < len(data):
         if at + 40 > len(data):
@@ -57,12 +63,13 @@ def of_size(least):
 
 @dataclasses.dataclass
 class Case:
-    """A command and the files that it writes: by name, what says whether one is whole."""
+    """A command and the files that it writes: by name, a function that tells whether one is
+    complete."""
     command: list
     files: dict
-    code: int = 1  # where a file cannot be written
-    fresh: bool = False  # the files are not there before
-    recording: bool = False  # given.ort is read
+    code: int = 1  # exit code if a file cannot be written
+    fresh: bool = False  # the files do not exist before
+    recording: bool = False  # the command reads given.ort
 
 
 PICTURES = """import xvrml
@@ -130,7 +137,7 @@ class Sweep:
         return done, int(count.read_text()) if count.exists() else 0
 
     def folder(self, parent, case, recording):
-        """A fresh folder with the inputs, and an old file for each output."""
+        """Makes a new folder with the inputs and an old file for each output."""
         folder = parent / "run"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
@@ -189,7 +196,7 @@ class Sweep:
         print(f"{name}: {calls} calls that write", flush=True)
 
     def printed(self, parent, recording):
-        """Standard output is a full disk."""
+        """Runs the command with a full disk as standard output."""
         folder, _ = self.folder(parent, Case([], {}), recording)
         vv = [str(self.programs / "vv")]
         small = vv + ["box.wrl", *SMALL]

@@ -1,5 +1,5 @@
-// mapper_shader_options.cpp: any text as the options of an ORTShader. libFuzzer calls this on one
-// thread.
+// mapper_shader_options.cpp: parses arbitrary text as the options of an ORTShader. libFuzzer calls
+// this on one thread.
 #include <string>
 #include <vector>
 

@@ -1,6 +1,6 @@
-// openrt_cluster_master.cpp: a master whose workers have a key and bad intentions: they say
-// anything in any order, most of it well formed, while the application commits, cancels and reads
-// frames. Input: what happens, one thing after the other.
+// openrt_cluster_master.cpp: a master whose workers have a key and attack it. They send anything in
+// any order, most of it well formed, while the application commits, cancels and reads frames. The
+// input is a sequence of events.
 #include <map>
 
 #include "backend/cluster/master/master.h"
@@ -18,14 +18,14 @@ struct Game {
   struct Side { // a worker
     bool there = false, full = false;
     uint64_t session = 0;
-    std::vector<std::pair<Epoch, LeasedJob>> jobs; // that it was given
+    std::vector<std::pair<Epoch, LeasedJob>> jobs; // jobs that it was given
   };
   FuzzInput in;
   double now = 1;
   Epoch epoch = 0;
   std::map<Peer, Side> sides;
   ArrayPtr array;
-  std::vector<MasterOptions::Then> later; // what runs elsewhere
+  std::vector<MasterOptions::Then> later; // merges queued for other threads
   std::unique_ptr<Master> master;
 
   explicit Game(std::span<const std::byte> bytes) : in(bytes) {
@@ -47,13 +47,13 @@ struct Game {
         nullptr);
   }
 
-  // What the master says.
+  // Receives a message of the master.
   bool hear(Peer peer, Frames&& frames) {
     Side& side = sides[peer];
     if (side.full) return false;
     Message m;
     if (!decode(std::move(frames), m).empty())
-      __builtin_trap(); // it must not say what is no message
+      __builtin_trap(); // the master must send only valid messages
     if (const auto* welcome = std::get_if<message::Welcome>(&m.body))
       side.session = welcome->session;
     if (const auto* jobs = std::get_if<message::Jobs>(&m.body))
@@ -94,7 +94,7 @@ struct Game {
     master->commit(++epoch, std::move(commit), true, now);
   }
 
-  // Of the right size, mostly, with any numbers.
+  // Returns a result, usually of the right size, with arbitrary numbers.
   std::vector<std::byte> made(Epoch of, const Job& job) {
     const Master::FrameState state = master->frame(of);
     if (!state.work || in.below(8) == 0) return in.bytes(400);
@@ -106,7 +106,7 @@ struct Game {
       return encodeResult(frame, job, result);
     }
     if (job.number >= state.work->tiles()) return in.bytes(400);
-    startSums(result.sums, state.work->tile(job.number).pixels(), gatheringOf(frame));
+    startSums(result.sums, state.work->tile(job.number).pixels(), requiredSums(frame));
     const double a = in.real(), b = in.real(), c = in.real();
     for (PixelSums& s : result.sums)
       for (size_t k = 0; k < 3; k++) {
@@ -128,7 +128,7 @@ struct Game {
         s.random = true;
       }
     result.sums[0].rgba[0] = b;
-    result.sums[0].delta[0] = a; // not all pixels the same
+    result.sums[0].delta[0] = a; // not all pixels equal
     std::vector<std::byte> bytes = encodeResult(frame, job, result);
     if (in.below(8) == 0 && !bytes.empty())
       bytes[in.raw<uint16_t>() % bytes.size()] = std::byte(in.byte());
@@ -184,7 +184,7 @@ struct Game {
 
   void say(Peer peer, Side& side) {
     if (in.below(16) == 0) return master->message(peer, {in.bytes(300), in.bytes(300)}, now);
-    const bool known = in.byte() < 250; // its session
+    const bool known = in.byte() < 250; // whether to use its own session
     master->message(peer, encode(known ? side.session : in.number(), anything(side)), now);
   }
 

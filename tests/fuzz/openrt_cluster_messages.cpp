@@ -1,6 +1,6 @@
-// openrt_cluster_messages.cpp: what a master or a worker may be sent, from bytes: framing, headers,
-// edits, pieces of arrays, results of jobs. Input: frame after frame, each with its length in two
-// bytes; what is left is the last one.
+// openrt_cluster_messages.cpp: decodes anything that a master or worker may receive: framing,
+// headers, edits, chunks of arrays, results of jobs. The input is a sequence of frames, each with
+// its length in two bytes; the rest is the last frame.
 #include <array>
 
 #include "backend/cluster/net/messages.h"
@@ -52,7 +52,7 @@ void take(const message::Result& result) {
   }
 }
 
-// What stands behind the checksums, which a fuzzer does not find.
+// Decodes the data behind the checksums, which a fuzzer cannot guess.
 void takeBulk(const std::vector<std::byte>& bytes) {
   message::Result result;
   result.bytes = bytes;

@@ -1,6 +1,6 @@
-// openrt_cluster_worker.cpp: a worker whose master has a key and bad intentions: scenes, pieces of
-// arrays and jobs in any order, most of them well formed, while the machine answers or fails.
-// Input: what happens, one thing after the other.
+// openrt_cluster_worker.cpp: a worker whose master has a key and attacks it: scenes, chunks of
+// arrays and jobs in any order, most of them well formed, while the executor answers or fails. The
+// input is a sequence of events.
 #include <deque>
 
 #include "backend/cluster/worker/worker.h"
@@ -24,7 +24,8 @@ std::shared_ptr<Array> arrayOf(size_t i) {
 struct Game final : JobExecutor {
   FuzzInput in;
   edit::FrameSettingsT frame;
-  std::deque<std::pair<Epoch, edit::FrameSettingsT>> toPrepare; // asked of the machine
+  // Frames that the executor was asked to prepare.
+  std::deque<std::pair<Epoch, edit::FrameSettingsT>> toPrepare;
   std::deque<std::pair<Epoch, LeasedJob>> jobs;
   uint64_t session = 0;
   Peer peer = 0;
@@ -35,7 +36,7 @@ struct Game final : JobExecutor {
                           {[](Peer, Frames&& frames) {
                              Message m;
                              if (!decode(std::move(frames), m).empty())
-                               __builtin_trap(); // it must not say what is no message
+                               __builtin_trap(); // the worker must send only valid messages
                            },
                            [this](Peer, const std::string&) { peer = 0; },
                            [](Peer, const std::string&) {}, [](double, double) {}},

@@ -1,4 +1,4 @@
-// openrt_keys.cpp: any bytes as a key file, and as a list of the keys that are let in. libFuzzer
+// openrt_keys.cpp: parses arbitrary bytes as a key file and as a list of admitted keys. libFuzzer
 // calls this on one thread.
 #include <stdexcept>
 
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         __builtin_trap();
       for (const std::string& key : keys.allowed)
         if (key.size() != 40) __builtin_trap();
-    } catch (const std::runtime_error&) {} // damaged, which is what is expected
+    } catch (const std::runtime_error&) {} // damaged, as expected
   }
   return 0;
 }

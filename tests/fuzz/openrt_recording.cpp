@@ -1,6 +1,6 @@
-// openrt_recording.cpp: libFuzzer target: any bytes as a recording. The first byte chooses: 0: the
-// file as it is; else the bytes are the edits of a commit, wrapped with a right checksum, so that
-// the fuzzer reaches what stands behind it.
+// openrt_recording.cpp: reads arbitrary bytes as a recording. If the first byte is 0, the rest is
+// the file. Otherwise the rest is the edits of a commit, wrapped with a correct checksum, so that
+// the fuzzer reaches the code behind it. libFuzzer target.
 #include <cstdint>
 #include <cstdio>
 #include <cstring>

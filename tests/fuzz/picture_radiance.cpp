@@ -1,5 +1,5 @@
-// picture_radiance.cpp: any bytes as a picture of radiance: RGBE and PFM by their first byte.
-// libFuzzer calls this on one thread.
+// picture_radiance.cpp: decodes arbitrary bytes as an HDR picture; the first byte chooses RGBE or
+// PFM. libFuzzer calls this on one thread.
 #include <cstdint>
 #include <cstdio>
 #include <stdexcept>
@@ -13,7 +13,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   if (size == 0) return 0;
   const FuzzFile file(data + 1, size - 1);
-  // The suffix says the format: a link has one.
+  // The suffix determines the format, so a link with a suffix is used.
   const std::string link =
       "/dev/shm/openrt-fuzz-" + std::to_string(::getpid()) + (data[0] & 1 ? ".hdr" : ".pfm");
   ::unlink(link.c_str());

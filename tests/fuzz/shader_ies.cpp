@@ -1,5 +1,5 @@
-// shader_ies.cpp: any text as a measured luminaire. What is accepted gives a finite intensity in
-// every direction. libFuzzer calls this on one thread.
+// shader_ies.cpp: parses arbitrary text as a measured luminaire. Accepted text must give a finite
+// intensity in every direction. libFuzzer calls this on one thread.
 #include <cmath>
 #include <string_view>
 

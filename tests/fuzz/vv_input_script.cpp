@@ -1,5 +1,5 @@
-// vv_input_script.cpp: any text as a script of --input; what is read can be written and read again.
-// libFuzzer calls this on one thread.
+// vv_input_script.cpp: parses arbitrary text as a script of --input. Accepted scripts can be
+// written and read again. libFuzzer calls this on one thread.
 #include <cstdint>
 #include <string>
 

@@ -1,5 +1,5 @@
-// xvrml_film.cpp: any bytes as a film: its first, a middle and its last picture. libFuzzer calls
-// this on one thread.
+// xvrml_film.cpp: decodes arbitrary bytes as a film: the first, a middle and the last picture.
+// libFuzzer calls this on one thread.
 #include <stdexcept>
 
 #include "fuzz_file.h"

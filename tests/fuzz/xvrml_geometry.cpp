@@ -1,5 +1,5 @@
-// xvrml_geometry.cpp: any bytes as the body of a world: every geometry node in it becomes a mesh,
-// which must be sound. libFuzzer calls this on one thread.
+// xvrml_geometry.cpp: parses arbitrary bytes as the body of a world. Every geometry node in it
+// becomes a mesh, which must be sound. libFuzzer calls this on one thread.
 #include <cmath>
 #include <string>
 

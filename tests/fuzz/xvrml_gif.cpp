@@ -1,4 +1,5 @@
-// xvrml_gif.cpp: any bytes to the decoder of GIF alone. libFuzzer calls this on one thread.
+// xvrml_gif.cpp: passes arbitrary bytes to the GIF decoder alone. libFuzzer calls this on one
+// thread.
 #include <stdexcept>
 
 #include "image/decoders.h"

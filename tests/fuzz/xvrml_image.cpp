@@ -1,5 +1,5 @@
-// xvrml_image.cpp: any bytes as a picture. The first byte chooses the format, so that the fuzzer
-// need not find its magic number. libFuzzer calls this on one thread.
+// xvrml_image.cpp: decodes arbitrary bytes as a picture. The first byte chooses the format, so that
+// the fuzzer need not find its magic number. libFuzzer calls this on one thread.
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
@@ -16,9 +16,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   const char* start = magic[data[0] & 7];
   std::vector<uint8_t> bytes(start, start + std::strlen(start));
   bytes.insert(bytes.end(), data + 1, data + size);
-  // The limits as they are: run-fuzz.sh bounds the memory, so that a decoder that allocates by what
-  // a header says is found.
-  if (size > 16384) return 0; // packs no more than 200 MB
+  // Default limits. run-fuzz.sh bounds the memory, so that a decoder that allocates what a header
+  // states is found.
+  if (size > 16384) return 0; // limits the unpacked size to 200 MB
   const xvrml::Limits limits{};
   if (xvrml::looksLikeRadiance(bytes.data(), bytes.size())) {
     xvrml::Limits small;

@@ -1,4 +1,5 @@
-// xvrml_jpeg.cpp: any bytes to the decoder of JPEG alone. libFuzzer calls this on one thread.
+// xvrml_jpeg.cpp: passes arbitrary bytes to the JPEG decoder alone. libFuzzer calls this on one
+// thread.
 #include <stdexcept>
 
 #include "image/decoders.h"

@@ -1,4 +1,5 @@
-// xvrml_png.cpp: any bytes to the decoder of PNG alone. libFuzzer calls this on one thread.
+// xvrml_png.cpp: passes arbitrary bytes to the PNG decoder alone. libFuzzer calls this on one
+// thread.
 #include <stdexcept>
 
 #include "image/decoders.h"

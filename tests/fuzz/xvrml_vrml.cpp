@@ -1,5 +1,5 @@
-// xvrml_vrml.cpp: any bytes as a world: loaded, written, loaded again. libFuzzer calls this on one
-// thread.
+// xvrml_vrml.cpp: parses arbitrary bytes as a world, which is loaded, written and loaded again.
+// libFuzzer calls this on one thread.
 #include "xvrml/world.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {

@@ -1,5 +1,5 @@
-// xvrml_wav.cpp: any bytes as a sound. What the header says fits the samples that come out.
-// libFuzzer calls this on one thread.
+// xvrml_wav.cpp: decodes arbitrary bytes as a sound. The header must agree with the samples that
+// come out. libFuzzer calls this on one thread.
 #include <stdexcept>
 
 #include "behaviour/wav.h"

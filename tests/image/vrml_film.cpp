@@ -1,5 +1,4 @@
-// vrml_film.cpp: a film on a surface: the picture of the world's time is what is seen
-// (clause 6.28).
+// vrml_film.cpp: a film on a surface shows the picture for the world's time (clause 6.28).
 #include <filesystem>
 #include <fstream>
 #include <unistd.h>
@@ -13,11 +12,11 @@
 namespace xvrml::test {
 namespace {
 
-// An animated GIF of two pictures of one pixel, a second each: red, then green.
+// Returns an animated GIF of two one-pixel pictures, one second each: red, then green.
 std::string redThenGreen() {
   std::string out = "GIF89a";
   out += std::string("\1\0\1\0\xf0\0\0", 7) +
-         std::string("\xff\0\0\0\xff\0", 6); // 1 x 1, a palette of two
+         std::string("\xff\0\0\0\xff\0", 6); // 1 x 1, with a palette of two entries
   for (int i = 0; i < 2; ++i) {
     out += std::string("\x21\xf9\4\0\x64\0\0\0", 8); // 100 hundredths of a second
     out += std::string("\x2c\0\0\0\0\1\0\1\0\0", 10) + std::string("\2\2", 2); // the whole picture
@@ -59,7 +58,7 @@ TEST(FilmPicture, ASurfaceShowsThePictureOfTheTime) {
       EXPECT_STREQ(seen(3.5), "red");
       EXPECT_STREQ(seen(4.5), "green");
       browser.set(*browser.node("M"), "set_stopTime", 4.5);
-      EXPECT_STREQ(seen(9), "green"); // it keeps the last one
+      EXPECT_STREQ(seen(9), "green"); // keeps the last picture
     }
     for (const Diagnostic& d : browser.world().diagnostics.list())
       EXPECT_FALSE(decodesFilms()) << d.text();

@@ -1,5 +1,5 @@
-// Groups, scopes, views and names through VRML text and the ray tracer: what is seen straight ahead
-// of a camera.
+// vrml_groups.cpp: groups, scopes, views and names, from VRML text to the ray tracer: the pixel
+// straight ahead of a camera.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +16,7 @@ std::string moved(double x, const std::string& what) {
 }
 const std::string plain = square(material()), sun = "DirectionalLight { }\n";
 
-// Red component seen from 10 in front of x.
+// Returns the red component seen from a distance of 10 in front of x.
 float redAt(Scene& scene, double x) { return scene.render(Scene::at(x, 0, 10, 1e-5))[0].r; }
 
 TEST(VrmlGroups, DirectionalLightShinesOnItsGroupOnly) {
@@ -52,7 +52,7 @@ TEST(VrmlGroups, AScopedLightReachesInstancesOfSharedGroups) {
                              return zeros;
                            }() +
                            "] } }";
-  // The grid faces +y: it is turned to face the camera.
+  // The grid faces +y and is turned to face the camera.
   const std::string tree =
       "Transform { rotation 1 0 0 1.5707963 children Transform { translation -1 0 -1 children " +
       grid + " } }";
@@ -204,17 +204,18 @@ TEST(VrmlGroups, SolidFacesAndWinding) {
   EXPECT_FALSE(seen("", "rotation 0 1 0 3.14159265"));
   EXPECT_TRUE(seen("solid FALSE", "rotation 0 1 0 3.14159265"));
   Scene mirrored("Transform { scale -1 1 1 children " + plain +
-                 " }"); // outside of the field's range: said, and drawn
+                 " }"); // out of the field's range: reported, and drawn
   EXPECT_NEAR(redAt(mirrored, 0), 0.8, 1e-5) << "a mirrored front is a front";
   EXPECT_EQ(mirrored.world->diagnostics.warnings(), 1u);
 }
 
-// A group that is shared is seen as one that is written out, also under a mirror.
+// A shared group looks like one that is written out, also under a mirroring transform.
 TEST(VrmlGroups, InstancesLookLikeCopies) {
   std::string heights;
   for (int i = 1; i < 60 * 60; ++i)
     heights += std::to_string(0.1 * std::sin(i % 60 * 0.3) * std::cos(i / 60 * 0.2)) + " ";
-  int made = 0; // a number at the end that nobody sees: equal meshes would be shared
+  // An invisible number at the end makes the meshes differ, because equal meshes would be shared.
+  int made = 0;
   const auto grid = [&](const std::string& name) {
     return "DEF " + name +
            " Transform { rotation 1 0.1 0 1.4 translation -1.5 -0.2 0 children Shape { "
@@ -270,7 +271,7 @@ TEST(VrmlGroups, TextureTransformMovesThePicture) {
                             transform + " } }",
                         "", 1));
   };
-  // The middle of the square has s = 0.5, between the second and third texel.
+  // The centre of the square has s = 0.5, between the second and third texel.
   EXPECT_NEAR(look("translation -0.125 0").g, 1, 1e-3);
   EXPECT_NEAR(look("translation 0.125 0").b, 1, 1e-3);
   EXPECT_NEAR(look("scale 0.25 1").r, 1, 1e-3);

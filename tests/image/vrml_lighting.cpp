@@ -1,5 +1,5 @@
-// The closed forms of the VRML97 lighting model (ISO/IEC 14772-1 clause 4.14) through VRML text: V1
-// to V12. Deterministic, so to 1e-5 relative.
+// vrml_lighting.cpp: the closed forms of the VRML97 lighting model (ISO/IEC 14772-1 clause 4.14),
+// from VRML text: V1 to V12. Deterministic, with a relative tolerance of 1e-5.
 #include <cmath>
 #include <sstream>
 
@@ -23,7 +23,7 @@ std::string number(double v) {
   return text.str();
 }
 
-// Light that falls on the square at an angle from its normal.
+// Returns a light whose direction has an angle to the square's normal.
 std::string sun(double angle, const std::string& more = "") {
   return "DirectionalLight { direction " + number(std::sin(angle)) + " 0 " +
          number(-std::cos(angle)) + " " + more + " }\n";
@@ -185,14 +185,13 @@ TEST(VrmlLighting, UnlitWithoutMaterial) {
 }
 
 TEST(VrmlLighting, LinesAndPointsShowEmissiveColorAndNoLight) {
-  const auto thick =
-      [](const std::string& appearance,
-         const std::string& more) { // the camera is near: a pixel is tiny, the line at its middle
-        return dark + sun(0) + "Shape { appearance " + appearance +
-               " geometry IndexedLineSet { coord Coordinate { point [ -1 0 0, 1 0 0 ] } coordIndex "
-               "[ 0 1 ] " +
-               more + " } }";
-      };
+  // The camera is close, so a pixel is tiny and the line covers its centre.
+  const auto thick = [](const std::string& appearance, const std::string& more) {
+    return dark + sun(0) + "Shape { appearance " + appearance +
+           " geometry IndexedLineSet { coord Coordinate { point [ -1 0 0, 1 0 0 ] } coordIndex "
+           "[ 0 1 ] " +
+           more + " } }";
+  };
   SceneOptions options;
   const std::string emissive = material("emissiveColor 0.1 0.2 0.3 diffuseColor 1 1 1");
   EXPECT_NEAR(ahead(thick(emissive, ""), 10, options).g, 0.2, 1e-6);
@@ -225,8 +224,8 @@ TEST(VrmlLighting, LinearColoursDecodeWhatTheAuthorSaw) {
              texel);
 }
 
-// Table 4.6: a colour picture replaces diffuseColor, a grey one multiplies it; X3D's rule
-// multiplies always.
+// Table 4.6: a colour texture replaces diffuseColor, a grey one multiplies it. X3D's rule always
+// multiplies.
 TEST(VrmlLighting, ColourTexturesReplaceOrMultiply) {
   const auto look = [](const char* image, const char* colors, bool multiplies) {
     SceneOptions options;

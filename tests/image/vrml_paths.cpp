@@ -1,5 +1,6 @@
-// Worlds of VRML97 under path tracing: shapes with an emissiveColor are lamps however the mapper
-// groups them, light goes from surface to surface, and VRML's own lights do what they do without.
+// vrml_paths.cpp: VRML97 worlds under path tracing. Shapes with an emissiveColor are area lights
+// however the mapper groups them; light reflects between surfaces; VRML's own lights have the same
+// effect as without path tracing.
 #include <cmath>
 
 #include "image/vrml_scene.h"
@@ -8,7 +9,7 @@ using namespace xvrml::test;
 
 namespace {
 
-// Mean of the picture that a narrow view along -z from (0 0 z) shows.
+// Returns the mean of a picture with a narrow view along -z from (0 0 z).
 double seen(const std::string& body, double z, int transport, int samples = 1024,
             double fovy = 1e-5) {
   SceneOptions options;
@@ -21,13 +22,13 @@ double seen(const std::string& body, double z, int transport, int samples = 1024
   return (p.r + p.g + p.b) / 3;
 }
 
-// Shapes at height 1 above the square, facing it; from above their backs are not there.
+// Shapes at height 1 above the square that face it. Their backs are invisible from above.
 std::string lamp(const std::string& shape) {
   return "Transform { translation 0 0 1 rotation 1 0 0 3.14159265 children " + shape + " }\n";
 }
 const std::string glow = material("diffuseColor 0 0 0 emissiveColor 1 1 1");
 
-// Form factor of a square of half an edge h to a point 1 below its middle.
+// Returns the form factor of a square with half an edge of h to a point 1 below its centre.
 double factor(double h) {
   const double s = std::sqrt(1 + h * h);
   return 4 / M_PI * (h / s) * std::atan(h / s);
@@ -93,7 +94,8 @@ TEST(VrmlPaths, LightsOfVrmlDoWhatTheyDoWithout) {
   }
 }
 
-TEST(VrmlPaths, WithoutBeingAskedForAWorldIsLitByItsLightsAlone) { // as the standard says
+// As the standard requires.
+TEST(VrmlPaths, WithoutBeingAskedForAWorldIsLitByItsLightsAlone) {
   EXPECT_EQ(seen(square(material()) + lamp(square(glow)), 10, RT_TRANSPORT_AUTO, 1), 0);
 }
 

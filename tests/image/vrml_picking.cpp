@@ -1,5 +1,5 @@
-// vrml_picking.cpp: what a ray of the pointer meets is what is drawn: Browser::pick against the
-// pictures of the ray tracer.
+// vrml_picking.cpp: a pointer ray hits what is drawn: Browser::pick compared with pictures of the
+// ray tracer.
 #include <cmath>
 
 #include "image/vrml_scene.h"
@@ -8,8 +8,7 @@
 namespace xvrml::test {
 namespace {
 
-// Every geometry that has a surface, turned, stretched, culled, chosen by distance, facing the
-// viewer.
+// Every geometry with a surface: rotated, stretched, culled, in an LOD, in a Billboard.
 const std::string everything = R"(
 Viewpoint { position 0 3 16 orientation 1 0 0 -0.15 }
 Transform { translation -6 3 0 rotation 1 1 0 0.7 children Shape { geometry Box { size 2 1 3 } } }
@@ -57,8 +56,8 @@ TEST(Picking, MeetsWhatIsDrawn) {
       differ += !meets || std::abs(hit.distance - 1) > 1e-4;
       continue;
     }
-    // Rows begin at the top. Where the ray in the pixel went is not known: pixels at edges are left
-    // out.
+    // Rows start at the top. The sample position in the pixel is unknown, so pixels at edges are
+    // skipped.
     const int x = int(p) % options.width, y = int(p) / options.width;
     bool edge = x == 0 || y == 0 || x == options.width - 1 || y == options.height - 1;
     for (int dy = -1; dy <= 1 && !edge; ++dy)
@@ -73,7 +72,7 @@ TEST(Picking, MeetsWhatIsDrawn) {
     invented += browser.pick(camera.matrix + 12, direction, {}, hit);
   }
   EXPECT_GT(drawn, 1000);
-  EXPECT_LE(differ, drawn / 200); // outlines: places are floats
+  EXPECT_LE(differ, drawn / 200); // on outlines, because positions are floats
   EXPECT_EQ(invented, 0);
 }
 

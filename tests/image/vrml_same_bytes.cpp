@@ -1,4 +1,5 @@
-// The same bytes for one thread, two threads, and a recording replayed.
+// vrml_same_bytes.cpp: pictures have the same bytes with one thread, with two threads and from a
+// replayed recording.
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -11,8 +12,8 @@ using namespace xvrml::test;
 
 namespace {
 
-// Something of everything: lights of all kinds with shadows, transparency, textures, instances,
-// lines, sky and fog.
+// Returns a world with a bit of everything: lights of all kinds with shadows, transparency,
+// textures, instances, lines, sky and fog.
 std::string everything() {
   std::string body =
       "Viewpoint { position 0 3 12 orientation 1 0 0 -0.2 }\n"
@@ -78,7 +79,7 @@ TEST(VrmlSameBytes, ForAnyNumberOfThreads) {
   EXPECT_TRUE(equal(one, rendered("threads=5")));
 }
 
-// The colours of a PFM, first row at the top.
+// Returns the colours of a PFM file, first row at the top.
 std::vector<float> readPfm(const std::filesystem::path& path, size_t width, size_t height) {
   std::ifstream file(path, std::ios::binary);
   std::string magic, w, h, scale;

@@ -1,4 +1,4 @@
-// bad.cpp: node plug-ins that must be refused, each for the reason that its FAULT_... says.
+// bad.cpp: node plug-ins that must be refused, each for the reason that its FAULT_... macro names.
 #include "xvrml/node_plugin.h"
 #include "xvrml/nodes.h"
 

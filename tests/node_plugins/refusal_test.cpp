@@ -1,5 +1,5 @@
-// refusal_test.cpp: plug-ins that do not fit are refused with a line that names what they have and
-// what was expected.
+// refusal_test.cpp: plug-ins that do not match are refused with a line that names what they have
+// and what was expected.
 #include <filesystem>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // springs_test.cpp: the example plug-in (examples/nodes): its nodes are parsed, written, routed,
-// drawn and kept up to date.
+// drawn and updated.
 #include <gtest/gtest.h>
 
 #include "geometry/mesh.h"
@@ -55,7 +55,7 @@ TEST_F(Springs, AreReadCheckedAndWritten) {
   const auto wrong = loadWorldFromMemory(
       "#VRML V2.0 utf8\nSpring { }\nShape { geometry Spring { turns 0 coils 2 } }", "wrong");
   EXPECT_EQ(wrong->diagnostics.errors() + wrong->diagnostics.warnings(),
-            3u); // no child, out of range, no such field
+            3u); // not a child, out of range, no such field
 }
 
 TEST_F(Springs, StandForAnExtrusion) {

@@ -1,5 +1,5 @@
-/* flat.c: the smallest surface shader in C: one colour, no light. Built as a plug-in against the
- * installed SDK alone. */
+/* flat.c: the smallest surface shader in C: one colour, no light. Built as a plug-in with only the
+ * installed SDK. */
 #include <openrt/openrts.h>
 
 typedef struct Flat {

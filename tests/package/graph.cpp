@@ -1,4 +1,4 @@
-// graph.cpp: reads, changes and writes a world with the installed scene graph alone.
+// graph.cpp: reads, changes and writes a world with only the installed scene graph.
 #include <cstdio>
 #include <xvrml/nodes.h>
 #include <xvrml/world.h>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Installs the build into a scratch prefix, moves it, and builds and runs a stranger's project on nothing else.
+"""Installs the build into a scratch prefix, moves it, and builds and runs a third-party project
+that uses only this installation.
 
-package_test.py SOURCE BUILD CMAKE CC
-"""
+package_test.py SOURCE BUILD CMAKE CC"""
 import json
 import os
 import pathlib
@@ -25,13 +25,14 @@ def run(*command, **more):
 
 
 def foreign_libraries(program, prefix):
-    """Our own libraries that `program` would load from anywhere but the prefix."""
+    """Returns our own libraries that `program` would load from outside the prefix."""
     ours = ("libopenrt", "libxvrml")
     return [line for line in run("ldd", program).splitlines() if any(o in line for o in ours) and str(prefix) not in line]
 
 
 def follow_tutorial(document, folder, prefix):
-    """Does what a page of docs/ says, in its order: files are written, commands and Python run, on the installed tree."""
+    """Follows a page of docs/ step by step with the installed tree: writes files, runs commands and
+    Python."""
     folder.mkdir()
     libraries = next(prefix.rglob("libxvrml.so")).parent
     env = {"PREFIX": str(prefix), "PATH": f"{prefix}/bin:" + os.environ["PATH"], "PWD": str(folder)}
@@ -63,7 +64,7 @@ with tempfile.TemporaryDirectory() as scratch:
     scratch = pathlib.Path(scratch).resolve()
     first, prefix, out = scratch / "first place", scratch / "prefix", scratch / "build"
     run(cmake, "--install", build, "--prefix", first)
-    first.rename(prefix)  # an installed tree may be moved
+    first.rename(prefix)  # an installed tree must be movable
     debug = "CMAKE_BUILD_TYPE:STRING=Debug" in (build / "CMakeCache.txt").read_text()
     hardening = [sys.executable, source / "tests/checks/hardening.py", *(["--plain"] if debug else [])]
     print(run(*hardening, prefix, env={"CC": cc}), end="")
@@ -77,7 +78,8 @@ with tempfile.TemporaryDirectory() as scratch:
     for program in ("triangle", "world", "graph"):
         if wrong := foreign_libraries(out / program, prefix):
             sys.exit(f"{program} does not use the installed libraries: {wrong}")
-    # A stranger's plug-in is loaded by our programs: its tables are read-only, too, and it names no folder.
+    # Our programs load a third-party plug-in. Its tables are read-only, too, and it names no
+    # folder.
     print(run(*hardening, "--plain", "--partial", out / "lib/openrt/shaders"), end="")
     plugin = run("ldd", out / "lib/openrt/shaders/flat.so")
     if "openrt" in plugin:
@@ -90,7 +92,7 @@ with tempfile.TemporaryDirectory() as scratch:
     rpath = f"-Wl,-rpath,{libs.parent}"
     run(cc, "-std=c99", "-Wall", "-Wextra", "-Werror", project / "triangle.c", "-o", scratch / "by_pkg_config", *flags, "-lm", rpath)
     print(run(scratch / "by_pkg_config"), end="")
-    # The C examples, as their README says
+    # The C examples, as described in their README
     examples = scratch / "examples"
     shutil.copytree(source / "examples/c", examples)
     run(cc, "-std=c99", "-shared", "-fPIC", examples / "stripes.c", "-o", examples / "stripes.so", *flags, "-lm")
@@ -124,7 +126,7 @@ with tempfile.TemporaryDirectory() as scratch:
     if len(set(pictures.values())) != len(pictures):
         sys.exit("the shaders of the tutorial look the same")
 
-    # Script engines: the tutorial's, and the template that it says to copy
+    # Script engines: the tutorial's, and the template that it tells readers to copy
     follow_tutorial(source / "docs/script-engines.md", scratch / "engines", prefix)
     if "xvrml" in (needed := run("ldd", scratch / "engines/build/lib/xvrml/scripts/rpn.so")):
         sys.exit(f"the script engine links against the host: {needed}")
@@ -146,7 +148,7 @@ with tempfile.TemporaryDirectory() as scratch:
         said = run(prefix / "bin/vv", "python.wrl", "--trust", "--check", cwd=scratch)
         if str(prefix) not in said or "Transform" not in said:
             sys.exit(f"Scripts in Python do not use the installed package: {said}")
-    if "ecmascript" in engines: # in a process: the program is found beside the installed library
+    if "ecmascript" in engines:  # in a process: the program is found next to the installed library
         (scratch / "js.wrl").write_text("#VRML V2.0 utf8\nScript { url \"javascript:function initialize() { print('runs'); }\" }\n")
         said = run(prefix / "bin/vv", "js.wrl", "--check", "--strict", cwd=scratch)
         if "runs" not in said or not (prefix / "libexec/xvrml/xvrml-script-host").exists():
@@ -162,7 +164,7 @@ with tempfile.TemporaryDirectory() as scratch:
         if not list(prefix.rglob(f"man/man3/{page}")):
             sys.exit(f"{page} is not installed")
 
-    # What a desktop and a shell look for, and the libraries' names
+    # Files that a desktop and a shell look for, and the names of the libraries
     for file in ("man/man1/vv.1", "man/man1/openrt-replay.1", "man/man1/nodegen.1", "bash-completion/completions/vv",
                  "zsh/vendor-completions/_vv", "fish/vendor_completions.d/vv.fish", "applications/vv.desktop", "thumbnailers/vv.thumbnailer",
                  "mime/packages/openrt-vv.xml", "metainfo/org.openrt.vv.metainfo.xml", "icons/hicolor/128x128/apps/vv.png"):
@@ -171,7 +173,7 @@ with tempfile.TemporaryDirectory() as scratch:
     for library in ("openrt", "xvrml", "xvrml_openrt"):
         if not (libs.parent / f"lib{library}.so.0").is_symlink():
             sys.exit(f"lib{library}.so.0 is not installed")
-    for file in ("graph", "triangle"):  # a stranger's programs ask for versions
+    for file in ("graph", "triangle"):  # third-party programs must depend on symbol versions
         if "@XVRML_0" not in (needed := run("nm", "-D", "--with-symbol-versions", out / file)) and "@OPENRT_0" not in needed:
             sys.exit(f"{file} links symbols without versions:\n{needed}")
 

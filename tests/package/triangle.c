@@ -1,5 +1,5 @@
 /* triangle.c: draws a triangle with the installed library and, if a folder is given, with the
- * plug-in `flat` from there. Exit code 0 if the pixels are what they must be. */
+ * plug-in `flat` from there. Exit code 0 if the pixels are as expected. */
 #include <math.h>
 #include <openrt/openrt.h>
 #include <stdio.h>

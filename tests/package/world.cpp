@@ -1,5 +1,5 @@
-// world.cpp: draws a world with the installed libraries. Exit code 0 if the box is where it must
-// be.
+// world.cpp: draws a world with the installed libraries. Exit code 0 if the box is in the expected
+// place.
 #include <cmath>
 #include <cstdio>
 #include <openrt/openrt.h>

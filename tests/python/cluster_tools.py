@@ -1,4 +1,5 @@
-"""Workers for tests of pytest: tests/cluster/farm.py, and tests skip where the program is not built."""
+"""Starts workers for pytest (tests/cluster/farm.py). Tests are skipped if the program is not built.
+"""
 import contextlib
 import pathlib
 import stat
@@ -10,7 +11,7 @@ import pytest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cluster"))
 from farm import PROGRAM, addresses, farm, free_port  # noqa: E402, F401
 
-PATIENCE = 30  # seconds, for what takes a moment on an idle machine
+PATIENCE = 30  # seconds, for things that take a moment on an idle machine
 
 
 def needs_worker():
@@ -19,7 +20,7 @@ def needs_worker():
 
 
 def new_key(path):
-    """A key file; returns its public key."""
+    """Makes a key file; returns its public key."""
     done = subprocess.run([PROGRAM, "--new-key", path], capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 0, done.stderr
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
@@ -28,7 +29,7 @@ def new_key(path):
 
 @contextlib.contextmanager
 def workers(count, *arguments, **options):
-    """So many workers; gone at the end."""
+    """Yields this many workers and ends them afterwards."""
     needs_worker()
     with farm(count, *arguments, **options) as started:
         yield started

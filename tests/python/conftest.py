@@ -1,4 +1,5 @@
-"""What the tests of vv and of the Python package share: where the program is, small worlds, readers of picture files."""
+"""Shared by the tests of vv and of the Python package: the path of the program, small worlds,
+readers of picture files."""
 import os
 import pathlib
 import shutil
@@ -10,7 +11,8 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# A shell that runs the tests in the background has them start with SIGINT ignored, which the programs under test would inherit.
+# A shell that runs the tests in the background starts them with SIGINT ignored. The programs under
+# test would inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BOX = """#VRML V2.0 utf8
@@ -30,7 +32,8 @@ SMALL = ("--size", "32x24", "--spp", "1")
 
 
 def find_vv():
-    """$OPENRT_VV, else the program beside the package on PYTHONPATH, else that of the release build."""
+    """Returns $OPENRT_VV, else the program beside the package on PYTHONPATH, else that of the
+    release build."""
     if "OPENRT_VV" in os.environ:
         return pathlib.Path(os.environ["OPENRT_VV"])
     for folder in os.environ.get("PYTHONPATH", "").split(os.pathsep):
@@ -57,7 +60,7 @@ class Vv:
         (self.folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
 
     def picture(self, *arguments, world="box.wrl"):
-        """Rows of (r, g, b) bytes of a small picture."""
+        """Renders a small picture; returns its rows of (r, g, b) bytes."""
         done = self(world, "-o", "ppm:-", *SMALL, *arguments)
         assert done.returncode == 0, done.talk
         return read_ppm(done.stdout)[2]
@@ -85,7 +88,7 @@ def box(tmp_path):
 
 
 def read_pfm(data):
-    """Width, height and rows from the top of (r, g, b) tuples."""
+    """Returns width, height and the rows from the top of (r, g, b) tuples."""
     kind, size, scale, pixels = data.split(b"\n", 3)
     assert kind == b"PF" and float(scale) < 0
     width, height = map(int, size.split())
@@ -103,7 +106,7 @@ def read_ppm(data):
 
 
 def exr_header(data):
-    """Attributes of a single-part OpenEXR file: name -> (type, bytes)."""
+    """Returns the attributes of a single-part OpenEXR file: name -> (type, bytes)."""
     assert data[:4] == b"\x76\x2f\x31\x01"
     at, attributes = 8, {}
     while data[at]:
@@ -119,7 +122,7 @@ def exr_header(data):
 
 
 def exr_channels(data):
-    """Channel names of an OpenEXR file and their types (2: 32 bit float)."""
+    """Returns the channel names of an OpenEXR file and their types (2: 32-bit float)."""
     block, at, channels = exr_header(data)["channels"][1], 0, {}
     while block[at]:
         end = block.index(b"\0", at)

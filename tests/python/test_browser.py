@@ -1,4 +1,5 @@
-"""The Python class Browser: time, events, callbacks, routes, the pointer, pictures of a running world; node plug-ins."""
+"""Tests the Python class Browser: time, events, callbacks, routes, the pointer, pictures of a
+running world; node plug-ins."""
 import gc
 import threading
 import weakref
@@ -55,10 +56,10 @@ def test_a_moment_is_told_once():
     w["T"].loop = False
     w.time = 0.5
     assert heard == []
-    w["T"].enabled = False  # it stops at the same moment
+    w["T"].enabled = False  # the sensor stops at the same time
     assert [e for e, _ in heard] == ["T.fraction_changed", "T.time", "T.isActive"] and heard[-1][1] is False
     heard.clear()
-    w["T"].enabled = True  # and begins anew
+    w["T"].enabled = True  # and starts again
     w.time = 1
     assert ("S.fraction_changed", 0.25) in heard
 
@@ -107,7 +108,7 @@ def test_an_exception_of_a_callback_is_raised_by_the_call(browser):
     number = browser.listen(browser["Place"], "translation", fail)
     with pytest.raises(KeyError, match="mine"):
         browser.tick(0.5)
-    assert browser["Place"].translation == pytest.approx((-1, 0, 0))  # the events went on
+    assert browser["Place"].translation == pytest.approx((-1, 0, 0))  # events are still handled
     with pytest.raises(KeyError):
         browser["Place"].translation = (0, 0, 0)
     browser.unlisten(browser["Place"], number)
@@ -194,7 +195,8 @@ def test_pictures_follow_the_world(browser):
     fresh = xvrml.Browser(MOVING)
     for time in (0, 0.5, 1, 1.5):
         fresh.tick(time)
-    assert np.array_equal(fresh.render(**SMALL).array, browser.render(**SMALL).array)  # kept from picture to picture or made anew
+    # The same, whether kept from picture to picture or made from scratch.
+    assert np.array_equal(fresh.render(**SMALL).array, browser.render(**SMALL).array)
 
 
 def test_the_viewer(browser):

@@ -1,4 +1,4 @@
-"""Cameras as matrices, what a pixel shows, the extent of a world."""
+"""Tests cameras as matrices, the content of pixels, and the extent of a world."""
 import pickle
 
 import pytest
@@ -33,7 +33,7 @@ def turned(axis, angle, translation):
     return matrix
 
 
-# A camera at 1 0.5 10 that looks along -z and a little to the side: world to camera, y down.
+# A camera at 1 0.5 10 that looks along -z, turned slightly sideways: world to camera, y down.
 T = turned((1, 2, 3), 0.1, (0, 0, 0)) @ np.diag([1.0, -1, -1, 1]) @ turned((0, 0, 1), 0, (-1, -0.5, -10))
 CAMERAS = {
     "plain": xvrml.Pinhole([[70, 0, 39.5], [0, 70, 29.5], [0, 0, 1]], T),
@@ -47,7 +47,8 @@ CAMERAS = {
 
 @pytest.mark.parametrize("name", CAMERAS)
 def test_pixels_see_what_the_matrices_say(world, name):
-    """The position that a pixel shows is projected into that pixel, and its z is the distance along the view axis."""
+    """The position seen in a pixel projects into that pixel. Its z is the distance along the view
+    axis."""
     camera = CAMERAS[name]
     image = world.render(size=(80, 60), spp=1, camera=camera, channels=("z", "position", "id"))
     seen = np.isfinite(image["z"])
@@ -61,7 +62,7 @@ def test_pixels_see_what_the_matrices_say(world, name):
 
 @pytest.mark.parametrize("name", CAMERAS)
 def test_rays_meet_what_the_picture_shows(world, name):
-    """The rays of the same camera meet the same nodes at the same distance."""
+    """The rays of the same camera hit the same nodes at the same distances."""
     camera = CAMERAS[name]
     image = world.render(size=(80, 60), spp=1, camera=camera, channels=("z", "id"))
     assert image.channels == ("rgba", "z", "id")
@@ -77,7 +78,8 @@ def test_rays_meet_what_the_picture_shows(world, name):
 
 
 def test_ids_are_shapes(world):
-    """Shapes without names, in one merged object and in a group: each has a number of its own, and its node."""
+    """Shapes without names, in one merged object and in a group: each has its own number and node.
+    """
     image = world.render(size=(120, 90), spp=1, channels=("id",), fov=60)
     numbers = set(image["id"].ravel().tolist()) - {0}
     nodes = [image.nodes[n] for n in numbers]
@@ -93,7 +95,8 @@ def test_ids_are_shapes(world):
 
 
 def test_ids_of_shared_shapes():
-    """A shape that is used several times is one shape, wherever and however it is instantiated; equal geometry is not."""
+    """A shape used several times is one shape, however it is instantiated. Equal geometry is not.
+    """
     heights = " ".join(["0"] * 2500)
     world = xvrml.load(("""#VRML V2.0 utf8
 Viewpoint { position 0 0 20 fieldOfView 1 }
@@ -136,7 +139,8 @@ def test_the_camera_of_a_picture(world):
 
 
 def test_the_matrix_of_a_viewpoint_is_its_pose():
-    """Position and orientation are in it as well as the Transforms above, whose scale is not; so is it in Inlines and ORTViewpoints."""
+    """The matrix includes position and orientation and the Transforms above, but not their scale.
+    The same holds in Inlines and for ORTViewpoints."""
     world = xvrml.loads("""#VRML V2.0 utf8
 Transform { translation 7 0 0 rotation 0 0 1 .3 scale 2 2 2 children [
   DEF V Viewpoint { position 0 1.5 5 orientation 0 1 0 .5 }
@@ -221,7 +225,7 @@ def test_bounds(world):
 
 
 def test_models_in_python():
-    """What vv shows of a model without a Viewpoint; up and background as there."""
+    """A model without a Viewpoint looks as in vv, with the same up axis and background."""
     model = xvrml.load(b"#VRML V2.0 utf8\n# kicad\nShape { appearance Appearance { material Material { } } geometry IndexedFaceSet { solid FALSE "
                        b"coord Coordinate { point [ 0 0 0, 4 0 0, 0 4 0, 0 0 1 ] } coordIndex [ 0 2 1 -1 0 1 3 -1 0 3 2 -1 ] } }")
     up = lambda **more: model.render(size=(32, 24), spp=1, **more).camera.pose[:3, 1] * -1

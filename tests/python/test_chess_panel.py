@@ -1,5 +1,5 @@
-"""The panel of examples/scenes/chess.tcl under Xvfb: what is pressed there moves the pieces; pictures of it can be kept with
-$CHESS_PICTURES."""
+"""Tests the panel of examples/scenes/chess.tcl under Xvfb: clicks in it move the pieces.
+$CHESS_PICTURES names a folder that keeps pictures of it."""
 import os
 import shutil
 import subprocess
@@ -20,7 +20,7 @@ for program in ("Xvfb", "xdotool"):
     if not shutil.which(program):
         pytest.skip(f"{program} is not installed", allow_module_level=True)
 
-# The Script, and a way to ask it.
+# The Script, and a way to query it.
 DRIVER = """
 source [file join [file dirname [info script]] chess.tcl]
 proc ask {script time} {if {[catch {uplevel #0 $script} answer]} {set answer "error: $answer"}; set ::answer $answer}
@@ -127,11 +127,12 @@ def test_the_picture_is_the_one_of_the_same_moves(panel):
 
 
 def test_beside_the_picture_of_vv(vv):
-    """vv's window and the panel in one program: three moves by the pointer."""
+    """Runs vv's window and the panel in one program and makes three moves with the pointer."""
     scenes = ROOT / "examples/scenes"
     for name in ("chess.tcl", "chess_panel.tcl", "studio.png"):
         shutil.copy(scenes / name, vv.folder / name)
-    # The panel moves away from the picture, says where its squares are, and writes down each position.
+    # The driver moves the panel away from the picture, prints where its squares are, and writes
+    # down each position.
     vv.write("driver.tcl", DRIVER + """
 set folder [file dirname [info script]]
 proc keep {name text} {

@@ -1,4 +1,5 @@
-"""xvrml.Cluster with real openrt-workers on loopback, and xvrml.dask on a cluster of its own processes."""
+"""Tests xvrml.Cluster with real openrt-workers on loopback, and xvrml.dask on a cluster of its own
+processes."""
 import os
 import pathlib
 import subprocess
@@ -74,7 +75,7 @@ def test_named_in_the_call(two, room):
 
 
 def test_worlds_and_browsers_take_turns(two, room):
-    """A Browser keeps the cluster's context from picture to picture, until another world wants it."""
+    """A Browser keeps the cluster's context between pictures until another world needs it."""
     browser, other = xvrml.Browser(MOVING.encode()), xvrml.load(BOX.encode())
     wanted = []
     for time_ in (0, 0.25, 0.5):
@@ -179,7 +180,7 @@ def test_frames_on_dask(client):
 
 
 def test_frames_on_dask_as_files(client, tmp_path):
-    """The files that vv makes; from a path, and from a World."""
+    """Rendering from a path and from a World gives the same files as vv."""
     world = tmp_path / "moving.wrl"
     world.write_text(MOVING)
     done = subprocess.run([find_vv(), world, "--frames", "0-2", "-o", tmp_path / "vv-{frame:4}.png", "--size", "64x48", "--spp", "4"], timeout=120)

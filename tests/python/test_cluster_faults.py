@@ -1,5 +1,6 @@
-"""The cluster under faults, with real processes: whatever dies, stands still, is slow or talks nonsense, the picture's bytes are
-those of one thread. What each fault costs in time is printed (pytest -s); the slow campaign is tests/cluster/campaign.py."""
+"""Tests the cluster under faults, with real processes. Workers die, stall, are slow or send
+garbage; the picture must have the bytes of one thread. Prints how much time each fault costs
+(pytest -s). The slow campaign is tests/cluster/campaign.py."""
 import pathlib
 import random
 import subprocess
@@ -26,7 +27,8 @@ def expected():
 
 
 class Later:
-    """Does something once the frame has got so far; leaving waits for it, and raises what it raised."""
+    """Runs an action once the frame has made some progress. Leaving the block waits for the action
+    and raises its exception."""
 
     def __init__(self, context, action, progress=0.2):
         self.context, self.action, self.progress = context, action, progress
@@ -83,7 +85,7 @@ def test_workers_killed_in_mid_frame(expected, dying):
         out, took = render(c, lambda: [w.kill() for w in workers[:dying]])
         print(f"{dying} of 4 killed: {took:.2f} s instead of {without:.2f}")
         assert out == expected
-        assert render(c)[0] == expected  # the next one, with those that are left
+        assert render(c)[0] == expected  # the next frame, with the remaining workers
 
 
 def test_a_worker_that_comes_back_is_taken_again(expected):
@@ -100,7 +102,7 @@ def test_a_worker_joins_in_mid_frame(expected):
     with farm(1, threads=1) as workers:
         late = Worker(threads=1)
         try:
-            late.kill()  # its port is known, nobody is there yet
+            late.kill()  # its port is known, but no worker listens there yet
             with openrt_c.context(cluster([*workers, late], local=0), **FRAME) as c:
                 assert render(c, late.start)[0] == expected
                 assert render(c)[0] == expected
@@ -178,7 +180,7 @@ def test_progressive_moving_and_cancelled_frames():
     with farm(2) as workers, openrt_c.context(cluster(workers), progressive=True, **still) as c:
         for i in range(6):
             c.move(0.3 * i)
-            with Later(c, c.cancel, 0.1):  # the newest picture wins
+            with Later(c, c.cancel, 0.1):  # the newest frame wins
                 c("Render")
             assert c.render() == alone[i], i
 
@@ -201,7 +203,7 @@ def test_the_master_is_killed_and_starts_again(expected):
         for _ in range(3):
             code = MASTER.format(folder=folder, config=cluster(workers, local=0), frame=FRAME, frames=1000)
             with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as master:
-                master.stdout.readline()  # it is in the middle of its second frame
+                master.stdout.readline()  # the master is in the middle of its second frame
                 time.sleep(0.1)
                 master.kill()
             with openrt_c.context(cluster(workers, local=0), **FRAME) as c:

@@ -1,4 +1,5 @@
-"""The code blocks of docs/python.md and docs/ray-queries.md, run in order; blocks marked needs=PACKAGE where it is installed."""
+"""Runs the code blocks of docs/python.md and docs/ray-queries.md in order. Blocks marked
+needs=PACKAGE run if it is installed."""
 import importlib.util
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""The programs in examples/python that use the package, run as a user runs them."""
+"""Runs the programs in examples/python that use the package as a user would."""
 import os
 import pathlib
 import subprocess

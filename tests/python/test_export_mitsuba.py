@@ -1,4 +1,5 @@
-"""tools/export_mitsuba.py: what it writes of our worlds; rendered by Mitsuba where that is installed. And the plots of the benchmark."""
+"""Tests the output of tools/export_mitsuba.py for our worlds, rendered by Mitsuba if it is
+installed. Also the plots of the benchmark."""
 import pathlib
 import sys
 import xml.etree.ElementTree as xml

@@ -1,4 +1,5 @@
-"""What people try who come from other packages: loads, names written nearly right, arguments of wrong types, pickle, films, logs."""
+"""Tests habits of users of other packages: loading, misspelt names, arguments of wrong types,
+pickle, films, logs."""
 import copy
 import io
 import pickle
@@ -136,7 +137,7 @@ def test_copies_of_pictures_keep_the_camera():
         for again in (pickle.loads(pickle.dumps(image)), copy.copy(image), copy.deepcopy(copy.copy(image))):
             assert np.array_equal(again.camera.K, image.camera.K) and np.array_equal(again.camera.T, image.camera.T)
             assert again.camera.center == image.camera.center
-    former = list(image.__getstate__())[:8]  # as version 1 kept it
+    former = list(image.__getstate__())[:8]  # the state as version 1 stored it
     again = xvrml.Picture.__new__(xvrml.Picture)
     again.__setstate__((1, *former[1:]))
     assert again.camera is None and np.array_equal(again.array, image.array)

@@ -1,4 +1,5 @@
-"""Fields of prototypes' instances and of Inlines that are set before the world runs, and afterwards: the picture shows them."""
+"""Tests that pictures show fields of prototype instances and Inlines, set before and after the
+world runs."""
 import pytest
 
 np = pytest.importorskip("numpy")

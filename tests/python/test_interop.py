@@ -1,4 +1,4 @@
-"""xvrml.interop: each adapter where its package is installed."""
+"""Tests each adapter of xvrml.interop if its package is installed."""
 import pytest
 
 np = pytest.importorskip("numpy")

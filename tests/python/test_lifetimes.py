@@ -1,5 +1,6 @@
-"""Objects that nobody has initialised, the interpreter's end while threads are at work, and graphs that are built from the leaf up.
-Each in a Python of its own: what goes wrong here ends the process."""
+"""Tests objects that were never initialised, the end of the interpreter while threads work, and
+graphs built from the leaf up. Each test has a Python process of its own, because a failure ends the
+process."""
 import inspect
 import subprocess
 import sys
@@ -22,7 +23,8 @@ def python(code, *arguments, timeout=120):
 
 # Objects without __init__ -----------------------------------------------------------------------------------------------
 
-# All of a class's methods, attributes and operators, and the object as an argument of every function.
+# Uses all methods, attributes and operators of a class, and passes the object as an argument to
+# every function.
 EMPTY = """
 import importlib, inspect, operator, sys
 sys.setrecursionlimit(200)
@@ -88,7 +90,7 @@ def test_objects_made_by_new_alone_raise_and_never_crash():
     names = {place.rsplit(".", 1)[1] for place in classes.values()}
     assert {"Node", "Box", "Transform", "Picture", "Mesh", "World", "Browser", "Diagnostic", "ViewpointInfo", "Worker", "Context",
             "Texture", "Light", "Shader", "Instance"} <= names
-    # Node types share a class in C++: a few of them stand for all.
+    # Node types share a class in C++, so a few of them stand for all.
     nodes = [c for c in classes if issubclass(c, xvrml.Node)]
     chosen = [c for c in classes if c not in nodes] + [xvrml.Node, xvrml.Box, xvrml.Transform, xvrml.IndexedFaceSet]
     bad = []
@@ -114,7 +116,7 @@ def test_the_message_says_what_is_missing(name, attribute):
 
 
 def test_copies_are_made_or_refused_and_never_crash():
-    """Python's own way to copy makes objects by __new__ of a base class."""
+    """Python's copy protocol makes objects with __new__ of a base class."""
     done = python("""
         import copy, pickle, xvrml, xvrml.rt
         world = xvrml.load(b"#VRML V2.0 utf8\\nDEF B Shape { geometry Box { } }")
@@ -187,7 +189,7 @@ def test_the_end_does_not_wait_for_threads_that_begin_again_and_again(work):
     code = ENDING.format(world=BOX.replace("\n", " ").replace("utf8 ", "utf8\\n", 1), work=work, threads=3, pause=0.1)
     code = code.replace('print("ends"', 'begin = time.monotonic()\nprint("ends"')
     code = "import atexit, time\natexit.register(lambda: print('took', time.monotonic() - begin))\n" + code
-    done = python(code)  # what is registered first is called last
+    done = python(code)  # handlers run in reverse order of registration
     assert done.returncode == 0, done.stderr
     assert float(done.stdout.split("took")[1]) < 3, done.stdout
 

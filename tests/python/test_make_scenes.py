@@ -1,4 +1,4 @@
-"""The worlds that tools/make_scenes.py writes are those that are checked in."""
+"""Tests that tools/make_scenes.py writes the worlds that are checked in."""
 import gzip
 import json
 import pathlib
@@ -16,7 +16,7 @@ def test_scenes_are_as_written(tmp_path):
     assert len(made) > 10
     for world in made:
         here, there = world.read_bytes(), (ROOT / "examples/scenes" / world.name).read_bytes()
-        if world.suffix == ".wrz":  # zlib may pack otherwise elsewhere
+        if world.suffix == ".wrz":  # another version of zlib may compress differently
             here, there = gzip.decompress(here), gzip.decompress(there)
         if world.suffix != ".png":
             assert here == there, world.name

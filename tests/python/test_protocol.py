@@ -1,4 +1,5 @@
-"""openrt-worker against a master that knows docs/protocol.md alone: bare ZeroMQ sockets, flatbuffers put together by hand."""
+"""Tests openrt-worker with a master written only from docs/protocol.md: bare ZeroMQ sockets,
+flatbuffers assembled by hand."""
 import ctypes
 import ctypes.util
 import signal
@@ -24,7 +25,8 @@ def xxh3(data, seed=0):
 
 
 def seal(frames, number):
-    """The last frame of a message: its number in this direction of the connection, and a checksum."""
+    """Returns the last frame of a message: its number in this direction of the connection, and a
+    checksum."""
     total = xxh3(frames[0], number)
     for frame in frames[1:]:
         total = xxh3(struct.pack("<Q", len(frame)), total)
@@ -36,11 +38,13 @@ PATIENCE = 60_000  # milliseconds; machines may be busy
 
 
 def table(fields):
-    """A table whose fields (struct format, value; None: absent) lie 8 bytes apart: its vtable, then itself. Length: a multiple of 8."""
+    """Returns a table whose fields (struct format, value; None: absent) are 8 bytes apart: its
+    vtable, then the table. The length is a multiple of 8."""
     size = 4 + 8 * len(fields)
     places = (4 + 8 * i if field else 0 for i, field in enumerate(fields))
     vtable = struct.pack(f"<HH{len(fields)}H", 4 + 2 * len(fields), size, *places)
-    before = (len(vtable) + 3) // 8 * 8 + 4  # the table begins at 4 modulo 8, its first field at 0
+    # The table starts at 4 modulo 8, so its first field is at 0.
+    before = (len(vtable) + 3) // 8 * 8 + 4
     vtable += bytes(before - len(vtable))
     body = struct.pack("<i", before)
     for form, value in (field or ("Q", 0) for field in fields):
@@ -105,7 +109,8 @@ class Master:
         self.send("Beat", [("d", 0.5), ("?", True)])
 
     def receive(self, kind):
-        """The next message of a kind: session and content. Beats are answered meanwhile, so that the worker does not give up."""
+        """Returns session and content of the next message of a kind. Answers heartbeats meanwhile,
+        so that the worker does not give up."""
         for _ in range(PATIENCE // 50):
             self.beat()
             if not self.socket.poll(50):
@@ -123,12 +128,13 @@ class Master:
 
     def welcome(self, session=42, protocol=2):
         self.receive("Hello")
-        # A busy machine is not a lost one: long silences are allowed.
+        # A busy machine must not count as lost, so long silences are allowed.
         self.send("Welcome", [("I", protocol), ("Q", session), ("f", 0.1), ("f", 60.0)], session)
         return session
 
     def scene(self, epoch, edits, session=42):
-        # Vectors of arrays and libraries would be fields 3 and 4: absent ones are 0 in the vtable.
+        # The vectors of arrays and libraries would be fields 3 and 4. Absent ones are 0 in the
+        # vtable.
         self.send("Scene", [("Q", epoch), ("?", True), ("?", True), None, None, ("Q", xxh3(edits))], session, [edits])
 
     def close(self):
@@ -225,7 +231,8 @@ def test_a_master_does_not_wait_for_ever_for_a_worker_that_never_gets_ready(work
     port = listener.bind_to_random_port("tcp://127.0.0.1")
     over, heard = threading.Event(), []
 
-    def serve():  # a worker that says what a real one says, beats, and does nothing
+    # A worker that announces itself like a real one, sends heartbeats, and does nothing.
+    def serve():
         numbers = {}
         while not over.is_set():
             if listener.poll(50):
@@ -250,7 +257,7 @@ def test_a_master_does_not_wait_for_ever_for_a_worker_that_never_gets_ready(work
         listener.close(0)
     assert said.returncode == 0, said.stderr
     assert "this process helps" in said.stderr.decode()
-    assert len(heard) > 50  # it was there all the time
+    assert len(heard) > 50  # it was connected all the time
 
 
 def test_messages_of_another_session_are_not_heard(worker):

@@ -1,4 +1,5 @@
-"""Random use of the Python package: whatever is assigned and rendered, the answer is a value or an exception."""
+"""Random use of the Python package: whatever is assigned and rendered, the result is a value or an
+exception."""
 import pytest
 
 np = pytest.importorskip("numpy")

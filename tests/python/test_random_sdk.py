@@ -1,5 +1,6 @@
-"""Random sequences of calls of the SDK: whatever is called in whatever order, and whatever ends before what it belongs to, the answer
-is a result or an exception. $XVRML_SEQUENCES says how many (make python-sequences: 100,000)."""
+"""Random sequences of SDK calls. Whatever the order of calls, and whatever is destroyed before the
+objects it belongs to, the outcome is a result or an exception. $XVRML_SEQUENCES sets the number of
+sequences (make python-sequences: 100,000)."""
 import gc
 import os
 
@@ -35,7 +36,7 @@ EVENTS = ("Clock.fraction_changed", "Way.value_changed", "Place.translation", "M
 
 
 class Player:
-    """Things that calls have returned, of which any may be taken for the next one, or forgotten."""
+    """Objects that calls have returned. Any of them may be used in the next call, or dropped."""
 
     def __init__(self):
         self.worlds, self.nodes, self.others = [xvrml.load(WORLD)], [], []

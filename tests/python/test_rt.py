@@ -1,4 +1,5 @@
-"""xvrml.rt: contexts, pictures without VRML, ray and point queries beside sums over all triangles."""
+"""Tests xvrml.rt: contexts, pictures without VRML, and ray and point queries against brute force
+over all triangles."""
 import gc
 import threading
 
@@ -134,7 +135,7 @@ def test_things_outlive_the_name_of_their_context():
 
 
 def brute(triangles, rays):
-    """t of every triangle by every ray, infinite where it is not met; double precision."""
+    """Returns t of every triangle for every ray, infinite if it is not hit; in double precision."""
     o, d = rays[:, None, :3], rays[:, None, 3:]
     a, e1, e2 = triangles[None, :, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     p = np.cross(d, e2[None])

@@ -1,4 +1,5 @@
-"""Scripts in Python within a Python program: they use the interpreter that runs, and the node objects of the binding."""
+"""Tests Scripts in Python inside a Python program: they use the running interpreter and the node
+objects of the binding."""
 import gc
 import os
 import pathlib
@@ -49,16 +50,16 @@ builtins.seen_by_script = seen
 
 
 def test_a_script_sees_the_same_nodes():
-    b = browser(ECHO, epoch=0)  # a translation has not the digits of seconds since 1970
+    b = browser(ECHO, epoch=0)  # a translation cannot hold the digits of seconds since 1970
     seen = sys.modules["builtins"].seen_by_script
     assert messages(b) == []
-    assert b["T"].translation == (1, 2, 3)  # of initialize(), within the making of the browser
+    assert b["T"].translation == (1, 2, 3)  # sent by initialize(), while the browser is created
     assert seen[0] == b["T"] and hash(seen[0]) == hash(b["T"]) and type(seen[0]) is xvrml.Transform
     b.tick(7)
     b["S"].node = b["T"]
     assert messages(b) == []
     assert seen[1] == b["T"] == b["S"].out
-    assert seen[2] == (1, 2, 3)  # the assignment leaves when the function returns
+    assert seen[2] == (1, 2, 3)  # the assignment is sent when the function returns
     assert b["T"].translation == (4, 5, 7)
     b["S"].points = [[1, 2, 3], [4, 5, 6]]
     assert not seen[3].flags.writeable and seen[3].shape == (2, 3)
@@ -72,7 +73,7 @@ def test_nodes_of_a_script_are_taken_where_nodes_are():
     assert b["S"].out == b["T"]
     heard = []
     b.listen(kept, "translation_changed", lambda value, now: heard.append(value))
-    kept.translation = 9, 9, 9  # outside of functions: at once, as with any node
+    kept.translation = 9, 9, 9  # outside of functions: immediately, as with any node
     assert heard == [(9, 9, 9)] and b["T"].translation == (9, 9, 9)
     other = browser("DEF T Transform { } DEF S Script { field SFNode t NULL }")
     with pytest.raises(ValueError, match="of the same world"):
@@ -87,7 +88,7 @@ def test_a_browser_ends_although_its_script_keeps_nodes():
     gone = weakref.ref(kept) if hasattr(type(kept), "__weakref__") else None
     del b
     gc.collect()
-    assert kept.translation == (1, 2, 3)  # the node is still there to be read
+    assert kept.translation == (1, 2, 3)  # the node can still be read
     with pytest.raises(ValueError, match="has ended"):
         kept.translation = 0, 0, 0
     del kept, gone

@@ -1,4 +1,5 @@
-"""The Python SDK as its users write it: fields and views, nodes by their classes, events, time, pictures, meshes."""
+"""Tests the Python SDK as its users write it: fields and views, nodes by their classes, events,
+time, pictures, meshes."""
 import io
 import gc
 import os
@@ -176,7 +177,7 @@ def test_nodes_join_worlds(world):
     paint.diffuseColor = (0, 0, 1)
     assert heard == [(0, 0, 1)] and world["Hull"].appearance.material.diffuseColor != (0, 0, 1)
     late = xvrml.Cone()
-    shape.geometry = late  # into a world that runs
+    shape.geometry = late  # into a running world
     world.on((late, "bottomRadius") if "bottomRadius" in () else (shape, "geometry"), lambda value, time: heard.append(value))
     world.remove(group)
     assert group not in world.roots
@@ -226,9 +227,10 @@ def test_callbacks_come_after_the_events(world):
 
     @world.on("Body.rotation")
     def turned(value, time):
-        told.append((threading.current_thread(), world.render(**SMALL).array.shape, time))  # a picture is allowed
+        # Rendering a picture is allowed here.
+        told.append((threading.current_thread(), world.render(**SMALL).array.shape, time))
         if time < 2:
-            world.time = 2  # even this
+            world.time = 2  # and so is setting the time
 
     assert world.on("Clock.isActive", print) is print
     world.time = 1
@@ -427,7 +429,7 @@ def test_a_thousand_worlds_leave_nothing():
     for _ in range(1000):
         one()
     gc.collect()
-    assert memory() - before < 4 << 20  # 4 KB a world
+    assert memory() - before < 4 << 20  # 4 KB per world
 
 
 def test_stubs_name_everything():
@@ -435,7 +437,7 @@ def test_stubs_name_everything():
     with open(os.path.join(folder, "nodes.pyi")) as stub:
         text = stub.read()
     for name in xvrml.nodes.__all__:
-        if name not in ("Spring", "Counter"):  # of the example plug-in, once loaded
+        if name not in ("Spring", "Counter"):  # classes of the example plug-in, once it is loaded
             assert f"class {name}(Node):" in text
     with open(os.path.join(folder, "__init__.pyi")) as stub:
         text = stub.read()

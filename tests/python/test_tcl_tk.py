@@ -1,5 +1,5 @@
-"""Tk panels of Tcl Scripts in trusted worlds, under Xvfb: the panel acts on the world, the world on the panel. One process for each
-test: Tk does not bear the end of its display."""
+"""Tests Tk panels of Tcl Scripts in trusted worlds, under Xvfb: the panel acts on the world and the
+world on the panel. One process per test, because Tk does not survive the end of its display."""
 import os
 import shutil
 import subprocess
@@ -79,7 +79,7 @@ def windows(): return subprocess.run(["xdotool", "search", "--onlyvisible", "--n
 
 
 def run(program, world=PANEL):
-    """The program in a Python of its own, with a display of its own; what it prints."""
+    """Runs the program in a Python process with a display of its own; returns its output."""
     with display():
         done = subprocess.run([sys.executable, "-c", START + WINDOWS + f"world = World({world!r})\nb = world.browser\n" + textwrap.dedent(program)],
                               capture_output=True, text=True, timeout=100, env=os.environ)

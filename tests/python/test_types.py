@@ -1,4 +1,5 @@
-"""mypy --strict over the stubs, the examples and a program that uses the API; and over one that must not pass."""
+"""Runs mypy --strict on the stubs, the examples and a program that uses the API; also on one that
+must be rejected."""
 import os
 import pathlib
 import shutil

@@ -1,4 +1,4 @@
-"""vv --audit and --compare: pictures against references."""
+"""Tests vv --audit and --compare: pictures against references."""
 import re
 
 

@@ -1,4 +1,5 @@
-"""vv with workers: real openrt-workers on loopback. The same bytes as without; what is said when something is wrong; statistics."""
+"""Tests vv with real openrt-workers on loopback: the same bytes as without workers, messages when
+something is wrong, statistics."""
 import json
 import os
 import re
@@ -12,7 +13,8 @@ from conftest import HEADER, SMALL
 from window_driver import framebuffer_row, screen, window  # noqa: F401
 
 SIZE = ("--size", "64x48")
-# Something of everything that a picture is made of: shadows, a mirror, glass, a texture; path traced by its emitter.
+# A bit of everything that a picture can contain: shadows, a mirror, glass, a texture; path traced
+# because of its emitter.
 ROOM = HEADER + """
 Viewpoint { position 0 0.4 6 }
 PointLight { location 2 4 3 intensity 0.7 }
@@ -155,7 +157,7 @@ def test_nobody_answers(room):
 
 
 def test_too_few_workers(room):
-    """Patience is ten seconds: both at a time."""
+    """The timeout is ten seconds, so both cases run at the same time."""
     needs_worker()
     for name in ("ours.key", "theirs.key"):
         new_key(room.folder / name)
@@ -174,7 +176,7 @@ def test_too_few_workers(room):
 
 
 def test_all_workers_die(room):
-    """The picture is finished here, with the same bytes, and that is said once."""
+    """The picture is finished locally, with the same bytes, and one message says so."""
     needs_worker()
     common = ("room.wrl", "--size", "160x120", "--spp", 128, "--transport", "path")
     assert room(*common, "-o", "alone.png").returncode == 0
@@ -280,19 +282,19 @@ def test_the_window_with_a_worker(window, vv, two):  # noqa: F811
     alone = window("room.wrl", "--time", 0).still()
     opened = window("room.wrl", "--time", 0, "--workers", addresses(two), "--local-threads", 0)
     opened.until(lambda shot: shot.rows == alone.rows)
-    opened.key("i")  # all that is known
+    opened.key("i")  # shows all known information
     assert opened.end() == 0, opened.err
 
 
 def test_a_window_whose_world_moves_and_comes_to_rest(window, vv, two, screen):  # noqa: F811
-    """While it moves pictures overlap and are shown; the last one is the one without workers."""
+    """During motion pictures overlap and are shown; the last one equals the one without workers."""
     vv.write("room.wrl", ROOM)
     vv.write("in.txt", "0.1 down Left\n0.6 up Left\n0.7 press left 0 0.5\n0.9 move 0.3 0.1\n1.2 release left\n1.4 save w.ppm\n2 quit\n")
     opened = window(ROOM, "--spp", 2, "--input", "in.txt", "--workers", addresses(two), "--local-threads", 0)
     top = int(re.search(r"\bY=(\d+)", opened.tool("getwindowgeometry", "--shell", opened.id))[1])
     seen = set()
     while opened.program.poll() is None:
-        seen.add(framebuffer_row(screen[1], top + 60))  # the middle: no text there
+        seen.add(framebuffer_row(screen[1], top + 60))  # the middle, where there is no text
         time.sleep(0.01)
     assert opened.program.wait(60) == 0, opened.err
     assert len(seen) > 3, "nothing moves"

@@ -1,4 +1,5 @@
-"""vv and its script engines: --list-engines, what is said of unknown protocols and of worlds that are not trusted."""
+"""Tests vv and its script engines: --list-engines, and messages about unknown protocols and
+untrusted worlds."""
 import json
 import shutil
 

@@ -1,4 +1,5 @@
-"""Models that do not say how they are looked at: which way is up, from where, in which light, on which background."""
+"""Tests models that do not say how to view them: which way is up, from where, in which light, on
+which background."""
 import json
 import math
 import struct
@@ -9,7 +10,8 @@ from conftest import BOX, HEADER, read_ppm
 
 
 def mesh(low, high, colours=None):
-    """A box as exporters write it: an IndexedFaceSet. colours: of the faces -x +x -y +y -z +z."""
+    """Returns a box as exporters write it, an IndexedFaceSet. colours: of the faces -x +x -y +y -z
+    +z."""
     points = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     colour = "" if not colours else "colorPerVertex FALSE color Color { color [ %s ] }" % ", ".join("%g %g %g" % c for c in colours)
@@ -18,7 +20,7 @@ def mesh(low, high, colours=None):
                                          " ".join("%d %d %d %d -1" % f for f in faces), colour)
 
 
-CUBE = mesh((1, 2, 3), (3, 4, 5))  # nothing speaks for an axis
+CUBE = mesh((1, 2, 3), (3, 4, 5))  # no axis is preferred
 
 
 def info(vv, text, *arguments):
@@ -65,12 +67,12 @@ def test_up_is_said(vv):
 
 
 def counts(rows):
-    """Pixels that are mostly red, green, blue."""
+    """Returns the numbers of pixels that are mostly red, green and blue."""
     tops = [max(range(3), key=lambda c: p[c]) for row in rows for p in row if any(p)]
     return [tops.count(c) for c in range(3)]
 
 
-# The face that points up is blue, those that look to the front and to the right are red and green, the others white.
+# The upper face is blue, the front and right ones are red and green, the others white.
 @pytest.mark.parametrize("up, top, front, right", [("x", 1, 5, 2), ("y", 3, 5, 1), ("z", 5, 2, 1), ("-x", 0, 5, 3), ("-y", 2, 5, 0),
                                                    ("-z", 4, 3, 1)])
 def test_three_quarters(vv, up, top, front, right):
@@ -110,7 +112,7 @@ def test_a_turntable_stays_in_the_window(vv, size, up, how):
 
 
 def test_a_turntable_goes_round_the_axis(vv):
-    """What is on top stays there, what is at the sides goes round."""
+    """The top stays in place; the sides rotate."""
     colours = [(1, 0, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 1, 1), (0, 0, 1)]
     vv.write("part.wrl", HEADER + "# KiCad\n" + mesh((10, 20, 30), (12, 22, 31), colours))
     assert vv("part.wrl", "--turntable", 4, "--size", "48x36", "--spp", 1, "-o", "t.ppm").returncode == 0
@@ -129,7 +131,7 @@ def test_text_is_read_from_the_front(vv):
 
 
 def test_camera_with_fit(vv):
-    """The direction of the one, the distance of the other."""
+    """Uses the direction of --camera and the distance of --fit."""
     vv.write("cube.wrl", HEADER + mesh((10, 20, 30), (12, 22, 32), [(1, 0, 0), (0, 1, 0)] + [(0, 0, 1)] * 4))
     near = vv.picture("--camera", "11.5,21,31:11,21,31", "--fit", world="cube.wrl")
     assert counts(near)[1] > 100 and counts(near)[0] == counts(near)[2] == 0, "it looks along -x"
@@ -139,7 +141,7 @@ def test_camera_with_fit(vv):
 
 
 def faces(rows):
-    """Brightness of the faces of a white box, the three largest."""
+    """Returns the brightness of the faces of a white box, the three largest."""
     seen = {}
     for row in rows:
         for p in row:
@@ -173,7 +175,7 @@ def test_same_bytes_with_any_threads(vv):
 
 
 def read_png(data):
-    """Width, height, components and rows of tuples of an 8 bit PNG without interlacing."""
+    """Returns width, height, components and rows of tuples of an 8-bit PNG without interlacing."""
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     at, packed = 8, b""
     while at < len(data):
@@ -240,14 +242,14 @@ def test_background_colour(vv, colour, corner):
     assert components == 3 and rows[0][0] == corner
     _, clear = png(vv, "--background", "none", spp="16")
     for row, other in zip(rows, clear):
-        for p, (*c, a) in zip(row, other):  # laid over the colour in linear light
+        for p, (*c, a) in zip(row, other):  # composited over the colour in linear light
             wanted = [display(srgb(x) * a / 255 + srgb(y) * (1 - a / 255)) for x, y in zip(c, corner)]
             assert all(abs(x - y) <= 4 for x, y in zip(p, wanted))
     assert png(vv, "--background", colour, "--colour", "vrml97")[1][0][0] == corner
 
 
 def test_background_file(vv):
-    """A picture of twice the width: its middle is seen, its sides are cut off."""
+    """A background picture of twice the width: its middle is visible, its sides are cut off."""
     columns = [(255, 0, 0)] * 16 + [(0, 255, 0)] * 32 + [(0, 0, 255)] * 16
     raw = b"".join(b"\0" + b"".join(bytes(p) for p in columns) for _ in range(24))
     chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))

@@ -1,4 +1,4 @@
-"""What the program vv writes: files that are whole or not there, signals, reports."""
+"""Tests the files that vv writes: they are complete or absent. Also signals and reports."""
 import errno
 import json
 import os
@@ -52,7 +52,8 @@ def test_read_only_folder(vv):
 
 
 def test_small_disk(vv):
-    """A file size limit stands for a full disk: the old picture stays, nothing half-written is left."""
+    """A file size limit simulates a full disk: the old picture stays and nothing half-written is
+    left."""
     (vv.folder / "out.ppm").write_bytes(b"old")
     command = f"trap '' XFSZ; ulimit -f 8; exec '{vv.program}' box.wrl -o out.ppm --size 400x300 --spp 1"
     done = subprocess.run(["bash", "-c", command], cwd=vv.folder, capture_output=True)
@@ -84,12 +85,13 @@ def test_reader_that_goes_away(vv):
 # Signals ---------------------------------------------------------------------------------------------------------------
 
 
-# Far more than a test may take: it must be the signal that ends it.
+# Takes far longer than a test may, so only the signal can end it.
 LONG = ("--size", "1600x1200", "--spp", "4096", "--threads", "1")
 
 
 def wait_until_rendering(running):
-    """Busy for a second beyond start-up: the world is tiny, so it renders."""
+    """Waits until the process has been busy for a second after start-up. The world is tiny, so it
+    is rendering."""
     time.sleep(1.5)
     assert running.poll() is None
 
@@ -143,7 +145,8 @@ def test_save_request_saves_and_goes_on(vv):
 
 
 def wait_for_handler(process, number):
-    """Returns when the program catches the signal, which takes a while after its start on a busy machine."""
+    """Waits until the program handles the signal, which takes a while after its start on a busy
+    machine."""
     for _ in range(1000):
         caught = re.search(r"SigCgt:\s*(\w+)", pathlib.Path(f"/proc/{process.pid}/status").read_text())
         if int(caught[1], 16) >> (number - 1) & 1:
@@ -254,7 +257,7 @@ def test_empty_world_makes_a_picture(vv):
 
 
 def test_progress_lines(vv):
-    """Not a terminal: a line every few seconds, no escape sequences."""
+    """Without a terminal: a line every few seconds and no escape sequences."""
     running = vv.start("box.wrl", "-o", "x.png", *LONG)
     time.sleep(7)
     running.send_signal(signal.SIGINT)

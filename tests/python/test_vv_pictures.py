@@ -1,4 +1,4 @@
-"""Pictures that the program vv makes: formats, channels, views."""
+"""Tests the pictures of the program vv: formats, channels, views."""
 import gzip
 import json
 import subprocess
@@ -21,7 +21,8 @@ def test_formats(vv, suffix, start):
 
 
 def test_formats_agree(vv):
-    """The same picture in every format: linear numbers in PFM, the sRGB curve in the 8 bit ones."""
+    """The picture is the same in every format: linear numbers in PFM, the sRGB curve in the 8-bit
+    ones."""
     names = ["out.pfm", "out.ppm", "out.png", "out.jpg"]
     assert vv("box.wrl", *[a for n in names for a in ("-o", n)], *SMALL).returncode == 0
     width, height, linear = read_pfm((vv.folder / "out.pfm").read_bytes())

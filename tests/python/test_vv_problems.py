@@ -1,4 +1,5 @@
-"""What vv says about worlds: each sentence once, hints for pictures that show nothing, the last line after errors, Scripts."""
+"""Tests vv's messages about worlds: each sentence once, hints for pictures that show nothing, the
+last line after errors, Scripts."""
 import json
 
 from conftest import HEADER, SMALL

@@ -1,5 +1,5 @@
-"""vv among hostile names, small limits and careless commands: what a world's strings do to a terminal, which file an output replaces,
-files and stacks that may not grow."""
+"""Tests vv with hostile names, small limits and careless commands: strings of a world sent to a
+terminal, which file an output replaces, files and stacks that must not grow."""
 import json
 import os
 import resource
@@ -9,7 +9,8 @@ import unicodedata
 import pytest
 from conftest import HEADER, SMALL
 
-# Control characters that a terminal would obey: escape sequences, C1 in UTF-8 and as a byte, DEL, bell, carriage return, backspace.
+# Control characters that a terminal would interpret: escape sequences, C1 in UTF-8 and as a byte,
+# DEL, bell, carriage return, backspace.
 NASTY = b"\x1b]0;title\x07\x1b[2J\xc2\x9b31mred\x9b1m\x7f\r\x08"
 
 
@@ -35,7 +36,8 @@ Shape { appearance ORTAppearance { shader ORTShader { name "@" file "@" } } geom
 
 
 def obeyed(data):
-    """Control characters of what was written: all but line feed and tab, and what is no UTF-8."""
+    """Returns the control characters of the output, except line feed and tab, and bytes that are
+    not UTF-8."""
     text = data.decode("utf-8", errors="surrogateescape")
     return [c for c in text if c not in "\n\t" and (unicodedata.category(c) == "Cc" or 0xDC80 <= ord(c) <= 0xDCFF)]
 
@@ -73,7 +75,7 @@ def test_a_written_world_keeps_its_bytes_unless_a_terminal_reads(vv):
     try:
         while block := os.read(master, 4096):
             shown += block
-    except OSError:  # nothing more, and nobody who writes
+    except OSError:  # no more data, and the writer has closed
         pass
     os.close(master)
     assert done.returncode == 0 and b"title" in shown
@@ -135,7 +137,8 @@ def test_no_output_replaces_what_is_read_or_another_output(whole, arguments, wha
 
 def test_files_beside_inputs_and_devices_are_no_inputs(whole):
     assert whole("world.wrl", "-o", "fresh.png", "--stats", "fresh.json", "--write", "fresh.wrl", *SMALL).returncode == 0
-    assert whole("world.wrl", "-o", "fresh.png", "--stats", "fresh.json", *SMALL).returncode == 0  # replaced
+    # replaced
+    assert whole("world.wrl", "-o", "fresh.png", "--stats", "fresh.json", *SMALL).returncode == 0
     assert whole("world.wrl", "-o", "null.ppm", "-o", "null.ppm", "--stats", "/dev/null", *SMALL).returncode == 0
 
 

@@ -1,4 +1,5 @@
-"""vv and shader plug-ins: a crash is named, a library that changes is loaded anew under --watch."""
+"""Tests vv and shader plug-ins: a crash names the shader; a changed library is reloaded under
+--watch."""
 import os
 import pathlib
 import shutil

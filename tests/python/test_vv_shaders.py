@@ -1,4 +1,4 @@
-"""vv and shaders: --shader, --list-shaders, --transport and what is said about it, HDR emission."""
+"""Tests vv and shaders: --shader, --list-shaders, --transport and its messages, HDR emission."""
 import json
 import struct
 
@@ -105,7 +105,8 @@ def environment(width, height, colour):
 
 def test_light_from_all_around(vv):
     vv.write("empty.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { } Background { skyColor 1 0 1 }")
-    vv.write("a.pfm", environment(8, 4, lambda x, y: (0, 1, 0) if 2 <= x < 6 else (0, 0, 1)))  # the middle is straight ahead
+    # Straight ahead is the middle of the map.
+    vv.write("a.pfm", environment(8, 4, lambda x, y: (0, 1, 0) if 2 <= x < 6 else (0, 0, 1)))
     assert middle(vv.picture("--environment", "a.pfm", world="empty.wrl")) == (0, 255, 0)
     assert middle(vv.picture("--environment", "a.pfm", "--camera", "0,0,0:0,0,1", world="empty.wrl")) == (0, 0, 255)
     half = middle(vv.picture("--environment", "a.pfm:0.5", world="empty.wrl"))
@@ -114,24 +115,26 @@ def test_light_from_all_around(vv):
     vv.write("a.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + row(127) * 4)
     red = middle(vv.picture("--environment", "a.hdr", world="empty.wrl"))
     assert red[0] == 255 and red[1] < 20
-    # OpenEXR, its first row above
+    # OpenEXR, with its first row at the top
     vv.write("halves.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { } "
              "Background { skyColor 0 1 0 groundColor [ 0 0 1, 0 0 1 ] groundAngle 1.570796 }")
     assert vv("halves.wrl", "-o", "sky.exr", "--size", "8x4", "--spp", "1").returncode == 0
     vv.write("nothing.wrl", HEADER)
     assert middle(vv.picture("--environment", "sky.exr", "--camera", "0,0,0:0,1,0:0,0,1", world="nothing.wrl")) == (0, 255, 0)
     assert middle(vv.picture("--environment", "sky.exr", "--camera", "0,0,0:0,-1,0:0,0,1", world="nothing.wrl")) == (0, 0, 255)
-    # It lights what is there
+    # The environment lights objects
     vv.write("ball.wrl", HEADER + "NavigationInfo { headlight FALSE } Viewpoint { position 0 0 3 } Shape { appearance Appearance { "
              "material Material { diffuseColor 1 1 1 } } geometry Sphere { } }")
     vv.write("white.pfm", environment(8, 4, lambda x, y: (.5, .5, .5)))
     lit = middle(vv.picture("--environment", "white.pfm", "--transport", "path", "--spp", "64", world="ball.wrl"))
     assert all(abs(c - 188) < 6 for c in lit)
-    assert middle(vv.picture("--environment", "white.pfm", "--spp", "64", world="ball.wrl")) == lit  # what "auto" chooses
+    # The transport that "auto" chooses.
+    assert middle(vv.picture("--environment", "white.pfm", "--spp", "64", world="ball.wrl")) == lit
 
 
 def test_skies_that_worlds_name(vv):
-    """The same picture as with --environment, for each format; a Background and a texture of more than 1."""
+    """The picture is the same as with --environment, for each format. Also a Background, and a
+    texture with values above 1."""
     start = HEADER + "NavigationInfo { headlight FALSE } Viewpoint { position 0 0 3 } "
     ball = "Shape { appearance Appearance { material Material { diffuseColor 1 1 1 } } geometry Sphere { } }"
     vv.write("plain.wrl", start + ball)

@@ -1,4 +1,5 @@
-"""Worlds that move, on vv's command line: --time, --frames, --turntable, films, -D, --explain, --watch; node plug-ins."""
+"""Tests moving worlds on vv's command line: --time, --frames, --turntable, films, -D, --explain,
+--watch; node plug-ins."""
 import json
 import os
 import signal
@@ -7,7 +8,8 @@ import time
 import pytest
 from conftest import HEADER, ROOT, SMALL, find_vv, read_ppm
 
-# A cube on its way from x=-2 to 2 and back in two seconds; a clock with default values, which must stand still (clause 4.6.9).
+# A cube moves from x=-2 to 2 and back in two seconds. A clock with default values must stand still
+# (clause 4.6.9).
 MOVING = HEADER + """
 Viewpoint { position 0 0 8 }
 DEF Far Viewpoint { position 0 0 16 }
@@ -35,7 +37,7 @@ def moving(vv):
 
 
 def center(rows):
-    """Column of the white cube's middle; nothing if it is not seen."""
+    """Returns the column of the white cube's middle; None if it is not visible."""
     columns = [x for row in rows for x, pixel in enumerate(row) if pixel[0] > 200 and pixel[1] > 200]
     return sum(columns) / len(columns) if columns else None
 
@@ -101,8 +103,10 @@ def test_turntable_comes_round(vv):
     assert vv("side.wrl", "--turntable", "4", "-o", "t.ppm", *SMALL).returncode == 0
     pictures = [picture_of(vv.folder / f"t-{i:04}.ppm") for i in range(4)]
     middle = len(pictures[0][0]) / 2
-    assert center(pictures[0]) > middle > center(pictures[2])  # seen from behind the white box is on the left
-    assert center(pictures[1]) == pytest.approx(middle, abs=1) and center(pictures[3]) is None  # behind the red one
+    # Seen from behind, the white box is on the left.
+    assert center(pictures[0]) > middle > center(pictures[2])
+    # Behind the red one.
+    assert center(pictures[1]) == pytest.approx(middle, abs=1) and center(pictures[3]) is None
     assert pictures[0] == vv.picture(world="side.wrl")
 
 
@@ -149,7 +153,7 @@ def test_an_interrupt_ends_a_sequence(moving):
 
 # Films -----------------------------------------------------------------------------------------------------------------
 
-# A film of white on the left that turns grey: what a MovieTexture shows of it is what was put in.
+# A film whose left half is white and turns grey: a MovieTexture must show the values put in.
 FADING = HEADER + """
 Viewpoint { position 0 0 8 } NavigationInfo { headlight FALSE }
 DEF Clock TimeSensor { cycleInterval 1 loop TRUE }
@@ -175,7 +179,7 @@ def test_a_gif_holds_the_frames(moving):
             shown = film.convert("RGB").getpixel((8, 12))
             wanted = read_ppm((moving.folder / f"v-000{number}.ppm").read_bytes())[2][12][8]
             assert all(abs(a - b) <= 4 for a, b in zip(shown, wanted)), (number, shown, wanted)
-        assert hundredths == 100  # 12.5 hundredths each: the rounding does not add up
+        assert hundredths == 100  # 12.5 hundredths each: the rounding errors do not add up
     assert moving.leftovers() == []
 
 
@@ -308,10 +312,11 @@ def test_watch_renders_again(vv):
     try:
         wait_for(out.exists, running)
         box = out.read_bytes()
-        vv.write("part.wrl", HEADER + "Shape { geometry Sphere { radius 3 } }")  # a file that the world uses
+        # A file that the world uses.
+        vv.write("part.wrl", HEADER + "Shape { geometry Sphere { radius 3 } }")
         wait_for(lambda: out.read_bytes() != box, running)
         sphere = out.read_bytes()
-        vv.write("main.wrl", "no world at all")  # is said, and the files watched on
+        vv.write("main.wrl", "no world at all")  # reported, and the files are still watched
         time.sleep(0.5)
         vv.write("main.wrl", HEADER + "Viewpoint { } Shape { geometry Cone { } }")
         wait_for(lambda: out.read_bytes() != sphere, running)
@@ -370,4 +375,4 @@ def test_the_globe_turns_under_the_lamp(vv):
     pictures = [picture_of(vv.folder / f"g-{i:04}.ppm") for i in (0, 60, 120, 180, 240)]
     assert len({str(p) for p in pictures[:4]}) == 4
     differences = [abs(a - b) for one, other in zip(pictures[0], pictures[4]) for p, q in zip(one, other) for a, b in zip(p, q)]
-    assert sum(differences) / len(differences) < 0.5  # eight seconds are one round
+    assert sum(differences) / len(differences) < 0.5  # eight seconds are one cycle

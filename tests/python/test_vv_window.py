@@ -1,4 +1,5 @@
-"""vv's window: pointer, keys, worlds that come and go, and the end. What is done to it is in window_driver.py."""
+"""Tests vv's window: pointer, keys, loading and replacing worlds, closing. window_driver.py has the
+actions."""
 import math
 import os
 import re
@@ -102,7 +103,7 @@ def test_walking_by_keys_and_by_mouse_on_the_ground(window):
     w.move(0, 0.5)
     w.wait(lambda: w.camera()[0][2] < eye[2] - 0.5, "ahead by mouse")
     w.tool("mouseup", 1)
-    w.key("4")  # the world allows nothing but WALK
+    w.key("4")  # the world allows only WALK
     w.tool("keydown", "Left")
     w.wait(lambda: w.camera()[1][0] < -0.1, "turned to the left")
     w.tool("keyup", "Left")
@@ -218,7 +219,7 @@ def test_the_screen_shows_the_picture_and_the_overlay(window, screen):
         return red(*part[SIZE[1] // 2][SIZE[0] // 2]), corner > 20
 
     w.wait(lambda: seen() == (True, True), "picture and overlay")
-    w.key("i")  # two at once are taken for a key that repeats
+    w.key("i")  # two presses at once would be taken for key repeat
     w.key("i")
     w.wait(lambda: seen() == (True, False), "no overlay")
 

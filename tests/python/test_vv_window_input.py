@@ -1,4 +1,4 @@
-"""Scripts of input for vv's window, which play without one, too; and its sound."""
+"""Tests input scripts for vv's window, which also play without one, and its sound."""
 import math
 import re
 import struct
@@ -95,7 +95,7 @@ def test_sound_arrives_with_its_pitch_on_its_side(window, vv):
     assert w.end() == 0
     data = raw.read_bytes()
     pairs = struct.unpack(f"<{len(data) // 8 * 2}f", data[:len(data) // 8 * 8])
-    left, right = pairs[4096:8 * 4096:2], pairs[4097:8 * 4096:2]  # after it has faded in
+    left, right = pairs[4096:8 * 4096:2], pairs[4097:8 * 4096:2]  # after the fade-in
     strength = [math.sqrt(sum(v * v for v in side) / len(side)) for side in (left, right)]
     assert strength[1] > 1.2 * strength[0] > 0
     assert max(right) < 16000 / 32768 * math.sqrt(2) * 1.01

@@ -1,4 +1,5 @@
-"""Worlds by other people on vv's command line: the clock since 1970, --epoch, --compat, --old-world, what --explain says of them."""
+"""Tests third-party worlds on vv's command line: the clock since 1970, --epoch, --compat,
+--old-world, and what --explain reports."""
 import json
 
 import pytest
@@ -13,13 +14,13 @@ DEF Way PositionInterpolator { key [ 0 1 ] keyValue [ 2 0 0, 2 0 0 ] }
 ROUTE Clock.fraction_changed TO Way.set_fraction
 ROUTE Way.value_changed TO Place.translation
 """
-# Says what time it is, each time that it is told.
+# Prints the time of each event.
 TELLS = HEADER + """
 DEF Clock TimeSensor { loop TRUE }
 DEF Tell Script { eventIn SFTime tick url "vrmlscript: function tick(t) { print('at ' + t); }" }
 ROUTE Clock.time TO Tell.tick
 """
-# A Script without directOutput, a colour texture on a green material.
+# A Script without directOutput, and a colour texture on a green material.
 OLD = HEADER + """
 Viewpoint { position 0 0 8 }
 DEF Place Transform { children Shape {

@@ -1,4 +1,4 @@
-"""The Python package: worlds, nodes through the field tables, pictures."""
+"""Tests the Python package: worlds, nodes through the field tables, pictures."""
 import io
 import os
 import pathlib
@@ -235,7 +235,7 @@ def test_axes_of_rotations_are_normalised():
         assert a.rotation == w["E"].rotation == (0, 1, 0, 1)
         o.keyValue = [(0, 5, 0, 1), (3, 0, 4, 9)]
         assert np.allclose(o.keyValue, [(0, 1, 0, 1), (0.6, 0, 0.8, 9)])
-        a.rotation = (0, 0, 0, 2)  # turns nothing, as in a file
+        a.rotation = (0, 0, 0, 2)  # no rotation, as in a file
         assert a.rotation == (0, 0, 0, 2)
         with pytest.raises(ValueError, match="not infinity or NaN"):
             a.rotation = (0, float("inf"), 0, 1)

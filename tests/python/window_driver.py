@@ -1,5 +1,6 @@
-"""vv's window for tests: under an Xvfb of their own, with real pointer and key events from xdotool. What a world has become shows in
-the pictures that the S key saves, and in the command that the C key prints."""
+"""Drives vv's window for tests, under an Xvfb of their own, with real pointer and key events from
+xdotool. Tests check the state of a world by the pictures that the S key saves and by the command
+that the C key prints."""
 import os
 import re
 import shlex
@@ -17,7 +18,7 @@ from xserver import display
 Image = pytest.importorskip("PIL.Image")
 
 SIZE = (160, 120)
-PATIENCE = 20  # seconds, for what takes a moment on an idle machine
+PATIENCE = 20  # seconds, for things that take a moment on an idle machine
 
 
 SENSORS = HEADER + """
@@ -62,7 +63,7 @@ def needs(*tools):
 
 
 class Shot:
-    """A picture that is asked by places from -1 to 1, as pointers are."""
+    """A picture whose pixels are addressed by positions from -1 to 1, like the pointer."""
 
     def __init__(self, path):
         self.bytes = path.read_bytes()
@@ -130,7 +131,8 @@ class Window:
         self.tool("key", *names)
 
     def place(self, x, y):
-        """Of the screen's pixels, for places of the picture from -1 to 1."""
+        """Returns xdotool arguments for a position in the picture from -1 to 1, in window pixels.
+        """
         width, height = self.size()
         return ["--window", self.id, int((x + 1) / 2 * width), int((1 - y) / 2 * height)]
 
@@ -161,11 +163,11 @@ class Window:
         return Shot(self.folder / line.split("saved as ")[1])
 
     def until(self, test):
-        """The first picture of which test is true."""
+        """Returns the first picture for which test is true."""
         return self.wait(lambda: (lambda s: s if test(s) else None)(self.shot()), "no such picture")
 
     def still(self):
-        """The picture when nothing changes any more."""
+        """Returns the picture once nothing changes any more."""
         return self.until(lambda s: s.width == SIZE[0] and s.bytes == self.shot().bytes)
 
     def command(self):
@@ -214,7 +216,7 @@ def window(vv, screen):
 
 
 def framebuffer_row(path, y):
-    """The bytes of one row of what the X server shows."""
+    """Returns the bytes of one row that the X server shows."""
     data = path.read_bytes()
     header = struct.unpack_from(">25I", data)
     start = header[0] + 12 * header[19] + y * header[12]
@@ -222,7 +224,7 @@ def framebuffer_row(path, y):
 
 
 def framebuffer(path):
-    """Rows of (r, g, b) of what the X server shows: an XWD file."""
+    """Returns the rows of (r, g, b) that the X server shows, from an XWD file."""
     data = path.read_bytes()
     header = struct.unpack_from(">25I", data)
     start, width, height, order, stride, colours = header[0], header[4], header[5], header[7], header[12], header[19]

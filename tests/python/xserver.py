@@ -1,4 +1,5 @@
-"""An X server of its own for tests with windows: Xvfb on a display that it chooses itself. Tests skip where there is none."""
+"""An X server for tests with windows: Xvfb on a display that it chooses itself. Tests are skipped
+if it is not installed."""
 import contextlib
 import os
 import shutil
@@ -9,7 +10,7 @@ import pytest
 
 @contextlib.contextmanager
 def display(size="1024x768", *options):
-    """Runs Xvfb, with further options of its own; $DISPLAY leads there meanwhile."""
+    """Runs Xvfb, with these additional options; $DISPLAY names it meanwhile."""
     if not shutil.which("Xvfb"):
         pytest.skip("Xvfb is not installed")
     reading, writing = os.pipe()

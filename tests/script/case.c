@@ -1,5 +1,5 @@
-/* case.c: one script plug-in per macro CASE_...: each differs from a good one in a single point.
- * Its scheme is "broken:". */
+/* case.c: one script plug-in per macro CASE_... Each differs from a good one in a single point. The
+ * scheme is "broken:". */
 #include <xvrml/xscript.h>
 
 #if defined(CASE_missing_symbol)

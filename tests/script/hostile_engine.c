@@ -1,7 +1,7 @@
-/* hostile_engine.c: a script engine that does what no program may do, in scheme "hostile:". A
- * program is lines "WHEN: COMMAND ARGUMENT"; WHEN is the name of an eventIn, or create, initialize,
- * eventsProcessed, shutdown, destroy, tick. What was tried is printed with its outcome. Stands for
- * an engine whose library has been taken over by the program it runs.
+/* hostile_engine.c: a script engine that does everything a program must not do, with the scheme
+ * "hostile:". It stands for an engine whose library has been taken over by the program it runs. A
+ * program has lines "WHEN: COMMAND ARGUMENT". WHEN is the name of an eventIn, or create,
+ * initialize, eventsProcessed, shutdown, destroy, tick. Each attempt is printed with its outcome.
  */
 #define _GNU_SOURCE
 #include <xvrml/xscript.h>
@@ -36,30 +36,30 @@ static void outcome(const Interpreter* self, const char* what, int worked) {
   say(self, line);
 }
 
-/* --- That does not end --- */
+/* --- Commands that do not end --- */
 
 static void spin(Interpreter* self, const char* argument) {
   (void)self;
   (void)argument;
   for (;;) sink++;
 }
-static void calls(Interpreter* self,
-                  const char* argument) { /* asks the host for ever and takes no answer for one */
+/* Calls the host forever and ignores the answers. */
+static void calls(Interpreter* self, const char* argument) {
   XsValue value;
   for (;;) self->host->read(self->host, self->info->self, self->info->self, argument, &value);
 }
 static void chatter(Interpreter* self, const char* argument) {
   for (;;) say(self, argument);
 }
-static void slow(Interpreter* self,
-                 const char* argument) { /* MILLISECONDS of sleep, then prints "slept" */
+/* Sleeps MILLISECONDS, then prints "slept". */
+static void slow(Interpreter* self, const char* argument) {
   const long ms = atol(argument);
   const struct timespec time = {ms / 1000, ms % 1000 * 1000000L};
   nanosleep(&time, NULL);
   say(self, "slept");
 }
 
-/* --- That takes what it can get --- */
+/* --- Commands that take all resources --- */
 
 static void bomb(Interpreter* self, const char* argument) {
   (void)self;
@@ -93,7 +93,7 @@ static void leave(Interpreter* self, const char* argument) {
   _exit(atoi(argument));
 }
 
-/* --- That reaches out --- */
+/* --- Commands that access the outside --- */
 
 static void readFile(Interpreter* self, const char* argument) {
   outcome(self, "open", open(argument, O_RDONLY) >= 0);
@@ -120,7 +120,8 @@ static void signals(Interpreter* self, const char* argument) {
   (void)argument;
   outcome(self, "kill", kill(getppid(), 0) == 0);
 }
-static void raises(Interpreter* self, const char* argument) { /* the limits again */
+/* Tries to raise the limits again. */
+static void raises(Interpreter* self, const char* argument) {
   const struct rlimit most = {RLIM_INFINITY, RLIM_INFINITY};
   (void)argument;
   outcome(self, "setrlimit", setrlimit(RLIMIT_AS, &most) == 0);
@@ -128,7 +129,8 @@ static void raises(Interpreter* self, const char* argument) { /* the limits agai
 static void environment(Interpreter* self, const char* argument) {
   say(self, getenv(argument) ? "set" : "not set");
 }
-static int libraryPath; /* whether the process was given one, before it gave up all it may do */
+/* Whether the process started with LD_LIBRARY_PATH, before it gave up its rights. */
+static int libraryPath;
 __attribute__((constructor)) static void loaded(void) {
   libraryPath = getenv("LD_LIBRARY_PATH") != NULL;
 }
@@ -136,9 +138,8 @@ static void given(Interpreter* self, const char* argument) {
   (void)argument;
   say(self, libraryPath ? "given" : "not given");
 }
-static void
-descriptors(Interpreter* self,
-            const char* argument) { /* how many are open beside the standard ones and the socket */
+/* Prints how many are open besides the standard ones and the socket. */
+static void descriptors(Interpreter* self, const char* argument) {
   int open = 0;
   char line[40];
   (void)argument;
@@ -147,19 +148,22 @@ descriptors(Interpreter* self,
   say(self, line);
 }
 
-/* --- And some that are well-behaved --- */
+/* --- Well-behaved commands --- */
 
 static void print(Interpreter* self, const char* argument) { say(self, argument); }
-static void process(Interpreter* self, const char* argument) { /* OUT: its process's number */
+/* Sends the number of its process to OUT. */
+static void process(Interpreter* self, const char* argument) {
   const int32_t number = (int32_t)getpid();
   const XsValue value = {XS_SFINT32, 1, {&number}};
   self->host->send(self->host, self->info->self, argument, &value);
 }
-static void polite(Interpreter* self, const char* argument) { /* for ever, but asks */
+/* Runs forever, but calls the host. */
+static void polite(Interpreter* self, const char* argument) {
   (void)argument;
   while (!self->host->shouldStop(self->host, self->info->self, 1)) sink++;
 }
-static void speak(Interpreter* self, const char* argument) { /* bytes in place of a message */
+/* Sends raw bytes in place of a message. */
+static void speak(Interpreter* self, const char* argument) {
   ssize_t written = write(3, argument, strlen(argument));
   outcome(self, "write", written > 0);
 }
@@ -176,7 +180,7 @@ static const struct {
                 {"print", print},      {"process", process},   {"polite", polite},
                 {"speak", speak}};
 
-/* All lines for this event, in order. */
+/* Runs all lines for this event, in order. */
 static XsResult run(XsInterpreter interpreter, const char* when) {
   Interpreter* self = (Interpreter*)(uintptr_t)interpreter;
   const char* p = self->info->text.data;

@@ -15,7 +15,7 @@
 namespace xvrml {
 
 // Host functions that read all their arguments.
-struct Looking : XsHost {
+struct CheckingHost : XsHost {
   static inline uint64_t sum = 0;
   static void look(const char* text) { sum += text ? std::strlen(text) : 1; }
   static void look(const XsString& text) {
@@ -41,7 +41,7 @@ struct Looking : XsHost {
       }
     }
   }
-  Looking() : XsHost{} {
+  CheckingHost() : XsHost{} {
     send = write = [](const XsHost*, XsNode, const char* n, const XsValue* v) {
       look(n);
       look(v);
@@ -108,7 +108,7 @@ struct Looking : XsHost {
 };
 // Returns the state of a call when the helper answers with these bytes and closes the socket.
 inline ScriptProcess::State callThatGets(const std::string& bytes, std::string* death = nullptr) {
-  static const Looking host;
+  static const CheckingHost host;
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     return ScriptProcess::State::running;

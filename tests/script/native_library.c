@@ -1,4 +1,4 @@
-/* native_library.c: C functions as libraries have them, for the tests of the script engine
+/* native_library.c: C functions like those of real libraries, for tests of the script engine
  * `native`: numbers, vectors, lists, texts, pictures and nodes in and out; functions with the names
  * of events; a sensor to poll. Called on the browser's thread. */
 #include <stdint.h>
@@ -27,7 +27,8 @@ void turn(const float* r, float* out) {
   out[3] += 1;
 }
 
-/* All numbers of a list and one more; *count is the room, then the number of elements. */
+/* Returns all numbers of a list and one more. *count is the capacity on entry and the number of
+ * elements on return. */
 void more_floats(const float* v, uint32_t n, float* out, uint32_t* count) {
   if (n + 1 > *count) return;
   memcpy(out, v, n * sizeof *v);
@@ -57,7 +58,7 @@ void reverse4(const float* v, uint32_t n, float* out, uint32_t* count) {
   *count = n;
 }
 void liar(int32_t in, int32_t* out, uint32_t* count) { *out = in, *count += 1; }
-/* As solvers do: three numbers, whether there is a solution. */
+/* Like a solver: returns three numbers and whether there is a solution. */
 int solve(const float* target, float* joints) {
   for (int i = 0; i < 3; ++i) joints[i] = target[i] * 10;
   return target[0] >= 0;
@@ -108,7 +109,7 @@ int hello(const XsHost* host, XsNode self, double time) {
   return 0;
 }
 
-/* Found by their names: a counter that has something new every second time it is asked. */
+/* Functions found by their names: a counter that has news every second time it is polled. */
 static int32_t asked, started;
 void initialize(int32_t from) {
   started = from;

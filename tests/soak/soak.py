@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Long runs that must not grow; `make soak`. A window under Xvfb in which somebody moves, clicks and presses keys at random, while
-Scripts make and remove nodes and the world's file is written anew; and a master whose workers are killed and started again. Both at
-once, each on its own. Fails if one of them ends by itself, makes a wrong frame, or if its memory or its descriptors grow.
+"""Long runs whose memory must not grow (`make soak`). One run is a window under Xvfb with random
+mouse motion, clicks and keys, while Scripts create and remove nodes and the world's file is
+rewritten. The other is a master whose workers are killed and restarted. Both run at once,
+independently. Fails if one of them ends by itself or makes a wrong frame, or if its memory or
+number of descriptors grows.
 
-soak.py [--minutes N] [--window] [--cluster] [--out FOLDER]      default: both, for 60 minutes, into build/soak
-"""
+soak.py [--minutes N] [--window] [--cluster] [--out FOLDER]
+    default: both, for 60 minutes, into build/soak"""
 import argparse
 import json
 import os
@@ -59,7 +61,8 @@ FRAME = {"width": 48, "height": 36, "spp": 4}
 
 
 def report(what, samples, talk):
-    """Judges samples of (seconds, bytes, descriptors): the second quarter against the last, so that caches may fill at first."""
+    """Judges samples of (seconds, bytes, descriptors). Compares the second quarter with the last,
+    so that caches may fill at first."""
     quarter = max(len(samples) // 4, 1)
     early, late = samples[quarter:2 * quarter] or samples, samples[-quarter:]
     before, after = (statistics.median(s[1] for s in part) for part in (early, late))
@@ -79,7 +82,8 @@ def window(seconds, out):
     vv = openrt_c.build() / "bin/vv"
     samples, actions, good = [], 0, True
     with display("640x480") as name:
-        # One arena for all threads: with an arena a thread the C library's heap fills up for an hour, and hides a small leak.
+        # One arena for all threads. With one arena per thread the C library's heap grows for an
+        # hour and hides a small leak.
         env = {**os.environ, "DISPLAY": name, "SDL_AUDIODRIVER": "dummy", "SDL_RENDER_DRIVER": "software", "MALLOC_ARENA_MAX": "1"}
         with open(out / "window.log", "w") as log:
             program = subprocess.Popen([vv, "world.wrl", "--watch", "--size", "200x150", "--spp", "4", "--threads", "1"], cwd=folder, env=env,
@@ -166,7 +170,7 @@ def main():
     out, seconds = given.out.resolve(), 60 * given.minutes
     if given.window != given.cluster:
         return 0 if (window if given.window else master)(seconds, out) else 1
-    # Each in a process of its own: what is measured is the memory of one.
+    # Each part runs in a process of its own, so that the memory of one is measured.
     parts = [subprocess.Popen([sys.executable, __file__, "--minutes", str(given.minutes), "--out", str(out), part])
              for part in ("--window", "--cluster")]
     return max(part.wait() for part in parts)

@@ -1,8 +1,8 @@
 // cluster_master.cpp: tests the master against fake workers that speak the protocol and compute
 // their samples by a formula. Each link delivers in order, but the links take turns at random.
 // Workers are lost, join late, stall, send everything twice or send garbage. The picture must
-// always have the same bytes. Time is a number and randomness has a seed. Longer than 500 lines
-// because the tests share one rig.
+// always have the same bytes. Time is a number and randomness has a seed.
+// Longer than 500 lines because the tests share one rig.
 #include <cstring>
 #include <deque>
 #include <random>
@@ -38,7 +38,7 @@ message::Hello greeting() {
 // Returns the result of a job: a formula of pixel, sample and seed.
 JobResult samplesOf(const edit::FrameSettingsT& frame, const Job& job, const Tile& tile) {
   JobResult result;
-  startSums(result.sums, size_t(tile.x1 - tile.x0) * (tile.y1 - tile.y0), gatheringOf(frame));
+  startSums(result.sums, size_t(tile.x1 - tile.x0) * (tile.y1 - tile.y0), requiredSums(frame));
   size_t at = 0;
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++, at++)

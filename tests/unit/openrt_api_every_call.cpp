@@ -164,10 +164,10 @@ const Named needContext[] = {
 };
 // Functions that need no context.
 const char* const anywhere[] = {
-    "rtGetError",     "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent",
-    "rtGetCurrent",   "rtDeleteContext",   "rtInit",       "rtExit",
-    "rtCancel",       "rtProgress",        "rtSnapshot",   "rtGetWorkers",
-    "rtRunningShader"};
+    "rtGetError",      "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent",
+    "rtGetCurrent",    "rtDeleteContext",   "rtInit",       "rtExit",
+    "rtCancel",        "rtProgress",        "rtSnapshot",   "rtGetWorkers",
+    "rtRunningShader", "rtGetQualityInfo"};
 
 enum State { Outside, Definition, List };
 struct Wrong {

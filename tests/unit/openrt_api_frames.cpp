@@ -2,6 +2,8 @@
 // queries; the order of edits.
 #include <cmath>
 #include <cstring>
+#include <set>
+#include <string>
 
 #include "unit/openrt_api_support.h"
 
@@ -43,6 +45,42 @@ TEST_F(Frames, BadSettingsAreErrorsAndChangeNothing) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtQuality(RT_SHADOWS, 2));
   EXPECT_FAILS(RT_INVALID_ENUM, rtQuality(99, 1));
   EXPECT_TRUE(commit().edits.edits.empty());
+}
+
+TEST_F(Frames, TheTableOfQualitySettingsIsWhatIsAccepted) {
+  const auto set = [](const RTqualityInfo& info, double value) {
+    if (info.isReal)
+      rtQualityf(info.quality, value);
+    else
+      rtQuality(info.quality, int(value));
+    return rtGetError();
+  };
+  RTqualityInfo info{};
+  EXPECT_EQ(rtGetQualityInfo(0, &info), 0) << "its size is not set";
+  info.size = sizeof info;
+  EXPECT_EQ(rtGetQualityInfo(-1, &info), 0);
+  EXPECT_EQ(rtGetQualityInfo(0, nullptr), 0);
+  std::set<std::string> names;
+  std::set<RTenum> settings;
+  int count = 0;
+  for (; rtGetQualityInfo(count, &info); count++) {
+    SCOPED_TRACE(info.name);
+    EXPECT_EQ(info.size, sizeof info);
+    names.insert(info.name);
+    settings.insert(info.quality);
+    EXPECT_STRNE(info.text, "");
+    for (const double good : {info.minimum, info.maximum, info.defaultValue})
+      EXPECT_EQ(set(info, good), RTenum(RT_NO_ERROR)) << good;
+    EXPECT_EQ(set(info, 0),
+              RTenum(info.zeroIsAuto || info.minimum <= 0 ? RT_NO_ERROR : RT_INVALID_VALUE));
+    if (info.quality == RT_SEED) continue; // every int is a seed
+    EXPECT_EQ(set(info, info.minimum - 1),
+              RTenum(info.zeroIsAuto && info.minimum == 1 ? RT_NO_ERROR : RT_INVALID_VALUE));
+    if (info.quality != RT_CLAMP) EXPECT_EQ(set(info, info.maximum + 1), RTenum(RT_INVALID_VALUE));
+  }
+  EXPECT_EQ(count, RT_TILE_SIZE);
+  EXPECT_EQ(names.size(), size_t(count));
+  EXPECT_EQ(settings.size(), size_t(count));
 }
 
 TEST(FramesWithoutBuffer, AFrameNeedsASize) {
@@ -199,7 +237,7 @@ TEST_F(Frames, EditsComeInTheirOrder) {
 
 // Where frames can overlap, the next frame is started before the API waits for the last one.
 TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
-  const auto course = [&] { return std::exchange(captured->course, ""); };
+  const auto backendCalls = [&] { return std::exchange(captured->backendCalls, ""); };
   const auto finished = [&] {
     RTstats stats{};
     stats.size = sizeof(stats);
@@ -209,30 +247,30 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
   float pixels[32];
   rtSwapBuffers();
   rtSwapBuffers();
-  EXPECT_EQ(course(), "aswas");
+  EXPECT_EQ(backendCalls(), "aswas");
   EXPECT_EQ(finished(), 1u);
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_EQ(rtFinishFrame(), 0);
-  EXPECT_EQ(course(), "w");
+  EXPECT_EQ(backendCalls(), "w");
   EXPECT_EQ(finished(), 2u);
 
   captured->pipelines = true;
   rtSwapBuffers();
   rtSwapBuffers();
-  EXPECT_EQ(course(), "asasw");
+  EXPECT_EQ(backendCalls(), "asasw");
   EXPECT_EQ(finished(), 3u);
   rtQuality(RT_FRAMES_IN_FLIGHT, 3);
   rtFrameBuffer(8, 2, RT_RGBA);
   rtSwapBuffers();
   rtSwapBuffers();
   rtSwapBuffers();
-  EXPECT_EQ(course(), "asasasw");
+  EXPECT_EQ(backendCalls(), "asasasw");
   EXPECT_EQ(finished(), 4u);
   rtReadPixels(RT_RGBA, pixels, 32); // of the previous size
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_FAILS(RT_INVALID_VALUE, rtReadPixels(RT_RGBA, pixels, 32));
   rtRender(); // cancels the frames that are left
-  EXPECT_EQ(course(), "wcwwasw");
+  EXPECT_EQ(backendCalls(), "wcwwasw");
   EXPECT_EQ(finished(), 8u);
   EXPECT_EQ(rtFinishFrame(), 0);
 }
@@ -240,26 +278,26 @@ TEST_F(Frames, ABackendThatPipelinesHasTheNextFrameBeforeItIsAskedForTheLast) {
 // While a frame is being handed over, the backend does not know it yet. A cancellation at that time
 // reaches the frame all the same.
 TEST_F(Frames, ACancellationWhileAFrameIsBegunIsForThatFrame) {
-  const auto course = [&](const char* cancelIn, void (*call)()) {
+  const auto backendCalls = [&](const char* cancelIn, void (*call)()) {
     captured->cancelIn = cancelIn;
-    captured->course.clear();
+    captured->backendCalls.clear();
     call();
-    return captured->course;
+    return captured->backendCalls;
   };
-  EXPECT_EQ(course("a", rtRender), "acscw");
-  EXPECT_EQ(course("", rtRender), "asw"); // and only that frame
-  EXPECT_EQ(course("s", rtRender), "asccw");
-  EXPECT_EQ(course("", rtSwapBuffers), "as");
-  EXPECT_EQ(course("a", rtSwapBuffers), "wacsc");
+  EXPECT_EQ(backendCalls("a", rtRender), "acscw");
+  EXPECT_EQ(backendCalls("", rtRender), "asw"); // and only that frame
+  EXPECT_EQ(backendCalls("s", rtRender), "asccw");
+  EXPECT_EQ(backendCalls("", rtSwapBuffers), "as");
+  EXPECT_EQ(backendCalls("a", rtSwapBuffers), "wacsc");
   // Cancelled while the API waits for the previous frame: that one ends, the next is complete.
-  EXPECT_EQ(course("w", rtSwapBuffers), "wcas");
+  EXPECT_EQ(backendCalls("w", rtSwapBuffers), "wcas");
   rtCancel(handle);
-  EXPECT_EQ(course("", rtSwapBuffers), "was");
+  EXPECT_EQ(backendCalls("", rtSwapBuffers), "was");
   // rtRender cancels the previous frame and is cancelled itself.
-  EXPECT_EQ(course("w", rtRender), "cwcascwc");
+  EXPECT_EQ(backendCalls("w", rtRender), "cwcascwc");
   captured->pipelines = true;
-  EXPECT_EQ(course("", rtSwapBuffers), "as");
-  EXPECT_EQ(course("s", rtSwapBuffers), "asccw");
+  EXPECT_EQ(backendCalls("", rtSwapBuffers), "as");
+  EXPECT_EQ(backendCalls("s", rtSwapBuffers), "asccw");
 }
 
 TEST_F(Frames, AFrameThatFailsIsNotTheFinishedOne) {

@@ -25,7 +25,7 @@ struct Captured {
   std::vector<std::shared_ptr<const Commit>> commits;
   int starts = 0, waits = 0, cancels = 0;
   bool failNextApply = false, failNextWait = false, pipelines = false;
-  std::string course;   // backend calls so far: a apply, s start, w wait, c cancel
+  std::string backendCalls;   // backend calls so far: a apply, s start, w wait, c cancel
   std::string cancelIn; // letters of the calls during which rtCancel() is called
 };
 
@@ -37,24 +37,24 @@ class CaptureBackend final : public Backend {
       captured_->failNextApply = false;
       throw std::bad_alloc();
     }
-    happens('a');
+    recordCall('a');
     captured_->validator.check(*commit);
     captured_->commits.push_back(std::move(commit));
   }
   bool pipelines() const override { return captured_->pipelines; }
   void start() override {
     captured_->starts++;
-    happens('s');
+    recordCall('s');
   }
   void wait() override {
     captured_->waits++;
-    happens('w');
+    recordCall('w');
     if (std::exchange(captured_->failNextWait, false))
       throw ClusterError("2 workers are needed, there is 1");
   }
   void cancel() override {
     captured_->cancels++;
-    captured_->course += 'c';
+    captured_->backendCalls += 'c';
   }
   std::vector<RTworker> workers() const override {
     std::vector<RTworker> workers(2);
@@ -83,8 +83,8 @@ class CaptureBackend final : public Backend {
   }
 
  private:
-  void happens(char what) {
-    captured_->course += what;
+  void recordCall(char what) {
+    captured_->backendCalls += what;
     if (captured_->cancelIn.find(what) != std::string::npos) rtCancel(rtGetCurrent());
   }
   std::shared_ptr<Captured> captured_;

@@ -84,16 +84,16 @@ TEST(Clusters, OneForEveryPath) {
   EXPECT_EQ(places, (Ids{0, 11, 20, 21}));
   // The outer instance moves, and the one below it is hidden.
   EXPECT_EQ(apply(scene, instance(12, 0, 2, 30, true)).moved, Ids{12});
-  EXPECT_EQ(replace(scene, flat, {12}), (Ids{2, 3}));
+  EXPECT_EQ(updateClusters(scene, flat, {12}), (Ids{2, 3}));
   EXPECT_EQ(flat.clusters[3].world.m[12], 31);
   apply(scene, instance(10, 2, 1, 5, true));
-  EXPECT_EQ(replace(scene, flat, {10, 12, 10}), (Ids{1, 2, 3}));
+  EXPECT_EQ(updateClusters(scene, flat, {10, 12, 10}), (Ids{1, 2, 3}));
   EXPECT_EQ(flat.clusters[1].world.m[12], 15);
   EXPECT_EQ(flat.clusters[3].world.m[12], 35);
   auto hidden = instance(12, 0, 2, 30, true);
   hidden.visible = false;
   apply(scene, std::move(hidden));
-  replace(scene, flat, {12});
+  updateClusters(scene, flat, {12});
   EXPECT_TRUE(flat.clusters[1].visible);
   EXPECT_FALSE(flat.clusters[2].visible);
   EXPECT_FALSE(flat.clusters[3].visible);
@@ -134,7 +134,7 @@ TEST(Clusters, ATowerOfDynamicDoublingsIsCutOff) {
   EXPECT_TRUE(flat.truncated);
   EXPECT_LE(flat.clusters.size(), maxClusters);
   apply(scene, instance(500, 0, 1, 7, true));
-  EXPECT_EQ(replace(scene, flat, {500}).size(), flat.clusters.size() - 1);
+  EXPECT_EQ(updateClusters(scene, flat, {500}).size(), flat.clusters.size() - 1);
 }
 
 TEST(Changes, AreNamed) {

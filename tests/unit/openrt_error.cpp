@@ -209,8 +209,9 @@ TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean
   const double before = map.summary().meanInterval;
   ASSERT_LT(before, .3);
   EXPECT_EQ(map.summary().trusted, pixels);
-  EXPECT_FALSE(map.miss(0, .3, .2));                                    // less than half of 2
-  for (size_t i = 1; i < pixels; i++) EXPECT_TRUE(map.miss(i, .3, .2)); // more than a tenth of it
+  EXPECT_FALSE(map.addMissing(0, .3, .2)); // less than half of 2
+  for (size_t i = 1; i < pixels; i++)
+    EXPECT_TRUE(map.addMissing(i, .3, .2)); // more than a tenth of it
   EXPECT_EQ(map.summary().trusted, 1u);
   EXPECT_NEAR(map.summary().meanInterval, std::hypot(before, .1), 1e-6);
 }
@@ -218,7 +219,7 @@ TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean
 TEST(Error, whatChanceMayHaveMissedDoesNotDependOnTheColourOfALamp) {
   const float white[3] = {.5f, .5f, .5f}, tinted[3] = {.5f, .2f, .1f}, blue[3] = {0, 0, 9},
               weakest[3] = {0, 0, 4.4f};
-  ChanceLight a, b;
+  UnsampledLight a, b;
   a.send(white, 9);
   b.send(tinted, 9);
   EXPECT_DOUBLE_EQ(a.light, 4.5);

@@ -98,7 +98,7 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
       if (i % 4 == 0) b.bothSides = true;
       if (i % 5 == 0) b.reach = 3;
       if (i % 7 == 0) { // a spot light
-        b.cosineBeyond = 1;
+        b.cosineEmission = 1;
         b.cosineNormals = .7f;
       }
       lights.push_back(b);
@@ -123,8 +123,9 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
           facing -= way[k] * n[k];
         }
         if (b.bothSides) leaving = std::fabs(leaving);
-        const bool lit = b.cosineBeyond == 1 ? leaving > double(b.cosineNormals) * std::sqrt(square)
-                                             : leaving > 0;
+        const bool lit = b.cosineEmission == 1
+                             ? leaving > double(b.cosineNormals) * std::sqrt(square)
+                             : leaving > 0;
         if (!lit || facing <= 0 || square > double(b.reach) * b.reach) continue;
         ASSERT_GT(tree.probability(p, n, i), 0) << i;
         ASSERT_GT(tree.probability(p, nullptr, i), 0) << i;

@@ -48,19 +48,19 @@ struct Bench {
     const float* square[2] = {u.data(), v.data()};
     LobeSamples samples(arena, n);
     samples.sample(lobe, hits, n, hit.data(), square);
-    LobeAnswers answers(arena, n);
+    LobeValues answers(arena, n);
     answers.evaluate(lobe, hits, n, hit.data(), samples.direction);
     double sum = 0, some = 0;
     for (uint32_t i = 0; i < n; i++) {
-      if (!(samples.density[i] > 0)) continue;
+      if (!(samples.pdf[i] > 0)) continue;
       some++;
       sum += samples.value[0][i];
       const float d[3] = {samples.direction[0][i], samples.direction[1][i],
                           samples.direction[2][i]};
       EXPECT_NEAR(dot3(d, d), 1, 1e-5);
       // Evaluated again for the rounded direction; near the axis of a narrow lobe digits are lost.
-      EXPECT_NEAR(answers.density[i] / samples.density[i], 1, 2e-3) << i;
-      EXPECT_NEAR(answers.value[0][i], samples.value[0][i] * samples.density[i],
+      EXPECT_NEAR(answers.pdf[i] / samples.pdf[i], 1, 2e-3) << i;
+      EXPECT_NEAR(answers.value[0][i], samples.value[0][i] * samples.pdf[i],
                   3e-3 * answers.value[0][i] + 1e-6)
           << i;
     }
@@ -70,7 +70,7 @@ struct Bench {
   // theta and phi.
   std::pair<double, double> integrated(uint32_t rows) {
     const uint32_t columns = rows;
-    double value = 0, density = 0;
+    double value = 0, pdf = 0;
     for (uint32_t row = 0; row < rows; row++) {
       std::vector<float> d[3];
       for (auto& a : d) a.resize(columns);
@@ -85,15 +85,15 @@ struct Bench {
       }
       const float* directions[3] = {d[0].data(), d[1].data(), d[2].data()};
       ArenaScope scope(arena);
-      LobeAnswers answers(arena, columns);
+      LobeValues answers(arena, columns);
       answers.evaluate(lobe, hits, columns, hit.data(), directions);
       const double cell = 2 * M_PI / columns * M_PI / rows * s;
       for (uint32_t c = 0; c < columns; c++) {
         value += answers.value[0][c] * cell;
-        density += answers.density[c] * cell;
+        pdf += answers.pdf[c] * cell;
       }
     }
-    return {value, density};
+    return {value, pdf};
   }
 };
 
@@ -109,9 +109,9 @@ TEST_P(Lobe, WhatIsSampledIsWhatIsEvaluated) {
   for (const double degrees : {0., 30., 60., 80., 89.}) {
     Bench bench(GetParam().kind, GetParam().first, GetParam().second, degrees);
     const auto [mean, some] = bench.sampled(256);
-    const auto [value, density] = bench.integrated(1200);
+    const auto [value, pdf] = bench.integrated(1200);
     EXPECT_NEAR(mean, value, 1e-2) << degrees;
-    EXPECT_NEAR(some, density, 1e-2) << degrees;
+    EXPECT_NEAR(some, pdf, 1e-2) << degrees;
     EXPECT_LE(mean, GetParam().kind == RTS_LOBE_ROUGH_DIELECTRIC ? 2.26 : 1.0001) << degrees;
   }
 }
@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Lobes, GlossyIsReciprocal) {
   Bench one(RTS_LOBE_GLOSSY, .4f, 1 / 1.5f, 20), other(RTS_LOBE_GLOSSY, .4f, 1 / 1.5f, 65);
   const uint32_t hit = 0;
-  LobeAnswers a(one.arena, 1), b(one.arena, 1);
+  LobeValues a(one.arena, 1), b(one.arena, 1);
   const float to65[3] = {float(std::sin(65 * M_PI / 180)), 0, float(std::cos(65 * M_PI / 180))};
   const float to20[3] = {float(std::sin(20 * M_PI / 180)), 0, float(std::cos(20 * M_PI / 180))};
   const float *first[3] = {&to65[0], &to65[1], &to65[2]},

@@ -145,24 +145,24 @@ TEST(PictureError, pixelsInDoubtHoldAnEdgeOrNone) {
 
 TEST(PictureError, whatNoPathHasMetIsBoundByTheRuleOfThree) {
   Ledger ledger;
-  const auto missed = [&ledger] { return ledger.missedByChance(ledger, 1000); };
+  const auto missed = [&ledger] { return ledger.missedRadiance(ledger, 1000); };
   EXPECT_EQ(missed(), 0);
   const float grey[] = {.1f, .1f, .1f}, bright[] = {40, 40, 40}, dim[] = {20, 20, 20};
   for (int i = 0; i < 100; i++)
-    ledger.chance.send(grey, 150); // .3 of radiance 50 for each of 100 rays in 1000 samples
-  ledger.chance.meet(dim, 150);
+    ledger.unsampled.send(grey, 150); // .3 of radiance 50 for each of 100 rays in 1000 samples
+  ledger.unsampled.meet(dim, 150);
   EXPECT_NEAR(missed(), 2.996 * .1 * 150 / 1000, 5e-4);
   // One path has hit it: with 95 % confidence at most 4.74 are expected.
-  ledger.chance.meet(bright, 150);
+  ledger.unsampled.meet(bright, 150);
   EXPECT_NEAR(missed(), 3.744 * .1 * 150 / 1000, 5e-4);
   // Enough hits: the samples show the light.
-  for (int i = 0; i < 31; i++) ledger.chance.meet(bright, 150);
+  for (int i = 0; i < 31; i++) ledger.unsampled.meet(bright, 150);
   EXPECT_EQ(missed(), 0);
-  ledger.chanceSky.send(grey, 30);             // no ray of another kind has hit anything
+  ledger.unsampledSky.send(grey, 30);          // no ray of another kind has hit anything
   EXPECT_NEAR(missed(), .1 * 30 / 1000, 1e-3); // at most all of them
   Ledger tile;
-  tile.chanceSky.send(grey, 30);
-  EXPECT_NEAR(tile.missedByChance(ledger, 10), .1 * 30 / 10, 1e-3);
+  tile.unsampledSky.send(grey, 30);
+  EXPECT_NEAR(tile.missedRadiance(ledger, 10), .1 * 30 / 10, 1e-3);
 }
 
 // E|K - a| / (sqrt(2/pi) E sqrt(K)) for a Poisson variable K, summed by hand.

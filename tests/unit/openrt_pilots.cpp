@@ -45,17 +45,17 @@ class PilotsOf : public testing::Test {
     for (PixelError& e : errors) out.push_back(pilotPixel(e, nullptr));
     return out;
   }
-  std::vector<Pilots::Verdict> judgeAll(const PixelError& left, const PixelError& right,
-                                        bool timed = false) {
+  std::vector<Pilots::Decision> decideAll(const PixelError& left, const PixelError& right,
+                                          bool timed = false) {
     Pilots pilots(frame_, TileGrid(frame_), timed);
     note(pilots, 0, left);
     note(pilots, 1, right);
-    return pilots.judgeAll();
+    return pilots.decideAll();
   }
   edit::FrameSettingsT frame_;
 };
 
-void expect(const Pilots::Verdict& v, uint32_t samples, bool pilot) {
+void expect(const Pilots::Decision& v, uint32_t samples, bool pilot) {
   EXPECT_EQ(v.samples, samples);
   EXPECT_EQ(v.pilot, pilot);
 }
@@ -64,27 +64,27 @@ void expect(const Pilots::Verdict& v, uint32_t samples, bool pilot) {
 
 // Aims a tenth below the target, in steps of a quarter of an octave.
 TEST_F(PilotsOf, NoiseFallsByTheRootOfTheSamples) {
-  const auto v = judgeAll(error(.08f, true, false), error(.24f, true, false));
+  const auto v = decideAll(error(.08f, true, false), error(.24f, true, false));
   expect(v[0], 32, false);
   expect(v[1], 256, false); // 32 * (.24 / .09)^2 = 228
-  expect(judgeAll(error(.17f, true, false), error(.1f, true, false))[0], 128, false); // 114
-  expect(judgeAll(error(.1f, true, false), error(.1f, true, false))[0], 64, false);   // 39.5
+  expect(decideAll(error(.17f, true, false), error(.1f, true, false))[0], 128, false); // 114
+  expect(decideAll(error(.1f, true, false), error(.1f, true, false))[0], 64, false);   // 39.5
 }
 
 TEST_F(PilotsOf, WhatIsFarFromThePilotIsAskedAgain) {
-  const auto v = judgeAll(error(.5f, true, false), error(.01f, true, false)); // 988
+  const auto v = decideAll(error(.5f, true, false), error(.01f, true, false)); // 988
   expect(v[0], 64, true);
   expect(v[1], 32, false);
   frame_.samples = 512; // the maximum: no further pilot is needed
-  expect(judgeAll(error(.5f, true, false), error(.01f, true, false))[0], 512, false);
+  expect(decideAll(error(.5f, true, false), error(.01f, true, false))[0], 512, false);
 }
 
 TEST_F(PilotsOf, WhoDoesNotTrustItselfIsAskedAgainWithMore) {
-  const auto v = judgeAll(error(.05f, false, false), error(.01f, true, false));
+  const auto v = decideAll(error(.05f, false, false), error(.01f, true, false));
   expect(v[0], 64, true);
   expect(v[1], 32, false);
   // Half the uncertainty of the neighbouring tile is more than a quarter of the target.
-  expect(judgeAll(error(.08f, false, false), error(.01f, true, false))[1], 64, true);
+  expect(decideAll(error(.08f, false, false), error(.01f, true, false))[1], 64, true);
 }
 
 TEST_F(PilotsOf, TheyAreAThirdOfTheSamplesAtMost) {
@@ -93,10 +93,10 @@ TEST_F(PilotsOf, TheyAreAThirdOfTheSamplesAtMost) {
     Pilots pilots(frame_, TileGrid(frame_), false);
     note(pilots, 0, error(2, false, false));
     note(pilots, 1, error(2, false, false));
-    Pilots::Verdict v = pilots.judgeAll()[0];
+    Pilots::Decision v = pilots.decideAll()[0];
     uint32_t all = 0;
     for (std::vector<PixelError> errors(64, error(2, false, false)); v.pilot;
-         v = pilots.judge(0, pixels(errors), v.samples)) {
+         v = pilots.decide(0, pixels(errors), v.samples)) {
       ASSERT_GT(v.samples, 0u);
       all += v.samples;
     }
@@ -106,8 +106,8 @@ TEST_F(PilotsOf, TheyAreAThirdOfTheSamplesAtMost) {
 }
 
 TEST_F(PilotsOf, UnderATimeLimitTheFirstOneDecides) {
-  expect(judgeAll(error(.05f, false, false), error(.01f, true, false), true)[0], 4096, false);
-  expect(judgeAll(error(.5f, true, false), error(.01f, true, false), true)[0], 1024, false);
+  expect(decideAll(error(.05f, false, false), error(.01f, true, false), true)[0], 4096, false);
+  expect(decideAll(error(.5f, true, false), error(.01f, true, false), true)[0], 1024, false);
 }
 
 // Those at the border and between the tiles; their bound falls as 1 / samples.
@@ -116,11 +116,11 @@ TEST_F(PilotsOf, ConstantPixelsBesideAnEdgeCount) {
   std::vector<PixelError> black(64, error(0, true, true, 0));
   note(pilots, 0, black[0]);
   note(pilots, 1, error(0, true, true, 1));
-  const auto v = pilots.judgeAll();
+  const auto v = pilots.decideAll();
   expect(v[0], 64, true);
   expect(v[1], 32, false); // reduces 3 / N by 3 / 3.03
   // 28 of the black pixels, at the rim, are in doubt by 3 / N * 3 / .03 each: 1456 samples.
-  expect(pilots.judge(0, pixels(black), 256), 1536, false);
+  expect(pilots.decide(0, pixels(black), 256), 1536, false);
 }
 
 TEST_F(PilotsOf, PathsFromLampsDoNotGoAwayBySamples) {
@@ -135,5 +135,5 @@ TEST_F(PilotsOf, PathsFromLampsDoNotGoAwayBySamples) {
   const std::vector<PixelError> errors(64, e);
   pilots.note(0, all, errors);
   pilots.note(1, all, errors);
-  expect(pilots.judgeAll()[0], 64, false);
+  expect(pilots.decideAll()[0], 64, false);
 }

@@ -383,7 +383,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"FrameSize", [](Example& e) { e.frame.width = 70000; },
               "a frame of an impossible size"},
         Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 10; }, "unknown channels"},
-        Fault{"FrameSamples", [](Example& e) { e.frame.samples = 0; }, "impossible quality"},
+        Fault{"FrameSamples", [](Example& e) { e.frame.samples = 0; }, "impossible samples"},
         Fault{"DeletedUnknown", [](Example& e) { add(e.edits, edit::DeleteLightT()).id = 5; },
               "unknown id 5"},
         Fault{"DeletedInUse", [](Example& e) { add(e.edits, edit::DeleteObjectT()).id = 4; },

@@ -46,7 +46,7 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
   const auto value = [&]() -> double {
     return same ? one : floats ? double(float(random())) : number();
   };
-  const Gathering g = gatheringOf(frame);
+  const RequiredSums g = requiredSums(frame);
   JobResult result;
   result.ledger = {
       number(), number(), number(), {number(), number(), number()}, {number(), number(), number()},

@@ -137,8 +137,7 @@ TEST(Spherical, R11NothingOfTrianglesSeenEdgeOnOrWithoutArea) {
     double d[3], distance;
     EXPECT_EQ(t.solidAngle(), 0);
     EXPECT_FALSE(t.sample(.3, .7, d, distance));
-    EXPECT_EQ(t.density(corner == line ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0}),
-              0);
+    EXPECT_EQ(t.pdf(corner == line ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0}), 0);
   }
 }
 
@@ -173,7 +172,7 @@ TEST(Spherical, FarTrianglesAreSpreadByArea) {
       PairSampler(1, 2, 3)(i, u, v);
       double d[3], distance;
       ASSERT_TRUE(t.sample(u, v, d, distance));
-      sum += 1 / t.density(d) / 4096;
+      sum += 1 / t.pdf(d) / 4096;
     }
     EXPECT_NEAR(sum / t.solidAngle(), 1, 1e-4) << e;
   }
@@ -199,7 +198,7 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
       const SphericalTriangle t(corner, origin);
       double d[3], distance;
       if (t.sample(u, v, d, distance)) {
-        const double e = 2 * d[2] / t.density(d);
+        const double e = 2 * d[2] / t.pdf(d);
         sums[0][0] += e;
         sums[0][1] += e * e;
       }
@@ -246,7 +245,7 @@ void ellipsoid(const float toRender[3][4], const float eye[3], double expectedSo
       onSphere += x * x;
     }
     longest = std::max(longest, std::fabs(onSphere - 1));
-    sum += 1 / s.density(d) / n; // estimates the solid angle
+    sum += 1 / s.pdf(d) / n; // estimates the solid angle
   }
   EXPECT_LT(longest, 1e-3);
   EXPECT_NEAR(sum / expectedSolidAngle, 1, 1e-3);
@@ -274,7 +273,7 @@ TEST(Spherical, InsideASphereThereIsNothingToChoose) {
     double d[3], distance;
     EXPECT_TRUE(s.inside());
     EXPECT_FALSE(s.sample(.5, .5, d, distance));
-    EXPECT_EQ(s.density(any), 0);
+    EXPECT_EQ(s.pdf(any), 0);
   }
 }
 

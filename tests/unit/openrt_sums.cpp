@@ -11,7 +11,7 @@
 namespace openrt {
 namespace {
 
-constexpr Gathering everything{true, true, true};
+constexpr RequiredSums everything{true, true, true};
 using Samples = std::vector<std::array<float, 3>>;
 
 // The first sample is darker than all others, so that the sums of differences from it have one

@@ -77,7 +77,7 @@ void setCompat(Options& o, const std::string& value) {
 void setTransport(Options& o, const std::string& value) {
   const std::optional<int> transport = picture::transportNamed(value);
   if (!transport)
-    throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::transportNames, value));
+    throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::transportNames(), value));
   o.render.transport = *transport;
 }
 
@@ -296,7 +296,9 @@ const OptionInfo table[] = {
      }},
     {"--spp", "N", "Quality",
      "Samples per pixel, 1 to 65536 (default 16; in the window 256, one after the other).",
-     [](Options& o, const std::string& v) { o.samples = int(readInteger(v, 1, 65536)); }},
+     [](Options& o, const std::string& v) {
+       o.samples = readWholeQuality(RT_SAMPLES_PER_PIXEL, v);
+     }},
     {"--error", "E|E%", "Quality",
      "Take as many samples in each part of the picture as it needs for a mean relative half-width "
      "E of the 95 % interval, at "
@@ -307,9 +309,9 @@ const OptionInfo table[] = {
      "Take samples in rounds over the whole picture for about this time, at most --spp (here by "
      "default 65536). Such a picture "
      "depends on the speed of the machine.",
-     [](Options& o, const std::string& v) { o.render.timeLimit = readNumber(v, 0, 1e6); }},
+     [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
-     [](Options& o, const std::string& v) { o.render.depth = int(readInteger(v, 0, 10000)); }},
+     [](Options& o, const std::string& v) { o.render.depth = readWholeQuality(RT_MAX_DEPTH, v); }},
     {"--transport", "auto|direct|whitted|path|light", "Quality",
      "How light is followed: auto (default: what the shaders of the world ask for; --explain and "
      "--stats say which and why), "
@@ -326,11 +328,11 @@ const OptionInfo table[] = {
     {"--clamp", "RADIANCE", "Quality",
      "No sample is brighter than this. It takes away fireflies, and light: the statistics say how "
      "much (default: no limit).",
-     [](Options& o, const std::string& v) { o.render.clamp = readNumber(v, 0, 1e30); }},
+     [](Options& o, const std::string& v) { o.render.clamp = readQuality(RT_CLAMP, v); }},
     {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
      [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
     {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
-     [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
+     [](Options& o, const std::string& v) { o.render.seed = readWholeQuality(RT_SEED, v); }},
     {"--threads", "N", "Quality",
      "Render threads; 0 (default): as many as the process may use. The picture does not depend on "
      "it.",

@@ -55,6 +55,17 @@ double readNumber(std::string_view text, double minimum, double maximum) {
   return value;
 }
 
+int readWholeQuality(RTenum quality, std::string_view text) {
+  const RTqualityInfo info = picture::qualityInfo(quality);
+  return int(readInteger(text, static_cast<long long>(info.minimum),
+                         static_cast<long long>(info.maximum)));
+}
+
+double readQuality(RTenum quality, std::string_view text) {
+  const RTqualityInfo info = picture::qualityInfo(quality);
+  return readNumber(text, info.minimum, info.maximum);
+}
+
 double readSeconds(std::string_view text) {
   double value = 0;
   if (!whole(text, value) || !(value >= 0 && value <= 1e6))

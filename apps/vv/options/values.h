@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libpicture/camera.h"
+#include "libpicture/quality.h"
 
 namespace vv {
 
@@ -43,6 +44,10 @@ struct FrameRange {
 long long readInteger(std::string_view text, long long minimum, long long maximum);
 // both limits are exclusive
 double readNumber(std::string_view text, double minimum, double maximum);
+// Read the value of a quality setting (RT_*) in the range that the library gives it: a whole
+// number; a number, with both limits excluded.
+int readWholeQuality(RTenum quality, std::string_view text);
+double readQuality(RTenum quality, std::string_view text);
 double readSeconds(std::string_view text); // seconds from 0 to a million
 double readShare(std::string_view text);   // above 0 up to 1, or a percentage
 // Parses a number of bytes or items, with the optional suffixes k, M, G (powers of 1024).

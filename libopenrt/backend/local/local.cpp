@@ -70,7 +70,7 @@ void LocalBackend::prepare() {
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
     warnedOfNearLamp_ = !warning.empty();
   }
-  next->manyLights = makeManyLights(*next, snapshot_.get());
+  next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
   if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass &&
       next->camera.shader.shaderClass->project) {
     auto sources =
@@ -108,7 +108,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
       flat_.setNumbers.clear();
       flat_.lightSet(unscopedLights(scene_));
     }
-    moved = replace(scene_, flat_, c.moved);
+    moved = updateClusters(scene_, flat_, c.moved);
     builder_.survey.place(flat_, moved);
   }
   scopedLights_ = scoped;

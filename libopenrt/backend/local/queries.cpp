@@ -181,7 +181,7 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
   RayHits found;
   found.allocate(arena, 1);
   accel_->intersect(ray, maskAll, Coherence::incoherent, found);
-  if (found.record[0] != noHit && culled(*snapshot_, ray, found, 0))
+  if (found.record[0] != noHit && isCulledHit(*snapshot_, ray, found, 0))
     accel_->intersectFronts(ray, maskAll, found);
   hit = hitOf(found, 0);
   return true;

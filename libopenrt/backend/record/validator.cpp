@@ -7,6 +7,7 @@
 #include "backend/record/validate_arrays.h"
 #include "openrt/openrt.h"
 #include "scene/channels.h"
+#include "scene/quality.h"
 #include "shading/parameters.h"
 #include "shading/registry.h"
 
@@ -166,16 +167,8 @@ void CommitValidator::check(const edit::FrameSettingsT& frame) {
          "a frame of an impossible size");
   demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0,
          "a frame with unknown channels");
-  demand(frame.samples >= 1 && frame.samples <= 65536 && frame.depth <= 10000 &&
-             frame.transport <= RT_TRANSPORT_LIGHT && frame.replicates <= maxReplicates &&
-             (frame.tile == 0 || (frame.tile >= smallestTile && frame.tile <= largestTile)),
-         "a frame of an impossible quality");
-  demand(frame.targetError >= 0 && frame.targetError <= 1 && frame.timeLimit >= 0 &&
-             frame.timeLimit <= maxTimeLimit,
-         "a frame of an impossible error or time limit");
-  demand(frame.energyCut >= 0 && frame.energyCut <= 1 && frame.clamp >= 0 &&
-             std::isfinite(frame.clamp),
-         "a frame of an impossible energy cut or clamp");
+  if (const char* setting = invalidQuality(frame))
+    demand(false, (std::string("a frame of an impossible ") + setting).c_str());
   hasFrame_ = true;
 }
 

@@ -94,6 +94,22 @@ enum {
   RT_LEAVES_CAUSTICS = 16
 };
 
+/* A quality setting, its range and its default. The library owns the texts, which are constants. */
+typedef struct RTqualityInfo {
+  size_t size;      /* Set it to sizeof(RTqualityInfo) before the call. */
+  RTenum quality;   /* RT_SAMPLES_PER_PIXEL ... */
+  const char* name; /* for people and command lines: "samples" ... */
+  int isReal;       /* 1 if rtQualityf sets it, 0 if rtQuality does */
+  double minimum, maximum, defaultValue;
+  int zeroIsAuto;      /* 1 if 0 is allowed outside of the range: the library then decides */
+  const char* choices; /* names of the values minimum, minimum + 1 ... with blanks between them;
+                          NULL if the values have no names */
+  const char* text;    /* a description for people */
+} RTqualityInfo;
+/* Writes what is known about quality setting number 0, 1 ... Returns 1, or 0 if there are not so
+ * many, or if info is NULL or info->size is not set. Works without a context. [any-thread] */
+RT_API int rtGetQualityInfo(int number, RTqualityInfo* info);
+
 /* Sets size (1 .. 65536 pixels each way, at most 2^28 in all) and channels of the frames that
  * follow. [context-thread] */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);

@@ -52,12 +52,15 @@ class ErrorMap {
   // becomes what the rule of three allows for. The same is done at the border of a picture that is
   // not of one colour. Calls `changed` for each such pixel.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
-  // Takes the trust of a pixel with random samples if it may lack more radiance than its interval,
-  // and returns whether it did. missed: bound of the radiance that no sample has found (ledger.h),
+  // Records the radiance that a finished pixel may lack because no sample has found it (ledger.h),
   // summed over the colours.
-  bool distrust(size_t pixel, double missed);
-  // Returns the statistics of the picture. missed: as for distrust(), of the whole picture.
-  ErrorSummary summary(double missed = 0) const;
+  //  - bound: bound by the samples of the pixel's tile. It takes the trust of a pixel with random
+  //    samples whose interval is narrower. Returns whether it did.
+  //  - expected: bound if light is found equally often everywhere in the picture. It widens the
+  //    interval of the summary's mean.
+  bool addMissing(size_t pixel, double bound, double expected);
+  // Returns the statistics of the picture.
+  ErrorSummary summary() const;
 
  private:
   struct Seen {
@@ -77,6 +80,7 @@ class ErrorMap {
   std::vector<PixelNoise> noise_;
   std::vector<Seen> seen_;
   float range_[3] = {}; // range of all pixels' colours; set by doubtConstants()
+  double missing_ = 0;  // sum over the pixels of the relative error by missing radiance
 };
 
 } // namespace openrt

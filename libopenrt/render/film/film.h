@@ -37,9 +37,9 @@ class Film {
   // Revises the errors of constant pixels beside edges. Call after the last store(), from one
   // thread.
   void finishErrors();
-  // Takes the trust of the tile's pixels that may lack more radiance than their interval. missed:
-  // bound of the radiance that no sample has found (ErrorMap). Call after finishErrors().
-  void distrust(const Tile& tile, double missed);
+  // Records the radiance that the tile's pixels may lack because no sample has found it
+  // (ErrorMap::addMissing). Call after finishErrors().
+  void addMissing(const Tile& tile, double bound, double expected);
   const ErrorMap& errors() const { return errors_; }
   bool read(uint32_t channel, std::span<float> out) const;
   // Snapshots of an unfinished picture: clear() empties the output, then copy() adds the finished

@@ -11,9 +11,6 @@
 namespace openrt {
 
 inline double sumOf(const float v[3]) { return double(v[0]) + double(v[1]) + double(v[2]); }
-inline double luminanceOf(const float v[3]) {
-  return .2126 * double(v[0]) + .7152 * double(v[1]) + .0722 * double(v[2]);
-}
 
 // Emitted light that only BSDF sampling can find: the ray comes from a non-specular surface by way
 // of mirrors or smooth boundaries, so light sampling cannot connect to the emitter.
@@ -29,13 +26,16 @@ struct UnsampledLight {
     rays += c.rays;
     met += c.met;
   }
+  // Counts a ray. brightest: radiance of that emitter, summed over the colours. Its colour is not
+  // known here, so the largest component of the throughput bounds what the ray could contribute.
   void send(const float throughput[3], double brightest) {
     if (!(brightest > 0)) return;
-    light += sumOf(throughput) * brightest;
+    light += double(std::max({throughput[0], throughput[1], throughput[2]})) * brightest;
     rays++;
   }
+  // Counts what such a ray has hit.
   void meet(const float radiance[3], double brightest) {
-    if (luminanceOf(radiance) >= .5 * brightest) met++;
+    if (sumOf(radiance) >= .5 * brightest) met++;
   }
   // Returns a bound of the share of rays that should have hit such an emitter but did not: the
   // upper 95 % bound of a Poisson variable (E. B. Wilson, M. M. Hilferty, The distribution of
@@ -80,7 +80,7 @@ struct Ledger { // all values are summed over the colours
     unsampledSky.add(l.unsampledSky);
   }
   // Returns a bound of the radiance that the mean of `paths` samples may lack, summed over the
-  // colours. all: the sum over the whole picture.
+  // colours, if rays of this tile find emitters as often as the rays that `all` sums up.
   double missedRadiance(const Ledger& all, double paths) const {
     if (!(paths > 0)) return 0;
     return (all.unsampled.missedShare() * unsampled.light +

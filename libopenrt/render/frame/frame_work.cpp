@@ -252,9 +252,14 @@ void FrameWork::Impl::advance() {
     {
       std::unique_lock alone(ending);
       film.finishErrors();
+      // A tile is trusted by what its own paths met: in another place of the picture another lamp
+      // may be the one that is met.
       const Ledger whole = wholeLedger();
-      for (uint32_t i = 0; i < count; i++)
-        film.distrust(grid.at(i), tiles[i].ledger.missedRadiance(whole, pathsOf(i)));
+      for (uint32_t i = 0; i < count; i++) {
+        const Ledger& tile = tiles[i].ledger;
+        film.addMissing(grid.at(i), tile.missedRadiance(tile, pathsOf(i)),
+                        tile.missedRadiance(whole, pathsOf(i)));
+      }
     }
     std::lock_guard lock(mutex);
     over = true;
@@ -396,11 +401,10 @@ void FrameWork::describeError(RTstats& stats) const {
   double paths = 0;
   for (uint32_t i = 0; i < impl_->count; i++) paths += impl_->pathsOf(i);
   const Ledger whole = impl_->wholeLedger();
-  const double missed = whole.missedRadiance(whole, paths);
-  const ErrorSummary s = impl_->film.errors().summary(missed);
+  const ErrorSummary s = impl_->film.errors().summary();
   stats.errorMean = s.mean;
   stats.errorMeanInterval = s.meanInterval;
-  stats.errorUnmet = missed;
+  stats.errorUnmet = whole.missedRadiance(whole, paths);
   stats.errorHalfWidth = s.halfWidth;
   stats.errorP99 = s.p99;
   stats.errorPixels = s.pixels;

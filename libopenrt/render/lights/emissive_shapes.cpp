@@ -79,13 +79,20 @@ RtsSurface evaluateEmission(const RenderScene& scene, uint32_t record, const Pro
   return surface;
 }
 
-// Computes the emitted luminance of the probed points.
-void emittedLuminance(const RenderScene& scene, uint32_t record, const ProbeRays& probes,
-                      Arena& arena, double* out) {
+// The radiance that a point or a side emits. The luminance decides how often it is sampled; the sum
+// of the colours bounds the light that is missing if no path has found it.
+struct Brightness {
+  double luminance = 0, sum = 0;
+};
+
+// Computes the emitted radiance of the probed points.
+void emittedBrightness(const RenderScene& scene, uint32_t record, const ProbeRays& probes,
+                       Arena& arena, Brightness* out) {
   const RtsSurface surface = evaluateEmission(scene, record, probes, arena);
   for (uint32_t i = 0; i < probes.count; i++) {
     const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
-    out[i] = luminance(c);
+    const double sum = double(c[0]) + double(c[1]) + double(c[2]);
+    out[i] = {luminance(c), std::isfinite(sum) && sum > 0 ? std::min(sum, 1e30) : 0};
   }
 }
 
@@ -103,7 +110,7 @@ void kernelNormal(const Record& r, const float normal[3], float out[3]) {
 // may vary, else from one.
 void triangleEmission(const RenderScene& scene, uint32_t record,
                       std::span<const EmissiveShapes::Shape> shapes, bool otherSide, Arena& arena,
-                      double* out) {
+                      Brightness* out) {
   const Record& r = scene.records[record];
   static constexpr float at[4][2] = {
       {1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
@@ -131,13 +138,16 @@ void triangleEmission(const RenderScene& scene, uint32_t record,
       probes.add(place, towards);
     }
   }
-  auto* each = arena.take<double>(probes.count);
-  emittedLuminance(scene, record, probes, arena, each);
-  for (uint32_t i = 0; i < probes.count; i++) out[i / places] += each[i] / places;
+  auto* each = arena.take<Brightness>(probes.count);
+  emittedBrightness(scene, record, probes, arena, each);
+  for (uint32_t i = 0; i < probes.count; i++) {
+    out[i / places].luminance += each[i].luminance / places;
+    out[i / places].sum += each[i].sum / places;
+  }
 }
 
 // The same for the outside of a sphere, from the ends of its axes.
-double sphereEmission(const RenderScene& scene, uint32_t record, Arena& arena) {
+Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& arena) {
   const Record& r = scene.records[record];
   ArenaScope scope(arena);
   ProbeRays probes(arena, 6);
@@ -157,10 +167,13 @@ double sphereEmission(const RenderScene& scene, uint32_t record, Arena& arena) {
       probes.hits.primitive[i] = 0;
       probes.add(place, towards);
     }
-  double each[6], sum = 0;
-  emittedLuminance(scene, record, probes, arena, each);
-  for (double x : each) sum += x / 6;
-  return sum;
+  Brightness each[6], mean;
+  emittedBrightness(scene, record, probes, arena, each);
+  for (const Brightness& x : each) {
+    mean.luminance += x.luminance / 6;
+    mean.sum += x.sum / 6;
+  }
+  return mean;
 }
 
 LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double back) {
@@ -218,9 +231,10 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   if (!(shader.traits & RTS_EMISSIVE) || !shader.shaderClass->surface) return;
   Arena arena;
   if (r.primitive == edit::Primitive::Sphere) {
-    const double outside = sphereEmission(scene, id, arena); // from inside, BSDF sampling finds it
+    const Brightness emission = sphereEmission(scene, id, arena);
+    const double outside = emission.luminance; // from inside, BSDF sampling finds it
     firstOf_[id] = uint32_t(shapes_.size());
-    brightest_ = std::max(brightest_, outside);
+    brightest_ = std::max(brightest_, sides.sum);
     bounds.push_back(sphereBounds(r, outside));
     shapes_.push_back(
         {id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
@@ -228,7 +242,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   }
   if (r.primitive != edit::Primitive::Triangles || !r.vertices) return;
   firstOf_[id] = uint32_t(shapes_.size());
-  std::vector<double> front, back;
+  std::vector<Brightness> front, back;
   const bool mirrored = mirrors(r);
   for (uint32_t first = 0; first < r.primitives; first += batchSize) {
     const uint32_t n = std::min(batchSize, r.primitives - first);
@@ -238,19 +252,20 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
       cornersOf(r, s.primitive, s.corner);
       if (mirrored) std::swap(s.corner[1], s.corner[2]);
     }
-    front.assign(n, 0);
-    back.assign(n, 0);
+    front.assign(n, {});
+    back.assign(n, {});
     const std::span<const Shape> shapes(shapes_.data() + begin, n);
     triangleEmission(scene, id, shapes, false, arena, front.data());
     triangleEmission(scene, id, shapes, true, arena, back.data());
     // The culled side does not emit.
-    if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, 0.0);
+    if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, Brightness());
     for (uint32_t i = 0; i < n; i++) {
       Shape& s = shapes_[begin + i];
-      brightest_ = std::max({brightest_, front[i], back[i]});
-      bounds.push_back(triangleBounds(s, front[i], back[i]));
+      const double ahead = front[i].luminance, behind = back[i].luminance;
+      brightest_ = std::max({brightest_, front[i].sum, back[i].sum});
+      bounds.push_back(triangleBounds(s, ahead, behind));
       if (bounds.back().intensity > 0)
-        s.sides = uint8_t((front[i] > 0 ? 1 : 0) | (back[i] > 0 ? 2 : 0));
+        s.sides = uint8_t((ahead > 0 ? 1 : 0) | (behind > 0 ? 2 : 0));
       s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);
     }
   }

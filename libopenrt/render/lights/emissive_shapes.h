@@ -30,7 +30,8 @@ class EmissiveShapes {
   explicit EmissiveShapes(const RenderScene& scene);
   bool empty() const { return tree_.empty(); }
   size_t size() const { return shapes_.size(); }
-  double brightest() const { return brightest_; } // largest mean luminance of a shape's side
+  // Returns the largest mean radiance of a shape's side, summed over the colours.
+  double brightest() const { return brightest_; }
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
   const LightTree& tree() const { return tree_; }
   // A point sampled on a shape. u, v: barycentric coordinates on a triangle. area: 1 / pdf by area,

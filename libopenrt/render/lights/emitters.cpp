@@ -7,6 +7,7 @@
 #include "render/lights/spherical.h"
 #include "render/render_scene.h"
 #include "render/surface/scatter.h"
+#include "scene/transports.h"
 
 namespace openrt {
 namespace {
@@ -28,7 +29,7 @@ const float* sideOf(const LightSampleContext& from) {
 } // namespace
 
 void Emitters::build(const RenderScene& scene, const RenderScene* before, bool samePlaces) {
-  if (scene.frame.transport < RT_TRANSPORT_PATH) return;
+  if (!tracesPaths(scene.frame.transport)) return;
   scene_ = &scene;
   const bool sameTextures = before && before->textures == scene.textures;
   const ShaderSlot& environment = scene.environment.shader;

@@ -40,7 +40,8 @@ class Emitters {
   // this scene.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
   bool any() const { return skyProbability_ >= 0; }
-  // Return the largest luminance of the sky alone, and of sky and shapes.
+  // Return the largest mean radiance, summed over the colours: of the sky's cells alone, and of
+  // these and the sides of shapes.
   double brightestSky() const;
   double brightest() const;
   // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point

@@ -1,6 +1,6 @@
 // illumination.h: evaluates the lights of a batch one after the other (RtsHost.lights, illuminate,
 // shadow). In path tracing the last one may be a light sampled separately for each hit
-// (render/lights/many_lights.h). [render]
+// (render/lights/light_sampler.h). [render]
 #pragma once
 
 #include "render/surface/batch.h"

@@ -17,7 +17,8 @@ class SkySampler {
   // Tabulates the scene's environment. usable() is false if there is none or it is black.
   explicit SkySampler(const RenderScene& scene);
   bool usable() const { return total_ > 0; }
-  double brightest() const { return brightest_; } // Returns the largest mean luminance of a cell.
+  // Returns the largest mean radiance of a cell, summed over the colours.
+  double brightest() const { return brightest_; }
   // Returns whether any of 2048 directions of the scene's environment has light. The environment
   // must have `miss`.
   static bool shines(const RenderScene& scene);
@@ -29,7 +30,9 @@ class SkySampler {
 
  private:
   SkySampler() = default;
-  void measure(const RenderScene& scene, std::vector<float>& cells) const;
+  // Writes the mean luminance of each cell; returns the largest mean radiance of one, colours
+  // summed.
+  double measure(const RenderScene& scene, std::vector<float>& cells) const;
   double solidAngle(uint32_t row) const;
   float cellPdf(uint32_t row, uint32_t column) const;
   uint32_t columns_ = 0, rows_ = 0;

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "render/lights/shadows.h"
+#include "render/surface/bsdf_samples.h"
 #include "render/surface/scatter.h"
-#include "render/surface/ways.h"
 #include "shading/running.h"
 
 namespace openrt {

@@ -10,6 +10,7 @@
 #include "render/path/paths.h"
 #include "render/path/sampler.h"
 #include "render/surface/surfaces.h"
+#include "scene/transports.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -314,7 +315,7 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
   const Bucket& bucket = scene_.buckets[range.bucket];
   // Path tracing uses the lobes of a class that has both `shade` and `surface`.
   if (bucket.shaderClass->surface &&
-      (!bucket.shaderClass->shade || scene_.frame.transport >= RT_TRANSPORT_PATH))
+      (!bucket.shaderClass->shade || tracesPaths(scene_.frame.transport)))
     return scatterRange(paths, points, bucket, order);
   RtsShading shaded;
   for (int k = 0; k < 3; k++) {

@@ -126,7 +126,8 @@ class TileRenderer {
   const RenderScene& scene_;
   const uint32_t width_; // width of the picture
   const RequiredSums required_;
-  const double brightest_, brightestSky_; // largest luminance of all emitters, and of the sky alone
+  // Largest radiance of all emitters, and of the sky alone, summed over the colours.
+  const double brightest_, brightestSky_;
   const std::atomic<bool>* stop_ = nullptr;
   Arena arena_;
   RayCounters counters_;

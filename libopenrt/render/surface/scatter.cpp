@@ -15,8 +15,9 @@
 #include "render/lights/shadows.h"
 #include "render/path/paths.h"
 #include "render/path/sampler.h"
+#include "render/surface/bsdf_samples.h"
 #include "render/surface/surfaces.h"
-#include "render/surface/ways.h"
+#include "scene/transports.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -100,7 +101,7 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
     }
   }
   addLights(batch, hits, radiance);
-  const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH;
+  const bool path = tracesPaths(scene_.frame.transport);
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
   Random random{};
   float* choices[2] = {};
@@ -234,7 +235,7 @@ void TileRenderer::spawnRays(const RtsBatch& batch, const Points& points, uint32
                              const Boundaries& boundaries, float* const choices[2],
                              float* const selectionProbability[]) {
   const RayState ray = paths.state[lane];
-  const bool path = scene_.frame.transport >= RT_TRANSPORT_PATH,
+  const bool path = tracesPaths(scene_.frame.transport),
              direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
   BsdfSamples bsdfSamples(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr,
                           ray.channel);

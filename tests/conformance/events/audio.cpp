@@ -1,4 +1,4 @@
-// AudioClip and Sound: clauses 6.4, 6.42 and 4.6.9.
+// audio.cpp: AudioClip and Sound: clauses 6.4, 6.42 and 4.6.9.
 #include <cmath>
 
 #include "behaviour/wav.h"
@@ -8,7 +8,7 @@
 namespace xvrml {
 namespace {
 
-// A world with an AudioClip A of two seconds in clip.wav, 100 frames a second.
+// A world with an AudioClip A of two seconds in clip.wav, at 100 samples a second.
 struct Clips {
   explicit Clips(const std::string& fields, const std::string& url = "\"clip.wav\"") {
     folder.write("clip.wav", wav(std::vector<int16_t>(200, 8192), 1, 100));
@@ -96,7 +96,8 @@ TEST(AudioClip, ThatCannotBeHadHasDurationMinusOneAndSaysWhy) {
     Clips c("startTime 1", std::string("\"") + url + "\"");
     EXPECT_EQ(textOf(c.browser->get(c.clip(), "duration_changed")), "-1") << url;
     EXPECT_EQ(c.browser->world().diagnostics.warnings(), 1u) << url;
-    c.ticks({0, 1, 2, 3}); // nothing to play: over at once, and what waits for its end goes on
+    // Nothing to play: it ends at once, and nodes that wait for its end continue.
+    c.ticks({0, 1, 2, 3});
     EXPECT_EQ(c.take(), (Log{"1 isActive TRUE", "2 isActive FALSE"})) << url;
   }
 }
@@ -192,7 +193,8 @@ TEST(Sound, FallsLinearlyInDecibelsToMinusTwentyAtTheOuterEllipsoid) {
   EXPECT_EQ(soundGain(*s, {0, 0, -5.1f}), 0);
 }
 
-TEST(Sound, ItsLocationIsAFocusOfTheEllipsoids) { // sideways: the half parameter 2 f b / (f + b)
+// sideways: half the focal parameter, 2 f b / (f + b)
+TEST(Sound, ItsLocationIsAFocusOfTheEllipsoids) {
   auto s = std::make_unique<nodes::Sound>();
   s->minFront = 4;
   s->minBack = 1;
@@ -201,7 +203,7 @@ TEST(Sound, ItsLocationIsAFocusOfTheEllipsoids) { // sideways: the half paramete
   EXPECT_EQ(soundGain(*s, {1.59f, 0, 0}), 1);
   EXPECT_LT(soundGain(*s, {1.61f, 0, 0}), 1);
   EXPECT_NEAR(soundGain(*s, {0, 8, 0}), 0.1, 1e-6);
-  // Any point of the outer ellipsoid: half axes 12.5 and 10, centre 7.5 ahead.
+  // A point of the outer ellipsoid: half axes 12.5 and 10, centre 7.5 ahead.
   for (double angle = 0; angle < 6.28; angle += 0.1) {
     const double x = 10 * std::sin(angle) * 0.999, z = 7.5 + 12.5 * std::cos(angle) * 0.999;
     EXPECT_NEAR(soundGain(*s, {float(x), 0, float(z)}), 0.1, 2e-3) << angle;
@@ -263,7 +265,7 @@ TEST(Sound, NotSpatializedIsTheSameOnBothSides) {
 TEST(Sound, MixingAddsWithLevelsPitchAndLoop) {
   auto clip = std::make_shared<Clip>(Clip{1, 4, {0, 1, 0, -1}});
   std::vector<float> out(16, 0.5f);
-  mix({clip, 0, 1, false}, {1, 0.5}, 8, out); // twice the rate: between samples half way
+  mix({clip, 0, 1, false}, {1, 0.5}, 8, out); // twice the rate: half way between samples
   const std::vector<float> expected{0.5f, 0.5f, 1, 0.75f, 1.5f,  1, 1, 0.75f,
                                     0.5f, 0.5f, 0, 0.25f, -0.5f, 0, 0, 0.25f};
   EXPECT_EQ(out, expected);

@@ -1,4 +1,4 @@
-// Stacks of bindable nodes: clause 4.6.10, and 6.53 for Viewpoints.
+// binding.cpp: stacks of bindable nodes: clause 4.6.10, and 6.53 for Viewpoints.
 #include "conformance/events/viewing.h"
 
 namespace xvrml {
@@ -109,7 +109,7 @@ TEST(Binding, BindingANodeInTheStackMovesItToTheTop) {
   r.set("A", "set_bind", false);
   EXPECT_EQ(view(r), "B");
   r.set("B", "set_bind", false);
-  EXPECT_EQ(view(r), "none"); // A was in the stack once only
+  EXPECT_EQ(view(r), "none"); // A was in the stack only once
 }
 
 TEST(Binding, ANodeThatLeavesTheSceneIsUnbound) {
@@ -137,7 +137,7 @@ TEST(Binding, NodesAddedWhileRunningCanBeBound) {
   Running r("DEF A Viewpoint {} DEF T Transform { translation 0 5 0 }");
   const NodeRef added = r.browser.createNode("Viewpoint");
   r.set("T", "addChildren", MFNode{added});
-  EXPECT_EQ(view(r), "A"); // not by itself
+  EXPECT_EQ(view(r), "A"); // a new Viewpoint is not bound automatically
   r.browser.set(*added, "set_bind", true);
   EXPECT_EQ(r.browser.bound().viewpoint, added.get());
   EXPECT_EQ(eyeOf(r.browser), "0 5 10");
@@ -174,7 +174,7 @@ TEST(Binding, OfAWorldThatReplacesAnotherTheFirstAreBound) {
   r.browser.replaceWorld(made);
   EXPECT_EQ(view(r), "S");
   EXPECT_EQ(r.browser.bound().fog, nullptr);
-  EXPECT_EQ(eyeOf(r.browser), "0 0 1"); // jump FALSE keeps no view of a world that is gone
+  EXPECT_EQ(eyeOf(r.browser), "0 0 1"); // jump FALSE keeps no view of a world that was replaced
 }
 
 TEST(Binding, ChangesTellWhatWasBound) {

@@ -1,4 +1,4 @@
-// The Browser object: clause 4.12.10, from Scripts and from programs.
+// browser_object.cpp: the Browser object: clause 4.12.10, called by Scripts and by programs.
 #include <algorithm>
 
 #include "conformance/events/scripted.h"
@@ -30,7 +30,7 @@ TEST_P(BrowserObject, MakesNodesOfAString) {
              "Transform {} ROUTE A.translation TO B.translation\" } ROUTE S.out TO G.children");
   r.set("S", "in", true);
   EXPECT_EQ(r.get("G", "children"), "[A, B]");
-  EXPECT_EQ(r.browser.node("A"), NodeRef()); // names of its own
+  EXPECT_EQ(r.browser.node("A"), NodeRef()); // the new world has a name space of its own
   const auto children = std::get<MFNode>(r.browser.get(r.node("G"), "children"));
   r.browser.set(*children[0], "translation", Vec3f{1, 2, 3});
   EXPECT_EQ(textOf(r.browser.get(*children[1], "translation")), "1 2 3"); // its routes are active
@@ -97,7 +97,7 @@ TEST_P(BrowserObject, ALongChainOfRoutesEndsWithoutRecursion) {
   ASSERT_EQ(nodes.size(), size_t(n));
   NodeRef first = nodes[0];
   const NodeRef last = nodes.back();
-  nodes.clear(); // routes hold the rest now
+  nodes.clear(); // the remaining nodes are held by routes only
   r.browser.set(*first, "translation", Vec3f{1, 0, 0});
   EXPECT_EQ(textOf(r.browser.get(*last, "translation")), "1 0 0");
   r.browser.takeChanges();

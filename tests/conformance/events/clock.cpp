@@ -1,11 +1,11 @@
-// The world's clock: seconds since 1970 (4.11.2), which begin at one fixed number so that pictures
-// are reproducible.
+// clock.cpp: the world's clock: seconds since 1970 (4.11.2), starting at a fixed number so that
+// pictures are reproducible.
 #include "conformance/events/support.h"
 
 namespace xvrml {
 namespace {
 
-// A world as an application runs it that says nothing of the clock: times 0, 1, 2 after worldEpoch.
+// A world run by an application that does not set the clock: times 0, 1, 2 after worldEpoch.
 struct Loaded : Running {
   explicit Loaded(const std::string& vrml) : Running(vrml, 0, {}, RunOptions()) {}
   void ticks(std::initializer_list<double> times) {
@@ -52,11 +52,11 @@ TEST(Clock, TheProgramReadsTheTimeThatItHasGiven) { // epoch + 0.1 is rounded
   w.ticks({0.1});
   EXPECT_EQ(w.browser.now(), 0.1);
   w.ticks({0.05});
-  EXPECT_EQ(w.browser.now(), 0.1); // it does not go back
+  EXPECT_EQ(w.browser.now(), 0.1); // it does not run backwards
 }
 
-// Cycles that divide the epoch begin at the loading, so that sequences of a looping world begin
-// with its beginning; those that are no doubles (.1, .7, 3.3) too.
+// Cycles whose length divides the epoch start at loading, so that sequences of a looping world
+// start at its beginning. This includes lengths that are not exact in double (.1, .7, 3.3).
 TEST(Clock, CyclesBeginAtTheLoading) {
   for (const char* cycle :
        {"0.1", "0.25", "0.7", "1",  "1.5", "2.2", "3",  "3.3", "4",   "5",   "6",
@@ -69,8 +69,7 @@ TEST(Clock, CyclesBeginAtTheLoading) {
     w.ticks({std::stod(cycle) / 2});
     EXPECT_NEAR(w.fraction("T"), 0.5, 1e-5) << cycle;
     w.ticks({std::stod(cycle)});
-    EXPECT_EQ(w.fraction("T"), 1)
-        << cycle; // 6.50: the end of a cycle, not the beginning of the next
+    EXPECT_EQ(w.fraction("T"), 1) << cycle; // 6.50: the end of a cycle, not the start of the next
   }
 }
 

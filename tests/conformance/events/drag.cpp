@@ -1,5 +1,5 @@
-// PlaneSensor, SphereSensor and CylinderSensor: clauses 6.34, 6.44, 6.15 and 4.6.7.4. Values are
-// those of closed forms.
+// drag.cpp: PlaneSensor, SphereSensor and CylinderSensor: clauses 6.34, 6.44, 6.15 and 4.6.7.4. The
+// expected values are closed forms.
 #include <numbers>
 
 #include "conformance/events/viewing.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// The pointer looks along -z at (x, y); pressed.
+// Moves the pressed pointer to (x, y), looking along -z.
 void to(Running& r, double x, double y, bool button = true) {
   const double origin[3] = {x, y, 10}, direction[3] = {0, 0, -1};
   r.browser.pointerRay(origin, direction, button);
@@ -181,7 +181,7 @@ TEST(SphereSensor, OffsetComesFirstAndIsSetWhenTheDragEnds) {
   r.log("S", "offset_changed");
   to(r, 0, 0);
   to(r, std::sin(0.5), 0);
-  const Rotation both = turn(r); // about y by 0.5, after about x by a right angle
+  const Rotation both = turn(r); // by 0.5 about y, after a right angle about x
   EXPECT_NEAR(std::cos(both.angle / 2), std::cos(0.25) * std::cos(pi / 4), 1e-6);
   to(r, std::sin(0.5), 0, false);
   EXPECT_EQ(r.take().size(), 1u);
@@ -215,7 +215,7 @@ TEST(SphereSensor, APressAtItsOriginIsStable) {
 TEST(CylinderSensor, FromTheSideItTurnsAboutItsAxis) {
   Running r(with("CylinderSensor {}", "Shape { geometry Cylinder { radius 2 height 20 } }"));
   to(r, 0, 0);
-  const double z0 = 2; // the mesh is faceted; its first point may lie a little inside
+  const double z0 = 2; // the mesh is faceted, so the first point may lie slightly inside
   to(r, 1, 3);
   const Rotation t = turn(r);
   EXPECT_NEAR(t.y, 1, 0);
@@ -234,18 +234,18 @@ TEST(CylinderSensor, TheRadiusIsThatOfThePointPressed) {
 TEST(CylinderSensor, AlongItsAxisItIsADisk) {
   Running r(with("CylinderSensor {}", "Shape { geometry Box { size 20 2 20 } }"));
   ray(r, 3, 10, 0, 0, -1, 0);
-  ray(r, 0, 10, -4, 0, -1, 0); // from +x to -z: a quarter about +y
+  ray(r, 0, 10, -4, 0, -1, 0); // from +x to -z: a quarter turn about +y
   expectTurn(turn(r), 0, 1, 0, pi / 2);
   EXPECT_EQ(r.get("S", "trackPoint_changed"), "0 1 -4");
   ray(r, -1, 10, 0, 0, -1, 0);
   ray(r, 0, 10, 1, 0, -1, 0);
   ray(r, 1, 10, 0, 0, -1, 0);
   ray(r, 0, 10, -1, 0, -1, 0);
-  expectTurn(turn(r), 0, 1, 0, 2.5 * pi); // rounds are counted
+  expectTurn(turn(r), 0, 1, 0, 2.5 * pi); // full turns are counted
 }
 
 TEST(CylinderSensor, DiskAngleDecidesWhichOfTheTwo) {
-  // The ray is 45 degrees from the axis and meets the top of the box at (0, 1, 4).
+  // The ray is at 45 degrees to the axis and hits the top of the box at (0, 1, 4).
   for (const bool disk : {false, true}) {
     Running r(with(disk ? "CylinderSensor { diskAngle 0.8 }" : "CylinderSensor { diskAngle 0.7 }",
                    "Shape { geometry Box { size 20 2 20 } }"));

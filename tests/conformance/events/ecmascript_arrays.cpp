@@ -65,8 +65,7 @@ constexpr EcmaRow rows[] = {
      "RangeError: MFInt32: length -1"},
     {"element_type", "", "var m = new MFVec3f(); try { m[0] = 5 } catch (e) { print(e) }",
      "TypeError: MFVec3f: expected SFVec3f, got number 5"},
-    // C.6.2: an element that is assigned to a variable is a value of its own; assigning to an
-    // element copies.
+    // C.6.2: assigning an element to a variable, or a value to an element, copies.
     {"assigned_copies", "",
      "var v = new SFVec3f(1, 2, 3), m = new MFVec3f(v); v.x = 9; print(m); m[0] = v; v.x = 5; "
      "print(m)",

@@ -1,6 +1,6 @@
-// ecmascript_freewrl.cpp: FreeWRL's worlds for its script's field types
-// (freewrl/tests/Javascript_tests in the corpus; skipped where that is absent). They show by shapes
-// and colours that all is well; the same is read from the nodes here.
+// ecmascript_freewrl.cpp: FreeWRL's test worlds for its script field types
+// (freewrl/tests/Javascript_tests in the corpus; skipped if absent). They show success by shapes
+// and colours. The tests here read the same values from the nodes.
 #include <cstdlib>
 #include <fstream>
 
@@ -31,7 +31,7 @@ class FreeWrl : public testing::Test {
   void set(const char* node, const char* field, Value value) {
     browser_->set(*browser_->node(node), field, std::move(value));
   }
-  // Messages of Scripts.
+  // Returns the messages of Scripts.
   std::string failures() {
     std::string out;
     for (const Diagnostic& d : browser_->world().diagnostics.list())
@@ -53,7 +53,7 @@ class FreeWrl : public testing::Test {
 TEST_F(FreeWrl, MFFloat) {
   open("MFFloat.wrl").tick(0.5);
   EXPECT_EQ(get("LEFTPATH", "key"), "[0, 0.1, 1]");
-  EXPECT_EQ(get("RIGHTPATH", "key"), "[0, 0.5, 1]"); // the colours come up slower on the right
+  EXPECT_EQ(get("RIGHTPATH", "key"), "[0, 0.5, 1]"); // the right path reaches the colours later
   EXPECT_NE(get("LEFTAPP", "diffuseColor"), get("RIGHTAPP", "diffuseColor"));
   EXPECT_EQ(failures(), "");
 }
@@ -76,7 +76,7 @@ TEST_F(FreeWrl, SFColor) {
     EXPECT_EQ(get("GREEN", "diffuseColor"), textOf(Color{0, c.g, 0}));
     EXPECT_EQ(get("BLUE", "diffuseColor"), textOf(Color{0, 0, c.b}));
     EXPECT_NEAR(value<Color>("INVERSE", "diffuseColor").g, 1 - c.g, 1e-6f);
-    EXPECT_NEAR(hsv.r, red.r, 1e-6f); // tracks the red box
+    EXPECT_NEAR(hsv.r, red.r, 1e-6f); // follows the red box
     EXPECT_NEAR(hsv.g, 0, 1e-6f);
   }
   EXPECT_EQ(failures(), "");
@@ -106,7 +106,8 @@ TEST_F(FreeWrl, SFNode) {
   EXPECT_EQ(failures(), "");
 }
 
-TEST_F(FreeWrl, SFString) { // its texture coordinates are X3D's; what it says of them is VRML97
+// Its texture coordinates are those of X3D; its messages are those of VRML97.
+TEST_F(FreeWrl, SFString) {
   open("SFString.wrl");
   set("SCRIPT", "newString", std::string("SPHERE"));
   EXPECT_EQ(get("TEXT1", "string"), "[TextureCoordinateGeneratorType:, SPHERE]");
@@ -122,7 +123,7 @@ TEST_F(FreeWrl, SFVec2f) {
   EXPECT_EQ(failures(), "");
 }
 
-// The file lacks directOutput TRUE, which 6.40 wants for this and FreeWRL does not.
+// The file lacks directOutput TRUE, which clause 6.40 requires here and FreeWRL does not.
 TEST_F(FreeWrl, AddDelRoute) {
   std::ifstream file(folder() + "addDelRoute.wrl");
   std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -132,7 +133,7 @@ TEST_F(FreeWrl, AddDelRoute) {
   const auto count = [&] {
     for (int i = 0; i < 200; ++i) set("SCRIPT", "set_fraction", 0.5f);
   };
-  count(); // deletes a route that is not there
+  count(); // deletes a route that does not exist
   browser.tick(1.05);
   EXPECT_EQ(get("BOX", "rotation"), "0 0 1 0");
   count(); // adds it

@@ -1,5 +1,5 @@
-// ecmascript_habits.cpp: what programs in real worlds take for granted beyond Annex C, as VRML
-// files write them.
+// ecmascript_habits.cpp: features beyond Annex C that programs in real worlds rely on, written as
+// in VRML files.
 #include "conformance/events/ecmascript_world.h"
 
 namespace xvrml {
@@ -34,7 +34,7 @@ TEST_F(EcmaScript, LinesEndInAnyWay) {
   }
 }
 
-// The same program prints the same in a process of its own.
+// A program prints the same in a process of its own.
 TEST_F(EcmaScript, AProcessMakesNoDifference) {
   const std::string world =
       "DEF T Transform { children [ Group { } ] } " +

@@ -1,5 +1,5 @@
-// ecmascript_limits.cpp: what goes wrong in ECMAScript programs: places of errors, limits, and what
-// a program must not reach.
+// ecmascript_limits.cpp: failures of ECMAScript programs: positions of errors, limits, and
+// everything a program must not reach.
 #include "conformance/events/ecmascript_world.h"
 
 namespace xvrml {
@@ -43,7 +43,7 @@ TEST_F(EcmaScript, AnErrorEndsTheFunctionNotTheScript) {
   for (const int v : {0, 1, 2}) r.set("S", "n", int32_t(v));
   EXPECT_EQ(r.printed(), (Log{"0", "2"}));
   EXPECT_EQ(r.messages().size(), 1u);
-  EXPECT_EQ(r.take().size(), 3u); // what was assigned before the error is sent
+  EXPECT_EQ(r.take().size(), 3u); // values assigned before the error are sent
 }
 
 // --- Secrets ---
@@ -61,7 +61,7 @@ TEST_F(EcmaScript, TextsOfFunctionsTellNoAddress) {
 TEST_F(EcmaScript, ABombOfMemoryIsAnError) {
   BrowserOptions options;
   options.scriptMemory = 8 << 20;
-  options.scriptSeconds = 60; // a busy machine takes long to fill it
+  options.scriptSeconds = 60; // a busy machine needs long to fill it
   for (const char* program :
        {"var s = 'x'; for (;;) s += s;", "var a = []; for (;;) a.push(new SFVec3f());",
         "var m = new MFVec3f(); m.length = 15000000;",
@@ -133,7 +133,7 @@ TEST_F(EcmaScript, ALoopThatCallsTheHostIsStopped) {
   EXPECT_EQ(r.take(), Log{});
 }
 
-// --- What a program does not reach ---
+// --- Things a program cannot reach ---
 
 TEST_F(EcmaScript, NothingOfDuktapeIsThere) {
   EcmaWorld r(script("", "print(typeof Duktape, typeof CBOR, typeof Buffer, typeof "
@@ -180,7 +180,7 @@ TEST_F(EcmaScript, ChangesWhileAValueIsConverted) {
   EXPECT_EQ(r.told(), "[0 0 0, 5 6 7]\n[1, 2, 3]\n4 100000");
 }
 
-// --- The same input, the same output ---
+// --- Determinism: the same input gives the same output ---
 
 TEST_F(EcmaScript, RandomNumbersAndDatesReplay) {
   const auto play = [] {

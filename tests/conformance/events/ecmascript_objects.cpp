@@ -1,5 +1,5 @@
-// ecmascript_objects.cpp: the SF objects and VrmlMatrix of ISO/IEC 14772-1 Annex C, a row for each
-// constructor, property, method.
+// ecmascript_objects.cpp: the SF objects and VrmlMatrix of ISO/IEC 14772-1 Annex C, one row for
+// each constructor, property and method.
 #include "conformance/events/ecmascript_world.h"
 
 namespace xvrml {

@@ -1,5 +1,5 @@
-// ecmascript_scripts.cpp: how ECMAScript programs sit in a world (ISO/IEC 14772-1 C.3 to C.5,
-// C.6.2, C.6.3): fields, events, conversions, other nodes, the Browser object.
+// ecmascript_scripts.cpp: ECMAScript programs in a world (ISO/IEC 14772-1 C.3 to C.5, C.6.2,
+// C.6.3): fields, events, conversions, other nodes, the Browser object.
 #include "conformance/events/ecmascript_world.h"
 
 namespace xvrml {
@@ -120,7 +120,7 @@ TEST_F(EcmaScript, InitializeEventsProcessedShutdown) {
   EXPECT_EQ(r.told(), "shutdown");
 }
 
-// --- C.5.1, C.5.3: own fields and eventOuts ---
+// --- C.5.1, C.5.3: the Script's own fields and eventOuts ---
 
 TEST_F(EcmaScript, FieldsKeepTheirValueFromCallToCall) {
   EcmaWorld r(
@@ -174,8 +174,8 @@ TEST_F(EcmaScript, AssigningToAFieldCopies) {
   EXPECT_EQ(r.told(), "1 2 3 [1]\n1 2 3 5 5 5");
 }
 
-// C.6.2: to a variable, fields, eventOuts and elements are copied; what has been made by the
-// program is referred to.
+// C.6.2: assignments to variables from fields, eventOuts and elements copy. Objects that the
+// program has created are references.
 class EcmaScriptAssignments : public EcmaRows {};
 TEST_P(EcmaScriptAssignments, CopyOrRefer) {
   EcmaWorld r("DEF T Transform { translation 1 2 3 } " +

@@ -1,5 +1,5 @@
-// A running world that changes: nodes and routes that come and go, also within a cascade; random
-// routes. Clauses 4.7, 4.10.
+// editing.cpp: changes to a running world: nodes and routes are added and removed, also within a
+// cascade; random routes. Clauses 4.7, 4.10.
 #include <random>
 
 #include "conformance/events/scripted.h"
@@ -14,7 +14,7 @@ TEST(Editing, ANodeMayEndDuringItsOwnEvent) {
   NodeRef x = made[0];
   r.set("G", "children", std::move(made));
   r.browser.listen(*x, "translation", [&](Node&, const FieldInfo&, const Value&) {
-    r.browser.set(r.node("G"), "children", MFNode{}); // all that held it
+    r.browser.set(r.node("G"), "children", MFNode{}); // removes everything that held it
     x = {};
   });
   r.browser.set(*x, "translation", Vec3f{1, 0, 0});
@@ -38,7 +38,7 @@ TEST(Editing, AnInstanceMayEndDuringAnEventOfItsBody) {
   });
   r.browser.set(*instance, "in", Vec3f{1, 0, 0});
   EXPECT_EQ(heard, 1);
-  r.browser.set(*body, "translation", Vec3f{2, 0, 0}); // lives on without its instance
+  r.browser.set(*body, "translation", Vec3f{2, 0, 0}); // it outlives its instance
   EXPECT_EQ(heard, 2);
 }
 
@@ -81,8 +81,8 @@ TEST(Editing, AWideFanOutReachesEverybody) {
   EXPECT_EQ(r.browser.world().diagnostics.warnings(), 0u);
 }
 
-// Random routes among nodes of one type, loops and all, and events into them while routes come and
-// go.
+// Random routes among nodes of one type, with loops, and events into them while routes are added
+// and removed.
 Log randomRun(unsigned seed, uint64_t& warnings) {
   std::mt19937 random(seed);
   const auto pick = [&](int below) { return int(random() % unsigned(below)); };
@@ -114,7 +114,7 @@ TEST(Editing, RandomRoutesGiveTheSameEventsEachTime) {
     const Log log = randomRun(seed, first);
     EXPECT_EQ(log, randomRun(seed, second)) << seed;
     EXPECT_EQ(first + second, 0u) << seed;
-    EXPECT_LT(log.size(), 30u * 32u + 1) << seed; // once in a cascade each
+    EXPECT_LT(log.size(), 30u * 32u + 1) << seed; // at most once per cascade each
   }
 }
 

@@ -1,16 +1,16 @@
-// Lists of children while a world runs: addChildren, removeChildren and children_changed (4.6.5),
-// through the borders of prototypes (4.8.2), and what is written afterwards.
+// grouping.cpp: lists of children in a running world: addChildren, removeChildren and
+// children_changed (4.6.5), through prototype instances (4.8.2), and how the result is written.
 #include "conformance/events/support.h"
 
 namespace xvrml {
 namespace {
 
-// The world as it would be written now, loaded again.
+// Writes the current world and loads the result.
 std::unique_ptr<World> again(Running& r) {
   return loadWorldFromMemory(writeWorld(r.browser.world()), "again.wrl");
 }
 
-// The children of what a node stands for.
+// Returns the children of the node that a node stands for.
 std::string childrenOf(const NodeRef& node, const char* field = "children") {
   Node* drawn = renderedNode(node.get());
   return textOf(drawn->get(*drawn->type().find(field)));
@@ -30,10 +30,10 @@ TEST(Grouping, AddedAndRemovedChildrenAreTold) {
 TEST(Grouping, WhatChangesNothingIsNotTold) {
   Running r("DEF G Group { children DEF A Group {} } DEF B Group {} DEF M Material {}");
   r.log("G", "children");
-  r.set("G", "addChildren", MFNode{r.browser.node("A")});    // is there
-  r.set("G", "removeChildren", MFNode{r.browser.node("B")}); // is not
-  r.set("G", "addChildren", MFNode{r.browser.node("M")});    // cannot be
-  r.set("G", "addChildren", MFNode{r.browser.node("G")});    // nor can a node hold itself
+  r.set("G", "addChildren", MFNode{r.browser.node("A")});    // already present
+  r.set("G", "removeChildren", MFNode{r.browser.node("B")}); // not present
+  r.set("G", "addChildren", MFNode{r.browser.node("M")});    // not allowed there
+  r.set("G", "addChildren", MFNode{r.browser.node("G")});    // a node cannot contain itself
   r.set("G", "addChildren", MFNode{});
   EXPECT_EQ(r.take(), Log{});
 }
@@ -76,8 +76,8 @@ TEST(Grouping, InstancesOfInstancesHaveThemToo) {
   EXPECT_EQ(childrenOf(again(r)->scope.names.at("A")), "[X, Y]");
 }
 
-TEST(Grouping,
-     SeveralChangesAtOneTimeAreAllKept) { // though children_changed tells the first alone (4.10.3)
+// Although children_changed reports only the first one (4.10.3).
+TEST(Grouping, SeveralChangesAtOneTimeAreAllKept) {
   Running r(interface + "DEF A P {} DEF X Group {} DEF N Group {} ROUTE N.children TO A.add ROUTE "
                         "N.children TO A.rem");
   r.log("A", "c");
@@ -87,7 +87,8 @@ TEST(Grouping,
   EXPECT_EQ(childrenOf(r.browser.node("A")), "[]");
 }
 
-TEST(Grouping, AFieldOfAnInstanceIsWrittenAsItsNodeHasIt) { // not only an exposedField
+// Not only an exposedField.
+TEST(Grouping, AFieldOfAnInstanceIsWrittenAsItsNodeHasIt) {
   Running r("PROTO P [ field MFNode c [] field SFVec3f at 0 0 0 eventIn MFNode add eventIn SFVec3f "
             "move ] "
             "{ Transform { children IS c addChildren IS add translation IS at set_translation IS "
@@ -101,7 +102,8 @@ TEST(Grouping, AFieldOfAnInstanceIsWrittenAsItsNodeHasIt) { // not only an expos
   EXPECT_EQ(childrenOf(world->scope.names.at("A"), "translation"), "1 2 3");
 }
 
-TEST(Grouping, AFieldThatTwoNodesShareIsWrittenAsItWasGiven) { // it cannot have the values of both
+// It cannot have the values of both nodes.
+TEST(Grouping, AFieldThatTwoNodesShareIsWrittenAsItWasGiven) {
   Running r("PROTO P [ field SFVec3f at 5 0 0 eventIn SFVec3f move ] { Transform { translation IS "
             "at set_translation IS move children "
             "DEF I Transform { translation IS at } } } DEF A P {}");

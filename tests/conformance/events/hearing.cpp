@@ -1,4 +1,4 @@
-// What the viewer of a running world hears: clauses 6.42 and 4.6.9.
+// hearing.cpp: the sound that the viewer of a running world hears: clauses 6.42 and 4.6.9.
 #include "conformance/events/media_files.h"
 #include "xvrml/media.h"
 
@@ -29,7 +29,7 @@ TEST(Hearing, StandsWhereTheSoundDoes) {
   EXPECT_TRUE(heard[0].playing.clip);
   EXPECT_GT(heard[0].levels.right, heard[0].levels.left);
   double behind[16] = {-1, 0, 0,  0, 0, 1, 0, 0,
-                       0,  0, -1, 0, 0, 0, 0, 1}; // turned round: the other ear
+                       0,  0, -1, 0, 0, 0, 0, 1}; // turned around: the other ear
   h.browser->placeViewer(behind);
   EXPECT_NEAR(h.now()[0].levels.left, heard[0].levels.right, 1e-6);
 }

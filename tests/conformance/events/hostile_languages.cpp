@@ -1,7 +1,7 @@
-// The same misdeeds in every language that untrusted worlds may use: a program that does not end,
-// takes all memory, recurses, or reaches for files, the network, processes or the environment is
-// stopped or refused with a message that names file, line and node, and the world goes on frame by
-// frame. Languages whose engines are not built here are skipped.
+// hostile_languages.cpp: the same misbehaviour in every language that untrusted worlds may use. A
+// program that does not end, takes all memory, recurses, or accesses files, the network, processes
+// or the environment is stopped or refused. A message names file, line and node, and the world
+// continues frame by frame. Languages whose engines are not built are skipped.
 #include <unistd.h>
 
 #include "conformance/events/scripted.h"
@@ -10,16 +10,18 @@
 namespace xvrml {
 namespace {
 
-// Stopped, or an error of the language: either way there is a message with a place. Refused: there
-// is a message, or the program says "refused"; it never says "reached". Computes: neither; the
-// program prints "done", or is stopped.
+// The required outcome:
+// * stopped: the program is stopped or has an error of the language; either way there is a message
+//   with a position;
+// * refused: there is a message, or the program prints "refused"; it never prints "reached";
+// * computes: the program prints "done", or is stopped.
 enum class End { stopped, refused, computes };
 
 struct Case {
   const char* language; // the scheme
   const char* name;
   End end;
-  const char* program; // of what happens when the event `go` arrives
+  const char* program; // run when the event `go` arrives
 };
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.program; }
@@ -113,7 +115,7 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// A whole program of a Script with the eventIn `go`.
+// Returns the complete program of a Script with the eventIn `go`.
 std::string programOf(const Case& c) {
   const bool tcl = std::string_view(c.language) == "tcl";
   return fmt::format(fmt::runtime(tcl ? "tcl:proc go {{args}} {{\n{}\n}}"
@@ -156,16 +158,17 @@ TEST_P(HostileLanguages, AProgramCannotHoldTheWorldUp) {
   }
   EXPECT_FALSE(reached);
   EXPECT_LT(frames, 3000) << "not stopped";
-  EXPECT_EQ(int(r.take().size()), frames); // the other Script, in every frame
+  EXPECT_EQ(int(r.take().size()), frames); // the other Script, once per frame
   if (c.end == End::computes || refused) return;
   ASSERT_FALSE(messages.empty());
   EXPECT_NE(messages[0].find(": Script S: "), std::string::npos) << messages[0];
   EXPECT_EQ(r.browser.world().diagnostics.list().back().file, "test.wrl");
-  EXPECT_GE(r.browser.world().diagnostics.list().back().line, 2u); // of the program or beyond
+  // A line of the program or after it.
+  EXPECT_GE(r.browser.world().diagnostics.list().back().line, 2u);
   EXPECT_EQ(r.browser.world().diagnostics.list().back().severity, Severity::error) << messages[0];
 }
 
-// Their programs can do whatever the user can.
+// Programs in these languages can do whatever the user can.
 TEST(HostileLanguages, SomeLanguagesAreForTrustedWorldsOnly) {
   for (const char* language : {"python", "native"}) {
     if (!hasScriptEngine(language, XVRML_SCRIPTS)) continue;

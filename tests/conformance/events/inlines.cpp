@@ -1,4 +1,4 @@
-// Inlines of a running world: clause 6.25, and 4.6.10 for bindables in them.
+// inlines.cpp: Inlines of a running world: clause 6.25, and 4.6.10 for the bindable nodes in them.
 #include <unistd.h>
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 namespace xvrml {
 namespace {
 
-// A folder with some files, for one test.
+// A temporary folder with some files, for one test.
 struct Folder {
   Folder()
       : path(std::filesystem::temp_directory_path() /
@@ -126,7 +126,7 @@ TEST(Inlines, NoneIsReadIntoItself) {
   EXPECT_EQ(inlineScope(*browser.node("I")), nullptr);
 }
 
-// Other files that come into a running world.
+// Other files that are loaded into a running world.
 TEST(OtherFiles, BindablesOfCreateVrmlFromUrlAreNotBoundByThemselves) {
   const Folder f;
   f.file("more.wrl", "DEF M Viewpoint { position 0 0 3 description \"more\" }");
@@ -153,7 +153,7 @@ TEST(OtherFiles, AClickOnAnAnchorLoadsItsWorldAndBindsTheViewpointNamed) {
   EXPECT_TRUE(browser.sensorsAtPointer().empty());
   const double origin[3] = {0.9, 0.9, 5}, direction[3] = {0, 0, -1};
   PickHit hit;
-  EXPECT_FALSE(browser.pick(origin, direction, {}, hit)); // the box is gone
+  EXPECT_FALSE(browser.pick(origin, direction, {}, hit)); // the box has been removed
   browser.tick(1);
 }
 

@@ -1,6 +1,6 @@
-// The six interpolators: clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39. Five situations of
-// each, as in the NIST VRML test suite: simple, equal keys, 1,000 keys, a value only after
-// set_fraction, in hierarchies.
+// interpolators.cpp: the six interpolators: clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39. Each
+// is tested in five situations, as in the NIST VRML test suite: simple, equal keys, 1,000 keys, no
+// value before set_fraction, in hierarchies.
 #include <cmath>
 
 #include "conformance/events/support.h"
@@ -11,7 +11,7 @@ namespace {
 struct Case {
   std::string type;
   std::string a, b;           // values of two keys
-  std::string atA, half, atB; // what leaves at them, and half way
+  std::string atA, half, atB; // output at the keys and half way
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.type; }
@@ -21,7 +21,7 @@ class Interpolator : public testing::TestWithParam<Case> {
   static std::string node(const std::string& keys, const std::string& values) {
     return "DEF I " + GetParam().type + " { key [ " + keys + " ] keyValue [ " + values + " ] }";
   }
-  // What leaves when a fraction arrives; "nothing" if nothing does.
+  // Returns the value sent for a fraction; "nothing" if none is.
   static std::string at(Running& r, float fraction) {
     std::string left = "nothing";
     const uint64_t number =
@@ -95,8 +95,8 @@ TEST_P(Interpolator, ReadBeforeItHasSentItIsTheFirstValue) {
             textOf(defaultValue(r.node("I").type().find("value_changed")->type)));
 }
 
-TEST_P(Interpolator, InHierarchies) { // where it stands has no effect (4.6.8): below a Switch that
-                                      // shows nothing, in a PROTO
+// The position in the scene has no effect (4.6.8): below a Switch that shows nothing, in a PROTO.
+TEST_P(Interpolator, InHierarchies) {
   const Case& c = GetParam();
   const std::string type = c.type == "CoordinateInterpolator" || c.type == "NormalInterpolator"
                                ? "MFVec3f"
@@ -249,7 +249,7 @@ TEST(NormalInterpolator, StaysOnTheUnitSphereAtEqualSpeed) {
     ASSERT_EQ(n.size(), 3u);
     EXPECT_NEAR(n[0].x, std::sin(t * M_PI / 2), 1e-6);
     EXPECT_NEAR(n[1].z, 1, 1e-6);
-    EXPECT_NEAR(n[2].z, std::cos(t * M_PI), 1e-6); // opposite: some great circle
+    EXPECT_NEAR(n[2].z, std::cos(t * M_PI), 1e-6); // opposite directions: any great circle
     for (const Vec3f& v : n) EXPECT_NEAR(v.x * v.x + v.y * v.y + v.z * v.z, 1, 1e-6);
   }
 }

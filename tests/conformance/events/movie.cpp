@@ -1,5 +1,5 @@
-// MovieTexture: clauses 6.28 and 4.6.9. The films are made here: picture i of a film is of one grey
-// that tells i.
+// movie.cpp: MovieTexture: clauses 6.28 and 4.6.9. The films are made here: picture i has a uniform
+// grey that identifies i.
 #include <cmath>
 
 #include "conformance/events/media_files.h"
@@ -52,8 +52,8 @@ TEST(MovieTexture, WithoutUrlIsSilent) {
 
 constexpr int pictures = 30, rate = 25, step = 6; // luma of picture i: 16 + 6 i
 
-// A film of 1.2 seconds, 64 x 48; groups of 9 pictures with up to 2 B pictures between others where
-// the codec has them.
+// Makes a film of 1.2 seconds, 64 x 48, in groups of 9 pictures with up to 2 B pictures in between
+// if the codec has them.
 void makeFilm(const std::string& path, const char* muxer, AVCodecID codecId) {
   AVFormatContext* format = nullptr;
   ASSERT_GE(avformat_alloc_output_context2(&format, nullptr, muxer, path.c_str()), 0) << muxer;
@@ -114,11 +114,11 @@ struct Kind {
   const char* name;
   const char* muxer;
   AVCodecID codec;
-  bool limitedRange; // luma 16 is black
+  bool limitedRange; // black is luma 16
 };
 const Kind mpeg{"film.mpg", "mpeg", AV_CODEC_ID_MPEG1VIDEO, true};
 
-// Which picture it is, by its grey; -1: none.
+// Returns the number of the picture, from its grey; -1 if there is none.
 int pictureOf(const Image* image, const Kind& kind = mpeg) {
   if (!image || image->width != 64 || image->height != 48 || image->components != 3) return -1;
   const double grey = image->pixels[(24 * 64 + 32) * 3];
@@ -278,7 +278,7 @@ TEST(MovieTexture, ReportsAChangeOfUrlOnlyWhenItShowsAnotherPicture) {
   Movie m("startTime 1");
   m.at(1);
   EXPECT_TRUE(m.browser->takeChanges().empty());
-  m.at(1.03); // still the first of 40 ms
+  m.at(1.03); // still the first picture, which lasts 40 ms
   EXPECT_TRUE(m.browser->takeChanges().empty());
   m.at(1.05);
   const FieldChanges changes = m.browser->takeChanges();

@@ -1,5 +1,5 @@
-// The script engine `native` (plugins/script/native): C functions with VRML's types. Its functions
-// are those of tests/script/native_library.c. Skipped where libffi is not installed.
+// native.cpp: the script engine `native` (plugins/script/native): C functions with VRML's types.
+// Its functions are those of tests/script/native_library.c. Skipped if libffi is not installed.
 #include <cstdlib>
 #include <filesystem>
 
@@ -23,7 +23,8 @@ class Native : public testing::Test {
   }
 };
 
-// A Script with eventIn in, eventOut out of one type, what it sends for a value, and its messages.
+// A Script with one eventIn and one eventOut of the same type: the value that it sends for a value,
+// and its messages.
 struct Echo {
   Echo(const std::string& type, const std::string& call, const BrowserOptions& options,
        const std::string& outType = "")
@@ -50,8 +51,8 @@ TEST_F(Native, NumbersGoInAndComeOut) {
   EXPECT_EQ(Echo("SFTime", "half", options)(3.0), "1.5");
   EXPECT_EQ(Echo("SFBool", "invert", options)(true), "FALSE");
   EXPECT_EQ(Echo("SFInt32", "invert", options)(int32_t(0)), "1");
-  EXPECT_EQ(Echo("SFFloat", "float out = half(double in)", options)(5.0f),
-            "0"); // half answers a double: the call says so
+  // Half returns a double, but the declared call says float.
+  EXPECT_EQ(Echo("SFFloat", "float out = half(double in)", options)(5.0f), "0");
   EXPECT_EQ(Echo("SFFloat", "double out = half(double in)", options)(5.0f), "2.5");
   EXPECT_EQ(Echo("SFInt32", "int64_t out = wide(long in, uint8_t 7)", options)(int32_t(-2)),
             "-1993");

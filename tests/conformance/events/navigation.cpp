@@ -1,4 +1,5 @@
-// How the viewer moves: clauses 6.29 (NavigationInfo), 6.8 (Collision), 6.53 (up and down).
+// navigation.cpp: movement of the viewer: clauses 6.29 (NavigationInfo), 6.8 (Collision), 6.53 (up
+// and down).
 #include "behaviour/viewer/interaction.h"
 #include "conformance/events/viewing.h"
 
@@ -33,7 +34,7 @@ TEST(Walk, LookingUpDoesNotLeadUp) {
   r.browser.navigate({.tilt = 0.5}, 1);
   r.browser.navigate({.ahead = 1}, 1);
   EXPECT_EQ(eyeOf(r.browser), "0 1.6 8");
-  r.browser.navigate({.tilt = 1}, 5); // not over the zenith
+  r.browser.navigate({.tilt = 1}, 5); // not beyond the zenith
   EXPECT_GT(r.browser.camera(1).matrix[5], 0);
 }
 
@@ -99,7 +100,7 @@ TEST(Walk, DownAStepTheGroundIsFollowedAndOverAnEdgeOneFalls) {
   r.browser.navigate({.ahead = 1}, 1.2);
   const double falling = eye(r, 1);
   EXPECT_LT(falling, 6.6);
-  EXPECT_GT(falling, 5); // not at once
+  EXPECT_GT(falling, 5); // the fall takes time
   r.browser.navigate({}, 3);
   EXPECT_NEAR(eye(r, 1), 1.6, 1e-6);
 }
@@ -160,7 +161,7 @@ TEST(Fly, GoesWhereTheViewPointsAndDoesNotFall) {
   r.browser.navigate({.ahead = 1}, 3);
   EXPECT_EQ(eyeOf(r.browser), "0 8 10");
   r.browser.navigate({.ahead = -1}, 30);
-  EXPECT_EQ(eyeOf(r.browser), "0 0.25 10"); // the ground is in the way
+  EXPECT_EQ(eyeOf(r.browser), "0 0.25 10"); // the ground stops the viewer
 }
 
 TEST(Examine, GoesRoundTheMiddleOfTheWorld) {
@@ -172,7 +173,7 @@ TEST(Examine, GoesRoundTheMiddleOfTheWorld) {
   EXPECT_EQ(lookOf(r.browser), "-1 0 0");
   r.browser.navigate({.ahead = 1}, 1);
   EXPECT_NEAR(eye(r, 0), 3 + 10 / std::exp(1), 1e-6);
-  r.browser.navigate({.tilt = 1}, 9); // not over the pole
+  r.browser.navigate({.tilt = 1}, 9); // not beyond the pole
   EXPECT_GT(r.browser.camera(1).matrix[5], 0);
 }
 
@@ -216,14 +217,14 @@ TEST(Navigation, TheOffsetStaysWithTheViewpointAndComesBackWithIt) {
   EXPECT_EQ(eyeOf(r.browser), "5 1.6 8");
   r.set("B", "set_bind", true);
   EXPECT_EQ(eyeOf(r.browser), "9 9 9");
-  r.set("B", "set_bind", false); // un-jumped: 6.53 rule c
+  r.set("B", "set_bind", false); // restored without a jump: 6.53 rule c
   EXPECT_EQ(eyeOf(r.browser), "5 1.6 8");
   r.set("B", "set_bind", true);
-  r.set("A", "set_bind", true); // bound anew: to its own place
+  r.set("A", "set_bind", true); // bound again: at its own position
   EXPECT_EQ(eyeOf(r.browser), "5 1.6 10");
 }
 
-// Clause 4.12.10.3: in the coordinate system of the bound Viewpoint.
+// Clause 4.12.10.3: the speed is in the coordinate system of the bound Viewpoint.
 TEST(Navigation, TheCurrentSpeedIsThatSinceTheLastTick) {
   Running r("NavigationInfo { type \"FLY\" speed 3 } Transform { scale 10 10 10 children DEF V "
             "Viewpoint {} }");
@@ -239,7 +240,7 @@ TEST(Navigation, TheCurrentSpeedIsThatSinceTheLastTick) {
   r.browser.tick(5);
   EXPECT_EQ(viewer.speed(), 0);
   r.browser.navigate({.ahead = 1}, 2);
-  r.browser.key(Key::home, true); // a jump is no motion
+  r.browser.key(Key::home, true); // a jump does not count as motion
   r.browser.tick(6);
   EXPECT_EQ(viewer.speed(), 0);
 }

@@ -1,4 +1,5 @@
-// Picking, and TouchSensor, Anchor and who gets the pointer: clauses 4.6.7.3, 6.51, 6.2.
+// pointing.cpp: picking, TouchSensor, Anchor, and which sensor receives the pointer: clauses
+// 4.6.7.3, 6.51, 6.2.
 #include <filesystem>
 #include <fstream>
 
@@ -7,7 +8,7 @@
 namespace xvrml {
 namespace {
 
-// The pointer looks along -z at (x, y).
+// Moves the pointer to (x, y), looking along -z.
 void at(Running& r, double x, double y, bool button = false) {
   const double origin[3] = {x, y, 10}, direction[3] = {0, 0, -1};
   r.browser.pointerRay(origin, direction, button);
@@ -33,7 +34,7 @@ TEST(Picking, FindsTheNearestShapeWithItsPathAndPlaces) {
   EXPECT_EQ(hit.distance, 8);
   EXPECT_EQ(text(hit.point), "1.5 0.5 2");
   EXPECT_EQ(text(hit.normal), "0 0 1");
-  EXPECT_FLOAT_EQ(hit.texCoord.x, 0.625f); // a quarter of the box's face from its middle
+  EXPECT_FLOAT_EQ(hit.texCoord.x, 0.625f); // a quarter of the face's width from its centre
   EXPECT_FLOAT_EQ(hit.texCoord.y, 0.625f);
   ASSERT_EQ(hit.path.size(), 2u);
   EXPECT_EQ(hit.path[0].node->defName, "T");
@@ -135,7 +136,7 @@ TEST(Picking, LargeMeshesGiveWhatSmallOnesDo) {
             "60 height [ " +
             heights + " ] } } }");
   PickHit hit;
-  for (int i = 0; i < 58; ++i) { // at the grid's points the height is that of the file
+  for (int i = 0; i < 58; ++i) { // at grid points the height must be that of the file
     ASSERT_TRUE(pickAt(r, i + 1e-4, -20 - 1e-4, hit)) << i;
     EXPECT_NEAR(hit.point[2], ((20 * 60 + i) * 7919 % 13) * 0.1, 2e-3) << i;
   }
@@ -330,7 +331,7 @@ TEST(PointingSensors, ThePictureIsFromMinusOneToOne) {
   EXPECT_EQ(r.get("S", "isOver"), "TRUE");
   r.browser.pointer(0, 0.7, false);
   EXPECT_EQ(r.get("S", "isOver"), "FALSE");
-  r.browser.pointer(0.02, 0.9, false); // x reaches twice as far
+  r.browser.pointer(0.02, 0.9, false); // x covers twice the angle
   EXPECT_EQ(r.get("S", "isOver"), "TRUE");
   r.browser.pointer(0.03, 0.9, false);
   EXPECT_EQ(r.get("S", "isOver"), "FALSE");

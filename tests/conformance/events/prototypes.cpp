@@ -1,4 +1,4 @@
-// Prototypes of a running world: clauses 4.8 and 4.9.
+// prototypes.cpp: prototypes of a running world: clauses 4.8 and 4.9.
 #include "conformance/events/scripted.h"
 
 namespace xvrml {
@@ -26,7 +26,7 @@ TEST(Prototypes, FiveDeepWithRoutes) {
   EXPECT_EQ(r.take(), Log{"0 I.at 1 2 3"});
   EXPECT_EQ(translationOf(r.node("I")), "1 2 3");
   EXPECT_EQ(r.get("B", "translation"), "1 2 3");
-  EXPECT_EQ(r.get("J", "at"), "9 0 0"); // a copy of its own
+  EXPECT_EQ(r.get("J", "at"), "9 0 0"); // it has a copy of its own
 }
 
 TEST(Prototypes, OneInterfaceReachesAllItIsConnectedTo) {
@@ -105,7 +105,7 @@ TEST(Switches, NullKeepsItsPlaceAmongTheChoices) {
                            "choice IS list } }\nDEF I P {} DEF J P { list [ NULL NULL DEF D Group "
                            "{} ] }\nDEF G Group { children [ NULL ] }";
   const auto world = loadWorldFromMemory(text, "test.wrl");
-  EXPECT_EQ(world->diagnostics.warnings(), 1u); // of the Group alone
+  EXPECT_EQ(world->diagnostics.warnings(), 1u); // only about the Group
   const auto again = loadWorldFromMemory(writeWorld(*world), "again.wrl");
   std::string difference;
   EXPECT_TRUE(equalScopes(world->scope, again->scope, &difference)) << difference;

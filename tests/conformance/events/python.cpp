@@ -1,6 +1,6 @@
-// The script engine `python` (plugins/script/python) within a program that is none of Python's:
-// values of all types, nodes, errors with their lines, programs that do not end. Skipped where
-// Python cannot be embedded.
+// python.cpp: the script engine `python` (plugins/script/python) in a program that does not embed
+// Python itself: values of all types, nodes, errors with their lines, programs that do not end.
+// Skipped if Python cannot be embedded.
 #include <filesystem>
 #include <fstream>
 
@@ -23,7 +23,7 @@ class Python : public testing::Test {
   }
 };
 
-// What a Script sends on `out` for a value on `in`; or its first message.
+// Returns what a Script sends on `out` for a value on `in`, or its first message.
 std::string echo(const std::string& type, const std::string& program, Value value,
                  const BrowserOptions& options, const std::string& outType = "") {
   Scripted r("DEF S Script { eventIn " + type + " in_ eventOut " +
@@ -180,7 +180,7 @@ TEST_F(Python, NodesAreThoseOfTheBinding) {
   EXPECT_EQ(r.get("S", "same"), "TRUE");
   EXPECT_EQ(std::get<NodeRef>(r.browser.get(*s, "out")), g);
   EXPECT_EQ(std::get<MFNode>(r.browser.get(*s, "all")), (MFNode{t, g, s}));
-  EXPECT_EQ(r.get("S", "was"), "1 2 3"); // what is assigned leaves when the function returns
+  EXPECT_EQ(r.get("S", "was"), "1 2 3"); // assigned values are sent when the function returns
   EXPECT_EQ(r.get("T", "translation"), "4 5 6");
   EXPECT_EQ(r.get("T", "scale"), "2 2 2");
   EXPECT_EQ(r.printed(), Log{"Transform T"});
@@ -297,10 +297,10 @@ TEST_F(Python, AnEndlessLoopIsStoppedWhateverItCatches) {
     EXPECT_NE(messages[0].find("stopped here"), std::string::npos) << messages[0];
     EXPECT_GT(std::stoi(messages[0]), 3); // a line of the program
     EXPECT_EQ(messages[1], "3: Script S: event took too long: the Script is stopped");
-    EXPECT_EQ(r.get("S", "out"), "FALSE"); // what it sent does not leave
-    r.set("S", "go", true);                // no more events
+    EXPECT_EQ(r.get("S", "out"), "FALSE"); // the event that it sent is discarded
+    r.set("S", "go", true);                // it receives no more events
     r.set("T", "go", true);
-    EXPECT_EQ(r.get("T", "out"), "TRUE"); // the world goes on
+    EXPECT_EQ(r.get("T", "out"), "TRUE"); // the world continues
     EXPECT_EQ(r.messages(), Log{});
   }
 }
@@ -344,7 +344,7 @@ TEST_F(Python, ProgramsOfFilesHaveTheirOwnLinesAndModules) {
   std::ofstream(folder / "own.py") << "import xvrml_test_helper\ndef go(v):\n    script.out = "
                                       "xvrml_test_helper.answer\n    nothing\n";
   std::ofstream(folder / "xvrml_test_helper.py")
-      << "answer = open(__file__).read().count('a')\n"; // files may be read
+      << "answer = open(__file__).read().count('a')\n"; // reading files is allowed
   BrowserOptions options = trusting();
   Browser browser(
       loadWorldFromMemory(

@@ -1,5 +1,5 @@
-// What is meant by a world that breaks a rule: as much of it as can be is kept, and one message
-// says so.
+// recovery.cpp: worlds that break a rule: as much as possible of them is kept, and one message
+// explains the problem.
 #include <sstream>
 
 #include "conformance/events/scripted.h"
@@ -14,7 +14,8 @@ std::string fieldOf(Node& node, const char* field) {
 }
 uint64_t errors(Running& r) { return r.browser.world().diagnostics.errors(); }
 
-TEST(Recovery, ANodeMayBeUsedWithinAFieldOfItsOwnThatIsNotDrawn) { // key frames of Cosmo Worlds
+// The key frames of Cosmo Worlds are written like this.
+TEST(Recovery, ANodeMayBeUsedWithinAFieldOfItsOwnThatIsNotDrawn) {
   const std::string text =
       "PROTO Keys [ field MFNode actors [] ] { Group {} } "
       "DEF K Keys { actors [ DEF T Transform { children [ Group {} USE K ] } ] } USE T";
@@ -60,7 +61,7 @@ TEST(Recovery, AFieldThatIsAnExposedFieldTakesTheGivenValue) {
   EXPECT_EQ(fieldOf(drawn(r, "A"), "size"), "1 2 3");
   EXPECT_EQ(fieldOf(drawn(r, "B"), "size"), "10 10 0.1");
   r.log("A", "size");
-  r.set("A", "size", Vec3f{4, 4, 4}); // the instance's own
+  r.set("A", "size", Vec3f{4, 4, 4}); // sets the exposedField of the instance
   EXPECT_EQ(r.take(), Log{"0 A.size 4 4 4"});
   EXPECT_EQ(fieldOf(drawn(r, "A"), "size"), "1 2 3");
 }
@@ -98,7 +99,7 @@ TEST(Recovery, AMisplacedNodeKeepsItsName) {
   Running r("DEF RED Material { diffuseColor 1 0 0 } DEF S Shape { appearance DEF A Appearance { "
             "material USE RED } "
             "geometry Group { children DEF IN Group {} } } Group { children USE IN }");
-  EXPECT_EQ(errors(r), 2u); // the Material at the root, the Group as geometry
+  EXPECT_EQ(errors(r), 2u); // the Material at the root, and the Group as geometry
   EXPECT_EQ(r.browser.world().diagnostics.warnings(), 0u);
   EXPECT_EQ(r.get("A", "material"), "RED");
   EXPECT_EQ(r.get("S", "geometry"), "NULL");
@@ -118,7 +119,7 @@ TEST(Recovery, ScriptsSendToNodesWhereOldWorldsMay) {
   }
 }
 
-// Nodes of a type that a world draws or holds, shared ones once.
+// Returns the number of nodes of a type that a world draws or holds; shared nodes count once.
 size_t count(const World& world, std::string_view type) {
   std::vector<Node*> roots, nodes;
   for (const NodeRef& root : world.scope.roots) roots.push_back(root.get());
@@ -138,8 +139,8 @@ std::string messages(const World& world) {
   return text;
 }
 
-// Any one token of a file may be lost or doubled: what stands around its statement is there, and
-// few words say why.
+// Any one token of a file may be lost or doubled. Everything around its statement is kept, and a
+// few messages explain why.
 TEST(Recovery, OneTokenCostsAtMostOneStatement) {
   std::vector<std::string> tokens;
   std::istringstream in("Transform { translation 1 0 0 children [ Shape { geometry Box { } } ] }");

@@ -1,4 +1,4 @@
-// ProximitySensor and VisibilitySensor: clauses 6.38, 6.54 and 4.6.7.2.
+// regions.cpp: ProximitySensor and VisibilitySensor: clauses 6.38, 6.54 and 4.6.7.2.
 #include "conformance/events/viewing.h"
 
 namespace xvrml {
@@ -150,7 +150,7 @@ TEST(VisibilitySensor, SendsWhenItsBoxComesIntoViewAndLeavesIt) {
 }
 
 TEST(VisibilitySensor, ThePictureEndsAtItsEdges) {
-  // Half a picture is 10 tan(fieldOfView / 2) = 5 high at the origin and, by the aspect of 2, 10
+  // Half the picture is 10 tan(fieldOfView / 2) = 5 high at the origin and, with an aspect of 2, 10
   // wide.
   Region r("Viewpoint { fieldOfView 0.9272952 } DEF T Transform { children DEF S VisibilitySensor "
            "{ size 2 2 0.0001 } }");
@@ -180,8 +180,8 @@ TEST(VisibilitySensor, ABoxBeyondAllEdgesAndOneAroundTheEyeAreSeen) {
 }
 
 TEST(VisibilitySensor, ABoxThatNoCornerPutsBesideThePictureIsNotSeenFromOutside) {
-  // A long thin box beside the picture: its corners are before and behind the viewer, none beyond
-  // one edge alone.
+  // A long thin box beside the picture. Its corners are in front of and behind the viewer, so no
+  // single edge excludes all of them.
   Region r("Viewpoint { position 0 0 0 } Transform { translation 9 0 0 rotation 0 1 0 -0.7853982 "
            "children"
            " DEF S VisibilitySensor { size 0.1 0.1 60 } }");

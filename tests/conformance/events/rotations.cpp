@@ -1,5 +1,5 @@
-// Axes of rotations are normalised (5.8) wherever a node gets one: files, events, prototypes,
-// programs. The direction is kept.
+// rotations.cpp: axes of rotations are normalised (5.8) wherever a node receives one: files,
+// events, prototypes, programs. The direction is kept.
 #include <cmath>
 
 #include "conformance/events/support.h"
@@ -7,7 +7,7 @@
 namespace xvrml {
 namespace {
 
-// 0 1.618034 1 has length 1.902113 and this direction.
+// The axis 0 1.618034 1 has length 1.902113; this is its normalised direction.
 const std::string golden = "0 0.850651 0.525731 1.25";
 const SFRotation wild{0, 1.618034f, 1, 1.25f};
 
@@ -32,14 +32,14 @@ TEST(Rotations, OneMessageSaysHowManyAndWhich) {
                              "1; it and 1 more are normalised");
 }
 
-TEST(Rotations,
-     ComponentsUpToOneAreNoWordWorth) { // 0 1 1 is how many files write "between y and z"
+// Many files write 0 1 1 for "between y and z".
+TEST(Rotations, ComponentsUpToOneAreNoWordWorth) {
   Running r("DEF T Transform { rotation 0 1 1 1 } DEF U Transform { rotation 0.577 0.577 0.577 1 } "
             "DEF V Transform { rotation 0 "
             "0 0 1 }");
   EXPECT_TRUE(r.browser.world().diagnostics.list().empty());
   EXPECT_EQ(r.get("T", "rotation"), "0 0.707107 0.707107 1");
-  EXPECT_EQ(r.get("U", "rotation"), "0.577 0.577 0.577 1"); // digits of a file, not an error
+  EXPECT_EQ(r.get("U", "rotation"), "0.577 0.577 0.577 1"); // the digits of a file, not an error
   EXPECT_EQ(r.get("V", "rotation"), "0 0 0 1");             // no rotation
 }
 
@@ -75,8 +75,8 @@ TEST(Rotations, OfProgramsAreNormalisedAndWrittenSo) {
   const NodeRef node(type.create(type));
   node->set(*type.find("rotation"), wild);
   EXPECT_EQ(textOf(node->get(*type.find("rotation"))), golden);
-  *static_cast<SFRotation*>(node->storage(*type.find("scaleOrientation"))) = {0, 2, 0,
-                                                                              1}; // past all checks
+  // Written directly, without any check.
+  *static_cast<SFRotation*>(node->storage(*type.find("scaleOrientation"))) = {0, 2, 0, 1};
   World world;
   world.scope.roots.push_back(node);
   const auto again = loadWorldFromMemory(writeWorld(world), "again.wrl");

@@ -1,4 +1,4 @@
-// Routes and cascades: clauses 4.7, 4.10.2 to 4.10.4 and 4.8.2.
+// routes.cpp: routes and cascades: clauses 4.7, 4.10.2 to 4.10.4 and 4.8.2.
 #include "conformance/events/support.h"
 
 namespace xvrml {
@@ -20,7 +20,7 @@ TEST(Routes, ALoopEndsBecauseAnEventOutSendsOncePerTimestamp) {
   r.log("B", "translation");
   r.set("A", "translation", Vec3f{1, 0, 0});
   EXPECT_EQ(r.take(), (Log{"0 A.translation 1 0 0", "0 B.translation 1 0 0"}));
-  r.set("A", "translation", Vec3f{2, 0, 0}); // another cascade, though at the same time
+  r.set("A", "translation", Vec3f{2, 0, 0}); // another cascade, though with the same timestamp
   EXPECT_EQ(r.take().size(), 2u);
 }
 

@@ -1,5 +1,5 @@
-// The script ABI: sizes and places that plug-ins of this major version were built with, and what
-// the host makes of plug-ins that are older or bad. See xvrml/xscript.h.
+// script_abi.cpp: the script ABI: the sizes and offsets that plug-ins of this major version were
+// built with, and how the host treats older and bad plug-ins. See xvrml/xscript.h.
 #include <cstddef>
 #include <functional>
 
@@ -10,7 +10,7 @@
 namespace xvrml {
 namespace {
 
-// On 64-bit machines. These numbers never change; new members come behind the last.
+// On 64-bit machines. These numbers never change; new members are added at the end.
 static_assert(sizeof(void*) != 8 ||
               (sizeof(XsString) == 16 && sizeof(XsImage) == 24 && sizeof(XsValue) == 16 &&
                offsetof(XsValue, of) == 8 && sizeof(XsField) == 16 && sizeof(XsPlugin) == 24 &&
@@ -46,7 +46,7 @@ XsEngine goodEngine() {
   return engine;
 }
 
-// The message, or "" if the plug-in is accepted.
+// Returns the message, or "" if the plug-in is accepted.
 std::string refusal(const std::function<void(XsPlugin&, XsEngine&)>& change,
                     std::vector<XsEngine>* accepted = nullptr) {
   XsEngine engine = goodEngine();
@@ -69,7 +69,7 @@ TEST(ScriptAbi, AnOlderEngineLacksTheNewerFunctions) {
   EXPECT_EQ(engines[0].size, sizeof(XsEngine));
   EXPECT_EQ(engines[0].create, create);
   EXPECT_EQ(engines[0].tick,
-            nullptr); // there in the plug-in's memory, but beyond the size it states
+            nullptr); // present in the plug-in's memory, but beyond the stated size
   EXPECT_STREQ(engines[0].text, "");
 }
 

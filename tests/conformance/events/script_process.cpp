@@ -1,5 +1,6 @@
-// Scripts in processes of their own: what a program there cannot do, and what becomes of it, of the
-// others and of the world when it tries. Programs are those of tests/script/hostile_engine.c.
+// script_process.cpp: Scripts in processes of their own. Tests check what a program there cannot
+// do, and what happens to it, to the others and to the world when it tries. The programs are those
+// of tests/script/hostile_engine.c.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -14,7 +15,7 @@
 namespace xvrml {
 namespace {
 
-// Sanitizers catch signals of their own, and reserve so much memory that it cannot be limited.
+// Sanitizers handle signals themselves and reserve so much address space that it cannot be limited.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool sanitized = true;
 #else
@@ -30,8 +31,8 @@ BrowserOptions limits(double patience = 0, double seconds = 5) {
   return options;
 }
 
-// Script S does what `program` says when `go` arrives; E is a well-behaved one, of the test engine,
-// in a process, too.
+// Returns a world. Its Script S does what `program` says when `go` arrives; E is a well-behaved
+// Script of the test engine, also in a process.
 std::string world(const std::string& program) {
   return "DEF S Script { eventIn SFBool go eventOut SFInt32 out\n url \"hostile:" + program +
          "\" }\nDEF E Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" }";
@@ -40,21 +41,22 @@ std::string world(const std::string& program) {
 struct Hostile : Scripted {
   explicit Hostile(const std::string& program, BrowserOptions options = limits())
       : Scripted(world(program), options) {}
-  bool lives() { // the world does
+  bool lives() { // whether the world still handles events
     static int32_t number = 0;
     set("E", "in", ++number);
-    for (int i = 0; i < 2000 && get("E", "out") != std::to_string(number);
-         ++i) { // with patience, on a machine that is busy
+    // Waits long enough for a busy machine.
+    for (int i = 0; i < 2000 && get("E", "out") != std::to_string(number); ++i) {
       browser.tick(browser.now() + 1.0 / 60);
       usleep(1000);
     }
     return get("E", "out") == std::to_string(number);
   }
-  pid_t process(const char* script = "S") { // of a program with "go: process out"
+  pid_t process(const char* script = "S") { // for a program with "go: process out"
     set(script, "go", true);
     return pid_t(std::stol(get(script, "out")));
   }
-  // Ticks of 1/60 s until there is a message or something is printed, at most 10 s.
+  // Ticks at 60 Hz until there is a message or printed output, for at most 10 s. Returns the number
+  // of ticks; 0 on a timeout.
   int ticksUntilTold(Log& told) {
     for (int ticks = 1; ticks < 2000; ++ticks) {
       browser.tick(browser.now() + 1.0 / 60);
@@ -76,7 +78,7 @@ class ScriptProcess : public testing::Test {
 struct Misdeed {
   const char* name;
   const char* program;
-  const char* message; // part of it
+  const char* message; // a part of the message
 };
 void PrintTo(const Misdeed& misdeed, std::ostream* out) { *out << misdeed.program; }
 class ScriptMisdeeds : public testing::TestWithParam<Misdeed> {};
@@ -95,12 +97,12 @@ constexpr Misdeed misdeeds[] = {
 INSTANTIATE_TEST_SUITE_P(All, ScriptMisdeeds, testing::ValuesIn(misdeeds),
                          [](const auto& info) { return info.param.name; });
 
-// With the default of isolation.
+// With the default isolation.
 TEST_P(ScriptMisdeeds, StopTheScriptAndNothingElse) {
   if (sanitized && GetParam().name == std::string_view("MemoryBomb"))
     GTEST_SKIP() << "memory has no limit with sanitizers";
   for (const double patience : {0.0, 0.02}) {
-    // What ends by itself may take its time: a busy machine is slow.
+    // Programs that end by themselves may take their time on a busy machine.
     const bool endless = GetParam().message == std::string_view("took too long");
     Hostile r(GetParam().program, limits(patience, endless ? 0.2 : 20));
     EXPECT_EQ(r.messages(), Log{});
@@ -109,14 +111,14 @@ TEST_P(ScriptMisdeeds, StopTheScriptAndNothingElse) {
     Log told = r.messages();
     for (int i = 0; i < 1000 && told.empty(); ++i) {
       r.ticksUntilTold(told);
-      std::erase(told, "x"); // of the chatter
+      std::erase(told, "x"); // output of `chatter`
     }
     ASSERT_EQ(told.size(), 1u) << patience;
-    EXPECT_EQ(told[0].find("3: Script S: "), 0u) << told[0]; // where its program begins
+    EXPECT_EQ(told[0].find("3: Script S: "), 0u) << told[0]; // the line where its program begins
     EXPECT_TRUE(sanitized || told[0].find(GetParam().message) != std::string::npos) << told[0];
     EXPECT_NE(told[0].find("the Script is stopped"), std::string::npos) << told[0];
     EXPECT_EQ(r.browser.world().diagnostics.list().back().file, "test.wrl");
-    r.set("S", "go", true); // nothing any more
+    r.set("S", "go", true); // it does nothing any more
     r.browser.tick(r.browser.now() + 1);
     EXPECT_TRUE(r.lives());
     EXPECT_EQ(r.messages(), Log{});
@@ -134,7 +136,7 @@ TEST_F(ScriptProcess, ReachesNothing) {
   setenv("LD_LIBRARY_PATH", ":/nonexistent", 0);
   struct {
     const char* program;
-    const char* allowed; // what must not be printed
+    const char* allowed; // the value that must not be printed
   } const table[] = {{"go: open /etc/passwd", "open: worked"},
                      {"go: create cage-test-file", "create: worked"},
                      {"go: socket", "socket: worked"},
@@ -211,7 +213,8 @@ TEST_F(ScriptProcess, OneThatIsAlwaysKilledIsStopped) {
   }
   r.set("S", "go", true);
   const Log messages = r.messages();
-  ASSERT_EQ(messages.size(), 2u) << testing::PrintToString(messages); // the same text is told once
+  // An identical text is reported once.
+  ASSERT_EQ(messages.size(), 2u) << testing::PrintToString(messages);
   EXPECT_NE(messages[0].find("ended by signal 9 (Killed)"), std::string::npos) << messages[0];
   EXPECT_NE(messages[0].find("it is started anew"), std::string::npos) << messages[0];
   EXPECT_NE(messages[1].find("again: the Script is stopped"), std::string::npos) << messages[1];
@@ -258,7 +261,7 @@ TEST_F(ScriptProcess, WithoutTheProgramScriptsDoNothing) {
     Hostile r("create: print runs\ngo: print runs");
     unsetenv("XVRML_SCRIPT_HOST");
     const Log messages = r.messages();
-    ASSERT_EQ(messages.size(), 2u); // of each engine
+    ASSERT_EQ(messages.size(), 2u); // one per engine
     EXPECT_EQ(messages[0].find("2: Script S: no process for programs of engine hostile: "), 0u)
         << messages[0];
     EXPECT_NE(messages[0].find("; Scripts of this engine do nothing"), std::string::npos)
@@ -278,9 +281,9 @@ TEST_F(ScriptProcess, AWorldCannotEndProcessesForEver) {
     r.set("S", "go", true);
   }
   r.messages();
-  r.set("N", "go", true); // has its process
+  r.set("N", "go", true); // it has its process
   EXPECT_EQ(r.printed(), Log{"x"});
-  r.set("N", "url", MFString{"hostile:go: print y"}); // gets none
+  r.set("N", "url", MFString{"hostile:go: print y"}); // it gets no new process
   r.set("N", "go", true);
   EXPECT_EQ(r.printed(), Log{});
   const Log messages = r.messages();
@@ -301,10 +304,10 @@ TEST_F(ScriptProcess, ProcessesThatNobodyNeedsEnd) {
     std::ifstream list(task.path() / "children");
     for (pid_t child; list >> child;) ++children;
   }
-  EXPECT_EQ(children, 3u); // S, E and a spare one
+  EXPECT_EQ(children, 3u); // S, E and a spare process
 }
 
-// --- Patience ---
+// --- Waiting for slow programs ---
 
 TEST_F(ScriptProcess, TheWorldGoesOnWhileAScriptTakesItsTime) {
   Hostile r("go: print began\ngo: slow 200\ngo: process out", limits(0.01, 10));
@@ -312,7 +315,7 @@ TEST_F(ScriptProcess, TheWorldGoesOnWhileAScriptTakesItsTime) {
   r.log("S", "out");
   r.set("S", "go", true);
   EXPECT_EQ(r.printed(), Log{"began"});
-  r.set("S", "go", true); // waits
+  r.set("S", "go", true); // it waits
   EXPECT_TRUE(r.lives());
   EXPECT_EQ(r.take(), Log{});
   Log told;
@@ -320,7 +323,7 @@ TEST_F(ScriptProcess, TheWorldGoesOnWhileAScriptTakesItsTime) {
   EXPECT_EQ(told[0], "slept");
   for (int i = 0; i < 100 && r.events.size() < 2; ++i) r.ticksUntilTold(told);
   const Log events = r.take();
-  ASSERT_EQ(events.size(), 2u); // each at the time of its tick
+  ASSERT_EQ(events.size(), 2u); // each with the timestamp of its tick
   EXPECT_NE(events[0].substr(0, events[0].find(' ')), events[1].substr(0, events[1].find(' ')));
   EXPECT_EQ(r.messages(), Log{});
 }
@@ -346,7 +349,8 @@ TEST_F(ScriptProcess, FramesGoOnWhileAScriptLoops) {
       usleep(2000);
     }
     EXPECT_GE(int(r.take().size()), frames / 2)
-        << program; // the other Script; in each of them, where nothing else runs
+        // The other Script runs in every frame in which nothing else does.
+        << program;
   }
 }
 
@@ -373,10 +377,10 @@ TEST_F(ScriptProcess, WithHardlyAnyPatienceScriptsBeginByAndBy) {
                         "event\" }} ROUTE T.translation TO S{}.in\n",
                         i, i);
   Scripted r(text, limits(1e-6, 10));
-  r.set("T", "translation", Vec3f{1, 2, 3}); // waits for those that have not begun
+  r.set("T", "translation", Vec3f{1, 2, 3}); // waits for Scripts that have not started
   Log printed = r.printed();
-  const auto end =
-      std::chrono::steady_clock::now() + std::chrono::minutes(2); // a busy machine is in no hurry
+  // Long enough for a busy machine.
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   for (int i = 0; std::chrono::steady_clock::now() < end &&
                   std::count(printed.begin(), printed.end(), "event") < 100;
        ++i) {
@@ -401,7 +405,7 @@ TEST_F(ScriptProcess, EventsThatWaitAreBounded) {
   EXPECT_TRUE(r.lives());
 }
 
-// --- The end ---
+// --- Shutdown ---
 
 TEST_F(ScriptProcess, NobodyWaitsForAProgramThatIsStuck) {
   const auto start = std::chrono::steady_clock::now();
@@ -440,7 +444,7 @@ TEST_F(ScriptProcess, NothingIsLeftBehind) {
     EXPECT_TRUE(r.lives());
   }
   EXPECT_EQ(openFiles(), before);
-  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1); // no child, dead or alive
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1); // no child process, running or zombie
   EXPECT_EQ(errno, ECHILD);
 }
 
@@ -457,7 +461,7 @@ TEST_F(ScriptProcess, ChildrenOfTheProgramAreLeftAlone) {
   EXPECT_EQ(WEXITSTATUS(status), 7);
 }
 
-// A browser may be handed from thread to thread.
+// A browser may be passed from thread to thread.
 TEST_F(ScriptProcess, AProcessOutlivesTheThreadThatStartedIt) {
   std::unique_ptr<Hostile> r;
   std::thread([&] { r = std::make_unique<Hostile>("go: process out"); }).join();
@@ -494,7 +498,7 @@ TEST_F(ScriptProcess, ProcessesEndWithTheProgram) {
   close(pipes[1]);
 }
 
-// A program that waits for whatever child of it ends takes the helpers' ends away.
+// A program that waits for any of its child processes also reaps the helpers.
 TEST_F(ScriptProcess, SomebodyElseMayWaitForTheProcesses) {
   struct sigaction reapAll {
   }, former{};

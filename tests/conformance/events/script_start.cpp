@@ -1,5 +1,5 @@
-// Many Scripts start side by side in their processes: the world sees no difference but the time
-// that it takes. And what all Scripts of a world may take together.
+// script_start.cpp: many Scripts start in parallel in their processes. The world sees no difference
+// except the time. Also the total resources of all Scripts of a world.
 #include <algorithm>
 #include <chrono>
 
@@ -16,12 +16,12 @@ BrowserOptions settings(Isolation isolation) {
   BrowserOptions options;
   options.scriptPath = XVRML_HOSTILE_SCRIPTS ":" XVRML_TEST_SCRIPTS;
   options.scriptIsolation = isolation;
-  options.scriptSeconds = 20; // a busy machine is slow
+  options.scriptSeconds = 20; // long enough for a busy machine
   return options;
 }
 
-// Each prints, sends an event, reads another node and writes a field of its own while it starts.
-// Some have a first URL that cannot be run, some a program that fails.
+// Returns Scripts that each print, send an event, read another node and write a field of their own
+// while starting. For some the first URL cannot be run, for some the program fails.
 std::string manyScripts(int count) {
   std::string text = "DEF T Transform { translation 1 2 3 }\n";
   for (int i = 0; i < count; ++i)
@@ -53,12 +53,12 @@ TEST(ScriptStart, ManyAtOnceLookLikeOneAfterTheOther) {
 TEST(ScriptStart, ProcessesWorkSideBySide) {
   std::string text;
   for (int i = 0; i < 12; ++i)
-    text += "Script { url \"hostile:initialize: slow 600\" }\n"; // sleeps: needs no processor
+    text += "Script { url \"hostile:initialize: slow 600\" }\n"; // sleeps and needs no processor
   const auto start = std::chrono::steady_clock::now();
   Scripted r(text, settings(Isolation::always));
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(r.printed(), Log(12, "slept"));
-  EXPECT_LT(taken.count(), 6); // one after the other: 7.2
+  EXPECT_LT(taken.count(), 6); // one after the other it would be 7.2
 }
 
 TEST(ScriptStart, OneThatEndsItsProcessHoldsNobodyUp) {
@@ -77,8 +77,8 @@ TEST(ScriptStart, OneThatEndsItsProcessHoldsNobodyUp) {
       << testing::PrintToString(messages);
   Log printed = r.printed();
   std::sort(printed.begin(), printed.end());
-  printed.erase(std::unique(printed.begin(), printed.end()),
-                printed.end()); // those of the same processes begin again
+  // Scripts of the same process print a second time.
+  printed.erase(std::unique(printed.begin(), printed.end()), printed.end());
   EXPECT_EQ(printed.size(), 38u);
 }
 
@@ -118,7 +118,7 @@ TEST(ScriptStart, WithPatienceTheWorldGoesOn) {
   EXPECT_EQ(r.messages(), Log{});
 }
 
-// --- What a world may take ---
+// --- Resources of a world ---
 
 TEST(ScriptTime, OfAWorldIsBounded) {
   for (const Isolation isolation : {Isolation::always, Isolation::never}) {
@@ -149,7 +149,7 @@ TEST(ScriptTime, OfAWorldIsBounded) {
 TEST(ScriptTime, GrowsWithTheTimeOfTheWorld) {
   for (const bool moves : {true, false}) {
     RunOptions run{.epoch = 0};
-    run.worldScriptSeconds = 0.02; // 0.2 s of sleep
+    run.worldScriptSeconds = 0.02; // 0.02 s for each second of the world allow 0.2 s of sleep
     Scripted r("DEF S Script { eventIn SFBool go url \"hostile:go: slow 30\" }",
                settings(Isolation::always), run);
     for (int i = 0; i < 12; ++i) {

@@ -1,4 +1,5 @@
-// Script nodes: clauses 4.12.2 to 4.12.6 and 6.40. Programs are those of the test engine.
+// scripts.cpp: Script nodes: clauses 4.12.2 to 4.12.6 and 6.40. The programs are those of the test
+// engine.
 #include <algorithm>
 
 #include "conformance/events/scripted.h"
@@ -107,7 +108,7 @@ TEST_P(Scripts, EventsToOtherNodesNeedDirectOutput) {
   EXPECT_EQ(refused.messages(), Log{"2: Script S: an event to another node needs directOutput TRUE "
                                     "(6.40); ignored, --compat scripts allows it"});
   refused.set("S", "in", Vec3f{1, 2, 3});
-  EXPECT_EQ(refused.messages(), Log{}); // said once
+  EXPECT_EQ(refused.messages(), Log{}); // reported once
   Scripted allowed(world("TRUE"));
   EXPECT_TRUE(reaches(allowed.node("T"), Change::transform));
   EXPECT_EQ(reachReason(allowed.node("T"), Change::transform), "Script field to");
@@ -151,7 +152,7 @@ TEST_P(Scripts, HandlesEndWithTheCallUnlessRetained) {
   r.set("S", "borrow", r.browser.node("T"));
   r.set("S", "in", Vec3f{1, 0, 0});
   EXPECT_EQ(r.get("T", "translation"), "0 0 0");
-  ASSERT_EQ(r.printed().size(), 1u); // does not know that node
+  ASSERT_EQ(r.printed().size(), 1u); // it has no access to that node
   r.set("S", "keep", r.browser.node("T"));
   r.set("S", "in", Vec3f{1, 0, 0});
   EXPECT_EQ(r.get("T", "translation"), "1 0 0");
@@ -192,7 +193,7 @@ TEST_P(Scripts, AProgramThatDoesNotEndIsStopped) {
   r.log("S", "out");
   r.set("S", "other", 1);
   EXPECT_EQ(r.take(), Log{});
-  r.set("S", "url", MFString{"test:other: echo out"}); // a new program, a new life
+  r.set("S", "url", MFString{"test:other: echo out"}); // the new program starts from the beginning
   EXPECT_EQ(r.printed(), Log{"bye"});
   r.set("S", "other", 1);
   EXPECT_EQ(r.take(), Log{"0 S.out 1"});
@@ -223,7 +224,7 @@ TEST_P(Scripts, AMissingEngineIsToldOnceForEachProtocol) {
       << messages[0];
   EXPECT_NE(messages[1].find("'.class'"), std::string::npos);
   EXPECT_NE(messages[2].find("'prolog:'"), std::string::npos);
-  EXPECT_EQ(r.printed(), Log{"d"}); // an alternative that can be run
+  EXPECT_EQ(r.printed(), Log{"d"}); // the first URL that can be run
   r.set("S", "in", true);           // silent
 }
 
@@ -293,7 +294,7 @@ TEST_P(Scripts, TickComesWithTime) {
   EXPECT_EQ(r.take(), (Log{"1 S.out 1", "1.5 S.out 1.5"}));
 }
 
-// No interpreter is called while another one runs.
+// No interpreter is called while another one is running.
 TEST_P(Scripts, WhatTickMakesBeginsAfterIt) {
   Scripted r("DEF S Script { eventOut MFNode out url \"test:tick: create out Script { url "
              "\\\"test:initialize: print child\\\" }\n"

@@ -1,5 +1,5 @@
-// The chess set of examples/scenes, moved by its Tcl Script: what stands where agrees with the
-// position that it sends.
+// tcl_chess.cpp: the chess set of examples/scenes, moved by its Tcl Script. The pieces on the board
+// agree with the position that the Script sends.
 #include <cmath>
 #include <map>
 
@@ -26,7 +26,7 @@ class TclChess : public Tcl {
     return textOf(browser.get(*browser.node("Chess"), out));
   }
 
-  // Kinds of pieces by the names of their nodes.
+  // Returns the kinds of pieces by the names of their nodes.
   static std::map<std::string, char> set() {
     std::map<std::string, char> nodes;
     for (int file = 0; file < 8; ++file) {
@@ -45,7 +45,7 @@ class TclChess : public Tcl {
   static Vec3f place(Browser& browser, const std::string& name) {
     return std::get<Vec3f>(browser.get(*browser.node(name), "translation"));
   }
-  // The first field of the FEN, by where the pieces stand.
+  // Returns the first field of the FEN, from the positions of the pieces.
   static std::string placement(Browser& browser) {
     std::string board(64, '.');
     for (const auto& [name, kind] : set()) {
@@ -82,7 +82,7 @@ class TclChess : public Tcl {
   static void play(Browser& browser, const char* move) {
     browser.set(*browser.node("Chess"), "play", std::string(move));
   }
-  // Moves, and waits until they have been made.
+  // Plays moves and waits until they are complete.
   static void playAll(Browser& browser, std::initializer_list<const char*> moves) {
     for (const char* move : moves) {
       play(browser, move);
@@ -143,7 +143,7 @@ TEST_F(TclChess, CapturesEnPassantAndPromotionsMoveTheRightPieces) {
                      "axb2", "Nf3", "bxc1=N", "Qxc1"});
   EXPECT_EQ(stated(*browser), "Q1bqkbnr/1p2pppp/8/8/8/5N2/P1PP1PPP/RNQ1KB1R");
   EXPECT_FALSE(place(*browser, "Spare_wq") == (Vec3f{-6.2f, 0, 3.5f}));
-  EXPECT_EQ(place(*browser, "Piece_e2"), (Vec3f{-6.2f, 0, 3.5f})); // in its stead
+  EXPECT_EQ(place(*browser, "Piece_e2"), (Vec3f{-6.2f, 0, 3.5f})); // replaced by the promoted piece
   EXPECT_GT(place(*browser, "Piece_d7").x, 4.8f);
 }
 

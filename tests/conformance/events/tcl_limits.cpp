@@ -1,5 +1,5 @@
-// What Tcl Scripts of worlds that are not trusted cannot do, and how those that do not end are
-// stopped. In this process: the process that they usually run in has tests of its own.
+// tcl_limits.cpp: actions that Tcl Scripts of untrusted worlds cannot do, and how endless ones are
+// stopped. In this process; the separate process in which they usually run has tests of its own.
 #include <clocale>
 #include <csignal>
 
@@ -118,7 +118,7 @@ TEST_F(TclLimits, WhatComputesIsThere) {
   EXPECT_EQ(r.messages(), Log{});
 }
 
-// Each of these would run for ever.
+// Each of these would run forever.
 TEST_F(TclLimits, ProgramsThatDoNotEndAreStopped) {
   const char* const programs[] = {
       "while 1 {set x 1}",
@@ -186,7 +186,7 @@ TEST_F(TclLimits, RecursionIsAnError) {
   EXPECT_EQ(r.printed(), Log{"too many nested evaluations (infinite loop?)"});
 }
 
-// Brackets in brackets are another matter: Tcl's own stack ends, and with it the process of the
+// Nested brackets are another matter: Tcl's own stack overflows, which ends the process of the
 // scripts.
 TEST_F(TclLimits, TextsNestedDeeplyDoNotOverflow) {
   W r(W::script(

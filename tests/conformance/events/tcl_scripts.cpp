@@ -1,4 +1,5 @@
-// Scripts in Tcl: events, nodes, the Browser, messages, timers. See docs/scripts.md "Tcl/Tk".
+// tcl_scripts.cpp: Scripts in Tcl: events, nodes, the Browser, messages, timers. See
+// docs/scripts.md "Tcl/Tk".
 #include <cstdlib>
 
 #include "conformance/events/tcl_world.h"
@@ -22,7 +23,7 @@ TEST_F(TclScripts, EventsCallProcedures) {
   EXPECT_EQ(r.take(), Log{"2 S.out 6"});
   EXPECT_EQ(r.printed(), (Log{"3 2.0", "processed"}));
   r.set("S", "none", 3);   // no such procedure
-  r.set("S", "set", true); // a command of Tcl, but no procedure of the program
+  r.set("S", "set", true); // a command of Tcl, but not a procedure of the program
   r.printed();
   r.set("S", "url", MFString{});
   EXPECT_EQ(r.printed(), Log{"s 2.0"});
@@ -165,7 +166,7 @@ TEST_F(TclScripts, ErrorsCarryTheLineOfTheFile) {
                          "# line 4 of the file\n"
                          "proc inner {x} {\n"
                          "  set y 1\n"
-                         "  nothing $x\n" // 7
+                         "  nothing $x\n" // line 7
                          "}\n"
                          "proc deep {} {\n"
                          "  inner 1\n"
@@ -173,13 +174,13 @@ TEST_F(TclScripts, ErrorsCarryTheLineOfTheFile) {
                          "proc nested {} {\n"
                          "  foreach i {1 2} {\n"
                          "    if {$i == 2} {\n"
-                         "      error \"two\"\n" // 15
+                         "      error \"two\"\n" // line 15
                          "    }\n"
                          "  }\n"
                          "}\n"
                          "namespace eval n {\n"
                          "  proc spaced {} {\n"
-                         "    expr {1 / 0}\n" // 21
+                         "    expr {1 / 0}\n" // line 21
                          "  }\n"
                          "}\n"
                          "proc spaced {} {n::spaced}\n"
@@ -231,7 +232,7 @@ TEST_F(TclScripts, AfterFollowsTheClockOfTheWorld) {
   r.set("S", "go", true);
   r.printed();
   r.browser.tick(4);
-  EXPECT_EQ(r.printed(), Log{"again"}); // what is added under way waits for the next tick
+  EXPECT_EQ(r.printed(), Log{"again"}); // events added while running wait for the next tick
   r.browser.tick(5);
   EXPECT_EQ(r.printed(), Log{"again"});
 }

@@ -1,4 +1,5 @@
-// Values of the 20 types in Tcl, both ways, and what is refused. See docs/scripts.md "Tcl/Tk".
+// tcl_values.cpp: values of the 20 types in Tcl, in both directions, and values that are refused.
+// See docs/scripts.md "Tcl/Tk".
 #include "conformance/events/tcl_world.h"
 
 namespace xvrml {
@@ -9,9 +10,9 @@ class TclValues : public Tcl {};
 struct Case {
   const char* type;
   const char* vrml;   // a field's value in the file
-  const char* tcl;    // the same as Tcl has it
-  const char* wrong;  // no such value
-  const char* reason; // part of the message
+  const char* tcl;    // the same value in Tcl
+  const char* wrong;  // an invalid value
+  const char* reason; // a part of the message
 };
 
 const Case cases[] = {
@@ -69,7 +70,7 @@ TEST_F(TclValues, AreRefusedAtTheLineThatWritesThem) {
     const std::string before = r.get("S", "f");
     r.set("S", "go", true);
     const Log printed = r.printed();
-    if (std::string_view(c.wrong) == "{") { // Tcl does not even read it
+    if (std::string_view(c.wrong) == "{") { // Tcl itself cannot parse it
       EXPECT_EQ(r.get("S", "f"), before);
       continue;
     }

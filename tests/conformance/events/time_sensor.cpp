@@ -1,5 +1,5 @@
-// TimeSensor: clauses 4.6.9 and 6.50. One rule a test; the groups are those of the NIST VRML test
-// suite.
+// time_sensor.cpp: TimeSensor: clauses 4.6.9 and 6.50. One rule per test; the groups are those of
+// the NIST VRML test suite.
 #include <cmath>
 
 #include "conformance/events/support.h"
@@ -7,7 +7,7 @@
 namespace xvrml {
 namespace {
 
-// A world with one sensor T whose isActive is logged.
+// A world with one sensor T. Its isActive is logged.
 struct Sensor : Running {
   explicit Sensor(const std::string& fields, double start = 0)
       : Running("DEF T TimeSensor { " + fields + " }", start) {
@@ -226,8 +226,8 @@ TEST(TimeSensor, SetStopTimeAndThenSetStartTimeOfNowRestartIt) {
   EXPECT_FLOAT_EQ(s.number("fraction_changed"), 0.1f);
 }
 
-TEST(TimeSensor,
-     RestartedWithinOneCascadeItIsActiveAgainAtTheNextTick) { // isActive sends once per timestamp
+// isActive is sent once per timestamp.
+TEST(TimeSensor, RestartedWithinOneCascadeItIsActiveAgainAtTheNextTick) {
   Running r(
       "DEF A TimeSensor { startTime 6 } DEF T TimeSensor { loop TRUE startTime 1 cycleInterval 10 }"
       "ROUTE A.cycleTime TO T.set_stopTime ROUTE A.cycleTime TO T.set_startTime");
@@ -313,8 +313,8 @@ TEST(TimeSensor, ASetStartTimeOfNowStartsInTheSameCascade) {
                  "5 T.fraction_changed 1", "5 T.isActive FALSE"}));
 }
 
-TEST(TimeSensor,
-     OneEndsAndStartsTheNext) { // the idiom of sequences: through isActive of the first and time
+// The usual sequence: through isActive of the first sensor and its time.
+TEST(TimeSensor, OneEndsAndStartsTheNext) {
   Running r("DEF A TimeSensor { startTime 1 cycleInterval 2 } DEF B TimeSensor { cycleInterval 2 } "
             "DEF C TimeSensor { cycleInterval 2 }"
             "ROUTE A.cycleTime TO B.startTime ROUTE B.cycleTime TO C.startTime");
@@ -392,7 +392,7 @@ TEST(TimeSensor, ATickBeyondStopTimeTellsOfACycleThatBeganBefore) {
     sensor->tick(7);
   }
   EXPECT_EQ(s.take(), (Log{"7 T.cycleTime 5", "7 T.isActive FALSE"}));
-  EXPECT_EQ(exact.take(), Log{"7 T.isActive FALSE"}); // at 5 none began
+  EXPECT_EQ(exact.take(), Log{"7 T.isActive FALSE"}); // no cycle started at 5
 }
 
 TEST(TimeSensor,
@@ -430,7 +430,7 @@ TEST(TimeSensor, FractionsAreExactOverMillionsOfShortCycles) {
     s.tick(now);
     const double part = std::fmod(i / 1024.0, 0.125) / 0.125;
     ASSERT_EQ(s.number("fraction_changed"), part == 0 && i > 0 ? 1 : part)
-        << i; // joined, a cycle begins
+        << i; // together: a cycle starts
   }
 }
 

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "backend/cluster/master/master_state.h"
-#include "scene/channels.h"
+#include "scene/quality.h"
+#include "scene/transports.h"
 
 namespace openrt::cluster {
 namespace {
@@ -66,7 +67,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
     void operator()(message::Need& need) const { m.need(remote, need, now); }
     void operator()(message::Ready& ready) const {
       if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO ||
-          ready.transport > RT_TRANSPORT_LIGHT)
+          !isTransport(ready.transport))
         return m.strike(remote, "a scene that it cannot have prepared", now);
       // The worker has all arrays of these scenes.
       remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(ready.epoch));

@@ -9,6 +9,7 @@
 
 #include "backend/cluster/net/messages.h"
 #include "messages_generated.h"
+#include "scene/transports.h"
 
 namespace openrt::cluster {
 namespace {
@@ -116,7 +117,7 @@ void read(const wire::Ready& t, Frames&, message::Ready& m) {
   m.facts.camera = t.camera();
   m.facts.lamps = t.lamps();
   m.transport = t.transport();
-  demand(m.transport <= RT_TRANSPORT_LIGHT, "an unknown transport");
+  demand(isTransport(m.transport), "an unknown transport");
   if (t.stats())
     std::memcpy(&m.stats, t.stats()->data(), std::min<size_t>(t.stats()->size(), sizeof m.stats));
   m.stats.size = sizeof m.stats;

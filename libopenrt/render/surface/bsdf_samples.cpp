@@ -1,4 +1,4 @@
-#include "render/surface/ways.h"
+#include "render/surface/bsdf_samples.h"
 
 #include <cmath>
 

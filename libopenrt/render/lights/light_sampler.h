@@ -1,4 +1,4 @@
-// many_lights.h: the light sampler for the light shaders of a light set in path tracing. A few
+// light_sampler.h: the light sampler for the light shaders of a light set in path tracing. A few
 // lights are all evaluated. Of many, one is sampled per hit through a light tree
 // (render/lights/light_tree.h) and represents all of them: its colour is divided by its selection
 // probability. Parallel lights and lights whose class does not declare an extent are always

@@ -1,5 +1,5 @@
-// ways.h: BSDF samples of one hit: the directions in which a path may continue, one for every lobe,
-// two at a smooth boundary. [render]
+// bsdf_samples.h: BSDF samples of one hit: the directions in which a path may continue, one for
+// every lobe, two at a smooth boundary. [render]
 #pragma once
 
 #include "render/surface/lobes.h"

@@ -1,6 +1,6 @@
-// many_lights.cpp: builds the light samplers. The falloff of a light is measured, because its
+// light_sampler.cpp: builds the light samplers. The falloff of a light is measured, because its
 // extent does not describe it.
-#include "render/lights/many_lights.h"
+#include "render/lights/light_sampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "render/surface/batch.h"
+#include "scene/transports.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -181,7 +182,7 @@ LightSampler::Choice LightSampler::choose(const float place[3], const float norm
 
 std::shared_ptr<const std::vector<LightSampler>> makeLightSamplers(const RenderScene& scene,
                                                                    const RenderScene* before) {
-  const bool many = scene.frame.transport >= RT_TRANSPORT_PATH &&
+  const bool many = tracesPaths(scene.frame.transport) &&
                     std::any_of(scene.lightSets.begin(), scene.lightSets.end(),
                                 [](const auto& s) { return s.size() > LightSampler::few; });
   if (!many) return nullptr;

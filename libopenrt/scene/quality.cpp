@@ -1,0 +1,93 @@
+#include "scene/quality.h"
+
+#include <cfloat>
+#include <climits>
+#include <type_traits>
+
+#include "scene/transports.h"
+
+namespace openrt {
+namespace {
+
+using Frame = edit::FrameSettingsT;
+
+// Makes the accessors of a member of a frame.
+template <auto member> double get(const Frame& frame) { return double(frame.*member); }
+template <auto member> void set(Frame& frame, double value) {
+  frame.*member = static_cast<std::remove_reference_t<decltype(frame.*member)>>(value);
+}
+
+constexpr size_t size = sizeof(RTqualityInfo);
+
+// Columns of info: size, setting, name, real, range, default, 0 is automatic, choices, text.
+constexpr QualitySetting table[] = {
+    {{size, RT_SAMPLES_PER_PIXEL, "samples", 0, 1, 65536, 16, 0, nullptr, "samples per pixel"},
+     get<&Frame::samples>,
+     set<&Frame::samples>},
+    {{size, RT_MAX_DEPTH, "depth", 0, 0, 10000, 25, 0, nullptr,
+      "number of surfaces a path may meet"},
+     get<&Frame::depth>,
+     set<&Frame::depth>},
+    {{size, RT_SEED, "seed", 0, INT_MIN, INT_MAX, 0, 0, nullptr,
+      "selects another set of sample positions"},
+     [](const Frame& frame) { return double(static_cast<int>(frame.seed)); },
+     [](Frame& frame, double value) {
+       frame.seed = static_cast<uint32_t>(static_cast<int>(value));
+     }},
+    {{size, RT_SHADOWS, "shadows", 0, 0, 1, 1, 0, "off on", "whether lights cast shadows"},
+     get<&Frame::shadows>,
+     set<&Frame::shadows>},
+    {{size, RT_TRANSPORT, "transport", 0, RT_TRANSPORT_AUTO, std::size(transports) - 1,
+      RT_TRANSPORT_AUTO, 0, transportChoices, "how light is followed"},
+     get<&Frame::transport>,
+     set<&Frame::transport>},
+    {{size, RT_REPLICATES, "replicates", 0, 1, 1024, 0, 1, nullptr,
+      "independent replicates of a pixel's samples"},
+     get<&Frame::replicates>,
+     set<&Frame::replicates>},
+    {{size, RT_TARGET_ERROR, "error", 1, 0, 1, 0, 0, nullptr,
+      "mean relative half-width of the error bars to sample for; 0: none"},
+     get<&Frame::targetError>,
+     set<&Frame::targetError>},
+    {{size, RT_TIME_LIMIT, "time_limit", 1, 0, 1e6, 0, 0, nullptr,
+      "seconds after which no further round of samples begins; 0: none"},
+     get<&Frame::timeLimit>,
+     set<&Frame::timeLimit>},
+    {{size, RT_ENERGY_CUT, "energy_cut", 1, 0, 1, 1.0 / 4096, 0, nullptr,
+      "fraction of the camera ray below which the transport whitted ends branches"},
+     get<&Frame::energyCut>,
+     set<&Frame::energyCut>},
+    {{size, RT_CLAMP, "clamp", 1, 0, double(FLT_MAX), 0, 0, nullptr,
+      "upper bound of a sample's radiance in each colour; 0: none"},
+     get<&Frame::clamp>,
+     set<&Frame::clamp>},
+    {{size, RT_PROGRESSIVE, "progressive", 0, 0, 1, 0, 0, "off on",
+      "whether the whole picture is made early and then improved"},
+     get<&Frame::progressive>,
+     set<&Frame::progressive>},
+    {{size, RT_FRAMES_IN_FLIGHT, "frames_in_flight", 0, 1, 64, 1, 0, nullptr,
+      "backend=cluster: frames that rtSwapBuffers leaves unfinished"},
+     nullptr,
+     nullptr},
+    {{size, RT_TILE_SIZE, "tile", 0, 4, largestTile, 0, 1, nullptr, "edge of tiles in pixels"},
+     get<&Frame::tile>,
+     set<&Frame::tile>},
+};
+
+} // namespace
+
+std::span<const QualitySetting> qualitySettings() { return table; }
+
+const QualitySetting* findQuality(RTenum quality) {
+  for (const QualitySetting& setting : table)
+    if (setting.info.quality == quality) return &setting;
+  return nullptr;
+}
+
+const char* invalidQuality(const edit::FrameSettingsT& frame) {
+  for (const QualitySetting& setting : table)
+    if (setting.get && !setting.allows(setting.get(frame))) return setting.info.name;
+  return nullptr;
+}
+
+} // namespace openrt

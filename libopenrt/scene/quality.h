@@ -1,0 +1,33 @@
+// quality.h: the one table of quality settings (openrt/frame.h). rtQuality checks values against
+// it, rtGetQualityInfo publishes it, and readers of recordings and messages check frames against
+// it. [any thread]
+#pragma once
+
+#include <span>
+
+#include "edits_generated.h"
+#include "openrt/frame.h"
+
+namespace openrt {
+
+struct QualitySetting {
+  RTqualityInfo info;
+  // Read and write the setting of a frame. Null for settings that are not part of a frame.
+  double (*get)(const edit::FrameSettingsT& frame);
+  void (*set)(edit::FrameSettingsT& frame, double value);
+
+  // Returns whether the value is in the range. 0 may be allowed outside of it.
+  bool allows(double value) const {
+    return (value >= info.minimum && value <= info.maximum) || (info.zeroIsAuto && value == 0);
+  }
+};
+
+std::span<const QualitySetting> qualitySettings();
+// Returns null for an unknown setting.
+const QualitySetting* findQuality(RTenum quality);
+// Returns the name of the first setting of a frame that is out of its range; null if all are valid.
+const char* invalidQuality(const edit::FrameSettingsT& frame);
+
+inline constexpr uint32_t largestTile = 128; // largest tile edge in pixels
+
+} // namespace openrt
