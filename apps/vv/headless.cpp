@@ -40,15 +40,15 @@ class Headless {
   }
 
   int run() {
-    if (options_.listShaders) {
+    if (options_.has(Job::listShaders)) {
       writeOut(listShaders(options_.render.shaderPath, options_.json));
       return exitDone;
     }
-    if (options_.listEngines) {
+    if (options_.has(Job::listEngines)) {
       writeOut(listEngines(options_.running.scriptPath, options_.json));
       return exitDone;
     }
-    if (options_.listNodes && options_.input.empty()) {
+    if (options_.has(Job::listNodes) && options_.input.empty()) {
       writeOut(listNodes(nullptr, options_.json));
       return exitDone;
     }
@@ -59,8 +59,7 @@ class Headless {
     if (options_.strict && Problems::any(world)) return exitProblems;
     if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
     if (options_.check) return check();
-    if (options_.info || options_.listNodes || options_.listViewpoints || options_.explain)
-      inspect();
+    if (options_.job()) inspect(options_.job()->job);
     int code = exitDone;
     if (options_.makesPictures()) {
       deferInterrupt(true, interruptSeconds);
@@ -102,22 +101,18 @@ class Headless {
     return Problems::any(world) ? exitProblems : exitDone;
   }
 
-  void inspect() {
+  void inspect(Job job) {
     WorldClock(*browser_, options_.fps).advance(options_.time.value_or(0));
     const xvrml::World& world = browser_->world();
-    if (options_.listNodes) writeOut(listNodes(&world, options_.json));
-    if (options_.listNodes) return;
+    if (job == Job::listNodes) return writeOut(listNodes(&world, options_.json));
+    if (job == Job::explain) return explain();
     picture::Renderer renderer(*browser_, withoutPicture());
-    if (options_.explain) {
-      explain();
-    } else if (options_.listViewpoints) {
-      writeOut(listViewpoints(renderer.viewpoints(), options_.json));
-    } else {
-      const picture::Renderer::Place place = renderer.placeOf(options_.view);
-      const std::string up = picture::axisName(place.up);
-      writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), {up, place.reason},
-                             options_.running.scriptPath, options_.json));
-    }
+    if (job == Job::listViewpoints)
+      return writeOut(listViewpoints(renderer.viewpoints(), options_.json));
+    const picture::Renderer::Place place = renderer.placeOf(options_.view);
+    const std::string up = picture::axisName(place.up);
+    writeOut(describeWorld(world, renderer.viewpoints(), renderer.bounds(), {up, place.reason},
+                           options_.running.scriptPath, options_.json));
   }
 
   // Renders a picture of a single pixel, because the engine chooses the transport when it renders.

@@ -23,15 +23,16 @@ std::string quoted(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   vv::Options options = vv::readCommandLine(argc, argv);
-  if (options.help) {
+  const vv::JobInfo* job = options.job();
+  if (job && job->job == vv::Job::help) {
     vv::writeOut(vv::helpText());
     return vv::exitDone;
   }
-  if (options.version) {
+  if (job && job->job == vv::Job::version) {
     vv::writeOut("vv " + vv::version() + "\n");
     return vv::exitDone;
   }
-  if (options.listKeys) {
+  if (job && job->job == vv::Job::listKeys) {
     vv::writeOut(vv::listKeys());
     return vv::exitDone;
   }

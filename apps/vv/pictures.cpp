@@ -398,8 +398,7 @@ class Pictures {
       return taken + "and paths from lamps, whose number --error does not change; --spp N without "
                      "--error takes N of both a pixel";
     return taken + "which were enough in the pilots that decide it, and this picture has met more "
-                   "noise than they have; a smaller "
-                   "--error takes more";
+                   "noise than they have; a smaller --error takes more";
   }
 
   void finishSequence() {

@@ -187,12 +187,9 @@ void defineBrowser(py::module_& module) {
            py::arg("script_path") = py::none(), py::arg("trust") = false,
            py::arg("epoch") = worldEpoch, py::arg("direct_output_always") = false,
            "source: as of load(). The world comes alive at time `start`, in seconds after `epoch`, "
-           "which is in seconds since "
-           "1970: "
-           "nodes and Scripts see epoch + time. direct_output_always: Scripts without directOutput "
-           "TRUE may change nodes, as in "
-           "browsers "
-           "of 1997.")
+           "which is in seconds since 1970: nodes and Scripts see epoch + time. "
+           "direct_output_always: Scripts without directOutput TRUE may change nodes, as in "
+           "browsers of 1997.")
       .def_property_readonly(
           "now", [](const BrowserPtr& self) { return self->running->now(); },
           "Time in seconds after `epoch`.")

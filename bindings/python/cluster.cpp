@@ -197,16 +197,14 @@ void defineCluster(py::module_& module) {
       module, "Cluster",
       "Machines that render together: `with Cluster([\"a:7447\", \"b\"], key=\"cluster.key\")`. "
       "The pictures of renders inside have the same bytes as without (docs/cluster.md).")
-      .def(
-          py::init(&make), py::arg("workers") = py::none(), py::kw_only(),
-          py::arg("key") = py::none(), py::arg("listen") = py::none(),
-          py::arg("allow_keys") = py::none(), py::arg("local_threads") = py::none(),
-          py::arg("split") = "auto", py::arg("require") = 0, py::arg("tolerant") = false,
-          py::arg("shader_path") = py::none(),
-          "workers: addresses of openrt-worker --listen, or '@FILE'; listen: where workers call "
-          "in. Begins to call and returns "
-          "at "
-          "once. require: renders raise ClusterError while fewer workers are there for 10 seconds.")
+      .def(py::init(&make), py::arg("workers") = py::none(), py::kw_only(),
+           py::arg("key") = py::none(), py::arg("listen") = py::none(),
+           py::arg("allow_keys") = py::none(), py::arg("local_threads") = py::none(),
+           py::arg("split") = "auto", py::arg("require") = 0, py::arg("tolerant") = false,
+           py::arg("shader_path") = py::none(),
+           "workers: addresses of openrt-worker --listen, or '@FILE'; listen: where workers call "
+           "in. Begins to call and returns at once. require: renders raise ClusterError while "
+           "fewer workers are there for 10 seconds.")
       .def("__enter__", enter)
       .def("__exit__", leave)
       .def("close", closeCluster, "Says goodbye to the workers; the end of the with block does it.")
@@ -215,7 +213,6 @@ void defineCluster(py::module_& module) {
           "A Worker for each machine that has joined, those that left and this one too.")
       .def("wait", waitFor, py::arg("count") = 1, py::arg("timeout") = 10.0,
            "Waits until so many workers are there; raises TimeoutError if they are not in time. A "
-           "render needs no wait: workers "
-           "may join in its middle.")
+           "render needs no wait: workers may join in its middle.")
       .def("__repr__", text);
 }

@@ -97,9 +97,8 @@ class FilmObject {
 void defineFilm(py::module_& module) {
   py::class_<FilmObject>(module, "Film",
                          "A film file made of pictures: Film('turn.mp4', fps=25), then add() for "
-                         "each picture and close(), or as a "
-                         "context manager. The suffix (mp4, webm, gif) says the format. Nothing is "
-                         "written before close().")
+                         "each picture and close(), or as a context manager. The suffix (mp4, "
+                         "webm, gif) says the format. Nothing is written before close().")
       .def(py::init<const py::object&, double>(), py::arg("path"), py::arg("fps") = 25.0)
       .def(
           "add", &FilmObject::add, py::arg("picture"),

@@ -179,11 +179,9 @@ PYBIND11_MODULE(_xvrml, module) {
       fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
   module.def("load_node_plugins", loadPlugins, py::arg("path") = py::none(),
              "Loads the node plug-ins of these folders (separated by colons), of $XVRML_NODE_PATH "
-             "and of the installation. Returns a "
-             "line for each that is refused.");
+             "and of the installation. Returns a line for each that is refused.");
   module.def("load", load, py::arg("source"), py::kw_only(), py::arg("limits") = py::none(),
              py::arg("allow_absolute") = false,
              "Loads a world from a file name, bytes or a file object. Raises ParseError or "
-             "OSError; problems of single nodes are in "
-             "World.warnings.");
+             "OSError; problems of single nodes are in World.warnings.");
 }

@@ -214,8 +214,7 @@ py::object asNode(const WorldPtr& world, const NodeRef& node) {
 void defineNode(py::module_& module) {
   py::class_<NodeObject> all(module, "Node",
                              "A node. Its fields are attributes: numbers of lists are read-only "
-                             "arrays of what the field holds now; assigning changes "
-                             "the node.");
+                             "arrays of what the field holds now; assigning changes the node.");
   nodeClass = reinterpret_cast<PyTypeObject*>(all.ptr());
   module.def("_node_classes", nodeClasses);
   all.def("__init__", makeLoose, py::detail::is_new_style_constructor())

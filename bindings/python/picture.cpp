@@ -191,10 +191,10 @@ void definePicture(py::module_& module) {
       .def_property_readonly(
           "array", rgba,
           "Red, green, blue, alpha: float32 of shape (height, width, 4), first row at the top.")
-      .def_property_readonly("error", errorBars,
-                             "Half-widths of the 95 % intervals of red, green, blue: float32 of "
-                             "shape (height, width, 3). Only in "
-                             "pictures that were made with an error or this channel.")
+      .def_property_readonly(
+          "error", errorBars,
+          "Half-widths of the 95 % intervals of red, green, blue: float32 of shape (height, width, "
+          "3). Only in pictures that were made with an error or this channel.")
       .def_property_readonly("camera", camera,
                              "The Pinhole that it was made with; None for cameras that are none "
                              "(orthographic ones, ORTViewpoints).")
@@ -207,15 +207,14 @@ void definePicture(py::module_& module) {
                                return py::make_tuple(self.picture.height, self.picture.width, 4);
                              })
       .def_property_readonly("channels", channels, "Names of the channels.")
-      .def_property_readonly("nodes", nodes,
-                             "The Shape for each number of channel 'id': "
-                             "picture.nodes[picture['id'][row, column]]; None for 0. "
-                             "Empty in pictures without this channel, and in copies and pickled "
-                             "ones: nodes belong to the world.")
+      .def_property_readonly(
+          "nodes", nodes,
+          "The Shape for each number of channel 'id': picture.nodes[picture['id'][row, column]]; "
+          "None for 0. Empty in pictures without this channel, and in copies and pickled ones: "
+          "nodes belong to the world.")
       .def_property_readonly("names", names,
                              "A name for each number of channel 'id': the Shape's DEF name, else "
-                             "that of the nearest group above it, "
-                             "else 'Shape'; '' for 0.")
+                             "that of the nearest group above it, else 'Shape'; '' for 0.")
       .def_readonly("stats", &PictureObject::stats, "Counts and seconds of this render.")
       .def_property_readonly(
           "colour",

@@ -112,9 +112,9 @@ picture::LookAt cameraOf(const py::object& given) {
     for (const auto& row : rows)
       if (row.size() != 3) throw py::cast_error();
     if (isRotation(given, rows))
-      throw py::value_error("camera: a 3x3 rotation does not say where the camera stands: a 4x4 "
-                            "matrix from camera to world expected; position, "
-                            "target and up are given as a tuple");
+      throw py::value_error(
+          "camera: a 3x3 rotation does not say where the camera stands: a 4x4 matrix from camera "
+          "to world expected; position, target and up are given as a tuple");
     camera.saysUp = rows.size() == 3;
     double* targets[] = {camera.position, camera.target, camera.up};
     for (size_t i = 0; i < rows.size(); ++i) {
@@ -125,8 +125,7 @@ picture::LookAt cameraOf(const py::object& given) {
     }
   } catch (const py::cast_error&) {
     throw py::value_error("camera: a Pinhole, a 4x4 matrix from camera to world, or (position, "
-                          "target) or (position, target, up) of 3 numbers each "
-                          "expected, not " +
+                          "target) or (position, target, up) of 3 numbers each expected, not " +
                           shown(given));
   }
   if (!picture::lookAtMatrix(camera, matrix))
@@ -422,26 +421,22 @@ void interruptible(const std::function<void(picture::ProgressCallback watch)>& w
 
 void defineRender(py::object worldClass) {
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
-  world.def("render", render, py::arg("size") = py::make_tuple(800, 600),
-            py::arg("spp") = py::none(), py::arg("viewpoint") = py::none(),
-            py::arg("camera") = py::none(), py::arg("fit") = false, py::arg("fov") = py::none(),
-            py::arg("seed") = 0, py::arg("threads") = 0, py::arg("shadows") = true,
-            py::arg("colour") = "linear", py::arg("headlight") = "auto", py::arg("depth") = 25,
-            py::arg("channels") = py::none(), py::arg("transport") = "auto", py::arg("error") = 0.0,
-            py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0, py::arg("cluster") = py::none(),
-            py::arg("progress") = py::none(), py::arg("multiply_textures") = false,
-            py::arg("up") = py::none(), py::arg("background") = py::none(),
-            "Renders the world as it is now; of one that runs, the scene is kept from one picture "
-            "to the next. Options as those of "
-            "the program vv. spp: samples a pixel, 16; with an error at most so many, 4096; with a "
-            "time limit 65536. channels: "
-            "rgba and z, and with an error also error and trust. progress: True for a bar, or a "
-            "function that is called with the "
-            "fraction done. Ctrl-C raises KeyboardInterrupt; its attribute image is what was "
-            "finished. camera: a Pinhole, a 4x4 matrix "
-            "from camera to world (looking along -z, +y up), or (position, target) or (position, "
-            "target, up); with fit only its "
-            "direction "
-            "counts. up: the axis that is up ('z', '-y' ...) in a world without Viewpoint. "
-            "background: 'none', a colour or a file.");
+  world.def(
+      "render", render, py::arg("size") = py::make_tuple(800, 600), py::arg("spp") = py::none(),
+      py::arg("viewpoint") = py::none(), py::arg("camera") = py::none(), py::arg("fit") = false,
+      py::arg("fov") = py::none(), py::arg("seed") = 0, py::arg("threads") = 0,
+      py::arg("shadows") = true, py::arg("colour") = "linear", py::arg("headlight") = "auto",
+      py::arg("depth") = 25, py::arg("channels") = py::none(), py::arg("transport") = "auto",
+      py::arg("error") = 0.0, py::arg("time_limit") = 0.0, py::arg("clamp") = 0.0,
+      py::arg("cluster") = py::none(), py::arg("progress") = py::none(),
+      py::arg("multiply_textures") = false, py::arg("up") = py::none(),
+      py::arg("background") = py::none(),
+      "Renders the world as it is now; of one that runs, the scene is kept from one picture to the "
+      "next. Options as those of the program vv. spp: samples a pixel, 16; with an error at most "
+      "so many, 4096; with a time limit 65536. channels: rgba and z, and with an error also error "
+      "and trust. progress: True for a bar, or a function that is called with the fraction done. "
+      "Ctrl-C raises KeyboardInterrupt; its attribute image is what was finished. camera: a "
+      "Pinhole, a 4x4 matrix from camera to world (looking along -z, +y up), or (position, target) "
+      "or (position, target, up); with fit only its direction counts. up: the axis that is up "
+      "('z', '-y' ...) in a world without Viewpoint. background: 'none', a colour or a file.");
 }

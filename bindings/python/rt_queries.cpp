@@ -245,9 +245,8 @@ void defineRtQueries(py::class_<RtContext, RtContextPtr>& context) {
       .def("cast_rays", castRays, py::arg("rays"), py::kw_only(), py::arg("tnear") = 0.0f,
            py::arg("tfar") = infinity,
            "Nearest hits of rays (..., 6): origin and direction. A dict of arrays: t_hit "
-           "(infinite: nothing), geometry_ids "
-           "(Instance.user_data), primitive_ids, primitive_uvs, primitive_normals, instance_ids, "
-           "names.")
+           "(infinite: nothing), geometry_ids (Instance.user_data), primitive_ids, primitive_uvs, "
+           "primitive_normals, instance_ids, names.")
       .def("test_occlusions", testOcclusions, py::arg("rays"), py::kw_only(),
            py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
            "Whether anything lies between tnear and tfar: bool of shape (...).")
@@ -257,12 +256,10 @@ void defineRtQueries(py::class_<RtContext, RtContextPtr>& context) {
       .def("list_intersections", listIntersections, py::arg("rays"), py::kw_only(),
            py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
            "All surfaces that the rays pass, nearest first: as cast_rays, of shape (n,), with "
-           "ray_ids and ray_splits: those of "
-           "ray "
-           "i are ray_splits[i] to ray_splits[i + 1].")
+           "ray_ids and ray_splits: those of ray i are ray_splits[i] to ray_splits[i + 1].")
       .def("compute_closest_points", closestPoints, py::arg("query_points"), py::kw_only(),
            py::arg("radius") = infinity,
            "The nearest surface point of each of the points (..., 3), not farther than radius: "
-           "points (NaN: none), distances, "
-           "geometry_ids, primitive_ids, primitive_uvs, primitive_normals, instance_ids, names.");
+           "points (NaN: none), distances, geometry_ids, primitive_ids, primitive_uvs, "
+           "primitive_normals, instance_ids, names.");
 }

@@ -472,8 +472,8 @@ void defineRtScene(py::module_& module) {
            "texcoords"_a = none, "colors"_a = none, "shader"_a = none, "name"_a = 0,
            "cull"_a = false,
            "An object of triangles: vertices (n, 3) in float32 or float64, faces (m, 3); without "
-           "faces every three vertices are "
-           "one. normals, texcoords and colors by vertex. cull: back faces are not there.")
+           "faces every three vertices are one. normals, texcoords and colors by vertex. cull: "
+           "back faces are not there.")
       .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none, "name"_a = 0,
            "An exact sphere about the origin.")
       .def("group", group, "parts"_a, "An object of others: pairs of an object and its matrix.")

@@ -152,6 +152,6 @@ void defineShapes(py::module_& module) {
   py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(world).def(
       "meshes", meshes, py::kw_only(), py::arg("spheres") = 32, py::arg("view") = py::none(),
       "Everything that is drawn, as a list of Mesh. spheres: how many parts from pole to pole a "
-      "Sphere is cut into; 0: it stays "
-      "one. view: camera to world, for levels of detail and billboards.");
+      "Sphere is cut into; 0: it stays one. view: camera to world, for levels of detail and "
+      "billboards.");
 }

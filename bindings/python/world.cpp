@@ -251,18 +251,16 @@ void defineWorld(py::module_& module) {
           "DEF name, '' if it has none.")
       .def_property_readonly("description",
                              [](const ViewpointInfo& v) { return toText(v.description); })
-      .def_property_readonly(
-          "matrix", matrixOf,
-          "Its pose: camera to world, 4x4 for column vectors, looking along -z with +y up, as "
-          "render(camera=...) takes it.")
+      .def_property_readonly("matrix", matrixOf,
+                             "Its pose: camera to world, 4x4 for column vectors, looking along -z "
+                             "with +y up, as render(camera=...) takes it.")
       .def("__repr__", [](const ViewpointInfo& v) {
         return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">");
       });
   py::class_<WorldObject, WorldPtr> world(
       module, "World",
       "A world; World() is an empty one. world['NAME'] is the node that DEF NAME names. It stands "
-      "still until its time or its "
-      "events are asked for.",
+      "still until its time or its events are asked for.",
       py::dynamic_attr());
   world.def(py::init(&emptyWorld))
       .def_property_readonly(
@@ -275,8 +273,7 @@ void defineWorld(py::module_& module) {
       .def_property_readonly("viewpoints", viewpoints, "Viewpoints in the order of the file.")
       .def_property("time", now, setTime,
                     "Seconds since the world was loaded. Assigning lets time pass: sensors send, "
-                    "routes carry, Scripts run, until "
-                    "nothing is left to do. It does not go back.")
+                    "routes carry, Scripts run, until nothing is left to do. It does not go back.")
       .def_property_readonly(
           "epoch",
           [](const WorldPtr& self) {
@@ -307,8 +304,8 @@ void defineWorld(py::module_& module) {
       .def("remove", removeNode, py::arg("node"), "Takes a node from the top level.")
       .def("listen", listen, py::arg("node"), py::arg("event"), py::arg("callback"),
            "Calls callback(value, time) whenever an eventOut or exposedField has sent: after the "
-           "events that belong together, on "
-           "the thread that made them happen. Returns a number for unlisten.")
+           "events that belong together, on the thread that made them happen. Returns a number for "
+           "unlisten.")
       .def(
           "unlisten",
           [](const WorldPtr& self, const NodeObject& node, uint64_t number) {

@@ -71,10 +71,10 @@ void ContextConfig::set(std::string_view key, std::string_view value) {
   else if (setCluster(key, value))
     clusterKey_ = key;
   else
-    fail(RT_INVALID_VALUE, "unknown option \"" + std::string(key) +
-                               "\"; known are backend, threads, file, record, shaderpath, and of "
-                               "backend=cluster workers, listen, "
-                               "key, allow, local, split, require, tolerant");
+    fail(RT_INVALID_VALUE,
+         "unknown option \"" + std::string(key) +
+             "\"; known are backend, threads, file, record, shaderpath, and of backend=cluster "
+             "workers, listen, key, allow, local, split, require, tolerant");
 }
 
 bool ContextConfig::setCluster(std::string_view key, std::string_view value) {

@@ -72,8 +72,7 @@ void printStats(const Backend& backend, uint64_t frames) {
   std::printf("{\"frames\": %llu, \"triangles\": %llu, \"cameraRays\": %llu, \"shadowRays\": %llu, "
               "\"secondaryRays\": %llu,\n"
               " \"commitSeconds\": %g, \"buildSeconds\": %g, \"renderSeconds\": %g, \"threads\": "
-              "%u, \"isa\": \"%s\", "
-              "\"kernel\": \"%s\"}\n",
+              "%u, \"isa\": \"%s\", \"kernel\": \"%s\"}\n",
               static_cast<unsigned long long>(frames), static_cast<unsigned long long>(s.triangles),
               static_cast<unsigned long long>(s.cameraRays),
               static_cast<unsigned long long>(s.shadowRays),

@@ -18,8 +18,7 @@ FilmKind filmOf(std::string_view path) {
 std::string whyNoFilm(FilmKind kind) {
   if (kind == FilmKind::gif || libavEncodes(kind)) return "";
   return "this build has no encoder of such films (it lacks the ffmpeg libraries, or they lack "
-         "it); a name that ends in .gif, or "
-         "'picture-{frame:4}.png' for single pictures, works";
+         "it); a name that ends in .gif, or 'picture-{frame:4}.png' for single pictures, works";
 }
 
 Film::Film(FilmKind kind, int width, int height, double fps)

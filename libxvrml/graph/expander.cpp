@@ -325,11 +325,10 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
     return;
   }
   if (plan->bytes > state_.budget.left() || !state_.budget.take(plan->ownBytes)) {
-    state_.diagnostics.error(
-        instance.source,
-        fmt::format("copies of prototype '{}' take, with all that the world holds, more "
-                    "memory than {}; not expanded",
-                    name, state_.budget.name()));
+    state_.diagnostics.error(instance.source,
+                             fmt::format("copies of prototype '{}' take, with all that the world "
+                                         "holds, more memory than {}; not expanded",
+                                         name, state_.budget.name()));
     return;
   }
   completeFields(instance, *definition, inlines);
@@ -403,11 +402,10 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
       std::visit([](const auto& alternative) -> const void* { return &alternative; }, value);
   if (!state_.budget.take(valueBytes(to.type, given))) {
     if (!std::exchange(state_.full, true))
-      state_.diagnostics.error(
-          instance.source,
-          fmt::format("the world takes more memory than {}; values of prototype '{}' from "
-                      "{} on are left out",
-                      state_.budget.name(), instance.type().name, from.name));
+      state_.diagnostics.error(instance.source,
+                               fmt::format("the world takes more memory than {}; values of "
+                                           "prototype '{}' from {} on are left out",
+                                           state_.budget.name(), instance.type().name, from.name));
     return;
   }
   const IsAssignment assignment{instance, from, node, to, !state_.selfContaining.empty()};

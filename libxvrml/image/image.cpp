@@ -29,10 +29,10 @@ void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64
   checkImageSize(width, height, room.limits, format);
   const uint64_t bytes = width * height * components; // below 2^35 because of maximumImageSide
   if (bytes > room.bytes)
-    throw std::runtime_error(fmt::format(
-        "{} picture of {} x {} pixels takes {} bytes: all pictures of a world together take at "
-        "most 4 bytes for each pixel of the limit 'imagePixels' ({})",
-        format, width, height, bytes, room.limits.imagePixels));
+    throw std::runtime_error(
+        fmt::format("{} picture of {} x {} pixels takes {} bytes: all pictures of a world together "
+                    "take at most 4 bytes for each pixel of the limit 'imagePixels' ({})",
+                    format, width, height, bytes, room.limits.imagePixels));
   if (room.budget && bytes + working > room.budget->left())
     throw std::runtime_error(fmt::format(
         "{} picture of {} x {} pixels takes {} bytes: with all that the world holds more than {}",

@@ -167,18 +167,18 @@ std::string writePlugin(const Model& model, const std::string& plugin) {
     declarations += fmt::format("NodePluginRow pluginRowOf{}();\n", type.name);
     rows += fmt::format("    pluginRowOf{}(),\n", type.name);
   });
-  text += fmt::format("// What the plug-in {0} exports.\n#include \"{0}_nodes.h\"\n\nnamespace "
-                      "xvrml::nodes {{\n{1}}} "
-                      "// namespace xvrml::nodes\n\nnamespace {{\nusing namespace xvrml::nodes;\n"
-                      "const xvrml::NodePluginRow rows[] = {{\n{2}}};\n}} // namespace\n\n",
-                      plugin, declarations, rows);
+  text += fmt::format(
+      "// What the plug-in {0} exports.\n#include \"{0}_nodes.h\"\n\nnamespace xvrml::nodes "
+      "{{\n{1}}} // namespace xvrml::nodes\n\nnamespace {{\nusing namespace xvrml::nodes;\n"
+      "const xvrml::NodePluginRow rows[] = {{\n{2}}};\n}} // namespace\n\n",
+      plugin, declarations, rows);
   return text +
          "XVRML_NODE_PLUGIN = {xvrml::nodePluginMagic,\n    xvrml::nodePluginMajor,\n    "
          "xvrml::nodePluginMinor,\n"
          "    sizeof(xvrml::NodePlugin),\n    XVRML_CXX_ABI,\n    {xvrml::nodePluginSizes[0], "
-         "xvrml::nodePluginSizes[1], "
-         "xvrml::nodePluginSizes[2], xvrml::nodePluginSizes[3],\n     xvrml::nodePluginSizes[4], "
-         "xvrml::nodePluginSizes[5], xvrml::nodePluginSizes[6], xvrml::nodePluginSizes[7]},\n"
+         "xvrml::nodePluginSizes[1], xvrml::nodePluginSizes[2], xvrml::nodePluginSizes[3],\n     "
+         "xvrml::nodePluginSizes[4], xvrml::nodePluginSizes[5], xvrml::nodePluginSizes[6], "
+         "xvrml::nodePluginSizes[7]},\n"
          "    sizeof rows / sizeof rows[0],\n    rows};\n";
 }
 

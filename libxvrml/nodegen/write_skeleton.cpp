@@ -24,8 +24,7 @@ std::string pluginSkeleton(const TypeSpec& type, const std::string& plugin) {
   return fmt::format(
       "// {0}: {1}\n// Written once by nodegen --skeleton; it is yours from here on.\n"
       "#include \"{2}_nodes.h\"\n#include \"xvrml/nodes.h\"\n\nnamespace {{\n\nusing namespace "
-      "xvrml;\nusing "
-      "xvrml::nodes::{0};\n\n"
+      "xvrml;\nusing xvrml::nodes::{0};\n\n"
       "// An event has reached a node; an exposedField holds the value and has sent it on already. "
       "events.send() sends,\n"
       "// events.store() changes a field, events.now() is the time.\n{3}"
@@ -37,8 +36,7 @@ std::string pluginSkeleton(const TypeSpec& type, const std::string& plugin) {
       "static_cast<const {0}&>(node);\n"
       "  return {{}};\n}}\n\n}} // namespace\n\n"
       "const xvrml::NodeImplementation xvrml::nodes::{0}::implementation = {{.behaviour = "
-      "{{.receive = receive}}, .expand = "
-      "expand}};\n",
+      "{{.receive = receive}}, .expand = expand}};\n",
       type.name, type.text, plugin, events);
 }
 

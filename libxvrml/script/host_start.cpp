@@ -254,11 +254,11 @@ void ScriptHost::stopAll() {
   const double limit = run_.worldScriptSeconds;
   Diagnostic d;
   d.file = world_.path;
-  d.message = fmt::format("Scripts have taken {:.1f} s together, limit worldScriptSeconds={}: {} "
-                          "of {} Scripts are stopped "
-                          "(vv --limit worldScriptSeconds={} lets them run longer)",
-                          used_ >= limit ? used_ : waited_, limit, stopped, counts_.scripts,
-                          std::max(10 * limit, 60.0));
+  d.message =
+      fmt::format("Scripts have taken {:.1f} s together, limit worldScriptSeconds={}: {} of {} "
+                  "Scripts are stopped (vv --limit worldScriptSeconds={} lets them run longer)",
+                  used_ >= limit ? used_ : waited_, limit, stopped, counts_.scripts,
+                  std::max(10 * limit, 60.0));
   world_.diagnostics.add(std::move(d));
 }
 

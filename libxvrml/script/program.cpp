@@ -42,20 +42,18 @@ bool ProgramFinder::usable(const XsEngine* engine, const std::string& protocol) 
     std::string found;
     for (const XsEngine* one : engines_.all())
       found += (found.empty() ? "" : ", ") + std::string(one->name);
-    missing_.emplace_back(protocol, fmt::format("no script engine for '{}' is installed (looked "
-                                                "in: {}; found: {}); Scripts of this protocol "
-                                                "stay silent",
-                                                protocol, engines_.searched(),
-                                                found.empty() ? "none" : found));
+    missing_.emplace_back(
+        protocol, fmt::format("no script engine for '{}' is installed (looked in: {}; found: {}); "
+                              "Scripts of this protocol stay silent",
+                              protocol, engines_.searched(), found.empty() ? "none" : found));
     return false;
   }
   if ((engine->flags & XS_NEEDS_TRUST) && !trusted_) {
     missing_.emplace_back(
         protocol,
-        fmt::format(
-            "'{}' is run by engine {}, whose programs can do whatever the user can: only in "
-            "worlds that are trusted (vv --trust); Scripts of this protocol stay silent",
-            protocol, engine->name));
+        fmt::format("'{}' is run by engine {}, whose programs can do whatever the user can: only "
+                    "in worlds that are trusted (vv --trust); Scripts of this protocol stay silent",
+                    protocol, engine->name));
     return false;
   }
   return true;

@@ -63,8 +63,7 @@ class SphereHistogram {
       for (int j = 0; j < around; j++) {
         const Bin bin{M_PI * i / across, M_PI / across, 2 * M_PI * j / around - M_PI,
                       2 * M_PI / around};
-        e.total += e.bins[size_t(i * around + j)] =
-            integral(pdf, bin, rule(pdf, bin, 2), 0);
+        e.total += e.bins[size_t(i * around + j)] = integral(pdf, bin, rule(pdf, bin, 2), 0);
       }
     return e;
   }
@@ -80,7 +79,7 @@ class SphereHistogram {
     const double given = samples - lost, scale = expected.total > 0 ? given / expected.total : 0;
     for (const size_t b : order) {
       const double e = expected.bins[b] * scale;
-      if (e == 0 && seen_[b] > 0) return 0; // the pdf says that this direction is impossible
+      if (e == 0 && seen_[b] > 0) return 0; // the pdf is 0 for a direction that was sampled
       pooledSeen += seen_[b];
       pooled += e;
       if (pooled < 5) continue;

@@ -59,7 +59,7 @@ struct FakeHost : RtsHost {
   std::deque<Lanes> memory;
   std::array<Lanes, 9> light;
   std::deque<FakeLobe> lobes;
-  uint32_t hitCount = 1;       // hits in the batch; the fake hit functions answer for this many
+  uint32_t hitCount = 1; // hits in the batch; every function about hits fills this many values
   float normal[3] = {0, 0, 1}; // normal of new lobes
   // z of the plane that rays hit; the hit has radiance .25 .5 .75, alpha 1 and name 7
   float floor = -1;

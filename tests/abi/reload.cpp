@@ -153,7 +153,7 @@ TEST_F(Reload, AnotherContextHasTheFileThatIsThere) {
   EXPECT_GE(rtParameterHandle("gain"), 0);
   rtDeleteContext(other);
   rtMakeCurrent(context);
-  EXPECT_NEAR(picture(1)[0], 0.1f, 1e-6); // this context continues with what it has
+  EXPECT_NEAR(picture(1)[0], 0.1f, 1e-6); // this context keeps its old library
   EXPECT_EQ(rtReloadShaders(), 1);
 }
 

@@ -49,7 +49,7 @@ void drawNoon() {
   const RTid trunk = box(paint(.3f, .25f, .2f), .05, .6, .05),
              crown = ball(paint(.1f, .3f, .1f), .3f);
   for (unsigned i = 0; i < 5; i++) {
-    const double x = 3 * chance(i, 0) - 1.5, z = -2 * chance(i, 1);
+    const double x = 3 * randomNumber(i, 0) - 1.5, z = -2 * randomNumber(i, 1);
     put(trunk, x, .1, z, 0);
     put(crown, x, .8, z, 0);
   }
@@ -86,11 +86,14 @@ void drawTwigs() {
   const RTid twig = box(paint(.4f, .3f, .2f), .01, 1.5, .01), bulb = ball(diffuse(60, 0), .015f);
   for (unsigned i = 0; i < 60; i++) {
     rtPushMatrix();
-    rtTranslated(3 * chance(i, 0) - 1.5, 2 * chance(i, 1) - 1, 2 - 5 * chance(i, 2));
-    rtRotated(180 * chance(i, 3), chance(i, 4), 0, 1);
+    rtTranslated(3 * randomNumber(i, 0) - 1.5, 2 * randomNumber(i, 1) - 1,
+                 2 - 5 * randomNumber(i, 2));
+    rtRotated(180 * randomNumber(i, 3), randomNumber(i, 4), 0, 1);
     rtInstantiateObject(twig);
     rtPopMatrix();
-    if (i % 6 == 0) put(bulb, 3 * chance(i, 5) - 1.5, 2 * chance(i, 6) - 1, -4 * chance(i, 7), 0);
+    if (i % 6 == 0)
+      put(bulb, 3 * randomNumber(i, 5) - 1.5, 2 * randomNumber(i, 6) - 1, -4 * randomNumber(i, 7),
+          0);
   }
   lampAbove(0, 4, 2, 1, 3);
   lensAt(0, 0, 5, 34, .12f, 4.5f);

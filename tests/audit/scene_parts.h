@@ -29,6 +29,7 @@ void eyeAt(double x, double y, double z, double degrees);
 // A camera with a thin lens, focused at a distance.
 void lensAt(double x, double y, double z, double degrees, float radius, float focus);
 
-double chance(unsigned number, unsigned which); // random number in [0, 1), the same in every run
+double randomNumber(unsigned number,
+                    unsigned which); // random number in [0, 1), the same in every run
 
 } // namespace audit

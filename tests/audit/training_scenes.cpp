@@ -38,8 +38,8 @@ void drawLeaves() {
   const RTid leaf = box(paint(.15f, .35f, .08f), .05, .03, .002);
   for (unsigned i = 0; i < 500; i++) {
     rtPushMatrix();
-    rtTranslated(2.4 * chance(i, 0) - 1.2, 2.4 * chance(i, 1) - 1.2, -.5 * (i % 4));
-    rtRotated(360 * chance(i, 2), chance(i, 3) - .5, chance(i, 4) - .5, 1);
+    rtTranslated(2.4 * randomNumber(i, 0) - 1.2, 2.4 * randomNumber(i, 1) - 1.2, -.5 * (i % 4));
+    rtRotated(360 * randomNumber(i, 2), randomNumber(i, 3) - .5, randomNumber(i, 4) - .5, 1);
     rtInstantiateObject(leaf);
     rtPopMatrix();
   }
@@ -51,10 +51,10 @@ void drawFiveHundred() {
   floorAt(0, paint(.6f, .6f, .6f), 10);
   const RTid post = box(paint(.5f, .4f, .3f), .1, .4, .1);
   for (unsigned i = 0; i < 500; i++) {
-    const double strength = std::exp(6 * chance(i, 3));
-    lampAbove(6 * chance(i, 0) - 3, .6 + 1.2 * chance(i, 1), 6 * chance(i, 2) - 3, .015,
-              float(strength));
-    if (i % 25 == 0) put(post, 4 * chance(i, 4) - 2, .4, 4 * chance(i, 5) - 2, 11. * i);
+    const double strength = std::exp(6 * randomNumber(i, 3));
+    lampAbove(6 * randomNumber(i, 0) - 3, .6 + 1.2 * randomNumber(i, 1), 6 * randomNumber(i, 2) - 3,
+              .015, float(strength));
+    if (i % 25 == 0) put(post, 4 * randomNumber(i, 4) - 2, .4, 4 * randomNumber(i, 5) - 2, 11. * i);
   }
   eyeAt(1, 2, 4.2, 45);
 }
@@ -63,8 +63,8 @@ void drawFiveHundred() {
 void drawFocus() {
   for (unsigned i = 0; i < 12; i++) {
     const RTid shader = i % 3 == 0 ? diffuse(float(1 + i), 0) : paint(.8f, .3f, .2f);
-    put(ball(shader, i % 3 == 0 ? .05f : .3f), 3 * chance(i, 0) - 1.5, 1.6 * chance(i, 1) - .8,
-        4 - 9 * chance(i, 2), 0);
+    put(ball(shader, i % 3 == 0 ? .05f : .3f), 3 * randomNumber(i, 0) - 1.5,
+        1.6 * randomNumber(i, 1) - .8, 4 - 9 * randomNumber(i, 2), 0);
   }
   lampAbove(0, 3, 1, .6, 8);
   lensAt(0, 0, 6, 30, .25f, 6);

@@ -94,7 +94,7 @@ class Simulation {
   struct Outcome {
     double frame = 0, efficiency = 0, master = 0, merging = 0, network = 0, socket = 0, in = 0,
            out = 0, jobs = 0, perJob = 0;
-    double first = 0;                    // seconds of the first frame, whose costs nobody knew
+    double first = 0;                    // seconds of the first frame, with unknown costs
     double begin = 0, gaps = 0, end = 0; // idle fractions of the workers' time
     uint64_t again = 0;
   };
@@ -415,8 +415,7 @@ class Simulation {
       work_ += seconds;
       const size_t pixels = grid_.at(item.job.job.number).pixels();
       // Results are built when the master reads them, to keep less in memory.
-      size_t& bytes =
-          resultBytes_[{pixels, item.job.job.count}];
+      size_t& bytes = resultBytes_[{pixels, item.job.job.count}];
       if (bytes == 0)
         bytes = sizeOf(results_.make(m.session, item.epoch, item.job, pixels, seconds));
       toMaster(w, bytes, [this, w, item, pixels, seconds](double now) {

@@ -29,7 +29,7 @@ double residentBytes() {
 struct Still {
   RTcontext context;
   std::unique_ptr<World> world;
-  // Set while the world runs: shapes reached by its routes are objects of their own.
+  // The world runs, so shapes that its routes reach become objects of their own.
   std::unique_ptr<Engine> engine;
   std::unique_ptr<OpenRTMapper> mapper;
 

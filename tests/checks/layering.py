@@ -26,7 +26,8 @@ def part(name, prefixes, purpose, includes=""):
     return Part(name, tuple(prefixes.split()), purpose, frozenset(includes.split()))
 
 
-# From the bottom up: public headers first, then each library, then what is built on them.
+# From the bottom up: public headers, then each library, then the programs and bindings built on
+# them.
 TABLE = [
     part("api-h", " ".join(f"libopenrt/include/openrt/{name}.h" for name in
                            ("openrt", "context", "geometry", "shader", "frame", "query", "worker", "queries")), "the application API, C99"),
@@ -106,7 +107,8 @@ FOREIGN = [
 ]
 # A public header includes only the language's own headers and no third-party ones.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
-LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")  # of the languages that script engines run
+# Headers of the languages that script engines run.
+LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")
 SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps/vv", "tests", "common", "."]
 # Generated at build time -> the part that they belong to.
 GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"messages_generated\.h$"), "backend-cluster"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]

@@ -1,5 +1,5 @@
 // processes.cpp: pictures rendered with real worker processes on loopback. They have the same bytes
-// as with one thread, whichever workers take part, whenever they join and however they end.
+// as with one thread, whichever workers help, whenever they join and however they end.
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -36,7 +36,8 @@ uint64_t jobsOf(const std::vector<RTworker>& workers) {
 }
 
 TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
-  for (const FrameOptions& look : {FrameOptions{}, FrameOptions{.samples = 70, .transport = RT_TRANSPORT_AUTO}}) {
+  for (const FrameOptions& look :
+       {FrameOptions{}, FrameOptions{.samples = 70, .transport = RT_TRANSPORT_AUTO}}) {
     const Picture one = expected(look);
     for (int count = 0; count <= 3; count++) {
       SCOPED_TRACE(count);

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Runs animated VRML files for ten seconds of their own time and lists the script engines.
-
-The files are those of a folder of real VRML files. The list says which engines they need.
+"""Runs animated VRML files for ten seconds of their own time and lists the script engines they
+need.
 
 animated.py --vv build/release/bin/vv [--corpus FOLDER] [--out build/corpus]
 
-Each file with the feature `animated` runs at 10 Hz and is mapped once a second (vv --check: no
-pictures). A crash, a time-out, an error of the program or a runaway cascade fails the test;
-problems of the file itself do not. vv --info must count the Scripts of each file by protocol,
-unless the Script itself is wrong and lost (0 in the table).
+FOLDER holds real VRML files. Each file with the feature `animated` runs at 10 Hz and is mapped once
+a second (vv --check: no pictures). A crash, a time-out, an error of the program or a runaway
+cascade fails the test; problems of the file itself do not. vv --info must count the Scripts of each
+file by protocol, unless the Script itself is wrong and lost (0 in the table).
 
 Each file with ECMAScript also runs for ten seconds. An error of a Script fails the test, unless
 script_errors.tsv lists the file with the reason why its program is wrong. A file that is listed

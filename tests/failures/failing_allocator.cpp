@@ -38,8 +38,8 @@ std::atomic<uint64_t> count{0}, target{0};
 std::atomic<int64_t> live{0};
 thread_local bool inside = false;
 
-// Libraries of the build tree belong to the project. Of the others, the C libraries that decode
-// pictures and glyphs take part with malloc.
+// Libraries of the build tree belong to the project. The C libraries that decode pictures and
+// glyphs are included for malloc. All others are left alone.
 Owner ownerOf(const char* path) {
   if (!path || !*path) return Owner::other; // the test itself
   char real[PATH_MAX];                      // without the .. of a run path

@@ -23,7 +23,7 @@ Frames framesOf(std::span<const std::byte> data) {
   return frames;
 }
 
-// As the worker does.
+// Reads a scene as the worker does.
 void take(message::Scene& scene) {
   Commit commit;
   for (const auto& name : scene.arrays)
@@ -34,7 +34,7 @@ void take(message::Scene& scene) {
   } catch (const std::runtime_error&) {}
 }
 
-// As the master does, for frames of several kinds.
+// Reads a result as the master does, for frames of several kinds.
 void take(const message::Result& result) {
   for (const uint32_t channels :
        {uint32_t(RT_RGBA), uint32_t(RT_RGBA | RT_DEPTH | RT_NORMAL | RT_VARIANCE | RT_ERROR)}) {

@@ -94,7 +94,7 @@ TEST(VrmlPaths, LightsOfVrmlDoWhatTheyDoWithout) {
   }
 }
 
-// As the standard requires.
+// The standard requires this.
 TEST(VrmlPaths, WithoutBeingAskedForAWorldIsLitByItsLightsAlone) {
   EXPECT_EQ(seen(square(material()) + lamp(square(glow)), 10, RT_TRANSPORT_AUTO, 1), 0);
 }

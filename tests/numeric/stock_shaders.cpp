@@ -113,7 +113,7 @@ TEST_F(StockShaders, RoughMetalUnderARectangularLamp) {
     rtQuality(RT_MAX_DEPTH, 1);
     rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
     EXPECT_NEAR(look(0, 0, .001).g, expected, 1e-2 * expected)
-        << alpha; // three standard errors for the smallest lobe
+        << alpha; // three standard errors for the narrowest lobe
     rtDeleteInstance(plane);
     rtDeleteInstance(lamp);
   }

@@ -99,7 +99,7 @@ struct Bench {
     for (uint32_t i = 0; i < count; i++) s.join(first + i, threads, here, now);
     prepare();
   }
-  // Lets every worker that has to prepare finish at once. Returns their ids.
+  // Lets every worker that has to prepare finish immediately. Returns their ids.
   std::vector<WorkerId> prepare() {
     std::vector<WorkerId> moved;
     WorkerId w;

@@ -91,7 +91,7 @@ TEST(Hostile, moreScenesThanCanBeMade) {
   for (Epoch epoch = 1; epoch <= limits::scenesAtOnce; epoch++) w.tell(emptyScene(epoch));
   EXPECT_TRUE(w.closed.empty());
   EXPECT_TRUE(w.worker.serving());
-  w.worker.ready(1, {}); // the worker is ready for frame 1, so it has room for another scene
+  w.worker.ready(1, {}); // scene 1 is prepared, so there is room for another
   w.tell(emptyScene(limits::scenesAtOnce + 1));
   EXPECT_TRUE(w.closed.empty());
   w.tell(emptyScene(limits::scenesAtOnce + 2));

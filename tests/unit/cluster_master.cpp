@@ -154,7 +154,7 @@ struct FakeWorker {
     const auto [at, job] = jobs.front();
     jobs.pop_front();
     const edit::FrameSettingsT& frame = frames.at(at);
-    const FrameWork geometry(frame, FrameFacts{true, false}, 1); // knows the tiles
+    const FrameWork geometry(frame, FrameFacts{true, false}, 1); // for the sizes of tiles
     const JobResult made = samplesOf(frame, job.job, geometry.tile(job.job.number));
     message::Result result;
     result.epoch = at;
@@ -181,10 +181,10 @@ class ClusterMaster : public testing::TestWithParam<int> {
       static_cast<std::vector<std::string>*>(user)->push_back(text);
     };
     options.local.logUser = &log;
-    elsewhere.clear();
+    mergeQueue.clear();
     if (GetParam() > 2) // merge on other threads
       options.results = [this](std::function<void()> heavy, MasterOptions::Then then) {
-        elsewhere.push_back({std::move(heavy), std::move(then)});
+        mergeQueue.push_back({std::move(heavy), std::move(then)});
       };
     options.close = [this](Peer peer, const std::string& why) {
       worker(peer).refused = why;
@@ -219,7 +219,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
   // Makes one random event happen.
   void step() {
     now += .0005 * double(1 + below(4));
-    if (!elsewhere.empty() && below(2)) mergeOne();
+    if (!mergeQueue.empty() && below(2)) mergeOne();
     if (workers.empty()) return;
     FakeWorker& any = *workers[below(workers.size())];
     if (any.still) return;
@@ -246,10 +246,10 @@ class ClusterMaster : public testing::TestWithParam<int> {
 
   // Advances a random result by one step: it is merged, or the master is told that it was.
   void mergeOne() {
-    const size_t i = below(elsewhere.size());
-    if (elsewhere[i].first) return std::exchange(elsewhere[i].first, nullptr)();
-    const MasterOptions::Then then = std::move(elsewhere[i].second);
-    elsewhere.erase(elsewhere.begin() + ptrdiff_t(i));
+    const size_t i = below(mergeQueue.size());
+    if (mergeQueue[i].first) return std::exchange(mergeQueue[i].first, nullptr)();
+    const MasterOptions::Then then = std::move(mergeQueue[i].second);
+    mergeQueue.erase(mergeQueue.begin() + ptrdiff_t(i));
     then(now);
   }
 
@@ -334,9 +334,8 @@ class ClusterMaster : public testing::TestWithParam<int> {
   double now = 1;
   std::vector<std::string> log;
   std::vector<std::unique_ptr<FakeWorker>> workers;
-  std::vector<std::pair<std::function<void()>, MasterOptions::Then>>
-      // The function is null once the result is in the picture.
-      elsewhere;
+  // The function is null once the result is in the picture.
+  std::vector<std::pair<std::function<void()>, MasterOptions::Then>> mergeQueue;
   std::unique_ptr<Master> master;
 };
 

@@ -308,7 +308,7 @@ TEST(Scheduler, theNextFrameIsHandedOutBeforeTheLastJobComesHome) {
   for (const Handout& h : first)
     // Worker 1 called ready() before, so it no longer works on frame 1.
     EXPECT_FALSE(h.worker == 1 && b.done(h));
-  EXPECT_TRUE(b.handOut().empty()); // as many jobs are left as worker 2 already has
+  EXPECT_TRUE(b.handOut().empty()); // the remaining jobs are as many as worker 2 already has
   for (const Handout& h : first) b.done(h);
   EXPECT_EQ(byWorker(b.handOut()), (std::map<WorkerId, uint32_t>{{2, 4}}));
 }
@@ -358,7 +358,7 @@ TEST(Scheduler, aReserveHelpsIfNothingComesOfTheOthers) {
   b.s.join(1, 2, false, 0);
   WorkerId w;
   Epoch e;
-  EXPECT_TRUE(b.s.move(0, w, e) && w == 1); // worker 1 is not heard of again
+  EXPECT_TRUE(b.s.move(0, w, e) && w == 1); // worker 1 never answers
   EXPECT_EQ(b.s.wake(b.now), 10);
   b.now = 9.9;
   EXPECT_TRUE(b.prepare().empty());

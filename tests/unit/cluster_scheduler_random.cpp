@@ -15,8 +15,8 @@ using namespace openrt::cluster;
 namespace {
 
 // One run: workers join and leave; results come late, twice, never or broken.
-struct Turmoil {
-  explicit Turmoil(Split split) : b({.split = split, .shortest = 0}) {}
+struct RandomRun {
+  explicit RandomRun(Split split) : b({.split = split, .shortest = 0}) {}
   struct Machine {
     uint32_t threads;
     Epoch preparing = 0, ready = 0;
@@ -170,7 +170,7 @@ struct Turmoil {
 enum class End { all, here, reserve };
 
 void run(Split split, End end, const std::vector<uint32_t>& numbers) {
-  Turmoil t(split);
+  RandomRun t(split);
   t.aMasterHere = end != End::all;
   for (const uint32_t n : numbers) t.step(n);
   if (end == End::all)
@@ -207,7 +207,7 @@ TEST(SchedulerRandom, onlyTheReserveWorks) {
 
 TEST(SchedulerRandom, theSameCallsTheSameAnswers) {
   const auto answers = [] {
-    Turmoil t(Split::automatic);
+    RandomRun t(Split::automatic);
     uint32_t x = 12345;
     for (int i = 0; i < 3000; i++) t.step((x = x * 1664525 + 1013904223) >> 4);
     std::vector<std::pair<WorkerId, Lease>> all;

@@ -152,7 +152,7 @@ class Serve : public testing::Test {
 };
 
 WireOptions to(const std::string& address, const KeyRing& keys = {}) {
-  return patient({{address}, "", keys});
+  return withLongTimeouts({{address}, "", keys});
 }
 
 } // namespace
@@ -186,7 +186,7 @@ TEST_F(Serve, aWorkerThatCallsWithKeysAndEndsWithItsMaster) {
   }
   const Service service(shaders, to(address, keys), true);
   {
-    Master master(patient({{}, address, keys}), shaders, 42);
+    Master master(withLongTimeouts({{}, address, keys}), shaders, 42);
     EXPECT_EQ(master.picture(commits[0], true), expected(1));
   }
   for (const double end = steadyNow() + 60; !service.ended && steadyNow() < end;)

@@ -28,7 +28,7 @@ constexpr double promised = 10; // seconds without progress (docs/cluster.md)
 constexpr double slack = 15;    // extra seconds for a busy machine
 constexpr uint32_t frames = 2;
 
-enum class Way {
+enum class Fault {
   nobody,        // nothing listens at the address
   deaf,          // the system accepts the connection, but the process is stopped and does not read
   mute,          // connected, but sends no Hello
@@ -49,25 +49,25 @@ enum class Way {
   readyForEver,    // sends Ready again and again
   liesAboutScene,  // reports a different number of triangles
 };
-const std::map<Way, const char*> names = {{Way::nobody, "nobody"},
-                                          {Way::deaf, "deaf"},
-                                          {Way::mute, "mute"},
-                                          {Way::otherVersion, "otherVersion"},
-                                          {Way::otherProtocol, "otherProtocol"},
-                                          {Way::otherChip, "otherChip"},
-                                          {Way::takesNoScene, "takesNoScene"},
-                                          {Way::neverReady, "neverReady"},
-                                          {Way::refuses, "refuses"},
-                                          {Way::refusesLater, "refusesLater"},
-                                          {Way::beatsOnly, "beatsOnly"},
-                                          {Way::dies, "dies"},
-                                          {Way::comesAndGoes, "comesAndGoes"},
-                                          {Way::answersNonsense, "answersNonsense"},
-                                          {Way::answersOthers, "answersOthers"},
-                                          {Way::sendsNonsense, "sendsNonsense"},
-                                          {Way::sendsNoise, "sendsNoise"},
-                                          {Way::readyForEver, "readyForEver"},
-                                          {Way::liesAboutScene, "liesAboutScene"}};
+const std::map<Fault, const char*> names = {{Fault::nobody, "nobody"},
+                                            {Fault::deaf, "deaf"},
+                                            {Fault::mute, "mute"},
+                                            {Fault::otherVersion, "otherVersion"},
+                                            {Fault::otherProtocol, "otherProtocol"},
+                                            {Fault::otherChip, "otherChip"},
+                                            {Fault::takesNoScene, "takesNoScene"},
+                                            {Fault::neverReady, "neverReady"},
+                                            {Fault::refuses, "refuses"},
+                                            {Fault::refusesLater, "refusesLater"},
+                                            {Fault::beatsOnly, "beatsOnly"},
+                                            {Fault::dies, "dies"},
+                                            {Fault::comesAndGoes, "comesAndGoes"},
+                                            {Fault::answersNonsense, "answersNonsense"},
+                                            {Fault::answersOthers, "answersOthers"},
+                                            {Fault::sendsNonsense, "sendsNonsense"},
+                                            {Fault::sendsNoise, "sendsNoise"},
+                                            {Fault::readyForEver, "readyForEver"},
+                                            {Fault::liesAboutScene, "liesAboutScene"}};
 
 // The two pictures of all tests, and the Ready messages of a worker that can prepare them.
 struct Pictures final : WorkerSink {
@@ -129,17 +129,17 @@ const Pictures& pictures() {
 }
 
 // A useless worker in a thread of its own.
-class Useless {
+class UselessWorker {
  public:
-  explicit Useless(Way way) : way_(way) {
-    if (way == Way::deaf || way == Way::nobody) {
+  explicit UselessWorker(Fault way) : way_(way) {
+    if (way == Fault::deaf || way == Fault::nobody) {
       socket_ = socket(AF_INET, SOCK_STREAM, 0);
       sockaddr_in where{};
       where.sin_family = AF_INET;
       where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
       socklen_t size = sizeof where;
       EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&where), size), 0);
-      if (way == Way::deaf) { EXPECT_EQ(listen(socket_, 16), 0); }
+      if (way == Fault::deaf) { EXPECT_EQ(listen(socket_, 16), 0); }
       EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&where), &size), 0);
       address_ = "127.0.0.1:" + std::to_string(ntohs(where.sin_port));
       return;
@@ -148,7 +148,7 @@ class Useless {
     address_ = wire_->address();
     thread_ = std::thread([this] { run(); });
   }
-  ~Useless() {
+  ~UselessWorker() {
     stop_ = true;
     if (thread_.joinable()) thread_.join();
     if (socket_ >= 0) close(socket_);
@@ -174,34 +174,34 @@ class Useless {
         greet();
       }
       if (event.kind == Event::Kind::message) hear(read(std::move(event)));
-      if (session_ != 0 && way_ == Way::comesAndGoes && steadyNow() > joined_ + 0.2) die();
-      if (session_ != 0 && way_ == Way::readyForEver && epoch_ > 0 && steadyNow() > told_ + 0.1)
+      if (session_ != 0 && way_ == Fault::comesAndGoes && steadyNow() > joined_ + 0.2) die();
+      if (session_ != 0 && way_ == Fault::readyForEver && epoch_ > 0 && steadyNow() > told_ + 0.1)
         ready();
     }
   }
   void greet() {
     message::Hello hello = pictures().self;
-    if (way_ == Way::otherVersion) hello.library = "0.0.1";
-    if (way_ == Way::otherProtocol) hello.protocol++;
-    if (way_ == Way::otherChip) hello.isa = "of its own";
-    if (way_ != Way::mute) say(std::move(hello));
+    if (way_ == Fault::otherVersion) hello.library = "0.0.1";
+    if (way_ == Fault::otherProtocol) hello.protocol++;
+    if (way_ == Fault::otherChip) hello.isa = "of its own";
+    if (way_ != Fault::mute) say(std::move(hello));
   }
   void hear(Message&& m) {
     if (const auto* welcome = std::get_if<message::Welcome>(&m.body)) {
       session_ = welcome->session;
-      if (way_ == Way::sendsNonsense)
+      if (way_ == Fault::sendsNonsense)
         for (int i = 0; i < 3; i++) say(message::Drop{1});
-      if (way_ == Way::sendsNoise) wire_->send(peer_, Frames(2, someBytes(100)));
+      if (way_ == Fault::sendsNoise) wire_->send(peer_, Frames(2, someBytes(100)));
     }
     if (const auto* scene = std::get_if<message::Scene>(&m.body)) {
       epoch_ = scene->epoch;
-      if (way_ == Way::takesNoScene) return;
+      if (way_ == Fault::takesNoScene) return;
       message::Need need{scene->epoch, {}};
       for (const auto& array : scene->arrays) need.arrays.push_back(array.hash);
       say(std::move(need));
-      if (way_ == Way::refuses)
+      if (way_ == Fault::refuses)
         return say(message::Failed{scene->epoch, "shader library vrml97 is another file here"});
-      if (scene->prepare && way_ != Way::neverReady) ready();
+      if (scene->prepare && way_ != Fault::neverReady) ready();
     }
     if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) {
       epoch_ = prepare->epoch;
@@ -218,18 +218,18 @@ class Useless {
     m.facts = found->second.facts;
     m.transport = found->second.frame.transport;
     m.stats = found->second.stats;
-    if (way_ == Way::liesAboutScene) m.stats.triangles++;
+    if (way_ == Fault::liesAboutScene) m.stats.triangles++;
     told_ = steadyNow();
     say(std::move(m));
-    if (way_ == Way::refusesLater) say(message::Failed{epoch_, "no memory"});
+    if (way_ == Fault::refusesLater) say(message::Failed{epoch_, "no memory"});
   }
   void work(const message::Jobs& jobs) {
-    if (way_ == Way::dies) return die();
-    if (way_ != Way::answersNonsense && way_ != Way::answersOthers) return;
+    if (way_ == Fault::dies) return die();
+    if (way_ != Fault::answersNonsense && way_ != Fault::answersOthers) return;
     for (const LeasedJob& job : jobs.jobs) {
       message::Result m;
       m.epoch = jobs.epoch;
-      m.lease = job.lease + (way_ == Way::answersOthers ? 1000000 : 0);
+      m.lease = job.lease + (way_ == Fault::answersOthers ? 1000000 : 0);
       m.seconds = 0.001;
       m.bytes = someBytes(64, uint32_t(job.lease));
       say(std::move(m));
@@ -242,7 +242,7 @@ class Useless {
     epoch_ = 0;
   }
 
-  Way way_;
+  Fault way_;
   std::string address_;
   std::optional<Wire> wire_;
   int socket_ = -1;
@@ -264,10 +264,11 @@ struct Outcome {
 
 // Renders two pictures with these workers. A picture that would wait forever is cancelled after a
 // while.
-Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
-  std::vector<std::unique_ptr<Useless>> workers;
-  for (const Way way : ways)
-    cluster.workers.push_back((workers.emplace_back(std::make_unique<Useless>(way)))->address());
+Outcome render(std::vector<Fault> ways, ClusterOptions cluster) {
+  std::vector<std::unique_ptr<UselessWorker>> workers;
+  for (const Fault way : ways)
+    cluster.workers.push_back(
+        (workers.emplace_back(std::make_unique<UselessWorker>(way)))->address());
   Outcome out;
   BackendOptions options;
   options.threads = 1;
@@ -315,13 +316,13 @@ Outcome render(std::vector<Way> ways, ClusterOptions cluster) {
 }
 
 // Runs all cases at the same time, because they spend nearly all of it waiting.
-std::map<Way, Outcome> renderAll(const ClusterOptions& cluster) {
+std::map<Fault, Outcome> renderAll(const ClusterOptions& cluster) {
   pictures();
-  std::map<Way, std::future<Outcome>> running;
+  std::map<Fault, std::future<Outcome>> running;
   for (const auto& [way, name] : names)
     running[way] =
         std::async(std::launch::async, [=, way = way] { return render({way}, cluster); });
-  std::map<Way, Outcome> all;
+  std::map<Fault, Outcome> all;
   for (auto& [way, future] : running) all[way] = future.get();
   return all;
 }
@@ -336,7 +337,7 @@ TEST(Useless, aMasterThatLeavesAllToOthersHelpsInTime) {
     EXPECT_EQ(out.failure, "") << names.at(way);
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_NE(out.said, "") << names.at(way) << ": whoever renders alone says so";
-    if (way != Way::comesAndGoes && way != Way::dies && way != Way::answersNonsense) {
+    if (way != Fault::comesAndGoes && way != Fault::dies && way != Fault::answersNonsense) {
       EXPECT_LT(out.last, promised)
           << names.at(way) << ": a second picture does not wait as long once more";
     }
@@ -363,11 +364,11 @@ TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
   for (const auto& [way, out] : renderAll(cluster)) {
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_TRUE(!out.failure.empty() || out.right) << names.at(way);
-    if (way == Way::refuses || way == Way::otherVersion || way == Way::nobody) {
+    if (way == Fault::refuses || way == Fault::otherVersion || way == Fault::nobody) {
       EXPECT_NE(out.failure.find("1 worker is needed"), std::string::npos)
           << names.at(way) << ": " << out.failure;
     }
-    if (way == Way::refuses) {
+    if (way == Fault::refuses) {
       EXPECT_NE(out.failure.find("another file"), std::string::npos)
           << "it says why: " << out.failure;
     }
@@ -379,7 +380,7 @@ TEST(Useless, manyThatOnlyBeatDoNotSwallowAJob) {
   for (const uint32_t local : {0u, 1u}) {
     ClusterOptions cluster;
     cluster.local = local;
-    const Outcome out = render(std::vector<Way>(7, Way::beatsOnly), cluster);
+    const Outcome out = render(std::vector<Fault>(7, Fault::beatsOnly), cluster);
     EXPECT_TRUE(out.right);
     EXPECT_LT(out.longest, promised + slack);
   }

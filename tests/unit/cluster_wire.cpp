@@ -16,9 +16,9 @@ using Kind = Event::Kind;
 namespace {
 
 // A peer without the Wire class: a bare socket, and message seals.
-class Bare {
+class RawPeer {
  public:
-  explicit Bare(const Wire& other) : socket_(context_, zmq::socket_type::dealer) {
+  explicit RawPeer(const Wire& other) : socket_(context_, zmq::socket_type::dealer) {
     socket_.set(zmq::sockopt::linger, 0);
     socket_.connect("tcp://" + other.address());
   }
@@ -236,9 +236,9 @@ TEST(Wire, whoCallsANobodyIsToldOnceAndGoesOn) {
     const Wire gone(listening());
     address = gone.address();
   }
-  const Wire& caller = wires.add(patient({{address}, "", {}}));
+  const Wire& caller = wires.add(withLongTimeouts({{address}, "", {}}));
   EXPECT_NE(wires.next(caller, Kind::refused).text.find("nobody answers"), std::string::npos);
-  const Wire& door = wires.add(patient({{}, address, {}}));
+  const Wire& door = wires.add(withLongTimeouts({{}, address, {}}));
   EXPECT_NE(wires.next(caller, Kind::joined).peer, 0u);
   EXPECT_NE(wires.next(door, Kind::joined).peer, 0u);
   EXPECT_FALSE(wires.has(caller, Kind::refused));
@@ -253,7 +253,7 @@ TEST(Wire, whoEndsHasLeftAndIsCalledAgain) {
   wires.next(door, Kind::joined);
   wires.end(door);
   EXPECT_EQ(wires.next(caller, Kind::left).peer, first);
-  const Wire& again = wires.add(patient({{}, address, {}}));
+  const Wire& again = wires.add(withLongTimeouts({{}, address, {}}));
   EXPECT_NE(wires.next(again, Kind::joined).peer, 0u);
   const Peer second = wires.next(caller, Kind::joined).peer;
   EXPECT_NE(second, 0u);
@@ -284,7 +284,7 @@ TEST(Wire, silenceMeansLeftAndWhoComesToLifeBeginsAnew) {
   WireOptions options = listening();
   options.silence = 0.5;
   const Wire& door = wires.add(options);
-  Bare bare(door);
+  RawPeer bare(door);
   bare.send(beat());
   const Peer first = wires.next(door, Kind::joined).peer;
   const Event left = wires.next(door, Kind::left);
@@ -300,7 +300,7 @@ TEST(Wire, silenceMeansLeftAndWhoComesToLifeBeginsAnew) {
     }
   EXPECT_TRUE(bye);
   EXPECT_FALSE(wires.has(door, Kind::message));
-  Bare again(door);
+  RawPeer again(door);
   again.send(hello());
   EXPECT_NE(wires.next(door, Kind::joined).peer, first);
 }
@@ -329,7 +329,7 @@ TEST(Wire, threeMessagesThatAreNoneCloseThePeer) {
   for (const Frames& junk : bad) {
     Wires wires;
     const Wire& door = wires.add(listening());
-    Bare bare(door);
+    RawPeer bare(door);
     bare.send(hello());
     EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
     bare.send(junk);
@@ -347,7 +347,7 @@ TEST(Wire, threeMessagesThatAreNoneCloseThePeer) {
 TEST(Wire, whoOnlySpeaksJunkNeverJoins) {
   Wires wires;
   const Wire& door = wires.add(listening());
-  Bare bare(door);
+  RawPeer bare(door);
   for (int i = 0; i < 3; i++) bare.send({someBytes(50)});
   EXPECT_NE(wires.next(door, Kind::refused).text.find("three messages"), std::string::npos);
   EXPECT_FALSE(wires.has(door, Kind::joined));
@@ -356,7 +356,7 @@ TEST(Wire, whoOnlySpeaksJunkNeverJoins) {
 TEST(Wire, aFrameThatIsTooLargeEndsTheConnection) {
   Wires wires;
   const Wire& door = wires.add(listening());
-  Bare bare(door);
+  RawPeer bare(door);
   bare.send(hello());
   EXPECT_NE(wires.next(door, Kind::message).peer, 0u);
   bare.send({std::vector<std::byte>(largestMessage + 1)});
@@ -367,7 +367,7 @@ TEST(Wire, aFrameThatIsTooLargeEndsTheConnection) {
 TEST(Wire, headersThatAreCut) {
   Wires wires;
   const Wire& door = wires.add(listening());
-  Bare bare(door);
+  RawPeer bare(door);
   Frames whole = hello();
   bare.send(whole);
   bare.send(whole); // the same message twice: both arrive, because the wire does not interpret them
@@ -386,7 +386,7 @@ TEST(Wire, whatIsLostRepeatedOrDamagedOnTheWayEndsThePeer) {
   for (const Damage damage : {lost, repeated, damaged, shortened, without}) {
     Wires wires;
     const Wire& door = wires.add(listening());
-    Bare bare(door);
+    RawPeer bare(door);
     Frames frames = first;
     seal(frames, 1);
     bare.sendAsTheyAre(frames);

@@ -35,17 +35,18 @@ inline KeyRing freshKeys(const Folder& folder, const std::string& name) {
 
 // Returns options with long timeouts, so that a busy machine is no failure and no silent peer is
 // dropped during a test.
-inline WireOptions patient(WireOptions options) {
+inline WireOptions withLongTimeouts(WireOptions options) {
   options.heartbeat = 0.05;
   options.silence = 60;
   return options;
 }
 inline WireOptions listening(const KeyRing& keys = {}, const std::string& where = "127.0.0.1:0") {
-  return patient({{}, where, keys});
+  return withLongTimeouts({{}, where, keys});
 }
 inline WireOptions calling(const Wire& other, const KeyRing& keys = {},
                            const std::string& serverKey = "") {
-  return patient({{other.address() + (serverKey.empty() ? "" : "=" + serverKey)}, "", keys});
+  return withLongTimeouts(
+      {{other.address() + (serverKey.empty() ? "" : "=" + serverKey)}, "", keys});
 }
 
 class Wires {

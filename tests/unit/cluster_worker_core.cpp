@@ -15,7 +15,7 @@ using test::Commits;
 
 class Sink final : public WorkerSink {
  public:
-  struct Said {
+  struct Report {
     std::string what; // ready, failed or done
     Epoch epoch = 0;
     Lease lease = 0;
@@ -41,14 +41,14 @@ class Sink final : public WorkerSink {
     std::unique_lock lock(mutex);
     return came.wait_for(lock, std::chrono::seconds(60), [&] { return said.size() >= count; });
   }
-  std::vector<Said> all() {
+  std::vector<Report> all() {
     std::lock_guard lock(mutex);
     return said;
   }
 
   std::mutex mutex;
   std::condition_variable came;
-  std::vector<Said> said;
+  std::vector<Report> said;
   Prepared last;
   std::string failure;
   FrameWork* work = nullptr;
@@ -199,8 +199,8 @@ TEST_F(WorkerCoreTest, QuestionsSeeWhatWasAskedBefore) {
 TEST_F(WorkerCoreTest, FailuresAreSaid) {
   const Commits all = commits({.samples = 4});
   WorkerCore core(options, sink);
-  core.work(7, std::vector<LeasedJob>{{1, Job{.count = 4}},
-                                      {2, Job{.count = 4}}}); // of a scene that it does not have
+  // The core does not have the scene of this job.
+  core.work(7, std::vector<LeasedJob>{{1, Job{.count = 4}}, {2, Job{.count = 4}}});
   ASSERT_TRUE(sink.wait(1));
   core.scene(8, all[0], true, true);
   core.work(8, std::vector<LeasedJob>{{3, Job{.number = 10000, .count = 4}}});

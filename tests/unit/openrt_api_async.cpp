@@ -189,7 +189,7 @@ TEST_F(Async, QueriesAndStatisticsWhileAFrameIsInFlight) {
   EXPECT_EQ(rtPick(width / 2, height / 2, &hit), 1);
   EXPECT_EQ(hit.instance, instance);
   rtDeleteInstance(instance);
-  rtCastRays(1, &ray, &hit); // of the last committed scene
+  rtCastRays(1, &ray, &hit); // queries use the last committed scene
   EXPECT_NEAR(hit.t, 5, 1e-5f);
   RTstats stats{};
   stats.size = sizeof stats;

@@ -281,7 +281,7 @@ const Wrong wrong[] = {
     WRONG(PARAMETER, Outside, rtParameterHandle, "nothing"),
     WRONG(VALUE, Outside, rtParameterHandle, nullptr), WRONG(VALUE, Outside, rtParameterHandle, ""),
     WRONG(PARAMETER, Outside, rtParameter1i, -1, 0),
-    WRONG(PARAMETER, Outside, rtParameter1i, w.number, 0), // of another type
+    WRONG(PARAMETER, Outside, rtParameter1i, w.number, 0), // a parameter of another type
     WRONG(VALUE, Outside, rtParameter1i, w.count, 11),
     WRONG(PARAMETER, Outside, rtParameter1f, 1000, 0),
     WRONG(VALUE, Outside, rtParameter1f, w.number, 2),
@@ -298,7 +298,7 @@ const Wrong wrong[] = {
     WRONG(PARAMETER, Outside, rtParameterfv, w.number, 1, three),
     WRONG(VALUE, Outside, rtParameterfv, w.list, 1, nullptr),
     WRONG(VALUE, Outside, rtParameterfv, w.list, SIZE_MAX, three),
-    WRONG(VALUE, Outside, rtParameterfv, w.list, 4, three), // out of its range
+    WRONG(VALUE, Outside, rtParameterfv, w.list, 4, three), // a value out of its range
     WRONG(PARAMETER, Outside, rtParameterString, w.number, ""),
     WRONG(VALUE, Outside, rtParameterString, w.text, nullptr),
     WRONG(PARAMETER, Outside, rtParameterTexture, w.number, 0),

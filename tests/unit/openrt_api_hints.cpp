@@ -1,6 +1,6 @@
-// openrt_api_hints.cpp: the edits carry what is static and what is dynamic: by hint, and
-// automatically once a committed object or instance is moved or redefined. Backends created later
-// and recordings see the same state.
+// openrt_api_hints.cpp: the edits mark objects and instances as static or dynamic: by hint, and
+// automatically once a committed one is moved or redefined. Backends created later and recordings
+// see the same state.
 #include "unit/openrt_api_support.h"
 
 namespace {

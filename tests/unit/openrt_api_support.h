@@ -25,8 +25,8 @@ struct Captured {
   std::vector<std::shared_ptr<const Commit>> commits;
   int starts = 0, waits = 0, cancels = 0;
   bool failNextApply = false, failNextWait = false, pipelines = false;
-  std::string backendCalls;   // backend calls so far: a apply, s start, w wait, c cancel
-  std::string cancelIn; // letters of the calls during which rtCancel() is called
+  std::string backendCalls; // backend calls so far: a apply, s start, w wait, c cancel
+  std::string cancelIn;     // letters of the calls during which rtCancel() is called
 };
 
 class CaptureBackend final : public Backend {

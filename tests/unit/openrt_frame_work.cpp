@@ -41,7 +41,7 @@ bool sameBytes(const Picture& a, const Picture& b) {
 
 const std::atomic<bool> never{false};
 
-struct Way {         // how the jobs are done
+struct JobOrder {    // how the jobs are done
   uint32_t seed = 0; // 0: in order, one job after the other
   uint32_t atOnce = 20;
   bool progressive = false;
@@ -50,7 +50,7 @@ struct Way {         // how the jobs are done
 // Runs a frame to its end.
 class Player {
  public:
-  Player(const std::shared_ptr<const RenderScene>& scene, const Way& way)
+  Player(const std::shared_ptr<const RenderScene>& scene, const JobOrder& way)
       : frame_(scene->frame), way_(way), random_(way.seed), runner_(scene) {
     frame_.progressive = way.progressive;
     work_ = std::make_unique<FrameWork>(frame_, factsOf(*scene), 3);
@@ -115,7 +115,7 @@ class Player {
   }
 
   edit::FrameSettingsT frame_;
-  const Way way_;
+  const JobOrder way_;
   std::mt19937 random_;
   JobRunner runner_;
   std::unique_ptr<FrameWork> work_;

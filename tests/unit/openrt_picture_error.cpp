@@ -72,7 +72,7 @@ TEST(PictureError, ofNormalNoise) {
   expectHeld(pictures(60, sample, [](uint32_t) { return 1.0; }), 60, .03);
 }
 
-// One sample in so many is bright, over an evenly lit floor.
+// One sample in every few is bright, over an evenly lit floor.
 TEST(PictureError, ofLightThatOnePixelInAFewHasMet) {
   for (const double chance : {.02, .005, .001}) {
     const auto sample = [=](std::mt19937& r, uint32_t) {
@@ -128,7 +128,7 @@ TEST(PictureError, aPlainBackgroundBehindALensIsNotAnError) {
   EXPECT_LT(e.mean + e.interval, .01);
 }
 
-// A tenth of them does; those pixels are then entirely wrong.
+// A tenth of the pixels hold an edge and are then entirely wrong.
 TEST(PictureError, pixelsInDoubtHoldAnEdgeOrNone) {
   std::vector<PixelNoise> noise(256);
   for (PixelNoise& p : noise) {

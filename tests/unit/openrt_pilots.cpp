@@ -110,7 +110,7 @@ TEST_F(PilotsOf, UnderATimeLimitTheFirstOneDecides) {
   expect(decideAll(error(.5f, true, false), error(.01f, true, false), true)[0], 1024, false);
 }
 
-// Those at the border and between the tiles; their bound falls as 1 / samples.
+// Constant pixels at the border and between the tiles count; their bound falls as 1 / samples.
 TEST_F(PilotsOf, ConstantPixelsBesideAnEdgeCount) {
   Pilots pilots(frame_, TileGrid(frame_), false);
   std::vector<PixelError> black(64, error(0, true, true, 0));

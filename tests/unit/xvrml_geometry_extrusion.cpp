@@ -77,7 +77,7 @@ TEST(GeometryExtrusion, ABentSpineMitresItsCorner) {
   EXPECT_GT(signedVolume(mesh), 0);
   // Middle row: y axis along (1, 1, 0), z = (p2 - p1) x (p0 - p1) = (4,0,0) x (0,-4,0) = -z, x = y
   // x z.
-  const Vec3f& x = mesh.points[4]; // of the first section point (0.1, 0)
+  const Vec3f& x = mesh.points[4]; // belongs to the first section point (0.1, 0)
   EXPECT_NEAR(x.x, -0.1 / std::sqrt(2), 1e-6);
   EXPECT_NEAR(x.y, 4 + 0.1 / std::sqrt(2), 1e-6);
 }

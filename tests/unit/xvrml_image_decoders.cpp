@@ -115,7 +115,7 @@ TEST(ImageJpeg, GreyAndColour) {
 }
 
 TEST(ImageJpeg, InksBecomeLight) {
-  // As Adobe writes it, 255 means no ink. Light is paper minus ink, minus black.
+  // Adobe writes CMYK inverted: 255 means no ink. Light is paper minus ink, minus black.
   Image image = decode(makeJpeg(16, 16, 4, false, [](int, int, int c) {
     return uint16_t(c == 0 ? 200 : c == 3 ? 128 : 255);
   }));

@@ -22,9 +22,8 @@ void setSplit(Options& o, const std::string& v) {
 const OptionInfo table[] = {
     {"--workers", "HOST[:PORT],...|@FILE", "Cluster",
      "Machines that render, too: an openrt-worker listens there (port 7447 where none is said). "
-     "@FILE: a file with one a line, # "
-     "begins a comment. The picture has the same bytes however many there are, and whatever "
-     "becomes of them (docs/cluster.md).",
+     "@FILE: a file with one a line, # begins a comment. The picture has the same bytes however "
+     "many there are, and whatever becomes of them (docs/cluster.md).",
      [](Options& o, const std::string& v) {
        o.cluster.workers = given(v, "HOST[:PORT],... or @FILE");
      }},
@@ -33,8 +32,7 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.cluster.listen = given(v, "ADDRESS[:PORT]"); }},
     {"--key", "FILE", "Cluster",
      "The key file that workers have, too (openrt-worker --new-key FILE makes one). Without one "
-     "only loopback addresses are "
-     "used.",
+     "only loopback addresses are used.",
      [](Options& o, const std::string& v) { o.cluster.key = given(v, "a file name"); }},
     {"--allow-keys", "FILE", "Cluster",
      "Public keys of workers that are let in beside those with the same key file, one a line.",
@@ -47,13 +45,11 @@ const OptionInfo table[] = {
      }},
     {"--split", "auto|tiles|samples|frames", "Cluster",
      "What the work is cut into: tiles of a picture, samples, or whole pictures of a sequence "
-     "(default auto: by what is to be "
-     "done). The bytes are the same.",
+     "(default auto: by what is to be done). The bytes are the same.",
      setSplit},
     {"--require-workers", "[N]", "Cluster",
      "Without N workers (default 1) there is no picture: exit code 6 when they are missing for 10 "
-     "seconds. Else this machine "
-     "finishes alone.",
+     "seconds. Else this machine finishes alone.",
      [](Options& o, const std::string& v) {
        o.cluster.require = v.empty() ? 1 : int(readInteger(v, 1, 65536));
      }},

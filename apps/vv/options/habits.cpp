@@ -83,8 +83,7 @@ std::string secondFileHint(const std::string& first, const std::string& second) 
     return fmt::format("\"{}\" looks like a picture to be written: vv {} -o {}", second, first,
                        second);
   return fmt::format("one world at a time: \"{}\" is one too many; in a shell: for w in {} {} ...; "
-                     "do vv \"$w\" -o "
-                     "\"${{w%.*}}.png\"; done",
+                     "do vv \"$w\" -o \"${{w%.*}}.png\"; done",
                      second, first, second);
 }
 

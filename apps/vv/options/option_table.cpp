@@ -131,57 +131,47 @@ void notEmpty(const std::string& value, const char* what) {
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
      "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). FORMAT:FILE "
-     "says it where the "
-     "suffix does not. - is standard output (PNG; exr:- and so on for another format). Of a "
-     "sequence {frame:4} in the name is "
-     "the number with four digits, and mp4, webm or gif makes a "
-     "film. May be given several times.",
+     "says it where the suffix does not. - is standard output (PNG; exr:- and so on for another "
+     "format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm "
+     "or gif makes a film. May be given several times.",
      addOutput, true},
     {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
     {"--channels", "LIST", "Picture",
      "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance, "
-     "error, trust (default "
-     "rgba). error and trust: the 95 % interval of each colour and whether it can be trusted; "
-     "asking for them changes how the "
-     "samples "
-     "are made.",
+     "error, trust (default rgba). error and trust: the 95 % interval of each colour and whether "
+     "it can be trusted; asking for them changes how the samples are made.",
      setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
      "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, "
-     "JPEG and PPM get the sRGB curve. "
-     "vrml97: the standard's equation on the numbers as written, no curve anywhere.",
+     "JPEG and PPM get the sRGB curve. vrml97: the standard's equation on the numbers as written, "
+     "no curve anywhere.",
      setColour},
     {"--background", "none|COLOUR|FILE", "Picture",
      "What shows where nothing is drawn; the world's Background is not there then, in mirrors "
-     "neither. none: nothing; a PNG has "
-     "alpha. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 to 1. FILE: a picture that "
-     "covers the whole frame "
-     "(png, jpg, gif; exr, hdr, pfm).",
+     "neither. none: nothing; a PNG has alpha. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B "
+     "from 0 to 1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
      setBackground},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: "
-     "a picture each; {viewpoint} in "
-     "the file name, or else a suffix, tells them apart.",
+     "a picture each; {viewpoint} in the file name, or else a suffix, tells them apart.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a name, a number or all");
        o.viewpoint = v;
      }},
     {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View",
      "Look from a position at a target, with this up vector (default: the axis of --up, or else "
-     "0,1,0). With --fit: in this "
-     "direction, from as far away as all of the world is in the picture.",
+     "0,1,0). With --fit: in this direction, from as far away as all of the world is in the "
+     "picture.",
      [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
     {"--fit", "", "View",
      "Place the camera so that the whole world is seen: in the direction of the first Viewpoint or "
-     "of --camera; in a world "
-     "without "
-     "Viewpoint from three quarters, which is the default there.",
+     "of --camera; in a world without Viewpoint from three quarters, which is the default there.",
      [](Options& o, const std::string&) { o.view.fit = true; }},
     {"--up", "x|y|z|-x|-y|-z", "View",
      "The axis that points up: of the view from three quarters, of --turntable and of --camera "
-     "(default: y in a world with a "
-     "Viewpoint; else guessed from what wrote the file and how it lies, --info says it).",
+     "(default: y in a world with a Viewpoint; else guessed from what wrote the file and how it "
+     "lies, --info says it).",
      [](Options& o, const std::string& v) { o.view.up = readAxis(v); }},
     {"--fov", "DEGREES", "View",
      "The smaller of the two angles of view, instead of the viewpoint's.",
@@ -192,28 +182,23 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.cameraShader = v; }},
     {"--headlight", "on|off|auto", "View",
      "Light at the camera; auto (default): as NavigationInfo says. A world without Viewpoint, "
-     "NavigationInfo and lights gets "
-     "three "
-     "soft lights about the camera instead.",
+     "NavigationInfo and lights gets three soft lights about the camera instead.",
      setHeadlight},
     {"--time", "SECONDS", "Time",
      "The world so long after it was loaded (default 0). Time goes in steps of 1/fps up to here, "
-     "as in a sequence; no wall clock "
-     "is read.",
+     "as in a sequence; no wall clock is read.",
      [](Options& o, const std::string& v) { o.time = readSeconds(v); }},
     {"--epoch", "SECONDS|now", "Time",
      "When the world is loaded, in seconds since 1970, which startTime and Scripts count in. "
-     "Default 1729728000 (24 October "
-     "2024), "
-     "always the same for reproducible pictures; in the window now, the clock of this machine.",
+     "Default 1729728000 (24 October 2024), always the same for reproducible pictures; in the "
+     "window now, the clock of this machine.",
      [](Options& o, const std::string& v) {
        o.epoch = v == "now" ? secondsSince1970() : readNumber(v, -1, 1e11);
      }},
     {"--frames", "A-B[/STEP]", "Time",
      "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the "
-     "same picture in any sequence "
-     "that holds it. The number is put where {frame:4} stands in the file name, or else before its "
-     "suffix.",
+     "same picture in any sequence that holds it. The number is put where {frame:4} stands in the "
+     "file name, or else before its suffix.",
      [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
     {"--fps", "F", "Time",
      "Frames a second, of sequences, films and the window, and steps of the world's clock (default "
@@ -225,12 +210,10 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
     {"--input", "FILE", "Time",
      "What somebody does to the world, from a script instead of mouse and keys: a line each, "
-     "SECONDS and what happens (move X Y, "
-     "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). Time goes in "
-     "steps of 1/fps from 0, so that "
-     "the "
-     "same script makes the same pictures, in the window and with -o (which by default shows the "
-     "world at the script's end).",
+     "SECONDS and what happens (move X Y, press left, release left, key PageDown, viewpoint NAME "
+     "...; docs/window.md). Time goes in steps of 1/fps from 0, so that the same script makes the "
+     "same pictures, in the window and with -o (which by default shows the world at the script's "
+     "end).",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.inputScript = v;
@@ -243,8 +226,7 @@ const OptionInfo table[] = {
      }},
     {"-D,--define", "DEF.FIELD=VALUE", "Change",
      "Give a field of a node with a DEF name another value before rendering, in VRML's own "
-     "spelling (Door.translation='0 0 2', "
-     "Sign.string='\"open\"'). May be given several times.",
+     "spelling (Door.translation='0 0 2', Sign.string='\"open\"'). May be given several times.",
      [](Options& o, const std::string& v) {
        const size_t equals = v.find('=');
        const size_t dot = v.find('.');
@@ -255,11 +237,8 @@ const OptionInfo table[] = {
      true},
     {"--compat", "LIST", "Change",
      "Habits of other browsers instead of the standard's rules, out of scripts (a Script without "
-     "directOutput TRUE may change "
-     "nodes, "
-     "as in the browsers of 1997), textures (a colour texture multiplies diffuseColor, as in X3D). "
-     "--explain says what they "
-     "change.",
+     "directOutput TRUE may change nodes, as in the browsers of 1997), textures (a colour texture "
+     "multiplies diffuseColor, as in X3D). --explain says what they change.",
      setCompat},
     {"--old-world", "", "Change",
      "As browsers of the nineties showed it: --compat scripts,textures --colour vrml97 --shadows "
@@ -270,10 +249,9 @@ const OptionInfo table[] = {
      }},
     {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
      "Give a shape, the shapes of an appearance or all below a group another surface shader: "
-     "Ball=Glass:index=1.33, "
-     "Wall=Diffuse:reflectance=.8,.1,.1. * stands for all shapes without a shader of their own, "
-     "LIBRARY/CLASS for a class of a "
-     "plug-in. A texture is a file, @FILE the content of one. May be given several times.",
+     "Ball=Glass:index=1.33, Wall=Diffuse:reflectance=.8,.1,.1. * stands for all shapes without a "
+     "shader of their own, LIBRARY/CLASS for a class of a plug-in. A texture is a file, @FILE the "
+     "content of one. May be given several times.",
      [](Options& o, const std::string& v) {
        const size_t equals = v.find('=');
        if (equals == v.npos || equals == 0)
@@ -283,9 +261,7 @@ const OptionInfo table[] = {
      true},
     {"--environment", "FILE[:INTENSITY]", "Change",
      "Light from all around instead of the world's Background: a picture of radiance (exr, hdr, "
-     "pfm), columns of equal "
-     "longitude, its "
-     "middle towards -z.",
+     "pfm), columns of equal longitude, its middle towards -z.",
      [](Options& o, const std::string& v) {
        const size_t colon = v.rfind(':');
        const bool factor = colon != v.npos && colon > 0 && v.find('/', colon) == v.npos;
@@ -301,29 +277,22 @@ const OptionInfo table[] = {
      }},
     {"--error", "E|E%", "Quality",
      "Take as many samples in each part of the picture as it needs for a mean relative half-width "
-     "E of the 95 % interval, at "
-     "most "
-     "--spp (here by default 4096).",
+     "E of the 95 % interval, at most --spp (here by default 4096).",
      [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
     {"--time-limit", "SECONDS", "Quality",
      "Take samples in rounds over the whole picture for about this time, at most --spp (here by "
-     "default 65536). Such a picture "
-     "depends on the speed of the machine.",
+     "default 65536). Such a picture depends on the speed of the machine.",
      [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
      [](Options& o, const std::string& v) { o.render.depth = readWholeQuality(RT_MAX_DEPTH, v); }},
     {"--transport", "auto|direct|whitted|path|light", "Quality",
      "How light is followed: auto (default: what the shaders of the world ask for; --explain and "
-     "--stats say which and why), "
-     "direct "
-     "(lights alone), whitted (and mirrors and glass), path (and light between surfaces), light "
-     "(and what lamps send through "
-     "mirrors and lenses).",
+     "--stats say which and why), direct (lights alone), whitted (and mirrors and glass), path "
+     "(and light between surfaces), light (and what lamps send through mirrors and lenses).",
      setTransport},
     {"--energy-cut", "E", "Quality",
      "whitted: branches of reflection and refraction that carry less than this share of a camera "
-     "ray end, 0 to 1 (default "
-     "1/4096).",
+     "ray end, 0 to 1 (default 1/4096).",
      [](Options& o, const std::string& v) { o.render.energyCut = v == "0" ? 0 : readShare(v); }},
     {"--clamp", "RADIANCE", "Quality",
      "No sample is brighter than this. It takes away fireflies, and light: the statistics say how "
@@ -345,27 +314,25 @@ const OptionInfo table[] = {
      "is missing.",
      [](Options& o, const std::string&) { o.strict = true; }},
     {"--info", "", "Inspect", "Say what the world holds.",
-     [](Options& o, const std::string&) { o.info = true; }},
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::info); }},
     {"--list-nodes", "", "Inspect",
      "List the node types with their fields; with a FILE also the prototypes it declares.",
-     [](Options& o, const std::string&) { o.listNodes = true; }},
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::listNodes); }},
     {"--list-viewpoints", "", "Inspect", "List the viewpoints of the world.",
-     [](Options& o, const std::string&) { o.listViewpoints = true; }},
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::listViewpoints); }},
     {"--list-shaders", "", "Inspect",
      "List the classes of all shader plug-ins with their parameters.",
-     [](Options& o, const std::string&) { o.listShaders = true; }},
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::listShaders); }},
     {"--list-engines", "", "Inspect",
      "List the script engines: what they serve, whether they need --trust, the library they come "
      "from.",
-     [](Options& o, const std::string&) { o.listEngines = true; }},
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::listEngines); }},
     {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
-     [](Options& o, const std::string&) { o.listKeys = true; }},
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::listKeys); }},
     {"--explain", "", "Inspect",
      "Say how light is followed and why, and what objects the world is rendered as: each with the "
-     "reason, its triangles, bytes "
-     "and "
-     "instances.",
-     [](Options& o, const std::string&) { o.explain = true; }},
+     "reason, its triangles, bytes and instances.",
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::explain); }},
     {"--json", "", "Inspect", "--info, --explain and the lists as JSON.",
      [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect",
@@ -376,27 +343,21 @@ const OptionInfo table[] = {
      }},
     {"--compare", "REF.exr", "Inspect",
      "Say how far the picture is off another one of the same size and view: RMSE, relMSE, bias "
-     "with its interval, largest "
-     "difference. -o is not needed.",
+     "with its interval, largest difference. -o is not needed.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "an OpenEXR file");
        o.compare = v;
      }},
     {"--audit", "[N]", "Inspect",
      "Do the error bars hold? Renders the picture with N seeds (default 20) and once with many "
-     "more samples (or takes the "
-     "picture "
-     "of --compare instead), and says how many of the 95 % intervals hold the truth. Exit code 4 "
-     "if it is not 93 to 97 % of "
-     "those "
-     "that are trusted.",
+     "more samples (or takes the picture of --compare instead), and says how many of the 95 % "
+     "intervals hold the truth. Exit code 4 if it is not 93 to 97 % of those that are trusted.",
      [](Options& o, const std::string& v) {
        o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000));
      }},
     {"--watch", "", "Inspect",
      "Make the pictures again whenever the world's file, or one that it uses, changes, until "
-     "interrupted; in the window: read it "
-     "again, the viewer stays.",
+     "interrupted; in the window: read it again, the viewer stays.",
      [](Options& o, const std::string&) { o.watch = true; }},
     {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
      [](Options& o, const std::string& v) {
@@ -427,8 +388,7 @@ const OptionInfo table[] = {
      [](Options& o, const std::string&) { o.running.allowNetwork = true; }},
     {"--script-path", "DIR[:DIR...]", "Trust",
      "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed "
-     "ones; nothing that others "
-     "may write or replace.",
+     "ones; nothing that others may write or replace.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a folder");
        o.running.scriptPath = v;
@@ -444,8 +404,9 @@ const OptionInfo table[] = {
     {"-v,--verbose", "", "Talk", "Every warning, and times.",
      [](Options& o, const std::string&) { o.verbose = true; }},
     {"--version", "", "Talk", "The version.",
-     [](Options& o, const std::string&) { o.version = true; }},
-    {"-h,--help", "", "Talk", "This text.", [](Options& o, const std::string&) { o.help = true; }},
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::version); }},
+    {"-h,--help", "", "Talk", "This text.",
+     [](Options& o, const std::string&) { o.jobs.push_back(Job::help); }},
 };
 
 } // namespace

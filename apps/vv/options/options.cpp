@@ -14,6 +14,32 @@ namespace vv {
 
 namespace {
 
+constexpr JobInfo jobs[] = {
+    {Job::help, "--help", false, false},
+    {Job::version, "--version", false, false},
+    {Job::listKeys, "--list-keys", false, false},
+    {Job::listShaders, "--list-shaders", true, false},
+    {Job::listEngines, "--list-engines", true, false},
+    {Job::listNodes, "--list-nodes", true, false},
+    {Job::explain, "--explain", true, true},
+    {Job::listViewpoints, "--list-viewpoints", true, true},
+    {Job::info, "--info", true, true},
+};
+
+// Returns the options of the jobs that print facts: "--info, --explain, ... and --list-engines".
+std::string inspections(const char* last) {
+  static constexpr Job order[] = {Job::info,           Job::explain,     Job::listNodes,
+                                  Job::listViewpoints, Job::listShaders, Job::listEngines};
+  std::string text;
+  for (const Job job : order) {
+    const auto row = std::find_if(std::begin(jobs), std::end(jobs),
+                                  [job](const JobInfo& info) { return info.job == job; });
+    if (!text.empty()) text += job == order[std::size(order) - 1] ? last : ", ";
+    text += row->option;
+  }
+  return text;
+}
+
 std::string longName(const OptionInfo& option) {
   std::string_view names = option.names;
   return std::string(
@@ -99,17 +125,13 @@ void checkTogether(Options& options) {
     throw UsageError("only one of --quiet and --verbose can be used");
   int toStandardOutput = (options.stats == "-") + (options.write == "-");
   for (const Output& output : options.outputs) toStandardOutput += output.path == "-";
-  toStandardOutput += options.explain || options.info || options.listNodes ||
-                      options.listViewpoints || options.listShaders || options.listEngines;
+  const auto printed = std::count_if(std::begin(jobs), std::end(jobs), [&](const JobInfo& info) {
+    return info.inspects && options.has(info.job);
+  });
+  toStandardOutput += printed > 0;
   if (toStandardOutput > 1) throw UsageError("only one thing can go to standard output");
-  const int inspections = options.info + options.listNodes + options.listViewpoints +
-                          options.listShaders + options.listEngines + options.explain;
-  if (options.json && inspections == 0)
-    throw UsageError("--json goes with --info, --explain, --list-nodes, --list-viewpoints, "
-                     "--list-shaders or --list-engines");
-  if (inspections > 1)
-    throw UsageError("only one of --info, --explain, --list-nodes, --list-viewpoints, "
-                     "--list-shaders and --list-engines can be used");
+  if (options.json && printed == 0) throw UsageError("--json goes with " + inspections(" or "));
+  if (printed > 1) throw UsageError("only one of " + inspections(" and ") + " can be used");
   checkSequence(options);
   if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
   if (options.render.record.size() && !options.makesPictures())
@@ -141,15 +163,22 @@ void checkTogether(Options& options) {
   if (!options.inputScript.empty() &&
       (options.audit || options.turntable || options.allViewpoints()))
     throw UsageError("--input: not with --audit, --turntable or --viewpoint all");
-  const bool needsWorld = !options.opensWindow() && !options.listNodes && !options.listKeys &&
-                          !options.listShaders && !options.listEngines && !options.help &&
-                          !options.version;
+  const JobInfo* job = options.job();
+  const bool needsWorld = !options.opensWindow() && (!job || job->needsWorld);
   if (needsWorld && options.input.empty())
     throw UsageError(
         "a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
 }
 
 } // namespace
+
+std::span<const JobInfo> jobTable() { return jobs; }
+
+const JobInfo* Options::job() const {
+  for (const JobInfo& info : vv::jobs)
+    if (has(info.job)) return &info;
+  return nullptr;
+}
 
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
 // its argument only if it begins with a digit.
@@ -265,11 +294,9 @@ std::string helpText() {
     out += wrapped(option.text, indent, width - indent) + "\n";
   }
   return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or "
-               "unusable, 4 problems found by "
-               "--check or\n"
+               "unusable, 4 problems found by --check or\n"
                "--strict, 5 a plug-in or a texture is missing under --strict, 6 too few workers "
-               "under --require-workers, 75 try "
-               "again,\n"
+               "under --require-workers, 75 try again,\n"
                "130 interrupted (what was finished is saved; a second interrupt ends at once; "
                "SIGUSR1 saves and goes on).\n";
 }

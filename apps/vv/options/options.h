@@ -2,6 +2,8 @@
 // prints --help. main() calls this once. [one thread]
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +26,27 @@ struct Output {
   picture::FilmKind film = picture::FilmKind::none;
 };
 
+// A job that prints something instead of making a picture or opening the window.
+enum class Job : uint8_t {
+  help,
+  version,
+  listKeys,
+  listShaders,
+  listEngines,
+  listNodes,
+  explain,
+  listViewpoints,
+  info
+};
+struct JobInfo {
+  Job job;
+  const char* option;
+  bool inspects;   // prints facts, as JSON with --json; only one of these can be asked for
+  bool needsWorld; // needs a FILE
+};
+// All jobs. If several are asked for, the first of the table is done.
+std::span<const JobInfo> jobTable();
+
 struct Options {
   std::string input; // "-": standard input; empty: none given
   std::vector<Output> outputs;
@@ -43,12 +66,11 @@ struct Options {
   std::string cameraShader;             // Class:param=value
   std::string viewpoint;                // as given: a name, a number or "all"
   bool check = false, strict = false;
-  bool info = false, listNodes = false, listViewpoints = false, listShaders = false,
-       listEngines = false, explain = false, json = false;
+  bool json = false;
+  std::vector<Job> jobs; // as asked for, in any order
   bool watch = false;
   std::string inputScript, recordInput;      // files of user input; empty: none
   std::shared_ptr<const InputScript> script; // contents of inputScript
-  bool listKeys = false;
   std::string write, stats;
   std::string compare;  // reference picture; empty: none
   int audit = 0;        // number of pictures to check the error bars with; 0: none
@@ -57,14 +79,16 @@ struct Options {
   xvrml::BrowserOptions running;
   xvrml::RunOptions run; // its epoch is set by startWorld
   bool quiet = false, verbose = false;
-  bool help = false, version = false;
 
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
   bool opensWindow() const {
-    return !makesPictures() && !check && !info && !listNodes && !listViewpoints && !listShaders &&
-           !listEngines && !listKeys && !explain && write.empty();
+    return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
+           !has(Job::listKeys);
   }
+  bool has(Job wanted) const { return std::find(jobs.begin(), jobs.end(), wanted) != jobs.end(); }
+  // Returns the job to do; null if none was asked for.
+  const JobInfo* job() const;
   bool isSequence() const { return frames || turntable > 0; }
 };
 

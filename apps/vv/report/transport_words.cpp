@@ -15,8 +15,7 @@ std::string followedBy(RTenum transport, const picture::RenderSettings& settings
     return fmt::format("light straight from lamps and emitters, {}: exact at each place", shadows);
   case RT_TRANSPORT_WHITTED:
     return fmt::format("light straight from lamps and emitters, {}, with its reflections and "
-                       "refractions as far as {} surfaces and "
-                       "the energy cut: exact at each place",
+                       "refractions as far as {} surfaces and the energy cut: exact at each place",
                        shadows, settings.depth);
   case RT_TRANSPORT_PATH:
     return fmt::format("all light on ways of at most {} surfaces that paths from the camera can "
@@ -24,8 +23,7 @@ std::string followedBy(RTenum transport, const picture::RenderSettings& settings
                        settings.depth);
   case RT_TRANSPORT_LIGHT:
     return fmt::format("all light on ways of at most {} surfaces, what lamps send through mirrors "
-                       "and lenses included: an "
-                       "unbiased estimate",
+                       "and lenses included: an unbiased estimate",
                        settings.depth);
   case RT_TRANSPORT_AUTO: return "the engine has not said how light was followed";
   default: return "what the transport plug-in claims";
@@ -47,9 +45,8 @@ std::string transportClaim(const RTstats& stats, const picture::RenderSettings& 
   constexpr double negligible = .001; // errors are relative to colour + .03
   if (stats.errorUnmet > negligible)
     claim += fmt::format("; of the paths that only chance leads by way of mirrors or glass to an "
-                         "emitter few have met the "
-                         "brightest one: on average a pixel may lack radiance of up to {:.2g}, "
-                         "which more samples tell",
+                         "emitter few have met the brightest one: on average a pixel may lack "
+                         "radiance of up to {:.2g}, which more samples tell",
                          stats.errorUnmet);
   if (settings.clamp > 0)
     claim += fmt::format("; samples are cut at {}, which takes light away", settings.clamp);

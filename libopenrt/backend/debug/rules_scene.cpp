@@ -40,8 +40,7 @@ void emptyInstances(const RuleContext& f, const Report& report) {
     if (!drawable(f.scene, instance.object))
       report(id, nameOf("instance", id) + " stands for " + nameOf("object", instance.object) +
                      ", which is empty: define it between rtBeginObject and rtEndObject; geometry "
-                     "whose primitives are all "
-                     "degenerate is dropped (RTstats.degenerate)");
+                     "whose primitives are all degenerate is dropped (RTstats.degenerate)");
 }
 
 void flatInstances(const RuleContext& f, const Report& report) {
@@ -49,8 +48,7 @@ void flatInstances(const RuleContext& f, const Report& report) {
     if (!instance.matrix.usable())
       report(id, "the matrix of " + nameOf("instance", id) +
                      " is singular or out of range, so nothing of it is drawn: to hide it use "
-                     "rtInstanceVisible, else check its "
-                     "scale factors");
+                     "rtInstanceVisible, else check its scale factors");
 }
 
 void neverPlaced(const RuleContext& f, const Report& report) {
@@ -68,8 +66,8 @@ void redefined(const RuleContext& f, const Report& report) {
     if (history.definitions >= often && !history.hinted)
       report(id, nameOf("object", id) + " was defined " + std::to_string(history.definitions) +
                      " times: call rtObjectHint(object, RT_DYNAMIC) before its first definition, "
-                     "so that the first redefinition "
-                     "need not build the scene anew; to move it use rtInstanceMatrix");
+                     "so that the first redefinition need not build the scene anew; to move it use "
+                     "rtInstanceMatrix");
 }
 
 constexpr Rule table[] = {

@@ -29,11 +29,9 @@ void unusedShaders(const RuleContext& f, const Report& report) {
     const RtsClass* table = f.classOf(id);
     if (!table || used.contains(id)) continue;
     if (table->kind == RTS_SURFACE)
-      report(
-          id,
-          nameOfShader(f, id) +
-              " is on no geometry: call rtBindShader before rtBegin, the arrays or rtSphere (it is "
-              "latched there), or rtInstanceShader or rtDefaultShader");
+      report(id, nameOfShader(f, id) +
+                     " is on no geometry: call rtBindShader before rtBegin, the arrays or rtSphere "
+                     "(it is latched there), or rtInstanceShader or rtDefaultShader");
     if (table->kind == RTS_LIGHT)
       report(id, nameOfShader(f, id) + " gives no light: turn it on with rtUseLight");
     if (table->kind == RTS_ENVIRONMENT)
@@ -86,8 +84,8 @@ void overriddenParameters(const RuleContext& f, const Report& report) {
       if (!g.parameters.empty() && f.classOf(g.shader) != f.classOf(instance.shader))
         report(id, nameOf("instance", id) + " draws " + nameOf("object", instance.object) +
                        " with " + nameOfShader(f, instance.shader) +
-                       ", another class than its own: the values that its triangles or "
-                       "vertices have for parameters are ignored");
+                       ", another class than its own: the values that its triangles or vertices "
+                       "have for parameters are ignored");
   }
 }
 

@@ -10,7 +10,8 @@ namespace openrt {
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 void samplePairs(uint32_t n, const uint32_t* __restrict key, const uint32_t* __restrict pair,
-                 uint32_t draw, const uint32_t* __restrict index, float* __restrict x, float* __restrict y) {
+                 uint32_t draw, const uint32_t* __restrict index, float* __restrict x,
+                 float* __restrict y) {
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t k = hash(key[i], pair[i] + draw);
     const uint32_t order = hash(k, 0x68bc21ebu), kx = hash(k, 0x02e5be93u),

@@ -23,8 +23,7 @@ const char* textOf(Fault fault) {
            "know that they scatter";
   case Fault::undeclaredEmission:
     return "has emission, but its traits lack RTS_EMISSIVE: nobody looks for its light, so the "
-           "picture is noisier than it need "
-           "be";
+           "picture is noisier than it need be";
   case Fault::undeclaredTransparency:
     return "lets light through, but its traits lack RTS_TRANSPARENT: its shadows are opaque";
   case Fault::undeclaredScattering:

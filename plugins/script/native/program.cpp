@@ -167,10 +167,9 @@ class Reader {
         target.kind == Argument::Kind::field ? &info_.fields[target.field] : nullptr;
     if (!field || field->access == XS_EVENT_IN) fail("a result goes to an eventOut or a field");
     if (!isScalar(field->type) && field->type != XS_SFSTRING && field->type != XS_SFNODE)
-      fail(
-          std::string("'") + field->name +
-          "': a function returns SFBool, SFFloat, SFInt32, SFTime, SFString or SFNode; other types "
-          "are arguments that it writes to");
+      fail(std::string("'") + field->name +
+           "': a function returns SFBool, SFFloat, SFInt32, SFTime, SFString or SFNode; other "
+           "types are arguments that it writes to");
   }
 
   double number() {

@@ -42,8 +42,7 @@ struct Ensemble {
 constexpr Ensemble ensembles[] = {
     {"::info", "::tcl::info",
      "args body cmdcount commands complete coroutine default errorstack exists frame functions "
-     "globals level locals patchlevel procs "
-     "tclversion vars"},
+     "globals level locals patchlevel procs tclversion vars"},
     {"::clock", "::tcl::clock", "clicks microseconds milliseconds seconds"}};
 
 // Replaces functions that init.tcl would load from a file.

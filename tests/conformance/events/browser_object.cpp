@@ -30,7 +30,7 @@ TEST_P(BrowserObject, MakesNodesOfAString) {
              "Transform {} ROUTE A.translation TO B.translation\" } ROUTE S.out TO G.children");
   r.set("S", "in", true);
   EXPECT_EQ(r.get("G", "children"), "[A, B]");
-  EXPECT_EQ(r.browser.node("A"), NodeRef()); // the new world has a name space of its own
+  EXPECT_EQ(r.browser.node("A"), NodeRef()); // the string has a name space of its own
   const auto children = std::get<MFNode>(r.browser.get(r.node("G"), "children"));
   r.browser.set(*children[0], "translation", Vec3f{1, 2, 3});
   EXPECT_EQ(textOf(r.browser.get(*children[1], "translation")), "1 2 3"); // its routes are active

@@ -10,7 +10,7 @@ class EcmaScriptArrays : public EcmaRows {};
 TEST_P(EcmaScriptArrays, Prints) {
   EcmaWorld r("DEF T Transform { children [ DEF A Group { } DEF B Group { } ] } " +
               EcmaWorld::script(GetParam().declared, GetParam().program));
-  EXPECT_EQ(r.told(), GetParam().printed) << GetParam().program;
+  EXPECT_EQ(r.takeOutput(), GetParam().printed) << GetParam().program;
 }
 
 constexpr EcmaRow rows[] = {

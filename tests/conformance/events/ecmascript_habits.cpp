@@ -21,7 +21,7 @@ function declared(n) { if (n == 0) return 0
   return n + declared(n - 1) }
 // -->
 " })");
-  EXPECT_EQ(r.told(),
+  EXPECT_EQ(r.takeOutput(),
             "a\tbAquotedit's\nconstants\n6\nx1.5true 12 1500 3.142 true a%20b\ntwo\n2\n0,1,1");
 }
 
@@ -30,7 +30,7 @@ TEST_F(EcmaScript, LinesEndInAnyWay) {
     const std::string e = end;
     EcmaWorld r("Script { url \"javascript:" + e + "// comment" + e + "function initialize() {" +
                 e + "  print('a')" + e + "  print('b')" + e + "} // = x" + e + "\" }");
-    EXPECT_EQ(r.told(), "a\nb");
+    EXPECT_EQ(r.takeOutput(), "a\nb");
   }
 }
 

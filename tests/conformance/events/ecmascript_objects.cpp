@@ -10,7 +10,7 @@ class EcmaScriptObjects : public EcmaRows {};
 TEST_P(EcmaScriptObjects, Prints) {
   EcmaWorld r("DEF T Transform { translation 1 2 3 } " +
               EcmaWorld::script(GetParam().declared, GetParam().program));
-  EXPECT_EQ(r.told(), GetParam().printed) << GetParam().program;
+  EXPECT_EQ(r.takeOutput(), GetParam().printed) << GetParam().program;
 }
 
 constexpr EcmaRow rows[] = {

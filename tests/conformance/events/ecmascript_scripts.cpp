@@ -18,14 +18,14 @@ TEST_F(EcmaScript, ServesItsSchemesFilesAndMimeTypes) {
         "data:text/javascript,print(1)", "data:text/ecmascript,print(1)",
         "tests/conformance/scripts/prints.js", "tests/conformance/scripts/prints.vs"}) {
     EcmaWorld r(fmt::format("Script {{ url \"{}\" }}", url));
-    EXPECT_EQ(r.told(), "1") << url;
+    EXPECT_EQ(r.takeOutput(), "1") << url;
   }
 }
 
 TEST_F(EcmaScript, TheNextUrlIsTriedWhenAProgramFails) {
   EcmaWorld r(
       "Script { url [ \"javascript:this is no program\" \"javascript:print('second')\" ] }");
-  EXPECT_EQ(r.told(), "second\n2: Script: SyntaxError: unterminated statement (line 1)");
+  EXPECT_EQ(r.takeOutput(), "second\n2: Script: SyntaxError: unterminated statement (line 1)");
 }
 
 // --- C.4: functions ---
@@ -36,7 +36,7 @@ TEST_F(EcmaScript, AnEventCallsTheFunctionOfItsNameWithValueAndTime) {
   r.browser.tick(2.5);
   r.set("S", "in", 1.0f); // no such function: nothing happens
   r.set("S", "other", true);
-  EXPECT_EQ(r.told(), "true 2.5 boolean");
+  EXPECT_EQ(r.takeOutput(), "true 2.5 boolean");
 }
 
 TEST_F(EcmaScript, ValuesOfAllTypesArrive) {
@@ -69,11 +69,12 @@ TEST_F(EcmaScript, ValuesOfAllTypesArrive) {
   r.set("S", "r", MFTime{1, 2});
   r.set("S", "s", MFVec2f{{1, 2}});
   r.set("S", "t", MFVec3f{{1, 2, 3}, {4, 5, 6}});
-  EXPECT_EQ(r.told(), "true 0\n1 0 0.5 0\n1.5 0\n1 2 1 0xFF 0x10 0\n-3 0\nDEF G Group { } 0\n0 1 0 "
-                      "2 0\ntext 0\n5.25 0\n1 2 0\n"
-                      "1 2 3 0\n[1 0 0, 0 1 0] 0\n[1, 2.5] 0\n[7, 8] 0\n[DEF G Group { }, NULL] "
-                      "0\n[1 0 0 3] 0\n[\"x\", \"y\"] 0\n"
-                      "[1, 2] 0\n[1 2] 0\n[1 2 3, 4 5 6] 0");
+  EXPECT_EQ(r.takeOutput(),
+            "true 0\n1 0 0.5 0\n1.5 0\n1 2 1 0xFF 0x10 0\n-3 0\nDEF G Group { } 0\n0 1 0 "
+            "2 0\ntext 0\n5.25 0\n1 2 0\n"
+            "1 2 3 0\n[1 0 0, 0 1 0] 0\n[1, 2.5] 0\n[7, 8] 0\n[DEF G Group { }, NULL] "
+            "0\n[1 0 0 3] 0\n[\"x\", \"y\"] 0\n"
+            "[1, 2] 0\n[1 2] 0\n[1 2 3, 4 5 6] 0");
 }
 
 TEST_F(EcmaScript, ValuesOfAllTypesAreSent) {
@@ -105,7 +106,7 @@ TEST_F(EcmaScript, ValuesOfAllTypesAreSent) {
                  "0 S.l 1 2 3\n0 S.m [1 0 0]\n0 S.n [1, 2.5]\n0 S.o [7, 8]\n0 S.p [G, NULL]\n0 S.q "
                  "[1 0 0 3]\n0 S.r [x, y]\n0 S.s [1, "
                  "2]\n0 S.t [1 2]\n0 S.u [1 2 3]\n");
-  EXPECT_EQ(r.told(), "");
+  EXPECT_EQ(r.takeOutput(), "");
 }
 
 TEST_F(EcmaScript, InitializeEventsProcessedShutdown) {
@@ -113,11 +114,11 @@ TEST_F(EcmaScript, InitializeEventsProcessedShutdown) {
                      "print('program'); function initialize() { print('initialize') } "
                      "function eventsProcessed() { print('processed') } function shutdown() { "
                      "print('shutdown') }"));
-  EXPECT_EQ(r.told(), "program\ninitialize");
+  EXPECT_EQ(r.takeOutput(), "program\ninitialize");
   r.set("S", "in", true);
-  EXPECT_EQ(r.told(), "processed");
+  EXPECT_EQ(r.takeOutput(), "processed");
   r.browser.replaceWorld({});
-  EXPECT_EQ(r.told(), "shutdown");
+  EXPECT_EQ(r.takeOutput(), "shutdown");
 }
 
 // --- C.5.1, C.5.3: the Script's own fields and eventOuts ---
@@ -128,7 +129,7 @@ TEST_F(EcmaScript, FieldsKeepTheirValueFromCallToCall) {
              "this['in'] = function() { n++; v.x += 1; m[m.length] = n; print(n, v, m) }"));
   r.set("S", "in", true);
   r.set("S", "in", true);
-  EXPECT_EQ(r.told(), "2 2 2 3 [1, 2]\n3 3 2 3 [1, 2, 3]");
+  EXPECT_EQ(r.takeOutput(), "2 2 2 3 [1, 2]\n3 3 2 3 [1, 2, 3]");
   EXPECT_EQ(r.get("S", "n"), "3");
   EXPECT_EQ(r.get("S", "v"), "3 2 3");
   EXPECT_EQ(r.get("S", "m"), "[1, 2, 3]");
@@ -140,7 +141,7 @@ TEST_F(EcmaScript, OfSeveralValuesTheLastIsSentWhenTheFunctionHasReturned) {
   r.log("S", "out");
   r.set("S", "go", true);
   EXPECT_EQ(r.take(), Log{"0 S.out 7"});
-  EXPECT_EQ(r.told(), "2");
+  EXPECT_EQ(r.takeOutput(), "2");
 }
 
 TEST_F(EcmaScript, AComponentOrElementOfAnEventOutSendsIt) {
@@ -152,7 +153,7 @@ TEST_F(EcmaScript, AComponentOrElementOfAnEventOutSendsIt) {
   r.set("S", "go", true);
   EXPECT_EQ(r.take(),
             (Log{"0 S.v 1 0 0", "0 S.m [0, 2]", "0 S.c 1 0 0", "0 S.p [1 5 1]", "0 S.same 0 0 0"}));
-  EXPECT_EQ(r.told(), "");
+  EXPECT_EQ(r.takeOutput(), "");
 }
 
 TEST_F(EcmaScript, AnEventOutReadsAsLastSent) {
@@ -163,7 +164,7 @@ TEST_F(EcmaScript, AnEventOutReadsAsLastSent) {
   r.set("S", "go", true);
   r.browser.tick(1);
   r.set("S", "ask", true);
-  EXPECT_EQ(r.told(), "0 0 0 .\n1 2 3 x.");
+  EXPECT_EQ(r.takeOutput(), "0 0 0 .\n1 2 3 x.");
 }
 
 TEST_F(EcmaScript, AssigningToAFieldCopies) {
@@ -171,7 +172,7 @@ TEST_F(EcmaScript, AssigningToAFieldCopies) {
                      "var v = new SFVec3f(1, 2, 3), a = new MFInt32(1); f = v; m = a; v.x = 9; "
                      "a[0] = 9; print(f, m); var old = f; f = "
                      "new SFVec3f(5, 5, 5); print(old, f)"));
-  EXPECT_EQ(r.told(), "1 2 3 [1]\n1 2 3 5 5 5");
+  EXPECT_EQ(r.takeOutput(), "1 2 3 [1]\n1 2 3 5 5 5");
 }
 
 // C.6.2: assignments to variables from fields, eventOuts and elements copy. Objects that the
@@ -183,7 +184,7 @@ TEST_P(EcmaScriptAssignments, CopyOrRefer) {
                      "field MFVec3f m [1 1 1, 2 2 2] field MFFloat n [5, 6] field "
                      "SFImage i 1 1 1 7 eventOut SFVec3f out",
                      GetParam().program));
-  EXPECT_EQ(r.told(), GetParam().printed) << GetParam().program;
+  EXPECT_EQ(r.takeOutput(), GetParam().printed) << GetParam().program;
 }
 constexpr EcmaRow assignments[] = {
     {"field", "", "var v = f; v.x = 9; print(f, v)", "1 2 3 9 2 3"},
@@ -228,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(AnnexC, EcmaScriptAssignments, testing::ValuesIn(assign
 TEST_F(EcmaScript, TheProgramsOwnVariablesHideNothing) {
   EcmaWorld r(script("field SFInt32 n 1", "undeclared = 5; function f(n) { n = 7; var undeclared = "
                                           "6; return n + undeclared } print(f(0), n, undeclared)"));
-  EXPECT_EQ(r.told(), "13 1 5");
+  EXPECT_EQ(r.takeOutput(), "13 1 5");
 }
 
 // --- C.6.2: conversions ---
@@ -239,7 +240,7 @@ TEST_P(EcmaScriptConversions, OfWhatIsAssignedToAField) {
               script(fmt::format("field SFNode t USE T field {}", GetParam().declared),
                      fmt::format("try {{ f = {}; print(f) }} catch (e) {{ print(e.message) }}",
                                  GetParam().program)));
-  EXPECT_EQ(r.told(), GetParam().printed) << GetParam().program;
+  EXPECT_EQ(r.takeOutput(), GetParam().printed) << GetParam().program;
 }
 constexpr EcmaRow conversions[] = {
     {"SFBool_number", "SFBool f FALSE", "5", "true"},
@@ -296,7 +297,7 @@ TEST_F(EcmaScript, ATextThatIsNoUtf16IsSentWithReplacements) {
   r.set("S", "go", true);
   EXPECT_EQ(r.get("S", "out"), "a\xef\xbf\xbd"
                                "b");
-  EXPECT_EQ(r.told(), "");
+  EXPECT_EQ(r.takeOutput(), "");
 }
 
 // --- C.5.2: other nodes ---
@@ -316,7 +317,7 @@ TEST_F(EcmaScript, FieldsOfOtherNodesAreReadAndSet) {
   r.set("S", "go", true);
   EXPECT_EQ(r.take(),
             (Log{"0 T.translation 1 2 3", "0 T.scale 2 3 1", "0 C.point [1 2 3, 4 5 9, 7 7 7]"}));
-  EXPECT_EQ(r.told(), "1 2 3 2 3 1\n[1 2 3, 4 5 9, 7 7 7]");
+  EXPECT_EQ(r.takeOutput(), "1 2 3 2 3 1\n[1 2 3, 4 5 9, 7 7 7]");
 }
 
 TEST_F(EcmaScript, AnEventInIsWrittenAnEventOutIsRead) {
@@ -327,7 +328,7 @@ TEST_F(EcmaScript, AnEventInIsWrittenAnEventOutIsRead) {
              "SFNode('Group { }')); print(g.addChildren, "
              "k.time >= 0); try { k.time = 1 } catch (e) { print(e.message) } }"));
   r.set("S", "go", true);
-  EXPECT_EQ(r.told(), "undefined true\ntime cannot be written");
+  EXPECT_EQ(r.takeOutput(), "undefined true\ntime cannot be written");
 }
 
 TEST_F(EcmaScript, AnObjectOfAFieldOfAnotherNodeWorksInLaterCalls) {
@@ -357,7 +358,7 @@ TEST_F(EcmaScript, ItsOwnNodeIsAnSFNodeToo) {
               "url \"javascript: function initialize() { me.n = 4; print(n, me.n); me.in = 5; "
               "me.out = 6 } function f(){} "
               "this['in'] = function(v) { print('in', v) }\" }");
-  EXPECT_EQ(r.told(), "4 4\nin 5");
+  EXPECT_EQ(r.takeOutput(), "4 4\nin 5");
   EXPECT_EQ(r.get("S", "out"), "6");
 }
 
@@ -368,10 +369,10 @@ TEST_F(EcmaScript, NodesAreLetGo) {
                      "function drop() { kept = null }"));
   r.set("S", "go", 0.0);
   r.browser.tick(1);
-  EXPECT_EQ(r.told(), "");
+  EXPECT_EQ(r.takeOutput(), "");
   r.set("S", "drop", true);
   r.browser.tick(2);
-  EXPECT_EQ(r.told(), "1");
+  EXPECT_EQ(r.takeOutput(), "1");
 }
 
 // --- C.6.3: the Browser object ---
@@ -382,7 +383,7 @@ TEST_F(EcmaScript, TheBrowserTells) {
                          "Browser.getWorldURL()); Browser.setDescription('about'); function "
                          "initialize() { Browser.print(1, 'a'); "
                          "Browser.println(2); trace(3) }"));
-  EXPECT_EQ(r.told(), "string true 0 0 test.wrl\n1 a\n2\n3");
+  EXPECT_EQ(r.takeOutput(), "string true 0 0 test.wrl\n1 a\n2\n3");
   EXPECT_EQ(r.browser.description(), "about");
 }
 
@@ -413,7 +414,7 @@ TEST_F(EcmaScript, TheBrowserRoutes) {
   r.set("S", "on", false);
   r.set("A", "translation", Vec3f{2, 0, 0});
   EXPECT_EQ(r.get("B", "translation"), "1 0 0");
-  EXPECT_EQ(r.told(), "");
+  EXPECT_EQ(r.takeOutput(), "");
 }
 
 TEST_F(EcmaScript, TheBrowserReplacesAndLoadsWorlds) {
@@ -433,7 +434,7 @@ TEST_F(EcmaScript, TheBrowserReplacesAndLoadsWorlds) {
                          "new MFString('target=x')) }"),
               options);
   EXPECT_EQ(asked, (Log{"a.wrl", "b.wrl", "target=x"}));
-  EXPECT_EQ(w.told(), "");
+  EXPECT_EQ(w.takeOutput(), "");
 }
 
 } // namespace

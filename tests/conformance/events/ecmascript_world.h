@@ -15,7 +15,7 @@ class EcmaWorld : public TclWorld {
     return text.replace(text.find("\"tcl:") + 1, 4, "javascript:");
   }
   // Returns what was printed and the errors, one line each.
-  std::string told() {
+  std::string takeOutput() {
     std::string out;
     for (const Log& log : {printed(), messages()})
       for (const std::string& line : log) out += (out.empty() ? "" : "\n") + line;

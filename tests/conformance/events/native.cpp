@@ -51,7 +51,7 @@ TEST_F(Native, NumbersGoInAndComeOut) {
   EXPECT_EQ(Echo("SFTime", "half", options)(3.0), "1.5");
   EXPECT_EQ(Echo("SFBool", "invert", options)(true), "FALSE");
   EXPECT_EQ(Echo("SFInt32", "invert", options)(int32_t(0)), "1");
-  // Half returns a double, but the declared call says float.
+  // The function half returns a double, but the declared call says float.
   EXPECT_EQ(Echo("SFFloat", "float out = half(double in)", options)(5.0f), "0");
   EXPECT_EQ(Echo("SFFloat", "double out = half(double in)", options)(5.0f), "2.5");
   EXPECT_EQ(Echo("SFInt32", "int64_t out = wide(long in, uint8_t 7)", options)(int32_t(-2)),

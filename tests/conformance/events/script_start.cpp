@@ -149,7 +149,7 @@ TEST(ScriptTime, OfAWorldIsBounded) {
 TEST(ScriptTime, GrowsWithTheTimeOfTheWorld) {
   for (const bool moves : {true, false}) {
     RunOptions run{.epoch = 0};
-    run.worldScriptSeconds = 0.02; // 0.02 s for each second of the world allow 0.2 s of sleep
+    run.worldScriptSeconds = 0.02; // equivalent to 0.2 s of sleep
     Scripted r("DEF S Script { eventIn SFBool go url \"hostile:go: slow 30\" }",
                settings(Isolation::always), run);
     for (int i = 0; i < 12; ++i) {

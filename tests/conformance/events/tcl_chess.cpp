@@ -143,7 +143,7 @@ TEST_F(TclChess, CapturesEnPassantAndPromotionsMoveTheRightPieces) {
                      "axb2", "Nf3", "bxc1=N", "Qxc1"});
   EXPECT_EQ(stated(*browser), "Q1bqkbnr/1p2pppp/8/8/8/5N2/P1PP1PPP/RNQ1KB1R");
   EXPECT_FALSE(place(*browser, "Spare_wq") == (Vec3f{-6.2f, 0, 3.5f}));
-  EXPECT_EQ(place(*browser, "Piece_e2"), (Vec3f{-6.2f, 0, 3.5f})); // replaced by the promoted piece
+  EXPECT_EQ(place(*browser, "Piece_e2"), (Vec3f{-6.2f, 0, 3.5f})); // the pawn, in the queen's place
   EXPECT_GT(place(*browser, "Piece_d7").x, 4.8f);
 }
 

@@ -18,9 +18,9 @@ namespace {
 constexpr int byeMilliseconds = 500; // limit for sending the last message
 
 std::string remedy(const std::string& what) {
-  return what + " is not this machine's loopback, so keys are needed: make one with "
-                "\"openrt-worker --new-key FILE\", copy it to all "
-                "machines, and give --key FILE (key=FILE) on both sides";
+  return what +
+         " is not this machine's loopback, so keys are needed: make one with \"openrt-worker "
+         "--new-key FILE\", copy it to all machines, and give --key FILE (key=FILE) on both sides";
 }
 
 void checkAddress(const Address& address, const KeyRing& keys) {
