@@ -13,10 +13,6 @@ using namespace xvrml;
 
 namespace {
 
-bool holdsValue(const FieldInfo& field) {
-  return field.access == Access::field || field.access == Access::exposedField;
-}
-
 const FieldInfo* findValue(const Node& node, const std::string& name) {
   const FieldInfo* field = node.type().find(name);
   return field && holdsValue(*field) ? field : nullptr;

@@ -37,10 +37,6 @@ template <class F> bool withNumbers(FieldType type, void* storage, const F& f) {
   }
 }
 
-bool holdsValue(const FieldInfo& field) {
-  return field.access == Access::field || field.access == Access::exposedField;
-}
-
 } // namespace
 
 ViewedField::ViewedField(Node& node, const FieldInfo& field) : storage_(node.storage(field)) {

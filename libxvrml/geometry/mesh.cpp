@@ -34,29 +34,41 @@ std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
   return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
 }
 
-template <class T> static bool tryBuild(Node* node,
-                                        Mesh (*build)(const T&, const MeshOptions&, Faults&),
-                                        const MeshOptions& options, Mesh& mesh, Faults& faults) {
+namespace {
+
+// Builds the mesh of a node if it has the type that the function takes. Returns whether it has.
+using TryBuild = bool (*)(Node* node, const MeshOptions& options, Mesh& mesh, Faults& faults);
+
+template <class T, Mesh (*build)(const T&, const MeshOptions&, Faults&)>
+bool tryBuild(Node* node, const MeshOptions& options, Mesh& mesh, Faults& faults) {
   auto* typed = nodeCast<T>(node);
   if (typed) mesh = build(*typed, options, faults);
   return typed != nullptr;
 }
+
+// The builders of all geometry nodes; those that worlds use most come first.
+constexpr TryBuild builders[] = {
+    tryBuild<nodes::IndexedFaceSet, buildIndexedFaceSet>,
+    tryBuild<nodes::Box, buildBox>,
+    tryBuild<nodes::Cone, buildCone>,
+    tryBuild<nodes::Cylinder, buildCylinder>,
+    tryBuild<nodes::Sphere, buildSphere>,
+    tryBuild<nodes::IndexedLineSet, buildIndexedLineSet>,
+    tryBuild<nodes::PointSet, buildPointSet>,
+    tryBuild<nodes::ElevationGrid, buildElevationGrid>,
+    tryBuild<nodes::Extrusion, buildExtrusion>,
+    tryBuild<nodes::Text, buildText>,
+};
+
+} // namespace
 
 Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   Mesh mesh;
   Node* node = renderedNode(&geometry);
   if (!node) return mesh;
   Faults faults;
-  tryBuild(node, buildIndexedFaceSet, options, mesh, faults) ||
-      tryBuild(node, buildBox, options, mesh, faults) ||
-      tryBuild(node, buildCone, options, mesh, faults) ||
-      tryBuild(node, buildCylinder, options, mesh, faults) ||
-      tryBuild(node, buildSphere, options, mesh, faults) ||
-      tryBuild(node, buildIndexedLineSet, options, mesh, faults) ||
-      tryBuild(node, buildPointSet, options, mesh, faults) ||
-      tryBuild(node, buildElevationGrid, options, mesh, faults) ||
-      tryBuild(node, buildExtrusion, options, mesh, faults) ||
-      tryBuild(node, buildText, options, mesh, faults);
+  for (const TryBuild build : builders)
+    if (build(node, options, mesh, faults)) break;
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;
 }

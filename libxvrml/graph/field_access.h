@@ -36,13 +36,6 @@ decltype(auto) visitStorage(FieldType type, void* storage, Visitor&& visit) {
   return visit(*static_cast<MFVec3f*>(storage));
 }
 
-inline bool holdsValue(const FieldInfo& field) {
-  return field.access == Access::field || field.access == Access::exposedField;
-}
-constexpr std::string_view accessName(Access access) {
-  constexpr std::string_view names[] = {"field", "exposedField", "eventIn", "eventOut"};
-  return names[static_cast<size_t>(access)];
-}
 inline bool holdsNodes(const FieldInfo& field) {
   return holdsValue(field) && (field.type == FieldType::SFNode || field.type == FieldType::MFNode);
 }

@@ -6,8 +6,6 @@
 namespace xvrml::nodegen {
 namespace {
 
-constexpr std::array<std::string_view, 4> accessNames = {"field", "exposedField", "eventIn",
-                                                         "eventOut"};
 constexpr std::array<std::string_view, 9> changeNames = {
     "none", "transform", "geometry", "appearance", "shader", "children", "light", "view", "time"};
 
@@ -32,10 +30,15 @@ std::string_view lineOf(std::string_view text, uint32_t line) {
 
 } // namespace
 
-std::string_view accessName(Access access) { return accessNames[size_t(access)]; }
 std::string_view changeName(Change change) { return changeNames[size_t(change)]; }
 bool accessFromName(std::string_view name, Access& access) {
-  return fromName(accessNames, name, access);
+  for (const Access each :
+       {Access::field, Access::exposedField, Access::eventIn, Access::eventOut}) {
+    if (name != accessName(each)) continue;
+    access = each;
+    return true;
+  }
+  return false;
 }
 bool changeFromName(std::string_view name, Change& change) {
   return fromName(changeNames, name, change);

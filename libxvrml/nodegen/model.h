@@ -70,7 +70,6 @@ struct Model {
   const TypeSpec* find(std::string_view name) const;
 };
 
-std::string_view accessName(Access access);
 std::string_view changeName(Change change);
 bool accessFromName(std::string_view name, Access& access);
 bool changeFromName(std::string_view name, Change& change);

@@ -119,11 +119,23 @@ struct ValueReader {
 
 } // namespace
 
+// The types of the SDK have the order of FieldType.
+constexpr XsType xsTypeOf(FieldType type) { return XsType(int(type) + XS_SFBOOL); }
+static_assert(
+    xsTypeOf(FieldType::SFBool) == XS_SFBOOL && xsTypeOf(FieldType::SFColor) == XS_SFCOLOR &&
+    xsTypeOf(FieldType::SFFloat) == XS_SFFLOAT && xsTypeOf(FieldType::SFImage) == XS_SFIMAGE &&
+    xsTypeOf(FieldType::SFInt32) == XS_SFINT32 && xsTypeOf(FieldType::SFNode) == XS_SFNODE &&
+    xsTypeOf(FieldType::SFRotation) == XS_SFROTATION &&
+    xsTypeOf(FieldType::SFString) == XS_SFSTRING && xsTypeOf(FieldType::SFTime) == XS_SFTIME &&
+    xsTypeOf(FieldType::SFVec2f) == XS_SFVEC2F && xsTypeOf(FieldType::SFVec3f) == XS_SFVEC3F &&
+    xsTypeOf(FieldType::MFColor) == XS_MFCOLOR && xsTypeOf(FieldType::MFNode) == XS_MFNODE &&
+    xsTypeOf(FieldType::MFVec3f) == XS_MFVEC3F);
+
 const XsValue& LentValue::lend(Value value, Handles& handles) {
   value_ = std::move(value);
   strings_.clear();
   nodes_.clear();
-  view_ = {XsType(int(value_.index()) + XS_SFBOOL), 1, {nullptr}};
+  view_ = {xsTypeOf(FieldType(value_.index())), 1, {nullptr}};
   std::visit(
       [&](const auto& v) {
         using T = std::decay_t<decltype(v)>;

@@ -95,7 +95,7 @@ void drawCornell() {
 }
 
 // A glass ball on a floor under a lamp. Its caustic is found only by paths that hit the lamp by
-// randomNumber.
+// chance.
 void drawGlassBall() {
   floorAt(-1, paint(.6f, .6f, .5f), 6);
   lampAbove(.8, 3, -.5, .6, 10);

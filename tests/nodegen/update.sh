@@ -1,5 +1,5 @@
 #!/bin/sh
-# usage: tests/nodegen/update.sh NODEGEN: writes tests/nodegen/expected anew. Read the differences before you commit them.
+# usage: tests/nodegen/update.sh NODEGEN: rewrites tests/nodegen/expected. Read the differences before you commit them.
 set -eu
 cd "$(dirname "$0")"
 for name in tiny roles; do

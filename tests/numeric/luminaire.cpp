@@ -13,9 +13,8 @@ class StockLights : public Scene {
     white.set("reflectance", {1, 1, 1});
     place(square(white, 100));
   }
-  static Shader
   // Vertical angles 0, 60, 120; horizontal angles 0, 90, 180, 270.
-  luminaire(const std::string& candela) {
+  static Shader luminaire(const std::string& candela) {
     Shader s("Luminaire");
     const std::string text =
         "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 4 1 2 0 0 0\n1 1 100\n0 60 120\n0 90 180 270\n" +

@@ -1,5 +1,5 @@
-# chess_rules.tcl: the rules, moves and games of examples/scenes/chess.tcl, without a world: tclsh chess_rules.tcl CHESS.TCL.
-# Numbers of positions (perft) are those that all programs of chess agree upon.
+# chess_rules.tcl: tests the rules, moves and games of examples/scenes/chess.tcl without a world:
+# tclsh chess_rules.tcl CHESS.TCL. The expected numbers of positions (perft) are those that chess programs agree on.
 source [lindex $argv 0]
 set failures 0
 proc expect {what got wanted} {
@@ -21,7 +21,7 @@ foreach {fen depth count} {
   expect "FEN there and back" [rules::write [at $fen]] $fen
 }
 
-# Moves as texts.
+# Moves as text.
 proc after {fen args} {
   set position [at $fen]
   foreach text $args {set position [rules::make $position [rules::find $position $text]]}
@@ -50,7 +50,7 @@ expect "mate" [san {6k1/5ppp/8/8/8/8/8/4K2R w K - 0 1} h1h7] Rxh7
 expect "back rank" [san {6k1/5ppp/8/8/8/8/8/R3K3 w - - 0 1} a1a8] Ra8#
 expect "promotes" [san {3r2k1/4P3/8/8/8/8/8/4K3 w - - 0 1} e7d8q] exd8=Q+
 
-# How things stand.
+# The state of the game.
 proc state {fen {keys {}}} {lindex [rules::status [at $fen] $keys] 1}
 expect "first" [state $start] {White to move}
 expect "check" [state {4k3/8/8/8/8/8/4r3/4K3 w - - 0 1}] {White to move, in check}

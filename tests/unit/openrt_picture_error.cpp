@@ -149,7 +149,7 @@ TEST(PictureError, whatNoPathHasMetIsBoundByTheRuleOfThree) {
   EXPECT_EQ(missed(), 0);
   const float grey[] = {.1f, .1f, .1f}, bright[] = {40, 40, 40}, dim[] = {20, 20, 20};
   for (int i = 0; i < 100; i++)
-    ledger.unsampled.send(grey, 150); // .3 of radiance 50 for each of 100 rays in 1000 samples
+    ledger.unsampled.send(grey, 150); // .1 of radiance 150 for each of 100 rays in 1000 samples
   ledger.unsampled.meet(dim, 150);
   EXPECT_NEAR(missed(), 2.996 * .1 * 150 / 1000, 5e-4);
   // One path has hit it: with 95 % confidence at most 4.74 are expected.

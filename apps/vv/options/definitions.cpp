@@ -21,10 +21,6 @@ std::string didYouMean(const std::string& word, const std::vector<std::string>& 
   return near.empty() ? "" : fmt::format("; did you mean {}?", near);
 }
 
-bool holdsValue(const FieldInfo& field) {
-  return field.access == Access::field || field.access == Access::exposedField;
-}
-
 NodeRef findNode(const std::string& text, const std::string& name, const World& world) {
   const auto found = world.scope.names.find(name);
   if (found != world.scope.names.end()) return found->second;

@@ -89,20 +89,6 @@ Json channelNames(uint32_t channels) {
   return names;
 }
 
-std::string_view accessName(xvrml::Access access) {
-  switch (access) {
-  case xvrml::Access::field: return "field";
-  case xvrml::Access::exposedField: return "exposedField";
-  case xvrml::Access::eventIn: return "eventIn";
-  case xvrml::Access::eventOut: return "eventOut";
-  }
-  return "";
-}
-
-bool holdsValue(const xvrml::FieldInfo& field) {
-  return field.access == xvrml::Access::field || field.access == xvrml::Access::exposedField;
-}
-
 Json typeJson(const xvrml::NodeType& type) {
   Json fields = Json::array();
   for (const xvrml::FieldInfo& field : type.fields) {

@@ -234,7 +234,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     const Brightness emission = sphereEmission(scene, id, arena);
     const double outside = emission.luminance; // from inside, BSDF sampling finds it
     firstOf_[id] = uint32_t(shapes_.size());
-    brightest_ = std::max(brightest_, sides.sum);
+    brightest_ = std::max(brightest_, emission.sum);
     bounds.push_back(sphereBounds(r, outside));
     shapes_.push_back(
         {id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});

@@ -18,6 +18,11 @@
 namespace xvrml {
 
 enum class Access : uint8_t { field, exposedField, eventIn, eventOut };
+// Returns the word of ISO/IEC 14772-1 for an access.
+constexpr std::string_view accessName(Access access) {
+  constexpr std::string_view names[] = {"field", "exposedField", "eventIn", "eventOut"};
+  return names[static_cast<size_t>(access)];
+}
 
 // The kind of scene data that a write to a field invalidates (architecture.md section 2).
 enum class Change : uint8_t {
@@ -67,6 +72,10 @@ struct FieldInfo {
   std::string nodeTypes;
   std::string text; // one line of documentation
 };
+// Returns whether nodes store a value of the field: a field or an exposedField, not an event.
+inline bool holdsValue(const FieldInfo& field) {
+  return field.access == Access::field || field.access == Access::exposedField;
+}
 
 // The description of a node type: one row per field, and how to make a node. Immutable; it lives as
 // long as any node of the type.

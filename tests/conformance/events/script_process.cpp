@@ -348,9 +348,8 @@ TEST_F(ScriptProcess, FramesGoOnWhileAScriptLoops) {
       r.browser.tick(r.browser.now() + 1.0 / 60);
       usleep(2000);
     }
-    EXPECT_GE(int(r.take().size()), frames / 2)
-        // The other Script runs in every frame in which nothing else does.
-        << program;
+    // The other Script runs in every frame in which nothing else does.
+    EXPECT_GE(int(r.take().size()), frames / 2) << program;
   }
 }
 

@@ -313,7 +313,7 @@ TEST(TimeSensor, ASetStartTimeOfNowStartsInTheSameCascade) {
                  "5 T.fraction_changed 1", "5 T.isActive FALSE"}));
 }
 
-// The usual sequence: through isActive of the first sensor and its time.
+// Chains sensors through cycleTime: all of them start in the same cascade.
 TEST(TimeSensor, OneEndsAndStartsTheNext) {
   Running r("DEF A TimeSensor { startTime 1 cycleInterval 2 } DEF B TimeSensor { cycleInterval 2 } "
             "DEF C TimeSensor { cycleInterval 2 }"
