@@ -28,8 +28,7 @@ void print(const Options& o) {
   const CostMap costs = o.costs.empty() ? CostMap() : CostMap(o.costs);
   std::printf(
       "%ux%u, %u samples, %s, %g s of one thread a frame; workers of %u threads; master %g Gbit/s, "
-      "links %g Gbit/s, %g ms; "
-      "%s\n",
+      "links %g Gbit/s, %g ms; %s\n",
       o.width, o.height, o.samples,
       o.tile ? ("tiles of " + std::to_string(o.tile) + " pixels").c_str() : "ordinary tiles",
       o.work, o.threads, o.network * 1e-9, o.link * 1e-9, o.latency * 1e3,
@@ -37,9 +36,8 @@ void print(const Options& o) {
               : ("the master's time is measured, " + std::to_string(o.mergers) + " threads merge")
                     .c_str());
   std::printf("| workers | first (ms) | frame (ms) | efficiency | begin | gaps | end | vain | "
-              "jobs/s | mean job (ms) | again | "
-              "in (MB/s) | "
-              "out (MB/s) | master | merging | network | socket | limit |\n|");
+              "jobs/s | mean job (ms) | again | in (MB/s) | out (MB/s) | master | merging | "
+              "network | socket | limit |\n|");
   for (int i = 0; i < 17; i++) std::printf(" ---: |");
   std::printf(" --- |\n");
   for (const uint32_t n : o.workers) {

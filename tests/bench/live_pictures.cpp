@@ -121,8 +121,7 @@ class Looking {
     if (sizes.empty()) return;
     const vv::FrameSize typical = sizes[sizes.size() / 2];
     fmt::print("  moving      {:5.1f} frames/s at {}x{}, {} samples; change to picture {:.0f} ms "
-               "(longest {:.0f}), of these {:.1f} "
-               "ms before light is traced; {} sizes\n",
+               "(longest {:.0f}), of these {:.1f} ms before light is traced; {} sizes\n",
                double(intervals.size()) / sum(intervals), typical.width, typical.height,
                typical.samples, 1000 * sum(latencies) / double(latencies.size()),
                1000 * *std::max_element(latencies.begin(), latencies.end()),

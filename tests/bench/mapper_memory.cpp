@@ -100,9 +100,9 @@ BENCHMARK(Town)
 
 // A tree of 10,082 triangles, and n USEs of it.
 std::string forest(int n) {
-  std::string body = "Viewpoint { position 0 400 4000 orientation 1 0 0 -0.1 }\nDEF Tree Group { "
-                     "children Shape { geometry ElevationGrid { "
-                     "xDimension 72 zDimension 72 height [ ";
+  std::string body =
+      "Viewpoint { position 0 400 4000 orientation 1 0 0 -0.1 }\nDEF Tree Group { children Shape { "
+      "geometry ElevationGrid { xDimension 72 zDimension 72 height [ ";
   for (int i = 0; i < 72 * 72; ++i)
     body += std::to_string(3 + 3 * std::sin(i * 0.37) * std::cos(i % 72 * 0.21)) + " ";
   body += "] } } }\n";

@@ -64,11 +64,10 @@ std::string points(int count) {
 constexpr int pointCount = 10'000, numberCount = 100'000;
 
 void mfVec3f(benchmark::State& state) {
-  Bench(script("field MFVec3f p [" + points(pointCount) + "] eventOut MFVec3f out",
-               "function go(v) { var a = p, o = new MFVec3f(), n = a.length; o.length = n; for "
-               "(var i = 0; i < n; i++) { var q = "
-               "a[i]; "
-               "o[i] = new SFVec3f(q.x, q.y + v, q.z) } out = o }"))
+  Bench(script(
+            "field MFVec3f p [" + points(pointCount) + "] eventOut MFVec3f out",
+            "function go(v) { var a = p, o = new MFVec3f(), n = a.length; o.length = n; for (var i "
+            "= 0; i < n; i++) { var q = a[i]; o[i] = new SFVec3f(q.x, q.y + v, q.z) } out = o }"))
       .run(state, pointCount);
 }
 // The slow way: field and eventOut are looked up for each element.
@@ -86,11 +85,12 @@ void nodePoints(benchmark::State& state) {
       .run(state, pointCount);
 }
 void mfFloat(benchmark::State& state) {
-  Bench(script("eventOut MFFloat out field MFFloat f []",
-               fmt::format("function initialize() {{ f.length = {} }} function go(v) "
-                           "{{ var a = f, n = a.length, s = 0; for (var i = 0; i < n; "
-                           "i++) {{ s += a[i]; a[i] = s }} out = a }}",
-                           numberCount)))
+  Bench(script(
+            "eventOut MFFloat out field MFFloat f []",
+            fmt::format(
+                "function initialize() {{ f.length = {} }} function go(v) {{ var a = f, n = "
+                "a.length, s = 0; for (var i = 0; i < n; i++) {{ s += a[i]; a[i] = s }} out = a }}",
+                numberCount)))
       .run(state, numberCount);
 }
 // A long list arrives and one of its numbers is read.

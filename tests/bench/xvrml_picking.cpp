@@ -71,10 +71,10 @@ void moving(benchmark::State& state) {
 void mesh(benchmark::State& state) {
   std::string heights;
   for (int i = 0; i < 500 * 500; ++i) heights += i % 3 ? "0 " : "1 ";
-  Browser browser(load("Transform { rotation 1 0 0 1.5707963 translation 0 300 0 children Shape { "
-                       "geometry ElevationGrid { xDimension 500 "
-                       "zDimension 500 solid FALSE height [ " +
-                       heights + "] } } }"));
+  Browser browser(
+      load("Transform { rotation 1 0 0 1.5707963 translation 0 300 0 children Shape { geometry "
+           "ElevationGrid { xDimension 500 zDimension 500 solid FALSE height [ " +
+           heights + "] } } }"));
   shoot(browser, state, false);
 }
 

@@ -143,8 +143,7 @@ TEST(VrmlGroups, BillboardsTurnToEveryCamera) {
 
 TEST(VrmlGroups, ViewpointsSeeFromTheirPlace) {
   Scene scene("Transform { translation 50 0 0 rotation 0 1 0 1.5707963 scale 3 3 3 children [ "
-              "Viewpoint { position 0 0 2 "
-              "fieldOfView 0.1 } " +
+              "Viewpoint { position 0 0 2 fieldOfView 0.1 } " +
               square(material("emissiveColor 0.5 0 0 diffuseColor 0 0 0")) + " ] }");
   EXPECT_NEAR(scene.render()[0].r, 0.5, 1e-6);
 }
@@ -253,9 +252,9 @@ TEST(VrmlGroups, InstancesLookLikeCopies) {
 }
 
 TEST(VrmlGroups, SpheresAreTexturedFromTheBackCounterClockwise) {
-  const std::string ball = dark + "Shape { appearance Appearance { texture PixelTexture { image 4 "
-                                  "1 3 0xFF0000 0x00FF00 0x0000FF 0xFFFFFF } } "
-                                  "geometry Sphere { radius 2 } }";
+  const std::string ball =
+      dark + "Shape { appearance Appearance { texture PixelTexture { image 4 1 3 0xFF0000 0x00FF00 "
+             "0x0000FF 0xFFFFFF } } geometry Sphere { radius 2 } }";
   Scene scene(ball);
   const auto at = [&](double x) { return scene.render(Scene::at(x, 0, 10, 1e-5))[0]; };
   const Pixel left = at(-2 * std::sin(0.7853982)), right = at(2 * std::sin(0.7853982));
@@ -266,8 +265,7 @@ TEST(VrmlGroups, SpheresAreTexturedFromTheBackCounterClockwise) {
 TEST(VrmlGroups, TextureTransformMovesThePicture) {
   const auto look = [](const std::string& transform) {
     return ahead(square("Appearance { texture PixelTexture { image 4 1 3 0xFF0000 0x00FF00 "
-                        "0x0000FF 0xFFFFFF } textureTransform "
-                        "TextureTransform { " +
+                        "0x0000FF 0xFFFFFF } textureTransform TextureTransform { " +
                             transform + " } }",
                         "", 1));
   };

@@ -188,8 +188,8 @@ TEST(VrmlLighting, LinesAndPointsShowEmissiveColorAndNoLight) {
   // The camera is close, so a pixel is tiny and the line covers its centre.
   const auto thick = [](const std::string& appearance, const std::string& more) {
     return dark + sun(0) + "Shape { appearance " + appearance +
-           " geometry IndexedLineSet { coord Coordinate { point [ -1 0 0, 1 0 0 ] } coordIndex "
-           "[ 0 1 ] " +
+           " geometry IndexedLineSet { coord Coordinate { point [ -1 0 0, 1 0 0 ] } coordIndex [ 0 "
+           "1 ] " +
            more + " } }";
   };
   SceneOptions options;

@@ -70,13 +70,11 @@ TEST(VrmlPaths, AnAppearanceThatTwoShapesShareGlowsInBoth) {
 }
 
 TEST(VrmlPaths, AFurnaceIsEvenlyBright) { // emission .5, reflectance .5
-  const std::string walls = "Shape { appearance " +
-                            material("diffuseColor .5 .5 .5 emissiveColor .5 .5 .5") +
-                            " geometry IndexedFaceSet { solid FALSE coord Coordinate { point [ -4 "
-                            "-4 4, 4 -4 4, 4 4 4, -4 4 4, -4 -4 "
-                            "-4, 4 -4 -4, 4 4 -4, -4 4 -4 ] } coordIndex [ 0 1 2 3 -1 5 4 7 6 -1 1 "
-                            "5 6 2 -1 4 0 3 7 -1 3 2 6 7 -1 4 "
-                            "5 1 0 -1 ] } }\n";
+  const std::string walls =
+      "Shape { appearance " + material("diffuseColor .5 .5 .5 emissiveColor .5 .5 .5") +
+      " geometry IndexedFaceSet { solid FALSE coord Coordinate { point [ -4 -4 4, 4 -4 4, 4 4 4, "
+      "-4 4 4, -4 -4 -4, 4 -4 -4, 4 4 -4, -4 4 -4 ] } coordIndex [ 0 1 2 3 -1 5 4 7 6 -1 1 5 6 2 "
+      "-1 4 0 3 7 -1 3 2 6 7 -1 4 5 1 0 -1 ] } }\n";
   const std::string ball = "Transform { translation .3 .2 -1 children Shape { appearance " +
                            material("diffuseColor .5 .5 .5 emissiveColor .5 .5 .5") +
                            " geometry Sphere { radius .8 } } }\n";

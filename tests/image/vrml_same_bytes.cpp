@@ -21,33 +21,24 @@ std::string everything() {
       "0.3 0.1 ] groundAngle 1.5 }\n"
       "Fog { visibilityRange 60 color 0.8 0.8 0.9 }\n"
       "PointLight { location 3 5 4 attenuation 0.5 0.1 0 }\nSpotLight { location -4 6 3 direction "
-      "0.5 -1 -0.4 beamWidth 0.2 "
-      "cutOffAngle 0.7 }\n"
+      "0.5 -1 -0.4 beamWidth 0.2 cutOffAngle 0.7 }\n"
       "Shape { appearance Appearance { material Material { specularColor 1 1 1 } texture "
-      "PixelTexture { image 2 2 3 0xFF8040 "
-      "0x20A0F0 "
-      "0x808000 0xC0C0C0 } textureTransform TextureTransform { scale 8 8 } } geometry Box { size "
-      "14 0.2 14 } }\n"
+      "PixelTexture { image 2 2 3 0xFF8040 0x20A0F0 0x808000 0xC0C0C0 } textureTransform "
+      "TextureTransform { scale 8 8 } } geometry Box { size 14 0.2 14 } }\n"
       "DEF Ball Transform { translation 0 1.2 0 children [ DirectionalLight { direction -1 -1 -1 "
-      "intensity 0.4 } Shape { "
-      "appearance "
-      "Appearance { material Material { diffuseColor 0.2 0.8 0.3 transparency 0.4 specularColor 1 "
-      "1 1 shininess 0.8 } } geometry "
-      "Sphere { } } ] }\n"
+      "intensity 0.4 } Shape { appearance Appearance { material Material { diffuseColor 0.2 0.8 "
+      "0.3 transparency 0.4 specularColor 1 1 1 shininess 0.8 } } geometry Sphere { } } ] }\n"
       "Shape { appearance Appearance { material Material { emissiveColor 1 1 0 } } geometry "
-      "IndexedLineSet { coord Coordinate { "
-      "point [ -5 0.2 "
-      "3, 5 4 -2, 0 1 5 ] } coordIndex [ 0 1 2 -1 ] } }\nDEF Cones Group { children [\n";
+      "IndexedLineSet { coord Coordinate { point [ -5 0.2 3, 5 4 -2, 0 1 5 ] } coordIndex [ 0 1 2 "
+      "-1 ] } }\nDEF Cones Group { children [\n";
   for (int i = 0; i < 12; ++i)
     body += "Transform { translation " + std::to_string(i - 6) + " 1 " +
             std::to_string(-(i * i) % 5) +
-            " children Shape { appearance Appearance { material "
-            "Material { diffuseColor 0." +
+            " children Shape { appearance Appearance { material Material { diffuseColor 0." +
             std::to_string(i % 9 + 1) +
             " 0.5 0.7 } } geometry Cone { height 1.5 bottomRadius 0.4 } } }\n";
   return body + "] }\nTransform { translation 0 1 -4 scale 1.5 1.5 1.5 children USE Cones "
-                "}\nTransform { translation 3 0 0 "
-                "children USE Ball }\n";
+                "}\nTransform { translation 3 0 0 children USE Ball }\n";
 }
 
 SceneOptions picture(const std::string& config) {

@@ -102,8 +102,7 @@ TEST_F(MapBudget, LightsThatGoOut) {
 // Each appearance with a material has a shader of its own, and with it the texts of the options.
 TEST_F(MapBudget, OptionsOfShaders) {
   const std::string text = "Shape { appearance ORTAppearance { material Material { } shader DEF S "
-                           "ORTShader { name \"Diffuse\" file "
-                           "\"diffuse\" options \"string note " +
+                           "ORTShader { name \"Diffuse\" file \"diffuse\" options \"string note " +
                            std::string(100'000, 'x') + "\" } } geometry Box { } }\n" +
                            repeat("Shape { appearance ORTAppearance { material Material { } shader "
                                   "USE S } geometry Box { } }\n",
@@ -238,8 +237,7 @@ TEST_F(MapBudget, WhatIsTooFarIsTold) {
   EXPECT_EQ(world_->diagnostics.warnings(), 1u);
   // Through an instance: neither of the two matrices alone is beyond.
   draw("Transform { scale 1e30 1e30 1e30 children ORTInstance { children Transform { scale 1e30 "
-       "1e30 1e30 children "
-       "Shape { geometry " +
+       "1e30 1e30 children Shape { geometry " +
        grid(3) + " } } } }");
   EXPECT_GE(count(messages(*world_), "larger than 1e38"), 1u) << messages(*world_);
   // Far, but within.

@@ -33,8 +33,7 @@ class MapShaders : public MapRunning {
   static std::string square(const std::string& appearance) {
     return "Shape { appearance " + appearance +
            " geometry IndexedFaceSet { coord Coordinate { point [ -9 -9 0, 9 -9 0, 9 9 0, -9 9 0 ] "
-           "} coordIndex [ 0 1 2 3 -1 ] } "
-           "}\n";
+           "} coordIndex [ 0 1 2 3 -1 ] } }\n";
   }
 };
 
@@ -61,8 +60,7 @@ TEST_F(MapShaders, AMaterialGoesToAShaderThatKnowsIt) {
                      "name \"VRML97\" } }"));
   EXPECT_FLOAT_EQ(seen()[1], 1);
   load(dark + square("ORTAppearance { material Material { emissiveColor 0 1 0 } shader ORTShader { "
-                     "name \"VRML97\" options "
-                     "\"color emissiveColor 0 0 2.5\" } }"));
+                     "name \"VRML97\" options \"color emissiveColor 0 0 2.5\" } }"));
   EXPECT_FLOAT_EQ(seen()[1], 0) << "options have the last word";
   EXPECT_FLOAT_EQ(seen()[2], 2.5f) << "and are not limited to 1";
   silent();
@@ -71,8 +69,7 @@ TEST_F(MapShaders, AMaterialGoesToAShaderThatKnowsIt) {
 TEST_F(MapShaders, DiffuseColorIsWhatAShaderCallsColor) {
   load(dark + std::string("DirectionalLight { }") +
        square("ORTAppearance { material DEF M Material { diffuseColor 0 1 0 } shader DEF S "
-              "ORTShader { name \"Plastic\" file "
-              "\"plastic\" options \"1f index 1\" } }"));
+              "ORTShader { name \"Plastic\" file \"plastic\" options \"1f index 1\" } }"));
   EXPECT_FLOAT_EQ(seen()[0], 0);
   EXPECT_FLOAT_EQ(seen()[1], 1);
   send("M", "set_diffuseColor", Color{1, 0, 0});
@@ -87,9 +84,7 @@ TEST_F(MapShaders, DiffuseColorIsWhatAShaderCallsColor) {
 TEST_F(MapShaders, LightsByShader) {
   load(dark + square("Appearance { material Material { diffuseColor 1 1 1 } }") +
        "Transform { translation 0 0 4 children DEF L ORTLight { shader DEF S ORTShader { name "
-       "\"VRML97PointLight\" options "
-       "\"color "
-       "color 0 2 0\" } } }");
+       "\"VRML97PointLight\" options \"color color 0 2 0\" } } }");
   EXPECT_FLOAT_EQ(seen()[1], 2);
   send("S", "set_options", MFString{"color color 0 3 0"});
   EXPECT_FLOAT_EQ(seen()[1], 3);
@@ -109,9 +104,9 @@ TEST_F(MapShaders, ALightOfAnotherKindIsAnError) {
 }
 
 TEST_F(MapShaders, BackgroundsByShader) {
-  load(dark + std::string("DEF B ORTBackground { shader DEF S ORTShader { name "
-                          "\"VRML97Environment\" options \"floats skyColor .5 "
-                          "0 4\" } }\nDEF O Background { skyColor 0 1 0 }"));
+  load(dark +
+       std::string("DEF B ORTBackground { shader DEF S ORTShader { name \"VRML97Environment\" "
+                   "options \"floats skyColor .5 0 4\" } }\nDEF O Background { skyColor 0 1 0 }"));
   EXPECT_FLOAT_EQ(seen()[2], 4);
   send("S", "set_options", MFString{"floats skyColor 0 0 7"});
   EXPECT_FLOAT_EQ(seen()[2], 7);
@@ -130,8 +125,7 @@ TEST_F(MapShaders, ViewpointsByShader) {
   const std::string sky = "Background { skyColor [ 0 0 1, 1 0 0 ] skyAngle 3.1 }\n";
   load(dark + sky +
        "DEF V ORTViewpoint { position 0 0 3 orientation 1 0 0 1.5707963 description \"up\" shader "
-       "DEF S ORTShader { name "
-       "\"OrthographicCamera\" } }");
+       "DEF S ORTShader { name \"OrthographicCamera\" } }");
   EXPECT_EQ(mapper_->viewpoints().size(), 1u);
   EXPECT_EQ(mapper_->viewpoints()[0].description, "up");
   EXPECT_GT(seen()[2], 0.99f) << "along +y";

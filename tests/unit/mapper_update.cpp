@@ -170,8 +170,7 @@ TEST_F(MapUpdate, AMaterialThatComesAndGoes) {
 TEST_F(MapUpdate, OptionsOfAShaderAreParametersAlone) {
   load(rest() +
        "Shape { appearance ORTAppearance { material DEF O Material { } shader DEF S ORTShader { "
-       "file \"plastic\" options [ "
-       "\"1f index 1.5\" \"1f roughness .1\" ] } } geometry " +
+       "file \"plastic\" options [ \"1f index 1.5\" \"1f roughness .1\" ] } } geometry " +
        grid(20) + " }\n");
   send("S", "set_options", MFString{"1f index 1.6", "1f roughness .2"});
   const Cost first = cost();
@@ -234,9 +233,9 @@ TEST_F(MapUpdate, AShapeThatGetsAnotherAppearance) {
 }
 
 TEST_F(MapUpdate, LinesAreRewrittenWhenTheirColourChanges) {
-  load(rest() + "Shape { appearance Appearance { material DEF L Material { emissiveColor 1 0 0 } } "
-                "geometry IndexedLineSet { coord "
-                "Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }\n");
+  load(rest() +
+       "Shape { appearance Appearance { material DEF L Material { emissiveColor 1 0 0 } } geometry "
+       "IndexedLineSet { coord Coordinate { point [ 0 0 0, 1 1 1 ] } coordIndex [ 0 1 ] } }\n");
   EXPECT_EQ(twice("L", "set_emissiveColor", Color{0, 1, 0}, Color{0, 0, 1}).defined, 1u)
       << "their own object";
   send("L", "set_diffuseColor", Color{0, 1, 0});
@@ -245,9 +244,8 @@ TEST_F(MapUpdate, LinesAreRewrittenWhenTheirColourChanges) {
 
 TEST_F(MapUpdate, ASwitchRegroupsItselfAlone) {
   load(rest() + "DEF S Switch { whichChoice 0 choice [ Shape { geometry Box { } } Group { children "
-                "[ Shape { geometry Box { } } "
-                "PointLight { } ] } ] }\nDEF I Script { eventOut SFInt32 value }\nROUTE I.value TO "
-                "S.whichChoice\n");
+                "[ Shape { geometry Box { } } PointLight { } ] } ] }\nDEF I Script { eventOut "
+                "SFInt32 value }\nROUTE I.value TO S.whichChoice\n");
   const uint64_t with = frame().triangles;
   send("S", "set_whichChoice", 1);
   EXPECT_EQ(cost(), (Cost{.defined = 1, .regroupings = 1, .lights = 3}))
@@ -377,11 +375,10 @@ TEST_F(MapUpdate, WhatIsInNoPictureCostsNothing) {
 
 TEST_F(MapUpdate, PrototypesPassChangesOn) {
   load(rest() + "PROTO P [ exposedField SFVec3f at 0 0 0 exposedField SFColor c 1 0 0 exposedField "
-                "MFVec3f points [ 0 0 0, 1 0 0, 1 1 0 ] "
-                "] {\nTransform { translation IS at children Shape { appearance Appearance { "
-                "material Material { diffuseColor IS c } } "
-                "geometry IndexedFaceSet { coord Coordinate { point IS points } coordIndex [ 0 1 2 "
-                "] } } } }\nDEF X P { }\nDEF Y P { }\n");
+                "MFVec3f points [ 0 0 0, 1 0 0, 1 1 0 ] ] {\nTransform { translation IS at "
+                "children Shape { appearance Appearance { material Material { diffuseColor IS c } "
+                "} geometry IndexedFaceSet { coord Coordinate { point IS points } coordIndex [ 0 1 "
+                "2 ] } } } }\nDEF X P { }\nDEF Y P { }\n");
   EXPECT_EQ(twice("X", "set_at", Vec3f{1, 0, 0}, Vec3f{2, 0, 0}), (Cost{.moved = 1}));
   send("X", "set_c", Color{0, 1, 0});
   EXPECT_EQ(cost().defined, 0u);

@@ -162,8 +162,7 @@ TEST_F(MapWorld, NamesComeFromTheNearestGroup) {
 
 TEST_F(MapWorld, StaticGeometryIsOneObject) {
   const MapStats s = map(repeat("Transform { translation 1 0 0 children Shape { appearance "
-                                "Appearance { material Material { } } "
-                                "geometry Box { } } }\n",
+                                "Appearance { material Material { } } geometry Box { } } }\n",
                                 50));
   EXPECT_EQ(s.shapes, 50u);
   EXPECT_EQ(s.triangles, 600u);
@@ -287,9 +286,9 @@ TEST_F(MapWorld, LevelsAreMeasuredInTheirOwnSystem) {
 }
 
 TEST_F(MapWorld, LightsOfLevelsThatAreNotDrawnAreOff) {
-  OpenRTMapper& mapper = load("NavigationInfo { headlight FALSE } LOD { range 5 level [ Group { "
-                              "children [ PointLight { } ] } "
-                              "Group { children [ Shape { geometry Box { } } ] } ] }");
+  OpenRTMapper& mapper =
+      load("NavigationInfo { headlight FALSE } LOD { range 5 level [ Group { children [ PointLight "
+           "{ } ] } Group { children [ Shape { geometry Box { } } ] } ] }");
   CameraSettings camera = mapper.viewpointCamera(0);
   mapper.map(camera);
   EXPECT_EQ(engine().lights, 0u);
@@ -331,8 +330,8 @@ TEST_F(MapWorld, HeadlightByOption) {
 
 TEST_F(MapWorld, AMissingTextureIsSaidOnceWithItsPlace) {
   map("Shape { appearance DEF A Appearance { material Material { } texture ImageTexture { url [ "
-      "\"no.png\", \"nor.jpg\" ] } } "
-      "geometry Box { } }\nShape { appearance USE A geometry Sphere { } }");
+      "\"no.png\", \"nor.jpg\" ] } } geometry Box { } }\nShape { appearance USE A geometry Sphere "
+      "{ } }");
   ASSERT_EQ(world_->diagnostics.warnings(), 1u);
   EXPECT_EQ(world_->diagnostics.list()[0].line, 2u);
   EXPECT_NE(world_->diagnostics.list()[0].message.find("no.png"), std::string::npos);
@@ -348,9 +347,7 @@ TEST_F(MapWorld, ABadShaderIsAnErrorWithItsPlace) {
 
 TEST_F(MapWorld, ShaderOptionsAreParametersOfTheClass) {
   map("Shape { appearance ORTAppearance { shader ORTShader { name \"VRML97\" options [ \"color "
-      "diffuseColor 1 0 0\", \"1i lit "
-      "1\", "
-      "\"1f nonsense 1\" ] } } geometry Box { } }");
+      "diffuseColor 1 0 0\", \"1i lit 1\", \"1f nonsense 1\" ] } } geometry Box { } }");
   ASSERT_EQ(world_->diagnostics.errors(), 1u);
   EXPECT_NE(world_->diagnostics.list()[0].message.find("nonsense"), std::string::npos);
 }
@@ -361,9 +358,8 @@ TEST_F(MapWorld, HostileNumbersDoNotHarm) {
       "Transform { scale 1e30 1e30 1e30 children [ DirectionalLight { } Shape { geometry Sphere { "
       "radius 1e30 } } ] }\n"
       "Transform { scale 0 0 0 children [ Viewpoint { } Fog { visibilityRange 10 } Billboard { "
-      "children Shape { geometry Box { } "
-      "} } "
-      "LOD { range 3 level [ Shape { geometry Box { } } ] } PointLight { } ] }\n"
+      "children Shape { geometry Box { } } } LOD { range 3 level [ Shape { geometry Box { } } ] } "
+      "PointLight { } ] }\n"
       "PointLight { attenuation 0 0 0 radius 0 } SpotLight { direction 0 0 0 beamWidth 3 "
       "cutOffAngle 0 }");
   engine();

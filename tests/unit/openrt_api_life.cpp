@@ -18,9 +18,9 @@ TEST(ApiConfig, ReadsPairsAndQuotes) {
   EXPECT_EQ(config.shaderPath, "/a:/b");
   EXPECT_EQ(parseConfig("record=out.ortr backend=local").record, "out.ortr");
   EXPECT_EQ(parseConfig("").backend, BackendKind::Local);
-  const ContextConfig cluster = parseConfig(
-      "workers=a:7447,[::1]:9,@hosts.txt backend=cluster listen=127.0.0.1:0 key=k allow=l "
-      "local=0 split=samples require=2 tolerant=1 record=out.ortr");
+  const ContextConfig cluster =
+      parseConfig("workers=a:7447,[::1]:9,@hosts.txt backend=cluster listen=127.0.0.1:0 key=k "
+                  "allow=l local=0 split=samples require=2 tolerant=1 record=out.ortr");
   EXPECT_EQ(cluster.backend, BackendKind::Cluster);
   EXPECT_EQ(cluster.cluster.workers, (std::vector<std::string>{"a:7447", "[::1]:9", "@hosts.txt"}));
   EXPECT_TRUE(cluster.cluster.keyFile == "k" && cluster.cluster.allowFile == "l" &&

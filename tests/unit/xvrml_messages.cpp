@@ -29,8 +29,7 @@ TEST(Messages, AnglesMayBeRounded) {
         Messages{})
         << angle;
   EXPECT_EQ(messagesOf("Background { groundAngle [ 0.1 1.5708 ] groundColor [ 0 0 0 0 0 0 0 0 0 ] "
-                       "skyAngle 3.1416 "
-                       "skyColor [ 0 0 0 0 0 0 ] }"),
+                       "skyAngle 3.1416 skyColor [ 0 0 0 0 0 0 ] }"),
             Messages{});
   EXPECT_EQ(messagesOf("CylinderSensor { diskAngle 1.5708 maxAngle 6.28319 minAngle -6.2832 }"),
             Messages{});
@@ -45,8 +44,7 @@ TEST(Messages, AnglesMayBeRounded) {
 TEST(Messages, RangesNameTheValueAndWhatBecomesOfIt) {
   EXPECT_EQ(messagesOf("SpotLight { cutOffAngle 1.9 }"),
             Messages{"test.wrl:2:13: warning: SpotLight.cutOffAngle: 1.9 is outside of its range "
-                     "(0,pi/2] and becomes "
-                     "1.5707964"});
+                     "(0,pi/2] and becomes 1.5707964"});
   EXPECT_EQ(messagesOf("PointLight { intensity 3 }"),
             Messages{"test.wrl:2:14: warning: PointLight.intensity: 3 is outside of its range "
                      "[0,1] and becomes 1"});
@@ -54,8 +52,7 @@ TEST(Messages, RangesNameTheValueAndWhatBecomesOfIt) {
   const Messages colors = messagesOf("Background { skyColor [ 1 1 1, 2 0 0, 0 3 0 ] }");
   ASSERT_EQ(colors.size(), 1u);
   EXPECT_EQ(colors[0], "test.wrl:2:14: warning: Background.skyColor[1]: 2 0 0 is outside of its "
-                       "range [0,1] and becomes 1 0 0, "
-                       "as do 1 further elements");
+                       "range [0,1] and becomes 1 0 0, as do 1 further elements");
 }
 
 TEST(Messages, StatementsOfX3dAreNamed) {
@@ -78,10 +75,10 @@ TEST(Messages, StatementsOfX3dAreNamed) {
 }
 
 TEST(Messages, MissingMediaSayWhy) {
-  Browser browser(loadWorldFromMemory(
-      "#VRML V2.0 utf8\nSound { source AudioClip { url \"no.wav\" } }\nShape { appearance "
-      "Appearance { texture MovieTexture { url \"no.mpg\" } } }",
-      "test.wrl"));
+  Browser browser(
+      loadWorldFromMemory("#VRML V2.0 utf8\nSound { source AudioClip { url \"no.wav\" } }\nShape { "
+                          "appearance Appearance { texture MovieTexture { url \"no.mpg\" } } }",
+                          "test.wrl"));
   browser.tick(0);
   ASSERT_EQ(browser.world().diagnostics.list().size(), 2u);
   for (const Diagnostic& d : browser.world().diagnostics.list())

@@ -150,11 +150,9 @@ TEST(ParserProto, ExternprotoThatIsNotThere) {
 
 TEST(ParserProto, UrlsOfInstancesAreOfTheirOwnFile) {
   const Folder folder;
-  folder.write(
-      "lib/p.wrl",
-      header +
-          "PROTO P [ exposedField MFString url \"own.png\" ] { Shape { appearance Appearance { "
-          "texture ImageTexture { url IS url } } } }\n");
+  folder.write("lib/p.wrl",
+               header + "PROTO P [ exposedField MFString url \"own.png\" ] { Shape { appearance "
+                        "Appearance { texture ImageTexture { url IS url } } } }\n");
   const auto path =
       folder.write("worlds/w.wrl", header + "EXTERNPROTO P [ exposedField MFString url ] "
                                             "\"../lib/p.wrl\"\nP { url \"mine.png\" } P { }\n");
@@ -175,10 +173,11 @@ TEST(ParserInline, ContentIsSharedUnlessItChanges) {
   const Folder folder;
   folder.write("still.wrl", header + "Shape { }\n");
   folder.write("moving.wrl", header + "DEF T Transform { } ROUTE T.translation TO T.scale\n");
-  const auto path =
-      folder.write("w.wrl", header + "Inline { url \"still.wrl\" } Inline { url \"still.wrl\" } "
-                                     "Inline { url \"moving.wrl\" } Inline { url \"moving.wrl\" } "
-                                     "Inline { } Inline { url \"none.wrl\" }\n");
+  const auto path = folder.write(
+      "w.wrl",
+      header +
+          "Inline { url \"still.wrl\" } Inline { url \"still.wrl\" } Inline { url \"moving.wrl\" } "
+          "Inline { url \"moving.wrl\" } Inline { } Inline { url \"none.wrl\" }\n");
   const auto world = loadWorld(path);
   const auto content = [&](size_t i) { return inlineScope(*world->scope.roots.at(i)); };
   ASSERT_NE(content(0), nullptr);

@@ -64,9 +64,9 @@ TEST(ParserRecovery, ATextThatEndsEarlyKeepsWhatWasRead) {
 }
 
 TEST(ParserRecovery, NamesThatWentWithANodeAreNotErrorsAgain) {
-  const auto world = parse("Torus { a DEF A Group { } } Group { children USE A } DEF B Transform { "
-                           "scale x children DEF C Group { } } USE B USE C "
-                           "ROUTE B.translation TO C.translation");
+  const auto world =
+      parse("Torus { a DEF A Group { } } Group { children USE A } DEF B Transform { scale x "
+            "children DEF C Group { } } USE B USE C ROUTE B.translation TO C.translation");
   EXPECT_EQ(world->diagnostics.errors(), 2u) << messages(*world); // the errors concern Torus and x
   EXPECT_GE(world->diagnostics.warnings(), 3u);
   EXPECT_TRUE(world->scope.names.empty());
@@ -88,9 +88,9 @@ TEST(ParserRecovery, ABadNodeInAPrototypeBody) {
 }
 
 TEST(ParserRecovery, WhatNamesMayBeIsGenerous) {
-  const auto world = parse("DEF 1stRoom Group { } DEF it's Group { } DEF a.b Transform { } Group { "
-                           "children [ USE 1stRoom USE it's ] } "
-                           "ROUTE a.b.translation TO a.b.scale");
+  const auto world =
+      parse("DEF 1stRoom Group { } DEF it's Group { } DEF a.b Transform { } Group { children [ USE "
+            "1stRoom USE it's ] } ROUTE a.b.translation TO a.b.scale");
   EXPECT_EQ(world->diagnostics.errors(), 0u) << messages(*world);
   EXPECT_GE(world->diagnostics.warnings(), 3u);
   EXPECT_EQ(world->scope.routes.size(), 1u);
@@ -99,10 +99,9 @@ TEST(ParserRecovery, WhatNamesMayBeIsGenerous) {
 }
 
 TEST(ParserRecovery, OutOfRangeValuesAreBroughtBack) {
-  const auto world = parse("Shape { appearance Appearance { material Material { diffuseColor 2 -1 "
-                           "0.5 transparency 3 } } "
-                           "geometry Sphere { radius -1 } } "
-                           "Viewpoint { fieldOfView 7 } Transform { scale -1 1 1 }");
+  const auto world = parse(
+      "Shape { appearance Appearance { material Material { diffuseColor 2 -1 0.5 transparency 3 } "
+      "} geometry Sphere { radius -1 } } Viewpoint { fieldOfView 7 } Transform { scale -1 1 1 }");
   EXPECT_EQ(world->diagnostics.errors(), 0u);
   EXPECT_GE(world->diagnostics.warnings(), 4u) << messages(*world);
   const auto* shape = nodeCast<nodes::Shape>(world->scope.roots.at(0));

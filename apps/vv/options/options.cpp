@@ -3,6 +3,8 @@
 #include "options.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -25,20 +27,6 @@ constexpr JobInfo jobs[] = {
     {Job::listViewpoints, "--list-viewpoints", true, true},
     {Job::info, "--info", true, true},
 };
-
-// Returns the options of the jobs that print facts: "--info, --explain, ... and --list-engines".
-std::string inspections(const char* last) {
-  static constexpr Job order[] = {Job::info,           Job::explain,     Job::listNodes,
-                                  Job::listViewpoints, Job::listShaders, Job::listEngines};
-  std::string text;
-  for (const Job job : order) {
-    const auto row = std::find_if(std::begin(jobs), std::end(jobs),
-                                  [job](const JobInfo& info) { return info.job == job; });
-    if (!text.empty()) text += job == order[std::size(order) - 1] ? last : ", ";
-    text += row->option;
-  }
-  return text;
-}
 
 std::string longName(const OptionInfo& option) {
   std::string_view names = option.names;
@@ -75,99 +63,135 @@ std::string missingValue(std::string_view last) {
   return fmt::format("{}: a value was expected", last);
 }
 
-// Checks the options for sequences of pictures.
-void checkSequence(const Options& options) {
-  if (options.frames && options.time)
-    throw UsageError("only one of --time and --frames can be used");
-  if (options.frames && options.turntable)
-    throw UsageError("only one of --frames and --turntable can be used");
-  if (options.isSequence() && !options.makesPictures() && !options.check)
-    throw UsageError("--frames and --turntable go with -o (or, to try a world out, with --check)");
-  for (const Output& output : options.outputs) {
-    if (options.isSequence() && output.path == "-")
-      throw UsageError("a sequence needs file names, not standard output");
-    if (!options.isSequence() && output.film != picture::FilmKind::none)
-      throw UsageError(output.path + ": a film needs --frames or --turntable");
-  }
-  if (options.watch && !options.makesPictures() && !options.opensWindow())
-    throw UsageError("--watch goes with -o, or with the window");
-  if (options.watch && options.input == "-")
-    throw UsageError("--watch needs a file, not standard input");
+using picture::Background;
+
+bool writesToStandardOutput(const Options& o) {
+  return std::any_of(o.outputs.begin(), o.outputs.end(),
+                     [](const Output& output) { return output.path == "-"; });
 }
+
+// Counts the inspections that are asked for.
+int inspectionsOf(const Options& o) {
+  return int(std::count_if(std::begin(jobs), std::end(jobs),
+                           [&](const JobInfo& info) { return info.inspects && o.has(info.job); }));
+}
+
+// Counts what goes to standard output.
+int printed(const Options& o) {
+  const auto pictures = std::count_if(o.outputs.begin(), o.outputs.end(),
+                                      [](const Output& output) { return output.path == "-"; });
+  return int(pictures) + (o.stats == "-") + (o.write == "-") + (inspectionsOf(o) > 0);
+}
+
+bool showsOnePicture(const Options& o) { return !o.allViewpoints() && !o.isSequence(); }
+
+// A combination of options that cannot be used, and the message for it.
+struct Rule {
+  bool (*broken)(const Options& options);
+  const char* message;
+};
+
+// The first broken rule is reported.
+constexpr Rule rules[] = {
+    {[](const Options& o) { return !o.viewpoint.empty() && (o.view.lookAt || o.view.fit); },
+     "--viewpoint: not with --camera or --fit, which look from elsewhere"},
+    {[](const Options& o) {
+       return !o.render.environment.empty() && o.render.background.kind != Background::Kind::world;
+     },
+     "only one of --environment, which shows all around, and --background can be used"},
+    {[](const Options& o) { return o.quiet && o.verbose; },
+     "only one of --quiet and --verbose can be used"},
+    {[](const Options& o) { return printed(o) > 1; }, "only one thing can go to standard output"},
+    {[](const Options& o) { return o.json && inspectionsOf(o) == 0; },
+     "--json goes with --info, --explain, --list-nodes, --list-viewpoints, --list-shaders or "
+     "--list-engines"},
+    {[](const Options& o) { return inspectionsOf(o) > 1; },
+     "only one of --info, --explain, --list-nodes, --list-viewpoints, --list-shaders and "
+     "--list-engines can be used"},
+    // sequences of pictures
+    {[](const Options& o) { return o.frames && o.time; },
+     "only one of --time and --frames can be used"},
+    {[](const Options& o) { return o.frames && o.turntable; },
+     "only one of --frames and --turntable can be used"},
+    {[](const Options& o) { return o.isSequence() && !o.makesPictures() && !o.check; },
+     "--frames and --turntable go with -o (or, to try a world out, with --check)"},
+    {[](const Options& o) { return o.isSequence() && writesToStandardOutput(o); },
+     "a sequence needs file names, not standard output"},
+    {[](const Options& o) { return o.watch && !o.makesPictures() && !o.opensWindow(); },
+     "--watch goes with -o, or with the window"},
+    {[](const Options& o) { return o.watch && o.input == "-"; },
+     "--watch needs a file, not standard input"},
+    // files beside the picture
+    {[](const Options& o) { return !o.stats.empty() && !o.makesPictures(); },
+     "--stats goes with -o"},
+    {[](const Options& o) { return !o.render.record.empty() && !o.makesPictures(); },
+     "--record goes with -o"},
+    {[](const Options& o) { return !o.render.record.empty() && !showsOnePicture(o); },
+     "--record keeps one picture's scene: not with --viewpoint all, --frames or --turntable"},
+    {[](const Options& o) { return o.audit && o.isSequence(); },
+     "--audit is for one picture: not with --frames or --turntable"},
+    {[](const Options& o) { return (o.audit || !o.compare.empty()) && printed(o) > 0; },
+     "--audit and --compare write to standard output: nothing else can go there"},
+    {[](const Options& o) { return o.audit && o.render.timeLimit > 0; },
+     "--audit: not with --time-limit, which makes no picture twice"},
+    // the cluster
+    {[](const Options& o) { return !o.cluster.allow.empty() && o.cluster.key.empty(); },
+     "--allow-keys goes with --key"},
+    {[](const Options& o) { return o.cluster.used() && !o.makesPictures() && !o.opensWindow(); },
+     "--workers and --listen-workers go with -o, or with the window"},
+    {[](const Options& o) { return o.check && o.makesPictures(); },
+     "--check makes no picture: not with -o"},
+    {[](const Options& o) {
+       return o.makesPictures() && o.allViewpoints() && writesToStandardOutput(o);
+     },
+     "--viewpoint all needs file names, not standard output"},
+    // the window
+    {[](const Options& o) { return o.opensWindow() && o.allViewpoints(); },
+     "--viewpoint all goes with -o"},
+    {[](const Options& o) {
+       return !o.recordInput.empty() && (!o.opensWindow() || !o.inputScript.empty());
+     },
+     "--record-input goes with the window, and not with --input"},
+    {[](const Options& o) {
+       return !o.inputScript.empty() && !o.makesPictures() && !o.opensWindow();
+     },
+     "--input goes with -o, or with the window"},
+    {[](const Options& o) { return !o.inputScript.empty() && o.opensWindow() && o.time; },
+     "only one of --input and --time can be used in the window"},
+    {[](const Options& o) {
+       return !o.inputScript.empty() && (o.audit || o.turntable || o.allViewpoints());
+     },
+     "--input: not with --audit, --turntable or --viewpoint all"},
+    {[](const Options& o) {
+       const JobInfo* job = o.job();
+       return o.input.empty() && !o.opensWindow() && (!job || job->needsWorld);
+     },
+     "a world (a .wrl file, or - for standard input) was expected; vv --help tells more"},
+};
 
 // Rejects worker options in a command line that names no workers.
 void checkCluster(const Options& options) {
   const picture::ClusterSettings& c = options.cluster;
-  const auto alone = [&](bool given, const char* name) {
-    if (given && !c.used())
+  const std::pair<bool, const char*> given[] = {{!c.key.empty(), "--key"},
+                                                {!c.allow.empty(), "--allow-keys"},
+                                                {c.localThreads >= 0, "--local-threads"},
+                                                {!c.split.empty(), "--split"},
+                                                {c.require > 0, "--require-workers"},
+                                                {c.tolerant, "--tolerant"}};
+  for (const auto& [isGiven, name] : given)
+    if (isGiven && !c.used())
       throw UsageError(fmt::format("{} goes with --workers or --listen-workers", name));
-  };
-  alone(!c.key.empty(), "--key");
-  alone(!c.allow.empty(), "--allow-keys");
-  alone(c.localThreads >= 0, "--local-threads");
-  alone(!c.split.empty(), "--split");
-  alone(c.require > 0, "--require-workers");
-  alone(c.tolerant, "--tolerant");
-  if (!c.allow.empty() && c.key.empty()) throw UsageError("--allow-keys goes with --key");
-  if (c.used() && !options.makesPictures() && !options.opensWindow())
-    throw UsageError("--workers and --listen-workers go with -o, or with the window");
 }
 
 // Checks combinations of options.
-void checkTogether(Options& options) {
-  if (!options.viewpoint.empty() && (options.view.lookAt || options.view.fit))
-    throw UsageError("--viewpoint: not with --camera or --fit, which look from elsewhere");
-  if (!options.render.environment.empty() &&
-      options.render.background.kind != picture::Background::Kind::world)
-    throw UsageError(
-        "only one of --environment, which shows all around, and --background can be used");
-  if (options.quiet && options.verbose)
-    throw UsageError("only one of --quiet and --verbose can be used");
-  int toStandardOutput = (options.stats == "-") + (options.write == "-");
-  for (const Output& output : options.outputs) toStandardOutput += output.path == "-";
-  const auto printed = std::count_if(std::begin(jobs), std::end(jobs), [&](const JobInfo& info) {
-    return info.inspects && options.has(info.job);
-  });
-  toStandardOutput += printed > 0;
-  if (toStandardOutput > 1) throw UsageError("only one thing can go to standard output");
-  if (options.json && printed == 0) throw UsageError("--json goes with " + inspections(" or "));
-  if (printed > 1) throw UsageError("only one of " + inspections(" and ") + " can be used");
-  checkSequence(options);
-  if (options.stats.size() && !options.makesPictures()) throw UsageError("--stats goes with -o");
-  if (options.render.record.size() && !options.makesPictures())
-    throw UsageError("--record goes with -o");
-  if (options.render.record.size() && (options.allViewpoints() || options.isSequence()))
-    throw UsageError(
-        "--record keeps one picture's scene: not with --viewpoint all, --frames or --turntable");
-  if (options.audit && options.isSequence())
-    throw UsageError("--audit is for one picture: not with --frames or --turntable");
-  if ((options.audit || options.compare.size()) && toStandardOutput)
-    throw UsageError("--audit and --compare write to standard output: nothing else can go there");
-  if (options.audit && options.render.timeLimit > 0)
-    throw UsageError("--audit: not with --time-limit, which makes no picture twice");
-  checkCluster(options);
-  if (options.check && options.makesPictures())
-    throw UsageError("--check makes no picture: not with -o");
-  if (options.makesPictures() && options.allViewpoints())
+void checkTogether(const Options& options) {
+  if (!options.isSequence())
     for (const Output& output : options.outputs)
-      if (output.path == "-")
-        throw UsageError("--viewpoint all needs file names, not standard output");
-  if (options.opensWindow() && options.allViewpoints())
-    throw UsageError("--viewpoint all goes with -o");
-  if (!options.recordInput.empty() && (!options.opensWindow() || !options.inputScript.empty()))
-    throw UsageError("--record-input goes with the window, and not with --input");
-  if (!options.inputScript.empty() && !options.makesPictures() && !options.opensWindow())
-    throw UsageError("--input goes with -o, or with the window");
-  if (!options.inputScript.empty() && options.opensWindow() && options.time)
-    throw UsageError("only one of --input and --time can be used in the window");
-  if (!options.inputScript.empty() &&
-      (options.audit || options.turntable || options.allViewpoints()))
-    throw UsageError("--input: not with --audit, --turntable or --viewpoint all");
-  const JobInfo* job = options.job();
-  const bool needsWorld = !options.opensWindow() && (!job || job->needsWorld);
-  if (needsWorld && options.input.empty())
-    throw UsageError(
-        "a world (a .wrl file, or - for standard input) was expected; vv --help tells more");
+      if (output.film != picture::FilmKind::none)
+        throw UsageError(output.path + ": a film needs --frames or --turntable");
+  checkCluster(options);
+  for (const Rule& rule : rules)
+    if (rule.broken(options)) throw UsageError(rule.message);
 }
 
 } // namespace

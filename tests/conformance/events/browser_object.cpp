@@ -26,8 +26,8 @@ TEST_P(BrowserObject, TakesADescription) {
 
 TEST_P(BrowserObject, MakesNodesOfAString) {
   Scripted r("DEF G Group {} DEF S Script { eventIn SFBool in eventOut MFNode out url \"test:in: "
-             "create out DEF A Transform {} DEF B "
-             "Transform {} ROUTE A.translation TO B.translation\" } ROUTE S.out TO G.children");
+             "create out DEF A Transform {} DEF B Transform {} ROUTE A.translation TO "
+             "B.translation\" } ROUTE S.out TO G.children");
   r.set("S", "in", true);
   EXPECT_EQ(r.get("G", "children"), "[A, B]");
   EXPECT_EQ(r.browser.node("A"), NodeRef()); // the string has a name space of its own
@@ -39,9 +39,9 @@ TEST_P(BrowserObject, MakesNodesOfAString) {
 TEST_P(BrowserObject, PrototypesAndBehaviourOfAStringAreAlive) {
   Running r("DEF G Group {}");
   const MFNode nodes = r.browser.createVrmlFromString(
-      "PROTO P [ exposedField SFVec3f at 0 0 0 eventOut SFTime beat ] { Transform { translation "
-      "IS at } DEF C TimeSensor { loop TRUE "
-      "time IS beat } } DEF I P { at 5 0 0 } DEF T Transform {} ROUTE I.at TO T.translation");
+      "PROTO P [ exposedField SFVec3f at 0 0 0 eventOut SFTime beat ] { Transform { translation IS "
+      "at } DEF C TimeSensor { loop TRUE time IS beat } } DEF I P { at 5 0 0 } DEF T Transform {} "
+      "ROUTE I.at TO T.translation");
   ASSERT_EQ(nodes.size(), 2u);
   EXPECT_EQ(textOf(renderedNode(nodes[0].get())
                        ->get(*renderedNode(nodes[0].get())->type().find("translation"))),
@@ -69,11 +69,10 @@ TEST_P(BrowserObject, AStringThatIsWrongIsToldWithItsPlace) {
 
 TEST_P(BrowserObject, NodesOfAStringGoWhenNobodyHoldsThem) {
   Scripted r("DEF G Group {}");
-  const std::string text = "PROTO P [ eventOut SFTime beat ] { TimeSensor { loop TRUE time IS beat "
-                           "} Script { url \"test:shutdown: print "
-                           "gone\" } } DEF I P {} DEF S Script { eventIn SFTime in url \"test:in: "
-                           "print beat\nshutdown: print end\" } "
-                           "ROUTE I.beat TO S.in";
+  const std::string text =
+      "PROTO P [ eventOut SFTime beat ] { TimeSensor { loop TRUE time IS beat } Script { url "
+      "\"test:shutdown: print gone\" } } DEF I P {} DEF S Script { eventIn SFTime in url "
+      "\"test:in: print beat\nshutdown: print end\" } ROUTE I.beat TO S.in";
   r.set("G", "children", r.browser.createVrmlFromString(text));
   r.browser.tick(1);
   EXPECT_EQ(r.printed(), Log{"beat"});
@@ -107,8 +106,7 @@ TEST_P(BrowserObject, ALongChainOfRoutesEndsWithoutRecursion) {
 
 TEST_P(BrowserObject, ReadsNodesFromAFile) {
   Scripted r("DEF G Group {} DEF S Script { field SFNode to USE G eventIn SFBool in url \"test:in: "
-             "fromUrl to set_children "
-             "tests/conformance/good/def-use.wrl\" }");
+             "fromUrl to set_children tests/conformance/good/def-use.wrl\" }");
   r.log("G", "children");
   r.set("S", "in", true);
   ASSERT_EQ(r.take().size(), 1u);
@@ -119,8 +117,7 @@ TEST_P(BrowserObject, ReadsNodesFromAFile) {
 
 TEST_P(BrowserObject, AnotherWorldTakesThePlaceOfThisOne) {
   Scripted r("DEF V Viewpoint {} Script { url \"test:shutdown: print old\" } DEF S Script { "
-             "eventIn SFBool in url \"test:in: load "
-             "tests/conformance/good/def-use.wrl\" }");
+             "eventIn SFBool in url \"test:in: load tests/conformance/good/def-use.wrl\" }");
   const uint64_t generation = r.browser.generation();
   r.set("S", "in", true);
   EXPECT_EQ(r.browser.generation(), generation + 1);
@@ -167,9 +164,8 @@ TEST_P(BrowserObject, AWorldThatCannotBeReadChangesNothing) {
 TEST_P(BrowserObject, ReplaceWorldKeepsNodesTheirRoutesAndTheirScripts) {
   Scripted r("DEF S Script { url \"test:shutdown: print old\" eventIn MFNode in }");
   const MFNode nodes = r.browser.createVrmlFromString(
-      "DEF V Viewpoint {} DEF A Transform {} DEF B Transform {} Script { url "
-      "\"test:initialize: print new\nshutdown: print no\" } ROUTE "
-      "A.translation TO B.translation");
+      "DEF V Viewpoint {} DEF A Transform {} DEF B Transform {} Script { url \"test:initialize: "
+      "print new\nshutdown: print no\" } ROUTE A.translation TO B.translation");
   EXPECT_EQ(r.printed(), Log{"new"});
   r.browser.replaceWorld(nodes);
   EXPECT_EQ(r.printed(), Log{"old"});

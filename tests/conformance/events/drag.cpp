@@ -106,9 +106,7 @@ TEST(PlaneSensor, WorksInItsOwnCoordinates) {
 
 TEST(PlaneSensor, MovingItsOwnGroupDoesNotFeedBack) {
   Running r("DEF T Transform { children [ DEF S PlaneSensor {} Shape { geometry Box { size 20 20 2 "
-            "} } ] } ROUTE "
-            "S.translation_changed TO "
-            "T.translation");
+            "} } ] } ROUTE S.translation_changed TO T.translation");
   to(r, 0, 0);
   to(r, 1, 0);
   to(r, 2, 0);
@@ -300,8 +298,7 @@ TEST(DragSensors, TwoSiblingsDragAtOnce) {
 
 TEST(DragSensors, OfNestedOnesTheLowestDrags) {
   Running r("Group { children [ DEF S SphereSensor {} Group { children [ DEF P PlaneSensor {} "
-            "Shape { geometry Sphere { radius 2 "
-            "} } ] } ] }");
+            "Shape { geometry Sphere { radius 2 } } ] } ] }");
   to(r, 0, 0);
   to(r, 1, 0);
   EXPECT_EQ(r.get("P", "translation_changed"), "1 0 0");

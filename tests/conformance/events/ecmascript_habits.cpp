@@ -38,13 +38,12 @@ TEST_F(EcmaScript, LinesEndInAnyWay) {
 TEST_F(EcmaScript, AProcessMakesNoDifference) {
   const std::string world =
       "DEF T Transform { children [ Group { } ] } " +
-      EcmaWorld::script(
-          "directOutput TRUE field SFNode t USE T field MFVec3f m [1 2 3] eventIn SFTime in "
-          "eventOut SFVec3f out",
-          "function initialize() { print(t, t.children, m, Math.random(), new Date().getTime(), "
-          "Browser.getName()); "
-          "t.translation.x = 5; m[1] = t.translation; out = m[1]; new SFNode('Shape { }') }"
-          "function shutdown() { print(out, m) }");
+      EcmaWorld::script("directOutput TRUE field SFNode t USE T field MFVec3f m [1 2 3] eventIn "
+                        "SFTime in eventOut SFVec3f out",
+                        "function initialize() { print(t, t.children, m, Math.random(), new "
+                        "Date().getTime(), Browser.getName()); t.translation.x = 5; m[1] = "
+                        "t.translation; out = m[1]; new SFNode('Shape { }') }"
+                        "function shutdown() { print(out, m) }");
   const auto play = [&](BrowserOptions::Isolation where) {
     BrowserOptions options;
     options.scriptPath = XVRML_SCRIPTS;

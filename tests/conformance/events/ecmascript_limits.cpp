@@ -124,8 +124,8 @@ TEST_F(EcmaScript, ALoopThatCallsTheHostIsStopped) {
   BrowserOptions options;
   options.scriptSteps = 100'000;
   EcmaWorld r(script("eventIn SFBool go eventOut SFInt32 out",
-                     "function go() { out = 1; for (;;) { try { Browser.getCurrentSpeed() } "
-                     "catch (e) { if (!once) throw e; once = 0 } } } var once = 1"),
+                     "function go() { out = 1; for (;;) { try { Browser.getCurrentSpeed() } catch "
+                     "(e) { if (!once) throw e; once = 0 } } } var once = 1"),
               options);
   r.log("S", "out");
   r.set("S", "go", true);
@@ -136,12 +136,11 @@ TEST_F(EcmaScript, ALoopThatCallsTheHostIsStopped) {
 // --- Things a program cannot reach ---
 
 TEST_F(EcmaScript, NothingOfDuktapeIsThere) {
-  EcmaWorld r(script("", "print(typeof Duktape, typeof CBOR, typeof Buffer, typeof "
-                         "String.fromBufferRaw, typeof require, typeof process, typeof "
-                         "Uint8Array.allocPlain, typeof load, typeof alert); "
-                         "print(Object.getOwnPropertyNames(new SFVec3f()), "
-                         "Object.getOwnPropertyNames(new SFNode('Group { }')), "
-                         "Object.getOwnPropertySymbols ? 1 : 0)"));
+  EcmaWorld r(script(
+      "", "print(typeof Duktape, typeof CBOR, typeof Buffer, typeof String.fromBufferRaw, typeof "
+          "require, typeof process, typeof Uint8Array.allocPlain, typeof load, typeof alert); "
+          "print(Object.getOwnPropertyNames(new SFVec3f()), Object.getOwnPropertyNames(new "
+          "SFNode('Group { }')), Object.getOwnPropertySymbols ? 1 : 0)"));
   EXPECT_EQ(
       r.printed().at(0),
       "undefined undefined undefined undefined undefined undefined undefined undefined undefined");
@@ -175,8 +174,7 @@ TEST_F(EcmaScript, ChangesWhileAValueIsConverted) {
              "m[1] = [{ valueOf: function() { m.length = 0; return 5 } }, 6, 7]; print(m);"
              "f = [1, { valueOf: function() { f = new MFFloat(9); return 2 } }, 3]; print(f);"
              "var list = new MFFloat(1, 2, 3); list[0] = { valueOf: function() { list.length = 0; "
-             "list.length = 100000; "
-             "return 4 } }; print(list[0], list.length)"));
+             "list.length = 100000; return 4 } }; print(list[0], list.length)"));
   EXPECT_EQ(r.told(), "[0 0 0, 5 6 7]\n[1, 2, 3]\n4 100000");
 }
 
@@ -184,10 +182,10 @@ TEST_F(EcmaScript, ChangesWhileAValueIsConverted) {
 
 TEST_F(EcmaScript, RandomNumbersAndDatesReplay) {
   const auto play = [] {
-    EcmaWorld r(script("eventIn SFBool go", "function go() { print(Math.random(), Math.random(), "
-                                            "new Date().getTime(), Date.now(), typeof Date(), new "
-                                            "Date(2000, 0).getFullYear(), new Date() instanceof "
-                                            "Date, new Date(5).constructor == Date) }"));
+    EcmaWorld r(script("eventIn SFBool go",
+                       "function go() { print(Math.random(), Math.random(), new Date().getTime(), "
+                       "Date.now(), typeof Date(), new Date(2000, 0).getFullYear(), new Date() "
+                       "instanceof Date, new Date(5).constructor == Date) }"));
     r.browser.tick(2);
     r.set("S", "go", true);
     return r.told();

@@ -29,8 +29,7 @@ constexpr EcmaRow rows[] = {
      "0.5 0.5 0.5"},
     {"SFColor_getHSV", "",
      "print(new SFColor(1, 0, 0).getHSV()); print(new SFColor(0, 0.5, 0).getHSV()); print(new "
-     "SFColor(1, 0, 1).getHSV()); "
-     "print(new SFColor(1, 1, 1).getHSV().length)",
+     "SFColor(1, 0, 1).getHSV()); print(new SFColor(1, 1, 1).getHSV().length)",
      "0,1,1\n120,1,0.5\n300,1,1\n3"},
     {"SFColor_toString", "", "print(new SFColor(1, 0, 0).toString() + '!')", "1 0 0!"},
     // C.6.5 SFImage
@@ -55,8 +54,7 @@ constexpr EcmaRow rows[] = {
      "print(new SFRotation(new SFVec3f(2, 0, 0), new SFVec3f(3, 0, 0)).angle)", "0"},
     {"SFRotation_from_opposite", "",
      "var r = new SFRotation(new SFVec3f(1, 0, 0), new SFVec3f(-1, 0, 0)); var v = r.multVec(new "
-     "SFVec3f(1, 0, 0)); "
-     "print(v.x.toFixed(3), Math.abs(v.y) < 1e-9)",
+     "SFVec3f(1, 0, 0)); print(v.x.toFixed(3), Math.abs(v.y) < 1e-9)",
      "-1.000 true"},
     {"SFRotation_fields", "",
      "var r = new SFRotation(1, 2, 3, 4); print(r.x, r.y, r.z, r.angle, r[0], r[3])",
@@ -69,10 +67,9 @@ constexpr EcmaRow rows[] = {
     {"SFRotation_inverse", "", "print(new SFRotation(1, 0, 0, 2).inverse())", "1 0 0 -2"},
     {"SFRotation_multiply", "",
      "print(new SFRotation(0, 0, 1, 0.5).multiply(new SFRotation(0, 0, 1, 0.25))); var a = new "
-     "SFRotation(1, 0, 0, Math.PI / 2), "
-     "b = new SFRotation(0, 0, 1, Math.PI / 2); var v = new SFVec3f(1, 0, 0); var c = "
-     "a.multiply(b).multVec(v), "
-     "d = a.multVec(b.multVec(v)); print(c.subtract(d).length() < 1e-9, c.z.toFixed(3))",
+     "SFRotation(1, 0, 0, Math.PI / 2), b = new SFRotation(0, 0, 1, Math.PI / 2); var v = new "
+     "SFVec3f(1, 0, 0); var c = a.multiply(b).multVec(v), d = a.multVec(b.multVec(v)); "
+     "print(c.subtract(d).length() < 1e-9, c.z.toFixed(3))",
      "0 0 1 0.75\ntrue 1.000"},
     {"SFRotation_multVec", "",
      "var v = new SFRotation(0, 0, 1, Math.PI / 2).multVec(new SFVec3f(1, 0, 5)); "
@@ -80,8 +77,7 @@ constexpr EcmaRow rows[] = {
      "0.000 1 5"},
     {"SFRotation_slerp", "",
      "var a = new SFRotation(0, 1, 0, 0), b = new SFRotation(0, 1, 0, 1); print(a.slerp(b, 0.25)); "
-     "print(a.slerp(b, 0)); "
-     "print(a.slerp(b, 1))",
+     "print(a.slerp(b, 0)); print(a.slerp(b, 1))",
      "0 1 0 0.25\n0 1 0 0\n0 1 0 1"},
     {"SFRotation_slerp_short_way", "",
      "print(new SFRotation(0, 0, 1, 3).slerp(new SFRotation(0, 0, 1, -3), 0.5).angle.toFixed(4))",
@@ -135,38 +131,32 @@ constexpr EcmaRow rows[] = {
      "2 0 0 0 0 1 0 0 0 0 1 0 0 5 0 1"},
     {"VrmlMatrix_setTransform", "",
      "var m = new VrmlMatrix(); m.setTransform(new SFVec3f(1, 2, 3)); print(m); "
-     "m.setTransform(null, null, new SFVec3f(2, 3, "
-     "4)); "
-     "print(m); m.setTransform(new SFVec3f(5, 0, 0), new SFRotation(0, 0, 1, Math.PI / 2), new "
-     "SFVec3f(2, 2, 2), new "
-     "SFRotation(), "
-     "new SFVec3f(1, 0, 0)); var v = m.multVecMatrix(new SFVec3f(2, 0, 0)); print(v.x.toFixed(3), "
-     "v.y.toFixed(3), "
-     "v.z.toFixed(3))",
+     "m.setTransform(null, null, new SFVec3f(2, 3, 4)); print(m); m.setTransform(new SFVec3f(5, 0, "
+     "0), new SFRotation(0, 0, 1, Math.PI / 2), new SFVec3f(2, 2, 2), new SFRotation(), new "
+     "SFVec3f(1, 0, 0)); var v = m.multVecMatrix(new SFVec3f(2, 0, 0)); print(v.x.toFixed(3), "
+     "v.y.toFixed(3), v.z.toFixed(3))",
      "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1\n2 0 0 0 0 3 0 0 0 0 4 0 0 0 0 1\n6.000 2.000 0.000"},
     {"VrmlMatrix_getTransform", "",
      "var m = new VrmlMatrix(), t = new SFVec3f(), r = new SFRotation(), s = new SFVec3f(); "
-     "m.setTransform(new SFVec3f(1, 2, 3), "
-     "new SFRotation(0, 1, 0, 0.5), new SFVec3f(2, 3, 4)); m.getTransform(t, r, s); print(t); "
-     "print(r); print(s)",
+     "m.setTransform(new SFVec3f(1, 2, 3), new SFRotation(0, 1, 0, 0.5), new SFVec3f(2, 3, 4)); "
+     "m.getTransform(t, r, s); print(t); print(r); print(s)",
      "1 2 3\n0 1 0 0.5\n2 3 4"},
     {"VrmlMatrix_inverse", "",
      "var m = new VrmlMatrix(); m.setTransform(new SFVec3f(1, 2, 3), null, new SFVec3f(2, 2, 2)); "
-     "print(m.inverse()); "
-     "print(m.multRight(m.inverse()))",
+     "print(m.inverse()); print(m.multRight(m.inverse()))",
      "0.5 0 0 0 0 0.5 0 0 0 0 0.5 0 -0.5 -1 -1.5 1\n1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"},
     {"VrmlMatrix_transpose", "",
      "print(new VrmlMatrix(1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16).transpose())",
      "1 5 9 13 2 6 10 14 3 7 11 15 4 8 12 16"},
     {"VrmlMatrix_multLeft", "",
      "var a = new VrmlMatrix(), b = new VrmlMatrix(); a.setTransform(new SFVec3f(1, 0, 0)); "
-     "b.setTransform(null, null, new "
-     "SFVec3f(2, 2, 2)); print(a.multLeft(b)[3][0], b.multLeft(a)[3][0])",
+     "b.setTransform(null, null, new SFVec3f(2, 2, 2)); print(a.multLeft(b)[3][0], "
+     "b.multLeft(a)[3][0])",
      "1 2"},
     {"VrmlMatrix_multRight", "",
      "var a = new VrmlMatrix(), b = new VrmlMatrix(); a.setTransform(new SFVec3f(1, 0, 0)); "
-     "b.setTransform(null, null, new "
-     "SFVec3f(2, 2, 2)); print(a.multRight(b)[3][0], b.multRight(a)[3][0])",
+     "b.setTransform(null, null, new SFVec3f(2, 2, 2)); print(a.multRight(b)[3][0], "
+     "b.multRight(a)[3][0])",
      "2 1"},
     {"VrmlMatrix_multVecMatrix", "",
      "var m = new VrmlMatrix(); m.setTransform(new SFVec3f(1, 2, 3)); print(m.multVecMatrix(new "
@@ -182,8 +172,8 @@ constexpr EcmaRow rows[] = {
     {"SFNode_field",
      "directOutput TRUE field SFNode t USE T field SFNode u USE T field SFNode n NULL",
      "print(t == u, t != null, n, t.translation, t.translation_changed, t.nothing); t.translation "
-     "= new SFVec3f(7, 8, 9); "
-     "print(t.translation); t.set_translation.x = 1; print(t.translation_changed, t)",
+     "= new SFVec3f(7, 8, 9); print(t.translation); t.set_translation.x = 1; "
+     "print(t.translation_changed, t)",
      "true true null 1 2 3 1 2 3 undefined\n7 8 9\n1 8 9 DEF T Transform { }"},
     {"SFNode_copy", "field SFNode t USE T", "print(new SFNode(t) == t, t instanceof SFNode)",
      "true true"},
@@ -192,8 +182,7 @@ constexpr EcmaRow rows[] = {
      "field SFFloat f 0.1 field SFVec3f v 0.1 -1e-7 3.3 field MFFloat m [0.7, 16777217] field "
      "SFColor c 0.3 0 1",
      "print(f, v.x, v.y, v.z, m[0], m[1], c.r, f == 0.1); f = 1 / 3; print(f); v.x = 2 / 3; "
-     "print(v.x); v = new SFVec3f(1 / 3, "
-     "0, 0); print(v.x)",
+     "print(v.x); v = new SFVec3f(1 / 3, 0, 0); print(v.x)",
      "0.1 0.1 -1e-7 3.3 0.7 16777216 0.3 true\n0.33333334\n0.6666667\n0.33333334"},
     // SFString, SFTime, SFBool and numbers are values of the language (C.6.2)
     {"Natives",

@@ -40,14 +40,13 @@ TEST_F(EcmaScript, AnEventCallsTheFunctionOfItsNameWithValueAndTime) {
 }
 
 TEST_F(EcmaScript, ValuesOfAllTypesArrive) {
-  EcmaWorld r("DEF G Group { } " + script("eventIn SFBool a eventIn SFColor b eventIn SFFloat c "
-                                          "eventIn SFImage d eventIn SFInt32 e eventIn SFNode f "
-                                          "eventIn SFRotation g eventIn SFString h eventIn SFTime "
-                                          "i eventIn SFVec2f j eventIn SFVec3f k eventIn "
-                                          "MFColor l eventIn MFFloat m eventIn MFInt32 n eventIn "
-                                          "MFNode o eventIn MFRotation p eventIn MFString q "
-                                          "eventIn MFTime r eventIn MFVec2f s eventIn MFVec3f t",
-                                          "a=b=c=d=e=f=g=h=i=j=k=l=m=n=o=p=q=r=s=t=print"));
+  EcmaWorld r("DEF G Group { } " +
+              script("eventIn SFBool a eventIn SFColor b eventIn SFFloat c eventIn SFImage d "
+                     "eventIn SFInt32 e eventIn SFNode f eventIn SFRotation g eventIn SFString h "
+                     "eventIn SFTime i eventIn SFVec2f j eventIn SFVec3f k eventIn MFColor l "
+                     "eventIn MFFloat m eventIn MFInt32 n eventIn MFNode o eventIn MFRotation p "
+                     "eventIn MFString q eventIn MFTime r eventIn MFVec2f s eventIn MFVec3f t",
+                     "a=b=c=d=e=f=g=h=i=j=k=l=m=n=o=p=q=r=s=t=print"));
   const NodeRef group = r.browser.node("G");
   r.set("S", "a", true);
   r.set("S", "b", Color{1, 0, 0.5f});
@@ -69,34 +68,29 @@ TEST_F(EcmaScript, ValuesOfAllTypesArrive) {
   r.set("S", "r", MFTime{1, 2});
   r.set("S", "s", MFVec2f{{1, 2}});
   r.set("S", "t", MFVec3f{{1, 2, 3}, {4, 5, 6}});
-  EXPECT_EQ(r.takeOutput(),
-            "true 0\n1 0 0.5 0\n1.5 0\n1 2 1 0xFF 0x10 0\n-3 0\nDEF G Group { } 0\n0 1 0 "
-            "2 0\ntext 0\n5.25 0\n1 2 0\n"
-            "1 2 3 0\n[1 0 0, 0 1 0] 0\n[1, 2.5] 0\n[7, 8] 0\n[DEF G Group { }, NULL] "
-            "0\n[1 0 0 3] 0\n[\"x\", \"y\"] 0\n"
-            "[1, 2] 0\n[1 2] 0\n[1 2 3, 4 5 6] 0");
+  EXPECT_EQ(r.takeOutput(), "true 0\n1 0 0.5 0\n1.5 0\n1 2 1 0xFF 0x10 0\n-3 0\nDEF G Group { } "
+                            "0\n0 1 0 2 0\ntext 0\n5.25 0\n1 2 0\n"
+                            "1 2 3 0\n[1 0 0, 0 1 0] 0\n[1, 2.5] 0\n[7, 8] 0\n[DEF G Group { }, "
+                            "NULL] 0\n[1 0 0 3] 0\n[\"x\", \"y\"] 0\n"
+                            "[1, 2] 0\n[1 2] 0\n[1 2 3, 4 5 6] 0");
 }
 
 TEST_F(EcmaScript, ValuesOfAllTypesAreSent) {
-  EcmaWorld r("DEF G Group { } " +
-              script("field SFNode g USE G eventIn SFBool go eventOut SFBool a eventOut SFColor b "
-                     "eventOut SFFloat c eventOut "
-                     "SFImage d eventOut SFInt32 e eventOut SFNode f eventOut SFRotation h "
-                     "eventOut SFString i eventOut SFTime "
-                     "j eventOut SFVec2f k eventOut SFVec3f l eventOut MFColor m eventOut MFFloat "
-                     "n eventOut MFInt32 o eventOut "
-                     "MFNode p eventOut MFRotation q eventOut MFString r eventOut MFTime s "
-                     "eventOut MFVec2f t eventOut MFVec3f u",
-                     "function go() { a = true; b = new SFColor(1, 0, 0.5); c = 1.5; d = new "
-                     "SFImage(1, 2, 1, new MFInt32(255, 16)); "
-                     "e = -3; f = g; h = new SFRotation(0, 1, 0, 2); i = 'text'; j = 5.25; k = new "
-                     "SFVec2f(1, 2); l = new "
-                     "SFVec3f(1, 2, 3); m = new MFColor(new SFColor(1, 0, 0)); n = new MFFloat(1, "
-                     "2.5); o = new MFInt32(7, 8); "
-                     "p = new MFNode(g, null); q = new MFRotation(new SFRotation(1, 0, 0, 3)); r = "
-                     "new MFString('x', 'y'); s = new "
-                     "MFTime(1, 2); t = new MFVec2f(new SFVec2f(1, 2)); u = new MFVec3f(new "
-                     "SFVec3f(1, 2, 3)) }"));
+  EcmaWorld r(
+      "DEF G Group { } " +
+      script(
+          "field SFNode g USE G eventIn SFBool go eventOut SFBool a eventOut SFColor b eventOut "
+          "SFFloat c eventOut SFImage d eventOut SFInt32 e eventOut SFNode f eventOut SFRotation h "
+          "eventOut SFString i eventOut SFTime j eventOut SFVec2f k eventOut SFVec3f l eventOut "
+          "MFColor m eventOut MFFloat n eventOut MFInt32 o eventOut MFNode p eventOut MFRotation q "
+          "eventOut MFString r eventOut MFTime s eventOut MFVec2f t eventOut MFVec3f u",
+          "function go() { a = true; b = new SFColor(1, 0, 0.5); c = 1.5; d = new SFImage(1, 2, 1, "
+          "new MFInt32(255, 16)); e = -3; f = g; h = new SFRotation(0, 1, 0, 2); i = 'text'; j = "
+          "5.25; k = new SFVec2f(1, 2); l = new SFVec3f(1, 2, 3); m = new MFColor(new SFColor(1, "
+          "0, 0)); n = new MFFloat(1, 2.5); o = new MFInt32(7, 8); p = new MFNode(g, null); q = "
+          "new MFRotation(new SFRotation(1, 0, 0, 3)); r = new MFString('x', 'y'); s = new "
+          "MFTime(1, 2); t = new MFVec2f(new SFVec2f(1, 2)); u = new MFVec3f(new SFVec3f(1, 2, 3)) "
+          "}"));
   for (const char c : std::string("abcdefhijklmnopqrstu")) r.log("S", std::string(1, c));
   r.set("S", "go", true);
   std::string all;
@@ -104,16 +98,15 @@ TEST_F(EcmaScript, ValuesOfAllTypesAreSent) {
   EXPECT_EQ(all, "0 S.a TRUE\n0 S.b 1 0 0.5\n0 S.c 1.5\n0 S.d 1x2x1\n0 S.e -3\n0 S.f G\n0 S.h 0 1 "
                  "0 2\n0 S.i text\n0 S.j 5.25\n0 S.k 1 2\n"
                  "0 S.l 1 2 3\n0 S.m [1 0 0]\n0 S.n [1, 2.5]\n0 S.o [7, 8]\n0 S.p [G, NULL]\n0 S.q "
-                 "[1 0 0 3]\n0 S.r [x, y]\n0 S.s [1, "
-                 "2]\n0 S.t [1 2]\n0 S.u [1 2 3]\n");
+                 "[1 0 0 3]\n0 S.r [x, y]\n0 S.s [1, 2]\n0 S.t [1 2]\n0 S.u [1 2 3]\n");
   EXPECT_EQ(r.takeOutput(), "");
 }
 
 TEST_F(EcmaScript, InitializeEventsProcessedShutdown) {
-  EcmaWorld r(script("eventIn SFBool in",
-                     "print('program'); function initialize() { print('initialize') } "
-                     "function eventsProcessed() { print('processed') } function shutdown() { "
-                     "print('shutdown') }"));
+  EcmaWorld r(
+      script("eventIn SFBool in",
+             "print('program'); function initialize() { print('initialize') } function "
+             "eventsProcessed() { print('processed') } function shutdown() { print('shutdown') }"));
   EXPECT_EQ(r.takeOutput(), "program\ninitialize");
   r.set("S", "in", true);
   EXPECT_EQ(r.takeOutput(), "processed");
@@ -168,10 +161,10 @@ TEST_F(EcmaScript, AnEventOutReadsAsLastSent) {
 }
 
 TEST_F(EcmaScript, AssigningToAFieldCopies) {
-  EcmaWorld r(script("field SFVec3f f 0 0 0 field MFInt32 m []",
-                     "var v = new SFVec3f(1, 2, 3), a = new MFInt32(1); f = v; m = a; v.x = 9; "
-                     "a[0] = 9; print(f, m); var old = f; f = "
-                     "new SFVec3f(5, 5, 5); print(old, f)"));
+  EcmaWorld r(
+      script("field SFVec3f f 0 0 0 field MFInt32 m []",
+             "var v = new SFVec3f(1, 2, 3), a = new MFInt32(1); f = v; m = a; v.x = 9; a[0] = 9; "
+             "print(f, m); var old = f; f = new SFVec3f(5, 5, 5); print(old, f)"));
   EXPECT_EQ(r.takeOutput(), "1 2 3 [1]\n1 2 3 5 5 5");
 }
 
@@ -179,11 +172,11 @@ TEST_F(EcmaScript, AssigningToAFieldCopies) {
 // program has created are references.
 class EcmaScriptAssignments : public EcmaRows {};
 TEST_P(EcmaScriptAssignments, CopyOrRefer) {
-  EcmaWorld r("DEF T Transform { translation 1 2 3 } " +
-              script("directOutput TRUE field SFNode t USE T field SFVec3f f 1 2 3 "
-                     "field MFVec3f m [1 1 1, 2 2 2] field MFFloat n [5, 6] field "
-                     "SFImage i 1 1 1 7 eventOut SFVec3f out",
-                     GetParam().program));
+  EcmaWorld r(
+      "DEF T Transform { translation 1 2 3 } " +
+      script("directOutput TRUE field SFNode t USE T field SFVec3f f 1 2 3 field MFVec3f m [1 1 1, "
+             "2 2 2] field MFFloat n [5, 6] field SFImage i 1 1 1 7 eventOut SFVec3f out",
+             GetParam().program));
   EXPECT_EQ(r.takeOutput(), GetParam().printed) << GetParam().program;
 }
 constexpr EcmaRow assignments[] = {
@@ -308,9 +301,8 @@ TEST_F(EcmaScript, FieldsOfOtherNodesAreReadAndSet) {
       "6] } } } " +
       script("directOutput TRUE field SFNode t USE T field SFNode c USE C eventIn SFBool go",
              "function go() { t.set_translation = new SFVec3f(1, 2, 3); t.scale.x = 2; t.scale.y = "
-             "3; print(t.translation, "
-             "t.scale_changed); c.point[1].z = 9; c.point[2] = new SFVec3f(7, 7, 7); "
-             "print(c.point) }"));
+             "3; print(t.translation, t.scale_changed); c.point[1].z = 9; c.point[2] = new "
+             "SFVec3f(7, 7, 7); print(c.point) }"));
   r.log("T", "translation");
   r.log("T", "scale");
   r.log("C", "point");
@@ -325,8 +317,8 @@ TEST_F(EcmaScript, AnEventInIsWrittenAnEventOutIsRead) {
       "DEF G Group { } DEF K TimeSensor { loop TRUE } " +
       script("directOutput TRUE field SFNode g USE G field SFNode k USE K eventIn SFBool go",
              "function go() { g.addChildren = new MFNode(new SFNode('Shape { }'), new "
-             "SFNode('Group { }')); print(g.addChildren, "
-             "k.time >= 0); try { k.time = 1 } catch (e) { print(e.message) } }"));
+             "SFNode('Group { }')); print(g.addChildren, k.time >= 0); try { k.time = 1 } catch "
+             "(e) { print(e.message) } }"));
   r.set("S", "go", true);
   EXPECT_EQ(r.takeOutput(), "undefined true\ntime cannot be written");
 }
@@ -353,11 +345,10 @@ TEST_F(EcmaScript, WithoutDirectOutputEventsToOthersAreDropped) {
 }
 
 TEST_F(EcmaScript, ItsOwnNodeIsAnSFNodeToo) {
-  EcmaWorld r("DEF S Script { directOutput TRUE field SFNode me USE S field SFInt32 n 3 eventIn "
-              "SFInt32 in eventOut SFInt32 out "
-              "url \"javascript: function initialize() { me.n = 4; print(n, me.n); me.in = 5; "
-              "me.out = 6 } function f(){} "
-              "this['in'] = function(v) { print('in', v) }\" }");
+  EcmaWorld r(
+      "DEF S Script { directOutput TRUE field SFNode me USE S field SFInt32 n 3 eventIn SFInt32 in "
+      "eventOut SFInt32 out url \"javascript: function initialize() { me.n = 4; print(n, me.n); "
+      "me.in = 5; me.out = 6 } function f(){} this['in'] = function(v) { print('in', v) }\" }");
   EXPECT_EQ(r.takeOutput(), "4 4\nin 5");
   EXPECT_EQ(r.get("S", "out"), "6");
 }
@@ -365,8 +356,7 @@ TEST_F(EcmaScript, ItsOwnNodeIsAnSFNodeToo) {
 TEST_F(EcmaScript, NodesAreLetGo) {
   EcmaWorld r(script("eventIn SFTime go eventIn SFBool drop",
                      "var kept; function go() { kept = new SFNode('Script { url \\\"javascript: "
-                     "function shutdown() { print(1) }\\\" }') } "
-                     "function drop() { kept = null }"));
+                     "function shutdown() { print(1) }\\\" }') } function drop() { kept = null }"));
   r.set("S", "go", 0.0);
   r.browser.tick(1);
   EXPECT_EQ(r.takeOutput(), "");
@@ -378,24 +368,22 @@ TEST_F(EcmaScript, NodesAreLetGo) {
 // --- C.6.3: the Browser object ---
 
 TEST_F(EcmaScript, TheBrowserTells) {
-  EcmaWorld r(script("", "print(typeof Browser.getName(), Browser.getVersion() != '', "
-                         "Browser.getCurrentSpeed(), Browser.getCurrentFrameRate(), "
-                         "Browser.getWorldURL()); Browser.setDescription('about'); function "
-                         "initialize() { Browser.print(1, 'a'); "
-                         "Browser.println(2); trace(3) }"));
+  EcmaWorld r(script(
+      "", "print(typeof Browser.getName(), Browser.getVersion() != '', Browser.getCurrentSpeed(), "
+          "Browser.getCurrentFrameRate(), Browser.getWorldURL()); Browser.setDescription('about'); "
+          "function initialize() { Browser.print(1, 'a'); Browser.println(2); trace(3) }"));
   EXPECT_EQ(r.takeOutput(), "string true 0 0 test.wrl\n1 a\n2\n3");
   EXPECT_EQ(r.browser.description(), "about");
 }
 
 TEST_F(EcmaScript, TheBrowserMakesNodes) {
-  EcmaWorld r(script("eventIn MFNode made directOutput TRUE field SFNode me USE S",
-                     "var n = Browser.createVrmlFromString('Group { } DEF X Transform { "
-                     "translation 1 2 3 }'); print(n.length, "
-                     "n[1].translation); "
-                     "try { Browser.createVrmlFromString('Nonsense {') } catch (e) { print('no') } "
-                     "function initialize() { Browser.createVrmlFromURL(new "
-                     "MFString('tests/conformance/good/def-use.wrl'), me, 'made') } "
-                     "function made(v) { print('made', v.length > 0) }"));
+  EcmaWorld r(
+      script("eventIn MFNode made directOutput TRUE field SFNode me USE S",
+             "var n = Browser.createVrmlFromString('Group { } DEF X Transform { translation 1 2 3 "
+             "}'); print(n.length, n[1].translation); try { Browser.createVrmlFromString('Nonsense "
+             "{') } catch (e) { print('no') } function initialize() { "
+             "Browser.createVrmlFromURL(new MFString('tests/conformance/good/def-use.wrl'), me, "
+             "'made') } function made(v) { print('made', v.length > 0) }"));
   Log printed = r.printed();
   ASSERT_GE(printed.size(), 2u);
   EXPECT_EQ(printed.front(), "2 1 2 3");
@@ -407,8 +395,8 @@ TEST_F(EcmaScript, TheBrowserRoutes) {
       "DEF A Transform { } DEF B Transform { } " +
       script("directOutput TRUE field SFNode a USE A field SFNode b USE B eventIn SFBool on",
              "function on(v) { if (v) Browser.addRoute(a, 'translation_changed', b, "
-             "'set_translation'); else deleteRoute(a, "
-             "'translation_changed', b, 'set_translation') }"));
+             "'set_translation'); else deleteRoute(a, 'translation_changed', b, 'set_translation') "
+             "}"));
   r.set("S", "on", true);
   r.set("A", "translation", Vec3f{1, 0, 0});
   r.set("S", "on", false);

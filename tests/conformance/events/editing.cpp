@@ -25,8 +25,8 @@ TEST(Editing, ANodeMayEndDuringItsOwnEvent) {
 TEST(Editing, AnInstanceMayEndDuringAnEventOfItsBody) {
   Running r("DEF G Group {}");
   MFNode made = r.browser.createVrmlFromString(
-      "PROTO P [ eventOut SFVec3f out eventIn SFVec3f in ] { DEF T Transform { "
-      "set_translation IS in translation_changed IS out } } P {}");
+      "PROTO P [ eventOut SFVec3f out eventIn SFVec3f in ] { DEF T Transform { set_translation IS "
+      "in translation_changed IS out } } P {}");
   NodeRef instance = made[0];
   const NodeRef body(renderedNode(instance.get()));
   r.set("G", "children", std::move(made));
@@ -58,8 +58,7 @@ TEST(Editing, RoutesMadeWithinACascadeDoNotCarryItsEvent) {
 
 TEST(Editing, EventInsReplaceTheFieldsTheyAreNamedFor) {
   Running r("Shape { geometry DEF F IndexedFaceSet {} } Shape { geometry DEF E ElevationGrid { "
-            "height [ 0 0 0 0 ] } } DEF K "
-            "PositionInterpolator { key [ 0 1 ] }");
+            "height [ 0 0 0 0 ] } } DEF K PositionInterpolator { key [ 0 1 ] }");
   r.set("F", "set_coordIndex", MFInt32{0, 1, 2, -1});
   r.set("E", "set_height", MFFloat{1, 2, 3, 4});
   r.set("K", "set_key", MFFloat{0, 0.5f});

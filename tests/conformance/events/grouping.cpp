@@ -46,8 +46,8 @@ TEST(Grouping, ChildrenChangedGoesAlongRoutes) {
 }
 
 const std::string interface =
-    "PROTO P [ exposedField MFNode c [] eventIn MFNode add eventIn MFNode rem ] "
-    "{ Group { children IS c addChildren IS add removeChildren IS rem } } ";
+    "PROTO P [ exposedField MFNode c [] eventIn MFNode add eventIn MFNode rem ] { Group { children "
+    "IS c addChildren IS add removeChildren IS rem } } ";
 
 TEST(Grouping, AnInstanceHasTheChildrenOfTheNodeThatIsThem) {
   Running r(interface + "DEF A P { c DEF X Group {} } DEF Y Group {}");
@@ -68,9 +68,8 @@ TEST(Grouping, WhatAnInstanceWasGivenIsWritten) {
 }
 
 TEST(Grouping, InstancesOfInstancesHaveThemToo) {
-  Running r(interface +
-            "PROTO Q [ exposedField MFNode d [] eventIn MFNode more ] { P { c IS d add IS more } } "
-            "DEF A Q { d DEF X Group {} } DEF Y Group {}");
+  Running r(interface + "PROTO Q [ exposedField MFNode d [] eventIn MFNode more ] { P { c IS d add "
+                        "IS more } } DEF A Q { d DEF X Group {} } DEF Y Group {}");
   r.set("A", "more", MFNode{r.browser.node("Y")});
   EXPECT_EQ(r.get("A", "d"), "[X, Y]");
   EXPECT_EQ(childrenOf(again(r)->scope.names.at("A")), "[X, Y]");
@@ -90,10 +89,8 @@ TEST(Grouping, SeveralChangesAtOneTimeAreAllKept) {
 // Not only an exposedField.
 TEST(Grouping, AFieldOfAnInstanceIsWrittenAsItsNodeHasIt) {
   Running r("PROTO P [ field MFNode c [] field SFVec3f at 0 0 0 eventIn MFNode add eventIn SFVec3f "
-            "move ] "
-            "{ Transform { children IS c addChildren IS add translation IS at set_translation IS "
-            "move } } "
-            "DEF A P { c DEF X Group {} } DEF Y Group {}");
+            "move ] { Transform { children IS c addChildren IS add translation IS at "
+            "set_translation IS move } } DEF A P { c DEF X Group {} } DEF Y Group {}");
   r.set("A", "add", MFNode{r.browser.node("Y")});
   r.set("A", "move", Vec3f{1, 2, 3});
   const auto world = again(r);
@@ -104,19 +101,18 @@ TEST(Grouping, AFieldOfAnInstanceIsWrittenAsItsNodeHasIt) {
 
 // It cannot have the values of both nodes.
 TEST(Grouping, AFieldThatTwoNodesShareIsWrittenAsItWasGiven) {
-  Running r("PROTO P [ field SFVec3f at 5 0 0 eventIn SFVec3f move ] { Transform { translation IS "
-            "at set_translation IS move children "
-            "DEF I Transform { translation IS at } } } DEF A P {}");
+  Running r(
+      "PROTO P [ field SFVec3f at 5 0 0 eventIn SFVec3f move ] { Transform { translation IS at "
+      "set_translation IS move children DEF I Transform { translation IS at } } } DEF A P {}");
   r.set("A", "move", Vec3f{1, 2, 3});
   EXPECT_EQ(childrenOf(again(r)->scope.names.at("A"), "translation"), "5 0 0");
 }
 
 TEST(Grouping, OtherListsOfNodesCrossTheBorderToo) {
   Running r("PROTO S [ exposedField MFNode c [] exposedField SFInt32 which 0 ] { Switch { choice "
-            "IS c whichChoice IS which } } "
-            "PROTO L [ exposedField MFNode c [] ] { LOD { level IS c } } DEF A S {} DEF B L {} DEF "
-            "X Group {} DEF Y Group {} "
-            "DEF C S {} ROUTE A.c_changed TO C.set_c ROUTE A.which_changed TO C.set_which");
+            "IS c whichChoice IS which } } PROTO L [ exposedField MFNode c [] ] { LOD { level IS c "
+            "} } DEF A S {} DEF B L {} DEF X Group {} DEF Y Group {} DEF C S {} ROUTE A.c_changed "
+            "TO C.set_c ROUTE A.which_changed TO C.set_which");
   const MFNode both{r.browser.node("X"), NodeRef(), r.browser.node("Y")};
   r.set("A", "c", both);
   r.set("B", "c", both);

@@ -21,8 +21,7 @@ struct Hearing {
 
 TEST(Hearing, StandsWhereTheSoundDoes) {
   Hearing h("Viewpoint { position 0 0 0 } Transform { translation 3 0 0 children Sound { minFront "
-            "50 minBack 50 maxFront 60 maxBack 60 "
-            "location 2 0 0 " +
+            "50 minBack 50 maxFront 60 maxBack 60 location 2 0 0 " +
             clip + "} }");
   const std::vector<Heard> heard = h.now();
   ASSERT_EQ(heard.size(), 1u);

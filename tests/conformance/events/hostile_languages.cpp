@@ -136,8 +136,7 @@ TEST_P(HostileLanguages, AProgramCannotHoldTheWorldUp) {
   options.scriptPatience = 0.02;
   Scripted r("DEF S Script { eventIn SFBool go url\n" + quoted(programOf(c)) +
                  " }\nDEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in eventOut "
-                 "SFTime out url \"test:in: echo out\" "
-                 "} ROUTE C.time TO T.in",
+                 "SFTime out url \"test:in: echo out\" } ROUTE C.time TO T.in",
              options);
   ASSERT_EQ(r.messages(), Log{});
   r.log("T", "out");

@@ -76,8 +76,7 @@ TEST(Inlines, SetUrlLoadsOtherContentAndTheOldLeaves) {
 TEST(Inlines, RoutesAndSensorsOfLateContentRun) {
   const Folder f;
   f.file("in.wrl", "DEF S ProximitySensor { size 99 99 99 } DEF T Transform { children Shape { "
-                   "geometry Box {} } } ROUTE "
-                   "S.position_changed TO T.translation");
+                   "geometry Box {} } } ROUTE S.position_changed TO T.translation");
   Browser browser(loadWorld(f.file("a.wrl", "DEF I Inline {}")));
   browser.tick(1);
   browser.set(*browser.node("I"), "url", MFString{"nothing.wrl", "in.wrl"});

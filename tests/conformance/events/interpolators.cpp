@@ -110,8 +110,7 @@ TEST_P(Interpolator, InHierarchies) {
             " ] } } } }" + "PROTO P [ eventIn SFFloat f eventOut " + type +
             " v ] { Group { children Q { f IS f v IS v } } }" +
             "Transform { children DEF I P {} } DEF S ScalarInterpolator { key [ 0 10 ] keyValue [ "
-            "0 10 ] } ROUTE S.value_changed "
-            "TO I.f");
+            "0 10 ] } ROUTE S.value_changed TO I.f");
   r.log("I", "v");
   r.set("S", "set_fraction", 0.5f);
   EXPECT_EQ(r.take(), Log{"0 I.v " + c.half});

@@ -64,12 +64,10 @@ TEST_F(Native, FunctionsOfTheSystemsLibraries) {
   if (!std::filesystem::exists(std::string(folder) + "/libm.so.6"))
     GTEST_SKIP() << "no libm.so.6 there";
   setenv("XVRML_NATIVE_PATH", folder, 1);
-  Scripted r(
-      "DEF S Script { eventIn SFFloat set_x eventOut SFFloat y url \"native:libm.so.6#sqrtf\" } "
-      "DEF P Script { eventIn SFFloat a eventIn SFFloat b eventOut SFFloat y url "
-      "\"native:libm.so.6#double y = pow(double b, "
-      "double a)\" }",
-      trusting());
+  Scripted r("DEF S Script { eventIn SFFloat set_x eventOut SFFloat y url "
+             "\"native:libm.so.6#sqrtf\" } DEF P Script { eventIn SFFloat a eventIn SFFloat b "
+             "eventOut SFFloat y url \"native:libm.so.6#double y = pow(double b, double a)\" }",
+             trusting());
   r.set("S", "set_x", 9.0f);
   EXPECT_EQ(r.get("S", "y"), "3");
   r.set("P", "a", 2.0f);
@@ -114,9 +112,8 @@ TEST_F(Native, TextsPicturesAndNodes) {
   EXPECT_EQ(Echo("MFString", "letters", options, "SFInt32")(MFString{"abc", "", "de"}), "5");
   EXPECT_EQ(Echo("SFImage", "brightness", options, "SFInt32")(Image{1, 2, 2, {1, 2, 3, 4}}), "10");
   Scripted r("DEF B Shape { } DEF C Shape { } DEF S Script { eventIn SFNode a eventIn MFNode b "
-             "eventIn MFNode c eventOut SFNode x "
-             "eventOut SFNode y eventOut MFNode z url \"native:native_test#a: x = same_node(a); b: "
-             "last_node(b, y)\n"
+             "eventIn MFNode c eventOut SFNode x eventOut SFNode y eventOut MFNode z url "
+             "\"native:native_test#a: x = same_node(a); b: last_node(b, y)\n"
              "c: all_nodes(c, z)\" }",
              options);
   const NodeRef box = r.browser.node("B"), cube = r.browser.node("C");
@@ -140,8 +137,8 @@ TEST_F(Native, TheAnswerSaysWhetherAnEventIsSent) {
 }
 
 TEST_F(Native, FieldsAreConstantsAndState) {
-  Scripted r("DEF S Script { eventIn SFFloat in field SFFloat state 8 eventOut SFFloat out "
-             "url \"native:native_test#in: smooth(in, &state, out)\" }",
+  Scripted r("DEF S Script { eventIn SFFloat in field SFFloat state 8 eventOut SFFloat out url "
+             "\"native:native_test#in: smooth(in, &state, out)\" }",
              trusting());
   r.set("S", "in", 4.0f);
   EXPECT_EQ(r.get("S", "out"), "6");
@@ -152,10 +149,9 @@ TEST_F(Native, FieldsAreConstantsAndState) {
 
 TEST_F(Native, InputsOfOneCascadeAreOneCall) {
   Scripted r("DEF S Script { eventIn SFVec3f v eventIn SFFloat by eventOut SFVec3f out url "
-             "\"native:native_test#shift3\" } "
-             "DEF F Script { eventIn SFBool go eventOut SFVec3f v eventOut SFFloat x url "
-             "\"test:go: print go\" } "
-             "DEF V Viewpoint { } ROUTE F.v TO S.v ROUTE F.x TO S.by",
+             "\"native:native_test#shift3\" } DEF F Script { eventIn SFBool go eventOut SFVec3f v "
+             "eventOut SFFloat x url \"test:go: print go\" } DEF V Viewpoint { } ROUTE F.v TO S.v "
+             "ROUTE F.x TO S.by",
              trusting());
   r.log("S", "out");
   r.set("S", "by", 1.0f);

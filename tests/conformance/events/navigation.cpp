@@ -166,8 +166,7 @@ TEST(Fly, GoesWhereTheViewPointsAndDoesNotFall) {
 
 TEST(Examine, GoesRoundTheMiddleOfTheWorld) {
   Running r("NavigationInfo { type \"EXAMINE\" } Viewpoint { position 3 0 10 } Transform { "
-            "translation 3 0 0 children Shape { "
-            "geometry Box {} } }");
+            "translation 3 0 0 children Shape { geometry Box {} } }");
   r.browser.navigate({.turn = 1}, 1);
   EXPECT_EQ(eyeOf(r.browser), "13 0 0");
   EXPECT_EQ(lookOf(r.browser), "-1 0 0");
@@ -261,8 +260,7 @@ TEST(Collision, SendsCollideTimeWhenItsChildrenStopTheViewer) {
 TEST(Collision, WithCollideFalseTheViewerPasses) {
   Running r(walks + "Viewpoint { position 0 1.6 10 } " + floor20 +
             "DEF C Collision { collide FALSE children Transform { translation 0 2 0 children Shape "
-            "{ geometry Box { size 40 4 2 "
-            "} } } }");
+            "{ geometry Box { size 40 4 2 } } } }");
   r.log("C", "collideTime");
   r.browser.navigate({.ahead = 1}, 10);
   EXPECT_EQ(eyeOf(r.browser), "0 1.6 -10");
@@ -314,8 +312,7 @@ TEST(Keys, HeldArrowsWalkAndTurnAsTimeGoesBy) {
 
 TEST(Keys, PagesLeadThroughTheViewpointsWithADescriptionAndHomeBack) {
   Running r(walks + "DEF A Viewpoint { description \"a\" } DEF X Viewpoint {} Group { children DEF "
-                    "B Viewpoint { description "
-                    "\"b\" position 0 3 0 } }");
+                    "B Viewpoint { description \"b\" position 0 3 0 } }");
   r.browser.key(Key::pageDown, true);
   EXPECT_EQ(nameOf(r.browser.bound().viewpoint), "B");
   r.browser.key(Key::pageDown, true);

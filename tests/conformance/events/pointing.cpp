@@ -87,8 +87,7 @@ TEST(Picking, OnlyTheChosenChildOfASwitchIsThere) {
 
 TEST(Picking, TheLevelOfDetailIsThatForTheViewer) {
   Running r("DEF V Viewpoint { position 0 0 4 } LOD { range 8 level [ DEF NEAR Shape { geometry "
-            "Box {} } DEF FAR Shape { "
-            "geometry Box {} } ] }");
+            "Box {} } DEF FAR Shape { geometry Box {} } ] }");
   PickHit hit;
   ASSERT_TRUE(pickAt(r, 0, 0, hit));
   EXPECT_EQ(hit.path.back().node->defName, "NEAR");
@@ -99,8 +98,7 @@ TEST(Picking, TheLevelOfDetailIsThatForTheViewer) {
 
 TEST(Picking, BillboardsFaceTheViewer) {
   Running r("DEF V Viewpoint { position 10 0 0 orientation 0 1 0 1.5707963 } Billboard { children "
-            "Shape { geometry Box { size 2 "
-            "2 0.2 } } }");
+            "Shape { geometry Box { size 2 2 0.2 } } }");
   const double origin[3] = {10, 0, -0.9}, direction[3] = {-1, 0, 0};
   PickHit hit;
   ASSERT_TRUE(r.browser.pick(origin, direction, {}, hit));
@@ -132,8 +130,7 @@ TEST(Picking, LargeMeshesGiveWhatSmallOnesDo) {
   std::string heights;
   for (int i = 0; i < 60 * 60; ++i) heights += fmt::format("{} ", (i * 7919 % 13) * 0.1);
   Running r("Transform { rotation 1 0 0 1.5707963 children Shape { geometry ElevationGrid { solid "
-            "FALSE xDimension 60 zDimension "
-            "60 height [ " +
+            "FALSE xDimension 60 zDimension 60 height [ " +
             heights + " ] } } }");
   PickHit hit;
   for (int i = 0; i < 58; ++i) { // at grid points the height must be that of the file

@@ -11,12 +11,10 @@ std::string translationOf(Node& node) {
 
 TEST(Prototypes, FiveDeepWithRoutes) {
   std::string text = "PROTO P1 [ exposedField SFVec3f at 0 0 0 ] { DEF A Transform {} DEF T "
-                     "Transform { translation IS at } ROUTE "
-                     "T.translation TO A.translation }";
+                     "Transform { translation IS at } ROUTE T.translation TO A.translation }";
   for (int i = 2; i <= 5; ++i)
     text += fmt::format(" PROTO P{0} [ exposedField SFVec3f at {0} 0 0 ] {{ DEF I P{1} {{ at IS at "
-                        "}} DEF X Transform {{}} ROUTE "
-                        "I.at_changed TO X.translation }}",
+                        "}} DEF X Transform {{}} ROUTE I.at_changed TO X.translation }}",
                         i, i - 1);
   Running r(text +
             " DEF I P5 {} DEF J P5 { at 9 0 0 } DEF B Transform {} ROUTE I.at TO B.translation");
@@ -31,12 +29,9 @@ TEST(Prototypes, FiveDeepWithRoutes) {
 
 TEST(Prototypes, OneInterfaceReachesAllItIsConnectedTo) {
   Running r("PROTO P [ eventIn SFVec3f in exposedField SFVec3f both 0 0 0 eventOut SFVec3f out ] { "
-            "DEF A Transform { "
-            "set_translation IS "
-            "in translation_changed IS out scale IS both } DEF B Transform { translation IS both } "
-            "} DEF I P {} DEF C Transform "
-            "{} ROUTE "
-            "I.out TO C.translation");
+            "DEF A Transform { set_translation IS in translation_changed IS out scale IS both } "
+            "DEF B Transform { translation IS both } } DEF I P {} DEF C Transform {} ROUTE I.out "
+            "TO C.translation");
   r.log("I", "out");
   r.set("I", "in", Vec3f{1, 0, 0});
   EXPECT_EQ(r.take(), Log{"0 I.out 1 0 0"});
@@ -49,9 +44,8 @@ TEST(Prototypes, OneInterfaceReachesAllItIsConnectedTo) {
 
 TEST(Prototypes, ScriptsInBodiesTakeAndGiveEvents) {
   Scripted r("PROTO P [ eventIn SFInt32 in eventOut SFInt32 out field SFInt32 start 5 ] { Group {} "
-             "Script { eventIn SFInt32 a IS in "
-             "eventOut SFInt32 b IS out field SFInt32 sum IS start url \"test:a: add sum b\" } } "
-             "DEF I P {} DEF J P { start 100 }");
+             "Script { eventIn SFInt32 a IS in eventOut SFInt32 b IS out field SFInt32 sum IS "
+             "start url \"test:a: add sum b\" } } DEF I P {} DEF J P { start 100 }");
   r.log("I", "out");
   r.log("J", "out");
   r.set("I", "in", 1);
@@ -80,10 +74,9 @@ TEST(Prototypes, NodesBehindTheFirstRunButAreNotDrawn) {
 
 TEST(Prototypes, AUrnThatNamesANodeOfThisBrowserIsThatNode) {
   Running r("EXTERNPROTO MyTransform [ exposedField SFVec3f translation field SFVec3f scale "
-            "eventIn MFNode addChildren ] [ "
-            "\"urn:example:unknown\" \"urn:example.org:node:Transform\" \"absent.wrl\" ] DEF I "
-            "MyTransform { translation 1 2 3 } DEF T "
-            "Transform {} ROUTE T.translation TO I.translation");
+            "eventIn MFNode addChildren ] [ \"urn:example:unknown\" "
+            "\"urn:example.org:node:Transform\" \"absent.wrl\" ] DEF I MyTransform { translation 1 "
+            "2 3 } DEF T Transform {} ROUTE T.translation TO I.translation");
   EXPECT_EQ(r.browser.world().diagnostics.warnings() + r.browser.world().diagnostics.errors(), 0u);
   ASSERT_TRUE(renderedNode(&r.node("I")));
   EXPECT_EQ(renderedNode(&r.node("I"))->type().name, "Transform");
@@ -98,12 +91,12 @@ TEST(Prototypes, AUrnOfAnotherNodeLeadsToTheNextUrl) {
 }
 
 TEST(Switches, NullKeepsItsPlaceAmongTheChoices) {
-  const std::string text = "#VRML V2.0 utf8\nDEF S Switch { whichChoice 1 choice [ NULL DEF A "
-                           "Group {} NULL DEF B Group {} ] }\n"
-                           "DEF L LOD { level [ DEF C Group {} NULL ] range 10 }\nPROTO P [ field "
-                           "MFNode list [ NULL Group {} ] ] { Switch { "
-                           "choice IS list } }\nDEF I P {} DEF J P { list [ NULL NULL DEF D Group "
-                           "{} ] }\nDEF G Group { children [ NULL ] }";
+  const std::string text =
+      "#VRML V2.0 utf8\nDEF S Switch { whichChoice 1 choice [ NULL DEF A Group {} NULL DEF B Group "
+      "{} ] }\n"
+      "DEF L LOD { level [ DEF C Group {} NULL ] range 10 }\nPROTO P [ field MFNode list [ NULL "
+      "Group {} ] ] { Switch { choice IS list } }\nDEF I P {} DEF J P { list [ NULL NULL DEF D "
+      "Group {} ] }\nDEF G Group { children [ NULL ] }";
   const auto world = loadWorldFromMemory(text, "test.wrl");
   EXPECT_EQ(world->diagnostics.warnings(), 1u); // only about the Group
   const auto again = loadWorldFromMemory(writeWorld(*world), "again.wrl");

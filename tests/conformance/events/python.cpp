@@ -158,9 +158,8 @@ TEST_F(Python, FunctionsAreCalledAsTheStandardSays) {
 
 TEST_F(Python, NodesAreThoseOfTheBinding) {
   Scripted r("DEF T Transform { translation 1 2 3 children DEF G Shape { } } DEF S Script { "
-             "directOutput TRUE eventIn SFNode in_ "
-             "field SFNode t USE T eventOut SFNode out eventOut MFNode all eventOut SFBool same "
-             "eventOut SFVec3f was\n"
+             "directOutput TRUE eventIn SFNode in_ field SFNode t USE T eventOut SFNode out "
+             "eventOut MFNode all eventOut SFBool same eventOut SFVec3f was\n"
              "url \"python:\n"
              "import xvrml\n"
              "def in_(node):\n"
@@ -199,8 +198,7 @@ TEST_F(Python, ThreadsOfAScriptCannotChangeNodes) {
       trusting());
   r.set("S", "go", true);
   EXPECT_EQ(r.printed(), Log{"only the functions of a Script can change nodes here, on the thread "
-                             "on which they are called; no "
-                             "function of this Script is running"});
+                             "on which they are called; no function of this Script is running"});
   EXPECT_EQ(r.get("T", "scale"), "1 1 1");
 }
 
@@ -217,23 +215,23 @@ TEST_F(Python, EventsToOtherNodesNeedDirectOutput) {
 }
 
 TEST_F(Python, TheBrowserObject) {
-  Scripted r("DEF T Transform { } DEF B Transform { } DEF S Script { directOutput TRUE eventIn "
-             "SFBool go field SFNode t USE T "
-             "field SFNode b USE B eventIn MFNode made eventOut SFVec3f out\n"
-             "url \"python:\n"
-             "def go(v):\n"
-             "    print(browser.name, browser.world_url, browser.now, browser.current_speed, "
-             "browser.current_frame_rate)\n"
-             "    browser.set_description('hello')\n"
-             "    browser.add_route(script.t, 'translation_changed', script.b, 'set_translation')\n"
-             "    nodes = browser.create_vrml_from_string('DEF New Transform { scale 2 2 2 }')\n"
-             "    print(len(nodes), nodes[0].scale)\n"
-             "    script.t.children = nodes\n"
-             "    browser.add_route(script, 'out', nodes[0], 'translation')\n"
-             "    script.t.translation = 7, 8, 9\n"
-             "    script.out = 1, 1, 1\n"
-             "def made(nodes): print('made', len(nodes))\n\" }",
-             trusting());
+  Scripted r(
+      "DEF T Transform { } DEF B Transform { } DEF S Script { directOutput TRUE eventIn SFBool go "
+      "field SFNode t USE T field SFNode b USE B eventIn MFNode made eventOut SFVec3f out\n"
+      "url \"python:\n"
+      "def go(v):\n"
+      "    print(browser.name, browser.world_url, browser.now, browser.current_speed, "
+      "browser.current_frame_rate)\n"
+      "    browser.set_description('hello')\n"
+      "    browser.add_route(script.t, 'translation_changed', script.b, 'set_translation')\n"
+      "    nodes = browser.create_vrml_from_string('DEF New Transform { scale 2 2 2 }')\n"
+      "    print(len(nodes), nodes[0].scale)\n"
+      "    script.t.children = nodes\n"
+      "    browser.add_route(script, 'out', nodes[0], 'translation')\n"
+      "    script.t.translation = 7, 8, 9\n"
+      "    script.out = 1, 1, 1\n"
+      "def made(nodes): print('made', len(nodes))\n\" }",
+      trusting());
   r.set("S", "go", true);
   EXPECT_EQ(r.messages(), Log{});
   EXPECT_EQ(r.printed(), (Log{"OpenRT XVRML test.wrl 0.0 0.0 0.0", "1 (2.0, 2.0, 2.0)"}));
@@ -373,8 +371,8 @@ TEST_F(Python, OnlyInTrustedWorlds) {
 
 TEST_F(Python, ObjectsOfAScriptThatHasEndedSaySo) {
   Scripted r("DEF S Script { eventIn SFBool go url \"python:import builtins\nbuiltins.kept_script "
-             "= script\" } "
-             "DEF T Script { eventIn SFBool go url \"python:\ndef go(v):\n    try: kept_script.x\n"
+             "= script\" } DEF T Script { eventIn SFBool go url \"python:\ndef go(v):\n    try: "
+             "kept_script.x\n"
              "    except ValueError as e: print(e)\" }",
              trusting());
   r.set("T", "go", true);

@@ -16,9 +16,8 @@ uint64_t errors(Running& r) { return r.browser.world().diagnostics.errors(); }
 
 // The key frames of Cosmo Worlds are written like this.
 TEST(Recovery, ANodeMayBeUsedWithinAFieldOfItsOwnThatIsNotDrawn) {
-  const std::string text =
-      "PROTO Keys [ field MFNode actors [] ] { Group {} } "
-      "DEF K Keys { actors [ DEF T Transform { children [ Group {} USE K ] } ] } USE T";
+  const std::string text = "PROTO Keys [ field MFNode actors [] ] { Group {} } DEF K Keys { actors "
+                           "[ DEF T Transform { children [ Group {} USE K ] } ] } USE T";
   Running r(text);
   EXPECT_EQ(r.browser.world().diagnostics.list().size(), 0u);
   EXPECT_EQ(r.get("T", "children"), "[Group, K]");
@@ -29,10 +28,9 @@ TEST(Recovery, ANodeMayBeUsedWithinAFieldOfItsOwnThatIsNotDrawn) {
 }
 
 TEST(Recovery, InACopyOfAPrototypesBodyToo) {
-  Running r("PROTO Keys [ field MFNode actors [] ] { Group {} } "
-            "PROTO Film [] { Group { children DEF K Keys { actors DEF T Transform { children USE K "
-            "} } } } DEF A Film {} DEF B "
-            "Film {}");
+  Running r(
+      "PROTO Keys [ field MFNode actors [] ] { Group {} } PROTO Film [] { Group { children DEF K "
+      "Keys { actors DEF T Transform { children USE K } } } } DEF A Film {} DEF B Film {}");
   EXPECT_EQ(r.browser.world().diagnostics.list().size(), 0u);
 }
 
@@ -55,8 +53,8 @@ TEST(Recovery, AGroupCannotHoldItselfWhateverIsBetween) {
 }
 
 TEST(Recovery, AFieldThatIsAnExposedFieldTakesTheGivenValue) {
-  Running r("PROTO Plane [ exposedField SFVec3f size 10 10 .1 ] { Box { size IS size } } "
-            "Shape { geometry DEF A Plane { size 1 2 3 } } Shape { geometry DEF B Plane {} }");
+  Running r("PROTO Plane [ exposedField SFVec3f size 10 10 .1 ] { Box { size IS size } } Shape { "
+            "geometry DEF A Plane { size 1 2 3 } } Shape { geometry DEF B Plane {} }");
   EXPECT_EQ(errors(r), 1u);
   EXPECT_EQ(fieldOf(drawn(r, "A"), "size"), "1 2 3");
   EXPECT_EQ(fieldOf(drawn(r, "B"), "size"), "10 10 0.1");
@@ -76,29 +74,27 @@ TEST(Recovery, AnEventOutThatIsAnExposedFieldSends) {
 }
 
 TEST(Recovery, AScriptWithAnExposedFieldRunsAndHasItAsAField) {
-  Scripted r("DEF T TimeSensor {} DEF S Script { exposedField SFInt32 n 20 eventIn SFInt32 a "
-             "eventOut SFInt32 b url \"test:a: "
-             "add n b\" } "
-             "DEF W Switch {} ROUTE S.b TO W.whichChoice");
+  Scripted r(
+      "DEF T TimeSensor {} DEF S Script { exposedField SFInt32 n 20 eventIn SFInt32 a eventOut "
+      "SFInt32 b url \"test:a: add n b\" } DEF W Switch {} ROUTE S.b TO W.whichChoice");
   EXPECT_EQ(errors(r), 1u);
   r.set("S", "a", 2);
   EXPECT_EQ(r.get("W", "whichChoice"), "22");
 }
 
 TEST(Recovery, AScriptWithADeclarationOfAnUnknownTypeRunsWithoutIt) {
-  Scripted r(
-      "DEF S Script { field SFVec4f v 1 2 3 4 field MFDouble d [ 1 2 ] eventOut SFDouble o field "
-      "SFInt32 n 20 eventIn SFInt32 a "
-      "eventOut SFInt32 b url \"test:a: add n b\" } DEF W Switch {} ROUTE S.b TO W.whichChoice");
+  Scripted r("DEF S Script { field SFVec4f v 1 2 3 4 field MFDouble d [ 1 2 ] eventOut SFDouble o "
+             "field SFInt32 n 20 eventIn SFInt32 a eventOut SFInt32 b url \"test:a: add n b\" } "
+             "DEF W Switch {} ROUTE S.b TO W.whichChoice");
   EXPECT_EQ(errors(r), 3u);
   r.set("S", "a", 2);
   EXPECT_EQ(r.get("W", "whichChoice"), "22");
 }
 
 TEST(Recovery, AMisplacedNodeKeepsItsName) {
-  Running r("DEF RED Material { diffuseColor 1 0 0 } DEF S Shape { appearance DEF A Appearance { "
-            "material USE RED } "
-            "geometry Group { children DEF IN Group {} } } Group { children USE IN }");
+  Running r(
+      "DEF RED Material { diffuseColor 1 0 0 } DEF S Shape { appearance DEF A Appearance { "
+      "material USE RED } geometry Group { children DEF IN Group {} } } Group { children USE IN }");
   EXPECT_EQ(errors(r), 2u); // the Material at the root, and the Group as geometry
   EXPECT_EQ(r.browser.world().diagnostics.warnings(), 0u);
   EXPECT_EQ(r.get("A", "material"), "RED");
@@ -190,8 +186,7 @@ TEST(Recovery, WhatIsReadBehindAMissingBraceStandsWhereItBelongs) {
 
 TEST(Recovery, ValuesOfAListWithoutItsBracketAreKept) {
   Running r("Shape { geometry DEF F IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 "
-            "0, 0 1 0 } "
-            "coordIndex [ 0 1 2 -1 ccw FALSE } } Group { }");
+            "0, 0 1 0 } coordIndex [ 0 1 2 -1 ccw FALSE } } Group { }");
   EXPECT_EQ(errors(r), 2u);
   EXPECT_EQ(r.get("C", "point"), "[0 0 0, 1 0 0, 0 1 0]");
   EXPECT_EQ(r.get("F", "coordIndex"), "[0, 1, 2, -1]");

@@ -35,8 +35,7 @@ TEST(Rotations, OneMessageSaysHowManyAndWhich) {
 // Many files write 0 1 1 for "between y and z".
 TEST(Rotations, ComponentsUpToOneAreNoWordWorth) {
   Running r("DEF T Transform { rotation 0 1 1 1 } DEF U Transform { rotation 0.577 0.577 0.577 1 } "
-            "DEF V Transform { rotation 0 "
-            "0 0 1 }");
+            "DEF V Transform { rotation 0 0 0 1 }");
   EXPECT_TRUE(r.browser.world().diagnostics.list().empty());
   EXPECT_EQ(r.get("T", "rotation"), "0 0.707107 0.707107 1");
   EXPECT_EQ(r.get("U", "rotation"), "0.577 0.577 0.577 1"); // the digits of a file, not an error
@@ -54,9 +53,7 @@ TEST(Rotations, OfEventsAreNormalisedAndSentSo) {
 
 TEST(Rotations, ThroughPrototypesAreNormalisedWhereANodeTakesThem) {
   Running r("PROTO P [ exposedField SFRotation turn 0 0 2 1 ] { Transform { rotation IS turn } } "
-            "DEF A P {} DEF B P { turn 0 "
-            "1.618034 1 "
-            "1.25 }");
+            "DEF A P {} DEF B P { turn 0 1.618034 1 1.25 }");
   const auto inside = [&](const char* name) {
     Node& node = *renderedNode(r.browser.node(name).get());
     return textOf(node.get(*node.type().find("rotation")));

@@ -26,8 +26,7 @@ TEST(Routes, ALoopEndsBecauseAnEventOutSendsOncePerTimestamp) {
 
 TEST(Routes, FanOutReachesAllInTheOrderOfTheRoutes) {
   Running r("DEF A Transform {} DEF B Transform {} DEF C Transform {} ROUTE A.translation TO "
-            "C.translation ROUTE A.translation "
-            "TO B.translation");
+            "C.translation ROUTE A.translation TO B.translation");
   r.log("B", "translation");
   r.log("C", "translation");
   r.set("A", "translation", Vec3f{1, 0, 0});
@@ -38,8 +37,7 @@ TEST(Routes, FanInDeliversAllAndSendsOne) {
   Running r(
       "DEF A Transform {} DEF B Transform { scale 2 2 2 } DEF C Transform {} DEF D Transform {}"
       "ROUTE A.translation TO B.translation ROUTE A.translation TO C.translation ROUTE "
-      "B.translation TO D.translation "
-      "ROUTE C.translation TO D.translation");
+      "B.translation TO D.translation ROUTE C.translation TO D.translation");
   r.log("D", "translation");
   r.set("A", "translation", Vec3f{1, 0, 0});
   EXPECT_EQ(r.take().size(), 1u);
@@ -47,8 +45,7 @@ TEST(Routes, FanInDeliversAllAndSendsOne) {
 
 TEST(Routes, DuplicateRoutesCountOnce) {
   Running r("DEF A Transform {} DEF B Transform {} ROUTE A.translation TO B.translation ROUTE "
-            "A.translation_changed TO "
-            "B.set_translation");
+            "A.translation_changed TO B.set_translation");
   EXPECT_FALSE(r.browser.deleteRoute(r.node("B"), "translation", r.node("A"), "translation"));
   EXPECT_TRUE(r.browser.deleteRoute(r.node("A"), "translation", r.node("B"), "translation"));
   r.set("A", "translation", Vec3f{1, 0, 0});
@@ -80,8 +77,7 @@ TEST(Routes, EventsCrossTheBordersOfPrototypes) {
 
 TEST(Routes, AnExposedFieldOfAPrototypeFollowsTheNodeInItsBody) {
   Running r("PROTO P [ exposedField SFVec3f at 1 1 1 ] { DEF T Transform { translation IS at } DEF "
-            "U Transform {} ROUTE "
-            "T.translation TO U.translation }"
+            "U Transform {} ROUTE T.translation TO U.translation }"
             "DEF I P { at 5 5 5 } DEF B Transform {} ROUTE I.at_changed TO B.translation");
   EXPECT_EQ(r.get("I", "at"), "5 5 5");
   r.set("I", "set_at", Vec3f{7, 0, 0});
@@ -120,8 +116,7 @@ TEST(Changes, EachFieldIsReportedOnceBetweenTwoReadings) {
 
 TEST(Changes, RoutesTellWhatTheyCanReach) {
   Running r("PROTO P [ eventIn SFVec3f in ] { DEF T Transform { translation IS in } } DEF I P {} "
-            "DEF A Transform {} DEF B "
-            "Transform {} ROUTE A.translation TO I.in");
+            "DEF A Transform {} DEF B Transform {} ROUTE A.translation TO I.in");
   EXPECT_TRUE(reaches(*renderedNode(&r.node("I")), Change::transform));
   EXPECT_EQ(reachReason(*renderedNode(&r.node("I")), Change::transform),
             "ROUTE from A.translation");

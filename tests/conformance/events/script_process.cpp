@@ -330,9 +330,9 @@ TEST_F(ScriptProcess, TheWorldGoesOnWhileAScriptTakesItsTime) {
 
 TEST_F(ScriptProcess, FramesGoOnWhileAScriptLoops) {
   for (const char* program : {"go: spin", "go: calls out", "go: chatter x"}) {
-    Scripted r(world(program) + " DEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in "
-                                "eventOut SFTime out url "
-                                "\"test:in: echo out\" } ROUTE C.time TO T.in",
+    Scripted r(world(program) +
+                   " DEF C TimeSensor { loop TRUE } DEF T Script { eventIn SFTime in eventOut "
+                   "SFTime out url \"test:in: echo out\" } ROUTE C.time TO T.in",
                limits(0.05, 0.6));
     r.log("T", "out");
     r.set("S", "go", true);
@@ -371,10 +371,10 @@ TEST_F(ScriptProcess, ManyLoopsCostOnePatience) {
 TEST_F(ScriptProcess, WithHardlyAnyPatienceScriptsBeginByAndBy) {
   std::string text = "DEF T Transform {}";
   for (int i = 0; i < 100; ++i)
-    text += fmt::format("DEF S{} Script {{ eventIn SFVec3f in url \"hostile:initialize: slow "
-                        "1\ninitialize: print begins\nin: print "
-                        "event\" }} ROUTE T.translation TO S{}.in\n",
-                        i, i);
+    text += fmt::format(
+        "DEF S{} Script {{ eventIn SFVec3f in url \"hostile:initialize: slow 1\ninitialize: print "
+        "begins\nin: print event\" }} ROUTE T.translation TO S{}.in\n",
+        i, i);
   Scripted r(text, limits(1e-6, 10));
   r.set("T", "translation", Vec3f{1, 2, 3}); // waits for Scripts that have not started
   Log printed = r.printed();

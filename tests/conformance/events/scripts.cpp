@@ -13,8 +13,7 @@ XVRML_SCRIPTS_SOMEWHERE(Scripts);
 TEST_P(Scripts, EventsGoInAndComeOut) {
   Scripted r("DEF S Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" } "
              "DEF T Script { eventIn SFInt32 in field SFInt32 sum 10 eventOut SFInt32 out url "
-             "\"test:in: add sum out\" } "
-             "ROUTE S.out TO T.in");
+             "\"test:in: add sum out\" } ROUTE S.out TO T.in");
   r.log("S", "out");
   r.log("T", "out");
   r.browser.tick(2);
@@ -29,8 +28,7 @@ TEST_P(Scripts, EventsGoInAndComeOut) {
 TEST_P(Scripts, InitializeComesBeforeTheFirstEvent) {
   Scripted r("DEF C TimeSensor { loop TRUE } DEF S Script { eventIn SFTime in eventOut SFTime out "
              "url \"test:create: print create\ninitialize: print initialize\ninitialize: now "
-             "out\nin: print event\" } "
-             "ROUTE C.time TO S.in");
+             "out\nin: print event\" } ROUTE C.time TO S.in");
   EXPECT_EQ(r.printed(), (Log{"create", "initialize"}));
   EXPECT_EQ(r.get("S", "out"), "0");
   r.browser.tick(1);
@@ -38,10 +36,9 @@ TEST_P(Scripts, InitializeComesBeforeTheFirstEvent) {
 }
 
 TEST_P(Scripts, AnEventOfInitializeReachesItsRoutes) {
-  Scripted r("DEF S Script { eventOut SFString out url \"test:initialize: text out hello\" } "
-             "DEF T Script { eventIn SFString in eventOut SFString out url \"test:initialize: "
-             "print T\nin: echo out\" } "
-             "ROUTE S.out TO T.in");
+  Scripted r("DEF S Script { eventOut SFString out url \"test:initialize: text out hello\" } DEF T "
+             "Script { eventIn SFString in eventOut SFString out url \"test:initialize: print "
+             "T\nin: echo out\" } ROUTE S.out TO T.in");
   EXPECT_EQ(r.printed(), Log{"T"});
   EXPECT_EQ(r.get("T", "out"), "hello");
 }
@@ -61,11 +58,11 @@ TEST_P(Scripts, EventsProcessedFollowsTheEventsOfACascade) {
 
 TEST_P(Scripts, WithoutMustEvaluateEventsWaitForTheEndOfTheCascade) {
   const auto order = [](const char* must) {
-    Scripted r(fmt::format(
-        "DEF A Script {{ eventIn SFBool in url \"test:in: print A\" mustEvaluate {} }} "
-        "DEF B Script {{ eventIn SFBool in url \"test:in: print B\" mustEvaluate TRUE }} "
-        "DEF V Viewpoint {{}} ROUTE V.isBound TO A.in ROUTE V.isBound TO B.in",
-        must));
+    Scripted r(
+        fmt::format("DEF A Script {{ eventIn SFBool in url \"test:in: print A\" mustEvaluate {} }} "
+                    "DEF B Script {{ eventIn SFBool in url \"test:in: print B\" mustEvaluate TRUE "
+                    "}} DEF V Viewpoint {{}} ROUTE V.isBound TO A.in ROUTE V.isBound TO B.in",
+                    must));
     r.printed();
     r.set("V", "set_bind", false);
     return r.printed();
@@ -77,10 +74,8 @@ TEST_P(Scripts, WithoutMustEvaluateEventsWaitForTheEndOfTheCascade) {
 TEST_P(Scripts, AnEventOutSendsOnceInACascade) {
   Scripted r(
       "DEF S Script { mustEvaluate TRUE eventIn SFInt32 a eventIn SFInt32 b eventOut SFInt32 out "
-      "url \"test:a: echo out\nb: echo out\" } "
-      "DEF T Script { eventIn SFInt32 in eventOut SFInt32 out url \"test:in: echo out\" } ROUTE "
-      "T.out TO S.a ROUTE T.out TO "
-      "S.b");
+      "url \"test:a: echo out\nb: echo out\" } DEF T Script { eventIn SFInt32 in eventOut SFInt32 "
+      "out url \"test:in: echo out\" } ROUTE T.out TO S.a ROUTE T.out TO S.b");
   r.log("S", "out");
   r.set("T", "in", 1);
   EXPECT_EQ(r.take(), Log{"0 S.out 1"});
@@ -97,8 +92,7 @@ TEST_P(Scripts, OfSeveralValuesInOneFunctionTheLastOneIsSent) {
 TEST_P(Scripts, EventsToOtherNodesNeedDirectOutput) {
   const auto world = [](const char* direct) {
     return fmt::format("DEF T Transform {{}} DEF S Script {{ directOutput {} field SFNode to USE T "
-                       "eventIn SFVec3f in "
-                       "url \"test:in: post to set_translation\" }}",
+                       "eventIn SFVec3f in url \"test:in: post to set_translation\" }}",
                        direct);
   };
   Scripted refused(world("FALSE"));
@@ -119,12 +113,11 @@ TEST_P(Scripts, EventsToOtherNodesNeedDirectOutput) {
 }
 
 TEST_P(Scripts, ReadsTheFieldsOfNodesItKnows) {
-  Scripted r("DEF T Transform { translation 1 2 3 } DEF S Script { field SFNode to USE T eventIn "
-             "SFBool a eventIn SFBool b eventIn "
-             "SFBool c eventOut SFVec3f out eventOut SFBool no "
-             "url \"test:a: read to translation out\na: read to translation_changed out\nb: read "
-             "to bboxCenter out\n"
-             "c: read self directOutput no\nc: read to out out\" }");
+  Scripted r(
+      "DEF T Transform { translation 1 2 3 } DEF S Script { field SFNode to USE T eventIn SFBool a "
+      "eventIn SFBool b eventIn SFBool c eventOut SFVec3f out eventOut SFBool no url \"test:a: "
+      "read to translation out\na: read to translation_changed out\nb: read to bboxCenter out\n"
+      "c: read self directOutput no\nc: read to out out\" }");
   r.set("S", "a", true);
   EXPECT_EQ(r.get("S", "out"), "1 2 3");
   r.set("S", "b", true);
@@ -135,8 +128,8 @@ TEST_P(Scripts, ReadsTheFieldsOfNodesItKnows) {
 }
 
 TEST_P(Scripts, NodesAreDescribed) {
-  Scripted r("DEF T Group {} DEF S Script { field SFNode to USE T eventIn SFBool in "
-             "url \"test:in: describe to\nin: find to set_children\nin: find to nothing\" }");
+  Scripted r("DEF T Group {} DEF S Script { field SFNode to USE T eventIn SFBool in url \"test:in: "
+             "describe to\nin: find to set_children\nin: find to nothing\" }");
   r.set("S", "in", true);
   EXPECT_EQ(r.printed(),
             (Log{"Group 'T'", "eventIn 15 addChildren", "eventIn 15 removeChildren",
@@ -146,9 +139,8 @@ TEST_P(Scripts, NodesAreDescribed) {
 
 TEST_P(Scripts, HandlesEndWithTheCallUnlessRetained) {
   Scripted r("DEF T Transform {} DEF S Script { directOutput TRUE eventIn SFNode keep eventIn "
-             "SFNode borrow eventIn SFBool drop eventIn "
-             "SFVec3f in url \"test:keep: keep\nborrow: borrow\ndrop: drop\nin: post kept "
-             "set_translation\" }");
+             "SFNode borrow eventIn SFBool drop eventIn SFVec3f in url \"test:keep: keep\nborrow: "
+             "borrow\ndrop: drop\nin: post kept set_translation\" }");
   r.set("S", "borrow", r.browser.node("T"));
   r.set("S", "in", Vec3f{1, 0, 0});
   EXPECT_EQ(r.get("T", "translation"), "0 0 0");
@@ -184,9 +176,7 @@ TEST_P(Scripts, AProgramThatDoesNotEndIsStopped) {
   BrowserOptions options;
   options.scriptSteps = 100'000;
   Scripted r("DEF S Script { eventIn SFBool in eventIn SFInt32 other eventOut SFInt32 out url "
-             "\"test:in: loop\nother: echo "
-             "out\nshutdown: "
-             "print bye\" }",
+             "\"test:in: loop\nother: echo out\nshutdown: print bye\" }",
              options);
   r.set("S", "in", true);
   EXPECT_EQ(r.messages(), Log{"2: Script S: event took too long: the Script is stopped"});
@@ -201,9 +191,7 @@ TEST_P(Scripts, AProgramThatDoesNotEndIsStopped) {
 
 TEST_P(Scripts, ErrorsSayFileAndLine) {
   Scripted r("\nDEF S Script {\n eventIn SFBool in eventIn SFBool plain\n url [ \"none:\"\n\n  "
-             "\"test:\nin: error 2 "
-             "went\\\\wrong\nplain: "
-             "fail\" ]\n}");
+             "\"test:\nin: error 2 went\\\\wrong\nplain: fail\" ]\n}");
   r.messages();
   r.set("S", "in", true);
   r.set("S", "plain", true);
@@ -213,10 +201,9 @@ TEST_P(Scripts, ErrorsSayFileAndLine) {
 }
 
 TEST_P(Scripts, AMissingEngineIsToldOnceForEachProtocol) {
-  Scripted r(
-      "Script { url \"lisp:a\" } Script { url \"Lisp:b\" } DEF S Script { eventIn SFBool in url [ "
-      "\"x.class\" "
-      "\"prolog:c\" ] } Script { url [ \"prolog:d\" \"test:initialize: print d\" ] } Script {}");
+  Scripted r("Script { url \"lisp:a\" } Script { url \"Lisp:b\" } DEF S Script { eventIn SFBool in "
+             "url [ \"x.class\" \"prolog:c\" ] } Script { url [ \"prolog:d\" \"test:initialize: "
+             "print d\" ] } Script {}");
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 3u) << messages[0];
   EXPECT_EQ(messages[0].find("2: Script: no script engine for 'lisp:' is installed (looked in: "),
@@ -245,8 +232,7 @@ TEST_P(Scripts, ShutdownComesWhenANodeIsGone) {
         r.browser.createVrmlFromString(
             "Script { field SFString a \"x\" eventOut SFString b eventOut SFString c url "
             "\"test:initialize: print begins\nshutdown: print ends\nshutdown: read self a "
-            "c\nshutdown: "
-            "text b more\" }"));
+            "c\nshutdown: text b more\" }"));
   EXPECT_EQ(r.printed(), Log{"begins"});
   EXPECT_EQ(r.get("G", "children"), "[Script]");
   r.set("G", "children", MFNode{});
@@ -268,10 +254,9 @@ TEST_P(Scripts, ShutdownComesAtTheEndOfTheWorld) {
 TEST_P(Scripts, RoutesAreAddedAndDeleted) {
   const auto world = [](const char* direct) {
     return fmt::format("DEF A Transform {{}} DEF B Transform {{}} DEF S Script {{ directOutput {} "
-                       "field SFNode a USE A field SFNode b "
-                       "USE B eventIn SFBool add eventIn SFBool delete "
-                       "url \"test:add: addRoute a translation b translation\ndelete: deleteRoute "
-                       "a translation b translation\" }}",
+                       "field SFNode a USE A field SFNode b USE B eventIn SFBool add eventIn "
+                       "SFBool delete url \"test:add: addRoute a translation b "
+                       "translation\ndelete: deleteRoute a translation b translation\" }}",
                        direct);
   };
   Scripted r(world("TRUE"));
@@ -337,8 +322,7 @@ TEST_P(Scripts, BadPluginsAreRefusedWithTheReason) {
 TEST_P(Scripts, AProgramComesFromADataUrl) {
   Scripted r("Script { url \"data:text/x-test,initialize:%20print%20plain\" } Script { url "
              "\"data:Text/X-Test;base64,aW5pdGlhbGl6ZTogcHJpbnQgYmFzZTY0\" } Script { url [ "
-             "\"data:text/x-other,x\" "
-             "\"data:;base64,*\" ] }");
+             "\"data:text/x-other,x\" \"data:;base64,*\" ] }");
   EXPECT_EQ(r.printed(), (Log{"plain", "base64"}));
   const Log messages = r.messages();
   ASSERT_EQ(messages.size(), 2u);

@@ -107,13 +107,13 @@ TEST_F(TclLimits, RefusalsSayWhy) {
 }
 
 TEST_F(TclLimits, WhatComputesIsThere) {
-  W r(W::script("", "package require Tcl 8.6\nputs [lsort -integer {3 1 2}][dict get {a b} "
-                    "a][string toupper x][format %03d 7][expr {2**10}]"
-                    "[regsub a bab c][clock seconds]\nnamespace eval n {variable v 1}\ncoroutine c "
-                    "apply {{} {yield 1; yield 2}}; puts [c]\n"
-                    "puts [binary encode hex ab][llength [info commands]][apply {x {incr x}} "
-                    "1][expr {max(1, 3.5, 2) + min(4, 2)}]\nputs [try "
-                    "{error a} on error m {set m}]"));
+  W r(W::script("",
+                "package require Tcl 8.6\nputs [lsort -integer {3 1 2}][dict get {a b} a][string "
+                "toupper x][format %03d 7][expr {2**10}]"
+                "[regsub a bab c][clock seconds]\nnamespace eval n {variable v 1}\ncoroutine c "
+                "apply {{} {yield 1; yield 2}}; puts [c]\n"
+                "puts [binary encode hex ab][llength [info commands]][apply {x {incr x}} 1][expr "
+                "{max(1, 3.5, 2) + min(4, 2)}]\nputs [try {error a} on error m {set m}]"));
   EXPECT_EQ(r.printed().size(), 4u);
   EXPECT_EQ(r.messages(), Log{});
 }

@@ -32,28 +32,26 @@ TEST_F(TclScripts, EventsCallProcedures) {
 
 TEST_F(TclScripts, ProgramsComeFromDataUrlsToo) {
   W r("Script { url \"data:application/x-tcl,puts%20a\" } Script { url "
-      "\"data:text/x-tcl,puts%20b\" } Script { url \" TCL:puts "
-      "c\" }");
+      "\"data:text/x-tcl,puts%20b\" } Script { url \" TCL:puts c\" }");
   EXPECT_EQ(r.printed(), (Log{"a", "b", "c"}));
 }
 
 TEST_F(TclScripts, NodesAreCommands) {
   W q("DEF T Transform { children Shape {} } " +
-      W::script("directOutput TRUE field SFNode t USE T field SFNode none NULL eventOut SFVec3f "
-                "own eventIn SFBool go",
-                "proc go {} {\n"
-                "  global t none self\n"
-                "  puts [$t type]/[$t name]/[$t get translation]/$none\n"
-                "  $t set translation {0 1 0}\n"
-                "  $t set set_scale {2 2 2}\n"
-                "  puts [lindex [$t fields] 2]\n"
-                "  puts [$self type]/[$self name]/[$self get own]\n"
-                "  $self set own {1 2 3}\n"
-                "  puts [llength [$t get children]]/[[lindex [$t get children] 0] type]\n"
-                "  foreach wrong {{$t get bboxSize} {$t get nothing} {$t set translation {0 1}} "
-                "{$t set bboxSize {1 1 1}} {$t} "
-                "{$t fly} "
-                "{$t get} {$t set x}} {catch $wrong why; puts $why}\n}"));
+      W::script(
+          "directOutput TRUE field SFNode t USE T field SFNode none NULL eventOut SFVec3f own "
+          "eventIn SFBool go",
+          "proc go {} {\n"
+          "  global t none self\n"
+          "  puts [$t type]/[$t name]/[$t get translation]/$none\n"
+          "  $t set translation {0 1 0}\n"
+          "  $t set set_scale {2 2 2}\n"
+          "  puts [lindex [$t fields] 2]\n"
+          "  puts [$self type]/[$self name]/[$self get own]\n"
+          "  $self set own {1 2 3}\n"
+          "  puts [llength [$t get children]]/[[lindex [$t get children] 0] type]\n"
+          "  foreach wrong {{$t get bboxSize} {$t get nothing} {$t set translation {0 1}} {$t set "
+          "bboxSize {1 1 1}} {$t} {$t fly} {$t get} {$t set x}} {catch $wrong why; puts $why}\n}"));
   q.set("S", "go", true);
   EXPECT_EQ(
       q.printed(),
@@ -76,8 +74,7 @@ TEST_F(TclScripts, ANodeIsGoodUntilItsCommandGoes) {
       W::script("directOutput TRUE eventIn SFNode keep eventIn SFBool use eventIn SFBool drop "
                 "eventIn SFBool rename_",
                 "proc keep n {set ::n $n}\nproc use {} {$::n set translation {1 0 0}}\nproc drop "
-                "{} {$::n "
-                "release}\nproc rename_ {} {rename $::n thing; set ::n thing}"));
+                "{} {$::n release}\nproc rename_ {} {rename $::n thing; set ::n thing}"));
   r.set("S", "keep", r.browser.node("T"));
   r.set("S", "rename_", true);
   r.set("S", "keep", r.browser.node("T"));
@@ -114,26 +111,22 @@ TEST_F(TclScripts, EventsToOtherNodesNeedDirectOutput) {
 
 TEST_F(TclScripts, TheBrowserIsACommand) {
   W r("DEF G Group {} DEF A Transform {} DEF B Transform {} " +
-      W::script("directOutput TRUE field SFNode g USE G field SFNode a USE A field SFNode b USE B "
-                "eventIn SFBool go eventIn SFBool "
-                "routes "
-                "eventIn SFBool replace eventIn SFBool load",
-                "proc go {} {\n puts [Browser getName]/[expr {[Browser getVersion] ne "
-                "{}}]/[Browser getCurrentSpeed]/[Browser "
-                "getCurrentFrameRate]/[Browser getWorldURL]/[Browser now]\n Browser setDescription "
-                "{about it}\n Browser print hello\n "
-                "set new [Browser createVrmlFromString {Transform { translation 1 2 3 } Shape "
-                "{}}]\n $::g set children $new\n "
-                "catch {Browser createVrmlFromString {Nothing}} why; puts $why\n catch {Browser "
-                "fly} why; puts $why\n"
-                " catch {Browser getName x} why; puts $why\n"
-                " Browser createVrmlFromURL tests/conformance/good/def-use.wrl $::g addChildren}\n"
-                "proc routes v {if {$v} {Browser addRoute $::a translation $::b set_translation} "
-                "else {Browser deleteRoute $::a "
-                "translation_changed $::b translation}}\n"
-                "proc replace {} {Browser replaceWorld [Browser createVrmlFromString {DEF New "
-                "Group {}}]}\n"
-                "proc load {} {Browser loadURL {x.wrl y.wrl} {target=frame}}"));
+      W::script(
+          "directOutput TRUE field SFNode g USE G field SFNode a USE A field SFNode b USE B "
+          "eventIn SFBool go eventIn SFBool routes eventIn SFBool replace eventIn SFBool load",
+          "proc go {} {\n puts [Browser getName]/[expr {[Browser getVersion] ne {}}]/[Browser "
+          "getCurrentSpeed]/[Browser getCurrentFrameRate]/[Browser getWorldURL]/[Browser now]\n "
+          "Browser setDescription {about it}\n Browser print hello\n set new [Browser "
+          "createVrmlFromString {Transform { translation 1 2 3 } Shape {}}]\n $::g set children "
+          "$new\n catch {Browser createVrmlFromString {Nothing}} why; puts $why\n catch {Browser "
+          "fly} why; puts $why\n"
+          " catch {Browser getName x} why; puts $why\n"
+          " Browser createVrmlFromURL tests/conformance/good/def-use.wrl $::g addChildren}\n"
+          "proc routes v {if {$v} {Browser addRoute $::a translation $::b set_translation} else "
+          "{Browser deleteRoute $::a translation_changed $::b translation}}\n"
+          "proc replace {} {Browser replaceWorld [Browser createVrmlFromString {DEF New Group "
+          "{}}]}\n"
+          "proc load {} {Browser loadURL {x.wrl y.wrl} {target=frame}}"));
   r.browser.tick(3);
   r.set("S", "go", true);
   const Log printed = r.printed();

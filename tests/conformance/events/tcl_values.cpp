@@ -97,8 +97,7 @@ TEST_F(TclValues, NumbersAreShortAndExact) {
   TclWorld r(TclWorld::script(
       "field MFFloat f [0.1 3.4028235e38 1.17549435e-38 16777217 1e-45 -0] eventIn SFBool go",
       "proc go {} {puts $::f; catch {set ::f 1e39} why; puts $why; catch {set ::f Inf} why; puts "
-      "$why; "
-      "catch {set ::f NaN} why; puts $why}"));
+      "$why; catch {set ::f NaN} why; puts $why}"));
   r.set("S", "go", true);
   const Log printed = r.printed();
   ASSERT_EQ(printed.size(), 4u);
@@ -110,8 +109,7 @@ TEST_F(TclValues, NumbersAreShortAndExact) {
 
 TEST_F(TclValues, TextsAreUtf8) {
   TclWorld r(TclWorld::script("field SFString s \"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80\" "
-                              "eventOut SFString out eventOut SFString half "
-                              "eventOut SFString zero",
+                              "eventOut SFString out eventOut SFString half eventOut SFString zero",
                               "puts $s\nset out [string reverse [string reverse $s]]\nset half "
                               "\\ud83d\nset zero a\\u0000b"));
   EXPECT_EQ(r.printed(), Log{"\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80"});

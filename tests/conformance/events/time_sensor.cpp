@@ -404,8 +404,7 @@ TEST(TimeSensor,
 
 TEST(TimeSensor, InAPrototypeItRunsAsOutside) {
   Running r("PROTO P [ exposedField SFTime start 0 eventOut SFFloat f ] { TimeSensor { startTime "
-            "IS start cycleInterval 4 "
-            "fraction_changed IS f } }"
+            "IS start cycleInterval 4 fraction_changed IS f } }"
             "DEF I P { start 1 }");
   r.log("I", "f");
   for (double t : {0.0, 1.0, 2.0}) r.browser.tick(t);
