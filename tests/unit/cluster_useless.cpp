@@ -28,7 +28,7 @@ constexpr double promised = 10; // seconds without progress (docs/cluster.md)
 constexpr double slack = 15;    // extra seconds for a busy machine
 constexpr uint32_t frames = 2;
 
-enum class Fault {
+enum class Misbehaviour {
   nobody,        // nothing listens at the address
   deaf,          // the system accepts the connection, but the process is stopped and does not read
   mute,          // connected, but sends no Hello
@@ -49,25 +49,26 @@ enum class Fault {
   readyForEver,    // sends Ready again and again
   liesAboutScene,  // reports a different number of triangles
 };
-const std::map<Fault, const char*> names = {{Fault::nobody, "nobody"},
-                                            {Fault::deaf, "deaf"},
-                                            {Fault::mute, "mute"},
-                                            {Fault::otherVersion, "otherVersion"},
-                                            {Fault::otherProtocol, "otherProtocol"},
-                                            {Fault::otherChip, "otherChip"},
-                                            {Fault::takesNoScene, "takesNoScene"},
-                                            {Fault::neverReady, "neverReady"},
-                                            {Fault::refuses, "refuses"},
-                                            {Fault::refusesLater, "refusesLater"},
-                                            {Fault::beatsOnly, "beatsOnly"},
-                                            {Fault::dies, "dies"},
-                                            {Fault::comesAndGoes, "comesAndGoes"},
-                                            {Fault::answersNonsense, "answersNonsense"},
-                                            {Fault::answersOthers, "answersOthers"},
-                                            {Fault::sendsNonsense, "sendsNonsense"},
-                                            {Fault::sendsNoise, "sendsNoise"},
-                                            {Fault::readyForEver, "readyForEver"},
-                                            {Fault::liesAboutScene, "liesAboutScene"}};
+const std::map<Misbehaviour, const char*> names = {
+    {Misbehaviour::nobody, "nobody"},
+    {Misbehaviour::deaf, "deaf"},
+    {Misbehaviour::mute, "mute"},
+    {Misbehaviour::otherVersion, "otherVersion"},
+    {Misbehaviour::otherProtocol, "otherProtocol"},
+    {Misbehaviour::otherChip, "otherChip"},
+    {Misbehaviour::takesNoScene, "takesNoScene"},
+    {Misbehaviour::neverReady, "neverReady"},
+    {Misbehaviour::refuses, "refuses"},
+    {Misbehaviour::refusesLater, "refusesLater"},
+    {Misbehaviour::beatsOnly, "beatsOnly"},
+    {Misbehaviour::dies, "dies"},
+    {Misbehaviour::comesAndGoes, "comesAndGoes"},
+    {Misbehaviour::answersNonsense, "answersNonsense"},
+    {Misbehaviour::answersOthers, "answersOthers"},
+    {Misbehaviour::sendsNonsense, "sendsNonsense"},
+    {Misbehaviour::sendsNoise, "sendsNoise"},
+    {Misbehaviour::readyForEver, "readyForEver"},
+    {Misbehaviour::liesAboutScene, "liesAboutScene"}};
 
 // The two pictures of all tests, and the Ready messages of a worker that can prepare them.
 struct Pictures final : WorkerSink {
@@ -131,15 +132,15 @@ const Pictures& pictures() {
 // A useless worker in a thread of its own.
 class UselessWorker {
  public:
-  explicit UselessWorker(Fault way) : way_(way) {
-    if (way == Fault::deaf || way == Fault::nobody) {
+  explicit UselessWorker(Misbehaviour way) : way_(way) {
+    if (way == Misbehaviour::deaf || way == Misbehaviour::nobody) {
       socket_ = socket(AF_INET, SOCK_STREAM, 0);
       sockaddr_in where{};
       where.sin_family = AF_INET;
       where.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
       socklen_t size = sizeof where;
       EXPECT_EQ(bind(socket_, reinterpret_cast<sockaddr*>(&where), size), 0);
-      if (way == Fault::deaf) { EXPECT_EQ(listen(socket_, 16), 0); }
+      if (way == Misbehaviour::deaf) { EXPECT_EQ(listen(socket_, 16), 0); }
       EXPECT_EQ(getsockname(socket_, reinterpret_cast<sockaddr*>(&where), &size), 0);
       address_ = "127.0.0.1:" + std::to_string(ntohs(where.sin_port));
       return;
@@ -174,34 +175,35 @@ class UselessWorker {
         greet();
       }
       if (event.kind == Event::Kind::message) hear(read(std::move(event)));
-      if (session_ != 0 && way_ == Fault::comesAndGoes && steadyNow() > joined_ + 0.2) die();
-      if (session_ != 0 && way_ == Fault::readyForEver && epoch_ > 0 && steadyNow() > told_ + 0.1)
+      if (session_ != 0 && way_ == Misbehaviour::comesAndGoes && steadyNow() > joined_ + 0.2) die();
+      if (session_ != 0 && way_ == Misbehaviour::readyForEver && epoch_ > 0 &&
+          steadyNow() > told_ + 0.1)
         ready();
     }
   }
   void greet() {
     message::Hello hello = pictures().self;
-    if (way_ == Fault::otherVersion) hello.library = "0.0.1";
-    if (way_ == Fault::otherProtocol) hello.protocol++;
-    if (way_ == Fault::otherChip) hello.isa = "of its own";
-    if (way_ != Fault::mute) say(std::move(hello));
+    if (way_ == Misbehaviour::otherVersion) hello.library = "0.0.1";
+    if (way_ == Misbehaviour::otherProtocol) hello.protocol++;
+    if (way_ == Misbehaviour::otherChip) hello.isa = "of its own";
+    if (way_ != Misbehaviour::mute) say(std::move(hello));
   }
   void hear(Message&& m) {
     if (const auto* welcome = std::get_if<message::Welcome>(&m.body)) {
       session_ = welcome->session;
-      if (way_ == Fault::sendsNonsense)
+      if (way_ == Misbehaviour::sendsNonsense)
         for (int i = 0; i < 3; i++) say(message::Drop{1});
-      if (way_ == Fault::sendsNoise) wire_->send(peer_, Frames(2, someBytes(100)));
+      if (way_ == Misbehaviour::sendsNoise) wire_->send(peer_, Frames(2, someBytes(100)));
     }
     if (const auto* scene = std::get_if<message::Scene>(&m.body)) {
       epoch_ = scene->epoch;
-      if (way_ == Fault::takesNoScene) return;
+      if (way_ == Misbehaviour::takesNoScene) return;
       message::Need need{scene->epoch, {}};
       for (const auto& array : scene->arrays) need.arrays.push_back(array.hash);
       say(std::move(need));
-      if (way_ == Fault::refuses)
+      if (way_ == Misbehaviour::refuses)
         return say(message::Failed{scene->epoch, "shader library vrml97 is another file here"});
-      if (scene->prepare && way_ != Fault::neverReady) ready();
+      if (scene->prepare && way_ != Misbehaviour::neverReady) ready();
     }
     if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) {
       epoch_ = prepare->epoch;
@@ -218,18 +220,18 @@ class UselessWorker {
     m.facts = found->second.facts;
     m.transport = found->second.frame.transport;
     m.stats = found->second.stats;
-    if (way_ == Fault::liesAboutScene) m.stats.triangles++;
+    if (way_ == Misbehaviour::liesAboutScene) m.stats.triangles++;
     told_ = steadyNow();
     say(std::move(m));
-    if (way_ == Fault::refusesLater) say(message::Failed{epoch_, "no memory"});
+    if (way_ == Misbehaviour::refusesLater) say(message::Failed{epoch_, "no memory"});
   }
   void work(const message::Jobs& jobs) {
-    if (way_ == Fault::dies) return die();
-    if (way_ != Fault::answersNonsense && way_ != Fault::answersOthers) return;
+    if (way_ == Misbehaviour::dies) return die();
+    if (way_ != Misbehaviour::answersNonsense && way_ != Misbehaviour::answersOthers) return;
     for (const LeasedJob& job : jobs.jobs) {
       message::Result m;
       m.epoch = jobs.epoch;
-      m.lease = job.lease + (way_ == Fault::answersOthers ? 1000000 : 0);
+      m.lease = job.lease + (way_ == Misbehaviour::answersOthers ? 1000000 : 0);
       m.seconds = 0.001;
       m.bytes = someBytes(64, uint32_t(job.lease));
       say(std::move(m));
@@ -242,7 +244,7 @@ class UselessWorker {
     epoch_ = 0;
   }
 
-  Fault way_;
+  Misbehaviour way_;
   std::string address_;
   std::optional<Wire> wire_;
   int socket_ = -1;
@@ -264,9 +266,9 @@ struct Outcome {
 
 // Renders two pictures with these workers. A picture that would wait forever is cancelled after a
 // while.
-Outcome render(std::vector<Fault> ways, ClusterOptions cluster) {
+Outcome render(std::vector<Misbehaviour> ways, ClusterOptions cluster) {
   std::vector<std::unique_ptr<UselessWorker>> workers;
-  for (const Fault way : ways)
+  for (const Misbehaviour way : ways)
     cluster.workers.push_back(
         (workers.emplace_back(std::make_unique<UselessWorker>(way)))->address());
   Outcome out;
@@ -316,13 +318,13 @@ Outcome render(std::vector<Fault> ways, ClusterOptions cluster) {
 }
 
 // Runs all cases at the same time, because they spend nearly all of it waiting.
-std::map<Fault, Outcome> renderAll(const ClusterOptions& cluster) {
+std::map<Misbehaviour, Outcome> renderAll(const ClusterOptions& cluster) {
   pictures();
-  std::map<Fault, std::future<Outcome>> running;
+  std::map<Misbehaviour, std::future<Outcome>> running;
   for (const auto& [way, name] : names)
     running[way] =
         std::async(std::launch::async, [=, way = way] { return render({way}, cluster); });
-  std::map<Fault, Outcome> all;
+  std::map<Misbehaviour, Outcome> all;
   for (auto& [way, future] : running) all[way] = future.get();
   return all;
 }
@@ -337,7 +339,8 @@ TEST(Useless, aMasterThatLeavesAllToOthersHelpsInTime) {
     EXPECT_EQ(out.failure, "") << names.at(way);
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_NE(out.said, "") << names.at(way) << ": whoever renders alone says so";
-    if (way != Fault::comesAndGoes && way != Fault::dies && way != Fault::answersNonsense) {
+    if (way != Misbehaviour::comesAndGoes && way != Misbehaviour::dies &&
+        way != Misbehaviour::answersNonsense) {
       EXPECT_LT(out.last, promised)
           << names.at(way) << ": a second picture does not wait as long once more";
     }
@@ -364,11 +367,12 @@ TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
   for (const auto& [way, out] : renderAll(cluster)) {
     EXPECT_LT(out.longest, promised + slack) << names.at(way);
     EXPECT_TRUE(!out.failure.empty() || out.right) << names.at(way);
-    if (way == Fault::refuses || way == Fault::otherVersion || way == Fault::nobody) {
+    if (way == Misbehaviour::refuses || way == Misbehaviour::otherVersion ||
+        way == Misbehaviour::nobody) {
       EXPECT_NE(out.failure.find("1 worker is needed"), std::string::npos)
           << names.at(way) << ": " << out.failure;
     }
-    if (way == Fault::refuses) {
+    if (way == Misbehaviour::refuses) {
       EXPECT_NE(out.failure.find("another file"), std::string::npos)
           << "it says why: " << out.failure;
     }
@@ -380,7 +384,7 @@ TEST(Useless, manyThatOnlyBeatDoNotSwallowAJob) {
   for (const uint32_t local : {0u, 1u}) {
     ClusterOptions cluster;
     cluster.local = local;
-    const Outcome out = render(std::vector<Fault>(7, Fault::beatsOnly), cluster);
+    const Outcome out = render(std::vector<Misbehaviour>(7, Misbehaviour::beatsOnly), cluster);
     EXPECT_TRUE(out.right);
     EXPECT_LT(out.longest, promised + slack);
   }

@@ -55,6 +55,9 @@ RTparameterInfo info;
 RThit hit;
 RTray ray{{0, 0, 1}, 0, {0, 0, -1}, 1};
 uint8_t bytes[4];
+uint32_t number;
+const size_t places[2] = {0, 1};
+RTclosest closest;
 double matrix[16];
 RTstats statistics;
 RTworker worker;
@@ -161,6 +164,9 @@ const Named needContext[] = {
     CALL(rtPick, 0, 0, &hit),
     CALL(rtCastRays, 1, &ray, &hit),
     CALL(rtOccludedRays, 1, &ray, bytes),
+    CALL(rtCountHits, 1, &ray, &number),
+    CALL(rtListHits, 1, &ray, places, &hit),
+    CALL(rtClosestPoints, 1, floats, 1, &closest),
 };
 // Functions that need no context.
 const char* const anywhere[] = {
@@ -376,6 +382,9 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtCastRays, 1, nullptr, &hit),
     WRONG(VALUE, Outside, rtCastRays, 1, &ray, nullptr),
     WRONG(VALUE, Outside, rtOccludedRays, 1, &ray, nullptr),
+    WRONG(VALUE, Outside, rtCountHits, 1, &ray, nullptr),
+    WRONG(VALUE, Outside, rtListHits, 1, &ray, nullptr, &hit),
+    WRONG(VALUE, Outside, rtClosestPoints, 1, floats, 0, &closest),
     // Contexts.
     WRONG(VALUE, Outside, rtNewContext, "nonsense"),
     WRONG(VALUE, Outside, rtNewContext, "backend=debug:nothing"),
@@ -394,7 +403,7 @@ const Wrong wrong[] = {
 const char* const infallible[] = {"rtErrorCallback", "rtLogCallback",     "rtLoadName",
                                   "rtPushMatrix",    "rtLoadIdentity",    "rtGetError",
                                   "rtGetCurrent",    "rtGetErrorMessage", "rtInit",
-                                  "rtRunningShader", "rtFinishFrame"};
+                                  "rtRunningShader", "rtFinishFrame",     "rtGetQualityInfo"};
 
 class EveryCall : public ApiTest {
  protected:
@@ -505,9 +514,12 @@ TEST_F(EveryCall, TheFirstErrorSticksAndTheCallbackHearsAll) {
 
 // Tests run in the root of the repository.
 TEST(EveryCallTables, HoldEveryFunctionOfTheHeader) {
-  std::ifstream file("libopenrt/include/openrt/openrt.h");
-  ASSERT_TRUE(file) << "not in the repository's root";
-  const std::string header(std::istreambuf_iterator<char>(file), {});
+  std::string header;
+  for (const char* part : {"context", "geometry", "shader", "frame", "worker", "query"}) {
+    std::ifstream file(std::string("libopenrt/include/openrt/") + part + ".h");
+    ASSERT_TRUE(file) << part << ".h: not in the repository's root";
+    header.append(std::istreambuf_iterator<char>(file), {});
+  }
   std::set<std::string> declared, listed(std::begin(anywhere), std::end(anywhere)),
       failing(std::begin(infallible), std::end(infallible));
   const std::regex declaration("RT_API [^;(]*\\b(rt[A-Z]\\w*)\\(");

@@ -89,7 +89,7 @@ TEST_F(EcmaScript, TooLittleMemoryForAnInterpreterIsAMessage) {
     BrowserOptions options;
     options.scriptMemory = bytes;
     EcmaWorld r(script("", "print('here')"), options);
-    const std::string told = r.told();
+    const std::string told = r.takeOutput();
     EXPECT_TRUE(told == "here" || told.find("memory") != std::string::npos ||
                 told.find("alloc") != std::string::npos)
         << bytes << ": " << told;
@@ -164,8 +164,8 @@ TEST_F(EcmaScript, ObjectsOfOtherKindsAreRefused) {
       "tries(function() { return new VrmlMatrix()[2][7] });"
       "tries(function() { return new VrmlMatrix(1, 2) });"
       "tries(function() { return Object.create(new SFNode('Group { }')).children.length });"));
-  EXPECT_EQ(r.told(), "TypeError\nTypeError\nTypeError\nTypeError\nundefined\n0\n1\n2\n[1 2 "
-                      "3]\nTypeError\nundefined\nTypeError\n0");
+  EXPECT_EQ(r.takeOutput(), "TypeError\nTypeError\nTypeError\nTypeError\nundefined\n0\n1\n2\n[1 2 "
+                            "3]\nTypeError\nundefined\nTypeError\n0");
 }
 
 TEST_F(EcmaScript, ChangesWhileAValueIsConverted) {
@@ -175,7 +175,7 @@ TEST_F(EcmaScript, ChangesWhileAValueIsConverted) {
              "f = [1, { valueOf: function() { f = new MFFloat(9); return 2 } }, 3]; print(f);"
              "var list = new MFFloat(1, 2, 3); list[0] = { valueOf: function() { list.length = 0; "
              "list.length = 100000; return 4 } }; print(list[0], list.length)"));
-  EXPECT_EQ(r.told(), "[0 0 0, 5 6 7]\n[1, 2, 3]\n4 100000");
+  EXPECT_EQ(r.takeOutput(), "[0 0 0, 5 6 7]\n[1, 2, 3]\n4 100000");
 }
 
 // --- Determinism: the same input gives the same output ---
@@ -188,7 +188,7 @@ TEST_F(EcmaScript, RandomNumbersAndDatesReplay) {
                        "instanceof Date, new Date(5).constructor == Date) }"));
     r.browser.tick(2);
     r.set("S", "go", true);
-    return r.told();
+    return r.takeOutput();
   };
   const std::string first = play();
   EXPECT_EQ(first, play());
