@@ -259,8 +259,8 @@ TEST(LiveCluster, framesLeaveNothingBehind) {
   const auto look = [&](int frames) {
     LivePicture picture;
     for (int i = 0; i < frames; ++i) {
-      moveTo(*browser, .1 * (i % 7));
       while (live.state() != State::idle && live.state() != State::ready) nap();
+      moveTo(*browser, .1 * (i % 7));
       live.start(frameOf(16, 12, 1 + i % 3));
       if (i % 4 == 0) live.cancel();
       live.look(picture);
