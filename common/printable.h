@@ -2,6 +2,7 @@
 // would obey the control characters in it. Used by every program before it writes such text. Stateless; any thread.
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -34,14 +35,26 @@ inline size_t controlLength(std::string_view text) {
   return byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0 ? 2 : 0;
 }
 
+// Returns 3 if text begins with a character that turns the direction of what follows (U+202A to U+202E, U+2066 to U+2069; Unicode
+// Standard Annex 9), else 0: it could make a message read otherwise than it is.
+inline size_t directionLength(std::string_view text) {
+  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  if (byte(0) != 0xe2) return 0;
+  const bool embedding = byte(1) == 0x80 && byte(2) >= 0xaa && byte(2) <= 0xae;
+  const bool isolate = byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9;
+  return embedding || isolate ? 3 : 0;
+}
+
 } // namespace printable_text
 
-// Returns text in which control characters and bytes that are no UTF-8 are shown as \x1b. Lines stay lines.
+// Returns text in which control characters, characters that turn the direction of text, and bytes that are no UTF-8 are shown as
+// \x1b. Lines stay lines.
 inline std::string printable(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const size_t control = printable_text::controlLength(text), length = control ? 0 : printable_text::utf8Length(text);
+    const size_t control = std::max(printable_text::controlLength(text), printable_text::directionLength(text));
+    const size_t length = control ? 0 : printable_text::utf8Length(text);
     const size_t hidden = control ? control : length ? 0 : 1;
     for (size_t i = 0; i < hidden; ++i) {
       char code[8];

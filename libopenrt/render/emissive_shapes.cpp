@@ -65,12 +65,18 @@ RtsSurface answer(const RenderScene& scene, uint32_t record, const Looks& looks,
   return surface;
 }
 
-// Its luminance.
-void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena, double* out) {
+// The radiance that a place or a side sends out: its luminance decides how often it is chosen, the sum of its colours how much
+// light may be missing where it is not met.
+struct Brightness {
+  double luminance = 0, sum = 0;
+};
+
+void ask(const RenderScene& scene, uint32_t record, const Looks& looks, Arena& arena, Brightness* out) {
   const RtsSurface surface = answer(scene, record, looks, arena);
   for (uint32_t i = 0; i < looks.count; i++) {
     const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
-    out[i] = luminance(c);
+    const double sum = double(c[0]) + double(c[1]) + double(c[2]);
+    out[i] = {luminance(c), std::isfinite(sum) && sum > 0 ? std::min(sum, 1e30) : 0};
   }
 }
 
@@ -84,7 +90,7 @@ void kernelNormal(const Record& r, const float normal[3], float out[3]) {
 
 // Mean emission of triangles, of either side. Where colours or pictures may vary, of four places.
 void askTriangles(const RenderScene& scene, uint32_t record, std::span<const EmissiveShapes::Shape> shapes, bool otherSide,
-                  Arena& arena, double* out) {
+                  Arena& arena, Brightness* out) {
   const Record& r = scene.records[record];
   static constexpr float at[4][2] = {{1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
   const bool mirrored = mirrors(r);
@@ -109,13 +115,16 @@ void askTriangles(const RenderScene& scene, uint32_t record, std::span<const Emi
       looks.add(place, towards);
     }
   }
-  auto* each = arena.take<double>(looks.count);
+  auto* each = arena.take<Brightness>(looks.count);
   ask(scene, record, looks, arena, each);
-  for (uint32_t i = 0; i < looks.count; i++) out[i / places] += each[i] / places;
+  for (uint32_t i = 0; i < looks.count; i++) {
+    out[i / places].luminance += each[i].luminance / places;
+    out[i / places].sum += each[i].sum / places;
+  }
 }
 
 // The same of a sphere's outside, at the ends of its axes.
-double askSphere(const RenderScene& scene, uint32_t record, Arena& arena) {
+Brightness askSphere(const RenderScene& scene, uint32_t record, Arena& arena) {
   const Record& r = scene.records[record];
   ArenaScope scope(arena);
   Looks looks(arena, 6);
@@ -133,10 +142,13 @@ double askSphere(const RenderScene& scene, uint32_t record, Arena& arena) {
       looks.hits.u[i] = looks.hits.v[i] = 0, looks.hits.record[i] = record, looks.hits.primitive[i] = 0;
       looks.add(place, towards);
     }
-  double each[6], sum = 0;
+  Brightness each[6], mean;
   ask(scene, record, looks, arena, each);
-  for (double x : each) sum += x / 6;
-  return sum;
+  for (const Brightness& x : each) {
+    mean.luminance += x.luminance / 6;
+    mean.sum += x.sum / 6;
+  }
+  return mean;
 }
 
 LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double back) {
@@ -193,16 +205,17 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   if (!(shader.traits & RTS_EMISSIVE) || !shader.shaderClass->surface) return;
   Arena arena;
   if (r.primitive == edit::Primitive::Sphere) {
-    const double outside = askSphere(scene, id, arena); // inside, a surface's own directions meet it
+    const Brightness sides = askSphere(scene, id, arena);
+    const double outside = sides.luminance; // inside, a surface's own directions meet it
     firstOf_[id] = uint32_t(shapes_.size());
-    brightest_ = std::max(brightest_, outside);
+    brightest_ = std::max(brightest_, sides.sum);
     bounds.push_back(sphereBounds(r, outside));
     shapes_.push_back({id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
     return;
   }
   if (r.primitive != edit::Primitive::Triangles || !r.vertices) return;
   firstOf_[id] = uint32_t(shapes_.size());
-  std::vector<double> front, back;
+  std::vector<Brightness> front, back;
   const bool mirrored = mirrors(r);
   for (uint32_t first = 0; first < r.primitives; first += batchSize) {
     const uint32_t n = std::min(batchSize, r.primitives - first);
@@ -212,16 +225,17 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
       cornersOf(r, s.primitive, s.corner);
       if (mirrored) std::swap(s.corner[1], s.corner[2]);
     }
-    front.assign(n, 0), back.assign(n, 0);
+    front.assign(n, {}), back.assign(n, {});
     const std::span<const Shape> shapes(shapes_.data() + begin, n);
     askTriangles(scene, id, shapes, false, arena, front.data());
     askTriangles(scene, id, shapes, true, arena, back.data());
-    if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, 0.0); // that side is not there
+    if (r.cull) std::fill_n((r.flip ? front : back).begin(), n, Brightness()); // that side is not there
     for (uint32_t i = 0; i < n; i++) {
       Shape& s = shapes_[begin + i];
-      brightest_ = std::max({brightest_, front[i], back[i]});
-      bounds.push_back(triangleBounds(s, front[i], back[i]));
-      if (bounds.back().intensity > 0) s.sides = uint8_t((front[i] > 0 ? 1 : 0) | (back[i] > 0 ? 2 : 0));
+      const double ahead = front[i].luminance, behind = back[i].luminance;
+      brightest_ = std::max({brightest_, front[i].sum, back[i].sum});
+      bounds.push_back(triangleBounds(s, ahead, behind));
+      if (bounds.back().intensity > 0) s.sides = uint8_t((ahead > 0 ? 1 : 0) | (behind > 0 ? 2 : 0));
       s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);
     }
   }

@@ -27,7 +27,7 @@ class EmissiveShapes {
   explicit EmissiveShapes(const RenderScene& scene);
   bool empty() const { return tree_.empty(); }
   size_t size() const { return shapes_.size(); }
-  double brightest() const { return brightest_; } // mean luminance of a shape's side
+  double brightest() const { return brightest_; } // largest mean radiance of a shape's side, colours summed
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
   const LightTree& tree() const { return tree_; }
   // A place on a shape. u, v: even numbers of the unit square; area: of the whole shape, or what makes up for uneven places.

@@ -36,7 +36,7 @@ class Emitters {
   // their places are those of this one.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
   bool any() const { return share_ >= 0; }
-  // Largest luminance of the sky, of sky and shapes.
+  // Largest mean radiance, colours summed, of a cell of the sky; of such a cell or a shape's side.
   double brightestSky() const;
   double brightest() const;
   // pick chooses the emitter, (u, v) the place on it: numbers of [0, 1). Of pick every digit counts where emitters are many.

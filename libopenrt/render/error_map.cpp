@@ -109,14 +109,15 @@ void ErrorMap::doubtConstants(const std::function<void(size_t pixel, const float
     }
 }
 
-bool ErrorMap::distrust(size_t pixel, double missed) {
-  if (noise_.empty() || !noise_[pixel].finished || !noise_[pixel].random) return false;
-  if (!(missed > double(relative_[pixel]) * double(noise_[pixel].scale))) return false;
+bool ErrorMap::miss(size_t pixel, double bound, double expected) {
+  if (noise_.empty() || !noise_[pixel].finished) return false;
+  if (expected > 0) missing_ += std::min(1.0, expected / double(noise_[pixel].scale));
+  if (!noise_[pixel].random || !(bound > double(relative_[pixel]) * double(noise_[pixel].scale))) return false;
   relative_[pixel] = -std::fabs(relative_[pixel]);
   return true;
 }
 
-ErrorSummary ErrorMap::summary(double missed) const {
+ErrorSummary ErrorMap::summary() const {
   ErrorSummary s;
   std::vector<float> halves;
   halves.reserve(relative_.size());
@@ -132,11 +133,8 @@ ErrorSummary ErrorMap::summary(double missed) const {
   const double n = double(s.pixels);
   s.halfWidth /= n;
   const PictureError whole = pictureError(width_, noise_, doubted_);
-  double missing = 0;
-  for (size_t i = 0; i < noise_.size() && missed > 0; i++)
-    if (noise_[i].finished) missing += std::min(1.0, missed / double(noise_[i].scale)) / n;
   s.mean = whole.mean;
-  s.meanInterval = std::min(std::hypot(whole.interval, missing), std::max(s.mean, 1 - s.mean)); // the error is from 0 to 1
+  s.meanInterval = std::min(std::hypot(whole.interval, missing_ / n), std::max(s.mean, 1 - s.mean)); // the error is from 0 to 1
   const auto at = halves.begin() + std::ptrdiff_t(double(halves.size() - 1) * 0.99);
   std::nth_element(halves.begin(), at, halves.end());
   s.p99 = *at;

@@ -44,11 +44,11 @@ class ErrorMap {
   // met. Its interval gets what the rule of three allows for, and it is not trusted. The same at the border of a picture that is
   // not of one colour. changed is called for each.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
-  // Takes the trust of a pixel with random samples, and returns true, if it may lack more than its interval. missed: radiance
-  // that no sample tells of (ledger.h), colours summed.
-  bool distrust(size_t pixel, double missed);
-  // missed: the same of the whole picture.
-  ErrorSummary summary(double missed = 0) const;
+  // Tells of radiance that a finished pixel may lack and no sample tells of (ledger.h), colours summed. bound: the most, as far
+  // as its tile's samples know; it takes the trust of a pixel with random samples whose interval is narrower, and true is
+  // returned. expected: the most if light is met as often everywhere; it widens the interval of the summary's mean.
+  bool miss(size_t pixel, double bound, double expected);
+  ErrorSummary summary() const;
 
  private:
   struct Seen {
@@ -65,6 +65,7 @@ class ErrorMap {
   std::vector<PixelNoise> noise_;
   std::vector<Seen> seen_;
   float range_[3] = {}; // of all pixels' colours; doubtConstants()
+  double missing_ = 0;  // sum over the pixels of what they may lack, relative
 };
 
 } // namespace openrt

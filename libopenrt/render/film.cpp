@@ -51,10 +51,10 @@ void Film::finishErrors() {
   });
 }
 
-void Film::distrust(const Tile& tile, double missed) {
+void Film::miss(const Tile& tile, double bound, double expected) {
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++)
-      if (const size_t pixel = size_t(y) * width_ + x; errors_.distrust(pixel, missed) && has(RT_TRUST))
+      if (const size_t pixel = size_t(y) * width_ + x; errors_.miss(pixel, bound, expected) && has(RT_TRUST))
         plane(RT_TRUST)[pixel] = 0;
 }
 

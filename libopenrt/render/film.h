@@ -32,7 +32,7 @@ class Film {
   // After the last store(): looks at the neighbours of constant pixels. One thread.
   void finishErrors();
   // Then, of each tile: what its pixels may lack that no sample tells of (ErrorMap).
-  void distrust(const Tile& tile, double missed);
+  void miss(const Tile& tile, double bound, double expected);
   const ErrorMap& errors() const { return errors_; }
   bool read(uint32_t channel, std::span<float> out) const;
   // Of a picture that is still being made: nothing everywhere, then tile by tile those that are finished. false: no such

@@ -233,8 +233,12 @@ void FrameWork::Impl::settle() {
     {
       std::unique_lock alone(ending);
       film.finishErrors();
+      // A tile is trusted by what its own paths met: in another place of the picture another lamp may be the one that is met.
       const Ledger whole = wholeLedger();
-      for (uint32_t i = 0; i < count; i++) film.distrust(grid.at(i), tiles[i].ledger.missedByChance(whole, pathsOf(i)));
+      for (uint32_t i = 0; i < count; i++) {
+        const Ledger& tile = tiles[i].ledger;
+        film.miss(grid.at(i), tile.missedByChance(tile, pathsOf(i)), tile.missedByChance(whole, pathsOf(i)));
+      }
     }
     std::lock_guard lock(mutex);
     over = true;
@@ -373,11 +377,10 @@ void FrameWork::describeError(RTstats& stats) const {
   double paths = 0;
   for (uint32_t i = 0; i < impl_->count; i++) paths += impl_->pathsOf(i);
   const Ledger whole = impl_->wholeLedger();
-  const double missed = whole.missedByChance(whole, paths);
-  const ErrorSummary s = impl_->film.errors().summary(missed);
+  const ErrorSummary s = impl_->film.errors().summary();
   stats.errorMean = s.mean;
   stats.errorMeanInterval = s.meanInterval;
-  stats.errorUnmet = missed;
+  stats.errorUnmet = whole.missedByChance(whole, paths);
   stats.errorHalfWidth = s.halfWidth, stats.errorP99 = s.p99;
   stats.errorPixels = s.pixels, stats.errorTrusted = s.trusted;
   const bool many = impl_->schedule.timed() || replicatesOf(impl_->frame, impl_->frame.samples, 0).many();

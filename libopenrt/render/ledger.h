@@ -9,7 +9,6 @@
 namespace openrt {
 
 inline double sumOf(const float v[3]) { return double(v[0]) + double(v[1]) + double(v[2]); }
-inline double luminanceOf(const float v[3]) { return .2126 * double(v[0]) + .7152 * double(v[1]) + .0722 * double(v[2]); }
 
 // Light that rays meet by chance alone: they come from a surface that scatters, by way of mirrors or smooth boundaries, so that
 // no place on an emitter can be chosen for them.
@@ -19,12 +18,15 @@ struct ChanceLight {
   double met = 0;   // how many have met something at least half as bright as that one
 
   void add(const ChanceLight& c) { light += c.light, rays += c.rays, met += c.met; }
+  // brightest: the radiance of that emitter, colours summed, here and below. Whatever its colour, a ray brings no more of it than
+  // by the largest part of its throughput.
   void send(const float throughput[3], double brightest) {
     if (!(brightest > 0)) return;
-    light += sumOf(throughput) * brightest, rays++;
+    light += double(std::max({throughput[0], throughput[1], throughput[2]})) * brightest;
+    rays++;
   }
   void meet(const float radiance[3], double brightest) {
-    if (luminanceOf(radiance) >= .5 * brightest) met++;
+    if (sumOf(radiance) >= .5 * brightest) met++;
   }
   // Share of the rays that have not met such an emitter although they might have: how much the upper bound of 95 % of a Poisson
   // variable (E. B. Wilson, M. M. Hilferty, The distribution of chi-square, 1931) is more than what was met; none: the rule of
@@ -55,7 +57,8 @@ struct Ledger {                           // summed over the colours
     cutByDepth += l.cutByDepth / n, cutByEnergy += l.cutByEnergy / n, clipped += l.clipped / n, samples = 1;
     chance.add(l.chance), chanceSky.add(l.chanceSky);
   }
-  // Radiance that the mean of so many paths may lack, colours summed, where `all` is the sum over the whole picture.
+  // Radiance that the mean of so many paths may lack, colours summed, if rays of this tile meet emitters as often as those that
+  // `all` is the sum of.
   double missedByChance(const Ledger& all, double paths) const {
     if (!(paths > 0)) return 0;
     return (all.chance.missedShare() * chance.light + all.chanceSky.missedShare() * chanceSky.light) / paths;

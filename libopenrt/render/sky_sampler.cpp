@@ -41,8 +41,8 @@ double SkySampler::solidAngle(uint32_t row) const {
   return 2 * M_PI / columns_ * (std::cos(M_PI * row / rows_) - std::cos(M_PI * (row + 1) / rows_));
 }
 
-// Mean radiance of the cells from four places in each.
-void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) const {
+// From four places in each cell.
+double SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) const {
   const ShaderSlot& environment = scene.environment.shader;
   Arena arena;
   const uint32_t n = 4 * columns_;
@@ -55,6 +55,7 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
     turn[2 * i] = std::cos(phi), turn[2 * i + 1] = std::sin(phi);
   }
   RayCounters counters;
+  double brightest = 0;
   for (uint32_t row = 0; row < rows_; row++) {
     ArenaScope scope(arena);
     RtsBatch batch;
@@ -70,14 +71,17 @@ void SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) co
       environment.shaderClass->miss(&scene.host, &batch, environment.params, n, directions, rgba);
     }
     for (uint32_t column = 0; column < columns_; column++) {
-      double mean = 0;
+      double mean = 0, sum = 0;
       for (uint32_t i = 4 * column; i < 4 * column + 4; i++) {
         const float c[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
         mean += luminance(c) / 4;
+        sum += (double(c[0]) + double(c[1]) + double(c[2])) / 4;
       }
+      if (std::isfinite(sum)) brightest = std::max(brightest, sum);
       cells[size_t(row) * columns_ + column] = float(mean);
     }
   }
+  return brightest;
 }
 
 bool SkySampler::shines(const RenderScene& scene) {
@@ -93,8 +97,7 @@ SkySampler::SkySampler(const RenderScene& scene) {
   if (!environment.shaderClass || !environment.shaderClass->miss) return;
   columns_ = columnsFor(scene), rows_ = columns_ / 2;
   std::vector<float> cells(size_t(columns_) * rows_);
-  measure(scene, cells);
-  for (const float mean : cells) brightest_ = std::max(brightest_, double(mean));
+  brightest_ = measure(scene, cells);
   // A cell beside a much brighter one may hold some of it between the places that were looked at.
   const auto beside = [&](uint32_t row, uint32_t column) {
     float most = 0;

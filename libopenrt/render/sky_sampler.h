@@ -16,7 +16,7 @@ class SkySampler {
   // Reads the environment of the scene; not usable() where there is none or it is black.
   explicit SkySampler(const RenderScene& scene);
   bool usable() const { return total_ > 0; }
-  double brightest() const { return brightest_; } // mean luminance of a cell
+  double brightest() const { return brightest_; } // largest mean radiance of a cell, colours summed
   // Whether some of 2048 directions of the scene's environment, which has `miss`, has light.
   static bool shines(const RenderScene& scene);
   // A local unit direction and its density by solid angle, from a point of the unit square. 0: none.
@@ -26,7 +26,8 @@ class SkySampler {
 
  private:
   SkySampler() = default;
-  void measure(const RenderScene& scene, std::vector<float>& cells) const;
+  // Writes the mean luminance of each cell; returns the largest mean radiance of one, colours summed.
+  double measure(const RenderScene& scene, std::vector<float>& cells) const;
   double solidAngle(uint32_t row) const;
   float cellDensity(uint32_t row, uint32_t column) const;
   uint32_t columns_ = 0, rows_ = 0;

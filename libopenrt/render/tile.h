@@ -103,7 +103,7 @@ class TileRenderer {
   const RenderScene& scene_;
   const uint32_t width_; // of the picture
   const Gathering gathering_;
-  const double brightest_, brightestSky_; // luminance of emitters
+  const double brightest_, brightestSky_; // radiance of emitters, colours summed
   const std::atomic<bool>* stop_ = nullptr;
   Arena arena_;
   RayCounters counters_;

@@ -119,6 +119,7 @@ class Triangulation {
     }
     size_t crossings = tessellator_->crossings().size();
     crossingBudget_ -= std::min<uint64_t>(crossingBudget_, crossings);
+    walkBudget_ -= std::min<uint64_t>(walkBudget_, crossings * count);
     // Vertices in the tessellator's numbering: the face's corners, then the crossings, made corners here.
     uint32_t added = uint32_t(set_.corners.size());
     for (const auto& crossing : tessellator_->crossings())
@@ -136,8 +137,9 @@ class Triangulation {
   bool affordable(PlaneAxes& axes, uint32_t count) {
     if (count < 200) return crossingBudget_ > 0; // quick even if every edge crosses every other
     uint64_t alongX = sweepWork(contour_, 0), alongY = sweepWork(contour_, 1), work = std::min(alongX, alongY);
-    if (work > sweepBudget_ || isTangled(contour_, std::min<uint64_t>(crossingBudget_, 4 * uint64_t(count) + 20'000)))
-      return false;
+    // Each crossing cuts a loop of edges in two, and the tessellator walks along all of a loop that it cuts.
+    const uint64_t crossings = std::min({uint64_t(crossingBudget_), 4 * uint64_t(count) + 20'000, walkBudget_ / uint64_t(count)});
+    if (work > sweepBudget_ || isTangled(contour_, crossings)) return false;
     sweepBudget_ -= work;
     if (alongY < alongX) {
       axes.turn();
@@ -212,7 +214,7 @@ class Triangulation {
   FaceSet& set_;
   std::span<const Vec3f> normals_;
   Faults& faults_;
-  uint64_t limit_, crossingBudget_ = 0, sweepBudget_ = 20'000'000;
+  uint64_t limit_, crossingBudget_ = 0, sweepBudget_ = 20'000'000, walkBudget_ = 250'000'000;
   std::optional<Tessellator> tessellator_;
   std::vector<V3d> contour_;
   std::vector<uint32_t> triangles_;

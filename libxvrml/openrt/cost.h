@@ -28,6 +28,7 @@ inline constexpr uint64_t bytesOfPlace = 900;        // each place of a node tha
 inline constexpr uint64_t bytesOfLight = 900;        // each place of a light that shines
 inline constexpr uint64_t bytesOfLightShader = 2400; // each light node that shines
 inline constexpr uint64_t bytesOfShape = 1000;       // a shape written into an object, beside its primitives
+inline constexpr uint64_t bytesOfRecord = 320;       // a further shape in an instance, flattened: the first is in bytesOfInstance
 inline constexpr uint64_t bytesOfSurface = 2500;     // an appearance
 inline constexpr uint64_t bytesOfOption = 200;       // an option of an ORTShader, beside its text and numbers
 inline constexpr uint64_t copiesOfOption = 2;        // of those: in the renderer's scene, and in the shader's parameters there

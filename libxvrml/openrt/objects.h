@@ -25,6 +25,7 @@ struct Part {
   uint64_t shapes = 0, triangles = 0, primitives = 0, drawCalls = 0; // written into it
   uint64_t bytes = 0;                                                // taken from the world's budget for what it holds
   uint64_t flat = 0;          // instances that one of it comes to, once what it instantiates is flattened (decision 2)
+  uint64_t records = 0;       // draw calls that these instances come to
   double reach = 0;           // largest coordinate of what it holds
   std::vector<int32_t> uses;  // parts it instantiates, once for each time
   std::vector<ItemId> moving; // items of which it holds instances that are kept (Objects::placed_)

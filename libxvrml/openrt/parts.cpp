@@ -43,7 +43,7 @@ void Objects::forget(Part& part) {
   part.moving.clear();
   part.shapes = part.triangles = part.primitives = part.drawCalls = 0;
   ration_.give(part.bytes);
-  part.bytes = part.flat = 0;
+  part.bytes = part.flat = part.records = 0;
   part.reach = 0;
 }
 

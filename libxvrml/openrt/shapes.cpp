@@ -76,7 +76,8 @@ RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, boo
   const bool usable = !tooFar(matrix, used.reach, where, node ? node->type().name : "the world");
   if (!usable && !dynamic) return 0;
   const uint64_t flat = std::max<uint64_t>(used.flat + (used.drawCalls > 0), 1);
-  const uint64_t bytes = multiplySaturating(flat, bytesOfInstance);
+  const uint64_t records = addSaturating(used.records, used.drawCalls), further = records > flat ? records - flat : 0;
+  const uint64_t bytes = addSaturating(multiplySaturating(flat, bytesOfInstance), multiplySaturating(further, bytesOfRecord));
   if (!ration_.take(bytes, where)) return 0;
   rtLoadName(number);
   load(usable ? matrix : scaling(Vector(0)));
@@ -91,6 +92,7 @@ RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, boo
   part.uses.push_back(id);
   part.bytes += bytes;
   part.flat = addSaturating(part.flat, flat);
+  part.records = addSaturating(part.records, records);
   ++parts_[size_t(id)].instances;
   ++instances_;
   return instance;

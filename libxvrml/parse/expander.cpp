@@ -250,11 +250,25 @@ Value Expander::copyDefault(const FieldInfo& declared, std::vector<NodeRef>& inl
   return value;
 }
 
+// As NodeType::find, in constant time for types of many fields: instances of such a prototype ask for each of them.
+const FieldInfo* Expander::fieldOf(const NodeType& type, std::string_view name) {
+  constexpr size_t few = 32;
+  if (type.fields.size() <= few) return type.find(name);
+  auto& byName = fieldsByName_[&type];
+  if (byName.size() != type.fields.size()) {
+    byName.clear();
+    for (uint32_t i = 0; i < type.fields.size(); ++i) byName.emplace(type.fields[i].name, i);
+  }
+  const auto found = byName.find(std::string(name));
+  if (found != byName.end() && type.fields[found->second].name == name) return &type.fields[found->second];
+  return type.find(name);
+}
+
 // Values the instance does not give come from the declaration (all of them for an EXTERNPROTO, whose interface has none).
 void Expander::completeFields(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
   for (const FieldInfo& field : instance.type().fields) {
     if (!holdsValue(field) || instance.isGiven(field)) continue;
-    const FieldInfo* declared = definition.type->find(field.name);
+    const FieldInfo* declared = fieldOf(*definition.type, field.name);
     if (declared && declared->type == field.type && holdsValue(*declared))
       instance.values[field.offset] = copyDefault(*declared, inlines);
   }
@@ -314,14 +328,14 @@ void Expander::expand(const std::vector<NodeRef>& instances, std::vector<NodeRef
 void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition, std::vector<NodeRef>& inlines) {
   std::unordered_map<std::string_view, Value> undeclared; // what an EXTERNPROTO's interface leaves out has its default
   for (const IsConnection& connection : instance.is) {
-    const FieldInfo* to = connection.node->type().find(connection.field);
+    const FieldInfo* to = fieldOf(connection.node->type(), connection.field);
     if (!to || !holdsValue(*to)) continue;
-    const FieldInfo* from = instance.type().find(connection.interfaceName);
+    const FieldInfo* from = fieldOf(instance.type(), connection.interfaceName);
     if (from && holdsValue(*from) && from->type == to->type) {
       connect(instance, *from, instance.values[from->offset], connection);
       continue;
     }
-    const FieldInfo* declared = definition.type->find(connection.interfaceName);
+    const FieldInfo* declared = fieldOf(*definition.type, connection.interfaceName);
     if (!declared || !holdsValue(*declared) || declared->type != to->type || &definition == instance.declaration.get()) continue;
     auto found = undeclared.find(declared->name);
     if (found == undeclared.end()) found = undeclared.emplace(declared->name, copyDefault(*declared, inlines)).first;
@@ -335,7 +349,7 @@ void Expander::holdsItself(const NodeRef& node) {
 
 void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value, const IsConnection& connection) {
   Node& node = *connection.node;
-  const FieldInfo& to = *node.type().find(connection.field);
+  const FieldInfo& to = *fieldOf(node.type(), connection.field);
   if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
   if (!state_.entered.empty() && node.type().index < 0 && holdsNodes(to))
     holdsItself(connection.node); // it may: more is not known

@@ -50,7 +50,11 @@ class Expander {
 
   LoadState& state_;
   Resolve resolve_;
+  const FieldInfo* fieldOf(const NodeType& type, std::string_view name);
+
   std::unordered_map<const ProtoDeclaration*, PlanPtr> plans_;
+  // Numbers of the fields of large types by name. A type may end and another begin in its place: what is found is checked.
+  std::unordered_map<const NodeType*, std::unordered_map<std::string, uint32_t>> fieldsByName_;
   std::vector<NodeRef> todo_;
   uint64_t depth_ = 0;
 };

@@ -170,9 +170,10 @@ def test_many_problems_are_counted(vv):
 
 
 def test_control_characters_do_not_reach_the_terminal(vv):
-    vv.write("evil.wrl", HEADER.encode() + b"Box { si\x1b[31mse 1 }\nNoSuch\x07 { }\n")
+    vv.write("evil.wrl", HEADER.encode() + b"Box { si\x1b[31mse 1 }\nNoSuch\x07 { }\nNo\xe2\x80\xaeSuch { }\n")
     done = vv("evil.wrl", "-o", "x.png", *SMALL)
     assert b"\x1b" not in done.stderr and b"\x07" not in done.stderr
+    assert "\u202e".encode() not in done.stderr and b"\\xe2\\x80\\xaeSuch" in done.stderr, "text must not turn its direction"
 
 
 def test_quiet(vv):

@@ -139,6 +139,26 @@ TEST_F(MapBudget, Instances) {
 }
 
 // Groups that instantiate groups multiply when they are flattened.
+// Each shape of an object takes room for each of its instances.
+TEST_F(MapBudget, ShapesInInstances) {
+  if (heap() == 0) GTEST_SKIP() << "this allocator does not tell what it holds";
+  const std::string shape = "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 0, 0 0 1 ] } "
+                            "coordIndex [ 0 1 2 -1 0 1 3 -1 0 2 3 -1 1 2 3 ] } }\n";
+  const std::string world = "DEF G Group { children [\n" + repeat(shape, 16) + "] }\n" +
+                            repeat("Transform { translation 1 0 0 children USE G }\n", 4000);
+  draw(world);
+  mapper_.reset();
+  world_.reset();
+  const uint64_t before = heap();
+  const MapStats stats = draw(world);
+  EXPECT_EQ(messages(*world_), "");
+  EXPECT_GT(stats.instances, 4000u);
+  rtPerspective(45);
+  rtFrameBuffer(4, 4, RT_RGBA);
+  rtRender();
+  EXPECT_LT(heap() - before, budgetOf(*world_)->used());
+}
+
 TEST_F(MapBudget, InstancesOfInstances) {
   std::string text = "DEF L0 ORTInstance { children Shape { geometry " + grid(5) + " } }\n";
   for (int i = 1; i <= 18; ++i) {

@@ -174,6 +174,38 @@ TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
   EXPECT_EQ(map.summary().pixels, 15u);
 }
 
+TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean) {
+  constexpr size_t pixels = 400;
+  ErrorMap map(20, 20, ErrorMap::Kind::full);
+  for (size_t i = 0; i < pixels; i++) {
+    PixelError e;
+    e.samples = 64, e.trusted = true, e.relative = i == 0 ? .5f : .1f;
+    e.noise.finished = e.noise.random = true, e.noise.scale = 2, e.noise.own = .02f;
+    e.noise.second = .001f, e.noise.square = 1e-6f, e.noise.largest = .02f;
+    map.store(i, e);
+  }
+  const double before = map.summary().meanInterval;
+  ASSERT_LT(before, .3);
+  EXPECT_EQ(map.summary().trusted, pixels);
+  EXPECT_FALSE(map.miss(0, .3, .2));                                    // less than half of 2
+  for (size_t i = 1; i < pixels; i++) EXPECT_TRUE(map.miss(i, .3, .2)); // more than a tenth of it
+  EXPECT_EQ(map.summary().trusted, 1u);
+  EXPECT_NEAR(map.summary().meanInterval, std::hypot(before, .1), 1e-6);
+}
+
+TEST(Error, whatChanceMayHaveMissedDoesNotDependOnTheColourOfALamp) {
+  const float white[3] = {.5f, .5f, .5f}, tinted[3] = {.5f, .2f, .1f}, blue[3] = {0, 0, 9}, weakest[3] = {0, 0, 4.4f};
+  ChanceLight a, b;
+  a.send(white, 9);
+  b.send(tinted, 9);
+  EXPECT_DOUBLE_EQ(a.light, 4.5);
+  EXPECT_DOUBLE_EQ(b.light, 4.5); // the lamp may be red
+  a.meet(blue, 9);
+  EXPECT_EQ(a.met, 1);
+  a.meet(weakest, 9); // less than half
+  EXPECT_EQ(a.met, 1);
+}
+
 TEST(Error, replicatesOnlyWhereTheErrorIsAskedFor) {
   edit::FrameSettingsT frame;
   frame.channels = RT_RGBA;

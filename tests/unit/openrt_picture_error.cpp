@@ -123,18 +123,19 @@ TEST(PictureError, whatNoPathHasMetIsBoundByTheRuleOfThree) {
   const auto missed = [&ledger] { return ledger.missedByChance(ledger, 1000); };
   EXPECT_EQ(missed(), 0);
   const float grey[] = {.1f, .1f, .1f}, bright[] = {40, 40, 40}, dim[] = {20, 20, 20};
-  for (int i = 0; i < 100; i++) ledger.chance.send(grey, 50); // .3 of radiance 50 for each of 100 rays in 1000 samples
-  ledger.chance.meet(dim, 50);
-  EXPECT_NEAR(missed(), 2.996 * .3 * 50 / 1000, 5e-4);
-  ledger.chance.meet(bright, 50); // one has met it: at most 4.74 should have, with 95 %
-  EXPECT_NEAR(missed(), 3.744 * .3 * 50 / 1000, 5e-4);
-  for (int i = 0; i < 31; i++) ledger.chance.meet(bright, 50); // the samples tell
+  for (int i = 0; i < 100; i++)
+    ledger.chance.send(grey, 150); // .1 of radiance 150, colours summed, for each of 100 rays in 1000 samples
+  ledger.chance.meet(dim, 150);
+  EXPECT_NEAR(missed(), 2.996 * .1 * 150 / 1000, 5e-4);
+  ledger.chance.meet(bright, 150); // one has met it: at most 4.74 should have, with 95 %
+  EXPECT_NEAR(missed(), 3.744 * .1 * 150 / 1000, 5e-4);
+  for (int i = 0; i < 31; i++) ledger.chance.meet(bright, 150); // the samples tell
   EXPECT_EQ(missed(), 0);
-  ledger.chanceSky.send(grey, 10);             // of another kind of rays none has
-  EXPECT_NEAR(missed(), .3 * 10 / 1000, 1e-3); // not more than all of them
+  ledger.chanceSky.send(grey, 30);             // of another kind of rays none has
+  EXPECT_NEAR(missed(), .1 * 30 / 1000, 1e-3); // not more than all of them
   Ledger tile;
-  tile.chanceSky.send(grey, 10);
-  EXPECT_NEAR(tile.missedByChance(ledger, 10), .3 * 10 / 10, 1e-3);
+  tile.chanceSky.send(grey, 30);
+  EXPECT_NEAR(tile.missedByChance(ledger, 10), .1 * 30 / 10, 1e-3);
 }
 
 TEST(PictureError, theShapeOfPureJumps) { // E|K - a| / (sqrt(2/pi) E sqrt(K)) of Poisson's K, summed by hand

@@ -232,6 +232,14 @@ TEST(GeometryFaces, HopelesslyTangledFacesAreRefused) {
   EXPECT_EQ(built.mesh.kind, Mesh::Kind::empty);
   ASSERT_EQ(built.diagnostics.warnings(), 1u);
   EXPECT_NE(built.diagnostics.list()[0].message.find("tangled"), std::string::npos);
+  // So is one that a long edge cuts into very many pieces: each cut walks along what is left of it.
+  MFVec3f zigzag;
+  for (int i = 0; i < 60000; i++) zigzag.push_back({float(i), float(i * 7919 % 1000), 0});
+  Faces comb = polygon(zigzag, false);
+  Built cut = build(comb);
+  EXPECT_EQ(cut.mesh.kind, Mesh::Kind::empty);
+  ASSERT_EQ(cut.diagnostics.warnings(), 1u);
+  EXPECT_NE(cut.diagnostics.list()[0].message.find("tangled"), std::string::npos);
   // A plain outline of as many points is drawn.
   MFVec3f wavy;
   for (int i = 0; i < n; i++) {

@@ -1,4 +1,6 @@
 // xvrml_parser_proto.cpp: what prototype instances, EXTERNPROTOs and Inlines stand for once a world is loaded.
+#include <fmt/format.h>
+
 #include "unit/xvrml_parser_support.h"
 
 namespace {
@@ -26,6 +28,27 @@ TEST(ParserProto, ValuesReachTheBody) {
   const auto* second = nodeCast<nodes::Shape>(renderedNode(world->scope.roots[1].get()));
   EXPECT_NE(nodeCast<nodes::Box>(first->geometry), nullptr);
   EXPECT_EQ(nodeCast<nodes::Sphere>(second->geometry)->radius, 4);
+}
+
+TEST(ParserProto, PrototypesOfManyFieldsFindEachByItsName) {
+  std::string fields, connections, given;
+  for (int i = 0; i < 300; ++i) {
+    fields += fmt::format("field SFFloat f{} {}\n", i, i);
+    connections += fmt::format("field SFFloat g{} IS f{}\n", i, 299 - i);
+    if (i % 3 == 0) given += fmt::format("f{} {}\n", i, -1 - i);
+  }
+  const auto world = parse("PROTO P [\n" + fields + "] { Group { } Script {\n" + connections + "} }\nP {\n" + given + "}\nP { }");
+  ASSERT_EQ(messages(*world), "");
+  for (size_t k = 0; k < 2; ++k) {
+    auto* instance = dynamic_cast<ProtoInstance*>(world->scope.roots[k].get());
+    ASSERT_NE(instance, nullptr);
+    ASSERT_EQ(instance->is.size(), 300u);
+    for (const IsConnection& connection : instance->is) {
+      const int i = 299 - std::stoi(connection.field.substr(1));
+      const FieldInfo* field = connection.node->type().find(connection.field);
+      EXPECT_EQ(std::get<SFFloat>(connection.node->get(*field)), k == 0 && i % 3 == 0 ? float(-1 - i) : float(i)) << i;
+    }
+  }
 }
 
 TEST(ParserProto, InstancesShareOnlyWhatNothingCanChange) {
