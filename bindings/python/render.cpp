@@ -251,7 +251,7 @@ py::object render(const WorldPtr& self, const py::object& size, std::optional<lo
   settings.height = inRange("size", height, 1, 65536);
   if (int64_t(settings.width) * settings.height > (int64_t(1) << 28))
     throw py::value_error("size: at most 2^28 pixels expected");
-  settings.seed = inRange("seed", RT_SEED, seed);
+  settings.seed = inRange("seed", seed, 0, 2147483647);
   settings.threads = inRange("threads", threads, 0, 1024);
   settings.depth = inRange("depth", RT_MAX_DEPTH, depth);
   settings.shadows = shadows;

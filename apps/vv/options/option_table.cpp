@@ -301,7 +301,7 @@ const OptionInfo table[] = {
     {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
      [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
     {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
-     [](Options& o, const std::string& v) { o.render.seed = readWholeQuality(RT_SEED, v); }},
+     [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
     {"--threads", "N", "Quality",
      "Render threads; 0 (default): as many as the process may use. The picture does not depend on "
      "it.",
