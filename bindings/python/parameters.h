@@ -26,7 +26,7 @@ Parameter<Struct, Type, true> requiredParameter(const char* name, Type Struct::*
 }
 
 // Lists parameters in the order of the signature.
-template <class... Rows> std::tuple<Rows...> parameters(Rows... rows) { return {rows...}; }
+template <class... Rows> std::tuple<Rows...> parameterList(Rows... rows) { return {rows...}; }
 
 namespace detail {
 

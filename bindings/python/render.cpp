@@ -202,18 +202,19 @@ void defineRender(py::object worldClass) {
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
   defineMethod(
       world, "render", render,
-      parameters(parameter("size", &A::size), parameter("spp", &A::spp),
-                 parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
-                 parameter("fit", &A::fit), parameter("fov", &A::fov), parameter("seed", &A::seed),
-                 parameter("threads", &A::threads), parameter("shadows", &A::shadows),
-                 parameter("colour", &A::colour), parameter("headlight", &A::headlight),
-                 parameter("depth", &A::depth), parameter("channels", &A::channels),
-                 parameter("transport", &A::transport), parameter("error", &A::error),
-                 parameter("time_limit", &A::timeLimit), parameter("clamp", &A::clamp),
-                 parameter("cluster", &A::cluster), parameter("progress", &A::progress),
-                 parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
-                 parameter("background", &A::background)),
-      parameters(),
+      parameterList(parameter("size", &A::size), parameter("spp", &A::spp),
+                    parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
+                    parameter("fit", &A::fit), parameter("fov", &A::fov),
+                    parameter("seed", &A::seed), parameter("threads", &A::threads),
+                    parameter("shadows", &A::shadows), parameter("colour", &A::colour),
+                    parameter("headlight", &A::headlight), parameter("depth", &A::depth),
+                    parameter("channels", &A::channels), parameter("transport", &A::transport),
+                    parameter("error", &A::error), parameter("time_limit", &A::timeLimit),
+                    parameter("clamp", &A::clamp), parameter("cluster", &A::cluster),
+                    parameter("progress", &A::progress),
+                    parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
+                    parameter("background", &A::background)),
+      parameterList(),
       "Renders the world as it is now; of one that runs, the scene is kept from one picture to the "
       "next. Options as those of the program vv. spp: samples a pixel, 16; with an error at most "
       "so many, 4096; with a time limit 65536. channels: rgba and z, and with an error also error "
