@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/nearest.h"
+#include "nearest.h"
 #include "numbers.h"
 #include "objects.h"
 #include "xvrml/viewed.h"
@@ -372,7 +372,7 @@ std::string fromText(const py::handle& text) {
 }
 
 std::string didYouMean(const std::string& name, const std::vector<std::string>& known) {
-  const std::string near = picture::nearest(name, known);
+  const std::string near = nearest::word(name, known);
   return near.empty() ? "" : fmt::format("; did you mean {}?", near);
 }
 
