@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
-#include "libpicture/nearest.h"
+#include "nearest.h"
 #include "options/names.h"
 #include "outputs.h"
 #include "report/audit.h"
@@ -73,7 +73,7 @@ std::vector<Job> chooseJobs(const Options& options,
       if (i < 20)
         known += fmt::format("{}{}{}", i ? ", " : "", i, shown.empty() ? "" : " " + oneLine(shown));
     }
-    const std::string near = picture::nearest(options.viewpoint, names);
+    const std::string near = nearest::word(options.viewpoint, names);
     throw Failure{
         exitUsage,
         fmt::format("--viewpoint: the world has no \"{}\"{}; {}", options.viewpoint,

@@ -9,6 +9,7 @@
 #include <pybind11/stl.h>
 
 #include "objects.h"
+#include "parameters.h"
 
 using namespace xvrml;
 
@@ -18,24 +19,35 @@ namespace {
 struct BrowserObject : WorldObject {};
 using BrowserPtr = std::shared_ptr<BrowserObject>;
 
-BrowserPtr makeBrowser(const py::object& source, double start, const py::object& limits,
-                       bool allowAbsolute, const py::object& scriptPath, bool trust, double epoch,
-                       bool directOutputAlways) {
-  if (!(start >= -latestTime && start < latestTime))
+// The arguments of Browser(), in the order of Python's signature. The values are the defaults.
+struct BrowserArguments {
+  py::object source;
+  double start = 0;
+  py::object limits = py::none();
+  bool allowAbsolute = false;
+  py::object scriptPath = py::none();
+  bool trust = false;
+  double epoch = worldEpoch;
+  bool directOutputAlways = false;
+};
+
+BrowserPtr makeBrowser(const BrowserArguments& given) {
+  if (!(given.start >= -latestTime && given.start < latestTime))
     throw py::value_error(fmt::format("start: a number between -{0} and {0} was expected, not {1}",
-                                      latestTime, start));
-  if (!(epoch > -1 && epoch < latestTime)) // rejects NaN too; same range as --epoch of vv
-    throw py::value_error(
-        fmt::format("epoch: a number between -1 and {} was expected, not {}", latestTime, epoch));
+                                      latestTime, given.start));
+  if (!(given.epoch > -1 &&
+        given.epoch < latestTime)) // rejects NaN too; same range as --epoch of vv
+    throw py::value_error(fmt::format("epoch: a number between -1 and {} was expected, not {}",
+                                      latestTime, given.epoch));
   BrowserOptions options;
-  if (!scriptPath.is_none()) options.scriptPath = toPath(scriptPath);
-  options.trustScripts = trust;
+  if (!given.scriptPath.is_none()) options.scriptPath = toPath(given.scriptPath);
+  options.trustScripts = given.trust;
   RunOptions more;
-  more.epoch = epoch;
-  more.directOutputAlways = directOutputAlways;
+  more.epoch = given.epoch;
+  more.directOutputAlways = given.directOutputAlways;
   auto made = std::make_shared<BrowserObject>();
-  std::unique_ptr<World> world = loadSource(source, limits, allowAbsolute);
-  made->run(std::move(world), options, start, more);
+  std::unique_ptr<World> world = loadSource(given.source, given.limits, given.allowAbsolute);
+  made->run(std::move(world), options, given.start, more);
   return made;
 }
 
@@ -168,28 +180,45 @@ Key keyOf(const std::string& name) {
                      {"alt", Key::alt}});
 }
 
-void navigate(const BrowserPtr& self, double dt, double ahead, double right, double up, double turn,
-              double tilt, double roll) {
-  if (!(dt >= 0)) throw py::value_error("navigate: dt: seconds from 0 on expected");
+struct NavigateArguments {
+  double dt = 0;
+  double ahead = 0, right = 0, up = 0, turn = 0, tilt = 0, roll = 0;
+};
+
+void navigate(const BrowserPtr& self, const NavigateArguments& given) {
+  if (!(given.dt >= 0)) throw py::value_error("navigate: dt: seconds from 0 on expected");
+  const NavigationInput input{given.ahead, given.right, given.up,
+                              given.turn,  given.tilt,  given.roll};
   const auto lock = self->lock();
-  self->change([&] { self->running->navigate({ahead, right, up, turn, tilt, roll}, dt); });
+  self->change([&] { self->running->navigate(input, given.dt); });
 }
 
 } // namespace
 
 void defineBrowser(py::module_& module) {
-  py::class_<BrowserObject, WorldObject, BrowserPtr>(
+  py::class_<BrowserObject, WorldObject, BrowserPtr> browser(
       module, "Browser",
       "A world that runs: tick(time) moves its clock, assigning a node's field sends an event. It "
-      "has no clock of its own.")
-      .def(py::init(&makeBrowser), py::arg("source"), py::kw_only(), py::arg("start") = 0.0,
-           py::arg("limits") = py::none(), py::arg("allow_absolute") = false,
-           py::arg("script_path") = py::none(), py::arg("trust") = false,
-           py::arg("epoch") = worldEpoch, py::arg("direct_output_always") = false,
-           "source: as of load(). The world comes alive at time `start`, in seconds after `epoch`, "
-           "which is in seconds since 1970: nodes and Scripts see epoch + time. "
-           "direct_output_always: Scripts without directOutput TRUE may change nodes, as in "
-           "browsers of 1997.")
+      "has no clock of its own.");
+  using B = BrowserArguments;
+  defineConstructor(
+      browser, makeBrowser, parameterList(requiredParameter("source", &B::source)),
+      parameterList(parameter("start", &B::start), parameter("limits", &B::limits),
+                    parameter("allow_absolute", &B::allowAbsolute),
+                    parameter("script_path", &B::scriptPath), parameter("trust", &B::trust),
+                    parameter("epoch", &B::epoch),
+                    parameter("direct_output_always", &B::directOutputAlways)),
+      "source: as of load(). The world comes alive at time `start`, in seconds after `epoch`, "
+      "which is in seconds since 1970: nodes and Scripts see epoch + time. "
+      "direct_output_always: Scripts without directOutput TRUE may change nodes, as in "
+      "browsers of 1997.");
+  using N = NavigateArguments;
+  defineMethod(browser, "navigate", navigate, parameterList(requiredParameter("dt", &N::dt)),
+               parameterList(parameter("ahead", &N::ahead), parameter("right", &N::right),
+                             parameter("up", &N::up), parameter("turn", &N::turn),
+                             parameter("tilt", &N::tilt), parameter("roll", &N::roll)),
+               "Moves the viewer for dt seconds; numbers from -1 to 1.");
+  browser
       .def_property_readonly(
           "now", [](const BrowserPtr& self) { return self->running->now(); },
           "Time in seconds after `epoch`.")
@@ -277,10 +306,6 @@ void defineBrowser(py::module_& module) {
       .def("pick", pick, py::arg("origin"), py::arg("direction"), py::arg("both_sides") = false,
            "The nearest thing along a ray, as a dict with distance, point, normal, tex_coord and "
            "path; None if there is none.")
-      .def("navigate", navigate, py::arg("dt"), py::kw_only(), py::arg("ahead") = 0.0,
-           py::arg("right") = 0.0, py::arg("up") = 0.0, py::arg("turn") = 0.0,
-           py::arg("tilt") = 0.0, py::arg("roll") = 0.0,
-           "Moves the viewer for dt seconds; numbers from -1 to 1.")
       .def(
           "key",
           [](const BrowserPtr& self, const std::string& name, bool pressed) {

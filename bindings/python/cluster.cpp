@@ -8,6 +8,7 @@
 #include <pybind11/stl.h>
 
 #include "cluster_object.h"
+#include "parameters.h"
 
 namespace {
 
@@ -48,28 +49,40 @@ std::string workersOf(const py::object& given) {
 
 std::string pathOf(const py::object& given) { return given.is_none() ? "" : toPath(given); }
 
-ClusterPtr make(const py::object& workers, const py::object& key, const py::object& listen,
-                const py::object& allowKeys, std::optional<int> localThreads,
-                const std::string& split, int require, bool tolerant,
-                const py::object& shaderPath) {
+// The arguments of Cluster(), in the order of Python's signature. The values are the defaults.
+struct ClusterArguments {
+  py::object workers = py::none();
+  py::object key = py::none();
+  py::object listen = py::none();
+  py::object allowKeys = py::none();
+  std::optional<int> localThreads;
+  std::string split = "auto";
+  int require = 0;
+  bool tolerant = false;
+  py::object shaderPath = py::none();
+};
+
+ClusterPtr make(const ClusterArguments& given) {
   picture::ClusterSettings settings;
-  settings.workers = workersOf(workers);
-  if (!listen.is_none()) settings.listen = fromText(listen);
-  settings.key = pathOf(key);
-  settings.allow = pathOf(allowKeys);
-  if (localThreads && (*localThreads < 0 || *localThreads > 1024))
+  settings.workers = workersOf(given.workers);
+  if (!given.listen.is_none()) settings.listen = fromText(given.listen);
+  settings.key = pathOf(given.key);
+  settings.allow = pathOf(given.allowKeys);
+  if (given.localThreads && (*given.localThreads < 0 || *given.localThreads > 1024))
     throw py::value_error("local_threads: 0 to 1024 expected");
-  settings.localThreads = localThreads.value_or(-1);
+  settings.localThreads = given.localThreads.value_or(-1);
+  const std::string& split = given.split;
   if (split != "auto" && split != "tiles" && split != "samples" && split != "frames")
     throw py::value_error("split: 'auto', 'tiles', 'samples' or 'frames' expected, not '" + split +
                           "'");
   settings.split = split;
-  if (require < 0 || require > 65536) throw py::value_error("require: 0 to 65536 expected");
-  settings.require = require;
-  settings.tolerant = tolerant;
+  if (given.require < 0 || given.require > 65536)
+    throw py::value_error("require: 0 to 65536 expected");
+  settings.require = given.require;
+  settings.tolerant = given.tolerant;
   if (!settings.used()) throw py::value_error("Cluster: workers or listen expected");
   picture::RenderSettings context;
-  context.shaderPath = pathOf(shaderPath);
+  context.shaderPath = pathOf(given.shaderPath);
   auto made = std::make_shared<ClusterObject>();
   made->settings = settings;
   const ReleaseGil release;
@@ -193,19 +206,22 @@ void defineCluster(py::module_& module) {
       .def_readonly("latency", &RTworker::latency,
                     "Seconds that a job is under way beyond the work.")
       .def("__repr__", workerText);
-  py::class_<ClusterObject, ClusterPtr>(
+  py::class_<ClusterObject, ClusterPtr> cluster(
       module, "Cluster",
       "Machines that render together: `with Cluster([\"a:7447\", \"b\"], key=\"cluster.key\")`. "
-      "The pictures of renders inside have the same bytes as without (docs/cluster.md).")
-      .def(py::init(&make), py::arg("workers") = py::none(), py::kw_only(),
-           py::arg("key") = py::none(), py::arg("listen") = py::none(),
-           py::arg("allow_keys") = py::none(), py::arg("local_threads") = py::none(),
-           py::arg("split") = "auto", py::arg("require") = 0, py::arg("tolerant") = false,
-           py::arg("shader_path") = py::none(),
-           "workers: addresses of openrt-worker --listen, or '@FILE'; listen: where workers call "
-           "in. Begins to call and returns at once. require: renders raise ClusterError while "
-           "fewer workers are there for 10 seconds.")
-      .def("__enter__", enter)
+      "The pictures of renders inside have the same bytes as without (docs/cluster.md).");
+  using A = ClusterArguments;
+  defineConstructor(
+      cluster, make, parameterList(parameter("workers", &A::workers)),
+      parameterList(parameter("key", &A::key), parameter("listen", &A::listen),
+                    parameter("allow_keys", &A::allowKeys),
+                    parameter("local_threads", &A::localThreads), parameter("split", &A::split),
+                    parameter("require", &A::require), parameter("tolerant", &A::tolerant),
+                    parameter("shader_path", &A::shaderPath)),
+      "workers: addresses of openrt-worker --listen, or '@FILE'; listen: where workers call "
+      "in. Begins to call and returns at once. require: renders raise ClusterError while "
+      "fewer workers are there for 10 seconds.");
+  cluster.def("__enter__", enter)
       .def("__exit__", leave)
       .def("close", closeCluster, "Says goodbye to the workers; the end of the with block does it.")
       .def_property_readonly(

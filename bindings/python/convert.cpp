@@ -6,7 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/nearest.h"
+#include "nearest.h"
+#include "numbers.h"
 #include "objects.h"
 #include "xvrml/viewed.h"
 
@@ -56,8 +57,7 @@ struct Target {
                        fieldTypeName(field.type), expectation(field.type));
   }
   [[noreturn]] void wrongType(const py::handle& got) const {
-    throw py::type_error(fmt::format(
-        "{}, not {}", text(), std::string(py::str(py::type::handle_of(got).attr("__name__")))));
+    throw py::type_error(fmt::format("{}, not {}", text(), typeName(got)));
   }
   [[noreturn]] void wrongValue(const std::string& why) const {
     throw py::value_error(text() + ", " + why);
@@ -200,7 +200,7 @@ double number(const py::handle& object, const Target& target) {
 
 bool boolean(const py::handle& object, const Target& target) {
   if (PyBool_Check(object.ptr())) return object.ptr() == Py_True;
-  const std::string type = py::str(py::type::handle_of(object).attr("__name__"));
+  const std::string type = typeName(object);
   if (type == "bool_" || type == "bool") // numpy's names before and since version 2
     return py::bool_(py::reinterpret_borrow<py::object>(object));
   target.wrongType(object);
@@ -372,7 +372,7 @@ std::string fromText(const py::handle& text) {
 }
 
 std::string didYouMean(const std::string& name, const std::vector<std::string>& known) {
-  const std::string near = picture::nearest(name, known);
+  const std::string near = nearest::word(name, known);
   return near.empty() ? "" : fmt::format("; did you mean {}?", near);
 }
 

@@ -10,6 +10,10 @@ std::string shown(const py::handle& value) {
   return fromText(py::module_::import("xvrml._arguments").attr("_short")(value));
 }
 
+std::string typeName(const py::handle& value) {
+  return py::str(py::type::handle_of(value).attr("__name__"));
+}
+
 py::array numberArray(const py::object& given, const std::string& name, const std::string& expected,
                       bool whole) {
   py::array array;

@@ -12,6 +12,9 @@ namespace py = pybind11;
 // Formats a value for messages: "the str 'a'".
 std::string shown(const py::handle& value);
 
+// Returns the name of the value's class.
+std::string typeName(const py::handle& value);
+
 // Returns the numbers as an array of any type. Raises TypeError for text and other objects, and
 // ValueError for rows of different lengths. whole: fractions also raise ValueError. expected: for
 // the message, such as "numbers of shape (n, 3)".

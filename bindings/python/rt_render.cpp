@@ -8,6 +8,7 @@
 
 #include "libpicture/transport.h"
 #include "objects.h"
+#include "parameters.h"
 #include "picture_object.h"
 #include "rt_objects.h"
 
@@ -39,32 +40,56 @@ void renderWatched(RtContext& context, const picture::ProgressCallback& watch) {
   thread.join();
 }
 
-py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std::optional<int> spp,
-                  double error, double timeLimit, int depth, int seed, const std::string& transport,
-                  bool shadows, const py::object& channels, const py::object& progress) {
-  const std::optional<int> following = picture::transportNamed(transport);
-  if (!following)
-    throw py::value_error(
-        fmt::format("transport: {} expected, not '{}'", picture::transportNames(), transport));
-  uint32_t bits = uint32_t(
-      RT_RGBA | (channels.is_none() ? RT_DEPTH | (error > 0 ? RT_ERROR | RT_TRUST : 0) : 0));
-  if (!channels.is_none()) bits |= channelsOf(channels);
-  const py::object bar = progressOf(progress);
+// The arguments of Context.render(), in the order of Python's signature. The values are the
+// defaults.
+struct FrameArguments {
+  std::pair<int, int> size{800, 600};
+  std::optional<int> spp;
+  double error = 0;
+  double timeLimit = 0;
+  int depth = 25;
+  int seed = 0;
+  std::string transport = "auto";
+  bool shadows = true;
+  py::object channels = py::none();
+  py::object progress = py::none();
+};
+
+// Returns the bits of the channels; without a request rgba and depth, and with an error its
+// channels.
+uint32_t frameChannels(const FrameArguments& given) {
+  if (!given.channels.is_none()) return RT_RGBA | channelsOf(given.channels);
+  return RT_RGBA | RT_DEPTH | (given.error > 0 ? RT_ERROR | RT_TRUST : 0);
+}
+
+// Sets the size and the quality of the next frame of the current context.
+void setUpFrame(const FrameArguments& given, int transport, uint32_t channels) {
+  rtFrameBuffer(given.size.first, given.size.second, channels);
+  const int most = given.timeLimit > 0 ? 65536 : given.error > 0 ? 4096 : 16;
+  rtQuality(RT_SAMPLES_PER_PIXEL, given.spp.value_or(most));
+  rtQualityf(RT_TARGET_ERROR, given.error);
+  rtQualityf(RT_TIME_LIMIT, given.timeLimit);
+  rtQuality(RT_MAX_DEPTH, given.depth);
+  rtQuality(RT_SEED, given.seed);
+  rtQuality(RT_TRANSPORT, transport);
+  rtQuality(RT_SHADOWS, given.shadows);
+}
+
+py::object render(const RtContextPtr& self, const FrameArguments& given) {
+  const std::optional<int> transport = picture::transportNamed(given.transport);
+  if (!transport)
+    throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames(),
+                                      given.transport));
+  const uint32_t bits = frameChannels(given);
+  const py::object bar = progressOf(given.progress);
   auto made = std::make_unique<PictureObject>();
   picture::Picture& picture = made->picture;
   const CurrentContext use(self);
-  rtFrameBuffer(size.first, size.second, bits);
-  rtQuality(RT_SAMPLES_PER_PIXEL, spp.value_or(timeLimit > 0 ? 65536 : error > 0 ? 4096 : 16));
-  rtQualityf(RT_TARGET_ERROR, error);
-  rtQualityf(RT_TIME_LIMIT, timeLimit);
-  rtQuality(RT_MAX_DEPTH, depth);
-  rtQuality(RT_SEED, seed);
-  rtQuality(RT_TRANSPORT, *following);
-  rtQuality(RT_SHADOWS, shadows);
+  setUpFrame(given, *transport, bits);
   use.check();
   const auto read = [&] {
-    picture.width = size.first;
-    picture.height = size.second;
+    picture.width = given.size.first;
+    picture.height = given.size.second;
     for (const picture::Channel& channel : picture::channelTable()) {
       if (!(bits & channel.bit)) continue;
       std::vector<float>& plane = picture.planes[channel.bit];
@@ -120,10 +145,13 @@ py::object render(const RtContextPtr& self, const std::pair<int, int>& size, std
 } // namespace
 
 void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
-  context.def("render", render, py::arg("size") = std::pair<int, int>(800, 600),
-              py::arg("spp") = py::none(), py::kw_only(), py::arg("error") = 0.0,
-              py::arg("time_limit") = 0.0, py::arg("depth") = 25, py::arg("seed") = 0,
-              py::arg("transport") = "auto", py::arg("shadows") = true,
-              py::arg("channels") = py::none(), py::arg("progress") = py::none(),
-              "A picture of the scene, as World.render makes one of a world.");
+  using A = FrameArguments;
+  defineMethod(context, "render", render,
+               parameterList(parameter("size", &A::size), parameter("spp", &A::spp)),
+               parameterList(parameter("error", &A::error), parameter("time_limit", &A::timeLimit),
+                             parameter("depth", &A::depth), parameter("seed", &A::seed),
+                             parameter("transport", &A::transport),
+                             parameter("shadows", &A::shadows), parameter("channels", &A::channels),
+                             parameter("progress", &A::progress)),
+               "A picture of the scene, as World.render makes one of a world.");
 }

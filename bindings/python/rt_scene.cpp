@@ -7,6 +7,7 @@
 #include "degenerate.h"
 #include "numbers.h"
 #include "objects.h"
+#include "parameters.h"
 #include "rt_objects.h"
 
 namespace {
@@ -50,33 +51,43 @@ struct ObjectDefinition { // begins and ends the definition of an object
   }
 };
 
-RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::object& faces,
-              const py::object& normals, const py::object& texcoords, const py::object& colors,
-              const py::object& shader, uint32_t name, bool cull) {
-  const bool wide = py::isinstance<py::array_t<double>>(vertices);
+// The arguments of Context.mesh(), in the order of Python's signature. The values are the defaults.
+struct MeshArguments {
+  py::object vertices;
+  py::object faces = py::none();
+  py::object normals = py::none();
+  py::object texcoords = py::none();
+  py::object colors = py::none();
+  py::object shader = py::none();
+  uint32_t name = 0;
+  bool cull = false;
+};
+
+RtObject mesh(const RtContextPtr& self, const MeshArguments& given) {
+  const bool wide = py::isinstance<py::array_t<double>>(given.vertices);
   Dense<double> precise;
   Dense<float> single;
   if (wide)
-    precise = rows<double>(vertices, "vertices", 3);
+    precise = rows<double>(given.vertices, "vertices", 3);
   else
-    single = rows<float>(vertices, "vertices", 3);
+    single = rows<float>(given.vertices, "vertices", 3);
   const py::ssize_t count = wide ? precise.shape(0) : single.shape(0);
   Dense<uint32_t> corners;
-  if (!faces.is_none()) {
-    const auto given = rows<int64_t>(faces, "faces", 3);
-    corners = Dense<uint32_t>(given.size());
-    for (py::ssize_t i = 0; i < given.size(); ++i) {
-      const int64_t v = given.data()[i];
+  if (!given.faces.is_none()) {
+    const auto wanted = rows<int64_t>(given.faces, "faces", 3);
+    corners = Dense<uint32_t>(wanted.size());
+    for (py::ssize_t i = 0; i < wanted.size(); ++i) {
+      const int64_t v = wanted.data()[i];
       if (v < 0 || v >= count)
         throw py::value_error(fmt::format("faces: {} is no vertex: there are {}", v, count));
       corners.mutable_data()[i] = uint32_t(v);
     }
   }
   Dense<float> n, t, c;
-  if (!normals.is_none()) n = rows<float>(normals, "normals", 3, count);
-  if (!texcoords.is_none()) t = rows<float>(texcoords, "texcoords", 2, count);
-  if (!colors.is_none()) c = rows<float>(colors, "colors", 3, count);
-  const RtShader* surface = shaderOf(self, shader);
+  if (!given.normals.is_none()) n = rows<float>(given.normals, "normals", 3, count);
+  if (!given.texcoords.is_none()) t = rows<float>(given.texcoords, "texcoords", 2, count);
+  if (!given.colors.is_none()) c = rows<float>(given.colors, "colors", 3, count);
+  const RtShader* surface = shaderOf(self, given.shader);
   const CurrentContext use(self);
   RtObject made;
   {
@@ -84,14 +95,14 @@ RtObject mesh(const RtContextPtr& self, const py::object& vertices, const py::ob
     const ObjectDefinition opened;
     made = {{self, opened.id}};
     if (surface) rtBindShader(surface->id);
-    rtLoadName(name);
-    (cull ? rtEnable : rtDisable)(RT_CULL_FACE);
+    rtLoadName(given.name);
+    (given.cull ? rtEnable : rtDisable)(RT_CULL_FACE);
     rtVertexPointer(3, wide ? RT_DOUBLE : RT_FLOAT, 0,
                     wide ? static_cast<const void*>(precise.data()) : single.data());
     if (n.size()) rtNormalPointer(RT_FLOAT, 0, n.data());
     if (t.size()) rtTexCoordPointer(2, RT_FLOAT, 0, t.data());
     if (c.size()) rtColorPointer(3, RT_FLOAT, 0, c.data());
-    if (!faces.is_none())
+    if (!given.faces.is_none())
       rtDrawElements(RT_TRIANGLES, size_t(corners.size()), corners.data(), size_t(count));
     else
       rtDrawArrays(RT_TRIANGLES, 0, size_t(count));
@@ -467,13 +478,18 @@ void defineRtScene(py::module_& module) {
       .def_readonly("name", &RtShader::name, "Its class.")
       .def("delete", call(rtDeleteShader));
   py::object type = module.attr("Context");
-  py::reinterpret_borrow<py::class_<RtContext, RtContextPtr>>(type)
-      .def("mesh", mesh, "vertices"_a, "faces"_a = none, py::kw_only(), "normals"_a = none,
-           "texcoords"_a = none, "colors"_a = none, "shader"_a = none, "name"_a = 0,
-           "cull"_a = false,
-           "An object of triangles: vertices (n, 3) in float32 or float64, faces (m, 3); without "
-           "faces every three vertices are one. normals, texcoords and colors by vertex. cull: "
-           "back faces are not there.")
+  auto context = py::reinterpret_borrow<py::class_<RtContext, RtContextPtr>>(type);
+  using M = MeshArguments;
+  defineMethod(
+      context, "mesh", mesh,
+      parameterList(requiredParameter("vertices", &M::vertices), parameter("faces", &M::faces)),
+      parameterList(parameter("normals", &M::normals), parameter("texcoords", &M::texcoords),
+                    parameter("colors", &M::colors), parameter("shader", &M::shader),
+                    parameter("name", &M::name), parameter("cull", &M::cull)),
+      "An object of triangles: vertices (n, 3) in float32 or float64, faces (m, 3); without "
+      "faces every three vertices are one. normals, texcoords and colors by vertex. cull: "
+      "back faces are not there.");
+  context
       .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none, "name"_a = 0,
            "An exact sphere about the origin.")
       .def("group", group, "parts"_a, "An object of others: pairs of an object and its matrix.")

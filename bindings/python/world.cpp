@@ -7,7 +7,6 @@
 #include <pybind11/stl.h>
 
 #include "libpicture/files/atomic_file.h"
-#include "libpicture/nearest.h"
 #include "objects.h"
 
 using namespace xvrml;

@@ -10,9 +10,9 @@
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
-#include "graph/nearest.h"
 #include "graph/node_kinds.h"
 #include "graph/range.h"
+#include "nearest.h"
 
 namespace xvrml {
 
@@ -68,7 +68,7 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
       lexer_.warn(type.at(), fmt::format("no node: prototype {} was left out", describe(type)));
     } else {
       lexer_.error(type.at(), fmt::format("{} is not a known node type{}", describe(type),
-                                          suggestion(type.text, nodeTypes())));
+                                          nearest::suggestion(type.text, nodeTypes())));
     }
     return false;
   }
@@ -264,7 +264,7 @@ FieldTarget Builder::openField(const Token& name) {
   const FieldInfo* field = node.type().find(name.text);
   if (!field) {
     lexer_.error(name.at(), fmt::format("{} has no field {}{}", node.type().name, describe(name),
-                                        suggestion(name.text, node.type().fields)));
+                                        nearest::suggestion(name.text, node.type().fields)));
     return {};
   }
   if (!holdsValue(*field)) {

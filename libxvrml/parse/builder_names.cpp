@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "graph/field_access.h"
-#include "graph/nearest.h"
+#include "nearest.h"
 #include "parse/builder.h"
 
 namespace xvrml {
@@ -113,7 +113,7 @@ NodeRef Builder::findName(const Token& name) {
     lexer_.warn(name.at(), fmt::format("{} was left out above", describe(name)));
     return {};
   }
-  std::string hint = suggestion(name.text, namesOf(*scope().scope));
+  std::string hint = nearest::suggestion(name.text, namesOf(*scope().scope));
   if (inTemplate() && scopes_.front().scope->names.contains(name.text))
     hint = "; a prototype has names of its own (4.8.4)";
   lexer_.error(name.at(),
@@ -196,7 +196,7 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
   }
   if (!field) {
     lexer_.error(name.at(), fmt::format("{} has no field or event {}{}", type.name, describe(name),
-                                        suggestion(name.text, type.fields)));
+                                        nearest::suggestion(name.text, type.fields)));
     return;
   }
   ScopeFrame* proto = protoFrame();
@@ -211,7 +211,7 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
     lexer_.error(interfaceName.at(),
                  fmt::format("prototype {} declares no {}{}", proto->protoType->name,
                              describe(interfaceName),
-                             suggestion(interfaceName.text, proto->protoType->fields)));
+                             nearest::suggestion(interfaceName.text, proto->protoType->fields)));
     return;
   }
   if (declared->type != field->type) {

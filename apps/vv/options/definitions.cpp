@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/nearest.h"
+#include "nearest.h"
 #include "values.h"
 #include "xvrml/value_text.h"
 
@@ -17,7 +17,7 @@ using namespace xvrml;
 }
 
 std::string didYouMean(const std::string& word, const std::vector<std::string>& known) {
-  const std::string near = picture::nearest(word, known);
+  const std::string near = nearest::word(word, known);
   return near.empty() ? "" : fmt::format("; did you mean {}?", near);
 }
 

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/nearest.h"
 #include "libpicture/transport.h"
 #include "names.h"
+#include "nearest.h"
 
 namespace vv {
 
@@ -114,7 +114,7 @@ void setLimit(Options& o, const std::string& value) {
   const uint64_t count = readCount(std::string_view(value).substr(equals + 1));
   if (name == ofScripts) return void(o.run.worldScriptSeconds = double(count));
   if (xvrml::setLimit(o.load.limits, name, count)) return;
-  const std::string near = picture::nearest(name, names);
+  const std::string near = nearest::word(name, names);
   throw UsageError(fmt::format("there is no limit \"{}\"{}; the limits are {}", name,
                                near.empty() ? "" : fmt::format(" (did you mean {}?)", near),
                                known));

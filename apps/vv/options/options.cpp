@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "habits.h"
-#include "libpicture/nearest.h"
+#include "nearest.h"
 
 namespace vv {
 
@@ -50,7 +50,7 @@ std::vector<std::string> allNames() {
 std::string unknownOption(std::string option) {
   option = option.substr(0, option.find('='));
   if (const std::string hint = optionHint(option); !hint.empty()) return hint;
-  const std::string near = picture::nearest(option, allNames());
+  const std::string near = nearest::word(option, allNames());
   if (near.empty()) return fmt::format("there is no option {}; vv --help lists them", option);
   return fmt::format("there is no option {}; did you mean {}?", option, near);
 }

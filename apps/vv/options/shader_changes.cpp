@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/nearest.h"
+#include "nearest.h"
 #include "report/describe.h"
 #include "shader_text.h"
 #include "values.h"
@@ -26,7 +26,7 @@ Node& findNode(const std::string& text, const std::string& name, const World& wo
     return *found->second;
   std::vector<std::string> known;
   for (const auto& [one, node] : world.scope.names) known.push_back(one);
-  const std::string near = picture::nearest(name, known);
+  const std::string near = nearest::word(name, known);
   fail(text, known.empty()
                  ? "the world names no node with DEF; * stands for all shapes"
                  : fmt::format("no node is called {}{}", name,

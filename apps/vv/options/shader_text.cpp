@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/nearest.h"
+#include "nearest.h"
 #include "values.h"
 #include "xvrml/nodes.h"
 
@@ -165,7 +165,7 @@ std::vector<std::string> optionsOf(const Written& written, RTenum role,
   for (const Setting& setting : written.settings) {
     const auto at = std::find(names.begin(), names.end(), setting.name);
     if (at == names.end()) {
-      const std::string near = picture::nearest(setting.name, names);
+      const std::string near = nearest::word(setting.name, names);
       std::string all;
       for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
       throw UsageError(fmt::format("{} has no parameter {}{}", written.name, setting.name,

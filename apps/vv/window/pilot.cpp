@@ -54,7 +54,7 @@ std::vector<xvrml::ViewpointName> described(std::vector<xvrml::ViewpointName> al
 } // namespace
 
 Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov)
-    : browser_(browser), start_(start), fov_(fov) {
+    : browser_(browser), time_(start), fov_(fov) {
   const xvrml::BoundNodes bound = browser_.bound();
   // A world without Viewpoint and NavigationInfo is probably a model: start with EXAMINE.
   if (!bound.viewpoint && !bound.navigationInfo) browser_.setNavigation(Navigation::examine);
@@ -72,73 +72,32 @@ xvrml::CameraSettings Pilot::camera() const {
 }
 
 void Pilot::step(double seconds) {
-  const double passed = std::max(0.0, seconds - session_);
-  session_ = seconds;
-  if (paused_) pausedSeconds_ += passed;
-  browser_.tick(paused_ ? browser_.now() : start_ + (session_ - pausedSeconds_));
+  const double passed = time_.advance(seconds);
+  browser_.tick(paused() ? browser_.now() : time_.time());
   move(passed);
-  if (inside_ && drag_ != Drag::view) point(drag_ == Drag::sensor); // the viewer may have moved
+  // The viewer may have moved below the pointer.
+  if (pointer_.place() != Pointer::Place::outside && pointer_.drag() != Pointer::Drag::view)
+    pointer_.send();
 }
 
 // --- The pointer ---
 
-void Pilot::point(bool button) {
-  const xvrml::CameraSettings c = camera();
-  const double* m = c.matrix;
-  const double size = c.fovy > 0 ? std::tan(c.fovy / 2) : c.height / 2;
-  const double across = x_ * size * aspect_, along = y_ * size;
-  double origin[3], direction[3];
-  for (int i = 0; i < 3; ++i) {
-    const double aside = m[i] * across + m[4 + i] * along;
-    origin[i] = m[12 + i] + (c.fovy > 0 ? 0 : aside);
-    direction[i] = -m[8 + i] + (c.fovy > 0 ? aside : 0);
-  }
-  const uint64_t before = browser_.generation();
-  browser_.pointerRay(origin, direction, button);
-  if (browser_.generation() != before) drag_ = Drag::none;
-  overSensor_ = !browser_.sensorsAtPointer().empty();
-}
-
-void Pilot::press(const InputEvent& event) {
-  if (drag_ != Drag::none) return; // a second button is ignored
-  pressed_ = event;
-  point(false);
-  if (event.button == Button::left && overSensor_) {
-    drag_ = Drag::sensor;
-    point(true);
-    return;
-  }
-  drag_ = Drag::view;
-}
-
-void Pilot::release(const InputEvent& event) {
-  if (drag_ == Drag::none || event.button != pressed_.button) return;
-  drag_ = Drag::none;
-  point(false);
-}
-
-// Returns the button that began the drag; shift and control stand for other buttons.
-static Button meaning(const InputEvent& pressed) {
-  if (pressed.button != Button::left) return pressed.button;
-  return pressed.shift ? Button::right : pressed.control ? Button::middle : Button::left;
-}
-
 // EXAMINE: the world follows the pointer. The other navigation types use the distance since the
 // press, in move().
-void Pilot::drag(double dx, double dy) {
+void Pilot::drag(const Pointer::Way& way) {
   if (browser_.navigation() != Navigation::examine) return;
   const double size = std::tan(camera().fovy / 2);
-  switch (meaning(pressed_)) {
-  case Button::left: return navigate({.turn = -dx, .tilt = dy}, 1);
-  case Button::right: return navigate({.right = -dx * size * aspect_, .up = -dy * size}, 1);
-  case Button::middle: return navigate({.ahead = dy}, 1);
+  switch (pointer_.button()) {
+  case Button::left: return navigate({.turn = -way.x, .tilt = way.y}, 1);
+  case Button::right: return navigate({.right = -way.x * size * aspect_, .up = -way.y * size}, 1);
+  case Button::middle: return navigate({.ahead = way.y}, 1);
   }
 }
 
 void Pilot::wheel(const InputEvent& event) { navigate({.ahead = event.amount}, notch); }
 
 std::string Pilot::hint() const {
-  if (!inside_ || !overSensor_) return {};
+  if (!pointer_.isOverSensor()) return {};
   for (const xvrml::NodeRef& node : browser_.sensorsAtPointer()) {
     const auto* anchor = xvrml::nodeCast<xvrml::nodes::Anchor>(node.get());
     if (!anchor) continue;
@@ -161,10 +120,11 @@ void Pilot::move(double seconds) {
   if (!(seconds > 0)) return;
   NavigationInput input;
   bool wanted = false;
-  if (drag_ == Drag::view && browser_.navigation() != Navigation::examine) {
-    const double dx = speedOf(x_ - pressed_.x), dy = speedOf(y_ - pressed_.y);
+  if (pointer_.drag() == Pointer::Drag::view && browser_.navigation() != Navigation::examine) {
+    const Pointer::Way way = pointer_.sincePress();
+    const double dx = speedOf(way.x), dy = speedOf(way.y);
     wanted = dx != 0 || dy != 0;
-    switch (meaning(pressed_)) {
+    switch (pointer_.button()) {
     case Button::left:
       input.ahead = dy;
       input.turn = -dx;
@@ -297,9 +257,9 @@ Action Pilot::press(Action action) {
     headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight());
     break;
   case Action::pause:
-    paused_ = !paused_;
-    browser_.setTransition(paused_ ? 0 : transition); // a paused transition would stand still
-    message_ = paused_ ? "time stands still" : "time goes on";
+    time_.toggle();
+    browser_.setTransition(paused() ? 0 : transition); // a paused transition would stand still
+    message_ = paused() ? "time stands still" : "time goes on";
     break;
   default: return action;
   }
@@ -318,25 +278,19 @@ Action Pilot::handle(const InputEvent& event) {
   case Kind::move:
   case Kind::press:
   case Kind::release: {
-    const double dx = event.x - x_, dy = event.y - y_;
-    x_ = event.x;
-    y_ = event.y;
-    inside_ = true;
-    if (event.kind == Kind::press) {
-      press(event);
-    } else if (drag_ == Drag::view && (dx != 0 || dy != 0)) {
-      drag(dx, dy);
-    } else {
-      point(drag_ == Drag::sensor);
-    }
-    if (event.kind == Kind::release) release(event);
+    const Pointer::Way way = pointer_.moveTo(event.x, event.y);
+    if (event.kind == Kind::press)
+      pointer_.press(event);
+    else if (pointer_.drag() == Pointer::Drag::view && (way.x != 0 || way.y != 0))
+      drag(way);
+    else
+      pointer_.send();
+    if (event.kind == Kind::release) pointer_.release(event);
     break;
   }
   case Kind::leave:
-    inside_ = overSensor_ = false;
-    drag_ = Drag::none;
     held_.clear();
-    browser_.pointerLeave();
+    pointer_.leave();
     break;
   case Kind::wheel: wheel(event); break;
   case Kind::down:

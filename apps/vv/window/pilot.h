@@ -10,6 +10,8 @@
 
 #include "libpicture/camera.h"
 #include "window/input/keys.h"
+#include "window/input/pointer.h"
+#include "window/world_time.h"
 #include "xvrml/browser.h"
 
 namespace vv {
@@ -20,6 +22,8 @@ class Pilot {
  public:
   // start: the world's time at session time 0. fov: in degrees; replaces the viewpoints' angle.
   Pilot(xvrml::Browser& browser, double start, std::optional<double> fov);
+  Pilot(const Pilot&) = delete; // the pointer refers to its pilot
+  Pilot& operator=(const Pilot&) = delete;
 
   // Advances the session to `seconds`, which must not decrease. The world's time follows unless it
   // is paused. Held keys and drags move the viewer.
@@ -47,19 +51,16 @@ class Pilot {
   std::optional<picture::View> initialView(const picture::View& view) const;
 
   xvrml::CameraSettings camera() const;
-  bool paused() const { return paused_; }
+  bool paused() const { return time_.isPaused(); }
   // the user's choice; none: not switched
   std::optional<bool> headlight() const { return headlight_; }
   bool hasViewerMoved() const { return touched_; } // the user has moved the viewer
-  bool overSensor() const { return overSensor_; }
+  bool overSensor() const { return pointer_.isOverSensor(); }
   std::string hint() const; // description of the Anchor under the pointer
   std::string takeMessage() { return std::exchange(message_, {}); }
 
  private:
-  void point(bool button);
-  void press(const InputEvent& event);
-  void release(const InputEvent& event);
-  void drag(double x, double y);
+  void drag(const Pointer::Way& way);
   void wheel(const InputEvent& event);
   Action press(Action action);
   void move(double seconds);
@@ -69,21 +70,14 @@ class Pilot {
   bool hasHeadlight() const;
 
   xvrml::Browser& browser_;
-  // pausedSeconds_: seconds of the session during which the world's time was paused
-  double start_, session_ = 0, pausedSeconds_ = 0;
+  WorldTime time_;
+  Pointer pointer_{browser_, [this] { return Pointer::Eye{camera(), aspect_}; }};
   std::optional<double> fov_;
   double aspect_ = 4.0 / 3;
-  bool paused_ = false, touched_ = false;
+  bool touched_ = false;
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
-
-  // State of the pointer.
-  enum class Drag : uint8_t { none, sensor, view };
-  bool inside_ = false, overSensor_ = false;
-  double x_ = 0, y_ = 0;
-  Drag drag_ = Drag::none;
-  InputEvent pressed_; // the event that began the drag
-  std::set<std::string> held_;
+  std::set<std::string> held_; // keys
   bool shift_ = false, alt_ = false;
   std::string message_;
 };

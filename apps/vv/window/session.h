@@ -1,23 +1,26 @@
-// session.h: Owns a world that is shown in the window: its browser, its pilot, and the renderer
-// that draws it while both continue. It is independent of the windowing system. Each world has its
-// own session. [the browser's thread]
+// session.h: Owns a world that is shown in the window, and connects the parts that work on it: the
+// browser and its pilot, the clock, the picture loop, the Inlines and the fit. The states are in
+// the parts. It is independent of the windowing system. Each world has its own session. [the
+// browser's thread]
 #pragma once
 
-#include <atomic>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "libpicture/live.h"
 #include "options/options.h"
 #include "report/problems.h"
 #include "window/input/replay.h"
-#include "window/pacing.h"
 #include "window/pilot.h"
+#include "window/session/fit.h"
+#include "window/session/inline_queue.h"
+#include "window/session/pick_preparation.h"
+#include "window/session/picture_loop.h"
+#include "window/session/session_clock.h"
 
 namespace vv {
 
@@ -51,7 +54,6 @@ class Session {
   // script: replaces the user's events; may be null. Throws the errors of startWorld.
   Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
           Callbacks calls, const InputScript* script);
-  ~Session();
 
   // Sets the camera of the first picture: from the options, from another session, or from the
   // fragment of a URL.
@@ -70,16 +72,12 @@ class Session {
 
   // Returns whether the world can be used.
   bool resting() const {
-    return !preparing_ && renderer_.state() != picture::LiveRenderer::State::mapping;
+    return preparation_.state() != PickPreparation::State::running && !pictures_.isMapping();
   }
   // Tells whether something moves and the next frame must wait for the current one.
-  bool drawing() const {
-    const auto state = renderer_.state();
-    return moving_ && (state == picture::LiveRenderer::State::mapping ||
-                       state == picture::LiveRenderer::State::rendering);
-  }
+  bool drawing() const { return pictures_.isDrawing(); }
   bool scripted() const { return replay_ != nullptr; }
-  double time() const { return time_; } // time of the session's clock at the last step
+  double time() const { return clock_.time(); } // time of the session's clock at the last step
   xvrml::Browser& browser() { return *browser_; }
   const Pilot& pilot() const { return pilot_; }
   Place place() const;
@@ -90,53 +88,28 @@ class Session {
   bool stop(double seconds);
 
  private:
-  void step(double passed);
+  void step();
   void takeEvents();
   void loadSome();
-  void draw();
-  void wantFit(bool asAtFirst);
-  void start(bool moving);
+  void want(Action fit);
   void saveIfFinished();
-  void prepare();
-  bool blocked() const { return fit_ != Fit::none || !saveTo_.empty(); }
+  // Tells whether scripts wait: for a fit, or for a picture that is to be saved.
+  bool held() const { return fit_.isPending() || !saveTo_.empty(); }
 
   Options options_;
   Problems& problems_;
   Callbacks callbacks_;
   std::unique_ptr<xvrml::Browser> browser_;
   Pilot pilot_;
-  picture::LiveRenderer renderer_;
+  PictureLoop pictures_;
   const uint32_t channels_; // channels of saved pictures
-  Pacing pacing_;
+  SessionClock clock_;
+  Fit fit_;
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
-
-  // --- Time ---
-  bool stepped_; // advances in steps of 1/fps, for scripts
-  long long next_ = 0;
-  double clock_ = 0, time_ = 0, last_ = -1;
-
-  // --- The picture ---
-  int width_ = 0, height_ = 0;
-  // Tells whether to show the whole world when its extent is known.
-  enum class Fit : uint8_t { none, wanted, mapping } fit_ = Fit::none;
-  bool fitAsAtFirst_ = true; // true: the initial view; false: the current direction
-  // fit again when the Inlines are loaded: the picture shows the whole world so far
-  bool fitAgain_ = false;
-  xvrml::CameraSettings shown_{};
-  std::optional<bool> shownHeadlight_;
-  bool begun_ = false, moving_ = false, refined_ = false, shownAny_ = false;
-  FrameSize frame_; // size of the frame in flight, or of the last one
-  // start of the last frame; smoothed time between frames while something moves
-  double lastStart_ = 0, gap_ = 0;
-  picture::LivePicture facts_; // state of the picture, without the pixels
-  std::string saveTo_, message_;
-  std::deque<xvrml::NodeRef> inlines_; // Inlines to load
-  uint64_t generation_ = 0;            // generation of the browser's world that contains inlines_
-  // Builds the structures for picking and collision in parallel with the first picture.
-  std::thread preparer_;
-  std::atomic<bool> preparing_{false};
-  bool prepared_ = false;
+  std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted
+  InlineQueue inlines_;
+  PickPreparation preparation_; // the last member: its destructor waits for a user of the others
 };
 
 } // namespace vv

@@ -1,5 +1,6 @@
 // values.h: Converts VRML's values to Python objects and back, in the shapes of the Python binding.
-// Needs Python's lock (GIL). [the browser's thread]
+// It shares no code with bindings/python/convert.cpp, which checks ranges and node types, needs
+// numpy and fills the library's own types. Needs Python's lock (GIL). [the browser's thread]
 #pragma once
 
 #include <functional>

@@ -1,0 +1,58 @@
+#include "window/input/pointer.h"
+
+#include <cmath>
+
+namespace vv {
+
+Pointer::Way Pointer::moveTo(double x, double y) {
+  const Way way{x - x_, y - y_};
+  x_ = x;
+  y_ = y;
+  if (place_ == Place::outside) place_ = Place::inside;
+  return way;
+}
+
+void Pointer::send() {
+  const Eye eye = eye_();
+  const xvrml::CameraSettings& c = eye.camera;
+  const double* m = c.matrix;
+  const double size = c.fovy > 0 ? std::tan(c.fovy / 2) : c.height / 2;
+  const double across = x_ * size * eye.aspect, along = y_ * size;
+  double origin[3], direction[3];
+  for (int i = 0; i < 3; ++i) {
+    const double aside = m[i] * across + m[4 + i] * along;
+    origin[i] = m[12 + i] + (c.fovy > 0 ? 0 : aside);
+    direction[i] = -m[8 + i] + (c.fovy > 0 ? aside : 0);
+  }
+  const uint64_t before = browser_.generation();
+  browser_.pointerRay(origin, direction, drag_ == Drag::sensor);
+  if (browser_.generation() != before) drag_ = Drag::none;
+  place_ = browser_.sensorsAtPointer().empty() ? Place::inside : Place::overSensor;
+}
+
+void Pointer::press(const InputEvent& event) {
+  if (drag_ != Drag::none) return;
+  pressed_ = event;
+  send();
+  drag_ = event.button == Button::left && isOverSensor() ? Drag::sensor : Drag::view;
+  if (drag_ == Drag::sensor) send();
+}
+
+void Pointer::release(const InputEvent& event) {
+  if (drag_ == Drag::none || event.button != pressed_.button) return;
+  drag_ = Drag::none;
+  send();
+}
+
+void Pointer::leave() {
+  place_ = Place::outside;
+  drag_ = Drag::none;
+  browser_.pointerLeave();
+}
+
+Button Pointer::button() const {
+  if (pressed_.button != Button::left) return pressed_.button;
+  return pressed_.shift ? Button::right : pressed_.control ? Button::middle : Button::left;
+}
+
+} // namespace vv

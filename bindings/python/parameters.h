@@ -1,0 +1,101 @@
+// parameters.h: Defines Python functions with many parameters from a struct. Each parameter is a
+// member, and its default is the member's value in a new struct. [GIL held]
+#pragma once
+
+#include <tuple>
+#include <utility>
+
+#include <pybind11/pybind11.h>
+
+namespace py = pybind11;
+
+template <class Struct, class Type, bool isRequired> struct Parameter {
+  using Value = Type;
+  const char* name;
+  Type Struct::*member;
+};
+
+template <class Struct, class Type>
+Parameter<Struct, Type, false> parameter(const char* name, Type Struct::*member) {
+  return {name, member};
+}
+
+template <class Struct, class Type>
+Parameter<Struct, Type, true> requiredParameter(const char* name, Type Struct::*member) {
+  return {name, member};
+}
+
+// Lists parameters in the order of the signature.
+template <class... Rows> std::tuple<Rows...> parameterList(Rows... rows) { return {rows...}; }
+
+namespace detail {
+
+template <class Struct, class Type>
+py::arg_v annotation(const Parameter<Struct, Type, false>& row, const Struct& defaults) {
+  return py::arg(row.name) = defaults.*row.member;
+}
+
+template <class Struct, class Type>
+py::arg annotation(const Parameter<Struct, Type, true>& row, const Struct&) {
+  return py::arg(row.name);
+}
+
+template <class Struct, class... Rows>
+void assign(Struct& given, const std::tuple<Rows...>& rows, typename Rows::Value&... values) {
+  std::apply([&](const Rows&... row) { ((given.*row.member = std::move(values)), ...); }, rows);
+}
+
+// Calls use(annotations...).
+template <class Struct, class... Positional, class... Named, class Use>
+void annotate(const std::tuple<Positional...>& positional, const std::tuple<Named...>& named,
+              const Use& use) {
+  const Struct defaults;
+  std::apply(
+      [&](const Positional&... p) {
+        std::apply(
+            [&](const Named&... n) {
+              if constexpr (sizeof...(Named) > 0)
+                use(annotation(p, defaults)..., py::kw_only(), annotation(n, defaults)...);
+              else
+                use(annotation(p, defaults)...);
+            },
+            named);
+      },
+      positional);
+}
+
+} // namespace detail
+
+// Defines the method `name` of a class: work(self, the arguments). named: parameters that are given
+// by name only.
+template <class Class, class Result, class Self, class Struct, class... Positional, class... Named>
+void defineMethod(Class& owner, const char* name, Result (*work)(const Self&, const Struct&),
+                  const std::tuple<Positional...>& positional, const std::tuple<Named...>& named,
+                  const char* text) {
+  const auto function = [=](const Self& self, typename Positional::Value... p,
+                            typename Named::Value... n) -> Result {
+    Struct given;
+    detail::assign(given, positional, p...);
+    detail::assign(given, named, n...);
+    return work(self, given);
+  };
+  detail::annotate<Struct>(positional, named, [&](const auto&... annotations) {
+    owner.def(name, function, annotations..., text);
+  });
+}
+
+// Defines the constructor of a class: work(the arguments).
+template <class Class, class Result, class Struct, class... Positional, class... Named>
+void defineConstructor(Class& owner, Result (*work)(const Struct&),
+                       const std::tuple<Positional...>& positional,
+                       const std::tuple<Named...>& named, const char* text) {
+  const auto function = [=](typename Positional::Value... p, typename Named::Value... n) -> Result {
+    Struct given;
+    detail::assign(given, positional, p...);
+    detail::assign(given, named, n...);
+    return work(given);
+  };
+  detail::annotate<Struct>(positional, named, [&](const auto&... annotations) {
+    owner.def(py::init(function), annotations..., text);
+  });
+}

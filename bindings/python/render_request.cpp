@@ -1,0 +1,347 @@
+#include "render_request.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "libpicture/quality.h"
+#include "libpicture/transport.h"
+#include "numbers.h"
+#include "picture_object.h"
+
+using namespace xvrml;
+
+namespace {
+
+// Checks a value against the range that the library gives a quality setting (RT_*).
+int inRange(const char* name, RTenum quality, long long value) {
+  const RTqualityInfo info = picture::qualityInfo(quality);
+  if (!picture::isQualityInRange(quality, double(value)))
+    throw py::value_error(fmt::format("{}: {:.10g} to {:.10g} expected, not {}", name, info.minimum,
+                                      info.maximum, value));
+  return int(value);
+}
+
+int inRange(const char* name, long long value, long long minimum, long long maximum) {
+  if (value < minimum || value > maximum)
+    throw py::value_error(
+        fmt::format("{}: {} to {} expected, not {}", name, minimum, maximum, value));
+  return int(value);
+}
+
+// Returns width and height, any whole numbers.
+std::pair<long long, long long> sizeOf(const py::object& size) {
+  try {
+    const auto sides = size.cast<std::vector<long long>>();
+    if (sides.size() == 2) return {sides[0], sides[1]};
+  } catch (const py::cast_error&) {}
+  const std::string text = "size: (width, height) expected, whole numbers from 1 to 65536, not " +
+                           std::string(py::repr(size));
+  if (py::isinstance<py::str>(size) || !PySequence_Check(size.ptr())) throw py::type_error(text);
+  throw py::value_error(text);
+}
+
+MapOptions::Headlight headlightOf(const py::object& value) {
+  using Headlight = MapOptions::Headlight;
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? Headlight::on : Headlight::off;
+  const std::string text = py::isinstance<py::str>(value) ? value.cast<std::string>() : "";
+  if (text == "auto") return Headlight::automatic;
+  if (text == "on" || text == "off") return text == "on" ? Headlight::on : Headlight::off;
+  throw py::value_error("headlight: 'auto', 'on', 'off', True or False expected");
+}
+
+// Converts a pose: a camera-to-world matrix that looks along -z with +y up, as in VRML.
+picture::LookAt posed(const std::vector<std::vector<double>>& rows) {
+  picture::LookAt camera;
+  camera.saysUp = true;
+  double products[3][3] = {}, last = 0;
+  for (size_t i = 0; i < 4; ++i) {
+    if (rows[i].size() != 4) throw py::cast_error();
+    for (size_t k = 0; k < 4; ++k)
+      if (!std::isfinite(rows[i][k])) throw py::cast_error();
+    last = std::max(last, std::abs(rows[3][i] - (i == 3 ? 1 : 0)));
+  }
+  double off = last;
+  for (size_t a = 0; a < 3; ++a)
+    for (size_t b = 0; b < 3; ++b) {
+      for (size_t i = 0; i < 3; ++i) products[a][b] += rows[i][a] * rows[i][b];
+      off = std::max(off, std::abs(products[a][b] - (a == b ? 1 : 0)));
+    }
+  double handed = 0;
+  for (size_t i = 0; i < 3; ++i)
+    handed += rows[i][0] * (rows[(i + 1) % 3][1] * rows[(i + 2) % 3][2] -
+                            rows[(i + 2) % 3][1] * rows[(i + 1) % 3][2]);
+  if (off > 1e-4 || handed < 0)
+    throw py::value_error(
+        "camera: the 4x4 matrix must turn and move only, with 0 0 0 1 as its last row");
+  for (size_t i = 0; i < 3; ++i) {
+    camera.position[i] = rows[i][3];
+    camera.target[i] = rows[i][3] - rows[i][2];
+    camera.up[i] = rows[i][1];
+  }
+  return camera;
+}
+
+// Returns whether an array is a rotation, which gives a camera's direction but not its position.
+bool isRotation(const py::object& given, const std::vector<std::vector<double>>& rows) {
+  if (rows.size() != 3 || !py::isinstance<py::array>(given)) return false;
+  double off = 0;
+  for (size_t a = 0; a < 3; ++a)
+    for (size_t b = 0; b < 3; ++b) {
+      double product = 0;
+      for (size_t i = 0; i < 3; ++i) product += rows[a].at(i) * rows[b].at(i);
+      off = std::max(off, std::abs(product - (a == b ? 1 : 0)));
+    }
+  return off < 1e-4;
+}
+
+picture::LookAt cameraOf(const py::object& given) {
+  picture::LookAt camera;
+  double matrix[16];
+  try {
+    auto rows = given.cast<std::vector<std::vector<double>>>();
+    if (rows.size() == 4) return posed(rows);
+    if (rows.size() != 2 && rows.size() != 3) throw py::cast_error();
+    for (const auto& row : rows)
+      if (row.size() != 3) throw py::cast_error();
+    if (isRotation(given, rows))
+      throw py::value_error(
+          "camera: a 3x3 rotation does not say where the camera stands: a 4x4 matrix from camera "
+          "to world expected; position, target and up are given as a tuple");
+    camera.saysUp = rows.size() == 3;
+    double* targets[] = {camera.position, camera.target, camera.up};
+    for (size_t i = 0; i < rows.size(); ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        if (!std::isfinite(rows[i][k])) throw py::cast_error();
+        targets[i][k] = rows[i][k];
+      }
+    }
+  } catch (const py::cast_error&) {
+    throw py::value_error("camera: a Pinhole, a 4x4 matrix from camera to world, or (position, "
+                          "target) or (position, target, up) of 3 numbers each expected, not " +
+                          shown(given));
+  }
+  if (!picture::lookAtMatrix(camera, matrix))
+    throw py::value_error("camera: position and target are the same point");
+  return camera;
+}
+
+// Converts a Pinhole (xvrml/_camera.py). The rays of a symmetric camera with square pixels and the
+// same focal length fy are sheared to those of the Pinhole.
+picture::View::Pinhole pinholeOf(const py::object& given, int width, int height) {
+  const auto [numbers, pose] =
+      given.attr("_numbers")().cast<std::pair<std::array<double, 5>, std::array<double, 16>>>();
+  const auto [fx, fy, cx, cy, skew] = numbers;
+  picture::View::Pinhole camera{};
+  camera.fovy = 2 * std::atan(height / 2.0 / fy);
+  const double up = (cy - height / 2.0) / fy, right = (width / 2.0 - cx) / fx + skew / fx * up;
+  for (size_t i = 0; i < 3; ++i) { // the pose's y points down and its z forward
+    const double x = pose[4 * i], y = -pose[4 * i + 1], z = -pose[4 * i + 2];
+    const double columns[] = {x, y, z, pose[4 * i + 3]};
+    const double sheared[] = {x * fy / fx, y + x * skew / fx, z - x * right - y * up,
+                              pose[4 * i + 3]};
+    for (size_t k = 0; k < 4; ++k) {
+      camera.matrix[4 * k + i] = columns[k];
+      camera.sheared[4 * k + i] = sheared[k];
+    }
+  }
+  camera.matrix[15] = camera.sheared[15] = 1;
+  return camera;
+}
+
+picture::Background backgroundOf(const py::object& given) {
+  if (given.is_none()) return {};
+  std::string text;
+  if (py::isinstance<py::str>(given)) {
+    text = fromText(given);
+  } else if (py::hasattr(given, "__fspath__")) {
+    text = toPath(given);
+  } else {
+    try {
+      const auto rgb = given.cast<std::array<double, 3>>();
+      text = fmt::format("{},{},{}", rgb[0], rgb[1], rgb[2]);
+    } catch (const py::cast_error&) {
+      throw py::value_error(fmt::format("background: {} expected", picture::backgroundForms));
+    }
+  }
+  try {
+    return picture::readBackground(text);
+  } catch (const std::invalid_argument& error) {
+    throw py::value_error(std::string("background: ") + error.what());
+  }
+}
+
+// --- The table ---
+
+using Given = RenderArguments;
+using Settings = picture::RenderSettings;
+
+bool isPinhole(const Given& given) { return py::hasattr(given.camera, "_numbers"); }
+
+void setSize(const char* name, const Given& given, RenderRequest& request) {
+  const auto [width, height] = sizeOf(given.size);
+  request.settings.width = inRange(name, width, 1, 65536);
+  request.settings.height = inRange(name, height, 1, 65536);
+  if (int64_t(request.settings.width) * request.settings.height > (int64_t(1) << 28))
+    throw py::value_error("size: at most 2^28 pixels expected");
+}
+
+// Sets a whole number that has the range of a quality setting.
+template <auto argument, RTenum quality, auto member>
+void setWhole(const char* name, const Given& given, RenderRequest& request) {
+  request.settings.*member = inRange(name, quality, given.*argument);
+}
+
+// Sets a number that has the range of a quality setting.
+template <auto argument, RTenum quality, auto member>
+void setNumber(const char* name, const Given& given, RenderRequest& request) {
+  const double value = given.*argument;
+  if (!picture::isQualityInRange(quality, value))
+    throw py::value_error(fmt::format("{}: {} expected", name, picture::qualityRange(quality)));
+  request.settings.*member = value;
+}
+
+// Sets True or False, which need no check.
+template <auto argument, auto member>
+void setFlag(const char*, const Given& given, RenderRequest& request) {
+  request.settings.*member = given.*argument;
+}
+
+// The C API takes negative seeds, too; Python and vv count them from 0 on.
+void setSeed(const char* name, const Given& given, RenderRequest& request) {
+  request.settings.seed = inRange(name, given.seed, 0, 2147483647);
+}
+
+void setThreads(const char* name, const Given& given, RenderRequest& request) {
+  request.settings.threads = inRange(name, given.threads, 0, 1024);
+}
+
+void setColour(const char*, const Given& given, RenderRequest& request) {
+  if (given.colour != "linear" && given.colour != "vrml97")
+    throw py::value_error("colour: 'linear' or 'vrml97' expected, not '" + given.colour + "'");
+  request.settings.linear = given.colour == "linear";
+}
+
+void setHeadlight(const char*, const Given& given, RenderRequest& request) {
+  request.settings.headlight = headlightOf(given.headlight);
+}
+
+void setTransport(const char*, const Given& given, RenderRequest& request) {
+  const std::optional<int> transport = picture::transportNamed(given.transport);
+  if (!transport)
+    throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames(),
+                                      given.transport));
+  request.settings.transport = *transport;
+}
+
+void setSamples(const char* name, const Given& given, RenderRequest& request) {
+  Settings& settings = request.settings;
+  const long long most = settings.timeLimit > 0 ? 65536
+                         : settings.error > 0   ? 4096
+                                                : settings.samples;
+  settings.samples = inRange(name, RT_SAMPLES_PER_PIXEL, given.spp.value_or(most));
+}
+
+void setChannels(const char*, const Given& given, RenderRequest& request) {
+  const uint32_t error = request.settings.error > 0 ? RT_ERROR | RT_TRUST : 0;
+  request.channels =
+      given.channels.is_none() ? RT_RGBA | RT_DEPTH | error : channelsOf(given.channels);
+  request.settings.channels = request.channels;
+  if (isPinhole(given) && (request.channels & RT_DEPTH)) request.settings.channels |= RT_POSITION;
+}
+
+void checkViewpoint(const char*, const Given& given, RenderRequest&) {
+  if (!given.viewpoint.is_none() && (!given.camera.is_none() || given.fit))
+    throw py::value_error("viewpoint: not with camera or fit, which look from elsewhere");
+}
+
+void setFit(const char*, const Given& given, RenderRequest& request) {
+  if (isPinhole(given) && (given.fit || given.fov))
+    throw py::value_error("camera: a Pinhole says all of the view: not with fit or fov");
+  request.view.fit = given.fit;
+}
+
+void setFov(const char*, const Given& given, RenderRequest& request) {
+  if (given.fov && !(*given.fov > 0 && *given.fov < 180))
+    throw py::value_error("fov: an angle between 0 and 180 degrees expected");
+  request.view.fov = given.fov;
+}
+
+void setCamera(const char*, const Given& given, RenderRequest& request) {
+  if (isPinhole(given))
+    request.view.pinhole = pinholeOf(given.camera, request.settings.width, request.settings.height);
+  else if (!given.camera.is_none())
+    request.view.lookAt = cameraOf(given.camera);
+}
+
+void setUp(const char*, const Given& given, RenderRequest& request) {
+  if (given.up && !(request.view.up = picture::axisNamed(*given.up)))
+    throw py::value_error("up: 'x', 'y', 'z', '-x', '-y' or '-z' expected, not '" + *given.up +
+                          "'");
+}
+
+void setBackground(const char*, const Given& given, RenderRequest& request) {
+  request.settings.background = backgroundOf(given.background);
+}
+
+// Checks one parameter, and sets the members of the request that it decides.
+struct Rule {
+  const char* name;
+  void (*set)(const char* name, const Given& given, RenderRequest& request);
+};
+
+// The order is that of the checks: a row uses what the rows above have set.
+constexpr Rule rules[] = {
+    {"size", setSize},
+    {"seed", setSeed},
+    {"threads", setThreads},
+    {"depth", setWhole<&Given::depth, RT_MAX_DEPTH, &Settings::depth>},
+    {"shadows", setFlag<&Given::shadows, &Settings::shadows>},
+    {"multiply_textures", setFlag<&Given::multiplyTextures, &Settings::multiplyTextures>},
+    {"colour", setColour},
+    {"headlight", setHeadlight},
+    {"transport", setTransport},
+    {"error", setNumber<&Given::error, RT_TARGET_ERROR, &Settings::error>},
+    {"time_limit", setNumber<&Given::timeLimit, RT_TIME_LIMIT, &Settings::timeLimit>},
+    {"clamp", setNumber<&Given::clamp, RT_CLAMP, &Settings::clamp>},
+    {"spp", setSamples},
+    {"channels", setChannels},
+    {"viewpoint", checkViewpoint},
+    {"fit", setFit},
+    {"fov", setFov},
+    {"camera", setCamera},
+    {"up", setUp},
+    {"background", setBackground},
+};
+
+} // namespace
+
+RenderRequest requestOf(const RenderArguments& given) {
+  RenderRequest request;
+  for (const Rule& rule : rules) rule.set(rule.name, given, request);
+  request.settings.progressive = picture::isWorthProgressive(request.settings);
+  return request;
+}
+
+uint32_t channelsOf(const py::object& list) {
+  uint32_t bits = RT_RGBA;
+  const bool one = py::isinstance<py::str>(list);
+  if (!one && !PySequence_Check(list.ptr()) && !PyAnySet_Check(list.ptr()))
+    throw py::type_error("channels: a name or several expected, not an object of the class " +
+                         typeName(list));
+  for (const py::handle name : one ? py::object(py::make_tuple(list)) : list) {
+    const picture::Channel* channel =
+        py::isinstance<py::str>(name) ? picture::findChannel(fromText(name)) : nullptr;
+    if (!channel) {
+      std::string known;
+      for (const picture::Channel& c : picture::channelTable())
+        known += (known.empty() ? "" : ", ") + std::string(c.name);
+      throw py::value_error(
+          fmt::format("channels: out of {} expected, not {}", known, std::string(py::str(name))));
+    }
+    bits |= channel->bit;
+  }
+  return bits;
+}

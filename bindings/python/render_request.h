@@ -1,0 +1,48 @@
+// render_request.h: Turns the arguments of World.render() into the settings and the view of a
+// picture. A table in render_request.cpp says how each argument is checked. [GIL held]
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <pybind11/pybind11.h>
+
+#include "libpicture/renderer.h"
+
+namespace py = pybind11;
+
+// The arguments, in the order of Python's signature. The values are the defaults.
+struct RenderArguments {
+  py::object size = py::make_tuple(800, 600);
+  std::optional<long long> spp;
+  py::object viewpoint = py::none();
+  py::object camera = py::none();
+  bool fit = false;
+  std::optional<double> fov;
+  long long seed = 0;
+  long long threads = 0;
+  bool shadows = true;
+  std::string colour = "linear";
+  py::object headlight = py::str("auto");
+  long long depth = 25;
+  py::object channels = py::none();
+  std::string transport = "auto";
+  double error = 0;
+  double timeLimit = 0;
+  double clamp = 0;
+  py::object cluster = py::none();
+  py::object progress = py::none();
+  bool multiplyTextures = false;
+  std::optional<std::string> up;
+  py::object background = py::none();
+};
+
+// The picture that the arguments ask for, except viewpoint, cluster and progress.
+struct RenderRequest {
+  picture::RenderSettings settings;
+  picture::View view;
+  uint32_t channels = 0; // the channels of the Picture; the settings may have more
+};
+
+// Raises TypeError, ValueError or IndexError for the first argument that is wrong.
+RenderRequest requestOf(const RenderArguments& given);
