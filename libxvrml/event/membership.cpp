@@ -288,7 +288,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
       return true;
     };
     if (auto* one = std::get_if<NodeRef>(&value); one && refused(*one)) return false;
-    const bool keeps = keepsNull(field) || !inHierarchy;
+    const bool keeps = keepsNull(node.type()) || !inHierarchy;
     if (auto* many = std::get_if<MFNode>(&value))
       std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
     if (inHierarchy && engine.wouldCreateCycle(node, value)) {

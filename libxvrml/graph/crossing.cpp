@@ -90,7 +90,7 @@ void assignThroughIs(const IsAssignment& c, const Value& value, Diagnostics& dia
     } else if constexpr (std::is_same_v<T, NodeRef>) {
       if (!acceptsNode(c, target, diagnostics)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {
-      const bool keeps = keepsNull(c.to) || c.node.type().index < 0;
+      const bool keeps = keepsNull(c.node.type()) || c.node.type().index < 0;
       std::erase_if(target, [&](const NodeRef& child) {
         return child ? !acceptsNode(c, child, diagnostics) : !keeps;
       });

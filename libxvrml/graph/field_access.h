@@ -40,11 +40,9 @@ inline bool holdsNodes(const FieldInfo& field) {
   return holdsValue(field) && (field.type == FieldType::SFNode || field.type == FieldType::MFNode);
 }
 
-// Returns whether a list keeps NULL, because the position of its nodes matters (Switch.choice,
-// LOD.level). In other lists NULL has no meaning.
-inline bool keepsNull(const FieldInfo& field) {
-  return field.name == "choice" || field.name == "level";
-}
+// Returns whether the lists of nodes of a type keep NULL, because the position of a node matters
+// (Switch, LOD). In other lists NULL has no meaning.
+inline bool keepsNull(const NodeType& type) { return type.is("selecting"); }
 
 // Calls visit(NodeRef&, const FieldInfo&) for each node that the node's own fields hold, except
 // NULL.

@@ -9,19 +9,12 @@
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "graph/field_access.h"
-#include "nodes/viewpoint.h"
+#include "nodes/bindable.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 
-size_t Binding::typeOf(const Node& node) {
-  const int index = node.type().index;
-  return isViewpoint(&node)                          ? 0
-         : index == nodes::Background::typeIndex     ? 1
-         : index == nodes::ORTBackground::typeIndex  ? 1
-         : index == nodes::Fog::typeIndex            ? 2
-         : index == nodes::NavigationInfo::typeIndex ? 3
-                                                     : types;
-}
+size_t Binding::typeOf(const Node& node) { return size_t(bindableStack(node.type())); }
 
 void Binding::sendBindEvents(Node& node, bool bound) {
   engine_.send(node, "isBound", bound);
