@@ -3,7 +3,6 @@
 #include "behaviour/viewer/binding.h"
 
 #include <algorithm>
-#include <unordered_set>
 
 #include "behaviour/builtin.h"
 #include "behaviour/viewer/interaction.h"
@@ -11,6 +10,7 @@
 #include "graph/field_access.h"
 #include "nodes/bindable.h"
 #include "xvrml/nodes.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 
@@ -87,17 +87,14 @@ namespace {
 // Calls visit for each node of a scope in file order. It skips what is below a node if visit
 // returns false.
 template <class Visit> void walkScope(const Scope& scope, Visit&& visit) {
-  std::unordered_set<const Node*> seen;
-  std::vector<Node*> open, below;
-  for (size_t i = scope.roots.size(); i-- > 0;) open.push_back(scope.roots[i].get());
-  while (!open.empty()) {
-    Node* node = open.back();
-    open.pop_back();
-    if (!node || !seen.insert(node).second || !visit(*node)) continue;
-    below.clear();
-    childrenInHierarchy(*node, below);
-    open.insert(open.end(), below.rbegin(), below.rend());
-  }
+  std::vector<Node*> roots = rootsOf(scope);
+  std::reverse(roots.begin(), roots.end());
+  walk(std::move(roots), [&](Node& node, std::vector<Node*>& open) {
+    if (!visit(node)) return;
+    const auto before = ptrdiff_t(open.size());
+    childrenInHierarchy(node, open);
+    std::reverse(open.begin() + before, open.end());
+  });
 }
 
 } // namespace
