@@ -21,8 +21,7 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
     return;
   }
   forEachChild(node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
-  if (const Scope* content = inlineScope(node))
-    for (const NodeRef& root : content->roots) out.push_back(root.get());
+  if (const Scope* content = inlineScope(node)) appendRoots(*content, out);
 }
 
 void holdersOf(const Node& node, std::vector<Node*>& holders) {

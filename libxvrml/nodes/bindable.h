@@ -8,6 +8,7 @@
 
 namespace xvrml {
 
+// In the order of the members of BoundNodes (xvrml/camera.h).
 enum class BindableStack : uint8_t { viewpoint, background, fog, navigationInfo, none };
 inline constexpr size_t bindableStacks = size_t(BindableStack::none);
 

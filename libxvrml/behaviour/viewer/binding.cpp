@@ -29,7 +29,7 @@ void Binding::push(size_t type, Node& node) {
   NodeRef old(top(type));
   std::erase_if(stack, [&](const Entry& e) { return e.node.get() == &node; });
   stack.push_back({NodeRef(&node), isInScene(node)});
-  if (type == 0) viewer_.bind(old.get(), &node);
+  if (type == viewpointStack) viewer_.bind(old.get(), &node);
   if (old) sendBindEvents(*old, false);
   sendBindEvents(node, true);
 }
@@ -41,12 +41,12 @@ void Binding::remove(size_t type, size_t index) {
   const bool wasTop = index + 1 == stack.size();
   if (!wasTop) {
     stack.erase(stack.begin() + ptrdiff_t(index));
-    if (type == 0) viewer_.forget(*node);
+    if (type == viewpointStack) viewer_.forget(*node);
     return;
   }
   stack.pop_back();
   const NodeRef next(top(type));
-  if (type == 0) viewer_.unbind(*node, next.get());
+  if (type == viewpointStack) viewer_.unbind(*node, next.get());
   sendBindEvents(*node, false);
   if (next) sendBindEvents(*next, true);
 }
@@ -105,7 +105,7 @@ void Binding::bindFirst(const Scope& scope) {
     if (const size_t type = typeOf(node); type != types && !first[type]) first[type] = &node;
     return node.type().index != nodes::Inline::typeIndex;
   });
-  if (stacks_[0].empty()) viewer_.restart();
+  if (stacks_[viewpointStack].empty()) viewer_.restart();
   for (size_t type = 0; type < types; ++type)
     if (first[type] && stacks_[type].empty()) push(type, *first[type]);
   viewer_.begin();
@@ -114,7 +114,7 @@ void Binding::bindFirst(const Scope& scope) {
 std::vector<Node*> Binding::viewpoints(const Scope& scope) {
   std::vector<Node*> list;
   walkScope(scope, [&](Node& node) {
-    if (typeOf(node) == 0) list.push_back(&node);
+    if (typeOf(node) == viewpointStack) list.push_back(&node);
     return true;
   });
   return list;
@@ -124,7 +124,7 @@ void Binding::forget(const Node& node) {
   const size_t type = typeOf(node);
   if (type == types) return;
   std::erase_if(stacks_[type], [&](const Entry& entry) { return entry.node.get() == &node; });
-  if (type == 0) viewer_.forget(node);
+  if (type == viewpointStack) viewer_.forget(node);
 }
 
 BoundNodes Binding::bound() const { return {top(0), top(1), top(2), top(3)}; }

@@ -33,6 +33,7 @@ class Binding {
 
  private:
   static constexpr size_t types = bindableStacks;
+  static constexpr size_t viewpointStack = size_t(BindableStack::viewpoint);
   struct Entry {
     NodeRef node;
     bool inScene; // it has been in the scene; a node outside the scene may be bound too
