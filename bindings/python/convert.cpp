@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 #include "numbers.h"
 #include "objects.h"
 #include "xvrml/viewed.h"
+#include "xvrml/walk.h"
 
 using namespace xvrml;
 
@@ -344,18 +344,6 @@ template <class T> py::object viewArray(Viewing* viewing, std::vector<py::ssize_
   return array;
 }
 
-// Appends the nodes that this node's fields contain.
-void below(Node& node, std::vector<Node*>& out) {
-  for (const FieldInfo& field : node.type().fields) {
-    if (field.access != Access::field && field.access != Access::exposedField) continue;
-    if (field.type == FieldType::SFNode)
-      out.push_back(static_cast<const NodeRef*>(node.storage(field))->get());
-    else if (field.type == FieldType::MFNode)
-      for (const NodeRef& one : *static_cast<const MFNode*>(node.storage(field)))
-        out.push_back(one.get());
-  }
-}
-
 } // namespace
 
 py::str toText(const std::string& bytes) {
@@ -433,16 +421,13 @@ void refuseLoops(const NodeObject& owner, const FieldInfo& field, const Value& v
   if (const auto* one = std::get_if<NodeRef>(&value)) open.push_back(one->get());
   if (const auto* many = std::get_if<MFNode>(&value))
     for (const NodeRef& one : *many) open.push_back(one.get());
-  std::unordered_set<const Node*> met;
-  while (!open.empty()) {
-    Node* node = open.back();
-    open.pop_back();
-    if (!node || !met.insert(node).second) continue;
-    if (node == owner.node.get())
-      throw py::value_error(
-          fmt::format("{}.{}: the node would hold itself", owner.node->type().name, field.name));
-    below(*node, open);
-  }
+  const bool free = walk(std::move(open), [&](Node& node, std::vector<Node*>& next) {
+    appendChildren(node, next);
+    return &node != owner.node.get();
+  });
+  if (!free)
+    throw py::value_error(
+        fmt::format("{}.{}: the node would hold itself", owner.node->type().name, field.name));
 }
 
 Value fromPython(const py::handle& object, const FieldInfo& field, const NodeObject& owner) {

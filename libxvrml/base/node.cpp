@@ -7,35 +7,11 @@
 #include <utility>
 
 #include "base/rotation.h"
+#include "base/visit_storage.h"
 #include "xvrml/viewed.h"
 
 namespace xvrml {
 namespace {
-
-// One function per field type, indexed by FieldType.
-template <size_t I> using ValueType = std::variant_alternative_t<I, Value>;
-template <size_t I> Value load(const void* storage) {
-  return Value(std::in_place_index<I>, *static_cast<const ValueType<I>*>(storage));
-}
-template <size_t I> void store(void* storage, Value&& value) {
-  *static_cast<ValueType<I>*>(storage) = std::get<I>(std::move(value));
-}
-
-template <size_t... I>
-Value loadByType(size_t type, const void* storage, std::index_sequence<I...>) {
-  using Function = Value (*)(const void*);
-  static constexpr Function functions[] = {&load<I>...};
-  return functions[type](storage);
-}
-
-template <size_t... I>
-void storeByType(size_t type, void* storage, Value&& value, std::index_sequence<I...>) {
-  using Function = void (*)(void*, Value&&);
-  static constexpr Function functions[] = {&store<I>...};
-  functions[type](storage, std::move(value));
-}
-
-constexpr auto allTypes = std::make_index_sequence<fieldTypeCount>();
 
 bool hasStorage(const FieldInfo& field) {
   return field.access == Access::field || field.access == Access::exposedField;
@@ -127,13 +103,17 @@ const FieldInfo* NodeType::findEventOut(std::string_view eventName) const {
 
 Value Node::get(const FieldInfo& field) const {
   if (!hasStorage(field)) return xvrml::defaultValue(field.type);
-  return loadByType(size_t(field.type), storage(field), allTypes);
+  return visitStorage(field.type, const_cast<void*>(storage(field)), [](const auto& value) {
+    return Value(std::in_place_type<std::decay_t<decltype(value)>>, value);
+  });
 }
 
 bool Node::set(const FieldInfo& field, Value value) {
   if (!hasStorage(field) || value.index() != size_t(field.type)) return false;
   if (isMultiple(field.type)) leaveToViews(*this, field);
-  storeByType(size_t(field.type), storage(field), std::move(value), allTypes);
+  visitStorage(field.type, storage(field), [&](auto& target) {
+    target = std::get<std::decay_t<decltype(target)>>(std::move(value));
+  });
   if (hasNormalizedAxes(field)) normalizeAxes(field.type, storage(field));
   if (!live && type_->expand) // in a running world the event engine renews the expansion
     if (NodeRef* standsFor = expansion()) *standsFor = {};

@@ -10,23 +10,10 @@
 namespace xvrml {
 namespace {
 
+#define XVRML_STRING(name, type) #name,
 constexpr std::array<std::string_view, fieldTypeCount> typeNames = {
-    "SFBool",   "SFColor",    "SFFloat",  "SFImage", "SFInt32", "SFNode",  "SFRotation",
-    "SFString", "SFTime",     "SFVec2f",  "SFVec3f", "MFColor", "MFFloat", "MFInt32",
-    "MFNode",   "MFRotation", "MFString", "MFTime",  "MFVec2f", "MFVec3f"};
-
-static_assert(std::variant_size_v<Value> == fieldTypeCount);
-static_assert(std::is_same_v<std::variant_alternative_t<size_t(FieldType::SFNode), Value>, SFNode>);
-static_assert(
-    std::is_same_v<std::variant_alternative_t<size_t(FieldType::SFVec3f), Value>, SFVec3f>);
-static_assert(
-    std::is_same_v<std::variant_alternative_t<size_t(FieldType::MFVec3f), Value>, MFVec3f>);
-
-template <size_t... I> Value defaultOf(size_t type, std::index_sequence<I...>) {
-  Value value;
-  ((I == type ? void(value.emplace<I>()) : void()), ...);
-  return value;
-}
+    XVRML_FIELD_TYPES(XVRML_STRING)};
+#undef XVRML_STRING
 
 } // namespace
 
@@ -46,7 +33,13 @@ bool fieldTypeFromName(std::string_view name, FieldType& type) {
 }
 
 Value defaultValue(FieldType type) {
-  return defaultOf(size_t(type), std::make_index_sequence<fieldTypeCount>());
+  switch (type) {
+#define XVRML_CASE(name, type)                                                                     \
+  case FieldType::name: return Value(std::in_place_type<name>);
+    XVRML_FIELD_TYPES(XVRML_CASE)
+#undef XVRML_CASE
+  }
+  return {};
 }
 
 } // namespace xvrml

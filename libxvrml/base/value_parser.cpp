@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/number.h"
+#include "base/visit_storage.h"
 
 namespace xvrml {
 namespace {
@@ -282,29 +283,12 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
 }
 
 bool ValueParser::parse(FieldType type, void* storage) {
-  switch (type) {
-  case FieldType::SFBool: return single(*static_cast<SFBool*>(storage));
-  case FieldType::SFColor: return single(*static_cast<SFColor*>(storage));
-  case FieldType::SFFloat: return single(*static_cast<SFFloat*>(storage));
-  case FieldType::SFImage: return single(*static_cast<SFImage*>(storage));
-  case FieldType::SFInt32: return single(*static_cast<SFInt32*>(storage));
-  case FieldType::SFNode: return single(*static_cast<SFNode*>(storage));
-  case FieldType::SFRotation: return single(*static_cast<SFRotation*>(storage));
-  case FieldType::SFString: return single(*static_cast<SFString*>(storage));
-  case FieldType::SFTime: return single(*static_cast<SFTime*>(storage));
-  case FieldType::SFVec2f: return single(*static_cast<SFVec2f*>(storage));
-  case FieldType::SFVec3f: return single(*static_cast<SFVec3f*>(storage));
-  case FieldType::MFColor: return multiple(*static_cast<MFColor*>(storage));
-  case FieldType::MFFloat: return multiple(*static_cast<MFFloat*>(storage));
-  case FieldType::MFInt32: return multiple(*static_cast<MFInt32*>(storage));
-  case FieldType::MFNode: return multiple(*static_cast<MFNode*>(storage));
-  case FieldType::MFRotation: return multiple(*static_cast<MFRotation*>(storage));
-  case FieldType::MFString: return multiple(*static_cast<MFString*>(storage));
-  case FieldType::MFTime: return multiple(*static_cast<MFTime*>(storage));
-  case FieldType::MFVec2f: return multiple(*static_cast<MFVec2f*>(storage));
-  case FieldType::MFVec3f: return multiple(*static_cast<MFVec3f*>(storage));
-  }
-  return false;
+  return visitStorage(type, storage, [this](auto& value) {
+    if constexpr (isList<std::remove_reference_t<decltype(value)>>)
+      return multiple(value);
+    else
+      return single(value);
+  });
 }
 
 bool ValueParser::parse(FieldType type, Value& value) {

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "base/visit_storage.h"
+
 namespace xvrml {
 namespace {
 
@@ -25,16 +27,11 @@ Table& table() {
 
 // Calls f with the list if the field's type is a list of numbers. Returns whether it is.
 template <class F> bool withNumbers(FieldType type, void* storage, const F& f) {
-  switch (type) {
-  case FieldType::MFColor: f(*static_cast<MFColor*>(storage)); return true;
-  case FieldType::MFFloat: f(*static_cast<MFFloat*>(storage)); return true;
-  case FieldType::MFInt32: f(*static_cast<MFInt32*>(storage)); return true;
-  case FieldType::MFRotation: f(*static_cast<MFRotation*>(storage)); return true;
-  case FieldType::MFTime: f(*static_cast<MFTime*>(storage)); return true;
-  case FieldType::MFVec2f: f(*static_cast<MFVec2f*>(storage)); return true;
-  case FieldType::MFVec3f: f(*static_cast<MFVec3f*>(storage)); return true;
-  default: return false;
-  }
+  return visitStorage(type, storage, [&](auto& value) {
+    constexpr bool is = isNumberList<std::remove_reference_t<decltype(value)>>;
+    if constexpr (is) f(value);
+    return is;
+  });
 }
 
 } // namespace

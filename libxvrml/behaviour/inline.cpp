@@ -1,12 +1,11 @@
 #include "behaviour/inline.h"
 
-#include <unordered_set>
-
 #include "behaviour/builtin.h"
 #include "event/hierarchy.h"
 #include "graph/inline_node.h"
 #include "parse/loader.h"
 #include "xvrml/browser.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -44,19 +43,12 @@ bool loadInlineContent(Engine& engine, Node& node) {
 
 uint64_t loadInlinesBelow(Engine& engine, const Scope& scope) {
   uint64_t loaded = 0;
-  std::unordered_set<const Node*> seen;
-  std::vector<Node*> open;
-  for (const NodeRef& root : scope.roots)
-    if (root) open.push_back(root.get());
-  while (!open.empty()) {
-    Node* node = open.back();
-    open.pop_back();
-    if (!node || !seen.insert(node).second) continue;
-    const auto* inlineNode = dynamic_cast<const InlineNode*>(node);
+  walk(rootsOf(scope), [&](Node& node, std::vector<Node*>& open) {
+    const auto* inlineNode = dynamic_cast<const InlineNode*>(&node);
     if (inlineNode && !inlineNode->content && !inlineNode->url.empty())
-      loaded += loadInlineContent(engine, *node);
-    childrenInHierarchy(*node, open);
-  }
+      loaded += loadInlineContent(engine, node);
+    childrenInHierarchy(node, open);
+  });
   return loaded;
 }
 

@@ -6,6 +6,7 @@
 #include "behaviour/viewer/interaction.h"
 #include "browser/state.h"
 #include "nodes/viewpoint.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {

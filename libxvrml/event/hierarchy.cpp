@@ -2,11 +2,11 @@
 #include "event/hierarchy.h"
 
 #include <algorithm>
-#include <unordered_set>
 
 #include "graph/expansion.h"
 #include "graph/field_access.h"
 #include "xvrml/nodes.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 
@@ -21,8 +21,7 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
     return;
   }
   forEachChild(node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
-  if (const Scope* content = inlineScope(node))
-    for (const NodeRef& root : content->roots) out.push_back(root.get());
+  if (const Scope* content = inlineScope(node)) appendRoots(*content, out);
 }
 
 void holdersOf(const Node& node, std::vector<Node*>& holders) {
@@ -60,16 +59,11 @@ std::vector<Path> pathsTo(const Node& node, size_t limit) {
 
 bool isInScene(const Node& node) {
   if (!node.live) return false;
-  std::unordered_set<const Node*> seen;
-  std::vector<const Node*> open{&node};
-  while (!open.empty()) {
-    const Live& live = *liveOf(*open.back());
-    open.pop_back();
-    if (live.root) return true;
-    for (const Node* parent : live.parents)
-      if (seen.insert(parent).second) open.push_back(parent);
-  }
-  return false;
+  return !walk(std::vector<const Node*>{&node}, [](const Node& one, auto& open) {
+    const Live& live = *liveOf(one);
+    open.insert(open.end(), live.parents.begin(), live.parents.end());
+    return !live.root;
+  });
 }
 
 Matrix localToWorld(const Path& path) {

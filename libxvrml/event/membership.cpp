@@ -10,6 +10,7 @@
 #include "event/hierarchy.h"
 #include "graph/field_access.h"
 #include "graph/node_kinds.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 
@@ -202,30 +203,23 @@ void Engine::contentUnloading(Node& inlineNode) {
 }
 
 void Engine::keepOnly(const std::vector<NodeRef>& kept) {
-  std::unordered_set<const Node*> marked;
-  std::vector<Node*> open, below;
-  const auto mark = [&](Node* node) {
-    if (node && node->live && marked.insert(node).second) open.push_back(node);
-  };
-  for (const NodeRef& node : kept) mark(node.get());
-  while (!open.empty()) {
-    Node& node = *open.back();
-    open.pop_back();
-    below.clear();
-    childrenInHierarchy(node, below);
-    for (Node* child : below) mark(child);
-    if (node.type().index < 0)
-      forEachChild(node, [&](NodeRef& child, const FieldInfo&) { mark(child.get()); });
+  SeenNodes marked;
+  std::vector<Node*> first;
+  for (const NodeRef& node : kept) first.push_back(node.get());
+  walk(std::move(first), marked, [](Node& node, std::vector<Node*>& open) {
+    if (!node.live) return;
+    childrenInHierarchy(node, open);
+    if (node.type().index < 0) appendChildren(node, open);
     if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
-      for (const NodeRef& root : instance->body.roots) mark(root.get());
-      for (const IsConnection& c : instance->is) mark(c.node.get());
+      appendRoots(instance->body, open);
+      for (const IsConnection& c : instance->is) open.push_back(c.node.get());
     }
-    if (liveOf(node)->part)
-      for (const Link& link : liveOf(node)->part->links) {
-        mark(link.to.get());
-        mark(link.instance);
-      }
-  }
+    if (!liveOf(node)->part) return;
+    for (const Link& link : liveOf(node)->part->links) {
+      open.push_back(link.to.get());
+      open.push_back(link.instance);
+    }
+  });
   queue_.clear();
   std::vector<NodeRef> others;
   for (Live* live : lives_) {
@@ -260,15 +254,9 @@ void Engine::rootsChanged() {
 
 // Returns whether a new child of `parent` would have `parent` as a descendant.
 bool Engine::wouldCreateCycle(Node& parent, const Value& value) {
-  std::unordered_set<const Node*> above{&parent};
-  std::vector<Node*> open{&parent};
-  while (!open.empty()) {
-    Node* node = open.back();
-    open.pop_back();
-    if (!node->live) continue;
-    for (Node* next : liveOf(*node)->parents)
-      if (above.insert(next).second) open.push_back(next);
-  }
+  SeenNodes above;
+  walk(std::vector<Node*>{&parent}, above,
+       [](Node& node, std::vector<Node*>& open) { holdersOf(node, open); });
   const auto inside = [&](const NodeRef& child) { return child && above.contains(child.get()); };
   if (const auto* one = std::get_if<NodeRef>(&value)) return inside(*one);
   const auto& many = std::get<MFNode>(value);
@@ -288,7 +276,7 @@ bool Events::store(Node& node, const FieldInfo& field, Value value) {
       return true;
     };
     if (auto* one = std::get_if<NodeRef>(&value); one && refused(*one)) return false;
-    const bool keeps = keepsNull(field) || !inHierarchy;
+    const bool keeps = keepsNull(node.type()) || !inHierarchy;
     if (auto* many = std::get_if<MFNode>(&value))
       std::erase_if(*many, [&](const NodeRef& child) { return child ? refused(child) : !keeps; });
     if (inHierarchy && engine.wouldCreateCycle(node, value)) {

@@ -7,6 +7,7 @@
 #include "event/engine.h"
 #include "graph/expansion.h"
 #include "graph/field_access.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -179,7 +180,7 @@ void Engine::disconnectBody(ProtoInstance& instance) {
 
 void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string& reason) {
   std::vector<std::pair<Node*, const FieldInfo*>> open{{&first, &firstIn}};
-  std::unordered_set<const Node*> expansions;
+  SeenNodes expansions;
   while (!open.empty()) {
     const auto [node, in] = open.back();
     open.pop_back();
@@ -196,15 +197,12 @@ void Engine::markReach(Node& first, const FieldInfo& firstIn, const std::string&
     }
     // If a plug-in's node can change, its expansion can become anything.
     if (Node* standsFor = node->type().expand ? expansionOf(*node) : nullptr) {
-      std::vector<Node*> made{standsFor};
-      while (!made.empty()) {
-        Node* one = made.back();
-        made.pop_back();
-        if (!isMadeByPlugin(*one) || !one->live || !expansions.insert(one).second) continue;
-        for (const FieldInfo& field : one->type().fields)
-          if (holdsValue(field) && field.change != Change::none) open.emplace_back(one, &field);
-        forEachChild(*one, [&](NodeRef& child, const FieldInfo&) { made.push_back(child.get()); });
-      }
+      walk(std::vector<Node*>{standsFor}, expansions, [&](Node& one, std::vector<Node*>& made) {
+        if (!isMadeByPlugin(one) || !one.live) return;
+        for (const FieldInfo& field : one.type().fields)
+          if (holdsValue(field) && field.change != Change::none) open.emplace_back(&one, &field);
+        appendChildren(one, made);
+      });
     }
   }
 }

@@ -2,13 +2,13 @@
 #include "graph/crossing.h"
 
 #include <filesystem>
-#include <unordered_set>
 
 #include <fmt/format.h>
 
 #include "graph/field_access.h"
 #include "graph/node_kinds.h"
 #include "graph/range.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -36,27 +36,19 @@ void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) 
 // Returns whether `target` is a descendant of `top`, without the fields of Scripts and prototype
 // instances. Called only where a node may be part of itself.
 bool reaches(Node& top, const Node& target) {
-  std::unordered_set<const Node*> seen{&top};
-  std::vector<Node*> open{&top};
-  const auto add = [&](const NodeRef& node) {
-    if (node && seen.insert(node.get()).second) open.push_back(node.get());
-  };
-  while (!open.empty()) {
-    Node& node = *open.back();
-    open.pop_back();
-    if (&node == &target) return true;
-    if (node.type().index >= 0)
-      forEachChild(node, [&](NodeRef& child, const FieldInfo&) { add(child); });
+  return !walk(std::vector<Node*>{&top}, [&](Node& node, std::vector<Node*>& open) {
+    if (&node == &target) return false;
+    if (node.type().index >= 0) appendChildren(node, open);
     const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
-    if (!instance) continue;
-    for (const NodeRef& root : instance->body.roots) add(root);
-    for (const IsConnection& connection : instance->is) add(connection.node);
+    if (!instance) return true;
+    appendRoots(instance->body, open);
+    for (const IsConnection& connection : instance->is) open.push_back(connection.node.get());
     for (const Route& route : instance->body.routes) {
-      add(route.from);
-      add(route.to);
+      open.push_back(route.from.get());
+      open.push_back(route.to.get());
     }
-  }
-  return false;
+    return true;
+  });
 }
 
 // Returns whether the field accepts the node. Reports it if not.
@@ -90,7 +82,7 @@ void assignThroughIs(const IsAssignment& c, const Value& value, Diagnostics& dia
     } else if constexpr (std::is_same_v<T, NodeRef>) {
       if (!acceptsNode(c, target, diagnostics)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {
-      const bool keeps = keepsNull(c.to) || c.node.type().index < 0;
+      const bool keeps = keepsNull(c.node.type()) || c.node.type().index < 0;
       std::erase_if(target, [&](const NodeRef& child) {
         return child ? !acceptsNode(c, child, diagnostics) : !keeps;
       });

@@ -1,7 +1,6 @@
 // expander.cpp: copies prototype bodies. Nodes that nothing can change are shared by all copies.
 #include "graph/expander.h"
 
-#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "graph/crossing.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -109,8 +109,7 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
   PlanPtr plan = known; // the table may move
   plan->declaration = declaration;
   plan->computing = true;
-  std::vector<Node*> roots;
-  for (const NodeRef& root : declaration->body.roots) roots.push_back(root.get());
+  std::vector<Node*> roots = rootsOf(declaration->body);
   for (const Route& route : declaration->body.routes) {
     roots.push_back(route.from.get());
     roots.push_back(route.to.get());

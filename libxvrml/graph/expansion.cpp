@@ -1,9 +1,7 @@
 // expansion.cpp: calls `expand` of plug-ins, and rejects expansions that contain their own node.
 #include "graph/expansion.h"
 
-#include <unordered_set>
-
-#include "graph/field_access.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -11,18 +9,10 @@ namespace {
 // Returns whether `node` is a descendant of `top`. Only nodes made by the plug-in are searched,
 // because a field's own nodes cannot hold their owner.
 bool holds(Node& top, const Node& node) {
-  std::unordered_set<const Node*> seen{&top};
-  std::vector<Node*> open{&top};
-  while (!open.empty()) {
-    Node& next = *open.back();
-    open.pop_back();
-    if (&next == &node) return true;
-    if (!isMadeByPlugin(next)) continue;
-    forEachChild(next, [&](NodeRef& child, const FieldInfo&) {
-      if (seen.insert(child.get()).second) open.push_back(child.get());
-    });
-  }
-  return false;
+  return !walk(std::vector<Node*>{&top}, [&](Node& next, std::vector<Node*>& open) {
+    if (isMadeByPlugin(next)) appendChildren(next, open);
+    return &next != &node;
+  });
 }
 
 } // namespace

@@ -4,47 +4,18 @@
 
 #include <algorithm>
 
+#include "base/visit_storage.h"
 #include "xvrml/node.h"
 
 namespace xvrml {
-
-// Calls visit with a typed reference to the storage of a field of this type.
-template <class Visitor>
-decltype(auto) visitStorage(FieldType type, void* storage, Visitor&& visit) {
-  switch (type) {
-  case FieldType::SFBool: return visit(*static_cast<SFBool*>(storage));
-  case FieldType::SFColor: return visit(*static_cast<SFColor*>(storage));
-  case FieldType::SFFloat: return visit(*static_cast<SFFloat*>(storage));
-  case FieldType::SFImage: return visit(*static_cast<SFImage*>(storage));
-  case FieldType::SFInt32: return visit(*static_cast<SFInt32*>(storage));
-  case FieldType::SFNode: return visit(*static_cast<SFNode*>(storage));
-  case FieldType::SFRotation: return visit(*static_cast<SFRotation*>(storage));
-  case FieldType::SFString: return visit(*static_cast<SFString*>(storage));
-  case FieldType::SFTime: return visit(*static_cast<SFTime*>(storage));
-  case FieldType::SFVec2f: return visit(*static_cast<SFVec2f*>(storage));
-  case FieldType::SFVec3f: return visit(*static_cast<SFVec3f*>(storage));
-  case FieldType::MFColor: return visit(*static_cast<MFColor*>(storage));
-  case FieldType::MFFloat: return visit(*static_cast<MFFloat*>(storage));
-  case FieldType::MFInt32: return visit(*static_cast<MFInt32*>(storage));
-  case FieldType::MFNode: return visit(*static_cast<MFNode*>(storage));
-  case FieldType::MFRotation: return visit(*static_cast<MFRotation*>(storage));
-  case FieldType::MFString: return visit(*static_cast<MFString*>(storage));
-  case FieldType::MFTime: return visit(*static_cast<MFTime*>(storage));
-  case FieldType::MFVec2f: return visit(*static_cast<MFVec2f*>(storage));
-  case FieldType::MFVec3f: break;
-  }
-  return visit(*static_cast<MFVec3f*>(storage));
-}
 
 inline bool holdsNodes(const FieldInfo& field) {
   return holdsValue(field) && (field.type == FieldType::SFNode || field.type == FieldType::MFNode);
 }
 
-// Returns whether a list keeps NULL, because the position of its nodes matters (Switch.choice,
-// LOD.level). In other lists NULL has no meaning.
-inline bool keepsNull(const FieldInfo& field) {
-  return field.name == "choice" || field.name == "level";
-}
+// Returns whether the lists of nodes of a type keep NULL, because the position of a node matters
+// (Switch, LOD). In other lists NULL has no meaning.
+inline bool keepsNull(const NodeType& type) { return type.is("selecting"); }
 
 // Calls visit(NodeRef&, const FieldInfo&) for each node that the node's own fields hold, except
 // NULL.

@@ -10,6 +10,7 @@
 
 #include "mapper/mapper_impl.h"
 #include "xvrml/change.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 
@@ -17,11 +18,11 @@ using namespace mapper;
 
 struct OpenRTMapper::Impl::Work {
   bool regroup = false;
-  std::vector<ItemId> rewrite;             // items whose content is drawn differently
-  std::vector<ItemId> replace;             // items that are placed differently
-  std::vector<int32_t> meshes;             // meshes that have changed
-  std::vector<Node*> appearances;          // appearances with new properties, each once
-  std::unordered_set<const Node*> visited; // by the upward walk from appearance nodes
+  std::vector<ItemId> rewrite;    // items whose content is drawn differently
+  std::vector<ItemId> replace;    // items that are placed differently
+  std::vector<int32_t> meshes;    // meshes that have changed
+  std::vector<Node*> appearances; // appearances with new properties, each once
+  SeenNodes visited;              // by the upward walk from appearance nodes
 };
 
 namespace {
@@ -33,20 +34,15 @@ bool isAppearance(const Node& node) {
 
 // Walks up through everything except groups and shapes, including prototype instances. The walk
 // continues above a node if visit returns true for it.
-template <class Visit>
-void walkHolders(Node& first, std::unordered_set<const Node*>& visited, const Visit& visit) {
-  std::vector<Node*> open{&first};
-  while (!open.empty()) {
-    Node* node = open.back();
-    open.pop_back();
-    if (!visited.insert(node).second || !visit(*node)) continue;
-    holdersOf(*node, open);
-  }
+template <class Visit> void walkHolders(Node& first, SeenNodes& visited, const Visit& visit) {
+  walk(std::vector<Node*>{&first}, visited, [&](Node& node, std::vector<Node*>& open) {
+    if (visit(node)) holdersOf(node, open);
+  });
 }
 
 // Visits the shapes that hold a geometry or appearance node.
 template <class Visit> void forEachShape(const Graph& graph, Node& part, const Visit& visit) {
-  std::unordered_set<const Node*> visited;
+  SeenNodes visited;
   walkHolders(part, visited, [&](Node& node) {
     const ItemId item = graph.find(&node);
     if (item != 0 && graph.items[item].kind == Kind::shape) visit(item);
@@ -114,7 +110,7 @@ void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
 
 // Handles a change of a geometry node or of a node that it holds.
 void OpenRTMapper::Impl::geometryChanged(Work& work, Node& first) {
-  std::unordered_set<const Node*> visited;
+  SeenNodes visited;
   walkHolders(first, visited, [&](Node& node) {
     const int32_t mesh = graph.meshes.find(&node);
     if (mesh == none) return node.type().index < 0 || !planOf(node.type());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nodes/bindable.h"
 #include "nodes/viewpoint.h"
 
 namespace xvrml::mapper {
@@ -32,23 +33,19 @@ Bound firstBound(const Graph& graph, const Places& places) {
 
 Bound boundTo(const Graph& graph, const Places& places, const BoundNodes& nodes) {
   Bound bound;
-  const auto find = [&](Node* written, std::initializer_list<int> types, NodeRef& node,
-                        int32_t* place) {
+  const auto find = [&](Node* written, BindableStack stack, NodeRef& node, int32_t* place) {
     Node* rendered = written ? renderedNode(written) : nullptr;
-    if (!rendered || std::find(types.begin(), types.end(), rendered->type().index) == types.end())
-      return;
+    if (!rendered || bindableStack(rendered->type()) != stack) return;
     node = NodeRef(rendered);
     if (!place) return;
     places.each(graph.find(rendered), [&](int32_t at) {
       if (*place == none) *place = at;
     });
   };
-  find(nodes.viewpoint, {nodes::Viewpoint::typeIndex, nodes::ORTViewpoint::typeIndex},
-       bound.viewpoint, &bound.viewpointPlace);
-  find(nodes.background, {nodes::Background::typeIndex, nodes::ORTBackground::typeIndex},
-       bound.background, &bound.backgroundPlace);
-  find(nodes.fog, {nodes::Fog::typeIndex}, bound.fog, &bound.fogPlace);
-  find(nodes.navigationInfo, {nodes::NavigationInfo::typeIndex}, bound.navigationInfo, nullptr);
+  find(nodes.viewpoint, BindableStack::viewpoint, bound.viewpoint, &bound.viewpointPlace);
+  find(nodes.background, BindableStack::background, bound.background, &bound.backgroundPlace);
+  find(nodes.fog, BindableStack::fog, bound.fog, &bound.fogPlace);
+  find(nodes.navigationInfo, BindableStack::navigationInfo, bound.navigationInfo, nullptr);
   return bound;
 }
 

@@ -1,10 +1,10 @@
-// viewpoint.h: the common fields of Viewpoint and ORTViewpoint, for code that uses either. [any
-// thread]
+// viewpoint.h: the fields that all viewpoint nodes have (the abstract type in bindable.node), for
+// code that uses any of them. [any thread]
 #pragma once
 
 #include <optional>
 
-#include "xvrml/nodes.h"
+#include "nodes/bindable.h"
 
 namespace xvrml {
 
@@ -19,19 +19,21 @@ struct ViewpointFields {
 };
 
 inline bool isViewpoint(const Node* node) {
-  return node && (node->type().index == nodes::Viewpoint::typeIndex ||
-                  node->type().index == nodes::ORTViewpoint::typeIndex);
+  return node && bindableStack(node->type()) == BindableStack::viewpoint;
 }
 
 inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
-  const auto of = [](const auto& v, Node* shader) {
-    return ViewpointFields{v.position, v.orientation, v.fieldOfView, v.jump, v.description, shader};
-  };
   if (!isViewpoint(node)) return std::nullopt;
-  if (node->type().index == nodes::Viewpoint::typeIndex)
-    return of(static_cast<const nodes::Viewpoint&>(*node), nullptr);
-  const auto& own = static_cast<const nodes::ORTViewpoint&>(*node);
-  return of(own, own.shader.get());
+  // nodegen has checked that the node has the fields of its abstract types.
+  const auto at = [&](std::string_view name) { return node->storage(*node->type().find(name)); };
+  const FieldInfo* shader = node->type().find("shader");
+  return ViewpointFields{*static_cast<const SFVec3f*>(at("position")),
+                         *static_cast<const SFRotation*>(at("orientation")),
+                         *static_cast<const SFFloat*>(at("fieldOfView")),
+                         *static_cast<const SFBool*>(at("jump")),
+                         *static_cast<const SFString*>(at("description")),
+                         shader ? static_cast<const SFNode*>(node->storage(*shader))->get()
+                                : nullptr};
 }
 
 } // namespace xvrml

@@ -245,9 +245,9 @@ void Builder::nullNode(const Token& token) {
   const NodeTarget& nodeTarget = nodeTargets_.back();
   if (nodeTarget.kind == NodeTarget::Kind::single)
     *static_cast<NodeRef*>(nodeTarget.storage) = {};
-  else if (!nodeTarget.field || keepsNull(*nodeTarget.field) ||
+  else if (!nodeTarget.field || keepsNull(nodeTarget.holder->type()) ||
            // A list in an interface may become the value of a field that keeps NULL.
-           (nodeTarget.holder && nodeTarget.holder->type().index < 0))
+           nodeTarget.holder->type().index < 0)
     static_cast<MFNode*>(nodeTarget.storage)->emplace_back();
   else
     lexer_.warn(token.at(), "NULL is no node of a list; it is left out");

@@ -13,7 +13,7 @@
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "write/value_writer.h"
-#include "xvrml/world.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
@@ -83,8 +83,7 @@ class Writer {
   std::string text = "#VRML V2.0 utf8\n";
 
   void scope(const Scope& scope, const Connections* connections) {
-    std::vector<Node*> roots;
-    for (const NodeRef& root : scope.roots) roots.push_back(root.get());
+    const std::vector<Node*> roots = rootsOf(scope);
     Names names(roots, scope.routes);
     // Routes are written at the end. A route with a repeated name is written as soon as both nodes
     // exist, while the name still refers to them.

@@ -1,11 +1,12 @@
 #include "describe.h"
 
 #include <cctype>
-#include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "openrt/openrt.h"
+#include "xvrml/walk.h"
 
 namespace vv {
 
@@ -45,53 +46,34 @@ template <class T> std::string text(const std::vector<T>& list) {
   return out + "]";
 }
 
-// Visits nodes without recursion: a hostile world may be a thousand nodes deep.
-class Walk {
- public:
-  Walk(const std::function<void(const Node&)>& visit,
-       const std::function<void(const Scope&)>& enter)
-      : visit_(visit), enter_(enter) {}
+using Nodes = std::vector<const Node*>;
 
-  void through(const Scope& scope) {
-    add(scope);
-    go();
-  }
-  void from(const Node& node) {
-    todo_.push_back(&node);
-    go();
-  }
+void nothing(const Scope&) {}
 
- private:
-  void go() {
-    while (!todo_.empty()) {
-      const Node* node = todo_.back();
-      todo_.pop_back();
-      if (!node || !seen_.insert(node).second) continue;
-      visit_(*node);
-      for (const FieldInfo& field : node->type().fields) {
-        if (field.access != Access::field && field.access != Access::exposedField) continue;
-        if (field.type == FieldType::SFNode)
-          todo_.push_back(static_cast<const SFNode*>(node->storage(field))->get());
-        if (field.type == FieldType::MFNode)
-          for (const NodeRef& child : *static_cast<const MFNode*>(node->storage(field)))
-            todo_.push_back(child.get());
-      }
-      if (auto* instance = dynamic_cast<const ProtoInstance*>(node)) add(instance->body);
-      if (const Scope* content = node->type().name == "Inline" ? inlineScope(*node) : nullptr)
-        add(*content);
-    }
-  }
+// Visits nodes and all nodes below them, bodies of prototypes and contents of Inlines included.
+// Calls enter() for each such scope.
+template <class Visit, class Enter>
+void walkInto(Nodes first, const Visit& visit, const Enter& enter) {
+  walk(std::move(first), [&](const Node& node, Nodes& open) {
+    visit(node);
+    appendChildren(node, open);
+    const auto add = [&](const Scope& scope) {
+      enter(scope);
+      appendRoots(scope, open);
+    };
+    if (auto* instance = dynamic_cast<const ProtoInstance*>(&node)) add(instance->body);
+    if (const Scope* content = node.type().name == "Inline" ? inlineScope(node) : nullptr)
+      add(*content);
+  });
+}
 
-  void add(const Scope& scope) {
-    enter_(scope);
-    for (const NodeRef& root : scope.roots) todo_.push_back(root.get());
-  }
-
-  const std::function<void(const Node&)>& visit_;
-  const std::function<void(const Scope&)>& enter_;
-  std::vector<const Node*> todo_;
-  std::unordered_set<const Node*> seen_;
-};
+template <class Visit, class Enter>
+void walkInto(const Scope& scope, const Visit& visit, const Enter& enter) {
+  enter(scope);
+  Nodes roots;
+  appendRoots(scope, roots);
+  walkInto(std::move(roots), visit, enter);
+}
 
 } // namespace
 
@@ -110,13 +92,11 @@ std::string oneLine(std::string text) {
 }
 
 void forEachNode(const World& world, const std::function<void(const Node& node)>& visit) {
-  const std::function<void(const Scope&)> nothing = [](const Scope&) {};
-  Walk(visit, nothing).through(world.scope);
+  walkInto(world.scope, visit, nothing);
 }
 
 void forEachNodeBelow(const Node& node, const std::function<void(const Node& node)>& visit) {
-  const std::function<void(const Scope&)> nothing = [](const Scope&) {};
-  Walk(visit, nothing).from(node);
+  walkInto(Nodes{&node}, visit, nothing);
 }
 
 std::string scriptProtocol(const std::vector<std::string>& urls) {
@@ -152,17 +132,14 @@ void countScript(const Node& node, std::map<std::string, uint64_t>& scripts) {
 
 // Counts the bodies of prototypes, including prototypes declared inside them.
 void countDeclared(const Scope& scope, WorldCounts& counts) {
-  const std::function<void(const Node&)> count = [&](const Node& node) {
-    countScript(node, counts.declaredScripts);
-  };
-  const std::function<void(const Scope&)> nothing = [](const Scope&) {};
+  const auto count = [&](const Node& node) { countScript(node, counts.declaredScripts); };
   std::vector<const Scope*> open{&scope};
   while (!open.empty()) {
     const Scope& next = *open.back();
     open.pop_back();
     for (const ProtoPtr& prototype : next.prototypes) {
       open.push_back(&prototype->body);
-      Walk(count, nothing).through(prototype->body);
+      walkInto(prototype->body, count, nothing);
     }
   }
 }
@@ -171,14 +148,11 @@ void countDeclared(const Scope& scope, WorldCounts& counts) {
 
 WorldCounts countWorld(const World& world) {
   WorldCounts counts;
-  const std::function<void(const Node&)> count = [&](const Node& node) {
+  const auto count = [&](const Node& node) {
     ++counts.types[node.type().name];
     countScript(node, counts.scripts);
   };
-  const std::function<void(const Scope&)> enter = [&](const Scope& scope) {
-    counts.routes += scope.routes.size();
-  };
-  Walk(count, enter).through(world.scope);
+  walkInto(world.scope, count, [&](const Scope& scope) { counts.routes += scope.routes.size(); });
   countDeclared(world.scope, counts);
   for (const ProtoPtr& prototype : world.scope.prototypes)
     counts.prototypes.push_back(prototype->type->name);

@@ -3,25 +3,18 @@
 #include "behaviour/viewer/binding.h"
 
 #include <algorithm>
-#include <unordered_set>
 
 #include "behaviour/builtin.h"
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "graph/field_access.h"
-#include "nodes/viewpoint.h"
+#include "nodes/bindable.h"
+#include "xvrml/nodes.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 
-size_t Binding::typeOf(const Node& node) {
-  const int index = node.type().index;
-  return isViewpoint(&node)                          ? 0
-         : index == nodes::Background::typeIndex     ? 1
-         : index == nodes::ORTBackground::typeIndex  ? 1
-         : index == nodes::Fog::typeIndex            ? 2
-         : index == nodes::NavigationInfo::typeIndex ? 3
-                                                     : types;
-}
+size_t Binding::typeOf(const Node& node) { return size_t(bindableStack(node.type())); }
 
 void Binding::sendBindEvents(Node& node, bool bound) {
   engine_.send(node, "isBound", bound);
@@ -36,7 +29,7 @@ void Binding::push(size_t type, Node& node) {
   NodeRef old(top(type));
   std::erase_if(stack, [&](const Entry& e) { return e.node.get() == &node; });
   stack.push_back({NodeRef(&node), isInScene(node)});
-  if (type == 0) viewer_.bind(old.get(), &node);
+  if (type == viewpointStack) viewer_.bind(old.get(), &node);
   if (old) sendBindEvents(*old, false);
   sendBindEvents(node, true);
 }
@@ -48,12 +41,12 @@ void Binding::remove(size_t type, size_t index) {
   const bool wasTop = index + 1 == stack.size();
   if (!wasTop) {
     stack.erase(stack.begin() + ptrdiff_t(index));
-    if (type == 0) viewer_.forget(*node);
+    if (type == viewpointStack) viewer_.forget(*node);
     return;
   }
   stack.pop_back();
   const NodeRef next(top(type));
-  if (type == 0) viewer_.unbind(*node, next.get());
+  if (type == viewpointStack) viewer_.unbind(*node, next.get());
   sendBindEvents(*node, false);
   if (next) sendBindEvents(*next, true);
 }
@@ -94,17 +87,14 @@ namespace {
 // Calls visit for each node of a scope in file order. It skips what is below a node if visit
 // returns false.
 template <class Visit> void walkScope(const Scope& scope, Visit&& visit) {
-  std::unordered_set<const Node*> seen;
-  std::vector<Node*> open, below;
-  for (size_t i = scope.roots.size(); i-- > 0;) open.push_back(scope.roots[i].get());
-  while (!open.empty()) {
-    Node* node = open.back();
-    open.pop_back();
-    if (!node || !seen.insert(node).second || !visit(*node)) continue;
-    below.clear();
-    childrenInHierarchy(*node, below);
-    open.insert(open.end(), below.rbegin(), below.rend());
-  }
+  std::vector<Node*> roots = rootsOf(scope);
+  std::reverse(roots.begin(), roots.end());
+  walk(std::move(roots), [&](Node& node, std::vector<Node*>& open) {
+    if (!visit(node)) return;
+    const auto before = ptrdiff_t(open.size());
+    childrenInHierarchy(node, open);
+    std::reverse(open.begin() + before, open.end());
+  });
 }
 
 } // namespace
@@ -115,7 +105,7 @@ void Binding::bindFirst(const Scope& scope) {
     if (const size_t type = typeOf(node); type != types && !first[type]) first[type] = &node;
     return node.type().index != nodes::Inline::typeIndex;
   });
-  if (stacks_[0].empty()) viewer_.restart();
+  if (stacks_[viewpointStack].empty()) viewer_.restart();
   for (size_t type = 0; type < types; ++type)
     if (first[type] && stacks_[type].empty()) push(type, *first[type]);
   viewer_.begin();
@@ -124,7 +114,7 @@ void Binding::bindFirst(const Scope& scope) {
 std::vector<Node*> Binding::viewpoints(const Scope& scope) {
   std::vector<Node*> list;
   walkScope(scope, [&](Node& node) {
-    if (typeOf(node) == 0) list.push_back(&node);
+    if (typeOf(node) == viewpointStack) list.push_back(&node);
     return true;
   });
   return list;
@@ -134,7 +124,7 @@ void Binding::forget(const Node& node) {
   const size_t type = typeOf(node);
   if (type == types) return;
   std::erase_if(stacks_[type], [&](const Entry& entry) { return entry.node.get() == &node; });
-  if (type == 0) viewer_.forget(node);
+  if (type == viewpointStack) viewer_.forget(node);
 }
 
 BoundNodes Binding::bound() const { return {top(0), top(1), top(2), top(3)}; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "event/engine.h"
+#include "nodes/bindable.h"
 #include "xvrml/camera.h"
 
 namespace xvrml {
@@ -31,7 +32,8 @@ class Binding {
   static std::vector<Node*> viewpoints(const Scope& scope);
 
  private:
-  static constexpr size_t types = 4;
+  static constexpr size_t types = bindableStacks;
+  static constexpr size_t viewpointStack = size_t(BindableStack::viewpoint);
   struct Entry {
     NodeRef node;
     bool inScene; // it has been in the scene; a node outside the scene may be bound too

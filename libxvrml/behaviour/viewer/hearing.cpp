@@ -1,27 +1,20 @@
 // hearing.cpp: computes what the viewer of a running world hears: its Sounds (clause 6.42) and
 // their directions, for xvrml/media.h. [the browser's thread]
-#include <unordered_set>
-
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
 #include "xvrml/browser.h"
 #include "xvrml/media.h"
+#include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
 
 std::vector<Node*> soundsBelow(const Scope& scope) {
-  std::vector<Node*> found, open;
-  std::unordered_set<const Node*> seen;
-  for (const NodeRef& root : scope.roots)
-    if (root) open.push_back(root.get());
-  while (!open.empty()) {
-    Node* node = open.back();
-    open.pop_back();
-    if (!node || !seen.insert(node).second) continue;
-    if (node->type().index == nodes::Sound::typeIndex) found.push_back(node);
-    childrenInHierarchy(*node, open);
-  }
+  std::vector<Node*> found;
+  walk(rootsOf(scope), [&](Node& node, std::vector<Node*>& open) {
+    if (node.type().index == nodes::Sound::typeIndex) found.push_back(&node);
+    childrenInHierarchy(node, open);
+  });
   return found;
 }
 

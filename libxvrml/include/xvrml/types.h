@@ -58,55 +58,46 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-using SFBool = bool;
-using SFColor = Color;
-using SFFloat = float;
-using SFImage = Image;
-using SFInt32 = int32_t;
-using SFNode = NodeRef;
-using SFRotation = Rotation;
-using SFString = std::string;
-using SFTime = double;
-using SFVec2f = Vec2f;
-using SFVec3f = Vec3f;
-using MFColor = std::vector<Color>;
-using MFFloat = std::vector<float>;
-using MFInt32 = std::vector<int32_t>;
-using MFNode = std::vector<NodeRef>;
-using MFRotation = std::vector<Rotation>;
-using MFString = std::vector<std::string>;
-using MFTime = std::vector<double>;
-using MFVec2f = std::vector<Vec2f>;
-using MFVec3f = std::vector<Vec3f>;
+// The field types and their C++ types. This order is that of FieldType and of the alternatives of
+// Value; MFColor is the first MF type.
+#define XVRML_FIELD_TYPES(X)                                                                       \
+  X(SFBool, bool)                                                                                  \
+  X(SFColor, Color)                                                                                \
+  X(SFFloat, float)                                                                                \
+  X(SFImage, Image)                                                                                \
+  X(SFInt32, int32_t)                                                                              \
+  X(SFNode, NodeRef)                                                                               \
+  X(SFRotation, Rotation)                                                                          \
+  X(SFString, std::string)                                                                         \
+  X(SFTime, double)                                                                                \
+  X(SFVec2f, Vec2f)                                                                                \
+  X(SFVec3f, Vec3f)                                                                                \
+  X(MFColor, std::vector<Color>)                                                                   \
+  X(MFFloat, std::vector<float>)                                                                   \
+  X(MFInt32, std::vector<int32_t>)                                                                 \
+  X(MFNode, std::vector<NodeRef>)                                                                  \
+  X(MFRotation, std::vector<Rotation>)                                                             \
+  X(MFString, std::vector<std::string>)                                                            \
+  X(MFTime, std::vector<double>)                                                                   \
+  X(MFVec2f, std::vector<Vec2f>)                                                                   \
+  X(MFVec3f, std::vector<Vec3f>)
+
+#define XVRML_ALIAS(name, type) using name = type;
+XVRML_FIELD_TYPES(XVRML_ALIAS)
+#undef XVRML_ALIAS
 
 // Each value is the index of the alternative in Value.
-enum class FieldType : uint8_t {
-  SFBool,
-  SFColor,
-  SFFloat,
-  SFImage,
-  SFInt32,
-  SFNode,
-  SFRotation,
-  SFString,
-  SFTime,
-  SFVec2f,
-  SFVec3f,
-  MFColor,
-  MFFloat,
-  MFInt32,
-  MFNode,
-  MFRotation,
-  MFString,
-  MFTime,
-  MFVec2f,
-  MFVec3f
-};
-inline constexpr int fieldTypeCount = 20;
+#define XVRML_ENUMERATOR(name, type) name,
+enum class FieldType : uint8_t { XVRML_FIELD_TYPES(XVRML_ENUMERATOR) };
+#undef XVRML_ENUMERATOR
 
-using Value = std::variant<SFBool, SFColor, SFFloat, SFImage, SFInt32, SFNode, SFRotation, SFString,
-                           SFTime, SFVec2f, SFVec3f, MFColor, MFFloat, MFInt32, MFNode, MFRotation,
-                           MFString, MFTime, MFVec2f, MFVec3f>;
+namespace detail {
+template <class First, class... Others> using VariantOfOthers = std::variant<Others...>;
+} // namespace detail
+#define XVRML_ARGUMENT(name, type) , type
+using Value = detail::VariantOfOthers<void XVRML_FIELD_TYPES(XVRML_ARGUMENT)>;
+#undef XVRML_ARGUMENT
+inline constexpr int fieldTypeCount = std::variant_size_v<Value>;
 
 std::string_view fieldTypeName(FieldType type); // "SFBool" ...
 bool fieldTypeFromName(std::string_view name, FieldType& type);

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "mapper/graph/graph.h"
+#include "nodes/bindable.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
@@ -98,6 +99,9 @@ void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoin
 void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
 void planFog(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::fog; }
 void planNavigationInfo(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::navigationInfo; }
+// In the order of BindableStack.
+constexpr PlanFunction bindablePlans[bindableStacks] = {planViewpoint, planBackground, planFog,
+                                                        planNavigationInfo};
 
 std::vector<PlanFunction>& table() {
   static std::vector<PlanFunction> plans = [] {
@@ -121,12 +125,9 @@ std::vector<PlanFunction>& table() {
     set(nodes::PointLight::typeIndex, planPointLight);
     set(nodes::SpotLight::typeIndex, planSpotLight);
     set(nodes::ORTLight::typeIndex, planOrtLight);
-    set(nodes::Viewpoint::typeIndex, planViewpoint);
-    set(nodes::ORTViewpoint::typeIndex, planViewpoint);
-    set(nodes::ORTBackground::typeIndex, planBackground);
-    set(nodes::Background::typeIndex, planBackground);
-    set(nodes::Fog::typeIndex, planFog);
-    set(nodes::NavigationInfo::typeIndex, planNavigationInfo);
+    for (const NodeType* type : nodeTypes())
+      if (const BindableStack stack = bindableStack(*type); stack != BindableStack::none)
+        set(type->index, bindablePlans[size_t(stack)]);
     return t;
   }();
   return plans;

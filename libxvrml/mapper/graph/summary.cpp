@@ -56,11 +56,6 @@ bool lineColorReached(Node* shape) {
   return material && reaches(*material, Change::appearance);
 }
 
-bool drawsLines(const Node& geometry) {
-  return geometry.type().index == nodes::IndexedLineSet::typeIndex ||
-         geometry.type().index == nodes::PointSet::typeIndex;
-}
-
 class Summary {
  public:
   explicit Summary(Graph& graph) : graph_(graph), paths_(graph.items.size(), 0) {}
@@ -115,7 +110,7 @@ class Summary {
   void summariseShape(Item& item) {
     Node& geometry = graph_.meshes.geometry(item.mesh);
     const bool reached = graph_.meshes.dynamic(item.mesh) && !item.merged;
-    const bool lines = drawsLines(geometry);
+    const bool lines = geometry.type().is("lines");
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
     item.shapes = 1;
     item.triangles = extent.kind == Mesh::Kind::triangles ? extent.primitives : 0;
