@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/worker/array_cache.h"
 #include "messages_generated.h"
 #include "unit/cluster_wires.h"
@@ -18,27 +19,41 @@ std::vector<message::Body> oneOfEach() {
   ready.stats.size = sizeof ready.stats;
   ready.stats.triangles = 77;
   std::strcpy(ready.stats.isa, "avx2");
-  message::Result result{5, 9, 0.25, 1, 2, 3, {{"Phong", "vrml97", 0, 4}}, someBytes(1000)};
-  message::Jobs jobs{5, {}};
+  message::Result result{
+      5, 9, 0.25, 1, 2, 3, {{.name = "Phong", .library = "vrml97", .hits = 4}}, someBytes(1000)};
+  message::Jobs jobs{.epoch = 5};
   jobs.jobs.push_back({11, {Job::Kind::samples, true, 2, 64, 32, {7, 4}}});
   jobs.jobs.push_back({12, {Job::Kind::light, false, 15, 0, 4000000000u, {8, 31}}});
   std::vector<message::Body> all;
-  all.emplace_back(
-      message::Hello{1, "0.1.0", 1, 2, "avx2", "Embree", "glibc 2.36", 16, "node1", 4711});
-  all.emplace_back(message::Need{5, {{1, 2}, {3, 4}}});
+  all.emplace_back(message::Hello{.protocol = 1,
+                                  .library = "0.1.0",
+                                  .api = 1,
+                                  .shaderAbi = 2,
+                                  .isa = "avx2",
+                                  .kernel = "Embree",
+                                  .platform = "glibc 2.36",
+                                  .threads = 16,
+                                  .host = "node1",
+                                  .process = 4711});
+  all.emplace_back(message::Need{.epoch = 5, .arrays = {{1, 2}, {3, 4}}});
   all.emplace_back(ready);
-  all.emplace_back(message::Failed{5, "why"});
+  all.emplace_back(message::Failed{.epoch = 5, .why = "why"});
   all.emplace_back(result);
-  all.emplace_back(message::Log{2, "text"});
-  all.emplace_back(message::Welcome{protocolVersion, 42, 0.1f, 0.5f});
-  all.emplace_back(message::Scene{
-      5, true, true, {{1, 100, {1, 2}}, {2, 200, {3, 4}}}, {{"vrml97", {5, 6}}}, someBytes(333)});
-  all.emplace_back(message::Piece{{1, 2}, 100, 50, 0, someBytes(50)});
-  all.emplace_back(message::Prepare{5});
+  all.emplace_back(message::Log{.level = 2, .text = "text"});
+  all.emplace_back(usualWelcome(42));
+  all.emplace_back(message::Scene{5,
+                                  true,
+                                  true,
+                                  {{1, 100, {1, 2}}, {2, 200, {3, 4}}},
+                                  {{.name = "vrml97", .hash = {5, 6}}},
+                                  someBytes(333)});
+  all.emplace_back(
+      message::Piece{{.hash = {1, 2}, .bytes = 100, .stored = 50, .offset = 0}, someBytes(50)});
+  all.emplace_back(message::Prepare{.epoch = 5});
   all.emplace_back(jobs);
-  all.emplace_back(message::Drop{5});
-  all.emplace_back(message::Beat{1.5, true});
-  all.emplace_back(message::Bye{"why"});
+  all.emplace_back(message::Drop{.epoch = 5});
+  all.emplace_back(message::Beat{.sent = 1.5, .answer = true});
+  all.emplace_back(message::Bye{.why = "why"});
   return all;
 }
 
@@ -164,13 +179,13 @@ TEST(Messages, resultsOfManyFrames) {
 
 TEST(Messages, textsAreCut) {
   Message out;
-  ASSERT_EQ(decode(of(message::Failed{1, std::string(100000, 'x')}), out), "");
+  ASSERT_EQ(decode(of(message::Failed{.epoch = 1, .why = std::string(100000, 'x')}), out), "");
   EXPECT_EQ(std::get<message::Failed>(out.body).why.size(), limits::textBytes);
 }
 
 TEST(Messages, textsCannotMoveTheCursor) {
   Message out;
-  ASSERT_EQ(decode(of(message::Log{2, "a\x1b[2Jb\nc\x7f"}), out), "");
+  ASSERT_EQ(decode(of(message::Log{.level = 2, .text = "a\x1b[2Jb\nc\x7f"}), out), "");
   EXPECT_EQ(std::get<message::Log>(out.body).text, "a [2Jb c ");
 }
 
@@ -178,23 +193,31 @@ TEST(Messages, numbersThatCannotBe) {
   const auto refused = [](message::Body body) { return !problem(of(std::move(body))).empty(); };
   EXPECT_TRUE(refused(message::Hello{.threads = 0}));
   EXPECT_TRUE(refused(message::Ready{1, {}, 99, {}}));
-  EXPECT_TRUE(refused(message::Welcome{protocolVersion, 1, 0, 0}));
-  EXPECT_TRUE(refused(message::Welcome{protocolVersion, 1, std::nanf(""), 1}));
+  EXPECT_TRUE(refused(
+      message::Welcome{.protocol = protocolVersion, .session = 1, .heartbeat = 0, .silence = 0}));
+  EXPECT_TRUE(refused(message::Welcome{
+      .protocol = protocolVersion, .session = 1, .heartbeat = std::nanf(""), .silence = 1}));
   EXPECT_TRUE(refused(message::Scene{0, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{limits::epochs + 1, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{0, 1, {}}}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{1, limits::arrayBytes + 1, {}}}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{
       1, true, true, std::vector(5, message::ArrayName{1, limits::arrayBytes, {}}), {}, {}}));
-  EXPECT_TRUE(refused(message::Piece{{}, uint64_t(1) << 33, 1000, 0, someBytes(1000)}))
+  EXPECT_TRUE(refused(
+      message::Piece{{.bytes = uint64_t(1) << 33, .stored = 1000, .offset = 0}, someBytes(1000)}))
       << "more than zstd can unpack";
-  EXPECT_TRUE(refused(message::Piece{{}, 1000, 100, 1, someBytes(99)})) << "no multiple";
-  EXPECT_TRUE(refused(message::Jobs{
-      1, std::vector<LeasedJob>(limits::jobs + 1, {1, {Job::Kind::samples, false, 0, 0, 1, {}}})}));
-  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0, 0, {}}}}}));
+  EXPECT_TRUE(refused(message::Piece{{.bytes = 1000, .stored = 100, .offset = 1}, someBytes(99)}))
+      << "no multiple";
   EXPECT_TRUE(
-      refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0xffffffff, 0xffffffff, {}}}}}));
-  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind(9), false, 0, 0, 1, {}}}}}));
+      refused(message::Jobs{.epoch = 1,
+                            .jobs = std::vector<LeasedJob>(
+                                limits::jobs + 1, {1, {Job::Kind::samples, false, 0, 0, 1, {}}})}));
+  EXPECT_TRUE(
+      refused(message::Jobs{.epoch = 1, .jobs = {{1, {Job::Kind::samples, false, 0, 0, 0, {}}}}}));
+  EXPECT_TRUE(refused(message::Jobs{
+      .epoch = 1, .jobs = {{1, {Job::Kind::samples, false, 0, 0xffffffff, 0xffffffff, {}}}}}));
+  EXPECT_TRUE(
+      refused(message::Jobs{.epoch = 1, .jobs = {{1, {Job::Kind(9), false, 0, 0, 1, {}}}}}));
   message::Result result{.seconds = -1};
   EXPECT_TRUE(refused(result));
   result.seconds = INFINITY;
@@ -237,15 +260,17 @@ TEST(Arrays, piecesThatDoNotFit) {
   EXPECT_NE(ArrayStream(hash, bytes.size()).put(junk), "");
   // Too large: the packed array holds more bytes than stated.
   const auto larger = packArray(std::vector<std::byte>(1 << 20));
-  EXPECT_NE(ArrayStream(hash, 1000).put({hash, 1000, larger.size(), 0, larger}), "");
+  EXPECT_NE(
+      ArrayStream(hash, 1000).put({{.hash = hash, .bytes = 1000, .stored = larger.size()}, larger}),
+      "");
   // Too small, and not the array that was stated.
   const std::vector<std::byte> zeros(1000);
   ArrayStream less(hash, 2000), other(hash, 1000);
   const auto small = packArray(zeros);
-  EXPECT_EQ(less.put({hash, 2000, small.size(), 0, small}), "");
+  EXPECT_EQ(less.put({{.hash = hash, .bytes = 2000, .stored = small.size()}, small}), "");
   EXPECT_TRUE(less.complete());
   EXPECT_EQ(less.take(), nullptr);
-  EXPECT_EQ(other.put({hash, 1000, small.size(), 0, small}), "");
+  EXPECT_EQ(other.put({{.hash = hash, .bytes = 1000, .stored = small.size()}, small}), "");
   EXPECT_EQ(other.take(), nullptr);
 }
 
