@@ -1,9 +1,12 @@
 // cluster_messages.cpp: every message survives encoding and decoding. Messages that are truncated,
 // altered, too large or inconsistent are refused.
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <sstream>
 
 #include "backend/cluster/net/greeting.h"
+#include "backend/cluster/net/statistics.h"
 #include "backend/cluster/worker/array_cache.h"
 #include "messages_generated.h"
 #include "unit/cluster_wires.h"
@@ -175,6 +178,98 @@ TEST(Messages, resultsOfManyFrames) {
     ASSERT_EQ(decode(Frames(frames), out), "");
     EXPECT_TRUE(std::get<message::Result>(out.body).bytes == bytes);
   }
+}
+
+// Members of RTstats have no gap between them, so that none is missing in the table.
+TEST(Messages, everyStatisticTravelsByItsName) {
+  message::Ready ready{1, {}, RT_TRANSPORT_PATH, {}};
+  const auto* begin = reinterpret_cast<const char*>(&ready.stats);
+  size_t end = sizeof ready.stats.size;
+  double next = 1;
+  const auto aligned = [](size_t at, size_t to) { return (at + to - 1) / to * to; };
+  forEachStatistic(ready.stats, [&](const char* name, auto& member) {
+    using Member = std::remove_reference_t<decltype(member)>;
+    const auto at = size_t(reinterpret_cast<const char*>(&member) - begin);
+    EXPECT_EQ(at, aligned(end, alignof(Member))) << "a member before " << name << " is missing";
+    end = at + sizeof member;
+    if constexpr (std::is_array_v<Member>)
+      std::snprintf(member, sizeof member, "%s", name);
+    else
+      member = Member(next++);
+  });
+  EXPECT_EQ(aligned(end, alignof(RTstats)), sizeof(RTstats)) << "the last member is missing";
+  const auto shown = [](const RTstats& stats) {
+    std::ostringstream all;
+    forEachStatistic(stats,
+                     [&](const char* name, auto& member) { all << name << " " << member << "\n"; });
+    return all.str();
+  };
+  Message out;
+  ASSERT_EQ(decode(of(ready), out), "");
+  const RTstats& back = std::get<message::Ready>(out.body).stats;
+  EXPECT_EQ(back.size, sizeof back);
+  EXPECT_EQ(shown(back), shown(ready.stats));
+}
+
+TEST(Messages, statisticsOfOtherVersions) {
+  using One = wire::StatisticT;
+  const auto sent = [](const std::vector<One>& statistics) {
+    wire::ReadyT ready;
+    ready.transport = RT_TRANSPORT_PATH;
+    for (const One& one : statistics) ready.stats.push_back(std::make_unique<One>(one));
+    flatbuffers::FlatBufferBuilder builder;
+    const auto table = wire::Ready::Pack(builder, &ready).Union();
+    wire::FinishHeaderBuffer(builder, wire::CreateHeader(builder, 42, wire::Any::Ready, table));
+    const auto* bytes = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+    return Frames{{bytes, bytes + builder.GetSize()}};
+  };
+  Message out;
+  ASSERT_EQ(decode(sent({{.name = "ofALaterVersion", .value = 7},
+                         {.value = 8},
+                         {.name = "triangles", .value = 9, .text = "ignored"},
+                         {.name = "lights", .value = 1e300},
+                         {.name = "threads", .value = 1e300},
+                         {.name = "isa", .value = 3, .text = std::string(4000, 'x')}}),
+                   out),
+            "");
+  const RTstats& stats = std::get<message::Ready>(out.body).stats;
+  EXPECT_EQ(stats.triangles, 9u);
+  EXPECT_EQ(stats.lights, ~uint64_t(0));
+  EXPECT_EQ(stats.threads, ~uint32_t(0));
+  EXPECT_EQ(stats.isa, std::string(sizeof stats.isa - 1, 'x'));
+  EXPECT_EQ(stats.objects, 0u);
+  EXPECT_NE(problem(sent({{.name = "triangles", .value = -1}})), "");
+  EXPECT_NE(problem(sent({{.name = "threads", .value = std::nan("")}})), "");
+  EXPECT_EQ(problem(sent(std::vector<One>(limits::statistics))), "");
+  EXPECT_NE(problem(sent(std::vector<One>(limits::statistics + 1))), "");
+}
+
+TEST(Messages, textsThatAreTooLongAreRefused) {
+  wire::FailedT failed; // its text is a Text, which cuts what is assigned to it
+  static_cast<std::string&>(failed.why) = std::string(limits::textBytes + 1, 'x');
+  flatbuffers::FlatBufferBuilder builder;
+  const auto table = wire::Failed::Pack(builder, &failed).Union();
+  wire::FinishHeaderBuffer(builder, wire::CreateHeader(builder, 42, wire::Any::Failed, table));
+  const auto* bytes = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  EXPECT_EQ(problem({{bytes, bytes + builder.GetSize()}}), "Failed: a text that is too long");
+}
+
+TEST(Messages, eachKindIsForOneSideOrForTheWire) {
+  size_t handled = 0, ofWorkers = 0, ofMasters = 0, ofBoth = 0;
+  const auto handler = [&](const auto&) { handled++; };
+  std::vector<message::Body> all = oneOfEach();
+  for (message::Body& body : all) {
+    const bool worker = dispatch<Sender::worker>(body, handler);
+    const bool master = dispatch<Sender::master>(body, handler);
+    EXPECT_TRUE(worker || master) << body.index();
+    ofWorkers += worker && !master;
+    ofMasters += master && !worker;
+    ofBoth += worker && master;
+  }
+  EXPECT_EQ(ofWorkers, 6u);
+  EXPECT_EQ(ofMasters, 6u);
+  EXPECT_EQ(ofBoth, 2u);
+  EXPECT_EQ(handled, 12u) << "the wire handles the others";
 }
 
 TEST(Messages, textsAreCut) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "backend/cluster/net/messages.h"
+#include "backend/cluster/net/statistics.h"
 #include "scene/transports.h"
 
 namespace openrt::cluster {
@@ -14,6 +15,7 @@ void check(const wire::Hello& m, const Frames&) {
 
 void check(const wire::Ready& m, const Frames&) {
   demand(isTransport(m.transport()), "an unknown transport");
+  checkStatistics(m.stats());
 }
 
 void check(const wire::Result& m, const Frames&) {

@@ -12,6 +12,7 @@ inline constexpr size_t editBytes = size_t(1) << 30; // edits of one commit
 // A text in a header; longer ones are cut when sent.
 inline constexpr size_t textBytes = 4096;
 inline constexpr size_t libraries = 1000;             // shader libraries of a scene
+inline constexpr size_t statistics = 1000;            // statistics of a scene
 inline constexpr size_t jobs = 4096;                  // jobs in one message
 inline constexpr uint64_t epochs = uint64_t(1) << 40; // epochs in one session
 inline constexpr uint64_t arrayBytes = uint64_t(1) << 34;

@@ -7,6 +7,7 @@
 #include <lz4.h>
 #include <xxhash.h>
 
+#include "backend/cluster/net/statistics.h"
 #include "shading/registry.h"
 #include "shading/running.h"
 
@@ -50,8 +51,7 @@ template <class T> auto writeAll(Builder& builder, const std::vector<T>& element
 }
 
 auto write(Builder& builder, message::Ready&& m, Frames&) {
-  const auto stats =
-      builder.CreateVector(reinterpret_cast<const uint8_t*>(&m.stats), sizeof m.stats);
+  const auto stats = writeStatistics(builder, m.stats);
   return wire::CreateReady(builder, m.epoch, m.facts.camera, m.facts.lamps, m.transport, stats);
 }
 

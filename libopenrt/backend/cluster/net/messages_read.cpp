@@ -8,6 +8,7 @@
 #include <xxhash.h>
 
 #include "backend/cluster/net/messages.h"
+#include "backend/cluster/net/statistics.h"
 
 namespace openrt::cluster {
 namespace {
@@ -32,23 +33,12 @@ template <class Table, class Message> void read(const Table& t, Frames&, Message
   t.UnPackTo(&m);
 }
 
-template <size_t n> void terminate(char (&text)[n]) {
-  text[n - 1] = 0;
-  clean({text, std::strlen(text)});
-}
-
 void read(const wire::Ready& t, Frames&, message::Ready& m) {
   m.epoch = t.epoch();
   m.facts.camera = t.camera();
   m.facts.lamps = t.lamps();
   m.transport = t.transport();
-  if (t.stats())
-    std::memcpy(&m.stats, t.stats()->data(), std::min<size_t>(t.stats()->size(), sizeof m.stats));
-  m.stats.size = sizeof m.stats;
-  terminate(m.stats.isa);
-  terminate(m.stats.kernel);
-  terminate(m.stats.errorMethod);
-  terminate(m.stats.transportReason);
+  m.stats = readStatistics(t.stats());
 }
 
 void read(const wire::Result& t, Frames& frames, message::Result& m) {
