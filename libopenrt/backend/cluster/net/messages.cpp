@@ -2,7 +2,6 @@
 #include "backend/cluster/net/messages.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <lz4.h>
 #include <xxhash.h>

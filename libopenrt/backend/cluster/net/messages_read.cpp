@@ -2,7 +2,6 @@
 // verified first, then sizes and counts are checked (checks.cpp), and only then data is copied.
 // [any]
 #include <algorithm>
-#include <cstring>
 
 #include <lz4.h>
 #include <xxhash.h>
