@@ -326,7 +326,7 @@ class Simulation {
       joined_++;
     }
     if (const auto* scene = std::get_if<message::Scene>(&message.body)) {
-      reply(w, message::Need{scene->epoch, {}});
+      reply(w, message::Need{.epoch = scene->epoch});
       if (scene->prepare) m.queue.push_back({{}, scene->epoch, true});
     }
     if (const auto* prepare = std::get_if<message::Prepare>(&message.body))

@@ -146,7 +146,7 @@ struct Game {
       return hello;
     }
     case 1: {
-      message::Need need{of, {}};
+      message::Need need{.epoch = of};
       for (size_t i = in.below(4); i > 0; i--)
         need.arrays.push_back(in.flip() ? hashOf({array->data(), array->size()})
                                         : Hash{in.number(), 0});
@@ -158,9 +158,9 @@ struct Game {
       ready.stats.triangles = in.below(8) == 0;
       return ready;
     }
-    case 3: return message::Failed{of, "why"};
-    case 4: return message::Log{2, "line"};
-    case 5: return message::Drop{of};
+    case 3: return message::Failed{.epoch = of, .why = "why"};
+    case 4: return message::Log{.level = 2, .text = "line"};
+    case 5: return message::Drop{.epoch = of};
     case 6: return message::Scene{of, in.flip(), in.flip(), {}, {}, in.bytes(100)};
     default: break;
     }
@@ -177,7 +177,9 @@ struct Game {
     }
     result.seconds = in.real();
     result.camera = in.number();
-    if (in.below(8) == 0) result.faults.push_back({"A", "b", in.byte(), in.number()});
+    if (in.below(8) == 0)
+      result.faults.push_back(
+          {.name = "A", .library = "b", .kind = in.byte(), .hits = in.number()});
     result.bytes = made(result.epoch, job);
     return result;
   }

@@ -3,6 +3,7 @@
 // input is a sequence of events.
 #include <deque>
 
+#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/worker/worker.h"
 #include "backend/record/edits_bytes.h"
 #include "fuzz_input.h"
@@ -93,14 +94,17 @@ struct Game final : JobExecutor {
     switch (in.below(10)) {
     case 0: {
       session = in.number();
-      return message::Welcome{protocolVersion + (in.byte() > 250), session, 0.1f, 0.5f};
+      return message::Welcome{.protocol = protocolVersion + (in.byte() > 250),
+                              .session = session,
+                              .heartbeat = 0.1f,
+                              .silence = 0.5f};
     }
-    case 1: return message::Prepare{of};
-    case 2: return message::Drop{of};
-    case 3: return message::Need{of, {}};
+    case 1: return message::Prepare{.epoch = of};
+    case 2: return message::Drop{.epoch = of};
+    case 3: return message::Need{.epoch = of};
     case 4:
     case 5: {
-      message::Jobs m{of, {}};
+      message::Jobs m{.epoch = of};
       for (size_t i = in.below(5); i > 0; i--) {
         LeasedJob job{in.number(), {}};
         job.job.kind = Job::Kind(in.below(2));
@@ -127,7 +131,7 @@ struct Game final : JobExecutor {
     default: {
       message::Scene scene{of, in.flip(), in.flip(), {}, {}, {}};
       scene.edits = edits(scene);
-      if (in.byte() > 250) scene.libraries.push_back({"../none", {}});
+      if (in.byte() > 250) scene.libraries.push_back({.name = "../none"});
       return scene;
     }
     }
@@ -171,8 +175,7 @@ struct Game final : JobExecutor {
     if (!worker.serving()) {
       worker.joined(peer = 1, "somewhere", 0);
       session = 1 + in.below(3);
-      worker.message(peer, encode(session, message::Welcome{protocolVersion, session, 0.1f, 0.5f}),
-                     0);
+      worker.message(peer, encode(session, usualWelcome(session)), 0);
     }
     message::Body body = anything();
     worker.message(peer, encode(session, std::move(body)), 0);

@@ -2,13 +2,14 @@
 flatbuffers assembled by hand."""
 import ctypes
 import ctypes.util
+import re
 import signal
 import struct
 import subprocess
 import threading
 
 import pytest
-from conftest import HEADER, SMALL, find_vv
+from conftest import HEADER, ROOT, SMALL, find_vv
 
 zmq = pytest.importorskip("zmq")
 
@@ -126,7 +127,7 @@ class Master:
                 return root.get(0, "Q"), content
         raise AssertionError(f"no {kind} has come")
 
-    def welcome(self, session=42, protocol=2):
+    def welcome(self, session=42, protocol=3):
         self.receive("Hello")
         # A busy machine must not count as lost, so long silences are allowed.
         self.send("Welcome", [("I", protocol), ("Q", session), ("f", 0.1), ("f", 60.0)], session)
@@ -170,12 +171,21 @@ def worker():
 def test_a_caller_that_beats_is_told_hello(worker):
     session, hello = Master(worker.address).receive("Hello")
     assert session == 0
-    assert hello.get(0, "I") == 2
+    assert hello.get(0, "I") == 3
     assert hello.get(7, "I") == 1
     assert hello.get(9, "I") == worker.process.pid
     assert hello.text(4) in ("avx512", "avx2", "sse")
     assert hello.text(5).startswith("Embree")
     assert all(hello.text(slot) for slot in (1, 6, 8))
+
+
+def test_the_names_of_all_statistics_are_documented():
+    table = (ROOT / "libopenrt/backend/cluster/net/statistics.h").read_text()
+    names = re.findall(r'^  f\("(\w+)", s\.(\w+)\);$', table, re.M)
+    assert len(names) > 40
+    assert all(name == member for name, member in names)
+    page = (ROOT / "docs/protocol.md").read_text()
+    assert [name for name, _ in names if f"`{name}`" not in page] == []
 
 
 def test_beats_come_back(worker):
@@ -192,7 +202,7 @@ def test_another_protocol_is_refused_with_both_numbers(worker):
     master = Master(worker.address)
     master.welcome(protocol=7)
     _, bye = master.receive("Bye")
-    assert "7" in bye.text(0) and "2" in bye.text(0)
+    assert "7" in bye.text(0) and "3" in bye.text(0)
 
 
 def test_one_master_at_a_time(worker):

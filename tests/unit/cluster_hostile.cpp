@@ -3,6 +3,7 @@
 // nor log space to it.
 #include "backend/cluster/master/master.h"
 #include "backend/cluster/master/outbox.h"
+#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/worker/worker.h"
 #include "backend/record/edits_bytes.h"
 #include "unit/cluster_fake_work.h"
@@ -39,7 +40,7 @@ struct LoneWorker {
                 [this](double heartbeat, double) { beats.push_back(heartbeat); }},
                machine) {
     worker.joined(1, "somewhere", 0);
-    tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
+    tell(usualWelcome(7));
   }
   void tell(message::Body body) { worker.message(1, encode(7, std::move(body)), 0); }
 };
@@ -130,11 +131,11 @@ TEST(Hostile, epochsThatWrapAround) {
   w.tell(emptyScene(1));
   w.worker.left(1, "gone", 0); // the numbers of the next session start above
   w.worker.joined(1, "somewhere", 0);
-  w.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
-  w.tell(message::Prepare{~Epoch(0)});
-  w.tell(message::Jobs{~Epoch(0), {}});
+  w.tell(usualWelcome(7));
+  w.tell(message::Prepare{.epoch = ~Epoch(0)});
+  w.tell(message::Jobs{.epoch = ~Epoch(0)});
   EXPECT_EQ(w.badOnes.size(), 2u);
-  w.tell(message::Drop{~Epoch(0)}); // drops every epoch there is
+  w.tell(message::Drop{.epoch = ~Epoch(0)}); // drops every epoch there is
   EXPECT_EQ(w.badOnes.size(), 2u);
 }
 
@@ -142,7 +143,12 @@ TEST(Hostile, oneMastersHeartbeatsAreNotTheNextOnes) {
   LoneWorker w;
   w.worker.left(1, "gone", 0);
   w.worker.joined(2, "elsewhere", 0);
-  w.worker.message(2, encode(8, message::Welcome{protocolVersion, 8, 50, 100}), 0);
+  w.worker.message(2,
+                   encode(8, message::Welcome{.protocol = protocolVersion,
+                                              .session = 8,
+                                              .heartbeat = 50,
+                                              .silence = 100}),
+                   0);
   w.worker.left(2, "gone", 0);
   ASSERT_EQ(w.beats.size(), 4u);
   EXPECT_NEAR(w.beats[2], 50, 1e-6);
@@ -175,7 +181,7 @@ TEST(Hostile, whoSaysHelloAgainAndAgainIsLetGo) {
 TEST(Hostile, whoTalksToTheLogForEver) {
   LoneMaster m;
   for (uint64_t i = 0; i < 5 * limits::logLines; i++)
-    m.tell(message::Log{1, "line " + std::to_string(i)});
+    m.tell(message::Log{.level = 1, .text = "line " + std::to_string(i)});
   EXPECT_LT(m.log.size(), limits::logLines + 20);
 }
 
@@ -194,7 +200,7 @@ TEST(Hostile, aJobDoesNotTakeLongerThanSinceItWasHandedOut) {
 TEST(Hostile, textsAreUtf8AndMoveNoCursor) {
   const auto shown = [](const std::string& text) {
     Message out;
-    EXPECT_EQ(decode(encode(1, message::Log{2, text}), out), "");
+    EXPECT_EQ(decode(encode(1, message::Log{.level = 2, .text = text}), out), "");
     return std::get<message::Log>(out.body).text;
   };
   EXPECT_EQ(shown("Gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x8d"),

@@ -458,8 +458,9 @@ TEST_P(ClusterMaster, NonsenseIsBorneThreeTimes) {
   for (int i = 0; i < 3; i++) {
     EXPECT_EQ(bad.refused, "");
     master->message(bad.peer,
-                    encode(bad.session, i == 1 ? message::Body(message::Need{77, {Hash{1, 2}}})
-                                               : message::Body(message::Drop{1})),
+                    encode(bad.session, i == 1 ? message::Body(message::Need{
+                                                     .epoch = 77, .arrays = {Hash{1, 2}}})
+                                               : message::Body(message::Drop{.epoch = 1})),
                     now);
   }
   EXPECT_NE(bad.refused, "");

@@ -1,8 +1,12 @@
 // cluster_messages.cpp: every message survives encoding and decoding. Messages that are truncated,
 // altered, too large or inconsistent are refused.
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <sstream>
 
+#include "backend/cluster/net/greeting.h"
+#include "backend/cluster/net/statistics.h"
 #include "backend/cluster/worker/array_cache.h"
 #include "messages_generated.h"
 #include "unit/cluster_wires.h"
@@ -18,27 +22,41 @@ std::vector<message::Body> oneOfEach() {
   ready.stats.size = sizeof ready.stats;
   ready.stats.triangles = 77;
   std::strcpy(ready.stats.isa, "avx2");
-  message::Result result{5, 9, 0.25, 1, 2, 3, {{"Phong", "vrml97", 0, 4}}, someBytes(1000)};
-  message::Jobs jobs{5, {}};
+  message::Result result{
+      5, 9, 0.25, 1, 2, 3, {{.name = "Phong", .library = "vrml97", .hits = 4}}, someBytes(1000)};
+  message::Jobs jobs{.epoch = 5};
   jobs.jobs.push_back({11, {Job::Kind::samples, true, 2, 64, 32, {7, 4}}});
   jobs.jobs.push_back({12, {Job::Kind::light, false, 15, 0, 4000000000u, {8, 31}}});
   std::vector<message::Body> all;
-  all.emplace_back(
-      message::Hello{1, "0.1.0", 1, 2, "avx2", "Embree", "glibc 2.36", 16, "node1", 4711});
-  all.emplace_back(message::Need{5, {{1, 2}, {3, 4}}});
+  all.emplace_back(message::Hello{.protocol = 1,
+                                  .library = "0.1.0",
+                                  .api = 1,
+                                  .shaderAbi = 2,
+                                  .isa = "avx2",
+                                  .kernel = "Embree",
+                                  .platform = "glibc 2.36",
+                                  .threads = 16,
+                                  .host = "node1",
+                                  .process = 4711});
+  all.emplace_back(message::Need{.epoch = 5, .arrays = {{1, 2}, {3, 4}}});
   all.emplace_back(ready);
-  all.emplace_back(message::Failed{5, "why"});
+  all.emplace_back(message::Failed{.epoch = 5, .why = "why"});
   all.emplace_back(result);
-  all.emplace_back(message::Log{2, "text"});
-  all.emplace_back(message::Welcome{protocolVersion, 42, 0.1f, 0.5f});
-  all.emplace_back(message::Scene{
-      5, true, true, {{1, 100, {1, 2}}, {2, 200, {3, 4}}}, {{"vrml97", {5, 6}}}, someBytes(333)});
-  all.emplace_back(message::Piece{{1, 2}, 100, 50, 0, someBytes(50)});
-  all.emplace_back(message::Prepare{5});
+  all.emplace_back(message::Log{.level = 2, .text = "text"});
+  all.emplace_back(usualWelcome(42));
+  all.emplace_back(message::Scene{5,
+                                  true,
+                                  true,
+                                  {{1, 100, {1, 2}}, {2, 200, {3, 4}}},
+                                  {{.name = "vrml97", .hash = {5, 6}}},
+                                  someBytes(333)});
+  all.emplace_back(
+      message::Piece{{.hash = {1, 2}, .bytes = 100, .stored = 50, .offset = 0}, someBytes(50)});
+  all.emplace_back(message::Prepare{.epoch = 5});
   all.emplace_back(jobs);
-  all.emplace_back(message::Drop{5});
-  all.emplace_back(message::Beat{1.5, true});
-  all.emplace_back(message::Bye{"why"});
+  all.emplace_back(message::Drop{.epoch = 5});
+  all.emplace_back(message::Beat{.sent = 1.5, .answer = true});
+  all.emplace_back(message::Bye{.why = "why"});
   return all;
 }
 
@@ -162,15 +180,107 @@ TEST(Messages, resultsOfManyFrames) {
   }
 }
 
+// Members of RTstats have no gap between them, so that none is missing in the table.
+TEST(Messages, everyStatisticTravelsByItsName) {
+  message::Ready ready{1, {}, RT_TRANSPORT_PATH, {}};
+  const auto* begin = reinterpret_cast<const char*>(&ready.stats);
+  size_t end = sizeof ready.stats.size;
+  double next = 1;
+  const auto aligned = [](size_t at, size_t to) { return (at + to - 1) / to * to; };
+  forEachStatistic(ready.stats, [&](const char* name, auto& member) {
+    using Member = std::remove_reference_t<decltype(member)>;
+    const auto at = size_t(reinterpret_cast<const char*>(&member) - begin);
+    EXPECT_EQ(at, aligned(end, alignof(Member))) << "a member before " << name << " is missing";
+    end = at + sizeof member;
+    if constexpr (std::is_array_v<Member>)
+      std::snprintf(member, sizeof member, "%s", name);
+    else
+      member = Member(next++);
+  });
+  EXPECT_EQ(aligned(end, alignof(RTstats)), sizeof(RTstats)) << "the last member is missing";
+  const auto shown = [](const RTstats& stats) {
+    std::ostringstream all;
+    forEachStatistic(stats,
+                     [&](const char* name, auto& member) { all << name << " " << member << "\n"; });
+    return all.str();
+  };
+  Message out;
+  ASSERT_EQ(decode(of(ready), out), "");
+  const RTstats& back = std::get<message::Ready>(out.body).stats;
+  EXPECT_EQ(back.size, sizeof back);
+  EXPECT_EQ(shown(back), shown(ready.stats));
+}
+
+TEST(Messages, statisticsOfOtherVersions) {
+  using One = wire::StatisticT;
+  const auto sent = [](const std::vector<One>& statistics) {
+    wire::ReadyT ready;
+    ready.transport = RT_TRANSPORT_PATH;
+    for (const One& one : statistics) ready.stats.push_back(std::make_unique<One>(one));
+    flatbuffers::FlatBufferBuilder builder;
+    const auto table = wire::Ready::Pack(builder, &ready).Union();
+    wire::FinishHeaderBuffer(builder, wire::CreateHeader(builder, 42, wire::Any::Ready, table));
+    const auto* bytes = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+    return Frames{{bytes, bytes + builder.GetSize()}};
+  };
+  Message out;
+  ASSERT_EQ(decode(sent({{.name = "ofALaterVersion", .value = 7},
+                         {.value = 8},
+                         {.name = "triangles", .value = 9, .text = "ignored"},
+                         {.name = "lights", .value = 1e300},
+                         {.name = "threads", .value = 1e300},
+                         {.name = "isa", .value = 3, .text = std::string(4000, 'x')}}),
+                   out),
+            "");
+  const RTstats& stats = std::get<message::Ready>(out.body).stats;
+  EXPECT_EQ(stats.triangles, 9u);
+  EXPECT_EQ(stats.lights, ~uint64_t(0));
+  EXPECT_EQ(stats.threads, ~uint32_t(0));
+  EXPECT_EQ(stats.isa, std::string(sizeof stats.isa - 1, 'x'));
+  EXPECT_EQ(stats.objects, 0u);
+  EXPECT_NE(problem(sent({{.name = "triangles", .value = -1}})), "");
+  EXPECT_NE(problem(sent({{.name = "threads", .value = std::nan("")}})), "");
+  EXPECT_EQ(problem(sent(std::vector<One>(limits::statistics))), "");
+  EXPECT_NE(problem(sent(std::vector<One>(limits::statistics + 1))), "");
+}
+
+TEST(Messages, textsThatAreTooLongAreRefused) {
+  wire::FailedT failed; // its text is a Text, which cuts what is assigned to it
+  static_cast<std::string&>(failed.why) = std::string(limits::textBytes + 1, 'x');
+  flatbuffers::FlatBufferBuilder builder;
+  const auto table = wire::Failed::Pack(builder, &failed).Union();
+  wire::FinishHeaderBuffer(builder, wire::CreateHeader(builder, 42, wire::Any::Failed, table));
+  const auto* bytes = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  EXPECT_EQ(problem({{bytes, bytes + builder.GetSize()}}), "Failed: a text that is too long");
+}
+
+TEST(Messages, eachKindIsForOneSideOrForTheWire) {
+  size_t handled = 0, ofBoth = 0;
+  const auto handler = [&](const auto&) { handled++; };
+  std::vector<message::Body> all = oneOfEach();
+  EXPECT_EQ(all.size(), size_t(wire::Any::MAX)) << "a kind has no example";
+  for (message::Body& body : all) {
+    const bool worker = dispatch<Sender::worker>(body, handler);
+    const bool master = dispatch<Sender::master>(body, handler);
+    EXPECT_TRUE(worker || master) << body.index();
+    ofBoth += worker && master;
+  }
+  EXPECT_EQ(handled, all.size() - ofBoth) << "the wire handles what both send";
+  message::Body need = message::Need{.epoch = 1}, drop = message::Drop{.epoch = 1}, unknown;
+  EXPECT_FALSE(dispatch<Sender::master>(need, handler));
+  EXPECT_FALSE(dispatch<Sender::worker>(drop, handler));
+  EXPECT_TRUE(dispatch<Sender::worker>(unknown, handler)) << "kinds of later versions are ignored";
+}
+
 TEST(Messages, textsAreCut) {
   Message out;
-  ASSERT_EQ(decode(of(message::Failed{1, std::string(100000, 'x')}), out), "");
+  ASSERT_EQ(decode(of(message::Failed{.epoch = 1, .why = std::string(100000, 'x')}), out), "");
   EXPECT_EQ(std::get<message::Failed>(out.body).why.size(), limits::textBytes);
 }
 
 TEST(Messages, textsCannotMoveTheCursor) {
   Message out;
-  ASSERT_EQ(decode(of(message::Log{2, "a\x1b[2Jb\nc\x7f"}), out), "");
+  ASSERT_EQ(decode(of(message::Log{.level = 2, .text = "a\x1b[2Jb\nc\x7f"}), out), "");
   EXPECT_EQ(std::get<message::Log>(out.body).text, "a [2Jb c ");
 }
 
@@ -178,23 +288,31 @@ TEST(Messages, numbersThatCannotBe) {
   const auto refused = [](message::Body body) { return !problem(of(std::move(body))).empty(); };
   EXPECT_TRUE(refused(message::Hello{.threads = 0}));
   EXPECT_TRUE(refused(message::Ready{1, {}, 99, {}}));
-  EXPECT_TRUE(refused(message::Welcome{protocolVersion, 1, 0, 0}));
-  EXPECT_TRUE(refused(message::Welcome{protocolVersion, 1, std::nanf(""), 1}));
+  EXPECT_TRUE(refused(
+      message::Welcome{.protocol = protocolVersion, .session = 1, .heartbeat = 0, .silence = 0}));
+  EXPECT_TRUE(refused(message::Welcome{
+      .protocol = protocolVersion, .session = 1, .heartbeat = std::nanf(""), .silence = 1}));
   EXPECT_TRUE(refused(message::Scene{0, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{limits::epochs + 1, true, true, {}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{0, 1, {}}}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{1, true, true, {{1, limits::arrayBytes + 1, {}}}, {}, {}}));
   EXPECT_TRUE(refused(message::Scene{
       1, true, true, std::vector(5, message::ArrayName{1, limits::arrayBytes, {}}), {}, {}}));
-  EXPECT_TRUE(refused(message::Piece{{}, uint64_t(1) << 33, 1000, 0, someBytes(1000)}))
+  EXPECT_TRUE(refused(
+      message::Piece{{.bytes = uint64_t(1) << 33, .stored = 1000, .offset = 0}, someBytes(1000)}))
       << "more than zstd can unpack";
-  EXPECT_TRUE(refused(message::Piece{{}, 1000, 100, 1, someBytes(99)})) << "no multiple";
-  EXPECT_TRUE(refused(message::Jobs{
-      1, std::vector<LeasedJob>(limits::jobs + 1, {1, {Job::Kind::samples, false, 0, 0, 1, {}}})}));
-  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0, 0, {}}}}}));
+  EXPECT_TRUE(refused(message::Piece{{.bytes = 1000, .stored = 100, .offset = 1}, someBytes(99)}))
+      << "no multiple";
   EXPECT_TRUE(
-      refused(message::Jobs{1, {{1, {Job::Kind::samples, false, 0, 0xffffffff, 0xffffffff, {}}}}}));
-  EXPECT_TRUE(refused(message::Jobs{1, {{1, {Job::Kind(9), false, 0, 0, 1, {}}}}}));
+      refused(message::Jobs{.epoch = 1,
+                            .jobs = std::vector<LeasedJob>(
+                                limits::jobs + 1, {1, {Job::Kind::samples, false, 0, 0, 1, {}}})}));
+  EXPECT_TRUE(
+      refused(message::Jobs{.epoch = 1, .jobs = {{1, {Job::Kind::samples, false, 0, 0, 0, {}}}}}));
+  EXPECT_TRUE(refused(message::Jobs{
+      .epoch = 1, .jobs = {{1, {Job::Kind::samples, false, 0, 0xffffffff, 0xffffffff, {}}}}}));
+  EXPECT_TRUE(
+      refused(message::Jobs{.epoch = 1, .jobs = {{1, {Job::Kind(9), false, 0, 0, 1, {}}}}}));
   message::Result result{.seconds = -1};
   EXPECT_TRUE(refused(result));
   result.seconds = INFINITY;
@@ -237,15 +355,17 @@ TEST(Arrays, piecesThatDoNotFit) {
   EXPECT_NE(ArrayStream(hash, bytes.size()).put(junk), "");
   // Too large: the packed array holds more bytes than stated.
   const auto larger = packArray(std::vector<std::byte>(1 << 20));
-  EXPECT_NE(ArrayStream(hash, 1000).put({hash, 1000, larger.size(), 0, larger}), "");
+  EXPECT_NE(
+      ArrayStream(hash, 1000).put({{.hash = hash, .bytes = 1000, .stored = larger.size()}, larger}),
+      "");
   // Too small, and not the array that was stated.
   const std::vector<std::byte> zeros(1000);
   ArrayStream less(hash, 2000), other(hash, 1000);
   const auto small = packArray(zeros);
-  EXPECT_EQ(less.put({hash, 2000, small.size(), 0, small}), "");
+  EXPECT_EQ(less.put({{.hash = hash, .bytes = 2000, .stored = small.size()}, small}), "");
   EXPECT_TRUE(less.complete());
   EXPECT_EQ(less.take(), nullptr);
-  EXPECT_EQ(other.put({hash, 1000, small.size(), 0, small}), "");
+  EXPECT_EQ(other.put({{.hash = hash, .bytes = 1000, .stored = small.size()}, small}), "");
   EXPECT_EQ(other.take(), nullptr);
 }
 

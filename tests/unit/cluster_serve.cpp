@@ -60,7 +60,8 @@ struct Master {
       : wire(options), packer(&shaders), session(s) {
     const auto hello = next<message::Hello>();
     EXPECT_EQ(hello.threads, 2u);
-    say(message::Welcome{protocolVersion, session, 0.1f, 60});
+    say(message::Welcome{
+        .protocol = protocolVersion, .session = session, .heartbeat = 0.1f, .silence = 60});
   }
   void say(message::Body&& body) { EXPECT_TRUE(wire.send(peer, encode(session, std::move(body)))); }
   // Returns the next message, which must be of this kind.
@@ -102,7 +103,7 @@ struct Master {
     FrameWork work(settings, ready.facts, 2);
     std::map<Lease, Job> out;
     for (Job job;;) {
-      message::Jobs jobs{epoch, {}};
+      message::Jobs jobs{.epoch = epoch};
       FrameWork::Next what = FrameWork::Next::job;
       while (out.size() < 8 && (what = work.next(job, 32)) == FrameWork::Next::job) {
         jobs.jobs.push_back({++lease, job});

@@ -192,17 +192,18 @@ class UselessWorker {
     if (const auto* welcome = std::get_if<message::Welcome>(&m.body)) {
       session_ = welcome->session;
       if (way_ == Misbehaviour::sendsNonsense)
-        for (int i = 0; i < 3; i++) say(message::Drop{1});
+        for (int i = 0; i < 3; i++) say(message::Drop{.epoch = 1});
       if (way_ == Misbehaviour::sendsNoise) wire_->send(peer_, Frames(2, someBytes(100)));
     }
     if (const auto* scene = std::get_if<message::Scene>(&m.body)) {
       epoch_ = scene->epoch;
       if (way_ == Misbehaviour::takesNoScene) return;
-      message::Need need{scene->epoch, {}};
+      message::Need need{.epoch = scene->epoch};
       for (const auto& array : scene->arrays) need.arrays.push_back(array.hash);
       say(std::move(need));
       if (way_ == Misbehaviour::refuses)
-        return say(message::Failed{scene->epoch, "shader library vrml97 is another file here"});
+        return say(message::Failed{.epoch = scene->epoch,
+                                   .why = "shader library vrml97 is another file here"});
       if (scene->prepare && way_ != Misbehaviour::neverReady) ready();
     }
     if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) {
@@ -223,7 +224,7 @@ class UselessWorker {
     if (way_ == Misbehaviour::liesAboutScene) m.stats.triangles++;
     told_ = steadyNow();
     say(std::move(m));
-    if (way_ == Misbehaviour::refusesLater) say(message::Failed{epoch_, "no memory"});
+    if (way_ == Misbehaviour::refusesLater) say(message::Failed{.epoch = epoch_, .why = "no memory"});
   }
   void work(const message::Jobs& jobs) {
     if (way_ == Misbehaviour::dies) return die();

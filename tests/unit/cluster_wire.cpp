@@ -48,7 +48,7 @@ class RawPeer {
   uint64_t sent_ = 0, received_ = 0;
 };
 
-Frames beat() { return encode(0, message::Beat{1, false}); }
+Frames beat() { return encode(0, message::Beat{.sent = 1, .answer = false}); }
 Frames hello() { return encode(0, message::Hello{.library = "bare", .threads = 3}); }
 
 // Returns why a peer that connects with these keys is refused, as reported by the server and by the
@@ -82,7 +82,8 @@ TEST(Wire, bothSidesJoinAndMessagesArriveAsTheyWere) {
   ASSERT_TRUE(std::holds_alternative<message::Hello>(greeting.body));
   EXPECT_EQ(std::get<message::Hello>(greeting.body).threads, 3u);
   const auto edits = someBytes(3 << 20);
-  message::Scene scene{7, true, false, {{1, 2, {3, 4}}}, {{"vrml97", {5, 6}}}, edits};
+  message::Scene scene{7,    true, false, {{1, 2, {3, 4}}}, {{.name = "vrml97", .hash = {5, 6}}},
+                       edits};
   EXPECT_TRUE(door.send(here, encode(99, std::move(scene))));
   const Message back = read(wires.next(caller, Kind::message));
   EXPECT_EQ(back.session, 99u);
@@ -265,7 +266,8 @@ TEST(Wire, aCallerThatEndsHasLeftAfterWhatItSaid) {
   const Wire& door = wires.add(listening());
   Wire& caller = wires.add(calling(door));
   const Peer there = wires.next(caller, Kind::joined).peer;
-  for (uint32_t i = 0; i < 20; i++) EXPECT_TRUE(caller.send(there, encode(i, message::Prepare{i})));
+  for (uint32_t i = 0; i < 20; i++)
+    EXPECT_TRUE(caller.send(there, encode(i, message::Prepare{.epoch = i})));
   wires.end(caller);
   for (uint32_t i = 0; i < 20; i++) EXPECT_EQ(read(wires.next(door, Kind::message)).session, i);
   EXPECT_NE(wires.next(door, Kind::left).peer, 0u);
@@ -381,7 +383,8 @@ TEST(Wire, headersThatAreCut) {
 }
 
 TEST(Wire, whatIsLostRepeatedOrDamagedOnTheWayEndsThePeer) {
-  const Frames first = encode(7, message::Piece{{1, 2}, 10, 10, 0, someBytes(10)});
+  const Frames first = encode(
+      7, message::Piece{{.hash = {1, 2}, .bytes = 10, .stored = 10, .offset = 0}, someBytes(10)});
   enum Damage { lost, repeated, damaged, shortened, without };
   for (const Damage damage : {lost, repeated, damaged, shortened, without}) {
     Wires wires;
@@ -452,7 +455,8 @@ TEST(Wire, aFullQueueSaysSoAndKeepsTheFrames) {
   const Wire& door = wires.add(listening());
   Wire& caller = wires.add(calling(door));
   const Peer there = wires.next(caller, Kind::joined).peer;
-  const message::Piece piece{{1, 2}, 1 << 20, 1 << 20, 0, someBytes(1 << 20)};
+  const message::Piece piece{{.hash = {1, 2}, .bytes = 1 << 20, .stored = 1 << 20, .offset = 0},
+                             someBytes(1 << 20)};
   Frames frames;
   uint32_t sent = 0;
   for (bool taken = true; taken && sent < 10000; sent += taken) { // the peer does not read

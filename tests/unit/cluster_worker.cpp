@@ -1,5 +1,6 @@
 // cluster_worker.cpp: a worker's session. The test plays the master; the executor only records its
 // calls.
+#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/worker/worker.h"
 
 #include "backend/record/edits_bytes.h"
@@ -49,7 +50,7 @@ struct Rig {
   }
   void greet(uint64_t session = 7, Peer peer = 1) {
     worker.joined(peer, "somewhere", 0);
-    tell(message::Welcome{protocolVersion, session, 0.1f, 0.5f}, session, peer);
+    tell(usualWelcome(session), session, peer);
     said.clear();
   }
   // Returns the only message since the last call; it must be of this kind.
@@ -134,14 +135,15 @@ TEST(Worker, saysHelloAndServesWhoSaysWelcome) {
   rig.worker.joined(1, "somewhere", 0);
   EXPECT_EQ(rig.answer<message::Hello>().threads, 2u);
   EXPECT_FALSE(rig.worker.serving());
-  rig.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
+  rig.tell(usualWelcome(7));
   EXPECT_TRUE(rig.worker.serving());
 }
 
 TEST(Worker, refusesAMasterOfAnotherProtocol) {
   Rig rig;
   rig.worker.joined(1, "somewhere", 0);
-  rig.tell(message::Welcome{protocolVersion + 1, 7, 0.1f, 0.5f});
+  rig.tell(message::Welcome{
+      .protocol = protocolVersion + 1, .session = 7, .heartbeat = 0.1f, .silence = 0.5f});
   EXPECT_FALSE(rig.worker.serving());
   ASSERT_EQ(rig.closed.size(), 1u);
   EXPECT_NE(rig.closed[0].second.find(std::to_string(protocolVersion + 1)), std::string::npos);
@@ -154,7 +156,7 @@ TEST(Worker, oneMasterAtATime) {
   ASSERT_EQ(rig.closed.size(), 1u);
   EXPECT_EQ(rig.closed[0].first, 2u);
   EXPECT_NE(rig.closed[0].second.find("busy"), std::string::npos);
-  rig.tell(message::Welcome{protocolVersion, 9, 0.1f, 0.5f}, 9, 2); // no handler accepts it
+  rig.tell(usualWelcome(9), 9, 2); // no handler accepts it
   EXPECT_TRUE(rig.said.empty());
   rig.worker.left(1, "gone", 0);
   rig.worker.joined(3, "elsewhere", 0);
@@ -226,7 +228,7 @@ TEST(Worker, scenesWaitForTheirArraysInTheirOrder) {
   ASSERT_EQ(rig.said.size(), 3u);
   EXPECT_TRUE(std::get<message::Need>(rig.said[2].second.body).arrays.empty())
       << "asked for already";
-  rig.tell(message::Prepare{3});
+  rig.tell(message::Prepare{.epoch = 3});
   rig.tell(second.piece());
   EXPECT_EQ(rig.machine.all(), Told{});
   rig.tell(first.piece());
@@ -270,7 +272,7 @@ TEST(Worker, librariesAreComparedByTheirHash) {
   rig.greet();
   const auto scene = [&](Epoch epoch, const std::string& name, const Hash& hash) {
     TinyScene s(epoch);
-    s.message.libraries = {{name, hash}};
+    s.message.libraries = {{.name = name, .hash = hash}};
     rig.tell(s.message);
     if (rig.worker.cache().count() == 0) rig.tell(s.piece());
     std::string why;
@@ -296,7 +298,7 @@ TEST(Worker, jobsAreDoneAndTheirResultsSent) {
   Rig rig;
   rig.greet();
   makeReady(rig);
-  rig.tell(message::Jobs{1, {job(100), job(101)}});
+  rig.tell(message::Jobs{.epoch = 1, .jobs = {job(100), job(101)}});
   EXPECT_EQ(rig.machine.all(), Told{"work 1 2"});
   JobResult result;
   result.sums.resize(64);
@@ -314,11 +316,11 @@ TEST(Worker, jobsThatAFrameDoesNotHave) {
   Rig rig;
   rig.greet();
   makeReady(rig);
-  rig.tell(message::Jobs{1, {job(1, 64)}});
-  rig.tell(message::Jobs{9, {job(2)}});
-  rig.tell(message::Jobs{1, {{3, {Job::Kind::light, false, 16, 0, 5, {}}}}});
+  rig.tell(message::Jobs{.epoch = 1, .jobs = {job(1, 64)}});
+  rig.tell(message::Jobs{.epoch = 9, .jobs = {job(2)}});
+  rig.tell(message::Jobs{.epoch = 1, .jobs = {{3, {Job::Kind::light, false, 16, 0, 5, {}}}}});
   EXPECT_EQ(rig.badOnes.size(), 3u);
-  rig.tell(message::Jobs{1, {job(4), job(4)}});
+  rig.tell(message::Jobs{.epoch = 1, .jobs = {job(4), job(4)}});
   EXPECT_EQ(rig.badOnes.size(), 4u);
   EXPECT_EQ(rig.machine.all(), Told{});
 }
@@ -327,12 +329,12 @@ TEST(Worker, whatIsDroppedIsNotSent) {
   Rig rig;
   rig.greet();
   makeReady(rig);
-  rig.tell(message::Jobs{1, {job(1)}});
-  rig.tell(message::Drop{1});
+  rig.tell(message::Jobs{.epoch = 1, .jobs = {job(1)}});
+  rig.tell(message::Drop{.epoch = 1});
   EXPECT_EQ(rig.machine.all(), (Told{"work 1 1", "drop 1"}));
   rig.worker.done(1, job(1), {});
   EXPECT_TRUE(rig.said.empty());
-  rig.tell(message::Jobs{1, {job(2)}}); // was already on its way
+  rig.tell(message::Jobs{.epoch = 1, .jobs = {job(2)}}); // was already on its way
   EXPECT_EQ(rig.machine.all(), Told{});
   EXPECT_TRUE(rig.badOnes.empty());
 }
@@ -341,7 +343,7 @@ TEST(Worker, whatComesOfAFormerMastersWorkIsNotTheNextOnes) {
   Rig rig;
   rig.greet();
   makeReady(rig);
-  rig.tell(message::Jobs{1, {job(1)}});
+  rig.tell(message::Jobs{.epoch = 1, .jobs = {job(1)}});
   rig.worker.left(1, "gone", 0);
   rig.greet(8, 2);
   rig.worker.done(1, job(1), {});
@@ -372,11 +374,11 @@ TEST(Worker, aMessageThatCannotBeReadEndsTheSession) {
 TEST(Worker, nonsenseIsCounted) {
   Rig rig;
   rig.greet();
-  rig.tell(message::Need{1, {}});
+  rig.tell(message::Need{.epoch = 1});
   rig.tell(message::Hello{.threads = 1}); // a message that only workers send
   rig.tell(TinyScene(1).piece());         // a chunk that was not requested
-  rig.tell(message::Prepare{1});
-  rig.tell(message::Welcome{protocolVersion, 7, 0.1f, 0.5f});
+  rig.tell(message::Prepare{.epoch = 1});
+  rig.tell(usualWelcome(7));
   EXPECT_EQ(rig.badOnes.size(), 5u);
   const TinyScene scene(5);
   rig.tell(scene.message);

@@ -56,14 +56,14 @@ void Master::message(Peer peer, Frames&& frames, double now) {
       // The intended message is unknown.
       !wrong.empty())
     return impl_->refuse(peer, "a message that cannot be read: " + wrong, now);
-  if (auto* hello = std::get_if<message::Hello>(&message.body))
-    return impl_->hello(remote, std::move(*hello), now);
+  const bool greeting = std::holds_alternative<message::Hello>(message.body);
   // The message belongs to a session that has ended.
-  if (!remote.welcome || message.session != remote.session) return;
+  if (!greeting && (!remote.welcome || message.session != remote.session)) return;
   struct {
     Impl& m;
     Remote& remote;
     double now;
+    void operator()(message::Hello& hello) const { m.hello(remote, std::move(hello), now); }
     void operator()(message::Need& need) const { m.need(remote, need, now); }
     void operator()(message::Ready& ready) const {
       if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO ||
@@ -87,19 +87,9 @@ void Master::message(Peer peer, Frames&& frames, double now) {
       if (remote.logged++ < limits::logLines)
         m.log(log.level, "worker " + remote.name() + ": " + log.text);
     }
-    void operator()(message::Beat&) const {}
-    void operator()(message::Bye&) const {}
-    void operator()(message::Unknown&) const {}
-    void operator()(message::Hello&) const {}
-    void operator()(message::Welcome&) const { ours(); }
-    void operator()(message::Scene&) const { ours(); }
-    void operator()(message::Piece&) const { ours(); }
-    void operator()(message::Prepare&) const { ours(); }
-    void operator()(message::Jobs&) const { ours(); }
-    void operator()(message::Drop&) const { ours(); }
-    void ours() const { m.strike(remote, "a message that only masters send", now); }
   } const handler{*impl_, remote, now};
-  std::visit(handler, message.body);
+  if (!dispatch<Sender::worker>(message.body, handler))
+    impl_->strike(remote, "a message that only masters send", now);
 }
 
 void Master::localReady(Epoch epoch, const Prepared& prepared, double now) {

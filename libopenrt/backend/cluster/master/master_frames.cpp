@@ -67,7 +67,7 @@ void Master::Impl::sendScene(WorkerId worker, Epoch epoch) {
     if (worker == localId)
       core->prepare(epoch);
     else
-      queueMessage(*remote, message::Prepare{epoch});
+      queueMessage(*remote, message::Prepare{.epoch = epoch});
   }
   remote->sent = epoch;
   remote->furthest = std::max(remote->furthest, epoch);
@@ -220,7 +220,7 @@ void Master::Impl::end(Epoch epoch) {
   if (core && takeBack(here)) core->drop(until);
   for (const auto& [id, peer] : peers)
     if (Remote& remote = remotes.at(peer); takeBack(remote))
-      queueMessage(remote, message::Drop{until});
+      queueMessage(remote, message::Drop{.epoch = until});
 }
 
 void Master::Impl::fail(Epoch epoch, const std::string& why, bool missing) {
@@ -311,7 +311,7 @@ bool Master::Impl::handSomeOut(double now) {
       core->work(to.second, list);
       continue;
     }
-    queueMessage(*remote, message::Jobs{to.second, std::move(list)});
+    queueMessage(*remote, message::Jobs{.epoch = to.second, .jobs = std::move(list)});
     flush(*remote);
   }
   return count == most;

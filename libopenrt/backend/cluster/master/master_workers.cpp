@@ -74,7 +74,7 @@ void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
   loggedAlone = false;
   log(1, "worker " + remote.name() + " has joined: " + std::to_string(remote.threads) +
              (remote.threads == 1 ? " thread, " : " threads, ") + hello.isa);
-  queueMessage(remote, message::Welcome{.session = remote.session});
+  queueMessage(remote, usualWelcome(remote.session));
   scheduler.join(remote.id, remote.threads, false, now);
 }
 

@@ -41,7 +41,7 @@ void Packer::addLibraries(const Commit& commit, Parcel& parcel) {
     if (path.empty() || std::any_of(parcel.libraries.begin(), parcel.libraries.end(),
                                     [&](auto& l) { return l.name == name; }))
       continue;
-    parcel.libraries.push_back({name, files_.of(path)});
+    parcel.libraries.push_back({.name = name, .hash = files_.of(path)});
   }
 }
 

@@ -49,7 +49,13 @@ ArrayPtr unpackArray(std::span<const std::byte> packed, uint64_t bytes, const Ha
 message::Piece pieceOf(const Hash& hash, uint64_t bytes, std::span<const std::byte> packed,
                        uint64_t offset) {
   const auto part = packed.subspan(offset, std::min<size_t>(pieceBytes, packed.size() - offset));
-  return {hash, bytes, packed.size(), offset, {part.begin(), part.end()}};
+  message::Piece piece;
+  piece.hash = hash;
+  piece.bytes = bytes;
+  piece.stored = packed.size();
+  piece.offset = offset;
+  piece.data.assign(part.begin(), part.end());
+  return piece;
 }
 
 } // namespace openrt::cluster

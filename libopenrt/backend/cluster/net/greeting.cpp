@@ -31,6 +31,7 @@ std::string platform() {
 
 message::Hello identity(const RTstats& local) {
   message::Hello self;
+  self.protocol = protocolVersion;
   self.library = version();
   self.api = OPENRT_VERSION_MAJOR << 16 | OPENRT_VERSION_MINOR;
   self.shaderAbi = RTS_ABI_MAJOR << 16 | RTS_ABI_MINOR;
@@ -41,6 +42,14 @@ message::Hello identity(const RTstats& local) {
   if (gethostname(host, sizeof host - 1) == 0) self.host = host;
   self.process = uint32_t(getpid());
   return self;
+}
+
+message::Welcome usualWelcome(uint64_t session) {
+  const WireOptions usual;
+  return {.protocol = protocolVersion,
+          .session = session,
+          .heartbeat = float(usual.heartbeat),
+          .silence = float(usual.silence)};
 }
 
 std::string difference(const message::Hello& worker, const message::Hello& master, bool tolerant) {

@@ -12,6 +12,9 @@ namespace openrt::cluster {
 // backend (isa, kernel).
 message::Hello identity(const RTstats& local);
 
+// Returns the Welcome of this version, with the heartbeat times that a Wire begins with.
+message::Welcome usualWelcome(uint64_t session);
+
 // Returns why `worker` cannot work for `master`, naming the values of both; empty if it can.
 // tolerant: accepts another instruction set, and other versions of the kernel, the library and the
 // system's math library.

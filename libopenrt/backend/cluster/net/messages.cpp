@@ -2,24 +2,16 @@
 #include "backend/cluster/net/messages.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include <lz4.h>
 #include <xxhash.h>
 
-#include "messages_generated.h"
+#include "backend/cluster/net/statistics.h"
 #include "shading/registry.h"
 #include "shading/running.h"
 
 namespace openrt::cluster {
 namespace {
-
-wire::Hash to(const Hash& hash) { return {hash.low, hash.high}; }
-
-std::string cut(std::string text) {
-  if (text.size() > limits::textBytes) text.resize(limits::textBytes);
-  return text;
-}
 
 // Splits bytes into frames of at most `most` bytes.
 void append(Frames& frames, std::vector<std::byte>&& bytes, size_t most) {
@@ -44,148 +36,72 @@ std::vector<std::byte> compressLz4(std::span<const std::byte> bytes) {
   return packed;
 }
 
-// One function per message kind: fills its table and its bulk frames.
-struct Encoder {
-  Frames& bulk;
+using Builder = flatbuffers::FlatBufferBuilder;
 
-  wire::AnyUnion any;
+// Writes a message as the object API does, without bulk frames.
+template <class Message> auto write(Builder& builder, Message&& m, Frames&) {
+  return Message::TableType::Pack(builder, &m);
+}
 
-  template <class T> T& make() {
-    any.Set(T());
-    return *static_cast<T*>(any.value);
-  }
+template <class T> auto writeAll(Builder& builder, const std::vector<T>& elements) {
+  std::vector<flatbuffers::Offset<typename T::TableType>> offsets;
+  for (const T& element : elements) offsets.push_back(T::TableType::Pack(builder, &element));
+  return offsets.empty() ? 0 : builder.CreateVector(offsets);
+}
 
-  void operator()(message::Unknown&&) {}
-  void operator()(message::Hello&& m) {
-    auto& t = make<wire::HelloT>();
-    t.protocol = m.protocol;
-    t.library = cut(m.library);
-    t.api = m.api;
-    t.shaderAbi = m.shaderAbi;
-    t.isa = cut(m.isa);
-    t.kernel = cut(m.kernel);
-    t.platform = cut(m.platform);
-    t.threads = m.threads;
-    t.host = cut(m.host);
-    t.process = m.process;
+auto write(Builder& builder, message::Ready&& m, Frames&) {
+  const auto stats = writeStatistics(builder, m.stats);
+  return wire::CreateReady(builder, m.epoch, m.facts.camera, m.facts.lamps, m.transport, stats);
+}
+
+auto write(Builder& builder, message::Result&& m, Frames& bulk) {
+  const size_t bytes = m.bytes.size();
+  const uint64_t hash = XXH3_64bits(m.bytes.data(), bytes);
+  Frames packed;
+  for (size_t at = 0; at < bytes; at += limits::chunkBytes) {
+    packed.push_back(
+        compressLz4(std::span(m.bytes).subspan(at, std::min(limits::chunkBytes, bytes - at))));
+    if (packed.back().empty()) break; // all chunks are compressed, or none
   }
-  void operator()(message::Need&& m) {
-    auto& t = make<wire::NeedT>();
-    t.epoch = m.epoch;
-    for (const Hash& hash : m.arrays) t.arrays.push_back(to(hash));
-  }
-  void operator()(message::Ready&& m) {
-    auto& t = make<wire::ReadyT>();
-    t.epoch = m.epoch;
-    t.camera = m.facts.camera;
-    t.lamps = m.facts.lamps;
-    t.transport = m.transport;
-    t.stats.resize(sizeof m.stats);
-    std::memcpy(t.stats.data(), &m.stats, sizeof m.stats);
-  }
-  void operator()(message::Failed&& m) {
-    auto& t = make<wire::FailedT>();
-    t.epoch = m.epoch;
-    t.why = cut(std::move(m.why));
-  }
-  void operator()(message::Result&& m) {
-    auto& t = make<wire::ResultT>();
-    t.epoch = m.epoch;
-    t.lease = m.lease;
-    t.seconds = m.seconds;
-    t.cameraRays = m.camera;
-    t.shadowRays = m.shadow;
-    t.secondaryRays = m.secondary;
-    for (message::Fault& fault : m.faults) {
-      auto& f = *t.faults.emplace_back(std::make_unique<wire::FaultT>());
-      f.name = cut(std::move(fault.name));
-      f.library = cut(std::move(fault.library));
-      f.kind = fault.kind;
-      f.hits = fault.hits;
-    }
-    t.bytes = m.bytes.size();
-    t.hash = XXH3_64bits(m.bytes.data(), m.bytes.size());
-    Frames packed;
-    for (size_t at = 0; at < m.bytes.size(); at += limits::chunkBytes) {
-      packed.push_back(compressLz4(
-          std::span(m.bytes).subspan(at, std::min(limits::chunkBytes, m.bytes.size() - at))));
-      if (packed.back().empty()) break; // all chunks are compressed, or none
-    }
-    t.packed = !packed.empty() && !packed.back().empty();
-    if (t.packed)
-      bulk = std::move(packed);
-    else
-      append(bulk, std::move(m.bytes), limits::chunkBytes);
-  }
-  void operator()(message::Log&& m) {
-    auto& t = make<wire::LogT>();
-    t.level = m.level;
-    t.text = cut(std::move(m.text));
-  }
-  void operator()(message::Welcome&& m) {
-    auto& t = make<wire::WelcomeT>();
-    t.protocol = m.protocol;
-    t.session = m.session;
-    t.heartbeat = m.heartbeat;
-    t.silence = m.silence;
-  }
-  void operator()(message::Scene&& m) {
-    auto& t = make<wire::SceneT>();
-    t.epoch = m.epoch;
-    t.whole = m.whole;
-    t.prepare = m.prepare;
-    for (const message::ArrayName& name : m.arrays)
-      t.arrays.emplace_back(name.id, name.bytes, to(name.hash));
-    for (message::Library& library : m.libraries) {
-      auto& l = *t.libraries.emplace_back(std::make_unique<wire::LibraryT>());
-      l.name = cut(std::move(library.name));
-      l.hash = std::make_unique<wire::Hash>(to(library.hash));
-    }
-    t.hash = XXH3_64bits(m.edits.data(), m.edits.size());
-    append(bulk, std::move(m.edits), largestMessage);
-  }
-  void operator()(message::Piece&& m) {
-    auto& t = make<wire::PieceT>();
-    t.hash = std::make_unique<wire::Hash>(to(m.hash));
-    t.bytes = m.bytes;
-    t.stored = m.stored;
-    t.offset = m.offset;
-    bulk.push_back(std::move(m.data));
-  }
-  void operator()(message::Prepare&& m) { make<wire::PrepareT>().epoch = m.epoch; }
-  void operator()(message::Jobs&& m) {
-    auto& t = make<wire::JobsT>();
-    t.epoch = m.epoch;
-    for (const LeasedJob& l : m.jobs) {
-      const openrt::Job& j = l.job;
-      t.jobs.emplace_back(l.lease, j.replicates.seed, j.number, j.first, j.count, uint8_t(j.kind),
-                          j.centred, uint8_t(j.replicates.shift));
-    }
-  }
-  void operator()(message::Drop&& m) { make<wire::DropT>().epoch = m.epoch; }
-  void operator()(message::Beat&& m) {
-    auto& t = make<wire::BeatT>();
-    t.sent = m.sent;
-    t.answer = m.answer;
-  }
-  void operator()(message::Bye&& m) { make<wire::ByeT>().why = cut(std::move(m.why)); }
-};
+  const bool lz4 = !packed.empty() && !packed.back().empty();
+  if (lz4)
+    bulk = std::move(packed);
+  else
+    append(bulk, std::move(m.bytes), limits::chunkBytes);
+  const auto faults = writeAll(builder, m.faults);
+  return wire::CreateResult(builder, m.epoch, m.lease, m.seconds, bytes, lz4, hash, m.camera,
+                            m.shadow, m.secondary, faults);
+}
+
+auto write(Builder& builder, message::Scene&& m, Frames& bulk) {
+  flatbuffers::Offset<flatbuffers::Vector<const wire::ArrayName*>> arrays;
+  if (!m.arrays.empty()) arrays = builder.CreateVectorOfNativeStructs<wire::ArrayName>(m.arrays);
+  const auto libraries = writeAll(builder, m.libraries);
+  const uint64_t hash = XXH3_64bits(m.edits.data(), m.edits.size());
+  append(bulk, std::move(m.edits), largestMessage);
+  return wire::CreateScene(builder, m.epoch, m.whole, m.prepare, arrays, libraries, hash);
+}
+
+auto write(Builder& builder, message::Piece&& m, Frames& bulk) {
+  bulk.push_back(std::move(m.data));
+  return wire::Piece::Pack(builder, &m);
+}
 
 } // namespace
 
 Frames encode(uint64_t session, message::Body&& body) {
+  Frames frames(1); // room for the header, which is finished last
   Frames bulk;
-  Encoder encoder{bulk, {}};
-  std::visit([&](auto&& m) { encoder(std::move(m)); }, std::move(body));
-  wire::HeaderT header;
-  header.session = session;
-  header.any = std::move(encoder.any);
-  flatbuffers::FlatBufferBuilder builder;
-  wire::FinishHeaderBuffer(builder, wire::Header::Pack(builder, &header));
+  Builder builder;
+  flatbuffers::Offset<void> table;
+  forEachKind([&](auto kind) {
+    if (auto* m = std::get_if<typename decltype(kind)::Message>(&body))
+      table = write(builder, std::move(*m), bulk).Union();
+  });
+  wire::FinishHeaderBuffer(builder,
+                           wire::CreateHeader(builder, session, wire::Any(body.index()), table));
   const auto* begin = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
-  Frames frames;
-  frames.reserve(1 + bulk.size());
-  frames.emplace_back(begin, begin + builder.GetSize());
+  frames[0].assign(begin, begin + builder.GetSize());
   for (auto& frame : bulk) frames.push_back(std::move(frame));
   return frames;
 }
@@ -195,8 +111,10 @@ std::vector<message::Fault> faultsOf(const ShaderFaults& faults) {
   for (const auto& entry : faults.entries()) {
     const std::string label = labelOf(*entry.shaderClass); // has the form "CLASS of LIBRARY"
     const size_t at = label.rfind(" of ");
-    result.push_back({entry.shaderClass->name, at == label.npos ? "" : label.substr(at + 4),
-                      uint8_t(entry.fault), entry.hits});
+    result.push_back({.name = entry.shaderClass->name,
+                      .library = at == label.npos ? "" : label.substr(at + 4),
+                      .kind = uint8_t(entry.fault),
+                      .hits = entry.hits});
   }
   return result;
 }

@@ -70,7 +70,7 @@ void Wire::Impl::readCall(Call& call, double now) {
     peer.lastReceivedAt = now;
     peer.joinReported = true;
     pushEvent(Event::Kind::joined, peer.id, peer.address);
-    sendTo(peer, encode(0, message::Beat{now, false}), now); // tells the other side that we exist
+    sendTo(peer, encode(0, message::Beat{.sent = now}), now); // tells the other side that we exist
     peer.beatSentAt = now;
   }
   size_t bytes = 0;

@@ -164,7 +164,7 @@ void Wire::Impl::handleMessage(PeerState& peer, Frames&& frames, bool tooMany, d
     return leave(peer, bye->why, now, true);
   const auto& beat = std::get<message::Beat>(message.body);
   if (!beat.answer) {
-    sendTo(peer, encode(0, message::Beat{beat.sent, true}), now);
+    sendTo(peer, encode(0, message::Beat{.sent = beat.sent, .answer = true}), now);
   } else if (const double way = now - beat.sent; way >= 0 && way < 600) {
     constexpr double fresh = 0.2;
     peer.traffic.latency =
@@ -212,7 +212,7 @@ bool Wire::Impl::sendTo(PeerState& peer, Frames&& frames, double now) {
 }
 
 void Wire::Impl::sayBye(PeerState& peer, const std::string& why, double now) {
-  sendTo(peer, encode(0, message::Bye{why}), now);
+  sendTo(peer, encode(0, message::Bye{.why = why}), now);
   peer.byeSentAt = now;
 }
 
@@ -259,7 +259,7 @@ void Wire::Impl::checkPeers(double now) {
     if (peer.hasLeft) continue;
     const bool measure = now - std::max(peer.beatSentAt, peer.latencyMeasuredAt) >= measureAgain;
     if (now - peer.lastSentAt >= heartbeat || measure) {
-      sendTo(peer, encode(0, message::Beat{now, false}), now);
+      sendTo(peer, encode(0, message::Beat{.sent = now}), now);
       peer.beatSentAt = now;
     }
     peer.flow.look(peer.fd, now, silence);

@@ -98,36 +98,25 @@ void Worker::message(Peer peer, Frames&& frames, double) {
     link_.close(peer_, text);
     return endSession();
   }
-  if (const auto* hail = std::get_if<message::Welcome>(&m.body)) {
-    if (serving()) return bad("a second Welcome");
-    if (hail->session == 0 || m.session != hail->session) return bad("a Welcome without a session");
-    return welcome(*hail);
-  }
+  const bool greeting = std::holds_alternative<message::Welcome>(m.body);
   // The message belongs to a session that has ended.
-  if (!serving() || m.session != session_) return;
+  if (!greeting && (!serving() || m.session != session_)) return;
   struct {
     Worker& w;
+    uint64_t session;
+    void operator()(message::Welcome& m) const { w.welcome(m, session); }
     void operator()(message::Scene& m) const { w.scene(std::move(m)); }
     void operator()(message::Piece& m) const { w.piece(m); }
     void operator()(message::Prepare& m) const { w.prepare(m); }
     void operator()(message::Jobs& m) const { w.jobs(m); }
     void operator()(message::Drop& m) const { w.drop(m); }
-    void operator()(message::Welcome&) const {}
-    void operator()(message::Beat&) const {}
-    void operator()(message::Bye&) const {}
-    void operator()(message::Unknown&) const {}
-    void operator()(message::Hello&) const { ours(); }
-    void operator()(message::Need&) const { ours(); }
-    void operator()(message::Ready&) const { ours(); }
-    void operator()(message::Failed&) const { ours(); }
-    void operator()(message::Result&) const { ours(); }
-    void operator()(message::Log&) const { ours(); }
-    void ours() const { w.bad("a message that only workers send"); }
-  } const handler{*this};
-  std::visit(handler, m.body);
+  } const handler{*this, m.session};
+  if (!dispatch<Sender::master>(m.body, handler)) bad("a message that only workers send");
 }
 
-void Worker::welcome(const message::Welcome& m) {
+void Worker::welcome(const message::Welcome& m, uint64_t session) {
+  if (serving()) return bad("a second Welcome");
+  if (m.session == 0 || session != m.session) return bad("a Welcome without a session");
   if (m.protocol != protocolVersion)
     return giveUp("protocol " + std::to_string(m.protocol) + " of the master, " +
                   std::to_string(protocolVersion) + " of the worker: they must be the same");
@@ -189,7 +178,7 @@ void Worker::failed(Epoch epoch, const std::string& why) {
   if (epoch <= base_ || !serving()) return;
   answered(epoch);
   leases_.erase(epoch);
-  sendMessage(message::Failed{epoch - base_, why});
+  sendMessage(message::Failed{.epoch = epoch - base_, .why = why});
 }
 
 void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
@@ -210,7 +199,8 @@ void Worker::done(Epoch epoch, const LeasedJob& job, JobResult&& result) {
 }
 
 void Worker::log(int level, const std::string& text) {
-  if (serving() && logged_ < limits::logLines) sendMessage(message::Log{level, text});
+  if (serving() && logged_ < limits::logLines)
+    sendMessage(message::Log{.level = level, .text = text});
   logged_++;
 }
 

@@ -74,7 +74,7 @@ class Worker {
     bool prepareOnly = false;
   };
   void sendMessage(message::Body&& body);
-  void welcome(const message::Welcome& m);
+  void welcome(const message::Welcome& m, uint64_t session); // session: that of the header
   void scene(message::Scene&& m);
   void piece(const message::Piece& m);
   void prepare(const message::Prepare& m);

@@ -16,7 +16,7 @@ void Worker::refuse(Epoch epoch, const std::string& why) {
     unansweredBytes_ -= scene.second;
     return true;
   });
-  sendMessage(message::Failed{epoch, why});
+  sendMessage(message::Failed{.epoch = epoch, .why = why});
 }
 
 void Worker::scene(message::Scene&& m) {
@@ -27,7 +27,7 @@ void Worker::scene(message::Scene&& m) {
   newest_ = base_ + m.epoch;
   unanswered_.emplace_back(newest_, m.edits.size());
   unansweredBytes_ += m.edits.size();
-  message::Need need{m.epoch, {}};
+  message::Need need{.epoch = m.epoch};
   PendingScene& pending = pendingScenes_.emplace_back();
   pending.scene = std::move(m);
   for (const message::ArrayName& name : pending.scene.arrays) {
@@ -77,7 +77,7 @@ void Worker::prepare(const message::Prepare& m) {
   if (m.epoch == 0 || m.epoch > newest_ - base_)
     return bad("a scene that has not come is to be prepared");
   if (pendingScenes_.empty()) {
-    if (!broken_.empty()) return sendMessage(message::Failed{m.epoch, broken_});
+    if (!broken_.empty()) return sendMessage(message::Failed{.epoch = m.epoch, .why = broken_});
     return executor_.prepare(base_ + m.epoch);
   }
   if (pendingScenes_.size() >= 2 * limits::scenesAtOnce)

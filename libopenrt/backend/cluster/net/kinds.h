@@ -1,0 +1,171 @@
+// kinds.h: the messages in memory, and the one table of their kinds: who may send a kind, how many
+// bulk frames it has, and how it is checked. Decoding (messages_read.cpp), the variant of all
+// messages, and the dispatch of master and worker follow from the table. [any]
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "backend/cluster/net/limits.h"
+#include "backend/cluster/net/wire.h"
+#include "messages_generated.h"
+
+namespace openrt::cluster {
+
+// The messages. Most are the structs that flatc makes of the schema (HelloT and so on), with the
+// fields that are there. TableType is the table of the schema.
+namespace message {
+
+struct Unknown {}; // a message of a later version; ignored
+
+// Worker to master.
+using Hello = wire::HelloT;
+using Need = wire::NeedT;
+struct Ready {
+  using TableType = wire::Ready;
+  Epoch epoch = 0;
+  FrameFacts facts;
+  uint8_t transport = 0; // the transport that was chosen
+  RTstats stats{};
+};
+using Failed = wire::FailedT;
+using Fault = wire::FaultT; // openrt::Fault of a shader class of the scene
+struct Result {
+  using TableType = wire::Result;
+  Epoch epoch = 0;
+  Lease lease = 0;
+  double seconds = 0;
+  uint64_t camera = 0, shadow = 0, secondary = 0; // rays traced
+  std::vector<Fault> faults;
+  std::vector<std::byte> bytes; // output of encodeResult; empty before unpack()
+  struct Packed {               // the frames as received
+    Frames frames;
+    uint64_t bytes = 0, hash = 0;
+    bool lz4 = false;
+  } packed{};
+};
+using Log = wire::LogT;
+
+// Master to worker.
+using Welcome = wire::WelcomeT;
+using Library = wire::LibraryT; // bare name, like that of a plug-in; content hash of its file
+struct Scene {
+  using TableType = wire::Scene;
+  Epoch epoch = 0;
+  bool whole = false, prepare = false; // as in WorkerCore::scene
+  std::vector<ArrayName> arrays;       // arrays that the commit adds
+  std::vector<Library> libraries;      // libraries that the commit adds
+  std::vector<std::byte> edits;        // output of packEdits (backend/record/edits_bytes.h)
+};
+// bytes: size of the array; stored: its size as packed by packArray; offset: into the packed bytes.
+struct Piece : wire::PieceT {
+  std::vector<std::byte> data;
+};
+using Prepare = wire::PrepareT;
+using Jobs = wire::JobsT;
+using Drop = wire::DropT;
+
+// Both directions. Handled inside the Wire.
+using Beat = wire::BeatT;
+using Bye = wire::ByeT;
+
+} // namespace message
+
+enum class Sender : uint8_t { worker, master, both };
+
+// Size class of a message: how many bulk frames it has.
+struct BulkFrames {
+  size_t least, most;
+};
+inline constexpr BulkFrames noBulk{0, 0}, oneFrame{1, 1}, manyFrames{1, limits::frames - 1};
+
+// Check messages before anything of them is copied. Each throws BadMessage with the reason
+// (checks.cpp). They need not check the length of texts, which Text does.
+void check(const wire::Hello& m, const Frames& frames);
+void check(const wire::Ready& m, const Frames& frames);
+void check(const wire::Result& m, const Frames& frames);
+void check(const wire::Welcome& m, const Frames& frames);
+void check(const wire::Scene& m, const Frames& frames);
+void check(const wire::Piece& m, const Frames& frames);
+void check(const wire::Jobs& m, const Frames& frames);
+// Accepts any numbers: those that receive the message compare them with what they know.
+template <class Table> void unchecked(const Table&, const Frames&) {}
+
+template <class M, Sender from, BulkFrames frames,
+          void (*function)(const typename M::TableType&, const Frames&)>
+struct MessageKind {
+  using Message = M;
+  using Table = typename M::TableType;
+  static constexpr wire::Any any = wire::AnyTraits<Table>::enum_value; // has its name, too
+  static constexpr Sender sender = from;
+  static constexpr BulkFrames bulk = frames;
+  static constexpr auto check = function;
+};
+
+// The table, in the order of the union in messages.fbs.
+// clang-format off
+using Kinds = std::tuple<
+    //          message           sent by         bulk frames check
+    MessageKind<message::Hello,   Sender::worker, noBulk,     check>,
+    MessageKind<message::Need,    Sender::worker, noBulk,     unchecked>,
+    MessageKind<message::Ready,   Sender::worker, noBulk,     check>,
+    MessageKind<message::Failed,  Sender::worker, noBulk,     unchecked>,
+    MessageKind<message::Result,  Sender::worker, manyFrames, check>,
+    MessageKind<message::Log,     Sender::worker, noBulk,     unchecked>,
+    MessageKind<message::Welcome, Sender::master, noBulk,     check>,
+    MessageKind<message::Scene,   Sender::master, manyFrames, check>,
+    MessageKind<message::Piece,   Sender::master, oneFrame,   check>,
+    MessageKind<message::Prepare, Sender::master, noBulk,     unchecked>,
+    MessageKind<message::Jobs,    Sender::master, noBulk,     check>,
+    MessageKind<message::Drop,    Sender::master, noBulk,     unchecked>,
+    MessageKind<message::Beat,    Sender::both,   noBulk,     unchecked>,
+    MessageKind<message::Bye,     Sender::both,   noBulk,     unchecked>>;
+// clang-format on
+
+// Calls f with each row of the table.
+template <class F> constexpr void forEachKind(F&& f) {
+  [&]<class... Row>(const std::tuple<Row...>*) {
+    (f(Row()), ...);
+  }(static_cast<const Kinds*>(nullptr));
+}
+
+// Returns true if the rows are all members of the union, in its order.
+constexpr bool kindsAreThoseOfTheSchema() {
+  size_t row = 0;
+  bool same = true;
+  forEachKind([&](auto kind) { same = same && size_t(kind.any) == ++row; });
+  return same && row == size_t(wire::Any::MAX);
+}
+static_assert(kindsAreThoseOfTheSchema());
+
+namespace message {
+
+template <class Rows> struct BodyOf;
+template <class... Row> struct BodyOf<std::tuple<Row...>> {
+  using Type = std::variant<Unknown, typename Row::Message...>;
+};
+using Body = BodyOf<Kinds>::Type; // its index is the number of the union's member
+
+} // namespace message
+
+// Hands a message to the handler's function for its kind. Returns false if the kind is not for the
+// peer to send; `peer` says what the peer is. The handler needs a function for each kind that only
+// such a peer sends. Kinds that both send, and unknown ones, are for nobody.
+template <Sender peer, class Handler> bool dispatch(message::Body& body, const Handler& handler) {
+  bool allowed = true;
+  forEachKind([&](auto kind) {
+    auto* m = std::get_if<typename decltype(kind)::Message>(&body);
+    if (!m) return;
+    if constexpr (kind.sender == peer)
+      handler(*m);
+    else
+      allowed = kind.sender == Sender::both;
+  });
+  return allowed;
+}
+
+} // namespace openrt::cluster
