@@ -224,7 +224,8 @@ class UselessWorker {
     if (way_ == Misbehaviour::liesAboutScene) m.stats.triangles++;
     told_ = steadyNow();
     say(std::move(m));
-    if (way_ == Misbehaviour::refusesLater) say(message::Failed{.epoch = epoch_, .why = "no memory"});
+    if (way_ == Misbehaviour::refusesLater)
+      say(message::Failed{.epoch = epoch_, .why = "no memory"});
   }
   void work(const message::Jobs& jobs) {
     if (way_ == Misbehaviour::dies) return die();
