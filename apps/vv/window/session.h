@@ -64,7 +64,7 @@ class Session {
   // time of any clock. Never waits.
   void advance(double seconds);
   // Returns a newer picture than the last one; false if there is none.
-  bool look(picture::LivePicture& picture);
+  bool look(picture::LivePicture& picture) { return pictures_.look(picture); }
   // Saves the current state of the picture. Returns a message for the user.
   std::string save(const std::string& path);
   // Saves the picture when all its samples are taken; the script waits until then.
