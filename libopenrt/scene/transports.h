@@ -10,18 +10,14 @@
 namespace openrt {
 
 struct TransportTraits {
-  const char* name;
   bool tracesPaths; // follows light between surfaces, with random decisions
-  bool tracesLight; // follows light from lamps, too
 };
 
-// Indexed by RT_TRANSPORT_*. RT_TRANSPORT_AUTO is resolved before a frame is rendered.
-inline constexpr TransportTraits transports[] = {
-    {"auto", false, false}, {"direct", false, false}, {"whitted", false, false},
-    {"path", true, false},  {"light", true, true},
-};
-static_assert(std::size(transports) == size_t(RT_TRANSPORT_LIGHT) + 1);
+// Both are in the order of RT_TRANSPORT_*. RT_TRANSPORT_AUTO is resolved before a frame is
+// rendered.
 inline constexpr const char* transportChoices = "auto direct whitted path light";
+inline constexpr TransportTraits transports[] = {{false}, {false}, {false}, {true}, {true}};
+static_assert(std::size(transports) == size_t(RT_TRANSPORT_LIGHT) + 1);
 
 constexpr bool isTransport(RTenum transport) { return transport < std::size(transports); }
 constexpr bool tracesPaths(RTenum transport) {

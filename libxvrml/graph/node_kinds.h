@@ -16,4 +16,5 @@ const Node* firstNode(const ProtoDeclaration* declaration);
 const NodeType* effectiveType(const Node& node);
 // Returns whether a type is one of a field's nodeTypes.
 bool typeAccepted(std::string_view nodeTypes, const NodeType& type);
+
 } // namespace xvrml

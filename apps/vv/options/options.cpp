@@ -16,16 +16,13 @@ namespace vv {
 
 namespace {
 
+// If several jobs are asked for, the first of the table is done.
 constexpr JobInfo jobs[] = {
-    {Job::help, "--help", false, false},
-    {Job::version, "--version", false, false},
-    {Job::listKeys, "--list-keys", false, false},
-    {Job::listShaders, "--list-shaders", true, false},
-    {Job::listEngines, "--list-engines", true, false},
-    {Job::listNodes, "--list-nodes", true, false},
-    {Job::explain, "--explain", true, true},
-    {Job::listViewpoints, "--list-viewpoints", true, true},
-    {Job::info, "--info", true, true},
+    {Job::help, false, false},       {Job::version, false, false},
+    {Job::listKeys, false, false},   {Job::listShaders, true, false},
+    {Job::listEngines, true, false}, {Job::listNodes, true, false},
+    {Job::explain, true, true},      {Job::listViewpoints, true, true},
+    {Job::info, true, true},
 };
 
 std::string longName(const OptionInfo& option) {
@@ -195,8 +192,6 @@ void checkTogether(const Options& options) {
 }
 
 } // namespace
-
-std::span<const JobInfo> jobTable() { return jobs; }
 
 const JobInfo* Options::job() const {
   for (const JobInfo& info : vv::jobs)

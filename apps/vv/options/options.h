@@ -40,13 +40,9 @@ enum class Job : uint8_t {
 };
 struct JobInfo {
   Job job;
-  const char* option;
   bool inspects;   // prints facts, as JSON with --json; only one of these can be asked for
   bool needsWorld; // needs a FILE
 };
-// All jobs. If several are asked for, the first of the table is done.
-std::span<const JobInfo> jobTable();
-
 struct Options {
   std::string input; // "-": standard input; empty: none given
   std::vector<Output> outputs;

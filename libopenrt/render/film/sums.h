@@ -14,7 +14,7 @@
 
 namespace openrt {
 
-// Which sums the channels of a frame need; the other fields of PixelSums are undefined.
+// Tells which sums the channels of a frame need; the other fields of PixelSums are undefined.
 struct RequiredSums {
   bool spread = false;  // needs first, delta, delta2
   bool surface = false; // needs normal, albedo
