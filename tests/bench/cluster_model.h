@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 #include "render/frame/result_codec.h"
 #include "render/frame/tiles.h"
 

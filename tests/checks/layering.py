@@ -50,7 +50,7 @@ TABLE = [
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
     part("backend-null", "libopenrt/backend/null/", "takes edits and draws nothing", "api-h openrt-scene openrt-backend common"),
     part("backend-cluster", "libopenrt/backend/cluster/",
-         "renders with the help of other machines: net/ carries messages, master/ gives jobs out, worker/ does them on a local backend",
+         "renders with the help of other machines: net/ connects machines, messages/ says what they send each other, master/ gives jobs out, worker/ does them on a local backend",
          "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend backend-local backend-record common"),
     part("openrt-api", "libopenrt/api/", "the rt* functions: they make edits and hand them to a backend",
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),

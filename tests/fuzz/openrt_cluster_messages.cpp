@@ -3,7 +3,7 @@
 // its length in two bytes; the rest is the last frame.
 #include <array>
 
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 #include "backend/record/edits_bytes.h"
 #include "backend/record/validator.h"
 #include "render/frame/result_codec.h"

@@ -11,7 +11,7 @@
 
 #include <unistd.h>
 
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 #include "backend/cluster/net/sockets.h"
 #include "backend/cluster/net/wire.h"
 

@@ -7,7 +7,7 @@
 
 #include "backend/local/accel/embree_parts.h"
 #include "backend/local/exact.h"
-#include "backend/local/own_geometry.h"
+#include "backend/local/user_geometry.h"
 
 namespace openrt {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "backend/cluster/master/scheduler.h"
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 #include "backend/cluster/net/wire.h"
 #include "scene/commit.h"
 

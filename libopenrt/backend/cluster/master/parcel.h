@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "backend/cluster/net/libraries.h"
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 #include "scene/commit.h"
 
 namespace openrt {

@@ -116,7 +116,6 @@ struct Group { // workers that have or prepare the scene of one epoch
   std::set<WorkerId> able;    // movable members that can render this frame
   std::set<WorkerId> pinned;  // local and reserve workers
   uint32_t threads = 0;       // threads of members that are neither reserve nor blocked
-  uint32_t usable = 0;        // number of those members
   Ranked byLoad;              // members that may get more jobs, by jobs per thread
   Ranked idle;                // members with an idle thread
 };

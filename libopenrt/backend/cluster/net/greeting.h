@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 
 namespace openrt::cluster {
 

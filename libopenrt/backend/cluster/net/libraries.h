@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 
 namespace openrt {
 class ShaderRegistry;

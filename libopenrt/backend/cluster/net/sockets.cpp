@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "backend/cluster/net/addresses.h"
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 
 namespace openrt::cluster {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "backend/cluster/net/addresses.h"
 #include "backend/cluster/net/flow.h"
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 #include "backend/cluster/net/sockets.h"
 #include "backend/cluster/net/wire.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <memory>
 
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 
 namespace openrt::cluster {
 

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "backend/cluster/net/libraries.h"
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 #include "backend/cluster/worker/array_cache.h"
 
 namespace openrt {

@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "backend/local/accel/body.h"
+#include "backend/local/accel/blas.h"
 #include "render/rays.h"
 #include "render/render_scene.h"
 

@@ -64,7 +64,7 @@ class AccelBuilder {
     auto operator<=>(const Key&) const = default;
   };
 
-  // Embree scenes of parts and objects (accel_bodies.cpp).
+  // Embree scenes of parts and objects (accel_blas.cpp).
   uint32_t maskOf(uint32_t shader) const; // shader: id of a surface shader
   uint32_t overrideMask(uint32_t shader) const { return shader ? maskOf(shader) : 0; }
   uint32_t maskOf(const Item& item, const Geometry& geometry, uint32_t override) const;

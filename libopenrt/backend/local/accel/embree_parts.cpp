@@ -1,6 +1,6 @@
 // embree_parts.cpp: creates the Embree device, and attaches geometries and instances to Embree
 // scenes. Called between frames.
-#include "backend/local/accel/body.h"
+#include "backend/local/accel/blas.h"
 #include "render/rays.h"
 
 #include <stdexcept>

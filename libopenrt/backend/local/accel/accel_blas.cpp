@@ -1,4 +1,4 @@
-// accel_bodies.cpp: the Embree scenes (Blas) of parts and objects, built once for each signature.
+// accel_blas.cpp: the Embree scenes (Blas) of parts and objects, built once for each signature.
 // Small objects, and objects that occur once, are baked into the scene of their part. Large objects
 // with several copies have a scene of their own, which the copies instance.
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <compare>
 #include <cstdint>
 
-#include "backend/cluster/net/text.h"
+#include "backend/cluster/messages/text.h"
 #include "backend/cluster/worker/worker_core.h"
 
 namespace openrt::cluster {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/cluster/net/kinds.h"
+#include "backend/cluster/messages/kinds.h"
 
 namespace openrt::cluster {
 

@@ -1,4 +1,4 @@
-// body.h: a bottom-level acceleration structure (Blas): one Embree scene of geometries that do not
+// blas.h: a bottom-level acceleration structure (Blas): one Embree scene of geometries that do not
 // move relative to each other. There is one for the static world, one for each part below a dynamic
 // instance, and one for each object with many copies. Built between frames, immutable afterwards
 // and shared by all its instances.

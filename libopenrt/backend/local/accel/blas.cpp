@@ -1,6 +1,6 @@
-// body.cpp: builds a Blas. Small geometries share one Embree geometry, large ones have their own.
+// blas.cpp: builds a Blas. Small geometries share one Embree geometry, large ones have their own.
 // Slivers and huge spheres go to user geometries that intersect in double precision.
-#include "backend/local/accel/body.h"
+#include "backend/local/accel/blas.h"
 
 #include <algorithm>
 #include <cmath>

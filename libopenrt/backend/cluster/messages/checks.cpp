@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "backend/cluster/net/messages.h"
-#include "backend/cluster/net/statistics.h"
+#include "backend/cluster/messages/messages.h"
+#include "backend/cluster/messages/statistics.h"
 #include "scene/transports.h"
 
 namespace openrt::cluster {

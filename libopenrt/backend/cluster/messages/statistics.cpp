@@ -1,4 +1,4 @@
-#include "backend/cluster/net/statistics.h"
+#include "backend/cluster/messages/statistics.h"
 
 #include <algorithm>
 #include <concepts>
@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "backend/cluster/net/limits.h"
-#include "backend/cluster/net/text.h"
+#include "backend/cluster/messages/limits.h"
+#include "backend/cluster/messages/text.h"
 
 namespace openrt::cluster {
 namespace {

@@ -1,12 +1,12 @@
 // messages.cpp: encodes messages into frames. Decoding: messages_read.cpp. [any]
-#include "backend/cluster/net/messages.h"
+#include "backend/cluster/messages/messages.h"
 
 #include <algorithm>
 
 #include <lz4.h>
 #include <xxhash.h>
 
-#include "backend/cluster/net/statistics.h"
+#include "backend/cluster/messages/statistics.h"
 #include "shading/registry.h"
 #include "shading/running.h"
 

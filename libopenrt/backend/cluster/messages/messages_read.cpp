@@ -6,8 +6,8 @@
 #include <lz4.h>
 #include <xxhash.h>
 
-#include "backend/cluster/net/messages.h"
-#include "backend/cluster/net/statistics.h"
+#include "backend/cluster/messages/messages.h"
+#include "backend/cluster/messages/statistics.h"
 
 namespace openrt::cluster {
 namespace {

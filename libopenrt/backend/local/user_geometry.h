@@ -1,4 +1,4 @@
-// own_geometry.h: helpers for Embree user geometries: reads the rays of a packet and stores hits.
+// user_geometry.h: helpers for Embree user geometries: reads the rays of a packet and stores hits.
 // Called by render threads.
 #pragma once
 

@@ -1,4 +1,4 @@
-// accel_passed.cpp: finds all hits along a ray, for queries. A filter that rejects every hit sees
+// accel_all_hits.cpp: finds all hits along a ray, for queries. A filter that rejects every hit sees
 // them all. Hits that are reported twice, because the BVH splits triangles, are dropped. Called by
 // the threads of a query.
 #include <algorithm>

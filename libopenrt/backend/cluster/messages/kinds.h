@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "backend/cluster/net/limits.h"
+#include "backend/cluster/messages/limits.h"
 #include "backend/cluster/net/wire.h"
 #include "messages_generated.h"
 

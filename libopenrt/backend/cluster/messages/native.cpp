@@ -1,4 +1,4 @@
-#include "backend/cluster/net/native.h"
+#include "backend/cluster/messages/native.h"
 
 #include "messages_generated.h"
 

@@ -1,10 +1,10 @@
-#include "backend/cluster/net/text.h"
+#include "backend/cluster/messages/text.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <string_view>
 
-#include "backend/cluster/net/limits.h"
+#include "backend/cluster/messages/limits.h"
 
 namespace openrt::cluster {
 namespace {
