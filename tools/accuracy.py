@@ -22,7 +22,9 @@ def order(row):
 
 def numeric(folder):
     run = subprocess.run([folder / "numeric"], stdout=subprocess.PIPE, text=True)
-    rows = [line.split("\t")[1:] for line in run.stdout.splitlines() if line.startswith("accuracy\t")]
+    rows = [
+        line.split("\t")[1:] for line in run.stdout.splitlines() if line.startswith("accuracy\t")
+    ]
     total = re.search(r"\[==========\] (\d+) tests? .* ran\. \((\d+) ms", run.stdout)
     out = [
         "Of each test the comparison that came nearest to its tolerance; without numbers: a test that compares pictures, counts or",
@@ -33,20 +35,28 @@ def numeric(folder):
     ]
     for row in sorted(rows, key=order):
         name, test, expected, got, tolerance, comparisons, passed, seconds, rays = row
-        out.append("| %s | %s | %s | %s | %s | %s | %s | %.2f | %s |" % (
-            name, test.split("/")[-2] + "/" + test.split("/")[-1] if test.count("/") > 1 else test, number(expected), number(got),
-            number(tolerance), comparisons if comparisons != "0" else "", passed, float(seconds), rays if rays != "0" else ""))
+        out.append(
+            "| %s | %s | %s | %s | %s | %s | %s | %.2f | %s |" %
+            (name, test.split("/")[-2] + "/" + test.split("/")[-1] if test.count("/") > 1 else test,
+             number(expected), number(got), number(tolerance), comparisons
+             if comparisons != "0" else "", passed, float(seconds), rays if rays != "0" else ""))
     failed = sum(row[6] != "pass" for row in rows)
-    out += ["", "%d tests with an id, %d failed; of the whole program %s." % (
-        len(rows), failed, "%s tests, %.0f s" % (total.group(1), int(total.group(2)) / 1000) if total else "nothing is known")]
+    out += [
+        "",
+        "%d tests with an id, %d failed; of the whole program %s." %
+        (len(rows), failed, "%s tests, %.0f s" %
+         (total.group(1), int(total.group(2)) / 1000) if total else "nothing is known")
+    ]
     return out, run.returncode
 
 
 def audit(folder, seeds, edge):
-    run = subprocess.run([folder / "audit", str(seeds), str(edge)], stdout=subprocess.PIPE, text=True)
+    run = subprocess.run([folder / "audit", str(seeds), str(edge)],
+                         stdout=subprocess.PIPE,
+                         text=True)
     out = [
-        "%d pictures of %dx%d pixels each, seeds 1 to %d, against a long render (8192 to 65536 samples) and the" %
-        (seeds, edge, edge, seeds),
+        "%d pictures of %dx%d pixels each, seeds 1 to %d, against a long render (8192 to 65536 samples) and the"
+        % (seeds, edge, edge, seeds),
         "other pictures, or a closed form. Coverage: of trusted intervals that are not exact. Tiles: 5th percentile over those of 8x8",
         "pixels. In it: share of the pictures that were off by what was said. Cost: mean square error over that of as many",
         "independent samples. The last column has what does not hold.",
@@ -54,8 +64,9 @@ def audit(folder, seeds, edge):
         "| scene | use | samples | untrusted | exact | wrong | coverage | tiles | of all | off by | said | in it | bias | cost | |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
-    pattern = re.compile(r"^(.{10}) (\S+) +(\d+) +(\S+) +(\S+) +(\d+)  (\S+ \+- \S+)  (\S+)  (\S+)  (\S+)  (\S+ \+- \S+)  (\S+)"
-                         r"  (\S+ \+- \S+)  (\S+) ?(.*)$")
+    pattern = re.compile(
+        r"^(.{10}) (\S+) +(\d+) +(\S+) +(\S+) +(\d+)  (\S+ \+- \S+)  (\S+)  (\S+)  (\S+)  (\S+ \+- \S+)  (\S+)"
+        r"  (\S+ \+- \S+)  (\S+) ?(.*)$")
     lines = run.stdout.splitlines()[1:]
     for line in (line for line in lines if not line.startswith("#")):
         match = pattern.match(line)

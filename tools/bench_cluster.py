@@ -44,23 +44,33 @@ def picture(args, folder, options):
     """Returns the seconds of rendering, the processor time of vv, and the bytes of the picture."""
     stats, out = folder / "stats.json", folder / "picture.pfm"
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([args.build / "bin/vv", args.world, "-q", "--size", args.size, "--spp", str(args.spp), "--stats", stats, "-o", out,
-                    *args.vv.split(), *options], check=True)
+    subprocess.run([
+        args.build / "bin/vv", args.world, "-q", "--size", args.size, "--spp",
+        str(args.spp), "--stats", stats, "-o", out, *args.vv.split(), *options
+    ],
+                   check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return (json.loads(stats.read_text())["time"]["render"], after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
-            out.read_bytes())
+    return (json.loads(stats.read_text())["time"]["render"],
+            after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, out.read_bytes())
 
 
 def with_workers(args, folder, count, threads, key):
     ports = [free_port() for _ in range(count)]
     secret = ["--key", key] if key else []
-    workers = [subprocess.Popen([args.build / "bin/openrt-worker", "--listen", f"127.0.0.1:{port}", "--threads", str(threads), "-q",
-                                 *secret]) for port in ports]
+    workers = [
+        subprocess.Popen([
+            args.build / "bin/openrt-worker", "--listen", f"127.0.0.1:{port}", "--threads",
+            str(threads), "-q", *secret
+        ]) for port in ports
+    ]
     try:
         time.sleep(1)
         before = sum(map(processor_seconds, workers))
         seconds, processor, content = picture(args, folder, [
-            "--workers", ",".join(f"127.0.0.1:{port}" for port in ports), "--local-threads", "0", "--require-workers", str(count), *secret])
+            "--workers", ",".join(f"127.0.0.1:{port}" for port in ports), "--local-threads", "0",
+            "--require-workers",
+            str(count), *secret
+        ])
         return seconds, processor + sum(map(processor_seconds, workers)) - before, content
     finally:
         for worker in workers:
@@ -69,7 +79,8 @@ def with_workers(args, folder, count, threads, key):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=lambda text: pathlib.Path(text).resolve())
     parser.add_argument("--world", default="examples/scenes/headlight.wrl")
     parser.add_argument("--size", default="640x480")
@@ -84,7 +95,9 @@ def main():
         folder = pathlib.Path(name)
         key = folder / "key"
         if args.key:
-            subprocess.run([args.build / "bin/openrt-worker", "--new-key", key], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([args.build / "bin/openrt-worker", "--new-key", key],
+                           check=True,
+                           stdout=subprocess.DEVNULL)
         n = args.threads
         cases = {"local": None, "one": (1, n, None), "single": (1, 1, None), "two": (2, 1, None)}
         if args.key:
@@ -92,13 +105,16 @@ def main():
         wall, processor, first = {case: [] for case in cases}, {case: [] for case in cases}, None
         for run in range(args.runs):
             for case, workers in cases.items():
-                made = with_workers(args, folder, *workers) if workers else picture(args, folder, ["--threads", str(n)])
+                made = with_workers(args, folder, *workers) if workers else picture(
+                    args, folder, ["--threads", str(n)])
                 wall[case].append(made[0])
                 processor[case].append(made[1])
                 first = first or made[2]
                 if made[2] != first:
                     sys.exit(f"{case}: the picture is another one")
-            print(f"run {run + 1}: " + ", ".join(f"{case} {wall[case][-1]:.3f} s ({processor[case][-1]:.2f})" for case in cases), flush=True)
+            print(f"run {run + 1}: " + ", ".join(
+                f"{case} {wall[case][-1]:.3f} s ({processor[case][-1]:.2f})" for case in cases),
+                  flush=True)
     result = {"world": args.world, "size": args.size, "spp": args.spp, "threads": n}
     for what, times in (("seconds", wall), ("processor seconds", processor)):
         middle = {case: statistics.median(values) for case, values in times.items()}

@@ -20,7 +20,9 @@ def terrain(edge):
     y = 0.4 * np.sin(3 * u) * np.cos(2 * v) + 0.02 * np.sin(40 * u + 30 * v)
     vertices = np.stack([u, y, v], -1).reshape(-1, 3).astype(np.float32)
     i = (np.arange(edge)[:, None] * (edge + 1) + np.arange(edge)).ravel()
-    triangles = np.concatenate([np.stack([i, i + edge + 1, i + 1], -1), np.stack([i + 1, i + edge + 1, i + edge + 2], -1)], 1)
+    triangles = np.concatenate(
+        [np.stack([i, i + edge + 1, i + 1], -1),
+         np.stack([i + 1, i + edge + 1, i + edge + 2], -1)], 1)
     return vertices, triangles.reshape(-1, 3).astype(np.uint32)
 
 
@@ -40,23 +42,26 @@ def raw_caster(path, vertices, triangles, threads, robust):
     def pointer(array):
         return ctypes.c_void_p(array.ctypes.data)
 
-    scene = library.raw_scene(pointer(vertices), ctypes.c_size_t(len(vertices)), pointer(triangles), ctypes.c_size_t(len(triangles)),
-                              int(robust))
+    scene = library.raw_scene(pointer(vertices), ctypes.c_size_t(len(vertices)), pointer(triangles),
+                              ctypes.c_size_t(len(triangles)), int(robust))
 
     def cast(rays):
         n = len(rays)
         t, primitive = np.empty(n, np.float32), np.empty(n, np.uint32)
         uv, normal = np.empty((n, 2), np.float32), np.empty((n, 3), np.float32)
-        library.raw_cast(ctypes.c_void_p(scene), pointer(rays), ctypes.c_size_t(n), threads, pointer(t), pointer(primitive), pointer(uv),
-                         pointer(normal))
+        library.raw_cast(ctypes.c_void_p(scene), pointer(rays), ctypes.c_size_t(n), threads,
+                         pointer(t), pointer(primitive), pointer(uv), pointer(normal))
         return t
+
     return cast
 
 
 def contenders(arguments, vertices, triangles):
     if arguments.raw:
-        yield "raw Embree, robust", raw_caster(arguments.raw, vertices, triangles, arguments.threads, True)
-        yield "raw Embree, default", raw_caster(arguments.raw, vertices, triangles, arguments.threads, False)
+        yield "raw Embree, robust", raw_caster(arguments.raw, vertices, triangles,
+                                               arguments.threads, True)
+        yield "raw Embree, default", raw_caster(arguments.raw, vertices, triangles,
+                                                arguments.threads, False)
     if not arguments.without_ours:
         from xvrml import rt
         caster = rt.Raycaster(arguments.threads)
@@ -66,7 +71,8 @@ def contenders(arguments, vertices, triangles):
         import open3d as o3d
         scene = o3d.t.geometry.RaycastingScene(nthreads=arguments.threads)
         scene.add_triangles(o3d.core.Tensor(vertices), o3d.core.Tensor(triangles))
-        yield "Open3D " + o3d.__version__, lambda rays: scene.cast_rays(o3d.core.Tensor(rays), nthreads=arguments.threads)["t_hit"].numpy()
+        yield "Open3D " + o3d.__version__, lambda rays: scene.cast_rays(
+            o3d.core.Tensor(rays), nthreads=arguments.threads)["t_hit"].numpy()
     except ImportError as error:
         print("Open3D:", error)
     try:
@@ -74,14 +80,16 @@ def contenders(arguments, vertices, triangles):
         from embreex.mesh_construction import TriangleMesh
         other = rtcore_scene.EmbreeScene()
         TriangleMesh(other, vertices[triangles])
-        yield "embreex (one thread)", lambda rays: other.run(np.ascontiguousarray(rays[:, :3]), np.ascontiguousarray(rays[:, 3:]),
+        yield "embreex (one thread)", lambda rays: other.run(np.ascontiguousarray(rays[:, :3]),
+                                                             np.ascontiguousarray(rays[:, 3:]),
                                                              output=True)["tfar"]  # 1e37: no hit
     except ImportError as error:
         print("embreex:", error)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--rays", type=int, default=2_000_000)
     parser.add_argument("--edge", type=int, default=636, help="of the terrain: 2 edge^2 triangles")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
@@ -99,12 +107,19 @@ def main():
             answers[name] = cast(rays)
             best[name] = min(best.get(name, 1e9), time.perf_counter() - begin)
     base = best[casters[0][0]]
-    print(f"{len(triangles)} triangles, {len(rays)} rays, {arguments.threads} threads, best of {arguments.rounds}")
-    print("| | Mrays/s | time of the first / its time | rays with the same answer |\n| --- | --- | --- | --- |")
+    print(
+        f"{len(triangles)} triangles, {len(rays)} rays, {arguments.threads} threads, best of {arguments.rounds}"
+    )
+    print(
+        "| | Mrays/s | time of the first / its time | rays with the same answer |\n| --- | --- | --- | --- |"
+    )
     reference = answers[casters[0][0]]
     for name, _ in casters:
-        same = np.isclose(answers[name], reference, rtol=1e-4, atol=1e-5) | ((answers[name] > 1e30) & np.isinf(reference))
-        print(f"| {name} | {len(rays) / best[name] / 1e6:.2f} | {base / best[name]:.2f} | {same.mean():.4%} |")
+        same = np.isclose(answers[name], reference, rtol=1e-4,
+                          atol=1e-5) | ((answers[name] > 1e30) & np.isinf(reference))
+        print(
+            f"| {name} | {len(rays) / best[name] / 1e6:.2f} | {base / best[name]:.2f} | {same.mean():.4%} |"
+        )
 
 
 if __name__ == "__main__":

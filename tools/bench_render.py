@@ -44,15 +44,20 @@ class Budget:
         self.reference, self.picture, self.seeds = (600, 60, 6) if full else (30, 3, 3)
 
 
-# Pictures ---------------------------------------------------------------------------------------------------------------------
+# Pictures ---------------------------------------------------------------------------------------
+
 
 def ours(vv, scene, folder, transport, seed, *more):
     """Returns the floats of a picture, its seconds and the transport used; None if this build lacks
     the transport."""
     world = ROOT / f"examples/scenes/{scene}.wrl"
     picture, stats = folder / "x.pfm", folder / "x.json"
-    done = subprocess.run([str(a) for a in (vv, world, "-o", picture, "--size", f"{SIZE[0]}x{SIZE[1]}", "--seed", seed, "--transport",
-                                            transport, "--stats", stats, "--quiet", *more)], capture_output=True, text=True)
+    done = subprocess.run([
+        str(a) for a in (vv, world, "-o", picture, "--size", f"{SIZE[0]}x{SIZE[1]}", "--seed", seed,
+                         "--transport", transport, "--stats", stats, "--quiet", *more)
+    ],
+                          capture_output=True,
+                          text=True)
     if done.returncode != 0:
         raise SystemExit(f"bench_render.py: vv failed: {done.stderr.strip()}")
     told = json.loads(stats.read_text())
@@ -92,21 +97,35 @@ def worker(request):
 
 
 class Mitsuba:
+
     def __init__(self, python, variant):
         self.python, self.variant = python, variant
 
     def works(self, folder):
         """Also renders a small picture: the just-in-time compiler may lack its library, or end the
         process."""
-        test = ("import mitsuba as mi; mi.set_variant(%r); mi.render(mi.load_dict(mi.cornell_box()), spp=1).numpy()" % self.variant)
+        test = (
+            "import mitsuba as mi; mi.set_variant(%r); mi.render(mi.load_dict(mi.cornell_box()), spp=1).numpy()"
+            % self.variant)
         try:
-            return subprocess.run([self.python, "-c", test], capture_output=True, timeout=300, cwd=folder).returncode == 0
+            return subprocess.run([self.python, "-c", test],
+                                  capture_output=True,
+                                  timeout=300,
+                                  cwd=folder).returncode == 0
         except (OSError, subprocess.TimeoutExpired):
             return False
 
     def render(self, scene, jobs, limit):
-        request = json.dumps({"variant": self.variant, "scene": str(scene), "jobs": jobs, "limit": limit})
-        done = subprocess.run([self.python, __file__, "--worker"], input=request, capture_output=True, text=True)
+        request = json.dumps({
+            "variant": self.variant,
+            "scene": str(scene),
+            "jobs": jobs,
+            "limit": limit
+        })
+        done = subprocess.run([self.python, __file__, "--worker"],
+                              input=request,
+                              capture_output=True,
+                              text=True)
         seconds = [float(line) for line in done.stdout.split()]
         pictures = []
         for job in jobs[:len(seconds)]:
@@ -116,7 +135,8 @@ class Mitsuba:
         return list(zip(pictures, seconds))
 
 
-# Errors -----------------------------------------------------------------------------------------------------------------------
+# Errors -----------------------------------------------------------------------------------------
+
 
 class Reference:
     """The mean of two halves, and its uncertainty."""
@@ -125,7 +145,7 @@ class Reference:
         self.values = [(x + y) / 2 for x, y in zip(a, b)]
         n = len(self.values)
         self.weights = [1 / (r * r + 0.01) for r in self.values]
-        squares = [(x - y) ** 2 / 4 for x, y in zip(a, b)]
+        squares = [(x - y)**2 / 4 for x, y in zip(a, b)]
         self.mse = sum(squares) / n
         self.relative = sum(s * w for s, w in zip(squares, self.weights)) / n
         self.mean = sum(self.values) / n
@@ -136,7 +156,7 @@ class Reference:
         n = len(self.values)
         mse = relative = 0.0
         for x, r, w in zip(picture, self.values, self.weights):
-            d = (x - r) ** 2
+            d = (x - r)**2
             mse += d
             relative += d * w
         return mse / n - self.mse, relative / n - self.relative, sum(picture) / n
@@ -149,13 +169,25 @@ def summary(scene, renderer, spp, reference, pictures):
     n = len(rows)
     seconds = sum(s for _, s in pictures) / n
     mse, relative = (sum(r[k] for r in rows) / n for k in (0, 1))
-    mse, relative = (mse if mse > reference.mse else math.nan), (relative if relative > reference.relative else math.nan)
+    mse, relative = (mse if mse > reference.mse else math.nan), (relative if relative
+                                                                 > reference.relative else math.nan)
     means = [r[2] for r in rows]
     mean = sum(means) / n
-    spread = math.sqrt(sum((m - mean) ** 2 for m in means) / (n - 1) / n) * T95.get(n - 1, 2.0) if n > 1 else float("nan")
+    spread = math.sqrt(sum((m - mean)**2 for m in means) /
+                       (n - 1) / n) * T95.get(n - 1, 2.0) if n > 1 else float("nan")
     half = math.hypot(spread, 1.96 * reference.mean_error)
-    return {"scene": scene, "renderer": renderer, "spp": spp, "seeds": n, "seconds": seconds, "rmse": math.sqrt(mse), "relmse": relative,
-            "bias": mean / reference.mean - 1, "bias_interval": half / reference.mean, "efficiency": relative * seconds}
+    return {
+        "scene": scene,
+        "renderer": renderer,
+        "spp": spp,
+        "seeds": n,
+        "seconds": seconds,
+        "rmse": math.sqrt(mse),
+        "relmse": relative,
+        "bias": mean / reference.mean - 1,
+        "bias_interval": half / reference.mean,
+        "efficiency": relative * seconds
+    }
 
 
 def measure_ours(vv, scene, folder, transport, reference, budget):
@@ -176,18 +208,27 @@ def measure_ours(vv, scene, folder, transport, reference, budget):
 def measure_mitsuba(mitsuba, scene, folder, reference, budget):
     exported = folder / "scene.xml"
     if reference is None:  # the transport's own reference
-        halves = mitsuba.render(exported, [{"spp": 64, "seed": s, "seconds": budget.reference / 2, "out": str(folder / f"ref{s}")}
-                                           for s in (501, 502)], math.inf)
+        halves = mitsuba.render(exported, [{
+            "spp": 64,
+            "seed": s,
+            "seconds": budget.reference / 2,
+            "out": str(folder / f"ref{s}")
+        } for s in (501, 502)], math.inf)
         if len(halves) < 2:
             return []
         reference = Reference(halves[0][0], halves[1][0])
     rows = []
     for spp in SAMPLES:
-        jobs = [{"spp": spp, "seed": s, "out": str(folder / f"m{s}")} for s in range(1, budget.seeds + 1)]
+        jobs = [{
+            "spp": spp,
+            "seed": s,
+            "out": str(folder / f"m{s}")
+        } for s in range(1, budget.seeds + 1)]
         pictures = mitsuba.render(exported, jobs, math.inf)
         if len(pictures) < len(jobs):
             break
-        rows.append(summary(scene, f"Mitsuba {mitsuba.variant.split('_')[0]}", spp, reference, pictures))
+        rows.append(
+            summary(scene, f"Mitsuba {mitsuba.variant.split('_')[0]}", spp, reference, pictures))
         if max(s for _, s in pictures) > budget.picture:
             break
     return rows
@@ -203,40 +244,56 @@ def measure(scene, options, budget, mitsubas):
             if probe is None:
                 continue
             # A power of two: low-discrepancy point sets are far better than several rounds.
-            spp = 16 * 2 ** max(0, int(math.log2(budget.reference / 2 / max(probe[1], 1e-3))))
-            halves = [ours(options.vv, scene, folder, transport, seed, "--spp", min(spp, 65536))[0] for seed in (1001, 1002)]
+            spp = 16 * 2**max(0, int(math.log2(budget.reference / 2 / max(probe[1], 1e-3))))
+            halves = [
+                ours(options.vv, scene, folder, transport, seed, "--spp", min(spp, 65536))[0]
+                for seed in (1001, 1002)
+            ]
             break
         reference = Reference(*halves)
-        print(f"{title}: reference by {transport}, twice {spp} samples, noise {math.sqrt(reference.mse):.3g} (RMSE)", flush=True)
+        print(
+            f"{title}: reference by {transport}, twice {spp} samples, noise {math.sqrt(reference.mse):.3g} (RMSE)",
+            flush=True)
         rows = []
         for transport in transports:
             rows += measure_ours(options.vv, scene, folder, transport, reference, budget)
         if mitsubas:
-            remarks = export_mitsuba.export(ROOT / f"examples/scenes/{scene}.wrl", folder, SIZE, options.vv, options.replay)
+            remarks = export_mitsuba.export(ROOT / f"examples/scenes/{scene}.wrl", folder, SIZE,
+                                            options.vv, options.replay)
             for remark in remarks:
                 print(f"  for Mitsuba: {remark}")
             for mitsuba in mitsubas:
-                rows += measure_mitsuba(mitsuba, scene, folder, reference if exact else None, budget)
+                rows += measure_mitsuba(mitsuba, scene, folder, reference if exact else None,
+                                        budget)
         for row in rows:
-            print("  {renderer:<14} {spp:>5} spp {seconds:8.3f} s  RMSE {rmse:.4f}  relMSE {relmse:.4f}  bias {bias:+.4f} +- "
-                  "{bias_interval:.4f}".format(**row), flush=True)
+            print(
+                "  {renderer:<14} {spp:>5} spp {seconds:8.3f} s  RMSE {rmse:.4f}  relMSE {relmse:.4f}  bias {bias:+.4f} +- "
+                "{bias_interval:.4f}".format(**row),
+                flush=True)
         return rows
 
 
-# Reports ----------------------------------------------------------------------------------------------------------------------
+# Reports ----------------------------------------------------------------------------------------
+
 
 def table(rows):
     """Returns the table by world and renderer, from the pictures with the most samples that the
     reference can resolve."""
-    text = ("| world | renderer | samples | seconds | RMSE | relMSE | relMSE x seconds | bias, 95 % |\n"
-            "| --- | --- | --- | --- | --- | --- | --- | --- |\n")
+    text = (
+        "| world | renderer | samples | seconds | RMSE | relMSE | relMSE x seconds | bias, 95 % |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- |\n")
     for key in dict.fromkeys((r["scene"], r["renderer"]) for r in rows):
         own = [r for r in rows if (r["scene"], r["renderer"]) == key]
         own = [r for r in own if not math.isnan(r["rmse"] + r["relmse"])] or own
         last = own[-1]
         efficiency = sorted(r["efficiency"] for r in own[len(own) // 2:])
-        text += ("| {title} | {renderer} | {spp} | {seconds:.2f} | {rmse:.4f} | {relmse:.4f} | {e:.3g} | {b:+.2f} ± {i:.2f} % |\n".format(
-            title=SCENES[key[0]][0], e=efficiency[len(efficiency) // 2], b=100 * last["bias"], i=100 * last["bias_interval"], **last))
+        text += (
+            "| {title} | {renderer} | {spp} | {seconds:.2f} | {rmse:.4f} | {relmse:.4f} | {e:.3g} | {b:+.2f} ± {i:.2f} % |\n"
+            .format(title=SCENES[key[0]][0],
+                    e=efficiency[len(efficiency) // 2],
+                    b=100 * last["bias"],
+                    i=100 * last["bias_interval"],
+                    **last))
     return text
 
 
@@ -244,7 +301,8 @@ def plotted(row, what):
     if what != "bias":
         return row["seconds"], row[what]
     least, size = 1e-5, abs(row["bias"])
-    return row["seconds"], max(size, least), max(size - row["bias_interval"], least), max(size + row["bias_interval"], least)
+    return row["seconds"], max(size, least), max(size - row["bias_interval"],
+                                                 least), max(size + row["bias_interval"], least)
 
 
 def report(rows, options, mitsubas):
@@ -255,7 +313,8 @@ def report(rows, options, mitsubas):
         writer.writerows(rows)
     plots = []
     for scene in dict.fromkeys(r["scene"] for r in rows):
-        for what, title in (("rmse", "RMSE"), ("relmse", "relMSE"), ("bias", "bias of the mean, and its 95 % interval")):
+        for what, title in (("rmse", "RMSE"), ("relmse", "relMSE"),
+                            ("bias", "bias of the mean, and its 95 % interval")):
             lines = {}
             for row in rows:
                 if row["scene"] == scene and not math.isnan(row[what] + row["bias_interval"]):
@@ -273,7 +332,8 @@ def report(rows, options, mitsubas):
         before, rest = page.read_text().split(begin)
         # the table contains the same data
         plots = [p for p in plots if not p.endswith("relmse.svg")]
-        images = "".join(f"![{p[13:-4].replace('_', ': ')} over seconds](images/{p})\n" for p in plots)
+        images = "".join(
+            f"![{p[13:-4].replace('_', ': ')} over seconds](images/{p})\n" for p in plots)
         page.write_text(before + begin + text + "\n" + images + end + rest.split(end)[1])
         for plot in plots:
             (ROOT / "docs/images" / plot).write_text((out / plot).read_text())
@@ -285,23 +345,36 @@ def main():
         return worker(json.load(sys.stdin))
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", required=True)
-    parser.add_argument("--full", action="store_true", help="long references and pictures, more seeds")
+    parser.add_argument("--full",
+                        action="store_true",
+                        help="long references and pictures, more seeds")
     parser.add_argument("--docs", action="store_true", help="also into docs/benchmarks.md")
-    parser.add_argument("--again", action="store_true", help="measure nothing: plots and page from FOLDER/render.csv")
+    parser.add_argument("--again",
+                        action="store_true",
+                        help="measure nothing: plots and page from FOLDER/render.csv")
     parser.add_argument("--vv", default=export_mitsuba.BIN / "vv")
     parser.add_argument("--replay", default=export_mitsuba.BIN / "openrt-replay")
-    parser.add_argument("--mitsuba", default=os.environ.get("MITSUBA_PYTHON", sys.executable), help="a Python that has Mitsuba 3")
+    parser.add_argument("--mitsuba",
+                        default=os.environ.get("MITSUBA_PYTHON", sys.executable),
+                        help="a Python that has Mitsuba 3")
     parser.add_argument("--scenes", default=",".join(SCENES))
     options = parser.parse_args()
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
     if options.again:
         with open(pathlib.Path(options.out) / "render.csv", newline="") as file:
-            rows = [{k: v if k in ("scene", "renderer") else float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+            rows = [{
+                k: v if k in ("scene", "renderer") else float(v) for k, v in row.items()
+            } for row in csv.DictReader(file)]
         rows = [{**row, "spp": int(row["spp"])} for row in rows if row["spp"] > 1]
         return report(rows, options, any(r["renderer"].startswith("Mitsuba") for r in rows))
-    mitsubas = [m for m in (Mitsuba(options.mitsuba, v) for v in ("llvm_ad_rgb", "scalar_rgb")) if m.works(options.out)]
+    mitsubas = [
+        m for m in (Mitsuba(options.mitsuba, v) for v in ("llvm_ad_rgb", "scalar_rgb"))
+        if m.works(options.out)
+    ]
     if not mitsubas:
-        print("Mitsuba 3 is not installed here (MITSUBA_PYTHON names a Python that has it): ours alone")
+        print(
+            "Mitsuba 3 is not installed here (MITSUBA_PYTHON names a Python that has it): ours alone"
+        )
     rows = []
     for scene in options.scenes.split(","):
         rows += measure(scene, options, Budget(options.full), mitsubas)

@@ -21,8 +21,8 @@ from xml.sax.saxutils import quoteattr
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BIN = ROOT / "build/release/bin"
 
+# Matrices: column-major lists of 16, as in the export --------------------------------------------
 
-# Matrices: column-major lists of 16, as in the export -------------------------------------------------------------------------
 
 def point(m, p):
     return [m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k] for k in range(3)]
@@ -46,7 +46,8 @@ def normalised(v):
     return [x / length for x in v] if length > 0 else v
 
 
-# XML --------------------------------------------------------------------------------------------------------------------------
+# XML --------------------------------------------------------------------------------------------
+
 
 def rgb(name, values):
     return f'<rgb name={quoteattr(name)} value="{" ".join(repr(float(v)) for v in values)}"/>'
@@ -62,6 +63,7 @@ def bsdf(kind, *inside, twosided=False):
 
 
 class Exporter:
+
     def __init__(self, data, arrays, folder):
         self.data, self.arrays, self.folder = data, arrays, folder
         self.remarks = []
@@ -75,7 +77,7 @@ class Exporter:
         values.frombytes(self.arrays[place["offset"]:place["offset"] + 4 * place["count"]])
         return values
 
-    # Surfaces: the parameters of one of our classes as a BSDF -----------------------------------------------------------------
+    # Surfaces: the parameters of one of our classes as a BSDF ------------------------------------
 
     def diffuse(self, p):
         return bsdf("diffuse", rgb("reflectance", p["reflectance"]), twosided=True)
@@ -83,7 +85,9 @@ class Exporter:
     def vrml97(self, p):
         if any(p["specularColor"]) or p["transparency"] > 0:
             self.remark("VRML97: the highlight and the transparency of materials are left out")
-        return bsdf("diffuse", rgb("reflectance", p["diffuseColor"] if p["lit"] else [0, 0, 0]), twosided=True)
+        return bsdf("diffuse",
+                    rgb("reflectance", p["diffuseColor"] if p["lit"] else [0, 0, 0]),
+                    twosided=True)
 
     def glass(self, p):
         if any(p["absorption"]) or p.get("abbe"):
@@ -93,14 +97,19 @@ class Exporter:
         return bsdf("dielectric", number("int_ior", p["index"]), number("ext_ior", 1))
 
     def rough_glass(self, p):
-        return bsdf("roughdielectric", '<string name="distribution" value="ggx"/>', number("alpha", p["roughness"]),
-                    number("int_ior", p["index"]), number("ext_ior", 1))
+        return bsdf("roughdielectric", '<string name="distribution" value="ggx"/>',
+                    number("alpha", p["roughness"]), number("int_ior", p["index"]),
+                    number("ext_ior", 1))
 
     def metal(self, p):
         spectra = rgb("eta", p["n"]) + rgb("k", p["k"])
         if p["roughness"] <= 1e-4:
             return bsdf("conductor", spectra, twosided=True)
-        return bsdf("roughconductor", spectra, '<string name="distribution" value="ggx"/>', number("alpha", p["roughness"]), twosided=True)
+        return bsdf("roughconductor",
+                    spectra,
+                    '<string name="distribution" value="ggx"/>',
+                    number("alpha", p["roughness"]),
+                    twosided=True)
 
     def reflector(self, p):
         if p["lacquer"] > 1.001 or p["dust"] > 0:
@@ -108,16 +117,33 @@ class Exporter:
         return self.metal(p)
 
     def mirror(self, p):
-        return bsdf("conductor", '<string name="material" value="none"/>', rgb("specular_reflectance", p["reflectance"]), twosided=True)
+        return bsdf("conductor",
+                    '<string name="material" value="none"/>',
+                    rgb("specular_reflectance", p["reflectance"]),
+                    twosided=True)
 
     def plastic(self, p):
-        common = rgb("diffuse_reflectance", p["color"]) + number("int_ior", p["index"]) + '<boolean name="nonlinear" value="true"/>'
+        common = rgb("diffuse_reflectance", p["color"]) + number(
+            "int_ior", p["index"]) + '<boolean name="nonlinear" value="true"/>'
         if p["roughness"] <= 1e-4:
             return bsdf("plastic", common, twosided=True)
-        return bsdf("roughplastic", common, '<string name="distribution" value="ggx"/>', number("alpha", p["roughness"]), twosided=True)
+        return bsdf("roughplastic",
+                    common,
+                    '<string name="distribution" value="ggx"/>',
+                    number("alpha", p["roughness"]),
+                    twosided=True)
 
-    SURFACES = {"Diffuse": diffuse, "VRML97": vrml97, "GlobalIllumination": vrml97, "Glass": glass, "RoughGlass": rough_glass,
-                "Metal": metal, "Reflector": reflector, "Mirror": mirror, "Plastic": plastic}
+    SURFACES = {
+        "Diffuse": diffuse,
+        "VRML97": vrml97,
+        "GlobalIllumination": vrml97,
+        "Glass": glass,
+        "RoughGlass": rough_glass,
+        "Metal": metal,
+        "Reflector": reflector,
+        "Mirror": mirror,
+        "Plastic": plastic
+    }
 
     def surface(self, shader):
         make = self.SURFACES.get(shader["class"])
@@ -134,7 +160,7 @@ class Exporter:
         light = p.get("emission") or p.get("emissiveColor") or [0, 0, 0]
         return f'<emitter type="area">{rgb("radiance", light)}</emitter>' if any(light) else ""
 
-    # Shapes ---------------------------------------------------------------------------------------------------------------------
+    # Shapes --------------------------------------------------------------------------------------
 
     def sphere(self, mesh, inside):
         m = mesh["matrix"]
@@ -149,13 +175,16 @@ class Exporter:
         m = mesh["matrix"]
         rows, det = inverse_transpose(m)
         local = self.array(mesh["points"], "f")
-        points = array.array("f", [x for i in range(0, len(local), 3) for x in point(m, local[i:i + 3])])
+        points = array.array("f",
+                             [x for i in range(0, len(local), 3) for x in point(m, local[i:i + 3])])
         indices = self.array(mesh["indices"], "I")
         normals = None
         if mesh["normals"]:
             given = self.array(mesh["normals"], "f")
-            normals = array.array("f", [x for i in range(0, len(given), 3) for x in normalised(
-                [sum(rows[k][j] * given[i + k] for k in range(3)) for j in range(3)])])
+            normals = array.array("f", [
+                x for i in range(0, len(given), 3) for x in normalised(
+                    [sum(rows[k][j] * given[i + k] for k in range(3)) for j in range(3)])
+            ])
         turned = bool(mesh["clockwise"]) != (det < 0)
         name = f"mesh{number_}.ply"
         count = len(points) // 3
@@ -163,8 +192,10 @@ class Exporter:
             fields = "property float x\nproperty float y\nproperty float z\n"
             if normals:
                 fields += "property float nx\nproperty float ny\nproperty float nz\n"
-            out.write((f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{fields}"
-                       f"element face {len(indices) // 3}\nproperty list uchar int vertex_indices\nend_header\n").encode())
+            out.write((
+                f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{fields}"
+                f"element face {len(indices) // 3}\nproperty list uchar int vertex_indices\nend_header\n"
+            ).encode())
             for i in range(count):
                 out.write(struct.pack("<3f", *points[3 * i:3 * i + 3]))
                 if normals:
@@ -180,13 +211,16 @@ class Exporter:
         for n, mesh in enumerate(self.data["meshes"]):
             shader = self.data["shaders"].get(str(mesh["shader"]))
             if not shader or mesh["kind"] in ("lines", "points"):
-                self.remark(f"{mesh['kind']} are left out" if shader else "a shape without a shader is left out")
+                self.remark(f"{mesh['kind']} are left out"
+                            if shader else "a shape without a shader is left out")
                 continue
             inside = self.surface(shader) + self.emission(shader)
-            out.append(self.sphere(mesh, inside) if mesh["kind"] == "sphere" else self.triangles(mesh, n, inside))
+            out.append(
+                self.sphere(mesh, inside) if mesh["kind"] ==
+                "sphere" else self.triangles(mesh, n, inside))
         return out
 
-    # Camera, lights -----------------------------------------------------------------------------------------------------------
+    # Camera, lights ------------------------------------------------------------------------------
 
     def sensor(self, width, height):
         camera = self.data["shaders"][str(self.data["camera"]["shader"])]
@@ -203,17 +237,22 @@ class Exporter:
         kind = "perspective"
         p = camera["parameters"]
         if camera["class"] == "ThinLens" and p["radius"] > 0:
-            kind, lens = "thinlens", number("aperture_radius", p["radius"]) + number("focus_distance", p["focus"])
-        return (f'<sensor type="{kind}"><string name="fov_axis" value="y"/>{number("fov", p["fovy"])}{lens}'
-                f'{number("near_clip", 1e-3)}{number("far_clip", 1e5)}'
-                f'<transform name="to_world"><lookat origin="{triple(eye)}" target="{triple(target)}" up="{triple(up)}"/></transform>'
-                f'<film type="hdrfilm"><integer name="width" value="{width}"/><integer name="height" value="{height}"/>'
-                '<rfilter type="box"/><string name="pixel_format" value="rgb"/></film>'
-                '<sampler type="independent"><integer name="sample_count" value="16"/></sampler></sensor>')
+            kind, lens = "thinlens", number("aperture_radius", p["radius"]) + number(
+                "focus_distance", p["focus"])
+        return (
+            f'<sensor type="{kind}"><string name="fov_axis" value="y"/>{number("fov", p["fovy"])}{lens}'
+            f'{number("near_clip", 1e-3)}{number("far_clip", 1e5)}'
+            f'<transform name="to_world"><lookat origin="{triple(eye)}" target="{triple(target)}" up="{triple(up)}"/></transform>'
+            f'<film type="hdrfilm"><integer name="width" value="{width}"/><integer name="height" value="{height}"/>'
+            '<rfilter type="box"/><string name="pixel_format" value="rgb"/></film>'
+            '<sampler type="independent"><integer name="sample_count" value="16"/></sampler></sensor>'
+        )
 
     def lights(self):
         for light in self.data["lights"]:
-            self.remark(f"{self.data['shaders'][str(light['shader'])]['class']}: lights without extent are left out")
+            self.remark(
+                f"{self.data['shaders'][str(light['shader'])]['class']}: lights without extent are left out"
+            )
         return []
 
 
@@ -243,8 +282,9 @@ def panorama(world, folder, vv, size):
     """Renders the surroundings for Mitsuba's envmap, from so far away that the whole world is
     smaller than a pixel."""
     width, height = size
-    run(vv, world, "-o", folder / "around.pfm", "--size", f"{width}x{height}", "--spp", "16", "--transport", "direct", "--quiet",
-        "--camera", "0,1e9,0:0,1e9,-1", "--camera-shader", "Panorama")
+    run(vv, world, "-o", folder / "around.pfm", "--size", f"{width}x{height}", "--spp", "16",
+        "--transport", "direct", "--quiet", "--camera", "0,1e9,0:0,1e9,-1", "--camera-shader",
+        "Panorama")
     _, _, values = read_pfm(folder / "around.pfm")
     if not any(values):
         return ""
@@ -257,19 +297,26 @@ def panorama(world, folder, vv, size):
     return '<emitter type="envmap"><string name="filename" value="around.pfm"/></emitter>'
 
 
-def export(world, folder, size=(320, 240), vv=BIN / "vv", replay=BIN / "openrt-replay", surroundings=(1024, 512)):
+def export(world,
+           folder,
+           size=(320, 240),
+           vv=BIN / "vv",
+           replay=BIN / "openrt-replay",
+           surroundings=(1024, 512)):
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     width, height = size
-    run(vv, world, "-o", folder / "first.pfm", "--size", f"{width}x{height}", "--spp", "1", "--depth", "0", "--quiet", "--record",
-        folder / "scene.rec")
+    run(vv, world, "-o", folder / "first.pfm", "--size", f"{width}x{height}", "--spp", "1",
+        "--depth", "0", "--quiet", "--record", folder / "scene.rec")
     run(replay, folder / "scene.rec", "--export", folder / "scene.json")
     data = json.loads((folder / "scene.json").read_text())
     exporter = Exporter(data, (folder / "scene.json.bin").read_bytes(), folder)
     around = panorama(world, folder, vv, surroundings) if data["environment"]["shader"] else ""
     parts = [exporter.sensor(width, height), *exporter.shapes(), *exporter.lights(), around]
     integrator = '<integrator type="path"><integer name="max_depth" value="26"/></integrator>'
-    (folder / "scene.xml").write_text('<scene version="3.0.0">\n' + "\n".join([integrator] + [p for p in parts if p]) + "\n</scene>\n")
+    (folder /
+     "scene.xml").write_text('<scene version="3.0.0">\n' +
+                             "\n".join([integrator] + [p for p in parts if p]) + "\n</scene>\n")
     for name in ("first.pfm", "scene.rec", "scene.json", "scene.json.bin"):
         (folder / name).unlink()
     return exporter.remarks
@@ -283,7 +330,8 @@ def main():
     parser.add_argument("--vv", default=BIN / "vv")
     parser.add_argument("--replay", default=BIN / "openrt-replay")
     options = parser.parse_args()
-    for remark in export(options.world, options.folder, tuple(map(int, options.size.split("x"))), options.vv, options.replay):
+    for remark in export(options.world, options.folder, tuple(map(int, options.size.split("x"))),
+                         options.vv, options.replay):
         print(f"export_mitsuba.py: {remark}", file=sys.stderr)
 
 

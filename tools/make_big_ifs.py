@@ -17,7 +17,9 @@ def main() -> None:
     out.write("  geometry IndexedFaceSet {\n    solid FALSE\n    coord Coordinate { point [\n")
     for j in range(cells + 1):
         for i in range(cells + 1):
-            out.write(f"{i * 0.01 - 3.16:.6g} {math.sin(i * 0.05) * math.cos(j * 0.03):.6g} {j * 0.01 - 3.16:.6g},\n")
+            out.write(
+                f"{i * 0.01 - 3.16:.6g} {math.sin(i * 0.05) * math.cos(j * 0.03):.6g} {j * 0.01 - 3.16:.6g},\n"
+            )
     out.write("    ] }\n    coordIndex [\n")
     row = cells + 1
     for j in range(cells):

@@ -47,30 +47,38 @@ class Faces:
             self.faces.append([base + n + i for i in range(n)])
         if bottom:
             self.faces.append([base + n - 1 - i for i in range(n)])
-        self.faces += [[base + i, base + (i + 1) % n, base + n + (i + 1) % n, base + n + i] for i in range(n)]
+        self.faces += [
+            [base + i, base + (i + 1) % n, base + n + (i + 1) % n, base + n + i] for i in range(n)
+        ]
 
     def box(self, x, y, z, sx, sy, sz):
-        self.prism([(x - sx / 2, y - sy / 2), (x + sx / 2, y - sy / 2), (x + sx / 2, y + sy / 2), (x - sx / 2, y + sy / 2)],
-                   z - sz / 2, z + sz / 2)
+        self.prism([(x - sx / 2, y - sy / 2), (x + sx / 2, y - sy / 2), (x + sx / 2, y + sy / 2),
+                    (x - sx / 2, y + sy / 2)], z - sz / 2, z + sz / 2)
 
     def track(self, way, width, low, high):
         """Adds a strip of copper along a path of points, with round ends."""
         for (x0, y0), (x1, y1) in zip(way, way[1:]):
             a = math.atan2(y1 - y0, x1 - x0)
-            outline = [(x1 + width / 2 * math.cos(a + t), y1 + width / 2 * math.sin(a + t)) for t in half_turn(-math.pi / 2)]
-            outline += [(x0 + width / 2 * math.cos(a + t), y0 + width / 2 * math.sin(a + t)) for t in half_turn(math.pi / 2)]
+            outline = [(x1 + width / 2 * math.cos(a + t), y1 + width / 2 * math.sin(a + t))
+                       for t in half_turn(-math.pi / 2)]
+            outline += [(x0 + width / 2 * math.cos(a + t), y0 + width / 2 * math.sin(a + t))
+                        for t in half_turn(math.pi / 2)]
             self.prism(outline, low, high, bottom=False)
 
     def disc(self, x, y, radius, low, high):
         turns = [2 * math.pi * i / 24 for i in range(24)]
-        self.prism([(x + radius * math.cos(t), y + radius * math.sin(t)) for t in turns], low, high, bottom=False)
+        self.prism([(x + radius * math.cos(t), y + radius * math.sin(t)) for t in turns],
+                   low,
+                   high,
+                   bottom=False)
 
     def lathe(self, profile, steps=32):
         """Adds a surface of revolution about the z axis. profile: (radius, z) from the bottom
         up."""
         base = len(self.points)
         for r, z in profile:
-            self.points += [(r * math.cos(2 * math.pi * i / steps), r * math.sin(2 * math.pi * i / steps), z) for i in range(steps)]
+            self.points += [(r * math.cos(2 * math.pi * i / steps),
+                             r * math.sin(2 * math.pi * i / steps), z) for i in range(steps)]
         for row in range(len(profile) - 1):
             for i in range(steps):
                 a, b = base + row * steps + i, base + row * steps + (i + 1) % steps
@@ -94,18 +102,21 @@ def rounded(width, height, radius):
     for cx, cy, start in ((1, 1, 0), (-1, 1, .5), (-1, -1, 1), (1, -1, 1.5)):
         for i in range(7):
             a = math.pi * (start + i / 12)
-            out.append((cx * (width / 2 - radius) + radius * math.cos(a), cy * (height / 2 - radius) + radius * math.sin(a)))
+            out.append((cx * (width / 2 - radius) + radius * math.cos(a),
+                        cy * (height / 2 - radius) + radius * math.sin(a)))
     return out
 
 
 def layer(name, faces, convex=True):
-    return (f"Transform {{ children [ Group {{ children [ Shape {{\n appearance Appearance {{ material Material {{ {LAYERS[name]} }} }}\n"
-            f" geometry {faces.text(convex=convex)} }} ] }} ] }}\n")
+    return (
+        f"Transform {{ children [ Group {{ children [ Shape {{\n appearance Appearance {{ material Material {{ {LAYERS[name]} }} }}\n"
+        f" geometry {faces.text(convex=convex)} }} ] }} ] }}\n")
 
 
 def shape(material, faces, crease=0.5):
-    return (f"Shape {{ appearance Appearance {{ material DEF {material} Material {{ {MATERIALS[material]} }} }}\n"
-            f" geometry {faces.text(crease)} }}\n")
+    return (
+        f"Shape {{ appearance Appearance {{ material DEF {material} Material {{ {MATERIALS[material]} }} }}\n"
+        f" geometry {faces.text(crease)} }}\n")
 
 
 def soic():
@@ -131,7 +142,8 @@ def chip(body_material, height):
 
 def led():
     body, pins = Faces(), Faces()
-    dome = [(2.5 * math.cos(a), 6.1 + 2.5 * math.sin(a)) for a in (math.pi / 2 * i / 10 for i in range(10))]
+    dome = [(2.5 * math.cos(a), 6.1 + 2.5 * math.sin(a))
+            for a in (math.pi / 2 * i / 10 for i in range(10))]
     body.lathe([(2.9, 1.0), (2.9, 2.0), (2.5, 2.0), *dome, (.2, 8.6)])
     for x in (-1.27, 1.27):
         pins.box(x, 0, -.6, .5, .5, 3.4)
@@ -141,7 +153,9 @@ def led():
 def header():
     body, pins = Faces(), Faces()
     for i in range(4):
-        octagon = [(x, y - 2.54 * i) for x, y in ((1.27, -.9), (1.27, .9), (.9, 1.27), (-.9, 1.27), (-1.27, .9), (-1.27, -.9), (-.9, -1.27), (.9, -1.27))]
+        octagon = [(x, y - 2.54 * i)
+                   for x, y in ((1.27, -.9), (1.27, .9), (.9, 1.27), (-.9, 1.27), (-1.27, .9),
+                                (-1.27, -.9), (-.9, -1.27), (.9, -1.27))]
         body.prism(octagon, 0, 2.54)
         pins.box(0, -2.54 * i, 2.8, .64, .64, 11.5)
     return shape("PLASTIC-BLACK", body, 0) + shape("PIN-02", pins, 0)
@@ -149,21 +163,33 @@ def header():
 
 def electrolytic():
     body, foot = Faces(), Faces()
-    body.lathe([(3.1, .3), (3.15, .6), (3.15, 1.3), (2.9, 1.6), (3.15, 1.9), (3.15, 5.6), (2.95, 5.8)])
+    body.lathe([(3.1, .3), (3.15, .6), (3.15, 1.3), (2.9, 1.6), (3.15, 1.9), (3.15, 5.6),
+                (2.95, 5.8)])
     foot.prism(rounded(6.6, 6.6, .8), 0, .5)
     return shape("MET-ALUMINUM", body, .6) + shape("PLASTIC-BLACK", foot, 0)
 
 
-MODELS = {"SOIC-8_3.9x4.9mm": soic, "R_0805_2012Metric": lambda: chip("RES-SMD-01", .5),
-          "C_0805_2012Metric": lambda: chip("CAP-CERAMIC-05", 1.1), "LED_D5.0mm": led, "PinHeader_1x04_P2.54mm_Vertical": header,
-          "CP_Elec_6.3x5.8": electrolytic}
-PARTS = [("SOIC-8_3.9x4.9mm", -3, 1, 0), ("CP_Elec_6.3x5.8", 6.5, -5.5, 0), ("LED_D5.0mm", 13, 5, 90),
-         ("PinHeader_1x04_P2.54mm_Vertical", -16, 3.81, 0), ("R_0805_2012Metric", 4, 3, 90), ("R_0805_2012Metric", 7, 3, 90),
-         ("R_0805_2012Metric", -3, 6.5, 0), ("C_0805_2012Metric", -9, -2, 90), ("C_0805_2012Metric", -3, -6, 0)]
-TRACKS = [[(-16, 3.81), (-11, 3.81), (-9.6, 2.9), (-5.7, 2.9)], [(-16, 1.27), (-12, 1.27), (-9.5, -1.1), (-9, -1.1)],
-          [(-16, -1.27), (-13, -1.27), (-11, -2.9), (-9, -2.9), (-6.5, -6), (-3.9, -6)], [(-16, -3.81), (-12, -8.5), (3.8, -8.5), (3.8, -6)],
-          [(-5.7, 1.6), (-8, 1.6), (-8, 6.5), (-3.9, 6.5)], [(-.3, 2.9), (2.6, 2.9), (4, 4)], [(-2.1, 6.5), (6, 6.5), (7, 5.4), (7, 4)],
-          [(7, 2.1), (9, 2.1), (11.5, 3.73), (13, 3.73)], [(4, 2.1), (4, .6), (8.8, -2), (9.2, -5.5)], [(-.3, -.9), (1, -.9), (3.8, -3.5), (3.8, -5.5)],
+MODELS = {
+    "SOIC-8_3.9x4.9mm": soic,
+    "R_0805_2012Metric": lambda: chip("RES-SMD-01", .5),
+    "C_0805_2012Metric": lambda: chip("CAP-CERAMIC-05", 1.1),
+    "LED_D5.0mm": led,
+    "PinHeader_1x04_P2.54mm_Vertical": header,
+    "CP_Elec_6.3x5.8": electrolytic
+}
+PARTS = [("SOIC-8_3.9x4.9mm", -3, 1, 0), ("CP_Elec_6.3x5.8", 6.5, -5.5, 0),
+         ("LED_D5.0mm", 13, 5, 90), ("PinHeader_1x04_P2.54mm_Vertical", -16, 3.81, 0),
+         ("R_0805_2012Metric", 4, 3, 90), ("R_0805_2012Metric", 7, 3, 90),
+         ("R_0805_2012Metric", -3, 6.5, 0), ("C_0805_2012Metric", -9, -2, 90),
+         ("C_0805_2012Metric", -3, -6, 0)]
+TRACKS = [[(-16, 3.81), (-11, 3.81), (-9.6, 2.9), (-5.7, 2.9)],
+          [(-16, 1.27), (-12, 1.27), (-9.5, -1.1), (-9, -1.1)],
+          [(-16, -1.27), (-13, -1.27), (-11, -2.9), (-9, -2.9), (-6.5, -6), (-3.9, -6)],
+          [(-16, -3.81), (-12, -8.5), (3.8, -8.5), (3.8, -6)],
+          [(-5.7, 1.6), (-8, 1.6), (-8, 6.5), (-3.9, 6.5)], [(-.3, 2.9), (2.6, 2.9), (4, 4)],
+          [(-2.1, 6.5), (6, 6.5), (7, 5.4), (7, 4)], [(7, 2.1), (9, 2.1), (11.5, 3.73), (13, 3.73)],
+          [(4, 2.1), (4, .6), (8.8, -2), (9.2, -5.5)],
+          [(-.3, -.9), (1, -.9), (3.8, -3.5), (3.8, -5.5)],
           [(13, 6.27), (13, 10.5), (-10, 10.5), (-12, 8.5), (-16, 4.5)]]
 
 
@@ -187,21 +213,33 @@ def board():
         if name.startswith(("R_", "C_")):
             for side in (-1, 1):
                 dx, dy = (0, side * .95) if turn else (side * .95, 0)
-                paste.box(x + dx, y + dy, top + .03, 1.3 if turn else 1.0, 1.0 if turn else 1.3, .05)
+                paste.box(x + dx, y + dy, top + .03, 1.3 if turn else 1.0, 1.0 if turn else 1.3,
+                          .05)
         if name.startswith("SOIC"):
             for i in range(8):
-                paste.box(x + (2.7 if i % 2 else -2.7), y + 1.905 - 1.27 * (i // 2), top + .03, 1.5, .55, .05)
-    for outline_of in ([(-5.3, 4), (-.7, 4)], [(-5.3, -2), (-.7, -2)], [(10, 1.6), (16, 1.6)], [(-17.7, 5.5), (-14.3, 5.5), (-14.3, -5.5), (-17.7, -5.5), (-17.7, 5.5)],
-                       [(2.6, -9.4), (10.4, -9.4), (10.4, -1.6), (2.6, -1.6), (2.6, -9.4)]):
+                paste.box(x + (2.7 if i % 2 else -2.7), y + 1.905 - 1.27 * (i // 2), top + .03, 1.5,
+                          .55, .05)
+    for outline_of in ([(-5.3, 4),
+                        (-.7, 4)], [(-5.3, -2),
+                                    (-.7, -2)], [(10, 1.6),
+                                                 (16, 1.6)], [(-17.7, 5.5), (-14.3, 5.5),
+                                                              (-14.3, -5.5), (-17.7, -5.5),
+                                                              (-17.7, 5.5)], [(2.6, -9.4),
+                                                                              (10.4, -9.4),
+                                                                              (10.4, -1.6),
+                                                                              (2.6, -1.6),
+                                                                              (2.6, -9.4)]):
         silk.track(outline_of, .2, top, top + .025)
-    layers = layer("body", body, False) + layer("mask", mask, False) + layer("trace", tracks) + layer("copper", copper)
+    layers = layer("body", body, False) + layer("mask", mask, False) + layer(
+        "trace", tracks) + layer("copper", copper)
     return layers + layer("paste", paste) + layer("silk", silk)
 
 
 def placed(name, x, y, turn):
     spin = f" rotation 0 0 1 {math.radians(turn):.6g}" if turn else ""
-    return (f"Transform {{ translation {x:g} {y:g} {THICK / 2 + .05:g}{spin} scale 2.54 2.54 2.54 children [\n"
-            f" Inline {{ url \"shapes3D/{name}.wrl\" }} ] }}\n")
+    return (
+        f"Transform {{ translation {x:g} {y:g} {THICK / 2 + .05:g}{spin} scale 2.54 2.54 2.54 children [\n"
+        f" Inline {{ url \"shapes3D/{name}.wrl\" }} ] }}\n")
 
 
 def in_tenths(text):
@@ -214,7 +252,8 @@ def main():
     (folder / "shapes3D").mkdir(parents=True, exist_ok=True)
     for name, make in MODELS.items():
         (folder / f"shapes3D/{name}.wrl").write_text("#VRML V2.0 utf8\n" + in_tenths(make()))
-    text = "#VRML V2.0 utf8\nWorldInfo { title \"blinker\" }\nTransform { scale 1 1 1 children [\n" + board()
+    text = "#VRML V2.0 utf8\nWorldInfo { title \"blinker\" }\nTransform { scale 1 1 1 children [\n" + board(
+    )
     (folder / "blinker.wrl").write_text(text + "".join(placed(*part) for part in PARTS) + "] }\n")
 
 

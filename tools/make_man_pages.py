@@ -12,25 +12,49 @@ import pathlib
 import re
 import sys
 
-NAMES = {"errors": "errors", "life": "contexts", "primitives": "primitives", "arrays": "arrays", "matrices": "matrices",
-         "objects": "objects", "shaders": "shaders", "roles": "roles", "textures": "textures", "frames": "frames",
-         "queries": "queries", "workers": "workers"}
-TITLES = {"errors": "errors and messages", "contexts": "contexts and their configuration", "primitives": "primitives of an object",
-          "arrays": "primitives from arrays", "matrices": "the matrix stack", "objects": "objects and instances",
-          "shaders": "shaders and their parameters", "roles": "lights, camera, environment, transport", "textures": "textures",
-          "frames": "frames, quality, pixels, statistics", "queries": "ray queries and picking",
-          "workers": "the workers of a cluster"}
+NAMES = {
+    "errors": "errors",
+    "life": "contexts",
+    "primitives": "primitives",
+    "arrays": "arrays",
+    "matrices": "matrices",
+    "objects": "objects",
+    "shaders": "shaders",
+    "roles": "roles",
+    "textures": "textures",
+    "frames": "frames",
+    "queries": "queries",
+    "workers": "workers"
+}
+TITLES = {
+    "errors": "errors and messages",
+    "contexts": "contexts and their configuration",
+    "primitives": "primitives of an object",
+    "arrays": "primitives from arrays",
+    "matrices": "the matrix stack",
+    "objects": "objects and instances",
+    "shaders": "shaders and their parameters",
+    "roles": "lights, camera, environment, transport",
+    "textures": "textures",
+    "frames": "frames, quality, pixels, statistics",
+    "queries": "ray queries and picking",
+    "workers": "the workers of a cluster"
+}
 
 
 def escape(text):
     text = text.replace("\\", "\\e")
-    return "\n".join("\\&" + line if line.startswith((".", "'")) else line for line in text.split("\n"))
+    return "\n".join(
+        "\\&" + line if line.startswith((".", "'")) else line for line in text.split("\n"))
 
 
 def comment_text(block):
     """Returns the lines of a comment without its frame."""
     lines = re.sub(r"^\s*/\*+ ?|\s*\*/\s*$", "", block, flags=re.S).split("\n")
-    return [re.sub(r"^ ?\* ?", "", line.lstrip() if line.lstrip().startswith("*") else line).rstrip() for line in lines]
+    return [
+        re.sub(r"^ ?\* ?", "",
+               line.lstrip() if line.lstrip().startswith("*") else line).rstrip() for line in lines
+    ]
 
 
 def paragraphs(lines):
@@ -88,7 +112,9 @@ def tokens(part):
             yield "function", re.sub(r"\s+", " ", " ".join(block)).replace("RT_API ", "")
         elif not line.startswith("#"):
             block = [line]
-            while not re.search(r"(^}.*;|;)\s*(/\*.*)?$", block[-1]) or block[0].count("{") and not any("}" in b for b in block):
+            while not re.search(r"(^}.*;|;)\s*(/\*.*)?$",
+                                block[-1]) or block[0].count("{") and not any("}" in b
+                                                                              for b in block):
                 i += 1
                 block.append(lines[i])
             while "/*" in block[-1] and "*/" not in block[-1]:
@@ -153,14 +179,22 @@ def settle(body):
 
 def page(name, title, version, names, synopsis, body, others):
     upper = name.upper()
-    lines = [f'.TH {upper} 3 "" "OpenRT {version}" "OpenRT Manual"', ".nh", ".ad l", ".SH NAME",
-             escape(", ".join(names)) + " \\- " + title, ".SH SYNOPSIS", ".nf", ".B #include <openrt/openrt.h>", ".PP",
-             *[escape(s) for s in synopsis], ".fi", ".PP", "Link with \\fI-lopenrt\\fP.", ".SH DESCRIPTION", *body]
+    lines = [
+        f'.TH {upper} 3 "" "OpenRT {version}" "OpenRT Manual"', ".nh", ".ad l", ".SH NAME",
+        escape(", ".join(names)) + " \\- " + title, ".SH SYNOPSIS", ".nf",
+        ".B #include <openrt/openrt.h>", ".PP", *[escape(s) for s in synopsis], ".fi", ".PP",
+        "Link with \\fI-lopenrt\\fP.", ".SH DESCRIPTION", *body
+    ]
     if name != "openrt":
-        lines += [".SH ERRORS", "A call that fails changes nothing and records an error, which", ".BR rtGetError (3)",
-                  "returns; calls that return an id then return 0. Without a current context every call but those of",
-                  ".BR openrt_contexts (3)", "fails with RT_INVALID_OPERATION."]
-    lines += [".SH SEE ALSO", ",\n".join(f".BR {other} (3)" for other in others).replace(",\n", " ,\n")]
+        lines += [
+            ".SH ERRORS", "A call that fails changes nothing and records an error, which",
+            ".BR rtGetError (3)",
+            "returns; calls that return an id then return 0. Without a current context every call but those of",
+            ".BR openrt_contexts (3)", "fails with RT_INVALID_OPERATION."
+        ]
+    lines += [
+        ".SH SEE ALSO", ",\n".join(f".BR {other} (3)" for other in others).replace(",\n", " ,\n")
+    ]
     text = "\n".join(lines) + "\n"
     text = re.sub(r"(\.PP\n)+(?=\.(SH|RS|PP|IP))", "", text)
     return re.sub(r"(\.SH [^\n]*\n)\.PP\n", r"\1", text)
@@ -187,14 +221,19 @@ def main():
         names = [function_name(f) for f in functions]
         own = "openrt_" + name
         others = [p for p in all_pages if p != own]
-        (folder / f"{own}.3").write_text(page(own, TITLES[name], version, [own] + names, functions, body, others))
+        (folder / f"{own}.3").write_text(
+            page(own, TITLES[name], version, [own] + names, functions, body, others))
         for link in names:
             (folder / f"{link}.3").write_text(f".so man3/{own}.3\n")
-    groups = [line for name, _, functions in parts
-              for line in (".TP", f".BR openrt_{name} (3)", escape(TITLES[name] + ": " + ", ".join(map(function_name, functions))))]
+    groups = [
+        line for name, _, functions in parts
+        for line in (".TP", f".BR openrt_{name} (3)",
+                     escape(TITLES[name] + ": " + ", ".join(map(function_name, functions))))
+    ]
     body = [*paragraphs(intro[1:]), ".PP", "The functions by group:", *groups]
-    (folder / "openrt.3").write_text(page("openrt", "a ray tracing interface in OpenGL's manner", version, ["openrt"],
-                                          ["RTcontext context = rtNewContext(NULL);"], body, all_pages[1:]))
+    (folder / "openrt.3").write_text(
+        page("openrt", "a ray tracing interface in OpenGL's manner", version, ["openrt"],
+             ["RTcontext context = rtNewContext(NULL);"], body, all_pages[1:]))
 
 
 if __name__ == "__main__":

@@ -24,7 +24,8 @@ def number(x):
 
 
 def value(x):
-    return " ".join(map(number, x)) if isinstance(x, list) else number(x) if isinstance(x, (int, float)) else ""
+    return " ".join(map(number, x)) if isinstance(
+        x, list) else number(x) if isinstance(x, (int, float)) else ""
 
 
 def row(p):
@@ -40,21 +41,33 @@ def row(p):
 def section(c):
     lines = [f"### {c['name']}", "", f"Plug-in `{c['library']}`: {c['text']}.", ""]
     if c["parameters"]:
-        lines += ["| parameter | type | default | range | meaning |", "| --- | --- | --- | --- | --- |"] + [row(p) for p in c["parameters"]] + [""]
+        lines += [
+            "| parameter | type | default | range | meaning |", "| --- | --- | --- | --- | --- |"
+        ] + [row(p) for p in c["parameters"]] + [""]
     return "\n".join(lines)
 
 
 vv = sys.argv[1]
 env = {k: v for k, v in os.environ.items() if k != "OPENRT_SHADER_PATH"}
-classes = json.loads(subprocess.run([vv, "--list-shaders", "--json"], env=env, capture_output=True, text=True, check=True).stdout)["shaders"]
+classes = json.loads(
+    subprocess.run([vv, "--list-shaders", "--json"],
+                   env=env,
+                   capture_output=True,
+                   text=True,
+                   check=True).stdout)["shaders"]
 classes.sort(key=lambda c: (KINDS.index(c["kind"]), c["name"]))
 if sys.argv[2:3] != ["--check"]:
     text = HEAD
     for kind in KINDS:
         some = [section(c) for c in classes if c["kind"] == kind]
         if some:
-            text += "\n## " + {"surface": "Surfaces", "light": "Lights", "camera": "Cameras", "environment": "Environments",
-                               "transport": "Transports"}[kind] + "\n\n" + "\n".join(some)
+            text += "\n## " + {
+                "surface": "Surfaces",
+                "light": "Lights",
+                "camera": "Cameras",
+                "environment": "Environments",
+                "transport": "Transports"
+            }[kind] + "\n\n" + "\n".join(some)
     print(text.rstrip())
     sys.exit(0)
 
@@ -67,4 +80,6 @@ lacking = [name for name in names if name not in listed]
 if lacking:
     print("not on the page yet:", *lacking)
 if wrong or not listed:
-    sys.exit(f"{sys.argv[3]} is out of date ({', '.join(wrong)}): tools/make_shader_classes.py {vv} > docs/shader-classes.md")
+    sys.exit(
+        f"{sys.argv[3]} is out of date ({', '.join(wrong)}): tools/make_shader_classes.py {vv} > docs/shader-classes.md"
+    )

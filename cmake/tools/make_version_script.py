@@ -52,13 +52,15 @@ def without_templates(statement):
 
 def declared(statement, scope, kind):
     """Returns the linker name that a statement (without body and `;`) declares, or None."""
-    if not statement or statement[0] in ("using", "typedef", "friend", "template", "static_assert", "public", "enum"):
+    if not statement or statement[0] in ("using", "typedef", "friend", "template", "static_assert",
+                                         "public", "enum"):
         return None
     words = without_templates(statement)
     if "operator" in words:
         at = words.index("operator")
         rest = words[at + 1:]
-        name = "operator" + ("()" if rest[:2] == ["(", ")"] else "".join(rest[:rest.index("(")] if "(" in rest else rest))
+        name = "operator" + ("()" if rest[:2] == ["(", ")"] else
+                             "".join(rest[:rest.index("(")] if "(" in rest else rest))
         return None if words[-1] in ("default", "delete", "0") else name
     while "__attribute__" in words:
         at = words.index("__attribute__")
@@ -100,11 +102,16 @@ def scan(words):
             elif plain[:1] == ["extern"]:
                 stack.append(("namespace", ""))
                 statement = []
-            elif "(" not in plain and ("struct" in plain or "class" in plain) and "enum" not in plain and "=" not in plain:
+            elif "(" not in plain and ("struct" in plain or "class"
+                                       in plain) and "enum" not in plain and "=" not in plain:
                 head = plain[:plain.index(":")] if ":" in plain else plain
-                name = [w for w in head if re.match(r"[A-Za-z_]", w) and w not in ("final", "struct", "class", "alignas")]
+                name = [
+                    w for w in head if re.match(r"[A-Za-z_]", w) and w not in ("final", "struct",
+                                                                               "class", "alignas")
+                ]
                 template = statement[:1] == ["template"]
-                stack.append(("template" if template or kind == "template" else "class", name[-1] if name else ""))
+                stack.append(("template" if template or kind == "template" else "class",
+                              name[-1] if name else ""))
                 if name and not template and kind != "template":
                     classes.add(scope()[:-2])
                 statement = []
@@ -149,7 +156,8 @@ def patterns(names, classes):
     for name in names:
         lines |= {pattern(name), pattern(name) + "[!a-zA-Z0-9_]*"}
     for name in classes:
-        lines |= {f"{what}?for?{name}" for what in ("vtable", "typeinfo")} | {f"typeinfo?name?for?{name}"}
+        lines |= {f"{what}?for?{name}" for what in ("vtable", "typeinfo")
+                 } | {f"typeinfo?name?for?{name}"}
     return sorted(lines)
 
 
@@ -169,7 +177,10 @@ def private_headers(folder, sources):
 
 def sibling_patterns(options):
     names, classes = set(), set()
-    sources = [f for folder in options.siblings for kind in ("*.cpp", "*.h") for f in sorted(folder.glob(kind))]
+    sources = [
+        f for folder in options.siblings for kind in ("*.cpp", "*.h")
+        for f in sorted(folder.glob(kind))
+    ]
     for header in private_headers(options.of, sources):
         n, c = scan(tokens(header.read_text()))
         names |= n
@@ -182,9 +193,14 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, required=True)
     parser.add_argument("--version", required=True)
     parser.add_argument("--private", default="")
-    parser.add_argument("--private-all", default="", help="namespace that is exported as a whole, for tests of the inside")
+    parser.add_argument("--private-all",
+                        default="",
+                        help="namespace that is exported as a whole, for tests of the inside")
     parser.add_argument("--of", type=pathlib.Path)
-    parser.add_argument("--siblings", type=pathlib.Path, action="append", help="folder of the sources of a sibling library; several times")
+    parser.add_argument("--siblings",
+                        type=pathlib.Path,
+                        action="append",
+                        help="folder of the sources of a sibling library; several times")
     parser.add_argument("headers", nargs="+", type=pathlib.Path)
     o = parser.parse_args()
     functions, names, classes = set(), set(), set()
@@ -198,8 +214,12 @@ def main():
             classes |= c
     out = ["/* Made by cmake/tools/make_version_script.py from the headers; do not edit. */"]
     if o.private:  # first, because the linker uses the last matching pattern
-        inner = [f"{o.private_all}::*", f"*?for?{o.private_all}::*"] if o.private_all else sibling_patterns(o)
-        out += [o.private + " {", "  global:", '    extern "C++" {', *[f"      {p};" for p in inner], "    };", "};"]
+        inner = [f"{o.private_all}::*", f"*?for?{o.private_all}::*"
+                ] if o.private_all else sibling_patterns(o)
+        out += [
+            o.private + " {", "  global:", '    extern "C++" {', *[f"      {p};" for p in inner],
+            "    };", "};"
+        ]
     out += [o.version + " {", "  global:", *[f"    {name};" for name in sorted(functions)]]
     if names or classes:
         out += ['    extern "C++" {', *[f"      {p};" for p in patterns(names, classes)], "    };"]

@@ -6,8 +6,13 @@ import numpy as np
 from xvrml import rt
 
 
-def torus(around: int = 64, across: int = 32) -> "tuple[np.ndarray[tuple[int, ...], np.dtype[np.float64]], list[list[int]]]":
-    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, around, endpoint=False), np.linspace(0, 2 * np.pi, across, endpoint=False), indexing="ij")
+def torus(
+    around: int = 64,
+    across: int = 32
+) -> "tuple[np.ndarray[tuple[int, ...], np.dtype[np.float64]], list[list[int]]]":
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, around, endpoint=False),
+                       np.linspace(0, 2 * np.pi, across, endpoint=False),
+                       indexing="ij")
     ring = 1 + 0.35 * np.cos(v)
     points = np.stack([ring * np.cos(u), 0.35 * np.sin(v), ring * np.sin(u)], -1).reshape(-1, 3)
     faces = []
@@ -21,7 +26,10 @@ def torus(around: int = 64, across: int = 32) -> "tuple[np.ndarray[tuple[int, ..
 
 def main(path: str) -> None:
     with rt.Context() as context:
-        gold = context.shader("VRML97", diffuseColor=(0.8, 0.55, 0.2), specularColor=(0.5, 0.5, 0.5), shininess=0.4)
+        gold = context.shader("VRML97",
+                              diffuseColor=(0.8, 0.55, 0.2),
+                              specularColor=(0.5, 0.5, 0.5),
+                              shininess=0.4)
         blue = context.shader("VRML97", diffuseColor=(0.1, 0.3, 0.8))
         context.instance(context.mesh(*torus(), shader=gold))
         context.instance(context.sphere(0.5, shader=blue))

@@ -14,7 +14,8 @@ def level(x: float, z: float, time: float) -> float:
 
 
 def slope(x: float, z: float, time: float) -> float:
-    return float(script.height) * sum(h * kx * cos(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
+    return float(script.height) * sum(
+        h * kx * cos(kx * x + kz * z + w * time) for kx, kz, w, h in WAVES)
 
 
 def set_time(time: float) -> None:

@@ -30,7 +30,10 @@ RUN = {"sh", "python"}
 COMPILED = {"c", "cpp"}
 READ = {"vrml", "js", "tcl"}
 # Pages that have a test of their own
-BY_TESTS = {"docs/python.md": "tests/python/test_docs_python.py", "docs/ray-queries.md": "tests/python/test_docs_python.py"}
+BY_TESTS = {
+    "docs/python.md": "tests/python/test_docs_python.py",
+    "docs/ray-queries.md": "tests/python/test_docs_python.py"
+}
 MARKS = ("unchecked", "syntax only", "in", "inside", "with", "part of")
 # Commands that install or build the project are covered by other tests
 OTHERS = re.compile(r"(make|git|sudo|apt|apt-get|pip|docker|podman)\b")
@@ -74,8 +77,10 @@ class Block:
 
 def pages(root):
     """Returns the documents whose blocks are checked."""
-    found = [root / "README.md", root / "HACKING.md", root / "CHANGELOG.md", *sorted((root / "docs").rglob("*.md")),
-             *sorted((root / "examples").rglob("*.md"))]
+    found = [
+        root / "README.md", root / "HACKING.md", root / "CHANGELOG.md", *sorted(
+            (root / "docs").rglob("*.md")), *sorted((root / "examples").rglob("*.md"))
+    ]
     return [p for p in found if p.exists()]
 
 
@@ -124,7 +129,10 @@ def shell(text, change=small):
     """Returns the lines of a shell block that are run, each passed through `change`; empty if there
     are none."""
     joined = re.sub(r"\\\n\s*", "", text)
-    return "\n".join(change(line) for line in joined.split("\n") if line.strip() and not OTHERS.match(line.strip()))
+    return "\n".join(
+        change(line)
+        for line in joined.split("\n")
+        if line.strip() and not OTHERS.match(line.strip()))
 
 
 def table(root):
@@ -136,8 +144,12 @@ def table(root):
         if blocks:
             counts = [sum(b.way == way for b in blocks) or "" for way in ways]
             rows.append(f"| `{page.relative_to(root)}` | " + " | ".join(map(str, counts)) + " |")
-    reasons = [f"* `{b.page}`, line {b.line}, {b.language or 'text'}: {b.marks['unchecked']}" for page in pages(root)
-               for b in blocks_of(root, page) if b.way == "unchecked"]
+    reasons = [
+        f"* `{b.page}`, line {b.line}, {b.language or 'text'}: {b.marks['unchecked']}"
+        for page in pages(root)
+        for b in blocks_of(root, page)
+        if b.way == "unchecked"
+    ]
     return "\n".join(rows + ["", "Unchecked, and why:", ""] + reasons)
 
 

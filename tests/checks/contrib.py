@@ -24,7 +24,11 @@ def complain(path, text):
 
 
 def run(*command, **how):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=60, **how)
+    return subprocess.run([str(word) for word in command],
+                          capture_output=True,
+                          text=True,
+                          timeout=60,
+                          **how)
 
 
 def options_of(program):
@@ -47,7 +51,7 @@ def check_command(path, words):
                     complain(path, f"{program} has no option {word}")
 
 
-# Hosts -------------------------------------------------------------------------------------------------------------------
+# Hosts ------------------------------------------------------------------------------------------
 
 hosts = contrib / "hosts.txt"
 lines = [line.split("#")[0].strip() for line in hosts.read_text().splitlines()]
@@ -55,7 +59,7 @@ for line in filter(None, lines):
     if not re.fullmatch(r"([\w.-]+|\[[0-9a-f:]+\])(:\d+)?(=\S{40})?", line):
         complain(hosts, f"no address: {line}")
 
-# Slurm -------------------------------------------------------------------------------------------------------------------
+# Slurm -------------------------------------------------------------------------------------------
 
 script = contrib / "slurm/render.sbatch"
 if (done := run("bash", "-n", script)).returncode:
@@ -69,20 +73,27 @@ if shutil.which("shellcheck") and (done := run("shellcheck", "-s", "bash", scrip
 if not re.search(r"^#SBATCH --", text, re.M) or text.index("#SBATCH") > text.index("set -euo"):
     complain(script, "options of sbatch stand before the first command")
 
-# systemd -----------------------------------------------------------------------------------------------------------------
+# systemd -----------------------------------------------------------------------------------------
 
 unit = contrib / "systemd/openrt-worker@.service"
 text = unit.read_text()
 command = re.search(r"^ExecStart=(.*)$", text, re.M).group(1)
-check_command(unit, [pathlib.Path(word).name if i == 0 else word for i, word in enumerate(shlex.split(command))])
-for needed in ("DynamicUser", "ProtectSystem", "NoNewPrivileges", "SystemCallFilter", "MemoryMax", "LoadCredential"):
+check_command(
+    unit,
+    [pathlib.Path(word).name if i == 0 else word for i, word in enumerate(shlex.split(command))])
+for needed in ("DynamicUser", "ProtectSystem", "NoNewPrivileges", "SystemCallFilter", "MemoryMax",
+               "LoadCredential"):
     if not re.search(rf"^{needed}=", text, re.M):
         complain(unit, f"no {needed}")
 if shutil.which("systemd-analyze"):
     # Neither the program nor the manual page needs to be installed.
     with tempfile.TemporaryDirectory() as folder:
         copy = pathlib.Path(folder) / "openrt-worker@7447.service"
-        copy.write_text(re.sub(r"^Documentation=.*\n", "", re.sub(r"^ExecStart=\S+", "ExecStart=/bin/true", text, flags=re.M), flags=re.M))
+        copy.write_text(
+            re.sub(r"^Documentation=.*\n",
+                   "",
+                   re.sub(r"^ExecStart=\S+", "ExecStart=/bin/true", text, flags=re.M),
+                   flags=re.M))
         done = run("systemd-analyze", "verify", "--man=no", copy)
         said = [line for line in done.stderr.splitlines() if "openrt-worker" in line]
         if done.returncode or said:
@@ -95,7 +106,7 @@ if shutil.which("systemd-analyze"):
 else:
     skipped.append("no systemd-analyze")
 
-# YAML --------------------------------------------------------------------------------------------------------------------
+# YAML --------------------------------------------------------------------------------------------
 
 try:
     import yaml
@@ -119,9 +130,13 @@ def check_pod(path, pod, labels):
         for mount in container.get("volumeMounts", []):
             if mount["name"] not in volumes:
                 complain(path, f"no volume {mount['name']}")
-    if pod.get("securityContext", {}).get("runAsNonRoot") is not True or pod.get("automountServiceAccountToken") is not False:
+    if pod.get(
+            "securityContext",
+        {}).get("runAsNonRoot") is not True or pod.get("automountServiceAccountToken") is not False:
         complain(path, "the pod has rights that it does not need")
-    return labels, {port["name"]: port["containerPort"] for c in containers(pod) for port in c.get("ports", [])}
+    return labels, {
+        port["name"]: port["containerPort"] for c in containers(pod) for port in c.get("ports", [])
+    }
 
 
 if yaml:
@@ -145,10 +160,12 @@ if yaml:
         if not selector.items() <= labels.items() or (kind == "Deployment") != bool(selector):
             complain(path, f"the selector of the {kind} does not find its pods")
         names = {v["secret"]["secretName"] for v in template["spec"]["volumes"] if "secret" in v}
-        if names != {"openrt-cluster-key"} or "openrt-cluster-key" not in path.with_name("workers.yaml").read_text().split("apiVersion")[0]:
+        if names != {"openrt-cluster-key"} or "openrt-cluster-key" not in path.with_name(
+                "workers.yaml").read_text().split("apiVersion")[0]:
             complain(path, f"the secret is {names}")
     labels, ports = pods["Job"]
-    if not service["spec"]["selector"].items() <= labels.items() or service["spec"]["selector"].items() <= pods["Deployment"][0].items():
+    if not service["spec"]["selector"].items() <= labels.items(
+    ) or service["spec"]["selector"].items() <= pods["Deployment"][0].items():
         complain(service_path, "the Service does not lead to vv alone")
     port = service["spec"]["ports"][0]
     if ports.get(port["targetPort"]) != port["port"]:
@@ -156,19 +173,28 @@ if yaml:
     worker = objects["Deployment"][1]["spec"]["template"]["spec"]["containers"][0]["command"]
     if f"{service['metadata']['name']}:{port['port']}" not in worker:
         complain(service_path, "workers call somebody else")
-    images = {c["image"] for kind in ("Deployment", "Job") for c in objects[kind][1]["spec"]["template"]["spec"]["containers"]}
+    images = {
+        c["image"]
+        for kind in ("Deployment", "Job")
+        for c in objects[kind][1]["spec"]["template"]["spec"]["containers"]
+    }
     if len(images) != 1:
         complain(service_path, f"master and workers have different images: {images}")
     compose = contrib / "compose.yaml"
     for service in yaml.safe_load(compose.read_text())["services"].values():
         check_command(compose, service["entrypoint"])
-        if service["image"] not in images or service.get("cap_drop") != ["ALL"] or service.get("read_only") is not True:
+        if service["image"] not in images or service.get("cap_drop") != [
+                "ALL"
+        ] or service.get("read_only") is not True:
             complain(compose, "another image than Kubernetes', or rights that are not needed")
 
 listed = (contrib / "README.md").read_text()
 for path in contrib.rglob("*"):
-    if path.is_file() and path.parent.name != "container" and path.name != "README.md" and f"`{path.relative_to(root)}`" not in listed:
+    if path.is_file(
+    ) and path.parent.name != "container" and path.name != "README.md" and f"`{path.relative_to(root)}`" not in listed:
         complain(path, "contrib/README.md does not list it")
 
-print(*complaints, f"{len(complaints)} complaints" + "".join(f"; skipped: {what}" for what in skipped), sep="\n")
+print(*complaints,
+      f"{len(complaints)} complaints" + "".join(f"; skipped: {what}" for what in skipped),
+      sep="\n")
 sys.exit(1 if complaints else 0)

@@ -12,7 +12,9 @@ import sys
 root = pathlib.Path(sys.argv[1]).resolve()
 TOPS = {p.name for p in root.iterdir() if p.is_dir() and not p.name.startswith(".")} - {"build"}
 targets = set(re.findall(r"^([a-z-]+):", (root / "Makefile").read_text(), re.M))
-presets = {p["name"] for p in json.loads((root / "CMakePresets.json").read_text())["configurePresets"]}
+presets = {
+    p["name"] for p in json.loads((root / "CMakePresets.json").read_text())["configurePresets"]
+}
 
 
 def braces(text):
@@ -26,9 +28,12 @@ def missing(document, text):
     for code in re.findall(r"`([^`\n]+)`", text):
         for word in code.split():
             word = word.strip("(),;:")
-            if word.split("/")[0] in TOPS and "/" in word and re.fullmatch(r"[\w./{},*-]+", word) and "NAME" not in word and "NNNN" not in word:
-                yield from (f"no {path}" for path in braces(word.rstrip("/")) if not any(root.glob(path + "*")) and not any(root.glob(path)))
-            elif word.startswith("decisions/") and "NNNN" not in word and not (root / "docs" / word).exists():
+            if word.split("/")[0] in TOPS and "/" in word and re.fullmatch(
+                    r"[\w./{},*-]+", word) and "NAME" not in word and "NNNN" not in word:
+                yield from (f"no {path}" for path in braces(word.rstrip("/"))
+                            if not any(root.glob(path + "*")) and not any(root.glob(path)))
+            elif word.startswith("decisions/") and "NNNN" not in word and not (root / "docs" /
+                                                                               word).exists():
                 yield f"no docs/{word}"
         for target in re.findall(r"^make ([a-z]+)", code):
             if target not in targets:
@@ -49,7 +54,8 @@ def anchors(document):
     text = re.sub(r"^```.*?^```", "", document.read_text(encoding="utf-8"), flags=re.M | re.S)
     found, seen = set(), {}
     for title in re.findall(r"^#+ (.+?)\s*$", text, re.M):
-        slug = re.sub(r"[^\w\- ]", "", re.sub(r"[`*]|\]\([^)]*\)", "", title).lower()).replace(" ", "-")
+        slug = re.sub(r"[^\w\- ]", "",
+                      re.sub(r"[`*]|\]\([^)]*\)", "", title).lower()).replace(" ", "-")
         found.add(slug if slug not in seen else f"{slug}-{seen[slug]}")
         seen[slug] = seen.get(slug, 0) + 1
     return found
@@ -62,8 +68,14 @@ COMING = re.compile(r"reference/.*|readme|hacking|changelog|python|ray-queries|c
 def contents():
     """Yields pages missing from the contents of the site, and entries without a page."""
     index = (root / "docs/index.md").read_text(encoding="utf-8")
-    listed = {line for toc in re.findall(r"```\{toctree\}\n(.*?)```", index, re.S) for line in toc.split("\n") if re.fullmatch(r"[\w/-]+", line)}
-    there = {p.relative_to(root / "docs").with_suffix("").as_posix() for p in (root / "docs").rglob("*.md")}
+    listed = {
+        line for toc in re.findall(r"```\{toctree\}\n(.*?)```", index, re.S)
+        for line in toc.split("\n") if re.fullmatch(r"[\w/-]+", line)
+    }
+    there = {
+        p.relative_to(root / "docs").with_suffix("").as_posix()
+        for p in (root / "docs").rglob("*.md")
+    }
     there = {p for p in there if not re.match(r"decisions/\d|index$", p)}
     yield from (f"the contents lack {page}" for page in sorted(there - listed))
     yield from (f"no page {page}" for page in sorted(listed - there) if not COMING.fullmatch(page))

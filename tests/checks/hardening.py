@@ -31,14 +31,18 @@ import tempfile
 import zipfile
 
 LARGE = 64 << 10  # bytes of code: large enough that some function has an array on its stack
-WANTED = ("libopenrt.so", "libxvrml.so", "libxvrml_openrt.so", "vv", "openrt-replay", "xvrml-script-host", "vrml97.so")
+WANTED = ("libopenrt.so", "libxvrml.so", "libxvrml_openrt.so", "vv", "openrt-replay",
+          "xvrml-script-host", "vrml97.so")
 OURS = re.compile(r"lib(openrt|xvrml)[\w]*\.so|_xvrml|vv$|openrt-|xvrml-|nodegen$")
 PRINTERS = {"printf", "fprintf", "sprintf", "snprintf", "vsnprintf"}
 ENDBR64 = b"\xf3\x0f\x1e\xfa"
 
 
 def readelf(*arguments):
-    return subprocess.run(["readelf", "-W", *map(str, arguments)], capture_output=True, text=True, check=True).stdout
+    return subprocess.run(["readelf", "-W", *map(str, arguments)],
+                          capture_output=True,
+                          text=True,
+                          check=True).stdout
 
 
 def is_loadable(path):
@@ -47,7 +51,8 @@ def is_loadable(path):
         return False
     with path.open("rb") as file:
         head = file.read(18)
-    return head[:4] == b"\x7fELF" and int.from_bytes(head[16:18], "little" if head[5] == 1 else "big") in (2, 3)
+    return head[:4] == b"\x7fELF" and int.from_bytes(head[16:18],
+                                                     "little" if head[5] == 1 else "big") in (2, 3)
 
 
 def loadable_below(folder):
@@ -56,7 +61,9 @@ def loadable_below(folder):
     found = []
     for place, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if name not in ("CMakeFiles", "CMakeTmp")]
-        found += [path for path in (pathlib.Path(place) / name for name in names) if is_loadable(path)]
+        found += [
+            path for path in (pathlib.Path(place) / name for name in names) if is_loadable(path)
+        ]
     return sorted(found)
 
 
@@ -66,7 +73,9 @@ def start_files_have_cet():
     adds it to no file."""
     compiler = os.environ.get("CC", "cc")
     for name in ("crti.o", "Scrt1.o"):
-        done = subprocess.run([compiler, f"-print-file-name={name}"], capture_output=True, text=True)
+        done = subprocess.run([compiler, f"-print-file-name={name}"],
+                              capture_output=True,
+                              text=True)
         path = pathlib.Path(done.stdout.strip())
         if done.returncode or not path.is_file() or "IBT" not in readelf("-n", path):
             return False
@@ -104,14 +113,18 @@ def functions_without_endbr(path, symbols):
     """Returns exported functions that do not begin with endbr64. Weak symbols are skipped: for
     inline functions and templates the linker may have used the copy of a third-party static library
     (GoogleTest)."""
-    segments = [tuple(int(x, 16) for x in m) for m in
-                re.findall(r"^\s+LOAD\s+(0x\w+) (0x\w+) 0x\w+ (0x\w+) 0x\w+ R E", readelf("-l", path), re.M)]
+    segments = [
+        tuple(int(x, 16) for x in m) for m in re.findall(
+            r"^\s+LOAD\s+(0x\w+) (0x\w+) 0x\w+ (0x\w+) 0x\w+ R E", readelf("-l", path), re.M)
+    ]
     content = path.read_bytes()
     for address, kind, binding, section, name in symbols:
-        if kind != "FUNC" or binding != "GLOBAL" or section == "UND" or name.startswith("_init@") or name in ("_init", "_fini"):
+        if kind != "FUNC" or binding != "GLOBAL" or section == "UND" or name.startswith(
+                "_init@") or name in ("_init", "_fini"):
             continue
         for offset, start, size in segments:
-            if start <= address < start + size and content[offset + address - start:][:4] != ENDBR64:
+            if start <= address < start + size and content[offset + address -
+                                                           start:][:4] != ENDBR64:
                 yield name
 
 
@@ -174,9 +187,12 @@ def check(places, plain, partial):
             for path in files:
                 # Where a wheel keeps third-party libraries.
                 foreign = any(part.endswith(".libs") for part in path.parts)
-                ours = not foreign and (place.suffix != ".whl" or bool(OURS.match(path.name)) or path.parent.name in ("shaders", "scripts"))
+                ours = not foreign and (place.suffix != ".whl" or bool(OURS.match(path.name)) or
+                                        path.parent.name in ("shaders", "scripts"))
                 for complaint in complaints(path, ours, plain, packed):
-                    print(f"{place if packed else ''}{'/' if packed else ''}{path.relative_to(folder) if packed else path}: {complaint}")
+                    print(
+                        f"{place if packed else ''}{'/' if packed else ''}{path.relative_to(folder) if packed else path}: {complaint}"
+                    )
                     bad += 1
             names = {re.sub(r"(\.so)[.\d]*$", r"\1", p.name) for p in files}
             for missing in (name for name in WANTED if name not in names and not partial):
@@ -193,19 +209,35 @@ def check(places, plain, partial):
 def check_self():
     """Checks that programs with each fault are found and that one without faults passes."""
     source = "#include <stdio.h>\nint main(int n, char **v) { char b[64]; sprintf(b, \"%s %d\", v[0], n); return puts(b); }\n"
-    hard = ["-O2", "-U_FORTIFY_SOURCE", "-D_FORTIFY_SOURCE=2", "-fstack-protector-strong", "-fPIE", "-pie", "-Wl,-z,relro,-z,now,-z,noexecstack"]
-    faults = {None: [], "empty element": ["-Wl,-rpath,$ORIGIN/../lib::"], "neither below": ["-Wl,-rpath,lib"], "which is neither": ["-Wl,-rpath,/nonexistent/libraries"],
-              "stack is executable": ["-Wl,-z,execstack"], "BIND_NOW": ["-Wl,-z,lazy"], "GNU_RELRO": ["-Wl,-z,norelro"],
-              "no PIE": ["-no-pie"], "_FORTIFY_SOURCE": ["-U_FORTIFY_SOURCE"]}
+    hard = [
+        "-O2", "-U_FORTIFY_SOURCE", "-D_FORTIFY_SOURCE=2", "-fstack-protector-strong", "-fPIE",
+        "-pie", "-Wl,-z,relro,-z,now,-z,noexecstack"
+    ]
+    faults = {
+        None: [],
+        "empty element": ["-Wl,-rpath,$ORIGIN/../lib::"],
+        "neither below": ["-Wl,-rpath,lib"],
+        "which is neither": ["-Wl,-rpath,/nonexistent/libraries"],
+        "stack is executable": ["-Wl,-z,execstack"],
+        "BIND_NOW": ["-Wl,-z,lazy"],
+        "GNU_RELRO": ["-Wl,-z,norelro"],
+        "no PIE": ["-no-pie"],
+        "_FORTIFY_SOURCE": ["-U_FORTIFY_SOURCE"]
+    }
     bad = 0
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         (folder / "p.c").write_text(source)
         for fault, flags in faults.items():
-            subprocess.run([os.environ.get("CC", "cc"), folder / "p.c", "-o", folder / "p", *hard, "-Wl,-rpath,$ORIGIN", *flags], check=True,
+            subprocess.run([
+                os.environ.get("CC", "cc"), folder / "p.c", "-o", folder / "p", *hard,
+                "-Wl,-rpath,$ORIGIN", *flags
+            ],
+                           check=True,
                            capture_output=True)
             found = list(complaints(folder / "p", True))
-            if (fault is None) == bool(found) or (fault and not any(fault in text for text in found)):
+            if (fault is None) == bool(found) or (fault and
+                                                  not any(fault in text for text in found)):
                 print(f"fault {fault}: {found}")
                 bad += 1
     print(f"{len(faults)} programs, {bad} complaints")

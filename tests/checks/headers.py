@@ -32,7 +32,9 @@ for name, command in jobs:
     with tempfile.NamedTemporaryFile("w", suffix=".c") as source:
         source.write(f"#include <{name}>\n#include <{name}>\n")
         source.flush()
-        run = subprocess.run([*command, *STRICT, *includes, source.name], capture_output=True, text=True)
+        run = subprocess.run([*command, *STRICT, *includes, source.name],
+                             capture_output=True,
+                             text=True)
     if run.returncode:
         failed += 1
         print(f"{name} ({command[3]}):\n{run.stderr}")

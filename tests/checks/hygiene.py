@@ -33,7 +33,8 @@ def raw_lines(text):
 def complaints(root, path, relative):
     text = path.read_text(encoding="utf-8")
     lines = text.split("\n")
-    if path.suffix in SOURCE and len(lines) > 501 and not any(REASON in line for line in lines[:20]):
+    if path.suffix in SOURCE and len(lines) > 501 and not any(REASON in line
+                                                              for line in lines[:20]):
         yield f"{relative}: {len(lines) - 1} lines: split it, or say why it is one file (\"{REASON} ...\") in its first comment"
     raw = raw_lines(text)
     for number, line in enumerate(lines, 1):
@@ -46,9 +47,10 @@ def complaints(root, path, relative):
             yield f"{where}: {NOTES.search(line).group()}: do it or open an issue"
         if path.suffix in SOURCE and line.rstrip() != line:
             yield f"{where}: trailing blanks"
-    described_by_header = path.suffix == ".cpp" and (
-        path.with_suffix(".h").exists() or any(root.glob(f"lib*/include/*/{path.stem}.h")))
-    if path.suffix in {".c", ".cpp", ".h", ".hpp"} and not described_by_header and not text.lstrip().startswith(("//", "/*")):
+    described_by_header = path.suffix == ".cpp" and (path.with_suffix(".h").exists() or any(
+        root.glob(f"lib*/include/*/{path.stem}.h")))
+    if path.suffix in {".c", ".cpp", ".h", ".hpp"
+                      } and not described_by_header and not text.lstrip().startswith(("//", "/*")):
         yield f"{relative}: begins without a comment that says what the file owns"
 
 
@@ -58,9 +60,11 @@ def main():
     checked = 0
     for path in sorted(root.rglob("*")):
         relative = path.relative_to(root).as_posix()
-        if relative.startswith((".git/", "build/")) or "/__pycache__/" in relative or relative.startswith(EXCEPT):
+        if relative.startswith(
+            (".git/", "build/")) or "/__pycache__/" in relative or relative.startswith(EXCEPT):
             continue
-        if path.is_file() and (path.suffix in TEXT or path.name in {"Makefile", "run", ".clang-format", ".clang-tidy"}):
+        if path.is_file() and (path.suffix in TEXT or
+                               path.name in {"Makefile", "run", ".clang-format", ".clang-tidy"}):
             checked += 1
             found += complaints(root, path, relative)
     print("\n".join(found))

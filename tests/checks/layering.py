@@ -12,6 +12,7 @@ import re
 import sys
 import textwrap
 
+
 @dataclasses.dataclass(frozen=True)
 class Part:
     """A part of the project: the files below `prefixes` (a file belongs to the longest prefix of
@@ -29,64 +30,99 @@ def part(name, prefixes, purpose, includes=""):
 # From the bottom up: public headers, then each library, then the programs and bindings built on
 # them.
 TABLE = [
-    part("api-h", " ".join(f"libopenrt/include/openrt/{name}.h" for name in
-                           ("openrt", "context", "geometry", "shader", "frame", "query", "worker", "queries")), "the application API, C99"),
+    part(
+        "api-h",
+        " ".join(f"libopenrt/include/openrt/{name}.h" for name in ("openrt", "context", "geometry",
+                                                                   "shader", "frame", "query",
+                                                                   "worker", "queries")),
+        "the application API, C99"),
     part("shader-sdk", "libopenrt/include/openrt/", "what a shader plug-in sees, C99 and C++"),
     part("xvrml-h", "libxvrml/include/xvrml/", "worlds, nodes, events: the public C++ headers"),
-    part("script-sdk", "libxvrml/include/xvrml/xscript.h libxvrml/include/xvrml/xscript_types.h", "what a script engine sees, C99"),
-    part("mapper-h", "libxvrml/include/xvrml/mapper.h libxvrml/include/xvrml/openrt.h", "draws a world through the C API", "xvrml-h"),
+    part("script-sdk", "libxvrml/include/xvrml/xscript.h libxvrml/include/xvrml/xscript_types.h",
+         "what a script engine sees, C99"),
+    part("mapper-h", "libxvrml/include/xvrml/mapper.h libxvrml/include/xvrml/openrt.h",
+         "draws a world through the C API", "xvrml-h"),
     part("common", "common/", "headers that several libraries share"),
-
-    part("openrt-scene", "libopenrt/scene/", "edits, commits, and the scene that they make", "api-h common"),
-    part("openrt-shading", "libopenrt/shading/", "shader plug-ins, parameters, textures", "shader-sdk openrt-scene common"),
-    part("openrt-render", "libopenrt/render/", "rays, light transport, samples, film and its errors",
+    part("openrt-scene", "libopenrt/scene/", "edits, commits, and the scene that they make",
+         "api-h common"),
+    part("openrt-shading", "libopenrt/shading/", "shader plug-ins, parameters, textures",
+         "shader-sdk openrt-scene common"),
+    part("openrt-render", "libopenrt/render/",
+         "rays, light transport, samples, film and its errors",
          "api-h shader-sdk openrt-scene openrt-shading common"),
-    part("openrt-backend", "libopenrt/backend/", "the interface between the API and whoever renders", "api-h openrt-scene common"),
-    part("backend-local", "libopenrt/backend/local/", "renders in this process; the only part that knows Embree",
+    part("openrt-backend", "libopenrt/backend/",
+         "the interface between the API and whoever renders", "api-h openrt-scene common"),
+    part("backend-local", "libopenrt/backend/local/",
+         "renders in this process; the only part that knows Embree",
          "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend common"),
-    part("backend-record", "libopenrt/backend/record/", "writes edits to a file, and reads it; checks them against class tables",
+    part("backend-record", "libopenrt/backend/record/",
+         "writes edits to a file, and reads it; checks them against class tables",
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
-    part("backend-debug", "libopenrt/backend/debug/", "tells misuse of the API; names things as the class tables do",
+    part("backend-debug", "libopenrt/backend/debug/",
+         "tells misuse of the API; names things as the class tables do",
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
-    part("backend-null", "libopenrt/backend/null/", "takes edits and draws nothing", "api-h openrt-scene openrt-backend common"),
-    part("backend-cluster", "libopenrt/backend/cluster/",
-         "renders with the help of other machines: net/ connects machines, messages/ says what they send each other, master/ gives jobs out, worker/ does them on a local backend",
-         "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend backend-local backend-record common"),
-    part("openrt-api", "libopenrt/api/", "the rt* functions: they make edits and hand them to a backend",
+    part("backend-null", "libopenrt/backend/null/", "takes edits and draws nothing",
+         "api-h openrt-scene openrt-backend common"),
+    part(
+        "backend-cluster", "libopenrt/backend/cluster/",
+        "renders with the help of other machines: net/ connects machines, messages/ says what they send each other, master/ gives jobs out, worker/ does them on a local backend",
+        "api-h shader-sdk openrt-scene openrt-shading openrt-render openrt-backend backend-local backend-record common"
+    ),
+    part("openrt-api", "libopenrt/api/",
+         "the rt* functions: they make edits and hand them to a backend",
          "api-h shader-sdk openrt-scene openrt-shading openrt-backend common"),
     part("openrt-tools", "libopenrt/tools/", "openrt-replay and openrt-worker",
          "api-h openrt-scene openrt-shading openrt-backend backend-record backend-cluster common"),
-
-    part("xvrml-base", "libxvrml/base/ libxvrml/nodes/", "values, lexer, limits; shared with nodegen", "xvrml-h common"),
-    part("nodegen", "libxvrml/nodegen/", "writes the node classes and tables from .node files", "xvrml-h xvrml-base common"),
-    part("xvrml-graph", "libxvrml/graph/", "the scene graph: access to fields, ranges, prototypes and their expansion, equality",
+    part("xvrml-base", "libxvrml/base/ libxvrml/nodes/",
+         "values, lexer, limits; shared with nodegen", "xvrml-h common"),
+    part("nodegen", "libxvrml/nodegen/", "writes the node classes and tables from .node files",
          "xvrml-h xvrml-base common"),
-    part("xvrml-parse", "libxvrml/parse/", "reads worlds: parser, builder, loader", "xvrml-h xvrml-base xvrml-graph common"),
-    part("xvrml-write", "libxvrml/write/", "writes worlds and values as VRML97 text", "xvrml-h xvrml-base xvrml-graph common"),
-    part("xvrml-geometry", "libxvrml/geometry/", "geometry nodes as triangles, lines and points: pure functions", "xvrml-h xvrml-base common"),
-    part("xvrml-image", "libxvrml/image/", "decodes pictures and films", "xvrml-h xvrml-base common"),
-    part("xvrml-event", "libxvrml/event/", "routes, cascades, and which nodes are part of the running world",
+    part("xvrml-graph", "libxvrml/graph/",
+         "the scene graph: access to fields, ranges, prototypes and their expansion, equality",
+         "xvrml-h xvrml-base common"),
+    part("xvrml-parse", "libxvrml/parse/", "reads worlds: parser, builder, loader",
+         "xvrml-h xvrml-base xvrml-graph common"),
+    part("xvrml-write", "libxvrml/write/", "writes worlds and values as VRML97 text",
+         "xvrml-h xvrml-base xvrml-graph common"),
+    part("xvrml-geometry", "libxvrml/geometry/",
+         "geometry nodes as triangles, lines and points: pure functions",
+         "xvrml-h xvrml-base common"),
+    part("xvrml-image", "libxvrml/image/", "decodes pictures and films",
+         "xvrml-h xvrml-base common"),
+    part("xvrml-event", "libxvrml/event/",
+         "routes, cascades, and which nodes are part of the running world",
          "xvrml-h xvrml-base xvrml-graph xvrml-geometry common"),
-    part("xvrml-behaviour", "libxvrml/behaviour/", "what nodes do when events arrive and time passes; the viewer, the pointer, picking",
-         "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event common"),
-    part("script-remote", "libxvrml/script/remote/", "Scripts in processes of their own", "script-sdk common"),
+    part(
+        "xvrml-behaviour", "libxvrml/behaviour/",
+        "what nodes do when events arrive and time passes; the viewer, the pointer, picking",
+        "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event common"),
+    part("script-remote", "libxvrml/script/remote/", "Scripts in processes of their own",
+         "script-sdk common"),
     part("xvrml-script", "libxvrml/script/", "finds script engines and runs Script nodes with them",
          "xvrml-h script-sdk script-remote xvrml-base xvrml-graph xvrml-parse xvrml-event common"),
-    part("script-host", "libxvrml/tools/script_host/", "the program of those processes", "script-sdk xvrml-script script-remote common"),
-    part("xvrml-browser", "libxvrml/browser/", "a running world: one object that owns all of the above",
-         "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event xvrml-behaviour xvrml-script common"),
+    part("script-host", "libxvrml/tools/script_host/", "the program of those processes",
+         "script-sdk xvrml-script script-remote common"),
+    part(
+        "xvrml-browser", "libxvrml/browser/",
+        "a running world: one object that owns all of the above",
+        "xvrml-h xvrml-base xvrml-graph xvrml-parse xvrml-geometry xvrml-image xvrml-event xvrml-behaviour xvrml-script common"
+    ),
     part("mapper", "libxvrml/mapper/", "maps a scene graph to rt* calls (library xvrml_openrt)",
          "mapper-h xvrml-h xvrml-base xvrml-geometry xvrml-image api-h common"),
-
     part("shader-plugin", "plugins/shaders/", "stock shaders", "shader-sdk"),
-    part("script-plugin", "plugins/script/", "script engines; common/ says where native: libraries are looked for", "script-sdk common"),
-    part("picture", "libpicture/", "renders worlds to pictures and writes files; shared by vv and the Python bindings",
+    part("script-plugin", "plugins/script/",
+         "script engines; common/ says where native: libraries are looked for",
+         "script-sdk common"),
+    part("picture", "libpicture/",
+         "renders worlds to pictures and writes files; shared by vv and the Python bindings",
          "api-h xvrml-h mapper-h"),
-    part("window", "apps/vv/window/", "vv's window; the only part that knows SDL", "api-h xvrml-h mapper-h app picture common"),
+    part("window", "apps/vv/window/", "vv's window; the only part that knows SDL",
+         "api-h xvrml-h mapper-h app picture common"),
     part("app", "apps/", "vv on the command line; --list-shaders reads the tables of plug-ins",
          "api-h shader-sdk xvrml-h mapper-h picture window common"),
     part("binding", "bindings/", "the Python package", "api-h xvrml-h mapper-h picture common"),
-    part("example", "examples/", "programs for readers", "api-h shader-sdk script-sdk xvrml-h mapper-h"),
+    part("example", "examples/", "programs for readers",
+         "api-h shader-sdk script-sdk xvrml-h mapper-h"),
     part("test", "tests/", "tests, benchmarks and audits"),
 ]
 PARTS = {prefix: p.name for p in TABLE for prefix in p.prefixes}
@@ -96,8 +132,10 @@ PUBLIC = {"api-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
 # Third-party headers that only some parts may include.
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
-    (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"), {"backend-cluster", "script-remote", "test"}, "sockets"),
-    (re.compile(r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
+    (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"),
+     {"backend-cluster", "script-remote", "test"}, "sockets"),
+    (re.compile(
+        r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
      {"xvrml-geometry", "xvrml-image", "picture", "window", "test"}, "picture and font libraries"),
     (re.compile(r"(SDL2/.*|SDL\w*\.h)$"), {"window"}, "SDL"),
     (re.compile(r"lib(av|sw)[a-z]+/"), {"xvrml-image", "picture", "test"}, "the ffmpeg libraries"),
@@ -109,9 +147,14 @@ FOREIGN = [
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")
 # Headers of the languages that script engines run.
 LANGUAGES = re.compile(r"(Python\.h|pybind11/\w+\.h)$")
-SEARCH = ["libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps/vv", "tests", "common", "."]
+SEARCH = [
+    "libopenrt/include", "libxvrml/include", "libopenrt", "libxvrml", "plugins/shaders", "apps/vv",
+    "tests", "common", "."
+]
 # Generated at build time -> the part that they belong to.
-GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"), (re.compile(r"messages_generated\.h$"), "backend-cluster"), (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
+GENERATED = [(re.compile(r"edits_generated\.h$"), "openrt-scene"),
+             (re.compile(r"messages_generated\.h$"), "backend-cluster"),
+             (re.compile(r"xvrml/nodes\.h$"), "xvrml-h")]
 SUFFIXES = {".c", ".cpp", ".h", ".hpp"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 
@@ -161,14 +204,17 @@ def check(files):
                     complaints.append(f"{where}: {part} may not include {name} ({to})")
                 continue
             if quoted and part != "test":
-                complaints.append(f'{where}: "{name}" names no header of the project; write <{name}> for one of others')
+                complaints.append(
+                    f'{where}: "{name}" names no header of the project; write <{name}> for one of others'
+                )
             for pattern, who, what in FOREIGN:
                 if pattern.match(name) and part not in who:
                     complaints.append(f"{where}: {part} may not know {what} ({name})")
             if part in PUBLIC | {"shader-plugin", "script-plugin"} and not STANDARD.match(name):
                 if part == "script-plugin" and LANGUAGES.match(name):
                     continue
-                complaints.append(f"{where}: {part} may include the language's own headers only, not {name}")
+                complaints.append(
+                    f"{where}: {part} may include the language's own headers only, not {name}")
     return complaints
 
 
@@ -184,30 +230,56 @@ def tree(root):
 
 def self_test():
     base = {
-        "libopenrt/include/openrt/openrt.h": "", "libopenrt/include/openrt/openrts.h": "", "libopenrt/scene/commit.h": "",
-        "libopenrt/render/film/film.h": "", "libopenrt/backend/backend.h": "", "libopenrt/backend/local/accel/embree.h": "",
-        "libxvrml/include/xvrml/world.h": "", "libxvrml/include/xvrml/xscript.h": "", "libxvrml/include/xvrml/mapper.h": "", "libxvrml/parse/builder.h": "",
+        "libopenrt/include/openrt/openrt.h": "",
+        "libopenrt/include/openrt/openrts.h": "",
+        "libopenrt/scene/commit.h": "",
+        "libopenrt/render/film/film.h": "",
+        "libopenrt/backend/backend.h": "",
+        "libopenrt/backend/local/accel/embree.h": "",
+        "libxvrml/include/xvrml/world.h": "",
+        "libxvrml/include/xvrml/xscript.h": "",
+        "libxvrml/include/xvrml/mapper.h": "",
+        "libxvrml/parse/builder.h": "",
         "libxvrml/geometry/mesh.h": "",
     }
     refused = [
-        ("libopenrt/api/a.cpp", "<embree3/rtcore.h>"), ("libopenrt/render/a.cpp", '"backend/local/accel/embree.h"'),
-        ("libopenrt/scene/a.cpp", '"render/film/film.h"'), ("libopenrt/scene/a.cpp", '"../render/film.h"'),
-        ("libopenrt/api/a.cpp", '"xvrml/world.h"'), ("libxvrml/parse/a.cpp", '"openrt/openrt.h"'),
-        ("libxvrml/parse/a.cpp", "<openrt/openrt.h>"), ("libxvrml/geometry/a.cpp", '"parse/builder.h"'),
-        ("libxvrml/mapper/a.cpp", '"scene/commit.h"'), ("libxvrml/parse/a.cpp", "<png.h>"),
-        ("plugins/script/test/a.c", "<xvrml/world.h>"), ("libxvrml/event/a.cpp", '"xvrml/xscript.h"'),
-        ("plugins/shaders/a.cpp", "<openrt/openrt.h>"), ("plugins/shaders/a.cpp", "<fmt/format.h>"),
-        ("apps/vv/a.cpp", '"geometry/mesh.h"'), ("apps/vv/a.cpp", '"scene/commit.h"'), ("bindings/python/a.cpp", '"edits_generated.h"'),
-        ("libopenrt/include/openrt/openrts.h", "<openrt/openrt.h>"), ("libxvrml/include/xvrml/world.h", "<fmt/format.h>"),
-        ("libopenrt/backend/local/a.cpp", "<sys/socket.h>"), ("libopenrt/backend/null/a.cpp", '"backend/local/accel/embree.h"'),
-        ("libxvrml/base/a.cpp", '"no/such.h"'), ("somewhere/a.cpp", "<vector>"),
+        ("libopenrt/api/a.cpp", "<embree3/rtcore.h>"),
+        ("libopenrt/render/a.cpp", '"backend/local/accel/embree.h"'),
+        ("libopenrt/scene/a.cpp", '"render/film/film.h"'),
+        ("libopenrt/scene/a.cpp", '"../render/film.h"'),
+        ("libopenrt/api/a.cpp", '"xvrml/world.h"'),
+        ("libxvrml/parse/a.cpp", '"openrt/openrt.h"'),
+        ("libxvrml/parse/a.cpp", "<openrt/openrt.h>"),
+        ("libxvrml/geometry/a.cpp", '"parse/builder.h"'),
+        ("libxvrml/mapper/a.cpp", '"scene/commit.h"'),
+        ("libxvrml/parse/a.cpp", "<png.h>"),
+        ("plugins/script/test/a.c", "<xvrml/world.h>"),
+        ("libxvrml/event/a.cpp", '"xvrml/xscript.h"'),
+        ("plugins/shaders/a.cpp", "<openrt/openrt.h>"),
+        ("plugins/shaders/a.cpp", "<fmt/format.h>"),
+        ("apps/vv/a.cpp", '"geometry/mesh.h"'),
+        ("apps/vv/a.cpp", '"scene/commit.h"'),
+        ("bindings/python/a.cpp", '"edits_generated.h"'),
+        ("libopenrt/include/openrt/openrts.h", "<openrt/openrt.h>"),
+        ("libxvrml/include/xvrml/world.h", "<fmt/format.h>"),
+        ("libopenrt/backend/local/a.cpp", "<sys/socket.h>"),
+        ("libopenrt/backend/null/a.cpp", '"backend/local/accel/embree.h"'),
+        ("libxvrml/base/a.cpp", '"no/such.h"'),
+        ("somewhere/a.cpp", "<vector>"),
     ]
     passing = [
-        ("libopenrt/backend/local/a.cpp", "<embree3/rtcore.h>"), ("libopenrt/backend/local/a.cpp", '"render/film/film.h"'),
-        ("libopenrt/api/a.cpp", '"scene/commit.h"'), ("libopenrt/api/a.cpp", '"edits_generated.h"'),
-        ("libxvrml/mapper/a.cpp", "<openrt/openrt.h>"), ("libxvrml/mapper/a.cpp", '"geometry/mesh.h"'),
-        ("libxvrml/geometry/a.cpp", "<xvrml/nodes.h>"), ("plugins/shaders/a.cpp", "<openrt/openrts.h>"),
-        ("plugins/shaders/a.cpp", "<cmath>"), ("plugins/script/test/a.c", "<xvrml/xscript.h>"), ("apps/vv/a.cpp", '"xvrml/mapper.h"'), ("tests/unit/a.cpp", '"parse/builder.h"'),
+        ("libopenrt/backend/local/a.cpp", "<embree3/rtcore.h>"),
+        ("libopenrt/backend/local/a.cpp", '"render/film/film.h"'),
+        ("libopenrt/api/a.cpp", '"scene/commit.h"'),
+        ("libopenrt/api/a.cpp", '"edits_generated.h"'),
+        ("libxvrml/mapper/a.cpp", "<openrt/openrt.h>"),
+        ("libxvrml/mapper/a.cpp", '"geometry/mesh.h"'),
+        ("libxvrml/geometry/a.cpp", "<xvrml/nodes.h>"),
+        ("plugins/shaders/a.cpp", "<openrt/openrts.h>"),
+        ("plugins/shaders/a.cpp", "<cmath>"),
+        ("plugins/script/test/a.c", "<xvrml/xscript.h>"),
+        ("apps/vv/a.cpp", '"xvrml/mapper.h"'),
+        ("tests/unit/a.cpp", '"parse/builder.h"'),
     ]
     wrong = []
     for path, name in refused:
@@ -235,7 +307,8 @@ def levels():
 
     def height_of(name):
         if name not in height:
-            height[name] = 1 + max((height_of(lower) for lower in reach[name] if name not in reach[lower]), default=-1)
+            height[name] = 1 + max(
+                (height_of(lower) for lower in reach[name] if name not in reach[lower]), default=-1)
         return height[name]
 
     rows = {}
@@ -252,18 +325,29 @@ def map_text():
     """Returns the diagram and the table of docs/architecture.md, section 1."""
     lines = [BEGIN, "<!-- unchecked: a drawing made from the table below -->", "```text"]
     columns = [("libopenrt", 36), ("libxvrml", 36), ("", 28)]
-    lines.append("".join(f"{name or 'beside and above both':<{width}}" for name, width in columns).rstrip())
-    library_of = {p.name: next((c for c, (name, _) in enumerate(columns) if name and p.prefixes[0].startswith(name)), 2) for p in TABLE}
+    lines.append("".join(
+        f"{name or 'beside and above both':<{width}}" for name, width in columns).rstrip())
+    library_of = {
+        p.name:
+            next((c
+                  for c, (name, _) in enumerate(columns)
+                  if name and p.prefixes[0].startswith(name)), 2) for p in TABLE
+    }
     for row in levels():
-        cells = [wrapped([name for name in row if library_of[name] == c], width - 2) for c, (_, width) in enumerate(columns)]
+        cells = [
+            wrapped([name for name in row if library_of[name] == c],
+                    width - 2) for c, (_, width) in enumerate(columns)
+        ]
         lines.append("-" * 100)
         for k in range(max(len(cell) for cell in cells)):
             texts = [cell[k] if k < len(cell) else "" for cell in cells]
-            lines.append("".join(f"{text:<{width}}" for text, (_, width) in zip(texts, columns)).rstrip())
+            lines.append("".join(
+                f"{text:<{width}}" for text, (_, width) in zip(texts, columns)).rstrip())
     lines.append("```")
     lines += ["", "| part | files | what it is | may include |", "| --- | --- | --- | --- |"]
     for p in TABLE:
-        allowed = "every part" if p.name == "test" else ", ".join(q.name for q in TABLE if q.name in p.includes) or "nothing"
+        allowed = "every part" if p.name == "test" else ", ".join(
+            q.name for q in TABLE if q.name in p.includes) or "nothing"
         files = ", ".join(f"`{prefix}`" for prefix in p.prefixes)
         lines.append(f"| {p.name} | {files} | {p.purpose} | {allowed} |")
     return "\n".join(lines + [END])
@@ -286,7 +370,9 @@ def main():
             return 0
         complaints = check(tree(root))
         if page_with_map(text) != text:
-            complaints.append("docs/architecture.md: the map of section 1 is old; run tests/checks/layering.py . --write")
+            complaints.append(
+                "docs/architecture.md: the map of section 1 is old; run tests/checks/layering.py . --write"
+            )
     for complaint in complaints:
         print(complaint)
     return 1 if complaints else 0

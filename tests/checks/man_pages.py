@@ -15,7 +15,8 @@ header = "\n".join(pathlib.Path(name).read_text() for name in sys.argv[3:])
 complaints = []
 declared = re.findall(r"^RT_API [^;(]*?\b(rt\w+)\(", header, re.M)
 if len(declared) < 100 or len(set(declared)) != len(declared):
-    complaints.append(f"{len(declared)} functions found in the header, {len(set(declared))} different ones")
+    complaints.append(
+        f"{len(declared)} functions found in the header, {len(set(declared))} different ones")
 for run in re.findall(r"^(/\*(?:[^*]|\*(?!/))*\*/\n)?((?:RT_API [^;]*;\n)+)", header, re.M):
     if len(re.findall(r"\[(?:context|any)-thread\]", re.sub(r"\s*\n \* ", " ", run[0]))) != 1:
         complaints.append(f"no thread tag in the comment of: {run[1].splitlines()[0]}")
@@ -31,11 +32,15 @@ for function in declared:
         complaints.append(f"{page.name} leads nowhere")
         continue
     text = (folder / link.group(1)).read_text()
-    name, description = text.split(".SH NAME\n")[1].split("\n")[0], text.split(".SH DESCRIPTION\n")[1]
+    name, description = text.split(".SH NAME\n")[1].split("\n")[0], text.split(
+        ".SH DESCRIPTION\n")[1]
     if not re.search(rf"\b{function}\b", name) or f" {function}(" not in description:
         complaints.append(f"{link.group(1)} does not describe {function}")
-exported = {line.split()[-1] for line in subprocess.run(["nm", "-D", "--defined-only", sys.argv[1]], capture_output=True,
-                                                        text=True).stdout.splitlines()} if shutil.which("nm") else set()
+exported = {
+    line.split()[-1] for line in subprocess.run(["nm", "-D", "--defined-only", sys.argv[1]],
+                                                capture_output=True,
+                                                text=True).stdout.splitlines()
+} if shutil.which("nm") else set()
 for symbol in sorted(s for s in exported if re.fullmatch(r"rt[A-Z]\w*", s) and s not in declared):
     complaints.append(f"{symbol} is exported, but not declared")
 
@@ -53,9 +58,14 @@ for page in pages:
     if re.search(r"/\*(?!.*\*/)", re.sub(r"\.nf\n.*?\.fi\n", "", text, flags=re.S)):
         complaints.append(f"{page.name} has half a comment in its text")
     if shutil.which("groff"):
-        done = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z", str(page)], capture_output=True, text=True)
+        done = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z",
+                               str(page)],
+                              capture_output=True,
+                              text=True)
         if done.stderr.strip():
             complaints.append(done.stderr.strip())
 
-print(*complaints, f"{len(declared)} functions, {len(pages)} pages, {len(complaints)} complaints", sep="\n")
+print(*complaints,
+      f"{len(declared)} functions, {len(pages)} pages, {len(complaints)} complaints",
+      sep="\n")
 sys.exit(bool(complaints))

@@ -15,7 +15,11 @@ folder, complaints, looked = pathlib.Path(sys.argv[1]), [], []
 
 
 def run(*command, **more):
-    return subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=60, **more)
+    return subprocess.run([str(c) for c in command],
+                          capture_output=True,
+                          text=True,
+                          timeout=60,
+                          **more)
 
 
 def completed(script, function, words):
@@ -35,7 +39,8 @@ with tempfile.TemporaryDirectory() as scratch:
     (scratch / "folder").mkdir()
     for program in map(pathlib.Path, sys.argv[2:]):
         name = program.name
-        listed = re.findall(r"^  (-{1,2}[^\s,]+(?:, ?-{1,2}[^\s,]+)*)", run(program, "--help").stdout, re.M)
+        listed = re.findall(r"^  (-{1,2}[^\s,]+(?:, ?-{1,2}[^\s,]+)*)",
+                            run(program, "--help").stdout, re.M)
         options = {o for line in listed for o in re.split(r", ?", line)}
         if len(options) < 5:
             complaints.append(f"{name} --help: only {len(options)} options")
@@ -48,26 +53,35 @@ with tempfile.TemporaryDirectory() as scratch:
         for option in sorted(options):
             if "\\fB" + option.replace("-", "\\-") + "\\fP" not in text:
                 complaints.append(f"{page.name}: no {option}")
-            if not re.search(rf"(^|[\s'{{,(]|\*){re.escape(option)}([\s\[}},)'])", zsh.read_text(), re.M):
+            if not re.search(rf"(^|[\s'{{,(]|\*){re.escape(option)}([\s\[}},)'])", zsh.read_text(),
+                             re.M):
                 complaints.append(f"{zsh.name}: no {option}")
             spelled = f"-l {option[2:]} " if option.startswith("--") else f"-s {option[1:]} "
             if spelled not in fish.read_text():
                 complaints.append(f"{fish.name}: no {option}")
         function = "_" + name.replace("-", "_")
-        if wrong := completed(bash, function, [name, "--"]) ^ {o for o in options if o.startswith("--")}:
+        if wrong := completed(bash, function,
+                              [name, "--"]) ^ {o for o in options if o.startswith("--")}:
             complaints.append(f"bash: {name} --: {wrong}")
         if "--help" not in completed(bash, function, [name, "--he"]):
             complaints.append(f"bash: {name} --he is not completed")
         if name == "vv":
-            for words, offered in ((["vv", "--headlight", "o"], {"on", "off"}), (["vv", "--spp", ""], set()),
-                                   (["vv", "--transport", "w"], {"whitted"}), (["vv", "--channels", "nor"], {"normal"}),
-                                   (["vv", "--channels", "z,nor"], {"z,normal"}),
+            for words, offered in ((["vv", "--headlight",
+                                     "o"], {"on",
+                                            "off"}), (["vv", "--spp",
+                                                       ""], set()), (["vv", "--transport",
+                                                                      "w"], {"whitted"}),
+                                   (["vv", "--channels",
+                                     "nor"], {"normal"}), (["vv", "--channels",
+                                                            "z,nor"], {"z,normal"}),
                                    (["vv", ""], {"world one.wrl", "two.wrz", "folder"}),
-                                   (["vv", "-o", "n"], {"notes.txt"}), (["vv", "--shader-path", ""], set())):
+                                   (["vv", "-o", "n"], {"notes.txt"}), (["vv", "--shader-path",
+                                                                         ""], set())):
                 got = completed(bash, function, words)
                 if got != offered and not (words[1] == "--shader-path" and got == {"folder"}):
                     complaints.append(f"bash: {words}: {got}, not {offered}")
-        for tool, command in (("groff", ["groff", "-man", "-Tutf8", "-ww", "-z", page]), ("bash", ["bash", "-n", bash]),
+        for tool, command in (("groff", ["groff", "-man", "-Tutf8", "-ww", "-z",
+                                         page]), ("bash", ["bash", "-n", bash]),
                               ("zsh", ["zsh", "-n", zsh]), ("fish", ["fish", "-n", fish])):
             if not shutil.which(tool):
                 print(f"{name}: not looked at by {tool}, which is not installed")

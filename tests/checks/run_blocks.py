@@ -50,12 +50,18 @@ def free_port():
 
 
 class Runner:
+
     def __init__(self, root, build, cc, cxx, includes, scratch):
         self.root, self.build, self.cc, self.cxx, self.scratch = root, build, cc, cxx, scratch
-        self.includes = [f"-I{root}/libopenrt/include", f"-I{root}/libxvrml/include", f"-I{includes}"]
+        self.includes = [
+            f"-I{root}/libopenrt/include", f"-I{root}/libxvrml/include", f"-I{includes}"
+        ]
         self.python = "/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable
-        self.env = dict(os.environ, PATH=f"{build}/bin:{root}/tools:" + os.environ["PATH"], PYTHONPATH=f"{build}/python",
-                        PYTHONDONTWRITEBYTECODE="1", NO_COLOR="1")
+        self.env = dict(os.environ,
+                        PATH=f"{build}/bin:{root}/tools:" + os.environ["PATH"],
+                        PYTHONPATH=f"{build}/python",
+                        PYTHONDONTWRITEBYTECODE="1",
+                        NO_COLOR="1")
         self.interpreter = None
         self.place = scratch  # the current folder of the page's shell
         self.times = None  # a file: commands run unchanged, and their seconds are written to it
@@ -70,8 +76,13 @@ class Runner:
         running are ended."""
         # Not a pipe: a worker in the background would hold it open.
         with tempfile.TemporaryFile() as talk:
-            done = subprocess.Popen([str(c) for c in command], cwd=folder, env=self.env, stdin=subprocess.DEVNULL, stdout=talk,
-                                    stderr=talk, start_new_session=True)
+            done = subprocess.Popen([str(c) for c in command],
+                                    cwd=folder,
+                                    env=self.env,
+                                    stdin=subprocess.DEVNULL,
+                                    stdout=talk,
+                                    stderr=talk,
+                                    start_new_session=True)
             try:
                 code = done.wait(TIMEOUT)
             except subprocess.TimeoutExpired:
@@ -104,7 +115,8 @@ class Runner:
         # has ended.
         start = folder if "in" in block.marks else self.place
         place = self.scratch.parent / (self.scratch.name + ".place")
-        wrong = self.call(["bash", "-euo", "pipefail", "-c", f"trap 'pwd >{place}' EXIT\n{text}"], start)
+        wrong = self.call(["bash", "-euo", "pipefail", "-c", f"trap 'pwd >{place}' EXIT\n{text}"],
+                          start)
         if "in" not in block.marks and place.exists():
             self.place = pathlib.Path(place.read_text().rstrip("\n"))
         place.unlink(missing_ok=True)
@@ -117,10 +129,17 @@ class Runner:
         if not self.has_python:
             return None
         if not self.interpreter:
-            self.interpreter = subprocess.Popen([self.python, "-c", SERVER], cwd=folder, env=self.env, stdin=subprocess.PIPE,
-                                                stdout=subprocess.PIPE, stderr=sys.stderr, text=True)
+            self.interpreter = subprocess.Popen([self.python, "-c", SERVER],
+                                                cwd=folder,
+                                                env=self.env,
+                                                stdin=subprocess.PIPE,
+                                                stdout=subprocess.PIPE,
+                                                stderr=sys.stderr,
+                                                text=True)
         text = re.sub(r"\b744[78]\b", lambda port: self.ports[port.group()], block.text)
-        print(json.dumps([text, f"{block.page}:{block.line}"]), file=self.interpreter.stdin, flush=True)
+        print(json.dumps([text, f"{block.page}:{block.line}"]),
+              file=self.interpreter.stdin,
+              flush=True)
         answer = self.interpreter.stdout.readline()
         return json.loads(answer) if answer else "the interpreter ended"
 
@@ -132,24 +151,33 @@ class Runner:
             text = "\n".join([*head, block.marks["inside"] + " {", *body, "}"])
         source = folder / f"block{block.line}.{block.language}"
         source.write_text(text)
-        flags = ["-std=c++20" if cpp else "-std=c99", "-Wall", "-Wextra", "-Wno-unused-function", "-Wno-unused-variable", *self.includes]
+        flags = [
+            "-std=c++20" if cpp else "-std=c99", "-Wall", "-Wextra", "-Wno-unused-function",
+            "-Wno-unused-variable", *self.includes
+        ]
         compiler = self.cxx if cpp else self.cc
         if "int main" not in text:  # declarations without bodies are allowed here
             return self.call([compiler, *flags, "-fsyntax-only", source], folder)
-        libraries = [f"-L{self.build}/lib", f"-Wl,-rpath,{self.build}/lib", *(["-lxvrml_openrt", "-lxvrml"] if cpp else []), "-lopenrt", "-lm"]
+        libraries = [
+            f"-L{self.build}/lib", f"-Wl,-rpath,{self.build}/lib",
+            *(["-lxvrml_openrt", "-lxvrml"] if cpp else []), "-lopenrt", "-lm"
+        ]
         program = source.with_suffix("")
-        return self.call([compiler, *flags, "-Werror", source, "-o", program, *libraries], folder) or self.call([program], folder)
+        return self.call([compiler, *flags, "-Werror", source, "-o", program, *libraries],
+                         folder) or self.call([program], folder)
 
     def vrml(self, block, folder):
         world = folder / f"block{block.line}.wrl"
-        text = block.text if block.text.startswith("#VRML") else f"#VRML V2.0 utf8\n{block.marks.get('with', '')}\n{block.text}"
+        text = block.text if block.text.startswith(
+            "#VRML") else f"#VRML V2.0 utf8\n{block.marks.get('with', '')}\n{block.text}"
         world.write_text(text)
         return self.call(["vv", world.name, "--check", "--trust"], folder)
 
     def compared(self, block):
         source = self.root / block.marks["part of"]
         whole = " ".join(source.read_text(encoding="utf-8").split()) if source.is_file() else ""
-        return "" if " ".join(block.text.split()) in whole else f"{block.marks['part of']} does not hold it"
+        return "" if " ".join(
+            block.text.split()) in whole else f"{block.marks['part of']} does not hold it"
 
     def js(self, block, folder):
         (folder / f"block{block.line}.js").write_text(block.text)
@@ -185,11 +213,20 @@ class Runner:
             return ""
         if block.language in blocks.COMPILED:
             return self.compiled(block, folder)
-        return {"sh": self.sh, "python": self.run_python, "vrml": self.vrml, "js": self.js, "tcl": self.tcl}[block.language](block, folder)
+        return {
+            "sh": self.sh,
+            "python": self.run_python,
+            "vrml": self.vrml,
+            "js": self.js,
+            "tcl": self.tcl
+        }[block.language](block, folder)
 
 
 def check_marks(root):
-    wrong = [b for page in blocks.pages(root) for b in blocks.blocks_of(root, page) if b.way.startswith("wrong: ")]
+    wrong = [
+        b for page in blocks.pages(root) for b in blocks.blocks_of(root, page)
+        if b.way.startswith("wrong: ")
+    ]
     for block in wrong:
         print(f"{block.page}:{block.line}: {block.way[len('wrong: '):]}")
     total = sum(len(blocks.blocks_of(root, page)) for page in blocks.pages(root))
@@ -216,7 +253,9 @@ def main():
             checked += 1
             if wrong:
                 failed += 1
-                print(f"--- {block.page}:{block.line}: this {block.language} block fails: {wrong}\n{block.text}")
+                print(
+                    f"--- {block.page}:{block.line}: this {block.language} block fails: {wrong}\n{block.text}"
+                )
         if runner.interpreter:
             runner.interpreter.stdin.close()
             runner.interpreter.wait(60)

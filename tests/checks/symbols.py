@@ -17,7 +17,9 @@ import sys
 
 def exported(library):
     """Returns {symbol@@VERSION} of the public versions, and the violations."""
-    text = subprocess.run(["nm", "-D", "--defined-only", "--with-symbol-versions", library], capture_output=True, text=True,
+    text = subprocess.run(["nm", "-D", "--defined-only", "--with-symbol-versions", library],
+                          capture_output=True,
+                          text=True,
                           check=True).stdout
     found, complaints = set(), []
     for line in text.splitlines():
@@ -47,12 +49,16 @@ def main():
             stored.write_text("".join(f"{s}\n" for s in sorted(there)))
         wanted = set(stored.read_text().split())
         complaints += [f"{s} is no longer exported" for s in sorted(wanted - there)]
-        soname = re.search(r"SONAME.*\[(.*)\]", subprocess.run(["readelf", "-d", library], capture_output=True, text=True).stdout)
+        soname = re.search(
+            r"SONAME.*\[(.*)\]",
+            subprocess.run(["readelf", "-d", library], capture_output=True, text=True).stdout)
         if not soname or not re.fullmatch(rf"{name}\.so\.\d+", soname[1]):
             complaints.append(f"{name} has no SONAME with its version")
         for symbol in sorted(there - wanted):
             print(f"{name}: new: {symbol}")
-        print(*[f"{name}: {c}" for c in complaints], f"{name}: {len(there)} public symbols, {len(complaints)} complaints", sep="\n")
+        print(*[f"{name}: {c}" for c in complaints],
+              f"{name}: {len(there)} public symbols, {len(complaints)} complaints",
+              sep="\n")
         bad += len(complaints)
     return bool(bad)
 

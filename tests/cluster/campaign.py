@@ -57,8 +57,10 @@ def random_kills(expected, kills):
         thread.start()
         made, wrong, longest = frames_until(c, expected, lambda: not thread.is_alive())
         thread.join()
-        note("random kills", f"{kills} kills, {made} frames, {wrong} wrong; a frame takes {calm:.2f} s, the longest {longest:.2f} s",
-             wrong == 0)
+        note(
+            "random kills",
+            f"{kills} kills, {made} frames, {wrong} wrong; a frame takes {calm:.2f} s, the longest {longest:.2f} s",
+            wrong == 0)
 
 
 def long_partition(expected, seconds):
@@ -72,7 +74,8 @@ def long_partition(expected, seconds):
         returned = c.wait_for(2, 30)
         back = time.monotonic() - begin
         wrong += c.render() != expected
-        note(f"partition of {seconds:g} s", f"{made} frames, {wrong} wrong, the longest {longest:.2f} s; back after {back:.2f} s",
+        note(f"partition of {seconds:g} s",
+             f"{made} frames, {wrong} wrong, the longest {longest:.2f} s; back after {back:.2f} s",
              wrong == 0 and returned)
 
 
@@ -88,8 +91,10 @@ def stopped(expected):
         timer = threading.Timer(3, workers[0].resume)
         timer.start()
         made, wrong, longest = frames_until(c, expected, lambda: not timer.is_alive())
-        note("one of two stopped", f"{calm:.2f} s a frame with both; {made} frames meanwhile, {wrong} wrong, the longest {longest:.2f} s",
-             wrong == 0)
+        note(
+            "one of two stopped",
+            f"{calm:.2f} s a frame with both; {made} frames meanwhile, {wrong} wrong, the longest {longest:.2f} s",
+            wrong == 0)
 
 
 def latency(expected):
@@ -101,7 +106,8 @@ def latency(expected):
             c.render()
             begin = time.monotonic()
             good = c.render() == expected
-            note(f"links of {1000 * delay:g} ms each way", f"{time.monotonic() - begin:.2f} s a frame", good)
+            note(f"links of {1000 * delay:g} ms each way",
+                 f"{time.monotonic() - begin:.2f} s a frame", good)
 
 
 def many_frames(frames):
@@ -109,7 +115,8 @@ def many_frames(frames):
     master."""
     small = {"width": 32, "height": 24, "spp": 2}
     rng = random.Random(5)
-    with openrt_c.context("threads=1", **small) as alone, farm(3) as workers, openrt_c.context(cluster(workers), **small) as c:
+    with openrt_c.context("threads=1", **small) as alone, farm(3) as workers, openrt_c.context(
+            cluster(workers), **small) as c:
         sizes = []
         for i in range(frames):
             c.rt.rtMakeCurrent(c.handle)
@@ -124,12 +131,15 @@ def many_frames(frames):
                 worker = rng.choice(workers)
                 worker.kill()
                 worker.start()
-                sizes.append((resident(), descriptors(), max(resident(w.process.pid) for w in workers)))
+                sizes.append(
+                    (resident(), descriptors(), max(resident(w.process.pid) for w in workers)))
         half = sizes[len(sizes) // 4:]  # skips the warm-up
         slope = (half[-1][0] - half[0][0]) / (500 * max(len(half) - 1, 1))
-        note("animation", f"{frames} frames; master {half[0][0] >> 20} to {half[-1][0] >> 20} MB ({slope:.0f} bytes a frame), "
-             f"{half[0][1]} to {half[-1][1]} descriptors; workers up to {max(s[2] for s in sizes) >> 20} MB",
-             slope < 1024 and half[-1][1] <= half[0][1] + 3)
+        note(
+            "animation",
+            f"{frames} frames; master {half[0][0] >> 20} to {half[-1][0] >> 20} MB ({slope:.0f} bytes a frame), "
+            f"{half[0][1]} to {half[-1][1]} descriptors; workers up to {max(s[2] for s in sizes) >> 20} MB",
+            slope < 1024 and half[-1][1] <= half[0][1] + 3)
 
 
 def main():

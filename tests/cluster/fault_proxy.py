@@ -41,7 +41,7 @@ class FaultProxy:
         self.address = f"127.0.0.1:{self.port}"
         threading.Thread(target=self._accept, daemon=True).start()
 
-    # Faults -----------------------------------------------------------------------------------------------------------
+    # Faults --------------------------------------------------------------------------------------
 
     def partition(self):
         """Stops all forwarding without loss, as when a switch goes down."""
@@ -108,7 +108,8 @@ class FaultProxy:
             with self._lock:
                 self._links.add((near, far))
             for source, sink in ((near, far), (far, near)):
-                threading.Thread(target=self._pump, args=(source, sink, (near, far)), daemon=True).start()
+                threading.Thread(target=self._pump, args=(source, sink, (near, far)),
+                                 daemon=True).start()
 
     def _pump(self, source, sink, pair):
         queue = collections.deque()

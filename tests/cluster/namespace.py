@@ -13,6 +13,7 @@ def ip(*arguments):
 
 
 class Namespace:
+
     def __init__(self):
         self.name = f"ort{os.getpid()}"
         self.cable = f"o{os.getpid()}"

@@ -11,8 +11,20 @@ import re
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-RGBA, DEPTH, NORMAL, ALBEDO, POSITION, NAME, SAMPLES, VARIANCE, ERROR, TRUST = (1 << i for i in range(10))
-COMPONENTS = {RGBA: 4, DEPTH: 1, NORMAL: 3, ALBEDO: 3, POSITION: 3, NAME: 1, SAMPLES: 1, VARIANCE: 3, ERROR: 3, TRUST: 1}
+RGBA, DEPTH, NORMAL, ALBEDO, POSITION, NAME, SAMPLES, VARIANCE, ERROR, TRUST = (
+    1 << i for i in range(10))
+COMPONENTS = {
+    RGBA: 4,
+    DEPTH: 1,
+    NORMAL: 3,
+    ALBEDO: 3,
+    POSITION: 3,
+    NAME: 1,
+    SAMPLES: 1,
+    VARIANCE: 3,
+    ERROR: 3,
+    TRUST: 1
+}
 SPP, MAX_DEPTH, SEED, TRANSPORT, PROGRESSIVE = 1, 2, 3, 5, 11
 QUADS = 7
 
@@ -29,9 +41,19 @@ def build():
 
 def structure(name):
     """Reads a structure from the headers of the C API."""
-    kinds = {"size_t": ctypes.c_size_t, "uint64_t": ctypes.c_uint64, "uint32_t": ctypes.c_uint32, "RTenum": ctypes.c_uint32,
-             "int": ctypes.c_int, "double": ctypes.c_double, "char": ctypes.c_char}
-    text = re.sub(r"/\*.*?\*/", "", "".join(h.read_text() for h in (ROOT / "libopenrt/include/openrt").glob("*.h")), flags=re.S)
+    kinds = {
+        "size_t": ctypes.c_size_t,
+        "uint64_t": ctypes.c_uint64,
+        "uint32_t": ctypes.c_uint32,
+        "RTenum": ctypes.c_uint32,
+        "int": ctypes.c_int,
+        "double": ctypes.c_double,
+        "char": ctypes.c_char
+    }
+    text = re.sub(r"/\*.*?\*/",
+                  "",
+                  "".join(h.read_text() for h in (ROOT / "libopenrt/include/openrt").glob("*.h")),
+                  flags=re.S)
     body = re.search(r"typedef struct %s \{(.*?)\}" % name, text, re.S)[1]
     fields = []
     for declaration in filter(str.strip, body.split(";")):
@@ -56,7 +78,9 @@ class Context:
         self.rt = ctypes.CDLL(str(build() / "lib/libopenrt.so"))
         self.rt.rtNewContext.restype = ctypes.c_void_p
         self.rt.rtNewContext.argtypes = [ctypes.c_char_p]
-        self.rt.rtDeleteContext.argtypes = self.rt.rtMakeCurrent.argtypes = self.rt.rtCancel.argtypes = [ctypes.c_void_p]
+        self.rt.rtDeleteContext.argtypes = self.rt.rtMakeCurrent.argtypes = self.rt.rtCancel.argtypes = [
+            ctypes.c_void_p
+        ]
         self.rt.rtGetErrorMessage.restype = ctypes.c_char_p
         self.rt.rtNewShaderClass.argtypes = [ctypes.c_char_p, ctypes.c_char_p]
         self.rt.rtParameterHandle.argtypes = [ctypes.c_char_p]
@@ -66,7 +90,8 @@ class Context:
         self.rt.rtGetWorkers.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t]
         self.messages = []
         log = ctypes.CFUNCTYPE(None, ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
-        self._log = log(lambda level, text, _: self.messages.append((level, text.decode(errors="replace"))))
+        self._log = log(lambda level, text, _: self.messages.append(
+            (level, text.decode(errors="replace"))))
         self.handle = self.rt.rtNewContext(config.encode())
         if not self.handle:
             self.check()
@@ -80,7 +105,9 @@ class Context:
             raise RtError(self.rt.rtGetErrorMessage().decode(errors="replace"))
 
     def __call__(self, name, *arguments):
-        result = getattr(self.rt, "rt" + name)(*(ctypes.c_float(a) if isinstance(a, float) else a for a in arguments))
+        result = getattr(
+            self.rt,
+            "rt" + name)(*(ctypes.c_float(a) if isinstance(a, float) else a for a in arguments))
         self.check()
         return result
 
@@ -119,7 +146,7 @@ class Context:
             time.sleep(0.02)
         return True
 
-    # The scene --------------------------------------------------------------------------------------------------------
+    # The scene -----------------------------------------------------------------------------------
 
     def shader(self, kind, **parameters):
         shader = self("NewShader", self("NewShaderClass", kind.encode(), None))
@@ -141,7 +168,8 @@ class Context:
         room = self("BeginObject", 0)
         for color, corners in (((.7, .7, .7), ((-2, -1, 2), (2, -1, 2), (2, -1, -2), (-2, -1, -2))),
                                ((.7, .2, .2), ((-2, -1, 2), (-2, -1, -2), (-2, 2, -2), (-2, 2, 2))),
-                               ((.2, .3, .7), ((-2, -1, -2), (2, -1, -2), (2, 2, -2), (-2, 2, -2)))):
+                               ((.2, .3, .7), ((-2, -1, -2), (2, -1, -2), (2, 2, -2), (-2, 2,
+                                                                                       -2)))):
             self.shader("Diffuse", reflectance=color)
             self.quad(*corners)
         self.shader("Diffuse", reflectance=(0, 0, 0), emission=(12, 11, 9))
@@ -149,7 +177,8 @@ class Context:
         self("EndObject")
         self("InstantiateObject", room)
         kinds = []
-        for shader in (lambda: self.shader("Glass"), lambda: self.shader("Metal"), lambda: self.shader("Diffuse", reflectance=(.3, .7, .4))):
+        for shader in (lambda: self.shader("Glass"), lambda: self.shader("Metal"),
+                       lambda: self.shader("Diffuse", reflectance=(.3, .7, .4))):
             ball = self("BeginObject", 0)
             shader()
             self("Sphere", .18)
@@ -162,19 +191,28 @@ class Context:
     def move(self, time):
         for i, instance in enumerate(self.moving):
             a = 2.4 * i + time
-            at = (math.cos(a) * (.4 + .04 * i), -.8 + .07 * (i % 9) + .1 * math.sin(3 * time + i), math.sin(a) * (.4 + .04 * i))
-            self("InstanceMatrix", instance, (ctypes.c_double * 16)(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, *at, 1))
+            at = (math.cos(a) * (.4 + .04 * i), -.8 + .07 * (i % 9) + .1 * math.sin(3 * time + i),
+                  math.sin(a) * (.4 + .04 * i))
+            self("InstanceMatrix", instance, (ctypes.c_double * 16)(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                                                                    0, *at, 1))
 
     def camera(self, turn):
         self.rt.rtLoadIdentity()
-        self.rt.rtLookAt(*map(ctypes.c_double, (4 * math.sin(turn), .6, 4 * math.cos(turn), 0, 0, 0, 0, 1, 0)))
+        self.rt.rtLookAt(
+            *map(ctypes.c_double, (4 * math.sin(turn), .6, 4 * math.cos(turn), 0, 0, 0, 0, 1, 0)))
         self.rt.rtPerspective(ctypes.c_double(45))
         self.rt.rtLoadIdentity()
         self.check()
 
-    # Frames -----------------------------------------------------------------------------------------------------------
+    # Frames --------------------------------------------------------------------------------------
 
-    def frame(self, width, height, spp, channels=RGBA | DEPTH | NORMAL | VARIANCE | ERROR, depth=8, progressive=False):
+    def frame(self,
+              width,
+              height,
+              spp,
+              channels=RGBA | DEPTH | NORMAL | VARIANCE | ERROR,
+              depth=8,
+              progressive=False):
         self.size, self.channels = (width, height), channels
         self("FrameBuffer", width, height, channels)
         for name, value in ((SPP, spp), (MAX_DEPTH, depth), (PROGRESSIVE, int(progressive))):

@@ -31,10 +31,14 @@ ECMASCRIPT = {"script:javascript", "script:vrmlscript", "script:ecmascript", "sc
 def run(*command):
     """Returns the exit code (None: timed out), the output and the messages."""
     try:
-        done = subprocess.run([str(c) for c in command], stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT)
+        done = subprocess.run([str(c) for c in command],
+                              stdin=subprocess.DEVNULL,
+                              capture_output=True,
+                              timeout=TIMEOUT)
     except subprocess.TimeoutExpired:
         return None, "", ""
-    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+    return done.returncode, done.stdout.decode("utf-8",
+                                               "replace"), done.stderr.decode("utf-8", "replace")
 
 
 def complaint(code, talk):
@@ -50,7 +54,8 @@ def complaint(code, talk):
 
 def play(args, row):
     start = time.monotonic()
-    code, _, talk = run(args.vv, args.corpus / row["file"], "--check", "--frames", "0-100/10", "--fps", "10", "-q")
+    code, _, talk = run(args.vv, args.corpus / row["file"], "--check", "--frames", "0-100/10",
+                        "--fps", "10", "-q")
     return row["file"], complaint(code, talk), time.monotonic() - start
 
 
@@ -68,13 +73,15 @@ def scripts_of(args, row):
 
 def expected_errors():
     """Returns a dictionary from file to the reason why a Script in it fails."""
-    lines = (pathlib.Path(__file__).parent / "script_errors.tsv").read_text(encoding="utf-8").rstrip("\n").split("\n")
+    lines = (pathlib.Path(__file__).parent /
+             "script_errors.tsv").read_text(encoding="utf-8").rstrip("\n").split("\n")
     return dict(line.split("\t") for line in lines)
 
 
 def run_scripts(args, row):
     """Returns what is wrong with the run of a file's ECMAScript."""
-    code, _, talk = run(args.vv, args.corpus / row["file"], "--check", "--frames", "0-100/10", "--fps", "10")
+    code, _, talk = run(args.vv, args.corpus / row["file"], "--check", "--frames", "0-100/10",
+                        "--fps", "10")
     wrong = complaint(code, talk)
     failed = re.findall(r"^.*: error: Script(?: \S+)?: .*", talk, re.M)
     expected = row["file"] in args.expected
@@ -88,7 +95,9 @@ def run_scripts(args, row):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--vv", type=pathlib.Path, required=True)
-    parser.add_argument("--corpus", type=pathlib.Path, default=os.environ.get("OPENRT_CORPUS") or ROOT.parent / "shared/corpus")
+    parser.add_argument("--corpus",
+                        type=pathlib.Path,
+                        default=os.environ.get("OPENRT_CORPUS") or ROOT.parent / "shared/corpus")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/corpus")
     parser.add_argument("--jobs", type=int, default=2)
     args = parser.parse_args()
@@ -103,12 +112,18 @@ def main():
         row["file"] = f"{row['folder']}/{row['path']}"
         row["features"] = row["features"].split(",")
     animated = [row for row in rows if "animated" in row["features"]]
-    scripted = [row for row in rows if any(f.startswith("script:") for f in row["features"]) and row["class"] not in ("v1", "bad")]
+    scripted = [
+        row for row in rows if any(f.startswith("script:")
+                                   for f in row["features"]) and row["class"] not in ("v1", "bad")
+    ]
     start = time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         played = list(pool.map(lambda row: play(args, row), animated))
         counted = list(pool.map(lambda row: scripts_of(args, row), scripted))
-        there = any(one["engine"] for _, found, _ in counted for one in found or [] if one["protocol"] in ("javascript", "vrmlscript"))
+        there = any(one["engine"]
+                    for _, found, _ in counted
+                    for one in found or []
+                    if one["protocol"] in ("javascript", "vrmlscript"))
         programs = [row for row in scripted if there and ECMASCRIPT & set(row["features"])]
         ran = list(pool.map(lambda row: run_scripts(args, row), programs))
     wall = time.monotonic() - start
@@ -133,11 +148,16 @@ def main():
                 print(f"{row['file']}: {wrong or 'no Script is announced'}")
                 continue
             for one in found:
-                table.write(f"{row['file']}\t{one['protocol']}\t{one['count']}\t{one['declared']}\t{'there' if one['engine'] else 'missing'}\n")
+                table.write(
+                    f"{row['file']}\t{one['protocol']}\t{one['count']}\t{one['declared']}\t{'there' if one['engine'] else 'missing'}\n"
+                )
                 needed.setdefault(one["protocol"], set()).add(row["file"])
     slowest = max(played, key=lambda p: p[2], default=("", "", 0))
-    print(f"{len(played)} animated files and {len(counted)} with scripts ({len(ran)} in ECMAScript were run) in {wall:.0f} s, {failed} failed; slowest {slowest[0]} {slowest[2]:.1f} s")
-    print("engines:", ", ".join(f"{protocol} {len(files)}" for protocol, files in sorted(needed.items())))
+    print(
+        f"{len(played)} animated files and {len(counted)} with scripts ({len(ran)} in ECMAScript were run) in {wall:.0f} s, {failed} failed; slowest {slowest[0]} {slowest[2]:.1f} s"
+    )
+    print("engines:",
+          ", ".join(f"{protocol} {len(files)}" for protocol, files in sorted(needed.items())))
     return 1 if failed or not played else 0
 
 

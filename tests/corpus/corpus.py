@@ -28,12 +28,19 @@ TIMEOUT = 30  # seconds per run
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--vv", type=pathlib.Path, required=True)
-    parser.add_argument("--corpus", type=pathlib.Path, default=os.environ.get("OPENRT_CORPUS") or ROOT.parent / "shared/corpus")
+    parser.add_argument("--corpus",
+                        type=pathlib.Path,
+                        default=os.environ.get("OPENRT_CORPUS") or ROOT.parent / "shared/corpus")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/corpus")
-    parser.add_argument("--quick", action="store_true", help="load and render a few pixels of each, keep no pictures")
+    parser.add_argument("--quick",
+                        action="store_true",
+                        help="load and render a few pixels of each, keep no pictures")
     parser.add_argument("--only", default="", help="files whose path holds this text")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--spp", type=int, default=4, help="samples a pixel of the pictures that are compared")
+    parser.add_argument("--spp",
+                        type=int,
+                        default=4,
+                        help="samples a pixel of the pictures that are compared")
     return parser.parse_args()
 
 
@@ -52,7 +59,10 @@ def vv(program, world, picture, *options):
     command = [program, world, "-o", picture, "--threads", "1", *options]
     with tempfile.TemporaryFile() as log:
         start = time.monotonic()
-        process = subprocess.Popen([str(c) for c in command], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        process = subprocess.Popen([str(c) for c in command],
+                                   stdin=subprocess.DEVNULL,
+                                   stdout=log,
+                                   stderr=log)
         code = None
         while time.monotonic() - start < TIMEOUT:
             done, status, usage = os.wait4(process.pid, os.WNOHANG)
@@ -66,15 +76,20 @@ def vv(program, world, picture, *options):
         process.returncode = code
         log.seek(0)
         text = log.read(1 << 20).decode("utf-8", "replace")
-    return {"code": code, "seconds": time.monotonic() - start, "mib": usage.ru_maxrss / 1024, "log": text}
+    return {
+        "code": code,
+        "seconds": time.monotonic() - start,
+        "mib": usage.ru_maxrss / 1024,
+        "log": text
+    }
 
 
 def without_viewpoint(corpus, row):
     """Returns True if neither the file nor its Inlines can hold a Viewpoint, and X_ITE has drawn
     it."""
     nodes = row["standard_nodes"].split(",")
-    return not ({"Viewpoint", "Inline"} & set(nodes) or "EXTERNPROTO" in row["features"]
-                or not (corpus / "pictures/x_ite" / (row["file"] + ".png")).exists())
+    return not ({"Viewpoint", "Inline"} & set(nodes) or "EXTERNPROTO" in row["features"] or
+                not (corpus / "pictures/x_ite" / (row["file"] + ".png")).exists())
 
 
 def draw(args, row, out):
@@ -89,16 +104,24 @@ def draw(args, row, out):
         # default position (clause 6.53), so the test sets the same.
         place = ["--camera", "0,0,10:0,0,0:0,1,0"] if without_viewpoint(args.corpus, row) else []
         plain = picture.with_suffix(".default.png")
-        runs = [vv(args.vv, world, plain, "--size", "160x120", "--spp", "1"),
-                vv(args.vv, world, picture, "--size", "240x180", "--spp", str(args.spp), "--colour", "vrml97", "--shadows", "off",
-                   *place)]
+        runs = [
+            vv(args.vv, world, plain, "--size", "160x120", "--spp", "1"),
+            vv(args.vv, world, picture, "--size", "240x180", "--spp", str(args.spp), "--colour",
+               "vrml97", "--shadows", "off", *place)
+        ]
         plain.unlink(missing_ok=True)
     log = runs[-1]["log"]
-    row.update(code=runs[-1]["code"], seconds=max(r["seconds"] for r in runs), mib=max(r["mib"] for r in runs), log=log,
-               warnings=len(re.findall(r":\d+: warning: |^vv: warning: ", log, re.M)),
-               errors=len(re.findall(r":\d+: error: |^vv: error: ", log, re.M)),
-               broken=[b for r in runs for b in promises.broken(row["class"], r["code"], r["log"], TIMEOUT)],
-               picture=picture if picture.exists() else None)
+    row.update(
+        code=runs[-1]["code"],
+        seconds=max(r["seconds"] for r in runs),
+        mib=max(r["mib"] for r in runs),
+        log=log,
+        warnings=len(re.findall(r":\d+: warning: |^vv: warning: ", log, re.M)),
+        errors=len(re.findall(r":\d+: error: |^vv: error: ", log, re.M)),
+        broken=[
+            b for r in runs for b in promises.broken(row["class"], r["code"], r["log"], TIMEOUT)
+        ],
+        picture=picture if picture.exists() else None)
     if row["code"] == 0 and not picture.exists():
         row["broken"].append("exit code 0 without a picture")
     row["broken"] = list(dict.fromkeys(row["broken"]))
@@ -113,7 +136,8 @@ def main():
         return 77
     rows = files(args.corpus, args.only)
     start = time.monotonic()
-    with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+    with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(
+            args.jobs) as pool:
         out = pathlib.Path(scratch) if args.quick else args.out / "pictures"
         rows = list(pool.map(lambda row: draw(args, row, out), rows))
         wall = time.monotonic() - start
@@ -125,8 +149,9 @@ def main():
             first = next((line for line in row["log"].splitlines() if "error" in line), "")
             print(f"{row['class']:7} {row['file']}: {what}  {first[:200]}")
     bad = sum(1 for row in rows if row["broken"])
-    print(f"{len(rows)} files in {wall:.0f} s, {bad} break their class's promise; slowest {max(r['seconds'] for r in rows):.1f} s, "
-          f"largest {max(r['mib'] for r in rows):.0f} MiB")
+    print(
+        f"{len(rows)} files in {wall:.0f} s, {bad} break their class's promise; slowest {max(r['seconds'] for r in rows):.1f} s, "
+        f"largest {max(r['mib'] for r in rows):.0f} MiB")
     return 1 if bad or not rows else 0
 
 

@@ -16,7 +16,9 @@ def broken(kind, code, log, timeout):
     if kind == "strict":
         return [f"exit code {code}, not 0"] if code else []
     if kind == "bad":
-        return [] if code == 3 or ": error: " in log and PLACE.search(log) else [f"exit code {code} and no error with line and column"]
+        return [] if code == 3 or ": error: " in log and PLACE.search(log) else [
+            f"exit code {code} and no error with line and column"
+        ]
     if kind in ("ext", "header"):
         wrong = [f"exit code {code}, not 0"] if code else []
         return wrong if PLACE.search(log) else wrong + ["no message with line and column"]

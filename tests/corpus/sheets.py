@@ -43,8 +43,11 @@ def reference(corpus, browser, file):
 def distance(a, b, without_label):
     if a is None or b is None:
         return None
-    difference = [numpy.asarray(p.filter(ImageFilter.GaussianBlur(1.5)), dtype=numpy.float32) / 255 for p in (a, b)]
-    square = (difference[0] - difference[1]) ** 2
+    difference = [
+        numpy.asarray(p.filter(ImageFilter.GaussianBlur(1.5)), dtype=numpy.float32) / 255
+        for p in (a, b)
+    ]
+    square = (difference[0] - difference[1])**2
     if without_label:
         square[LABEL] = 0
     return float(numpy.sqrt(square.mean()))
@@ -55,13 +58,17 @@ def notes():
     path = pathlib.Path(__file__).with_name("notes.tsv")
     if not path.exists():
         return {}
-    return dict(line.split("\t", 1) for line in path.read_text(encoding="utf-8").splitlines() if "\t" in line)
+    return dict(
+        line.split("\t", 1)
+        for line in path.read_text(encoding="utf-8").splitlines()
+        if "\t" in line)
 
 
 def waits(row):
     """Returns which parts of the file are not drawn because they need time, events or scripts."""
     features = row["features"].split(",")
-    what = [name for name in ("animated", "sensor") if name in features] + [f for f in features if f.startswith("script:")]
+    what = [name for name in ("animated", "sensor") if name in features
+           ] + [f for f in features if f.startswith("script:")]
     return "moves: " + ", ".join(what) if what else ""
 
 
@@ -97,7 +104,9 @@ def sheet(rows, path):
         pen.text((x + 2, y), f"{number(row['distance'])} {name}", fill=(255, 255, 255))
         second = f"{row['class']} v3d {number(row['distances']['view3dscene'])} xite {number(row['distances']['x_ite'])} " \
                  f"them {number(row['between'])} {row['waits']}"
-        pen.text((x + 2, y + 11), second[:78], fill=(255, 160, 160) if row["broken"] else (180, 180, 180))
+        pen.text((x + 2, y + 11),
+                 second[:78],
+                 fill=(255, 160, 160) if row["broken"] else (180, 180, 180))
     canvas.save(path)
 
 
@@ -113,12 +122,19 @@ def write(args, rows, wall):
     for i in range(0, len(ranked), per):
         sheet(ranked[i:i + per], folder / f"{i // per + 1:02}.png")
 
-    columns = ["distance", "view3dscene", "x_ite", "between them", "class", "exit", "seconds", "MiB", "warnings", "errors", "file", "broken",
-               "waits", "note"]
-    table = [[number(r["distance"]), *(number(r["distances"][b]) for b in BROWSERS), number(r["between"]), r["class"], str(r["code"]),
-              f"{r['seconds']:.2f}", f"{r['mib']:.0f}", str(r["warnings"]), str(r["errors"]), r["file"], "; ".join(r["broken"]),
-              r["waits"], r["note"]] for r in ranked]
-    (out / "table.tsv").write_text("\n".join("\t".join(line) for line in [columns, *table]) + "\n", encoding="utf-8")
+    columns = [
+        "distance", "view3dscene", "x_ite", "between them", "class", "exit", "seconds", "MiB",
+        "warnings", "errors", "file", "broken", "waits", "note"
+    ]
+    table = [[
+        number(r["distance"]), *(number(r["distances"][b]) for b in BROWSERS),
+        number(r["between"]), r["class"],
+        str(r["code"]), f"{r['seconds']:.2f}", f"{r['mib']:.0f}",
+        str(r["warnings"]),
+        str(r["errors"]), r["file"], "; ".join(r["broken"]), r["waits"], r["note"]
+    ] for r in ranked]
+    (out / "table.tsv").write_text("\n".join("\t".join(line) for line in [columns, *table]) + "\n",
+                                   encoding="utf-8")
     with open(out / "logs.txt", "w", encoding="utf-8") as logs:
         for r in ranked:
             logs.write(f"=== {r['file']} ({r['class']}, exit {r['code']})\n{r['log'].rstrip()}\n")
@@ -127,26 +143,41 @@ def write(args, rows, wall):
 
 
 def page(path, columns, table, rows, corpus):
+
     def cell(text):
         return f"<td>{html.escape(text)}</td>"
-    lines = ["<!doctype html><meta charset=utf-8><title>Corpus</title><style>td{font:12px sans-serif;vertical-align:top}"
-             "img{width:240px}</style><table><tr><th>ours, view3dscene, X_ITE", *(f"<th>{c}" for c in columns), "</tr>"]
+
+    lines = [
+        "<!doctype html><meta charset=utf-8><title>Corpus</title><style>td{font:12px sans-serif;vertical-align:top}"
+        "img{width:240px}</style><table><tr><th>ours, view3dscene, X_ITE",
+        *(f"<th>{c}" for c in columns), "</tr>"
+    ]
     for row, line in zip(rows, table):
-        sources = [row["picture"], *(corpus / "pictures" / b / (row["file"] + ".png") for b in BROWSERS)]
-        images = "".join(f'<img src="{html.escape(pathlib.Path(s).resolve().as_uri())}">' for s in sources if s and pathlib.Path(s).exists())
-        lines.append(f"<tr><td style='white-space:nowrap'>{images}</td>" + "".join(cell(c) for c in line) + "</tr>")
+        sources = [
+            row["picture"], *(corpus / "pictures" / b / (row["file"] + ".png") for b in BROWSERS)
+        ]
+        images = "".join(
+            f'<img src="{html.escape(pathlib.Path(s).resolve().as_uri())}">' for s in sources
+            if s and pathlib.Path(s).exists())
+        lines.append(f"<tr><td style='white-space:nowrap'>{images}</td>" +
+                     "".join(cell(c) for c in line) + "</tr>")
     path.write_text("\n".join([*lines, "</table>"]), encoding="utf-8")
 
 
 def summary(path, rows, wall):
-    lines = ["| class | files | promises kept | median distance | beyond 0.1 | all black |", "| --- | --- | --- | --- | --- | --- |"]
+    lines = [
+        "| class | files | promises kept | median distance | beyond 0.1 | all black |",
+        "| --- | --- | --- | --- | --- | --- |"
+    ]
     for kind in ("strict", "ext", "header", "bad", "v1"):
         some = [r for r in rows if r["class"] == kind]
         known = sorted(r["distance"] for r in some if r["distance"] is not None)
         median = f"{known[len(known) // 2]:.3f}" if known else ""
-        lines.append(f"| {kind} | {len(some)} | {sum(not r['broken'] for r in some)} | {median} | {sum(d > 0.1 for d in known)} | "
-                     f"{sum(r['black'] for r in some)} |")
-    lines.append(f"\n{len(rows)} files twice each in {wall:.0f} s; slowest {max(r['seconds'] for r in rows):.1f} s; "
-                 f"largest {max(r['mib'] for r in rows):.0f} MiB.")
+        lines.append(
+            f"| {kind} | {len(some)} | {sum(not r['broken'] for r in some)} | {median} | {sum(d > 0.1 for d in known)} | "
+            f"{sum(r['black'] for r in some)} |")
+    lines.append(
+        f"\n{len(rows)} files twice each in {wall:.0f} s; slowest {max(r['seconds'] for r in rows):.1f} s; "
+        f"largest {max(r['mib'] for r in rows):.0f} MiB.")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     print("\n".join(lines))

@@ -90,36 +90,71 @@ def cases(programs, python):
     pixels = 16 * 12
     frames = {f"out{i}.png": is_png for i in range(3)}
     result = {
-        "png": Case(vv + ["-o", "out.png"], {"out.png": is_png}),
-        "jpeg": Case(vv + ["-o", "out.jpg"], {"out.jpg": is_jpeg}),
-        "exr": Case(vv + ["-o", "out.exr"], {"out.exr": of_size(300)}),
-        "ppm": Case(vv + ["-o", "out.ppm"], {"out.ppm": of_size(3 * pixels)}),
-        "pfm": Case(vv + ["-o", "out.pfm"], {"out.pfm": of_size(12 * pixels)}),
-        "new": Case(vv + ["-o", "out.png"], {"out.png": is_png}, fresh=True),
-        "stats": Case(vv + ["-o", "out.png", "--stats", "out.json"], {"out.png": is_png, "out.json": is_json}),
-        "world": Case(vv[:2] + ["--write", "out.wrl"], {"out.wrl": of_size(50)}),
-        "frames": Case(vv + ["--frames", "0-2", "-o", "out{frame}.png", "--stats", "out.json"], {**frames, "out.json": is_json}),
-        "recording": Case(vv + ["-o", "out.png", "--record", "out.ort"], {"out.png": is_png, "out.ort": is_recording}),
-        "new recording": Case(vv + ["-o", "out.png", "--record", "out.ort"], {"out.png": is_png, "out.ort": is_recording}, fresh=True),
+        "png":
+            Case(vv + ["-o", "out.png"], {"out.png": is_png}),
+        "jpeg":
+            Case(vv + ["-o", "out.jpg"], {"out.jpg": is_jpeg}),
+        "exr":
+            Case(vv + ["-o", "out.exr"], {"out.exr": of_size(300)}),
+        "ppm":
+            Case(vv + ["-o", "out.ppm"], {"out.ppm": of_size(3 * pixels)}),
+        "pfm":
+            Case(vv + ["-o", "out.pfm"], {"out.pfm": of_size(12 * pixels)}),
+        "new":
+            Case(vv + ["-o", "out.png"], {"out.png": is_png}, fresh=True),
+        "stats":
+            Case(vv + ["-o", "out.png", "--stats", "out.json"], {
+                "out.png": is_png,
+                "out.json": is_json
+            }),
+        "world":
+            Case(vv[:2] + ["--write", "out.wrl"], {"out.wrl": of_size(50)}),
+        "frames":
+            Case(vv + ["--frames", "0-2", "-o", "out{frame}.png", "--stats", "out.json"], {
+                **frames, "out.json": is_json
+            }),
+        "recording":
+            Case(vv + ["-o", "out.png", "--record", "out.ort"], {
+                "out.png": is_png,
+                "out.ort": is_recording
+            }),
+        "new recording":
+            Case(vv + ["-o", "out.png", "--record", "out.ort"], {
+                "out.png": is_png,
+                "out.ort": is_recording
+            },
+                 fresh=True),
     }
     replay = [str(programs / "openrt-replay"), "given.ort", "--threads", "1"]
-    result["replay"] = Case(replay + ["-o", "out.pfm"], {"out.pfm": of_size(12 * pixels)}, recording=True)
-    result["export"] = Case(replay + ["--export", "out.json"], {"out.json": is_json, "out.json.bin": of_size(100)}, recording=True)
+    result["replay"] = Case(replay + ["-o", "out.pfm"], {"out.pfm": of_size(12 * pixels)},
+                            recording=True)
+    result["export"] = Case(replay + ["--export", "out.json"], {
+        "out.json": is_json,
+        "out.json.bin": of_size(100)
+    },
+                            recording=True)
     for kind in ("gif", "mp4", "webm"):
-        result["film " + kind] = Case(vv + ["--frames", "0-3", "-o", "out." + kind], {"out." + kind: of_size(100)})
+        result["film " + kind] = Case(vv + ["--frames", "0-3", "-o", "out." + kind],
+                                      {"out." + kind: of_size(100)})
     if (programs / "openrt-worker").exists():
         key = [str(programs / "openrt-worker"), "--new-key", "out.key"]
         result["key file"] = Case(key, {"out.key": of_size(90)}, code=3, fresh=True)
     nodes = [str(programs / "nodegen"), "given.node", "--reference", "out.md", "--stub", "out.pyi"]
     result["nodegen"] = Case(nodes, {"out.md": of_size(50), "out.pyi": of_size(50)}, code=5)
     if python:
-        result["python"] = Case([sys.executable, "-c", PICTURES], {"out.png": is_png, "out.gif": of_size(100)})
+        result["python"] = Case([sys.executable, "-c", PICTURES], {
+            "out.png": is_png,
+            "out.gif": of_size(100)
+        })
         result["python recording"] = Case([sys.executable, "-c", CONTEXT], {"out.ort": of_size(16)})
-        result["python world"] = Case([sys.executable, "-c", 'import xvrml\nxvrml.load("box.wrl").save("out.wrl")'], {"out.wrl": of_size(50)})
+        result["python world"] = Case(
+            [sys.executable, "-c", 'import xvrml\nxvrml.load("box.wrl").save("out.wrl")'],
+            {"out.wrl": of_size(50)})
     return result
 
 
 class Sweep:
+
     def __init__(self, programs, library, python, quick):
         self.programs, self.library, self.python, self.quick = programs, library, python, quick
         self.faults = []
@@ -128,11 +163,20 @@ class Sweep:
     def run(self, folder, command, failing, sticks):
         count = folder.parent / "count"
         count.unlink(missing_ok=True)
-        environment = {**os.environ, "LD_PRELOAD": str(self.library), "WRITE_FAILURE": str(failing), "WRITE_FAILURE_COUNT": str(count),
-                       "WRITE_FAILURE_STICKS": "1" if sticks else "0", "PYTHONDONTWRITEBYTECODE": "1"}
+        environment = {
+            **os.environ, "LD_PRELOAD": str(self.library),
+            "WRITE_FAILURE": str(failing),
+            "WRITE_FAILURE_COUNT": str(count),
+            "WRITE_FAILURE_STICKS": "1" if sticks else "0",
+            "PYTHONDONTWRITEBYTECODE": "1"
+        }
         if self.python:
             environment["PYTHONPATH"] = str(self.python)
-        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, timeout=120)
+        done = subprocess.run(command,
+                              cwd=folder,
+                              env=environment,
+                              capture_output=True,
+                              timeout=120)
         self.runs += 1
         return done, int(count.read_text()) if count.exists() else 0
 
@@ -153,9 +197,11 @@ class Sweep:
     def told(self, what, done, code):
         text = done.stderr.decode(errors="replace").strip()
         if done.returncode != code:
-            self.faults.append(f"{what}: exit code {done.returncode}, expected {code}: {text[-200:]}")
+            self.faults.append(
+                f"{what}: exit code {done.returncode}, expected {code}: {text[-200:]}")
         elif not any(word in text for word in ("cannot write", "cannot be", "No space", "failed")):
-            self.faults.append(f"{what}: no message says that it could not be written: {text[-200:]!r}")
+            self.faults.append(
+                f"{what}: no message says that it could not be written: {text[-200:]!r}")
 
     def check(self, what, folder, given, case, done):
         self.told(what, done, case.code)
@@ -177,9 +223,14 @@ class Sweep:
         if name.startswith("film") and done.returncode == 2 and "ffmpeg" in text:
             print(f"{name}: not built in", flush=True)
             return
-        wrong = [file for file, whole in case.files.items() if not (folder / file).exists() or not whole((folder / file).read_bytes())]
+        wrong = [
+            file for file, whole in case.files.items()
+            if not (folder / file).exists() or not whole((folder / file).read_bytes())
+        ]
         if done.returncode != 0 or wrong or calls == 0:
-            self.faults.append(f"{name}: without any failure: exit code {done.returncode}, {calls} calls, wrong: {wrong}: {text}")
+            self.faults.append(
+                f"{name}: without any failure: exit code {done.returncode}, {calls} calls, wrong: {wrong}: {text}"
+            )
             return
         numbers = range(1, calls + 1)
         if self.quick:
@@ -200,30 +251,44 @@ class Sweep:
         folder, _ = self.folder(parent, Case([], {}), recording)
         vv = [str(self.programs / "vv")]
         small = vv + ["box.wrl", *SMALL]
-        commands = [vv + [option] for option in ("--help", "--version", "--list-nodes", "--list-shaders", "--list-engines")]
-        commands += [small[:2] + ["--info"], small[:2] + ["--write", "-"], small + ["--explain"], small + ["-o", "-"],
-                     small + ["-o", "out.png", "--stats", "-"]]
+        commands = [
+            vv + [option] for option in ("--help", "--version", "--list-nodes", "--list-shaders",
+                                         "--list-engines")
+        ]
+        commands += [
+            small[:2] + ["--info"], small[:2] + ["--write", "-"], small + ["--explain"],
+            small + ["-o", "-"], small + ["-o", "out.png", "--stats", "-"]
+        ]
         for program in ("openrt-replay", "openrt-worker"):
             if (self.programs / program).exists():
                 commands.append([str(self.programs / program), "--help"])
-        commands.append([str(self.programs / "openrt-replay"), "given.ort", "--threads", "1", "--stats"])
+        commands.append(
+            [str(self.programs / "openrt-replay"), "given.ort", "--threads", "1", "--stats"])
         if (self.programs / "openrt-worker").exists():
             commands.append([str(self.programs / "openrt-worker"), "--new-key", "out.key"])
         commands.append([str(self.programs / "nodegen"), "--help"])
         for command in commands:
             with open("/dev/full", "wb") as full:
-                done = subprocess.run(command, cwd=folder, stdout=full, stderr=subprocess.PIPE, timeout=120)
+                done = subprocess.run(command,
+                                      cwd=folder,
+                                      stdout=full,
+                                      stderr=subprocess.PIPE,
+                                      timeout=120)
             self.runs += 1
             name = pathlib.Path(command[0]).name
-            self.told(f"{name} {' '.join(command[1:])} > /dev/full", done, 5 if name == "nodegen" else 1)
+            self.told(f"{name} {' '.join(command[1:])} > /dev/full", done,
+                      5 if name == "nodegen" else 1)
         print(f"standard output: {len(commands)} commands", flush=True)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin", type=pathlib.Path)
     parser.add_argument("library", type=pathlib.Path)
-    parser.add_argument("--python", type=pathlib.Path, help="the folder of the Python package; left out: not tried")
+    parser.add_argument("--python",
+                        type=pathlib.Path,
+                        help="the folder of the Python package; left out: not tried")
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--only", help="kinds whose name contains this")
     arguments = parser.parse_args()
@@ -233,7 +298,9 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         parent = pathlib.Path(temporary)
         folder, _ = sweep.folder(parent, Case([], {}), None)
-        command = [str(programs / "vv"), "box.wrl", *SMALL, "-o", "out.png", "--record", "given.ort"]
+        command = [
+            str(programs / "vv"), "box.wrl", *SMALL, "-o", "out.png", "--record", "given.ort"
+        ]
         subprocess.run(command, cwd=folder, check=True, timeout=120)
         recording = (folder / "given.ort").read_bytes()
         for name, case in cases(programs, python).items():

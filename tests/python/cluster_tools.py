@@ -21,7 +21,10 @@ def needs_worker():
 
 def new_key(path):
     """Makes a key file; returns its public key."""
-    done = subprocess.run([PROGRAM, "--new-key", path], capture_output=True, text=True, timeout=PATIENCE)
+    done = subprocess.run([PROGRAM, "--new-key", path],
+                          capture_output=True,
+                          text=True,
+                          timeout=PATIENCE)
     assert done.returncode == 0, done.stderr
     assert stat.S_IMODE(path.stat().st_mode) == 0o600
     return done.stdout.split()[0]

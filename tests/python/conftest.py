@@ -26,7 +26,6 @@ DEF Place Transform {
 }
 """
 
-
 HEADER = "#VRML V2.0 utf8\n"
 SMALL = ("--size", "32x24", "--spp", "1")
 
@@ -50,14 +49,22 @@ class Vv:
         self.folder = folder
 
     def __call__(self, *arguments, stdin=b"", env=None, timeout=120):
-        done = subprocess.run([self.program, *map(str, arguments)], cwd=self.folder, input=stdin, capture_output=True, timeout=timeout,
-                              env={**os.environ, **(env or {})})
+        done = subprocess.run([self.program, *map(str, arguments)],
+                              cwd=self.folder,
+                              input=stdin,
+                              capture_output=True,
+                              timeout=timeout,
+                              env={
+                                  **os.environ,
+                                  **(env or {})
+                              })
         done.text = done.stdout.decode(errors="replace")
         done.talk = done.stderr.decode(errors="replace")
         return done
 
     def write(self, name, content):
-        (self.folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        (self.folder /
+         name).write_bytes(content if isinstance(content, bytes) else content.encode())
 
     def picture(self, *arguments, world="box.wrl"):
         """Renders a small picture; returns its rows of (r, g, b) bytes."""
@@ -69,7 +76,10 @@ class Vv:
         return [p.name for p in self.folder.iterdir() if p.name.startswith(".vv-")]
 
     def start(self, *arguments):
-        return subprocess.Popen([self.program, *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        return subprocess.Popen([self.program, *map(str, arguments)],
+                                cwd=self.folder,
+                                stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE)
 
 
 @pytest.fixture
@@ -93,7 +103,9 @@ def read_pfm(data):
     assert kind == b"PF" and float(scale) < 0
     width, height = map(int, size.split())
     numbers = struct.unpack(f"<{3 * width * height}f", pixels)
-    rows = [[numbers[3 * (y * width + x):3 * (y * width + x) + 3] for x in range(width)] for y in range(height)]
+    rows = [[numbers[3 * (y * width + x):3 * (y * width + x) + 3]
+             for x in range(width)]
+            for y in range(height)]
     return width, height, rows[::-1]
 
 
@@ -102,7 +114,9 @@ def read_ppm(data):
     assert kind == b"P6" and maximum == b"255"
     width, height = map(int, size.split())
     assert len(pixels) == 3 * width * height
-    return width, height, [[tuple(pixels[3 * (y * width + x):3 * (y * width + x) + 3]) for x in range(width)] for y in range(height)]
+    return width, height, [[
+        tuple(pixels[3 * (y * width + x):3 * (y * width + x) + 3]) for x in range(width)
+    ] for y in range(height)]
 
 
 def exr_header(data):

@@ -45,8 +45,9 @@ def test_time_is_an_argument(browser):
 
 
 def test_a_moment_is_told_once():
-    w = xvrml.loads("DEF T TimeSensor { loop TRUE cycleInterval 4 } DEF S TimeSensor { loop TRUE cycleInterval 4 }".join(
-        ("#VRML V2.0 utf8\n", "\n")))
+    w = xvrml.loads(
+        "DEF T TimeSensor { loop TRUE cycleInterval 4 } DEF S TimeSensor { loop TRUE cycleInterval 4 }"
+        .join(("#VRML V2.0 utf8\n", "\n")))
     heard = []
     for event in ("T.fraction_changed", "T.time", "T.isActive", "S.fraction_changed"):
         w.on(event, lambda value, time, event=event: heard.append((event, value)))
@@ -57,7 +58,8 @@ def test_a_moment_is_told_once():
     w.time = 0.5
     assert heard == []
     w["T"].enabled = False  # the sensor stops at the same time
-    assert [e for e, _ in heard] == ["T.fraction_changed", "T.time", "T.isActive"] and heard[-1][1] is False
+    assert [e for e, _ in heard] == ["T.fraction_changed", "T.time", "T.isActive"
+                                    ] and heard[-1][1] is False
     heard.clear()
     w["T"].enabled = True  # and starts again
     w.time = 1
@@ -102,6 +104,7 @@ def test_listen_and_unlisten(browser):
 
 
 def test_an_exception_of_a_callback_is_raised_by_the_call(browser):
+
     def fail(value, now):
         raise KeyError("mine")
 
@@ -153,7 +156,9 @@ def test_nodes_of_another_world_are_refused(browser):
 
 def test_nodes_are_made_and_put_into_the_world(browser):
     ball = browser.create_node("Sphere", radius=0.5)
-    place = browser.create_node("Transform", translation=(0, 2, 0), children=[browser.create_node("Shape", geometry=ball)])
+    place = browser.create_node("Transform",
+                                translation=(0, 2, 0),
+                                children=[browser.create_node("Shape", geometry=ball)])
     before = browser.render(**SMALL).array.copy()
     browser.add_root(place)
     after = browser.render(**SMALL).array.copy()
@@ -175,11 +180,14 @@ def test_nodes_come_from_text(browser):
 
 def test_another_world_takes_the_place(browser, tmp_path):
     before, generation = browser.render(**SMALL).array.copy(), browser.generation
-    (tmp_path / "other.wrl").write_text("#VRML V2.0 utf8\nViewpoint { position 0 0 5 } DEF New Shape { geometry Sphere { } }")
+    (tmp_path / "other.wrl").write_text(
+        "#VRML V2.0 utf8\nViewpoint { position 0 0 5 } DEF New Shape { geometry Sphere { } }")
     old = browser["Place"]
     here = xvrml.Browser(tmp_path / "other.wrl")
     here.load_url(["missing.wrl", "other.wrl#New"])
-    browser.replace_world(browser.create_vrml_from_string("Viewpoint { position 0 0 4 } Shape { geometry Sphere { } }"))
+    browser.replace_world(
+        browser.create_vrml_from_string(
+            "Viewpoint { position 0 0 4 } Shape { geometry Sphere { } }"))
     assert browser.generation == generation + 1
     assert not np.array_equal(browser.render(**SMALL).array, before)
     assert old.translation == (0, 0, 0)
@@ -221,7 +229,9 @@ def test_the_viewer(browser):
 def test_the_pointer(browser):
     heard = []
     for event in ("isOver", "isActive", "touchTime", "hitPoint_changed"):
-        browser.listen(browser["Touch"], event, lambda value, now, event=event: heard.append((event, value)))
+        browser.listen(browser["Touch"],
+                       event,
+                       lambda value, now, event=event: heard.append((event, value)))
     browser["Clock"].enabled = False
     browser["Place"].translation = (0, 0, 0)
     browser.tick(1)
@@ -246,7 +256,9 @@ def test_nodes_keep_the_browser_alive():
 
 
 def test_a_browser_ends_with_its_last_name():
+
     class Heard:
+
         def __call__(self, value, now):
             pass
 
@@ -292,16 +304,18 @@ def test_sources(tmp_path):
         xvrml.Browser(b"nothing")
 
 
-# Node plug-ins ---------------------------------------------------------------------------------------------------------
+# Node plug-ins ----------------------------------------------------------------------------------
 
 PLUGINS = find_vv().parent.parent / "examples/nodes"
 
 
-@pytest.mark.skipif(not (PLUGINS / "springs.so").exists(), reason="the example plug-in is not built")
+@pytest.mark.skipif(not (PLUGINS / "springs.so").exists(),
+                    reason="the example plug-in is not built")
 def test_plugin_nodes_are_like_built_in_ones():
     assert xvrml.load_node_plugins(PLUGINS) == [] == xvrml.load_node_plugins(str(PLUGINS))
-    browser = xvrml.Browser(b"#VRML V2.0 utf8\nViewpoint { position 0 2 9 }\nDEF S Shape { appearance Appearance { material Material {"
-                            b" emissiveColor 1 1 1 } } geometry DEF Coil Spring { turns 3 } } DEF Count Counter { }")
+    browser = xvrml.Browser(
+        b"#VRML V2.0 utf8\nViewpoint { position 0 2 9 }\nDEF S Shape { appearance Appearance { material Material {"
+        b" emissiveColor 1 1 1 } } geometry DEF Coil Spring { turns 3 } } DEF Count Counter { }")
     coil, count = browser["Coil"], browser["Count"]
     assert coil.node_type == "Spring" and coil.turns == 3 and coil.fields["height"] == "SFFloat"
     low = browser.render(**SMALL).display.sum()

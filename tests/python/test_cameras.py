@@ -34,7 +34,8 @@ def turned(axis, angle, translation):
 
 
 # A camera at 1 0.5 10 that looks along -z, turned slightly sideways: world to camera, y down.
-T = turned((1, 2, 3), 0.1, (0, 0, 0)) @ np.diag([1.0, -1, -1, 1]) @ turned((0, 0, 1), 0, (-1, -0.5, -10))
+T = turned((1, 2, 3), 0.1, (0, 0, 0)) @ np.diag([1.0, -1, -1, 1]) @ turned((0, 0, 1), 0,
+                                                                           (-1, -0.5, -10))
 CAMERAS = {
     "plain": xvrml.Pinhole([[70, 0, 39.5], [0, 70, 29.5], [0, 0, 1]], T),
     "aside": xvrml.Pinhole([[70, 0, 30.2], [0, 70, 40.7], [0, 0, 1]], T),
@@ -69,7 +70,10 @@ def test_rays_meet_what_the_picture_shows(world, name):
     caster = world.raycaster()
     hits = caster.cast_rays(camera.rays(80, 60))
     ids, other = image["id"], hits["geometry_ids"]
-    same = np.array([[image.nodes[i] == (None if g == caster.INVALID_ID else caster.meshes[g].node) for i, g in zip(*row)]
+    same = np.array([[
+        image.nodes[i] == (None if g == caster.INVALID_ID else caster.meshes[g].node)
+        for i, g in zip(*row)
+    ]
                      for row in zip(ids, other)])
     assert same.mean() > 0.96, "all but the outlines"
     inside = same & (ids > 0)
@@ -84,8 +88,10 @@ def test_ids_are_shapes(world):
     numbers = set(image["id"].ravel().tolist()) - {0}
     nodes = [image.nodes[n] for n in numbers]
     assert len(numbers) == 5 and all(isinstance(node, xvrml.Shape) for node in nodes)
-    assert {node.geometry.node_type for node in nodes} == {"Box", "Sphere", "Cone", "IndexedFaceSet"}
-    assert len(image.nodes) == len(image.names) == 6 and image.nodes[0] is None and image.names[0] == ""
+    assert {node.geometry.node_type for node in nodes
+           } == {"Box", "Sphere", "Cone", "IndexedFaceSet"}
+    assert len(image.nodes) == len(
+        image.names) == 6 and image.nodes[0] is None and image.names[0] == ""
     assert image.nodes is image.nodes
     assert sorted(image.names[n] for n in numbers) == ["Peak", "Shape", "Shape", "Slab", "Slab"]
     middle = image.nodes[image["id"][45, 60]]
@@ -114,27 +120,35 @@ Transform { translation 6 0 0 rotation 1 0 0 1.57 children DEF B Group { childre
 
 def test_ids_stay_while_the_world_changes():
     browser = xvrml.Browser(SCENE.encode())
-    ids = lambda: (lambda image: {image.nodes[n]: n for n in set(image["id"].ravel().tolist()) - {0}})(
-        browser.render(size=(120, 90), spp=1, channels="id", fov=60))
+    ids = lambda: (lambda image: {
+        image.nodes[n]: n for n in set(image["id"].ravel().tolist()) - {0}
+    })(browser.render(size=(120, 90), spp=1, channels="id", fov=60))
     before = ids()
     assert len(before) == 5
     gone = browser.roots[2].children[0]
     browser.roots[2].children = []
     fewer = ids()
-    assert gone not in fewer and all(before[node] == number for node, number in fewer.items()) and len(fewer) == 4
+    assert gone not in fewer and all(
+        before[node] == number for node, number in fewer.items()) and len(fewer) == 4
     browser.roots[2].children = [xvrml.Shape(geometry=xvrml.Box())]
     again = ids()
-    assert len(again) == 5 and len(set(again.values())) == 5 and all(again[node] == number for node, number in fewer.items())
+    assert len(again) == 5 and len(set(again.values())) == 5 and all(
+        again[node] == number for node, number in fewer.items())
 
 
 def test_the_camera_of_a_picture(world):
     image = world.render(size=(80, 60), spp=1, channels=("z", "position"), viewpoint=0)
     camera = image.camera
-    assert camera.T == pytest.approx(np.diag([1.0, -1, -1, 1]) + np.array([[0, 0, 0, 0]] * 2 + [[0, 0, 0, 9], [0, 0, 0, 0]]), abs=1e-9)
+    assert camera.T == pytest.approx(np.diag([1.0, -1, -1, 1]) +
+                                     np.array([[0, 0, 0, 0]] * 2 + [[0, 0, 0, 9], [0, 0, 0, 0]]),
+                                     abs=1e-9)
     assert camera.K[0, 2] == 39.5 and camera.K[1, 2] == 29.5
     again = world.render(size=(80, 60), spp=1, channels=("z", "position"), camera=camera)
     assert again.camera is camera and np.allclose(again["z"], image["z"], rtol=1e-5)
-    posed = world.render(size=(80, 60), spp=1, channels="z", camera=image.camera.pose @ np.diag([1.0, -1, -1, 1]))
+    posed = world.render(size=(80, 60),
+                         spp=1,
+                         channels="z",
+                         camera=image.camera.pose @ np.diag([1.0, -1, -1, 1]))
     assert np.allclose(posed["z"], image["z"], rtol=1e-5), "poses look along -z"
 
 
@@ -157,7 +171,8 @@ DEF O ORTViewpoint { position 0 0 20 }
         again = world.render(size=(40, 30), spp=1, channels="z", camera=matrix, fov=fov)
         assert np.isfinite(seen["z"]).any() and np.allclose(again["z"], seen["z"], rtol=1e-4)
         assert np.abs(again.array - seen.array).max() < 1e-3
-    assert world.viewpoints[0].matrix[:3, :3] @ world.viewpoints[0].matrix[:3, :3].T == pytest.approx(np.eye(3))
+    assert world.viewpoints[0].matrix[:3, :3] @ world.viewpoints[
+        0].matrix[:3, :3].T == pytest.approx(np.eye(3))
     world["V"].position = (0, 0, 0)
     world["V"].orientation = (0, 1, 0, 0)
     assert world.viewpoints[0].matrix[:3, 3] == pytest.approx([7, 0, 0])
@@ -177,19 +192,34 @@ K = [[70, 0, 39.5], [0, 70, 29.5], [0, 0, 1]]
 
 
 @pytest.mark.parametrize("wrong", [
-    lambda w: xvrml.Pinhole(np.eye(4)), lambda w: xvrml.Pinhole("K"), lambda w: xvrml.Pinhole([[0, 0, 1], [0, 1, 1], [0, 0, 1]]),
-    lambda w: xvrml.Pinhole([[1, 0, 1], [0, 1, 1], [0, 0, 2]]), lambda w: xvrml.Pinhole(K, 2 * np.eye(4)),
-    lambda w: xvrml.Pinhole(K, np.diag([1, 1, -1, 1])), lambda w: xvrml.Pinhole(K, np.full((4, 4), np.nan)),
-    lambda w: w.render(camera=xvrml.Pinhole(K), fov=30), lambda w: w.render(camera=xvrml.Pinhole(K), fit=True),
-    lambda w: w.render(camera=2 * np.eye(4)), lambda w: w.render(camera=np.diag([1, 1, -1, 1])), lambda w: w.render(camera=np.eye(5)),
-    lambda w: w.render(up="w"), lambda w: w.render(background="nothing"), lambda w: w.render(background=(1, 2, 3)),
-    lambda w: w.render(viewpoint=0, fit=True), lambda w: w.render(camera=np.eye(3)), lambda w: w.render(camera="front"),
-    lambda w: xvrml.Pinhole(K, [[1], [2, 3]]), lambda w: xvrml.Pinhole(K, center=np.inf), lambda w: xvrml.Pinhole(K).rays(-1, 3),
-    lambda w: xvrml.Pinhole(K).project(5), lambda w: xvrml.Pinhole(K).project([[1, 2]]),
+    lambda w: xvrml.Pinhole(np.eye(4)),
+    lambda w: xvrml.Pinhole("K"),
+    lambda w: xvrml.Pinhole([[0, 0, 1], [0, 1, 1], [0, 0, 1]]),
+    lambda w: xvrml.Pinhole([[1, 0, 1], [0, 1, 1], [0, 0, 2]]),
+    lambda w: xvrml.Pinhole(K, 2 * np.eye(4)),
+    lambda w: xvrml.Pinhole(K, np.diag([1, 1, -1, 1])),
+    lambda w: xvrml.Pinhole(K, np.full((4, 4), np.nan)),
+    lambda w: w.render(camera=xvrml.Pinhole(K), fov=30),
+    lambda w: w.render(camera=xvrml.Pinhole(K), fit=True),
+    lambda w: w.render(camera=2 * np.eye(4)),
+    lambda w: w.render(camera=np.diag([1, 1, -1, 1])),
+    lambda w: w.render(camera=np.eye(5)),
+    lambda w: w.render(up="w"),
+    lambda w: w.render(background="nothing"),
+    lambda w: w.render(background=(1, 2, 3)),
+    lambda w: w.render(viewpoint=0, fit=True),
+    lambda w: w.render(camera=np.eye(3)),
+    lambda w: w.render(camera="front"),
+    lambda w: xvrml.Pinhole(K, [[1], [2, 3]]),
+    lambda w: xvrml.Pinhole(K, center=np.inf),
+    lambda w: xvrml.Pinhole(K).rays(-1, 3),
+    lambda w: xvrml.Pinhole(K).project(5),
+    lambda w: xvrml.Pinhole(K).project([[1, 2]]),
     lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 0, 0), (0, 1, 0), 4, 3),
     lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 5, 0), (0, 1, 0), 4, 3),
     lambda w: rt.create_rays_pinhole(180, (0, 0, 0), (0, 0, 5), (0, 1, 0), 4, 3),
-    lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 5), (0, 1, 0), 4, 3), lambda w: rt.create_rays_pinhole(np.eye(3), np.eye(3), 4, 3),
+    lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 5), (0, 1, 0), 4, 3),
+    lambda w: rt.create_rays_pinhole(np.eye(3), np.eye(3), 4, 3),
     lambda w: rt.create_rays_pinhole(60, (0, 0, 0), (0, 0, 5), (0, 1, 0), 4, -3),
 ])
 def test_wrong_cameras(world, wrong):
@@ -208,9 +238,17 @@ def test_open3d_rays():
     extrinsic[:3, 3] = -extrinsic[:3, :3] @ eye
     focal = width / 2 / np.tan(np.radians(fov) / 2)
     intrinsic = np.array([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1]])
-    by_view = rt.create_rays_pinhole(fov_deg=fov, center=center, eye=eye, up=up, width_px=width, height_px=height)
+    by_view = rt.create_rays_pinhole(fov_deg=fov,
+                                     center=center,
+                                     eye=eye,
+                                     up=up,
+                                     width_px=width,
+                                     height_px=height)
     for rays in (rt.create_rays_pinhole(intrinsic, extrinsic, width, height),
-                 rt.Raycaster.create_rays_pinhole(intrinsic_matrix=intrinsic, extrinsic_matrix=extrinsic, width_px=width, height_px=height)):
+                 rt.Raycaster.create_rays_pinhole(intrinsic_matrix=intrinsic,
+                                                  extrinsic_matrix=extrinsic,
+                                                  width_px=width,
+                                                  height_px=height)):
         assert rays.dtype == np.float32 and rays.shape == (height, width, 6)
         assert np.allclose(rays, by_view, atol=1e-5)
 
@@ -226,8 +264,10 @@ def test_bounds(world):
 
 def test_models_in_python():
     """A model without a Viewpoint looks as in vv, with the same up axis and background."""
-    model = xvrml.load(b"#VRML V2.0 utf8\n# kicad\nShape { appearance Appearance { material Material { } } geometry IndexedFaceSet { solid FALSE "
-                       b"coord Coordinate { point [ 0 0 0, 4 0 0, 0 4 0, 0 0 1 ] } coordIndex [ 0 2 1 -1 0 1 3 -1 0 3 2 -1 ] } }")
+    model = xvrml.load(
+        b"#VRML V2.0 utf8\n# kicad\nShape { appearance Appearance { material Material { } } geometry IndexedFaceSet { solid FALSE "
+        b"coord Coordinate { point [ 0 0 0, 4 0 0, 0 4 0, 0 0 1 ] } coordIndex [ 0 2 1 -1 0 1 3 -1 0 3 2 -1 ] } }"
+    )
     up = lambda **more: model.render(size=(32, 24), spp=1, **more).camera.pose[:3, 1] * -1
     assert np.argmax(up()) == 2 and np.argmax(up(up="y")) == 1 and np.argmin(up(up="-x")) == 0
     clear = model.render(size=(32, 24), spp=1, background="none").array
@@ -239,9 +279,13 @@ def test_models_in_python():
 
 
 @pytest.mark.parametrize("call, words", [
-    (lambda: rt.create_rays_pinhole("60", (0, 0, 0), (0, 0, 5), (0, 1, 0), 4, 3), "fov_deg: a number above 0 expected, not the str '60'"),
-    (lambda: rt.create_rays_pinhole(), "create_rays_pinhole(): fov_deg, center, eye, up, width_px, height_px must be given, or intrinsic"),
-    (lambda: rt.create_rays_pinhole(60, up=(0, 1, 0)), "create_rays_pinhole(): center, eye, width_px, height_px must be given"),
+    (lambda: rt.create_rays_pinhole("60", (0, 0, 0), (0, 0, 5), (0, 1, 0), 4, 3),
+     "fov_deg: a number above 0 expected, not the str '60'"),
+    (lambda: rt.create_rays_pinhole(),
+     "create_rays_pinhole(): fov_deg, center, eye, up, width_px, height_px must be given, or intrinsic"
+    ),
+    (lambda: rt.create_rays_pinhole(60, up=(0, 1, 0)),
+     "create_rays_pinhole(): center, eye, width_px, height_px must be given"),
     (lambda: rt.create_rays_pinhole(60, fov=3), "create_rays_pinhole(): fov is no argument"),
     (lambda: xvrml.Pinhole(K, center="a"), "center: a number expected, not the str 'a'"),
     (lambda: xvrml.Pinhole(K).rays("a", 3), "width: a whole number expected, not the str 'a'"),
@@ -256,4 +300,5 @@ def test_position_target_and_up_are_a_tuple_even_if_they_are_at_right_angles(wor
     view = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     assert np.allclose(world.render(size=(8, 6), spp=1, camera=view).camera.pose[:3, 3], (1, 0, 0))
     many = np.array([[0, 0, 9], [0, 0, 0], [0, 1, 0]])
-    assert np.allclose(world.render(size=(8, 6), spp=1, camera=many).camera.pose[:3, 3], (0, 0, 9)), "an array that is no rotation"
+    assert np.allclose(world.render(size=(8, 6), spp=1, camera=many).camera.pose[:3, 3],
+                       (0, 0, 9)), "an array that is no rotation"

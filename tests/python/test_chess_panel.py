@@ -72,15 +72,22 @@ def panel(tmp_path):
         shutil.copy(scenes / name, tmp_path / name)
     (tmp_path / "driver.tcl").write_text(DRIVER)
     text = (scenes / "chess.wrl").read_text()
-    changed = text.replace('url "chess.tcl"', 'url "driver.tcl" eventIn SFString ask eventOut SFString answer')
+    changed = text.replace('url "chess.tcl"',
+                           'url "driver.tcl" eventIn SFString ask eventOut SFString answer')
     assert changed != text
     (tmp_path / "chess.wrl").write_text(changed)
     (tmp_path / "plain.wrl").write_text(text)
 
     def run(program):
         with display():
-            done = subprocess.run([sys.executable, "-c", START + textwrap.dedent(program), str(tmp_path / "chess.wrl")], capture_output=True,
-                                  text=True, timeout=120, env=os.environ)
+            done = subprocess.run([
+                sys.executable, "-c", START + textwrap.dedent(program),
+                str(tmp_path / "chess.wrl")
+            ],
+                                  capture_output=True,
+                                  text=True,
+                                  timeout=120,
+                                  env=os.environ)
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
 
@@ -133,7 +140,8 @@ def test_beside_the_picture_of_vv(vv):
         shutil.copy(scenes / name, vv.folder / name)
     # The driver moves the panel away from the picture, prints where its squares are, and writes
     # down each position.
-    vv.write("driver.tcl", DRIVER + """
+    vv.write(
+        "driver.tcl", DRIVER + """
 set folder [file dirname [info script]]
 proc keep {name text} {
   set channel [open [file join $::folder $name.new] w]
@@ -153,27 +161,40 @@ proc where {} {
 }
 after 200 {wm geometry . +340+0; where}
 """)
-    vv.write("chess.wrl", (scenes / "chess.wrl").read_text().replace('url "chess.tcl"', 'url "driver.tcl"'))
+    vv.write("chess.wrl", (scenes / "chess.wrl").read_text().replace('url "chess.tcl"',
+                                                                     'url "driver.tcl"'))
     read = lambda name: (vv.folder / name).read_text() if (vv.folder / name).exists() else ""
     with display("1280x800"):
         program = vv.start("chess.wrl", "--trust", "--size", "160x120")
         try:
+
             def until(condition):
                 end = time.monotonic() + 90
                 while not condition():
-                    if program.poll() is not None and b"no window" in (talk := program.stderr.read()):
+                    if program.poll() is not None and b"no window" in (talk :=
+                                                                       program.stderr.read()):
                         pytest.skip("vv is built without a window")
-                    assert program.poll() is None and time.monotonic() < end, (read("position"), program.poll())
+                    assert program.poll() is None and time.monotonic() < end, (read("position"),
+                                                                               program.poll())
                     time.sleep(0.1)
 
             until(lambda: read("squares"))
-            squares = [tuple(pair.split()) for pair in read("squares").replace("} {", "\n").strip("{}\n ").splitlines()]
-            for i, placement in enumerate(("rnbqkbnr/pppppppp/8/8/4P3/8/PPPP1PPP/RNBQKBNR", "rnbqkbnr/pppp1ppp/8/4p3/4P3/8/PPPP1PPP/RNBQKBNR",
+            squares = [
+                tuple(pair.split())
+                for pair in read("squares").replace("} {", "\n").strip("{}\n ").splitlines()
+            ]
+            for i, placement in enumerate(("rnbqkbnr/pppppppp/8/8/4P3/8/PPPP1PPP/RNBQKBNR",
+                                           "rnbqkbnr/pppp1ppp/8/4p3/4P3/8/PPPP1PPP/RNBQKBNR",
                                            "rnbqkbnr/pppp1ppp/8/4p3/4P3/5N2/PPPP1PPP/RNBQKB1R")):
                 for x, y in squares[2 * i:2 * i + 2]:
-                    subprocess.run(["xdotool", "mousemove", x, y, "sleep", "0.3", "click", "1", "sleep", "0.3"], check=True)
+                    subprocess.run([
+                        "xdotool", "mousemove", x, y, "sleep", "0.3", "click", "1", "sleep", "0.3"
+                    ],
+                                   check=True)
                 until(lambda: read("position").startswith(placement))
-            names = subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "chess.wrl"], capture_output=True, text=True).stdout.split()
+            names = subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "chess.wrl"],
+                                   capture_output=True,
+                                   text=True).stdout.split()
             assert names  # the picture's own window is there
         finally:
             program.terminate()

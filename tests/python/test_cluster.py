@@ -42,7 +42,7 @@ def same(a, b):
     return np.array_equal(a.array.view(np.uint32), b.array.view(np.uint32))
 
 
-# Cluster -----------------------------------------------------------------------------------------------------------------
+# Cluster ----------------------------------------------------------------------------------------
 
 
 def test_renders_in_its_scope_use_it(two, room):
@@ -52,7 +52,8 @@ def test_renders_in_its_scope_use_it(two, room):
         assert same(room.render(**SMALL), alone)
         assert {w.name.count(":") > 0 for w in cluster.workers if not w.here} == {True}
         assert sum(w.tiles for w in cluster.workers if not w.here) > 0
-        assert all(w.alive and w.threads == 1 and w.bytes_sent > 0 for w in cluster.workers if not w.here)
+        assert all(
+            w.alive and w.threads == 1 and w.bytes_sent > 0 for w in cluster.workers if not w.here)
         assert "Cluster of 2 workers" in repr(cluster) and "tiles" in repr(cluster.workers[0])
         before = sum(w.tiles for w in cluster.workers)
     assert same(room.render(**SMALL), alone)
@@ -115,7 +116,8 @@ def test_errors_are_exceptions(room, tmp_path):
         with pytest.raises(TimeoutError, match="0 of 1 workers"):
             cluster.wait(1, timeout=0.2)
         assert time.monotonic() - start < PATIENCE
-        assert same(room.render(**SMALL), room.render(threads=1, **SMALL)), "this process does it alone"
+        assert same(room.render(**SMALL), room.render(threads=1,
+                                                      **SMALL)), "this process does it alone"
     with pytest.raises(xvrml.ClusterError, match="--new-key|new-key"):
         xvrml.Cluster(["192.0.2.1"])
     with pytest.raises(xvrml.RenderError, match="missing.key"):
@@ -123,9 +125,25 @@ def test_errors_are_exceptions(room, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, text", [
-    ({}, "workers or listen"), ({"workers": [""]}, "workers"), ({"workers": ["a,b"]}, "workers"),
-    ({"workers": "a", "split": "halves"}, "split"), ({"workers": "a", "local_threads": -1}, "local_threads"),
-    ({"workers": "a", "require": -1}, "require"),
+    ({}, "workers or listen"),
+    ({
+        "workers": [""]
+    }, "workers"),
+    ({
+        "workers": ["a,b"]
+    }, "workers"),
+    ({
+        "workers": "a",
+        "split": "halves"
+    }, "split"),
+    ({
+        "workers": "a",
+        "local_threads": -1
+    }, "local_threads"),
+    ({
+        "workers": "a",
+        "require": -1
+    }, "require"),
 ])
 def test_arguments(arguments, text):
     with pytest.raises(ValueError, match=text):
@@ -136,22 +154,31 @@ def test_with_a_key(room, tmp_path):
     needs_worker()
     new_key(tmp_path / "cluster.key")
     with workers(1, "--key", tmp_path / "cluster.key") as started:
-        with xvrml.Cluster(addresses(started), key=tmp_path / "cluster.key", require=1, local_threads=0):
+        with xvrml.Cluster(addresses(started),
+                           key=tmp_path / "cluster.key",
+                           require=1,
+                           local_threads=0):
             picture = room.render(**SMALL)
     assert same(picture, room.render(**SMALL))
 
 
-# Dask --------------------------------------------------------------------------------------------------------------------
+# Dask -------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
 def client():
     distributed = pytest.importorskip("distributed")
     pytest.importorskip("xvrml.dask")
-    paths = os.pathsep.join([str(pathlib.Path(xvrml.__file__).parents[1]), os.environ.get("PYTHONPATH", "")])
+    paths = os.pathsep.join(
+        [str(pathlib.Path(xvrml.__file__).parents[1]),
+         os.environ.get("PYTHONPATH", "")])
     before, os.environ["PYTHONPATH"] = os.environ.get("PYTHONPATH"), paths
     try:
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50) as cluster:
+        with distributed.LocalCluster(n_workers=2,
+                                      threads_per_worker=1,
+                                      processes=True,
+                                      dashboard_address=None,
+                                      silence_logs=50) as cluster:
             with distributed.Client(cluster) as made:
                 yield made
     finally:
@@ -183,13 +210,22 @@ def test_frames_on_dask_as_files(client, tmp_path):
     """Rendering from a path and from a World gives the same files as vv."""
     world = tmp_path / "moving.wrl"
     world.write_text(MOVING)
-    done = subprocess.run([find_vv(), world, "--frames", "0-2", "-o", tmp_path / "vv-{frame:4}.png", "--size", "64x48", "--spp", "4"], timeout=120)
+    done = subprocess.run([
+        find_vv(), world, "--frames", "0-2", "-o", tmp_path / "vv-{frame:4}.png", "--size", "64x48",
+        "--spp", "4"
+    ],
+                          timeout=120)
     assert done.returncode == 0
     for source in (world, xvrml.load(world)):
-        files = xvrml.dask.render_frames(source, [0, 1 / 30, 2 / 30], client, out=tmp_path / "dask-{frame:04}.png", **SMALL)
-        assert [pathlib.Path(f).name for f in files] == ["dask-0000.png", "dask-0001.png", "dask-0002.png"]
+        files = xvrml.dask.render_frames(source, [0, 1 / 30, 2 / 30],
+                                         client,
+                                         out=tmp_path / "dask-{frame:04}.png",
+                                         **SMALL)
+        assert [pathlib.Path(f).name for f in files
+               ] == ["dask-0000.png", "dask-0001.png", "dask-0002.png"]
         for n in range(3):
-            assert (tmp_path / f"dask-{n:04}.png").read_bytes() == (tmp_path / f"vv-{n:04}.png").read_bytes()
+            assert (tmp_path / f"dask-{n:04}.png").read_bytes() == (tmp_path /
+                                                                    f"vv-{n:04}.png").read_bytes()
             (tmp_path / f"dask-{n:04}.png").unlink()
     assert not list(tmp_path.glob(".xvrml-*"))
 
@@ -198,14 +234,16 @@ def test_a_frame_of_a_dead_dask_worker_is_made_again(client):
     frames = xvrml.dask.render_frames(MOVING.encode(), [n / 10 for n in range(6)], client, **SMALL)
     first = next(frames)
     worker = next(iter(client.cluster.workers.values()))
-    worker.process.process._process.kill() if hasattr(worker.process, "process") else worker.process.kill()
+    worker.process.process._process.kill() if hasattr(worker.process,
+                                                      "process") else worker.process.kill()
     rest = list(frames)
     assert len(rest) == 5 and np.array_equal(first, expected(0, **SMALL).array)
     assert np.array_equal(rest[-1], expected(0.5, **SMALL).array)
 
 
 def test_what_is_wrong_is_said_at_once(client, tmp_path):
-    for times, out, text in (([1, 0.5], None, "times"), ([-1], None, "times"), ([0, 1], tmp_path / "x.png", "frame")):
+    for times, out, text in (([1, 0.5], None, "times"), ([-1], None, "times"),
+                             ([0, 1], tmp_path / "x.png", "frame")):
         with pytest.raises(ValueError, match=text):
             list(xvrml.dask.render_frames(MOVING.encode(), times, client, out=out))
     with pytest.raises(xvrml.ParseError):

@@ -147,10 +147,12 @@ def test_partition_and_healing(expected):
 def test_bytes_that_are_damaged_on_the_way(expected, fault):
     random.seed(7)
     with farm(2, proxy=True) as workers, openrt_c.context(cluster(workers, local=0), **FRAME) as c:
+
         def hurt():
             for _ in range(6):
                 getattr(random.choice(workers).proxy, fault)()
                 time.sleep(0.05)
+
         out, took = render(c, hurt)
         print(f"{fault}: {took:.2f} s")
         assert out == expected
@@ -201,7 +203,10 @@ def test_the_master_is_killed_and_starts_again(expected):
     with farm(2) as workers:
         sizes = []
         for _ in range(3):
-            code = MASTER.format(folder=folder, config=cluster(workers, local=0), frame=FRAME, frames=1000)
+            code = MASTER.format(folder=folder,
+                                 config=cluster(workers, local=0),
+                                 frame=FRAME,
+                                 frames=1000)
             with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as master:
                 master.stdout.readline()  # the master is in the middle of its second frame
                 time.sleep(0.1)
@@ -229,12 +234,14 @@ def test_another_machine_with_a_key_and_a_cable_that_is_pulled(expected, tmp_pat
     with namespace() as there:
         if there is None:
             pytest.skip("no network namespaces here (they need root and iproute2)")
-        with there.popen(PROGRAM, "--listen", f"{THERE}:7447", "--threads", "1", "--key", key) as worker:
+        with there.popen(PROGRAM, "--listen", f"{THERE}:7447", "--threads", "1", "--key",
+                         key) as worker:
             try:
                 time.sleep(0.5)
                 with pytest.raises(openrt_c.RtError, match="key"):
                     openrt_c.Context(f"backend=cluster workers={THERE}:7447")
-                with openrt_c.context(f"backend=cluster workers={THERE}:7447 local=0 key={key}", **FRAME) as c:
+                with openrt_c.context(f"backend=cluster workers={THERE}:7447 local=0 key={key}",
+                                      **FRAME) as c:
                     assert c.wait_for(1), talk(c)
                     assert render(c)[0] == expected
                     assert c.stats()["tilesRemote"] > 0

@@ -13,7 +13,11 @@ EXAMPLES = ROOT / "examples/python"
 
 
 def run(name, *arguments, folder):
-    done = subprocess.run([sys.executable, EXAMPLES / name, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=300)
+    done = subprocess.run([sys.executable, EXAMPLES / name, *map(str, arguments)],
+                          cwd=folder,
+                          capture_output=True,
+                          text=True,
+                          timeout=300)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -27,7 +31,8 @@ def test_a_world_is_built_and_a_depth_camera_sees_it(tmp_path):
 
 def test_a_film(tmp_path, box):
     run("film.py", box, tmp_path, "0.3", folder=tmp_path)
-    assert sorted(p.name for p in tmp_path.glob("frame*.png")) == [f"frame{n:04}.png" for n in range(3)]
+    assert sorted(
+        p.name for p in tmp_path.glob("frame*.png")) == [f"frame{n:04}.png" for n in range(3)]
 
 
 def test_the_bare_renderer(tmp_path):

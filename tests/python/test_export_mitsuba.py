@@ -37,11 +37,13 @@ def test_the_cornell_box(vv, tmp_path):
 
 
 def test_surfaces_spheres_and_skies(vv, tmp_path):
-    vv.write("world.wrl", HEADER + """Background { skyColor 0 0 1 } NavigationInfo { headlight FALSE }
+    vv.write(
+        "world.wrl", HEADER + """Background { skyColor 0 0 1 } NavigationInfo { headlight FALSE }
       Transform { translation 1 2 3 scale 2 2 2 children Shape { geometry Sphere { radius .5 }
         appearance ORTAppearance { shader ORTShader { name "Glass" file "glass" options "1f index 1.25" } } } }
       Shape { geometry Box { } appearance ORTAppearance { shader ORTShader { name "Metal" file "metal" options "1f roughness .3" } } }
-      Shape { geometry Cone { } appearance ORTAppearance { shader ORTShader { name "Wood" file "wood" } } }""")
+      Shape { geometry Cone { } appearance ORTAppearance { shader ORTShader { name "Wood" file "wood" } } }"""
+    )
     scene, remarks = exported(vv.folder / "world.wrl", tmp_path / "out")
     sphere = scene.find("shape[@type='sphere']")
     assert [float(sphere.find("point").get(k)) for k in "xyz"] == [1, 2, 3]
@@ -65,7 +67,10 @@ def test_the_same_light_in_mitsuba(vv, tmp_path):
 
 
 def test_plots():
-    text = plot_svg.log_plot("A & B", "seconds", "error", {"one": [(0.1, 0.5), (1, 0.05)], "two": [(0.3, 0.2, 0.1, 0.4)]})
+    text = plot_svg.log_plot("A & B", "seconds", "error", {
+        "one": [(0.1, 0.5), (1, 0.05)],
+        "two": [(0.3, 0.2, 0.1, 0.4)]
+    })
     root = xml.fromstring(text)
     circles = root.findall("{http://www.w3.org/2000/svg}circle")
     assert len(circles) == 3 and all(0 <= float(c.get("cx")) <= plot_svg.WIDTH for c in circles)

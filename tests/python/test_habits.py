@@ -39,7 +39,8 @@ def test_urls_of_a_text_are_looked_up_beside_its_path(tmp_path):
     assert image.stats["shapes"] == 1 and not world.warnings
 
 
-@pytest.mark.parametrize("name, near", [("Wrold", "World"), ("sphere", "Sphere"), ("IndexedFaceset", "IndexedFaceSet"), ("lods", "loads")])
+@pytest.mark.parametrize("name, near", [("Wrold", "World"), ("sphere", "Sphere"),
+                                        ("IndexedFaceset", "IndexedFaceSet"), ("lods", "loads")])
 def test_a_name_written_nearly_right(name, near):
     with pytest.raises(AttributeError, match=f"no attribute {name}; did you mean {near}\\?"):
         getattr(xvrml, name)
@@ -60,41 +61,57 @@ def test_a_submodule_whose_package_is_missing_says_so():
 
 
 @pytest.mark.parametrize("call, words", [
-    (lambda w: w.render(size="x"), "size: (width, height) expected, whole numbers from 1 to 65536, not 'x'"),
-    (lambda w: w.render(size=5), "size: (width, height) expected, whole numbers from 1 to 65536, not 5"),
+    (lambda w: w.render(size="x"),
+     "size: (width, height) expected, whole numbers from 1 to 65536, not 'x'"),
+    (lambda w: w.render(size=5),
+     "size: (width, height) expected, whole numbers from 1 to 65536, not 5"),
     (lambda w: w.render(size=(4, 4), channels=5), "channels: a name or several expected"),
-    (lambda w: w.render(size=(4, 4), progress="yes"), "progress: True, False, None or a function expected"),
+    (lambda w: w.render(size=(4, 4), progress="yes"),
+     "progress: True, False, None or a function expected"),
     (lambda w: w.render(size=(4, 4), spp=10**30), "render(): spp: a number nearer to 0 expected"),
     (lambda w: w.render(size=(4, 4), fov=np.zeros(3)), "render(): fov: a number or None expected"),
     (lambda w: w.film("a.gif", "now", 1), "start: a number expected, not the str 'now'"),
     (lambda w: next(w.animate(0, None)), "stop: a number expected, not None"),
     (lambda w: setattr(w, "time", "now"), "World.time: a number expected, not the str 'now'"),
     (lambda w: xvrml.loads(BALL, limits=5), "limits: a dict of names and numbers expected"),
-    (lambda w: xvrml.Browser(BALL.encode()).pick(5, (0, 0, 1)), "pick(): origin: 3 numbers expected, not the int 5"),
-    (lambda w: xvrml.Browser(BALL.encode()).load_url("x.wrl"), "load_url(): urls: a list of texts expected, not the str 'x.wrl'"),
+    (lambda w: xvrml.Browser(BALL.encode()).pick(5, (0, 0, 1)),
+     "pick(): origin: 3 numbers expected, not the int 5"),
+    (lambda w: xvrml.Browser(BALL.encode()).load_url("x.wrl"),
+     "load_url(): urls: a list of texts expected, not the str 'x.wrl'"),
     (lambda w: w.raycaster("many"), "meshes(): spheres: a whole number expected"),
-    (lambda w: xvrml.rt.Raycaster("all"), "Raycaster(): threads: a whole number expected, not the str 'all'"),
-    (lambda w: xvrml.rt.Raycaster().add_sphere("here", 1), "center: 3 numbers expected, not the str 'here'"),
-    (lambda w: xvrml.rt.Context().render(size="x"), "render(): size: 2 whole numbers expected, not the str 'x'"),
-    (lambda w: xvrml.rt.Context().camera(eye=1, at=(0, 0, 0)), "camera(): eye: 3 numbers expected, not the int 1"),
+    (lambda w: xvrml.rt.Raycaster("all"),
+     "Raycaster(): threads: a whole number expected, not the str 'all'"),
+    (lambda w: xvrml.rt.Raycaster().add_sphere("here", 1),
+     "center: 3 numbers expected, not the str 'here'"),
+    (lambda w: xvrml.rt.Context().render(size="x"),
+     "render(): size: 2 whole numbers expected, not the str 'x'"),
+    (lambda w: xvrml.rt.Context().camera(eye=1, at=(0, 0, 0)),
+     "camera(): eye: 3 numbers expected, not the int 1"),
     (lambda w: xvrml.Pinhole(np.eye(3), center="x"), "center: a number expected, not the str 'x'"),
-    (lambda w: xvrml.Pinhole(np.eye(3)).rays(2.5, 3), "width: a whole number expected, not the float 2.5"),
-    (lambda w: w.render(spp="many"), "render(): spp: a whole number or None expected, not the str 'many'"),
+    (lambda w: xvrml.Pinhole(np.eye(3)).rays(2.5, 3),
+     "width: a whole number expected, not the float 2.5"),
+    (lambda w: w.render(spp="many"),
+     "render(): spp: a whole number or None expected, not the str 'many'"),
     (lambda w: w.render(shadows="yes"), "render(): shadows: True or False expected"),
     (lambda w: w.render(sise=(3, 4)), "render(): there is no argument sise; did you mean size?"),
     (lambda w: w.add(3), "add(): node: a Node expected, not the int 3"),
     (lambda w: w.listen(w["Ball"], "translation"), "listen(): callback must be given"),
-    (lambda w: w.add_route("Ball", "a", "Ball", "b"), "add_route(): from_node: a Node expected, not the str 'Ball'"),
-    (lambda w: xvrml.Film("x.gif", fps="fast"), "Film(): fps: a number expected, not the str 'fast'"),
+    (lambda w: w.add_route("Ball", "a", "Ball", "b"),
+     "add_route(): from_node: a Node expected, not the str 'Ball'"),
+    (lambda w: xvrml.Film("x.gif", fps="fast"),
+     "Film(): fps: a number expected, not the str 'fast'"),
     (lambda w: xvrml.load(), "load(): source must be given"),
     (lambda w: setattr(w, "time", "x"), "World.time: a number expected, not the str 'x'"),
     (lambda w: w.on(5), "'NAME.event' or a tuple (node, 'event') expected, not the int 5"),
     (lambda w: w.animate("a", 1), "animate(): start: a number expected, not the str 'a'"),
-    (lambda w: w.film("a.gif", 0, 1, fps="a"), "film(): fps: a number above 0 expected, not the str 'a'"),
+    (lambda w: w.film("a.gif", 0, 1, fps="a"),
+     "film(): fps: a number above 0 expected, not the str 'a'"),
     (lambda w: w.render(progress=3), "progress: True, False, None or a function expected"),
     (lambda w: w.render(channels=5), "channels: a name or several expected"),
-    (lambda w: xvrml.Browser(BALL.encode()).pointer_ray((0, 0), (0, 0, 1)), "pointer_ray(): origin: 3 numbers expected, not the tuple (0, 0)"),
-    (lambda w: setattr(xvrml.Browser(BALL.encode()), "navigation", 3), "Browser.navigation: a text expected, not the int 3"),
+    (lambda w: xvrml.Browser(BALL.encode()).pointer_ray(
+        (0, 0), (0, 0, 1)), "pointer_ray(): origin: 3 numbers expected, not the tuple (0, 0)"),
+    (lambda w: setattr(xvrml.Browser(BALL.encode()), "navigation", 3),
+     "Browser.navigation: a text expected, not the int 3"),
 ])
 def test_arguments_of_wrong_types_are_named(call, words):
     with pytest.raises(TypeError) as caught:
@@ -103,16 +120,22 @@ def test_arguments_of_wrong_types_are_named(call, words):
 
 
 @pytest.mark.parametrize("call, words", [
-    (lambda w: w.render(size=(1e9, 1)), "size: (width, height) expected, whole numbers from 1 to 65536, not (1000000000.0, 1)"),
+    (lambda w: w.render(size=(1e9, 1)),
+     "size: (width, height) expected, whole numbers from 1 to 65536, not (1000000000.0, 1)"),
     (lambda w: w.render(size=(10**30, 1)), "size: (width, height) expected"),
     (lambda w: w.render(size=(4, 4), viewpoint=-10**30), "viewpoint: the world has 1"),
     (lambda w: w.meshes(view="x"), "view: a 4x4 matrix expected"),
-    (lambda w: xvrml.loads(BALL, limits={"arrayElements": 10**30}), "limits: arrayElements: a whole number of 64 bits expected"),
-    (lambda w: xvrml.Pinhole(np.eye(3)).project((1, 2)), "points: numbers of shape (..., 3) expected"),
+    (lambda w: xvrml.loads(BALL, limits={"arrayElements": 10**30}),
+     "limits: arrayElements: a whole number of 64 bits expected"),
+    (lambda w: xvrml.Pinhole(np.eye(3)).project(
+        (1, 2)), "points: numbers of shape (..., 3) expected"),
     (lambda w: xvrml.Pinhole(np.eye(3), center=float("nan")), "center: a finite number expected"),
-    (lambda w: xvrml.Browser(BALL.encode(), epoch=1e300), "epoch: a number between -1 and 100000000000 was expected, not 1e+300"),
-    (lambda w: xvrml.Browser(BALL.encode(), epoch=-1), "epoch: a number between -1 and 100000000000 was expected, not -1"),
-    (lambda w: setattr(w, "time", float("inf")), "time: a number of seconds below 100000000000 expected, not inf"),
+    (lambda w: xvrml.Browser(BALL.encode(), epoch=1e300),
+     "epoch: a number between -1 and 100000000000 was expected, not 1e+300"),
+    (lambda w: xvrml.Browser(BALL.encode(), epoch=-1),
+     "epoch: a number between -1 and 100000000000 was expected, not -1"),
+    (lambda w: setattr(w, "time", float("inf")),
+     "time: a number of seconds below 100000000000 expected, not inf"),
 ])
 def test_arguments_of_wrong_values_are_named(call, words):
     with pytest.raises((ValueError, IndexError)) as caught:
@@ -132,10 +155,14 @@ def test_pictures_are_pickled():
 
 def test_copies_of_pictures_keep_the_camera():
     world = xvrml.loads(BALL)
-    given = xvrml.Pinhole([[30, 1, 12], [0, 40, 11], [0, 0, 1]], np.diag([1.0, -1, -1, 1]), center=0.5)
+    given = xvrml.Pinhole([[30, 1, 12], [0, 40, 11], [0, 0, 1]],
+                          np.diag([1.0, -1, -1, 1]),
+                          center=0.5)
     for image in (world.render(**SMALL), world.render(camera=given, **SMALL)):
-        for again in (pickle.loads(pickle.dumps(image)), copy.copy(image), copy.deepcopy(copy.copy(image))):
-            assert np.array_equal(again.camera.K, image.camera.K) and np.array_equal(again.camera.T, image.camera.T)
+        for again in (pickle.loads(pickle.dumps(image)), copy.copy(image),
+                      copy.deepcopy(copy.copy(image))):
+            assert np.array_equal(again.camera.K, image.camera.K) and np.array_equal(
+                again.camera.T, image.camera.T)
             assert again.camera.center == image.camera.center
     former = list(image.__getstate__())[:8]  # the state as version 1 stored it
     again = xvrml.Picture.__new__(xvrml.Picture)
@@ -146,7 +173,11 @@ def test_copies_of_pictures_keep_the_camera():
 def test_damaged_pickles_are_refused():
     image = xvrml.loads(BALL).render(**SMALL)
     state = list(image.__getstate__())
-    for place, wrong in ((0, 99), (1, 33), (1, -1), (7, {}), (7, {"rgba": np.zeros(3, np.float32)}), (7, {"nothing": np.zeros(3)}), (8, "camera")):
+    for place, wrong in ((0, 99), (1, 33), (1, -1), (7, {}), (7, {
+            "rgba": np.zeros(3, np.float32)
+    }), (7, {
+            "nothing": np.zeros(3)
+    }), (8, "camera")):
         damaged = [*state[:place], wrong, *state[place + 1:]]
         with pytest.raises(ValueError):
             xvrml.Picture.__new__(xvrml.Picture).__setstate__(tuple(damaged))
@@ -219,6 +250,7 @@ def test_films_that_cannot_be(tmp_path):
 
 
 class Clock:
+
     def __init__(self, monkeypatch):
         self.now = 0.0
         monkeypatch.setattr("xvrml._progress.time.monotonic", lambda: self.now)

@@ -27,13 +27,16 @@ def middle(w):
 
 def green_box():
     material = xvrml.Material(diffuseColor=(0, 0, 0), emissiveColor=(0, 1, 0))
-    return xvrml.Shape(geometry=xvrml.Box(size=(3, 3, 3)), appearance=xvrml.Appearance(material=material))
+    return xvrml.Shape(geometry=xvrml.Box(size=(3, 3, 3)),
+                       appearance=xvrml.Appearance(material=material))
 
 
 @pytest.mark.parametrize("runs", [False, True])
 @pytest.mark.parametrize("instance, field", [("Lamp", "c"), ("Pair", "both")])
 def test_an_exposed_field_of_an_instance_is_drawn(runs, instance, field):
-    w = world(f"DEF L {instance} {{ }} Transform {{ translation 20 0 0 children DEF Other {instance} {{ }} }}")
+    w = world(
+        f"DEF L {instance} {{ }} Transform {{ translation 20 0 0 children DEF Other {instance} {{ }} }}"
+    )
     if runs:
         w.time = 0
     else:
@@ -43,7 +46,8 @@ def test_an_exposed_field_of_an_instance_is_drawn(runs, instance, field):
     w.time = 1
     assert middle(w) == "b"
     again = xvrml.loads(w.to_vrml())
-    assert getattr(again["L"], field) == (0, 0, 1) and getattr(again["Other"], field) == (1, 0, 0) and middle(again) == "b"
+    assert getattr(again["L"], field) == (0, 0, 1) and getattr(
+        again["Other"], field) == (1, 0, 0) and middle(again) == "b"
 
 
 @pytest.mark.parametrize("runs", [False, True])
@@ -75,7 +79,8 @@ def test_children_of_an_instance_are_drawn(runs):
 def test_what_a_body_cannot_take_is_told():
     w = world("DEF P Pair { }")
     w["P"].kids = [xvrml.Box(), green_box()]
-    assert middle(w) == "g" and any("'Box' cannot be in field children" in str(one) for one in w.warnings)
+    assert middle(w) == "g" and any(
+        "'Box' cannot be in field children" in str(one) for one in w.warnings)
     with pytest.raises(ValueError, match="would hold itself"):
         w["P"].kids = [xvrml.Group(children=[w["P"]])]
     assert middle(w) == "g"

@@ -10,16 +10,21 @@ SMALL = dict(size=(32, 24), spp=1)
 
 @pytest.fixture
 def world():
-    return xvrml.load(b"#VRML V2.0 utf8\nViewpoint { position 0 0 9 } Transform { translation 1 0 0 children DEF B Shape { geometry Box { }"
-                      b" appearance Appearance { material Material { diffuseColor 1 0 0 } } } } DEF S Shape { geometry Sphere { } }")
+    return xvrml.load(
+        b"#VRML V2.0 utf8\nViewpoint { position 0 0 9 } Transform { translation 1 0 0 children DEF B Shape { geometry Box { }"
+        b" appearance Appearance { material Material { diffuseColor 1 0 0 } } } } DEF S Shape { geometry Sphere { } }"
+    )
 
 
 def test_trimesh_out(world):
     pytest.importorskip("trimesh")
     scene = interop.to_trimesh(world)
-    assert len(scene.geometry) == 2 and np.allclose(scene.bounds, [[-1, -1, -1], [2, 1, 1]], atol=0.01)
+    assert len(scene.geometry) == 2 and np.allclose(scene.bounds, [[-1, -1, -1], [2, 1, 1]],
+                                                    atol=0.01)
     box = next(mesh for mesh in scene.geometry.values() if len(mesh.faces) == 12)
-    assert box.volume == pytest.approx(8) and box.visual.vertex_colors[0].tolist() == [255, 0, 0, 255]
+    assert box.volume == pytest.approx(8) and box.visual.vertex_colors[0].tolist() == [
+        255, 0, 0, 255
+    ]
 
 
 def test_trimesh_in():
@@ -55,7 +60,8 @@ def test_any_affine_matrix_is_a_transform(seed):
 def test_pyvista_out(world):
     pytest.importorskip("pyvista")
     blocks = interop.to_pyvista(world)
-    assert len(blocks) == 2 and blocks["B"].n_cells == 12 and np.allclose(blocks["B"].bounds, (0, 2, -1, 1, -1, 1))
+    assert len(blocks) == 2 and blocks["B"].n_cells == 12 and np.allclose(
+        blocks["B"].bounds, (0, 2, -1, 1, -1, 1))
     assert blocks["B"].volume == pytest.approx(8, rel=1e-5)
 
 

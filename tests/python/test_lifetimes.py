@@ -17,11 +17,15 @@ Shape { appearance Appearance { material Material { } } geometry Box { } }
 
 
 def python(code, *arguments, timeout=120):
-    return subprocess.run([sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(code), *map(str, arguments)], capture_output=True,
-                          text=True, timeout=timeout)
+    return subprocess.run(
+        [sys.executable, "-X", "faulthandler", "-c",
+         textwrap.dedent(code), *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=timeout)
 
 
-# Objects without __init__ -----------------------------------------------------------------------------------------------
+# Objects without __init__ -----------------------------------------------------------------------
 
 # Uses all methods, attributes and operators of a class, and passes the object as an argument to
 # every function.
@@ -76,7 +80,9 @@ print("all of it refused or answered")
 def all_classes():
     import xvrml._xvrml
     found = {}
-    modules = [m for name, m in sys.modules.items() if name == "xvrml" or name.startswith("xvrml.")] + [xvrml._xvrml.rt]
+    modules = [
+        m for name, m in sys.modules.items() if name == "xvrml" or name.startswith("xvrml.")
+    ] + [xvrml._xvrml.rt]
     for module in modules:
         where = "xvrml._xvrml.rt" if module is xvrml._xvrml.rt else module.__name__
         for name, one in vars(module).items():
@@ -88,16 +94,22 @@ def all_classes():
 def test_objects_made_by_new_alone_raise_and_never_crash():
     classes = all_classes()
     names = {place.rsplit(".", 1)[1] for place in classes.values()}
-    assert {"Node", "Box", "Transform", "Picture", "Mesh", "World", "Browser", "Diagnostic", "ViewpointInfo", "Worker", "Context",
-            "Texture", "Light", "Shader", "Instance"} <= names
+    assert {
+        "Node", "Box", "Transform", "Picture", "Mesh", "World", "Browser", "Diagnostic",
+        "ViewpointInfo", "Worker", "Context", "Texture", "Light", "Shader", "Instance"
+    } <= names
     # Node types share a class in C++, so a few of them stand for all.
     nodes = [c for c in classes if issubclass(c, xvrml.Node)]
-    chosen = [c for c in classes if c not in nodes] + [xvrml.Node, xvrml.Box, xvrml.Transform, xvrml.IndexedFaceSet]
+    chosen = [c for c in classes if c not in nodes
+             ] + [xvrml.Node, xvrml.Box, xvrml.Transform, xvrml.IndexedFaceSet]
     bad = []
     running = []
     for one in chosen:
-        running.append((one, subprocess.Popen([sys.executable, "-c", EMPTY, classes[one]], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                              text=True)))
+        running.append((one,
+                        subprocess.Popen([sys.executable, "-c", EMPTY, classes[one]],
+                                         stdout=subprocess.PIPE,
+                                         stderr=subprocess.PIPE,
+                                         text=True)))
         if len(running) == 4 or one is chosen[-1]:
             for made, process in running:
                 out, err = process.communicate(timeout=120)
@@ -107,7 +119,8 @@ def test_objects_made_by_new_alone_raise_and_never_crash():
     assert not bad, "\n".join(bad)
 
 
-@pytest.mark.parametrize("name, attribute", [("Node", "fields"), ("Box", "size"), ("Picture", "shape"), ("Mesh", "vertices")])
+@pytest.mark.parametrize("name, attribute", [("Node", "fields"), ("Box", "size"),
+                                             ("Picture", "shape"), ("Mesh", "vertices")])
 def test_the_message_says_what_is_missing(name, attribute):
     made = getattr(xvrml, name)
     empty = made.__new__(made)
@@ -139,7 +152,9 @@ def test_copies_are_made_or_refused_and_never_crash():
 
 
 def test_a_class_that_forgets_its_base_is_told():
+
     class Mine(xvrml.Box):
+
         def __init__(self):
             pass
 
@@ -147,7 +162,7 @@ def test_a_class_that_forgets_its_base_is_told():
         Mine()
 
 
-# The interpreter's end ----------------------------------------------------------------------------------------------------
+# The interpreter's end --------------------------------------------------------------------------
 
 ENDING = """
 import sys, threading, time, xvrml
@@ -166,16 +181,19 @@ print("ends", flush=True)
 """
 
 
-@pytest.mark.parametrize("work", ["world.render(size=(400, 300), spp=64)",
-                                  "world.render(size=(64, 48), spp=1)",
-                                  "browser.tick(0.001)",
-                                  "world.occluded([[0, 0, 5]], [[0, 0, -1]]) if hasattr(world, 'occluded') else world.bounds",
-                                  "xvrml.load(b'#VRML V2.0 utf8 Group { }')",
-                                  "xvrml.Group(children=[xvrml.Group()])",
-                                  "world.render(size=(400, 300), spp=16, progress=lambda f: None)"])
+@pytest.mark.parametrize("work", [
+    "world.render(size=(400, 300), spp=64)", "world.render(size=(64, 48), spp=1)",
+    "browser.tick(0.001)",
+    "world.occluded([[0, 0, 5]], [[0, 0, -1]]) if hasattr(world, 'occluded') else world.bounds",
+    "xvrml.load(b'#VRML V2.0 utf8 Group { }')", "xvrml.Group(children=[xvrml.Group()])",
+    "world.render(size=(400, 300), spp=16, progress=lambda f: None)"
+])
 def test_the_interpreter_ends_while_a_daemon_thread_works(work):
     for pause in (0.02, 0.1, 0.3):
-        code = ENDING.format(world=BOX.replace("\n", " ").replace("utf8 ", "utf8\\n", 1), work=work, threads=2, pause=pause)
+        code = ENDING.format(world=BOX.replace("\n", " ").replace("utf8 ", "utf8\\n", 1),
+                             work=work,
+                             threads=2,
+                             pause=pause)
         begin = time.monotonic()
         done = python(code)
         assert done.returncode == 0, (pause, done.returncode, done.stderr[-1000:])
@@ -183,10 +201,15 @@ def test_the_interpreter_ends_while_a_daemon_thread_works(work):
         assert time.monotonic() - begin < 60
 
 
-@pytest.mark.parametrize("work", ["world.meshes()", "world.to_vrml()", "xvrml.loads('#VRML V2.0 utf8 Group { }')",
-                                  "browser.tick(browser.now)"])
+@pytest.mark.parametrize("work", [
+    "world.meshes()", "world.to_vrml()", "xvrml.loads('#VRML V2.0 utf8 Group { }')",
+    "browser.tick(browser.now)"
+])
 def test_the_end_does_not_wait_for_threads_that_begin_again_and_again(work):
-    code = ENDING.format(world=BOX.replace("\n", " ").replace("utf8 ", "utf8\\n", 1), work=work, threads=3, pause=0.1)
+    code = ENDING.format(world=BOX.replace("\n", " ").replace("utf8 ", "utf8\\n", 1),
+                         work=work,
+                         threads=3,
+                         pause=0.1)
     code = code.replace('print("ends"', 'begin = time.monotonic()\nprint("ends"')
     code = "import atexit, time\natexit.register(lambda: print('took', time.monotonic() - begin))\n" + code
     done = python(code)  # handlers run in reverse order of registration
@@ -220,11 +243,14 @@ def test_a_child_process_does_not_wait_for_threads_that_it_has_not():
     assert done.returncode == 0 and done.stdout == "7 True\n", (done.stdout, done.stderr)
 
 
-# Graphs from the leaf up --------------------------------------------------------------------------------------------------
+# Graphs from the leaf up ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("build", ["chain = xvrml.Group(children=[chain])", "above = xvrml.Group(); above.children = [chain]; chain = above",
-                                   "above = xvrml.Transform(); above.children = [chain]; kept.append(chain); chain = above"])
+@pytest.mark.parametrize("build", [
+    "chain = xvrml.Group(children=[chain])",
+    "above = xvrml.Group(); above.children = [chain]; chain = above",
+    "above = xvrml.Transform(); above.children = [chain]; kept.append(chain); chain = above"
+])
 def test_a_chain_from_the_leaf_up_takes_time_by_its_length(build):
     """Eight times as many nodes take about eight times as long, not 64 times."""
     done = python(f"""
@@ -281,13 +307,15 @@ def test_a_node_cannot_hold_itself_however_it_was_made():
     assert len(fresh.children) == 0
 
 
-# Small stacks -------------------------------------------------------------------------------------------------------------
+# Small stacks -----------------------------------------------------------------------------------
 
 
 def test_threads_with_small_stacks_read_and_write_deep_worlds(tmp_path):
-    (tmp_path / "deep.wrl").write_text("#VRML V2.0 utf8\n" + "Group { children [ " * 990 + "Shape { geometry Box { } }" + " ] }" * 990)
+    (tmp_path / "deep.wrl").write_text("#VRML V2.0 utf8\n" + "Group { children [ " * 990 +
+                                       "Shape { geometry Box { } }" + " ] }" * 990)
     (tmp_path / "bad.wrl").write_text("no world")
-    done = python("""
+    done = python(
+        """
         import sys, threading, xvrml
         said = []
         def work():
@@ -305,4 +333,5 @@ def test_threads_with_small_stacks_read_and_write_deep_worlds(tmp_path):
         thread.join()
         print(said)
     """, tmp_path / "deep.wrl", tmp_path / "bad.wrl")
-    assert done.returncode == 0 and done.stdout == "[990, (3, 4, 4), 'refused']\n", (done.returncode, done.stdout, done.stderr[-500:])
+    assert done.returncode == 0 and done.stdout == "[990, (3, 4, 4), 'refused']\n", (
+        done.returncode, done.stdout, done.stderr[-500:])

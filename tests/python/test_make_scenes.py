@@ -29,7 +29,8 @@ def test_large_scenes_have_no_problems(vv, name):
 
 
 def test_the_headlight_is_as_large_as_it_says(vv):
-    totals = json.loads(vv(ROOT / "examples/scenes/headlight_studio.wrl", "--explain", "--json").text)["totals"]
+    totals = json.loads(
+        vv(ROOT / "examples/scenes/headlight_studio.wrl", "--explain", "--json").text)["totals"]
     assert 780_000 < totals["triangles"] < 800_000
 
 

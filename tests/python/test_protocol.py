@@ -34,7 +34,10 @@ def seal(frames, number):
     return struct.pack("<QQ", number, total)
 
 
-KINDS = ["", "Hello", "Need", "Ready", "Failed", "Result", "Log", "Welcome", "Scene", "Piece", "Prepare", "Jobs", "Drop", "Beat", "Bye"]
+KINDS = [
+    "", "Hello", "Need", "Ready", "Failed", "Result", "Log", "Welcome", "Scene", "Piece", "Prepare",
+    "Jobs", "Drop", "Beat", "Bye"
+]
 PATIENCE = 60_000  # milliseconds; machines may be busy
 
 
@@ -65,13 +68,15 @@ def header(kind, fields, session=0):
 
 
 class Table:
+
     def __init__(self, data, at):
         self.data, self.at = data, at
         self.vtable = at - struct.unpack_from("<i", data, at)[0]
 
     def place(self, slot):
         size = struct.unpack_from("<H", self.data, self.vtable)[0]
-        offset = struct.unpack_from("<H", self.data, self.vtable + 4 + 2 * slot)[0] if 4 + 2 * slot < size else 0
+        offset = struct.unpack_from("<H", self.data, self.vtable + 4 +
+                                    2 * slot)[0] if 4 + 2 * slot < size else 0
         return self.at + offset if offset else None
 
     def get(self, slot, form, default=0):
@@ -84,7 +89,8 @@ class Table:
 
     def text(self, slot):
         at = self.follow(slot)
-        return "" if at is None else self.data[at + 4 : at + 4 + struct.unpack_from("<I", self.data, at)[0]].decode()
+        return "" if at is None else self.data[at + 4:at + 4 +
+                                               struct.unpack_from("<I", self.data, at)[0]].decode()
 
     def count(self, slot):
         at = self.follow(slot)
@@ -92,6 +98,7 @@ class Table:
 
 
 class Master:
+
     def __init__(self, address):
         self.socket = zmq.Context.instance().socket(zmq.DEALER)
         self.socket.linger = 0
@@ -136,16 +143,21 @@ class Master:
     def scene(self, epoch, edits, session=42):
         # The vectors of arrays and libraries would be fields 3 and 4. Absent ones are 0 in the
         # vtable.
-        self.send("Scene", [("Q", epoch), ("?", True), ("?", True), None, None, ("Q", xxh3(edits))], session, [edits])
+        self.send("Scene", [("Q", epoch), ("?", True), ("?", True), None, None, ("Q", xxh3(edits))],
+                  session, [edits])
 
     def close(self):
         self.socket.close()
 
 
 class Worker:
+
     def __init__(self, *options):
-        self.process = subprocess.Popen([WORKER, "--listen", "127.0.0.1:0", "--threads", "1", *options], stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            [WORKER, "--listen", "127.0.0.1:0", "--threads", "1", *options],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True)
         line = self.process.stdout.readline()
         assert line.startswith("listening at "), line
         self.address = line.split()[2]
@@ -260,7 +272,8 @@ def test_a_master_does_not_wait_for_ever_for_a_worker_that_never_gets_ready(work
     thread.start()
     try:
         vv.write("ball.wrl", HEADER + "Shape { geometry Sphere { } }")
-        said = vv("ball.wrl", "-o", "ball.png", *SMALL, "--local-threads", 0, "--workers", f"127.0.0.1:{port}")
+        said = vv("ball.wrl", "-o", "ball.png", *SMALL, "--local-threads", 0, "--workers",
+                  f"127.0.0.1:{port}")
     finally:
         over.set()
         thread.join()

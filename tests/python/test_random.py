@@ -18,13 +18,18 @@ DEF T Transform { children [
 """
 NAMES = ("V", "T", "S", "A", "M", "P", "B", "S2", "F", "C", "S3", "E", "S4", "G", "L")
 
-numbers = st.one_of(st.integers(-(2**40), 2**40), st.floats(allow_nan=True, allow_infinity=True), st.floats(-2, 2), st.integers(-3, 3))
-arrays = st.builds(lambda rows, width, seed: np.random.default_rng(seed).normal(size=(rows, width)).astype(np.float32),
-                   st.integers(0, 20), st.integers(1, 5), st.integers(0, 1000))
-indices = st.builds(lambda n, seed: np.random.default_rng(seed).integers(-2, 6, n), st.integers(0, 30), st.integers(0, 1000))
-values = st.one_of(st.none(), st.booleans(), numbers, st.text(max_size=8), st.binary(max_size=8), arrays, indices,
-                   st.lists(numbers, max_size=9), st.lists(st.text(max_size=4), max_size=4), st.tuples(numbers, numbers, numbers),
-                   st.tuples(*[st.floats(0, 1)] * 3), st.tuples(*[st.floats(-1, 1)] * 4), st.sampled_from(NAMES).map(lambda n: ("node", n)),
+numbers = st.one_of(st.integers(-(2**40), 2**40), st.floats(allow_nan=True, allow_infinity=True),
+                    st.floats(-2, 2), st.integers(-3, 3))
+arrays = st.builds(
+    lambda rows, width, seed: np.random.default_rng(seed).normal(size=(rows, width)).astype(
+        np.float32), st.integers(0, 20), st.integers(1, 5), st.integers(0, 1000))
+indices = st.builds(lambda n, seed: np.random.default_rng(seed).integers(-2, 6, n),
+                    st.integers(0, 30), st.integers(0, 1000))
+values = st.one_of(st.none(), st.booleans(), numbers, st.text(max_size=8), st.binary(max_size=8),
+                   arrays, indices, st.lists(numbers, max_size=9),
+                   st.lists(st.text(max_size=4), max_size=4), st.tuples(numbers, numbers, numbers),
+                   st.tuples(*[st.floats(0, 1)] * 3), st.tuples(*[st.floats(-1, 1)] * 4),
+                   st.sampled_from(NAMES).map(lambda n: ("node", n)),
                    st.lists(st.sampled_from(NAMES), max_size=3).map(lambda n: ("nodes", n)))
 
 
@@ -45,9 +50,13 @@ def assign(world, name, pick, value):
         setattr(node, field, getattr(node, field))
 
 
-@hypothesis.settings(max_examples=300, deadline=None, derandomize=True, database=None,
+@hypothesis.settings(max_examples=300,
+                     deadline=None,
+                     derandomize=True,
+                     database=None,
                      suppress_health_check=list(hypothesis.HealthCheck))
-@hypothesis.given(st.lists(st.tuples(st.sampled_from(NAMES), st.integers(0, 40), values), max_size=12))
+@hypothesis.given(
+    st.lists(st.tuples(st.sampled_from(NAMES), st.integers(0, 40), values), max_size=12))
 def test_random_assignments(steps):
     world = xvrml.load(WORLD)
     for name, pick, value in steps:

@@ -27,12 +27,14 @@ ROUTE Clock.fraction_changed TO Way.set_fraction
 ROUTE Way.value_changed TO Place.set_translation
 """
 NAMES = ("Clock", "Way", "Place", "D", "Ball", "Round", "M", "Choice", "New", "Nobody")
-CLASSES = ("Group", "Transform", "Shape", "Box", "Sphere", "Coordinate", "IndexedFaceSet", "Appearance", "Material", "Inline", "Script",
-           "PointSet", "Switch", "TimeSensor", "PositionInterpolator", "Viewpoint", "LOD")
-FIELDS = ("children", "translation", "geometry", "coord", "point", "where", "size", "radius", "material", "appearance", "choice",
-          "whichChoice", "key", "keyValue", "diffuseColor", "fraction_changed", "set_fraction", "level", "loop", "coordIndex", "nothing")
-EVENTS = ("Clock.fraction_changed", "Way.value_changed", "Place.translation", "M.diffuseColor", "D.size", "Way.set_fraction",
-          "Place.children", "New.translation", "nothing")
+CLASSES = ("Group", "Transform", "Shape", "Box", "Sphere", "Coordinate", "IndexedFaceSet",
+           "Appearance", "Material", "Inline", "Script", "PointSet", "Switch", "TimeSensor",
+           "PositionInterpolator", "Viewpoint", "LOD")
+FIELDS = ("children", "translation", "geometry", "coord", "point", "where", "size", "radius",
+          "material", "appearance", "choice", "whichChoice", "key", "keyValue", "diffuseColor",
+          "fraction_changed", "set_fraction", "level", "loop", "coordIndex", "nothing")
+EVENTS = ("Clock.fraction_changed", "Way.value_changed", "Place.translation", "M.diffuseColor",
+          "D.size", "Way.set_fraction", "Place.children", "New.translation", "nothing")
 
 
 class Player:
@@ -45,8 +47,11 @@ class Player:
         return pool[number % len(pool)] if pool else None
 
     def value(self, a, b):
-        kinds = (lambda: self.pick(self.nodes, b), lambda: [self.pick(self.nodes, b), self.pick(self.nodes, b // 7)], lambda: [], lambda: None,
-                 lambda: (1.0, 0.5, 0.25), lambda: np.ones((b % 5, 3)), lambda: b / 7, lambda: b, lambda: "text", lambda: True,
+        kinds = (lambda: self.pick(self.nodes, b),
+                 lambda: [self.pick(self.nodes, b),
+                          self.pick(self.nodes, b // 7)], lambda: [], lambda: None, lambda:
+                 (1.0, 0.5, 0.25), lambda: np.ones(
+                     (b % 5, 3)), lambda: b / 7, lambda: b, lambda: "text", lambda: True,
                  lambda: np.arange(b % 9), lambda: self.pick(self.others, b))
         return kinds[a % len(kinds)]()
 
@@ -60,7 +65,10 @@ class Player:
         elif name == "make":
             self.nodes.append(getattr(xvrml, CLASSES[a % len(CLASSES)])())
         elif name == "make with":
-            self.nodes.append(getattr(xvrml, CLASSES[a % len(CLASSES)])(**{FIELDS[b % len(FIELDS)]: self.value(c, a)}))
+            self.nodes.append(
+                getattr(xvrml, CLASSES[a % len(CLASSES)])(**{
+                    FIELDS[b % len(FIELDS)]: self.value(c, a)
+                }))
         elif name == "find":
             self.nodes.append(world[NAMES[b % len(NAMES)]])
         elif name == "roots":
@@ -80,8 +88,10 @@ class Player:
         elif name == "remove":
             world.remove(node)
         elif name == "route":
-            (world.route if c % 3 else world.unroute)(EVENTS[b % len(EVENTS)], EVENTS[c % len(EVENTS)])
+            (world.route if c % 3 else world.unroute)(EVENTS[b % len(EVENTS)],
+                                                      EVENTS[c % len(EVENTS)])
         elif name == "on":
+
             def called(value, time, player=self):
                 if c % 4 == 0:
                     player.nodes.clear()
@@ -91,9 +101,11 @@ class Player:
                     raise KeyError("mine")
                 else:
                     player.others.append(value)
+
             world.on(EVENTS[b % len(EVENTS)], called)
         elif name == "listen":
-            self.others.append(world.listen(node, FIELDS[c % len(FIELDS)], lambda value, time: None))
+            self.others.append(world.listen(node, FIELDS[c % len(FIELDS)],
+                                            lambda value, time: None))
         elif name == "unlisten":
             world.unlisten(node, c)
         elif name == "time":
@@ -101,7 +113,8 @@ class Player:
         elif name == "text":
             world.to_vrml()
         elif name == "names":
-            self.others.append((world.names, len(world), world.warnings, repr(world), repr(node), dir(node), hash(node)))
+            self.others.append((world.names, len(world), world.warnings, repr(world), repr(node),
+                                dir(node), hash(node)))
         elif name == "meshes":
             for mesh in world.meshes(spheres=c % 4):
                 self.others += [mesh.vertices, mesh.faces, mesh]
@@ -128,17 +141,23 @@ class Player:
             gc.collect(0)
 
 
-CHEAP = ("load", "empty", "make", "make with", "find", "roots", "read", "write", "edit", "add", "remove", "route", "on", "listen", "unlisten",
-         "time", "text", "names", "meshes", "look", "forget", "collect")
+CHEAP = ("load", "empty", "make", "make with", "find", "roots", "read", "write", "edit", "add",
+         "remove", "route", "on", "listen", "unlisten", "time", "text", "names", "meshes", "look",
+         "forget", "collect")
 NUMBERS = st.integers(0, 40)
-STEP = st.tuples(st.one_of(st.sampled_from(CHEAP), st.sampled_from(CHEAP), st.sampled_from(("find", "read", "write", "add", "make"))),
-                 NUMBERS, NUMBERS, NUMBERS)
+STEP = st.tuples(
+    st.one_of(st.sampled_from(CHEAP), st.sampled_from(CHEAP),
+              st.sampled_from(("find", "read", "write", "add", "make"))), NUMBERS, NUMBERS, NUMBERS)
 DEAR = st.tuples(st.sampled_from(("render", "caster", "viewpoints")), NUMBERS, NUMBERS, NUMBERS)
 
 
-@hypothesis.settings(max_examples=SEQUENCES, deadline=None, database=None, derandomize=True,
+@hypothesis.settings(max_examples=SEQUENCES,
+                     deadline=None,
+                     database=None,
+                     derandomize=True,
                      suppress_health_check=list(hypothesis.HealthCheck))
-@hypothesis.given(st.lists(STEP, min_size=5, max_size=30), st.lists(DEAR, max_size=1), st.lists(STEP, max_size=10))
+@hypothesis.given(st.lists(STEP, min_size=5, max_size=30), st.lists(DEAR, max_size=1),
+                  st.lists(STEP, max_size=10))
 def test_any_sequence_of_calls(first, dear, then):
     player = Player()
     for step in (*first, *(dear if len(first) % 4 == 0 else ()), *then):

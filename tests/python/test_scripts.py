@@ -15,7 +15,8 @@ xvrml = pytest.importorskip("xvrml")
 
 ENGINES = pathlib.Path(xvrml.__file__).resolve().parents[2] / "lib/xvrml/scripts"
 HEADER = b"#VRML V2.0 utf8\n"
-pytestmark = pytest.mark.skipif(not (ENGINES / "python.so").exists(), reason="the engine python is not built")
+pytestmark = pytest.mark.skipif(not (ENGINES / "python.so").exists(),
+                                reason="the engine python is not built")
 
 
 def browser(world, **options):
@@ -108,13 +109,15 @@ def test_scripts_share_the_program_modules():
 
 
 def test_errors_are_the_worlds_not_the_programs():
-    b = browser('DEF S Script { eventIn SFBool go url "python:\ndef go(v):\n    raise KeyError(1)" }')
+    b = browser(
+        'DEF S Script { eventIn SFBool go url "python:\ndef go(v):\n    raise KeyError(1)" }')
     b["S"].go = True
     assert messages(b) == ["4: Script S: KeyError: 1"]
 
 
 def test_sys_exit_ends_no_program():
-    b = browser('DEF S Script { eventIn SFBool go url "python:import sys\ndef go(v): sys.exit(3)" }')
+    b = browser(
+        'DEF S Script { eventIn SFBool go url "python:import sys\ndef go(v): sys.exit(3)" }')
     b["S"].go = True
     assert messages(b) == ["3: Script S: the Script has ended itself (SystemExit: 3)"]
 
@@ -146,8 +149,9 @@ def test_an_endless_loop_is_stopped_on_any_thread():
 
 
 def test_threads_of_the_program_go_on_while_worlds_run():
-    b = browser('DEF S Script { eventIn SFInt32 n eventOut SFInt32 sum field SFInt32 s 0 url "python:\n'
-                'def n(v):\n    script.s += v\n    script.sum = script.s" }')
+    b = browser(
+        'DEF S Script { eventIn SFInt32 n eventOut SFInt32 sum field SFInt32 s 0 url "python:\n'
+        'def n(v):\n    script.s += v\n    script.sum = script.s" }')
     counts = [0]
     end = threading.Event()
 
@@ -166,7 +170,9 @@ def test_threads_of_the_program_go_on_while_worlds_run():
 
 
 def test_an_interrupt_of_a_script_is_one_of_the_program():
-    b = browser('DEF S Script { eventIn SFBool go url "python:import signal\ndef go(v):\n    signal.raise_signal(2)\n    x = 1" }')
+    b = browser(
+        'DEF S Script { eventIn SFBool go url "python:import signal\ndef go(v):\n    signal.raise_signal(2)\n    x = 1" }'
+    )
     with pytest.raises(KeyboardInterrupt):
         b["S"].go = True
         for _ in range(1000):
@@ -180,13 +186,22 @@ world = '#VRML V2.0 utf8\\nScript {{ field SFNode n Group {{ }} url "python:kept
 browser = xvrml.Browser(world.encode(), script_path={str(ENGINES)!r}, trust=True)
 other = xvrml.Browser(world.encode(), script_path={str(ENGINES)!r}, trust=True)
 print(len(browser.warnings))"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60,
-                          env={**os.environ, "PYTHONPATH": str(pathlib.Path(xvrml.__file__).parents[1])})
-    assert done.returncode == 0 and done.stderr == "" and done.stdout == "0\n", (done.stdout, done.stderr)
+    done = subprocess.run([sys.executable, "-c", code],
+                          capture_output=True,
+                          text=True,
+                          timeout=60,
+                          env={
+                              **os.environ, "PYTHONPATH":
+                                  str(pathlib.Path(xvrml.__file__).parents[1])
+                          })
+    assert done.returncode == 0 and done.stderr == "" and done.stdout == "0\n", (done.stdout,
+                                                                                 done.stderr)
 
 
 def test_memory_is_limited_for_scripts_alone():
-    b = browser('DEF S Script { eventIn SFBool go eventOut SFBool out url "python:\ndef go(v):\n    x = bytearray(10**9)" }')
+    b = browser(
+        'DEF S Script { eventIn SFBool go eventOut SFBool out url "python:\ndef go(v):\n    x = bytearray(10**9)" }'
+    )
     b["S"].go = True
     assert messages(b) == ["4: Script S: MemoryError (a Script may use 256 MiB)"]
     assert len(bytearray(300 << 20)) == 300 << 20

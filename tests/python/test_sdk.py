@@ -36,7 +36,8 @@ def test_the_sample_of_the_documentation(tmp_path, monkeypatch):
     with coord.edit("point") as p:
         p[:, 2] += 1
     assert coord.point[:, 2].tolist() == [1, 1, 1, 1]
-    box = xvrml.Shape(geometry=xvrml.Box(size=(1, 2, 3)), appearance=xvrml.Appearance(material=xvrml.Material()))
+    box = xvrml.Shape(geometry=xvrml.Box(size=(1, 2, 3)),
+                      appearance=xvrml.Appearance(material=xvrml.Material()))
     world.add(box, name="Crate")
     world.route("Clock.fraction_changed", "Spin.set_fraction")
     heard = []
@@ -48,8 +49,10 @@ def test_the_sample_of_the_documentation(tmp_path, monkeypatch):
     world.time = 2.5
     assert heard == [(0.625, 2.5)] and world["Spin"].value_changed == 0.625
     image = world.render(size=(64, 48), error=0.2, viewpoint="Front", progress=True)
-    assert image.array.shape == (48, 64, 4) and image["z"].shape == (48, 64) and image.error.shape == (48, 64, 3)
-    assert image.stats["triangles"] == 14 and np.asarray(image).shape == (48, 64, 4) and image._repr_png_().startswith(b"\x89PNG")
+    assert image.array.shape == (48, 64, 4) and image["z"].shape == (
+        48, 64) and image.error.shape == (48, 64, 3)
+    assert image.stats["triangles"] == 14 and np.asarray(image).shape == (
+        48, 64, 4) and image._repr_png_().startswith(b"\x89PNG")
     frames = [frame for frame in world.animate(3, 3.5, fps=4, size=(8, 6), spp=1)]
     assert [frame.time for frame in frames] == [3, 3.25]
     world.save("out.wrl")
@@ -58,14 +61,15 @@ def test_the_sample_of_the_documentation(tmp_path, monkeypatch):
     caster = world.raycaster()
     rays = np.array([[[0, 0, 10, 0, 0, -1], [0, 9, 10, 0, 0, -1]]], np.float32)
     hits = caster.cast_rays(rays)
-    assert hits["t_hit"].shape == (1, 2) and hits["t_hit"][0, 0] == pytest.approx(8.5, abs=0.6) and np.isinf(hits["t_hit"][0, 1])
+    assert hits["t_hit"].shape == (1, 2) and hits["t_hit"][0, 0] == pytest.approx(
+        8.5, abs=0.6) and np.isinf(hits["t_hit"][0, 1])
     assert caster.meshes[hits["geometry_ids"][0, 0]].node in (box, world["Hull"])
     assert caster.test_occlusions(rays).tolist() == [[True, False]]
     assert caster.list_intersections(rays)["ray_splits"].tolist()[0] == 0
     assert caster.compute_closest_points([[0, 0, 5]])["distances"][0] > 0
 
 
-# Views -------------------------------------------------------------------------------------------------------------------
+# Views ------------------------------------------------------------------------------------------
 
 
 def test_a_view_shows_what_the_field_held(world):
@@ -119,7 +123,7 @@ def test_an_edit_that_fails_changes_nothing(world):
     assert not np.array_equal(world.render(**SMALL).array, shown)
 
 
-# Node classes ------------------------------------------------------------------------------------------------------------
+# Node classes -----------------------------------------------------------------------------------
 
 
 def test_a_class_for_every_node():
@@ -140,7 +144,8 @@ def test_a_class_for_every_node():
 
 def test_nodes_are_of_their_classes(world):
     hull = world["Hull"]
-    assert isinstance(hull, xvrml.Shape) and type(hull.geometry) is xvrml.IndexedFaceSet and type(world["Lamp"]) is xvrml.PointLight
+    assert isinstance(hull, xvrml.Shape) and type(hull.geometry) is xvrml.IndexedFaceSet and type(
+        world["Lamp"]) is xvrml.PointLight
     assert isinstance(world.roots[0], xvrml.Viewpoint)
 
     class Crate(xvrml.Box):
@@ -169,7 +174,8 @@ def test_nodes_join_worlds(world):
     group = xvrml.Group(children=[shape])
     world.add(group)
     other = xvrml.World()
-    for wrong in (lambda: other.add(shape), lambda: other.add(group), lambda: xvrml.Group(children=[shape, other.add(xvrml.Group())])):
+    for wrong in (lambda: other.add(shape), lambda: other.add(group),
+                  lambda: xvrml.Group(children=[shape, other.add(xvrml.Group())])):
         with pytest.raises(ValueError, match="world"):
             wrong()
     heard = []
@@ -178,7 +184,8 @@ def test_nodes_join_worlds(world):
     assert heard == [(0, 0, 1)] and world["Hull"].appearance.material.diffuseColor != (0, 0, 1)
     late = xvrml.Cone()
     shape.geometry = late  # into a running world
-    world.on((late, "bottomRadius") if "bottomRadius" in () else (shape, "geometry"), lambda value, time: heard.append(value))
+    world.on((late, "bottomRadius") if "bottomRadius" in () else (shape, "geometry"),
+             lambda value, time: heard.append(value))
     world.remove(group)
     assert group not in world.roots
 
@@ -200,7 +207,8 @@ def test_a_node_is_not_part_of_itself(world):
 
 def test_add_and_names(world):
     box = world.add(xvrml.Transform(), name="Crate")
-    assert world["Crate"] == box and box.def_name == "Crate" and world.add(box) == box and list(world.roots).count(box) == 1
+    assert world["Crate"] == box and box.def_name == "Crate" and world.add(box) == box and list(
+        world.roots).count(box) == 1
     with pytest.raises(ValueError, match="Lamp"):
         world.add(xvrml.Group(), name="Lamp")
     for name in ("", "1st", "a b", "x.y"):
@@ -213,13 +221,18 @@ def test_add_and_names(world):
 def test_an_empty_world_is_filled(tmp_path):
     world = xvrml.World()
     world.add(xvrml.Viewpoint(position=(0, 0, 5)))
-    world.add(xvrml.Shape(geometry=xvrml.Sphere(), appearance=xvrml.Appearance(material=xvrml.Material(diffuseColor=(1, 0, 0)))), "Ball")
+    world.add(
+        xvrml.Shape(geometry=xvrml.Sphere(),
+                    appearance=xvrml.Appearance(material=xvrml.Material(diffuseColor=(1, 0, 0)))),
+        "Ball")
     assert world.render(**SMALL).array[12, 16, 0] > 0.1
     world.save(tmp_path / "ball.wrl")
-    assert np.array_equal(xvrml.load(tmp_path / "ball.wrl").render(**SMALL).array, world.render(**SMALL).array)
+    assert np.array_equal(
+        xvrml.load(tmp_path / "ball.wrl").render(**SMALL).array,
+        world.render(**SMALL).array)
 
 
-# Events and time ---------------------------------------------------------------------------------------------------------
+# Events and time --------------------------------------------------------------------------------
 
 
 def test_callbacks_come_after_the_events(world):
@@ -234,14 +247,17 @@ def test_callbacks_come_after_the_events(world):
 
     assert world.on("Clock.isActive", print) is print
     world.time = 1
-    assert [entry[2] for entry in told] == [1, 2] and told[0][0] is threading.current_thread() and world.time == 2
+    assert [entry[2] for entry in told
+           ] == [1, 2] and told[0][0] is threading.current_thread() and world.time == 2
     assert turned.__name__ == "turned"
-    for wrong, error in (("Clok.isActive", KeyError), ("Clock.isActiv", AttributeError), ("isActive", ValueError)):
+    for wrong, error in (("Clok.isActive", KeyError), ("Clock.isActiv", AttributeError),
+                         ("isActive", ValueError)):
         with pytest.raises(error):
             world.on(wrong)(print)
 
 
 def test_callbacks_without_end_are_ended(world):
+
     @world.on("Lamp.intensity")
     def again(value, time):
         world["Lamp"].intensity = 1 - value
@@ -258,7 +274,8 @@ def test_routes_are_written(world):
     assert world["Paint"].transparency == 0.5 == world["Lamp"].intensity
     text = world.to_vrml()
     assert "Clock.fraction_changed TO Paint." in text and "TO Lamp." in text
-    assert world.unroute("Clock.fraction_changed", "Lamp.intensity") and not world.unroute("Clock.fraction_changed", "Lamp.intensity")
+    assert world.unroute("Clock.fraction_changed", "Lamp.intensity") and not world.unroute(
+        "Clock.fraction_changed", "Lamp.intensity")
     assert "TO Lamp." not in world.to_vrml()
     with pytest.raises(TypeError):
         world.route("Clock.fraction_changed", "Body.translation")
@@ -285,6 +302,7 @@ def test_a_film_does_not_depend_on_what_was_pictured():
 
 
 def test_worlds_in_callbacks_are_collected():
+
     def make():
         world = xvrml.load(CAR.encode())
         body = world["Body"]
@@ -302,7 +320,7 @@ def test_worlds_in_callbacks_are_collected():
     assert tick() is None
 
 
-# Pictures ----------------------------------------------------------------------------------------------------------------
+# Pictures ---------------------------------------------------------------------------------------
 
 
 def test_channels_by_default(world):
@@ -352,7 +370,11 @@ except KeyboardInterrupt as stopped:
     print(stopped.image.shape, stopped.image.stats["transport"])
 w["Lamp"].intensity = 0.5
 """
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", code],
+                          cwd=tmp_path,
+                          capture_output=True,
+                          text=True,
+                          timeout=120)
     assert done.stdout == "(800, 1000, 4) direct\n", done.stderr
 
 
@@ -364,8 +386,12 @@ def test_a_thread_goes_on_ticking(world, tmp_path, what):
     text = big.to_vrml().encode()
     caster = world.raycaster()
     rays = np.random.default_rng(2).normal(size=(1_000_000, 6))
-    work = {"render": lambda: world.render(size=(500, 400), spp=32, threads=1), "load": lambda: xvrml.load(text),
-            "cast_rays": lambda: caster.cast_rays(rays), "save": lambda: big.save(tmp_path / "big.wrl")}[what]
+    work = {
+        "render": lambda: world.render(size=(500, 400), spp=32, threads=1),
+        "load": lambda: xvrml.load(text),
+        "cast_rays": lambda: caster.cast_rays(rays),
+        "save": lambda: big.save(tmp_path / "big.wrl")
+    }[what]
     stop, ticks = threading.Event(), []
 
     def tick():
@@ -383,27 +409,33 @@ def test_a_thread_goes_on_ticking(world, tmp_path, what):
     stop.set()
     ticker.join()
     within = sum(begin < at < end for at in ticks)
-    assert within >= (end - begin) / 0.01 / 20 - 1, "far fewer ticks than time has passed: the GIL was held"
+    assert within >= (
+        end - begin) / 0.01 / 20 - 1, "far fewer ticks than time has passed: the GIL was held"
 
 
-# Meshes and memory ------------------------------------------------------------------------------------------------------
+# Meshes and memory ------------------------------------------------------------------------------
 
 
 def test_meshes(world):
     (hull,) = world.meshes()
-    assert hull.kind == "triangles" and hull.node == world["Hull"] and hull.faces.shape == (2, 3) and hull.vertices.dtype == np.float32
+    assert hull.kind == "triangles" and hull.node == world["Hull"] and hull.faces.shape == (
+        2, 3) and hull.vertices.dtype == np.float32
     world["Body"].translation = (1, 2, 3)
     placed = world.meshes()[0]
-    assert placed.matrix[:3, 3].tolist() == [1, 2, 3] and np.allclose(placed.world_vertices, placed.vertices + [1, 2, 3])
+    assert placed.matrix[:3, 3].tolist() == [1, 2, 3] and np.allclose(placed.world_vertices,
+                                                                      placed.vertices + [1, 2, 3])
     assert not placed.vertices.flags.writeable
-    balls = xvrml.load(b"#VRML V2.0 utf8\nDEF S Shape { geometry Sphere { radius 2 } } Transform { scale 2 1 1 children USE S }"
-                       b" Switch { choice USE S } LOD { range 5 level [ USE S, Group { } ] }")
+    balls = xvrml.load(
+        b"#VRML V2.0 utf8\nDEF S Shape { geometry Sphere { radius 2 } } Transform { scale 2 1 1 children USE S }"
+        b" Switch { choice USE S } LOD { range 5 level [ USE S, Group { } ] }")
     cut, exact = balls.meshes(), balls.meshes(spheres=0)
     assert len(cut) == 3 and np.allclose(np.linalg.norm(cut[0].vertices, axis=1), 2, atol=1e-5)
     assert [m.kind for m in exact] == ["sphere"] * 3 and exact[0].radius == 2
     assert np.shares_memory(cut[0].vertices, cut[1].vertices), "one geometry, three places"
     corners = cut[0].vertices[cut[0].faces]
-    outward = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), corners[:, 0])
+    outward = np.einsum("ij,ij->i",
+                        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+                        corners[:, 0])
     assert (outward > 0).all(), "faces are seen from outside"
 
 
@@ -412,8 +444,10 @@ def memory():
         return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="memory is asked for as Linux tells it")
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"),
+                    reason="memory is asked for as Linux tells it")
 def test_a_thousand_worlds_leave_nothing():
+
     def one():
         world = xvrml.load(CAR.encode())
         crate = world.add(xvrml.Shape(geometry=xvrml.Box()), name="Crate")

@@ -71,7 +71,6 @@ class World:
             time.sleep(0.005)
 """
 
-
 WINDOWS = """
 import subprocess
 def windows(): return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", ".*", "getwindowname", "%@"], capture_output=True, text=True).stdout
@@ -81,8 +80,14 @@ def windows(): return subprocess.run(["xdotool", "search", "--onlyvisible", "--n
 def run(program, world=PANEL):
     """Runs the program in a Python process with a display of its own; returns its output."""
     with display():
-        done = subprocess.run([sys.executable, "-c", START + WINDOWS + f"world = World({world!r})\nb = world.browser\n" + textwrap.dedent(program)],
-                              capture_output=True, text=True, timeout=100, env=os.environ)
+        done = subprocess.run([
+            sys.executable, "-c", START + WINDOWS +
+            f"world = World({world!r})\nb = world.browser\n" + textwrap.dedent(program)
+        ],
+                              capture_output=True,
+                              text=True,
+                              timeout=100,
+                              env=os.environ)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -144,16 +149,19 @@ def test_closing_the_panel_ends_the_panel_only():
 
 
 def test_exit_ends_the_script_and_its_windows_but_not_the_host():
-    out = run("""
+    out = run(
+        """
         world.until(lambda: "Test panel" in windows())
         world.until(lambda: "Test panel" not in windows())
         print("alive")
-    """, PANEL.replace("package require Tk", "package require Tk; after 300 {puts leaving; exit 1}"))
+    """, PANEL.replace("package require Tk",
+                       "package require Tk; after 300 {puts leaving; exit 1}"))
     assert out.endswith("alive\n")
 
 
 def test_a_panel_that_does_not_end_is_stopped_and_closed():
-    out = run("""
+    out = run(
+        """
         world.some()
         assert "Test panel" in windows()
         b["Panel"].press = 1.0
@@ -163,7 +171,9 @@ def test_a_panel_that_does_not_end_is_stopped_and_closed():
         assert b["Place"].translation[0] == 5
         assert "Test panel" not in windows()
         print("alive")
-    """, PANEL.replace("proc up {} {", "bind .up <Destroy> {while 1 {}}; proc up {} {while 1 {catch {while 1 {}}};"))
+    """,
+        PANEL.replace("proc up {} {",
+                      "bind .up <Destroy> {while 1 {}}; proc up {} {while 1 {catch {while 1 {}}};"))
     assert out.endswith("alive\n")
 
 
@@ -177,8 +187,10 @@ proc ask {} {
 }
 proc press {} ask
 """
-    world = PANEL.split("url")[0].replace("eventOut SFString shown", "eventOut SFString answer") + 'url "tcl:' + program + '" }'
-    run("""
+    world = PANEL.split("url")[0].replace(
+        "eventOut SFString shown", "eventOut SFString answer") + 'url "tcl:' + program + '" }'
+    run(
+        """
         b["Panel"].press = 1.0
         world.until(lambda: b["Panel"].answer == "yes")
     """, world)
@@ -186,7 +198,8 @@ proc press {} ask
 
 def test_two_panels_of_one_world():
     second = PANEL.split("DEF Panel", 1)[1].replace("Test panel", "Other")
-    run("""
+    run(
+        """
         b["Panel"].press = 1.0
         b["Other"].press = 1.0
         world.until(lambda: b["Panel"].pressed == 1 and b["Other"].pressed == 1)
@@ -197,7 +210,8 @@ def test_two_panels_of_one_world():
 
 def test_an_event_that_another_scripts_tick_serves_is_not_lost():
     second = PANEL.split("DEF Panel", 1)[1].replace("Test panel", "Other")
-    run("""
+    run(
+        """
         world.some()
         b["Other"].later = 1.0  # in the queue when Panel, which comes first, is given its turn
         world.until(lambda: b["Other"].pressed == 1)
@@ -208,7 +222,13 @@ def test_an_event_that_another_scripts_tick_serves_is_not_lost():
 
 def test_without_a_display_the_world_goes_on():
     env = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
-    done = subprocess.run([sys.executable, "-c", START + f"world = World({PANEL!r})\nworld.some()\nprint(world.browser.warnings)"],
-                          capture_output=True, text=True, timeout=100, env=env)
+    done = subprocess.run([
+        sys.executable, "-c",
+        START + f"world = World({PANEL!r})\nworld.some()\nprint(world.browser.warnings)"
+    ],
+                          capture_output=True,
+                          text=True,
+                          timeout=100,
+                          env=env)
     assert done.returncode == 0, done.stderr
     assert "Tk cannot be used here" in done.stdout

@@ -64,8 +64,16 @@ def mypy(*arguments):
     if not program:
         pytest.skip("mypy is not installed")
     stubs = pathlib.Path(xvrml.__file__).resolve().parent.parent
-    return subprocess.run([program, "--strict", "--no-error-summary", "--show-error-codes", "--python-executable", sys.executable,
-                           *map(str, arguments)], env={**os.environ, "MYPYPATH": str(stubs)}, capture_output=True, text=True, timeout=300)
+    return subprocess.run([
+        program, "--strict", "--no-error-summary", "--show-error-codes", "--python-executable",
+        sys.executable, *map(str, arguments)
+    ],
+                          env={
+                              **os.environ, "MYPYPATH": str(stubs)
+                          },
+                          capture_output=True,
+                          text=True,
+                          timeout=300)
 
 
 def test_programs_and_examples_are_typed(tmp_path):
@@ -79,4 +87,6 @@ def test_programs_and_examples_are_typed(tmp_path):
     done = mypy("--cache-dir", tmp_path / "cache", tmp_path / "bad.py")
     lines = done.stdout.splitlines()
     for number, (code, word) in enumerate(BAD.items(), 2):
-        assert any(line.startswith(f"{tmp_path}/bad.py:{number}:") and word in line for line in lines), (code, done.stdout)
+        assert any(
+            line.startswith(f"{tmp_path}/bad.py:{number}:") and word in line for line in lines), (
+                code, done.stdout)

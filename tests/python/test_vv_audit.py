@@ -2,8 +2,6 @@
 import re
 
 
-
-
 def value(text, name):
     match = re.search(r"^%s +([-+.0-9e]+)" % name, text, re.MULTILINE)
     assert match, text
@@ -39,7 +37,9 @@ def test_an_audit_says_whether_the_error_bars_hold(vv):
     assert done.text.startswith("6 pictures of 32 samples")
     assert 0 <= value(done.text, "trusted") <= 100
     assert ("the error bars hold" in done.text) == (done.returncode == 0)
-    given = vv("box.wrl", "-o", "ref.exr", "--size", "24x16", "--spp", "256", "--channels", "rgba,error,trust", "-q")
+    given = vv("box.wrl", "-o", "ref.exr", "--size", "24x16", "--spp", "256", "--channels",
+               "rgba,error,trust", "-q")
     assert given.returncode == 0
-    done = vv("box.wrl", "--audit", "3", "--compare", "ref.exr", "--size", "24x16", "--spp", "32", "-q")
+    done = vv("box.wrl", "--audit", "3", "--compare", "ref.exr", "--size", "24x16", "--spp", "32",
+              "-q")
     assert "ref.exr with its own error bars" in done.text

@@ -19,12 +19,15 @@ def test_list_engines(vv):
     if "native" not in found:
         pytest.skip("built without libffi")
     native = found["native"]
-    assert native["schemes"] == ["native"] and native["trust"] and not native["harmless"] and native["suffixes"] == []
+    assert native["schemes"] == [
+        "native"
+    ] and native["trust"] and not native["harmless"] and native["suffixes"] == []
     assert native["library"].endswith("/native.so") and native["text"]
     text = vv("--list-engines").text
     assert "native: " in text and "trusted ones only (--trust)" in text and native["library"] in text
     if "python" in found:
-        assert found["python"]["suffixes"] == [".py"] and "text/x-python" in found["python"]["mimeTypes"]
+        assert found["python"]["suffixes"] == [".py"
+                                              ] and "text/x-python" in found["python"]["mimeTypes"]
 
 
 def test_a_library_that_is_no_engine_is_named(vv):
@@ -50,7 +53,8 @@ def test_unknown_protocols_name_what_is_there(vv):
         assert name in talk.split("found: ")[1]
 
 
-@pytest.mark.parametrize("url, name", [("python:print(1)", "python"), ("native:libm.so.6#sinf", "native")])
+@pytest.mark.parametrize("url, name", [("python:print(1)", "python"),
+                                       ("native:libm.so.6#sinf", "native")])
 def test_worlds_that_are_not_trusted(vv, url, name):
     if name not in engines(vv):
         pytest.skip(f"built without {name}")
@@ -62,7 +66,9 @@ def test_worlds_that_are_not_trusted(vv, url, name):
 def test_what_a_script_prints_is_a_message(vv):
     if "python" not in engines(vv):
         pytest.skip("built without python")
-    vv.write("says.wrl", HEADER + "Script { url \"python:import sys\nprint('hello')\nsys.stdout.write('aside')\" }")
+    vv.write(
+        "says.wrl",
+        HEADER + "Script { url \"python:import sys\nprint('hello')\nsys.stdout.write('aside')\" }")
     done = vv("says.wrl", "-o", "ppm:-", "--size", "8x6", "--spp", "1", "--trust")
     assert done.returncode == 0 and done.stdout.startswith(b"P6") and b"aside" not in done.stdout
     assert "hello" in done.talk
@@ -71,16 +77,22 @@ def test_what_a_script_prints_is_a_message(vv):
 def test_python_leaves_the_signals_alone(vv):
     if "python" not in engines(vv):
         pytest.skip("built without python")
-    vv.write("signals.wrl", HEADER + 'Script { url "python:import signal\nprint(signal.getsignal(signal.SIGINT))" }')
+    vv.write(
+        "signals.wrl",
+        HEADER + 'Script { url "python:import signal\nprint(signal.getsignal(signal.SIGINT))" }')
     assert "None" in vv("signals.wrl", "--check", "--trust").talk  # not Python's
 
 
 def test_python_is_the_same_in_every_run(vv):
     if "python" not in engines(vv):
         pytest.skip("built without python")
-    vv.write("same.wrl", HEADER + "Script { url \"python:import random\nprint(random.random(), set('abcdefgh'), hash('a'))\" }")
+    vv.write(
+        "same.wrl", HEADER +
+        "Script { url \"python:import random\nprint(random.random(), set('abcdefgh'), hash('a'))\" }"
+    )
     first = vv("same.wrl", "--check", "--trust").talk
-    assert "Script: 0.84442185152504" in first and first == vv("same.wrl", "--check", "--trust").talk
+    assert "Script: 0.84442185152504" in first and first == vv("same.wrl", "--check",
+                                                               "--trust").talk
 
 
 def test_an_interrupt_that_a_script_raises_is_its_own(vv):
@@ -97,7 +109,15 @@ def pictures(vv, world, folder, variable, times):
     if not (tree / folder).is_dir():
         pytest.skip(f"{folder} is not built")
     for time in times:
-        done = vv(ROOT / world, "-o", "ppm:-", *SMALL, "--time", time, "--trust", "--strict", env={variable: str(tree / folder)})
+        done = vv(ROOT / world,
+                  "-o",
+                  "ppm:-",
+                  *SMALL,
+                  "--time",
+                  time,
+                  "--trust",
+                  "--strict",
+                  env={variable: str(tree / folder)})
         assert done.returncode == 0 and done.talk == "", done.talk
         yield done.stdout
 
@@ -105,19 +125,25 @@ def pictures(vv, world, folder, variable, times):
 def test_the_example_of_native_reads_its_sensor(vv):
     if "native" not in engines(vv):
         pytest.skip("built without native")
-    at = list(pictures(vv, "examples/native/gauge.wrl", "examples/native", "XVRML_NATIVE_PATH", ("0.5", "1", "1.5", "1")))
+    at = list(
+        pictures(vv, "examples/native/gauge.wrl", "examples/native", "XVRML_NATIVE_PATH",
+                 ("0.5", "1", "1.5", "1")))
     assert len(set(at)) == 3 and at[1] == at[3]
 
 
 def test_the_example_of_python_moves(vv):
     if "python" not in engines(vv):
         pytest.skip("built without python")
-    at = list(pictures(vv, "examples/python/waves.wrl", "lib/xvrml/scripts", "XVRML_SCRIPT_PATH", ("0.5", "1", "0.5")))
+    at = list(
+        pictures(vv, "examples/python/waves.wrl", "lib/xvrml/scripts", "XVRML_SCRIPT_PATH",
+                 ("0.5", "1", "0.5")))
     assert at[0] == at[2] != at[1]
 
 
 def test_the_template_of_an_engine(vv):
-    at = list(pictures(vv, "examples/script_engine/wave.wrl", "examples/scripts", "XVRML_SCRIPT_PATH", ("0", "1", "2")))
+    at = list(
+        pictures(vv, "examples/script_engine/wave.wrl", "examples/scripts", "XVRML_SCRIPT_PATH",
+                 ("0", "1", "2")))
     assert at[0] != at[1] and len(set(at)) >= 2
     tree = vv.program.resolve().parents[1]
 
@@ -126,7 +152,8 @@ def test_the_template_of_an_engine(vv):
         return vv("f.wrl", "--check", "--script-path", tree / "examples/scripts").talk
 
     assert "f.wrl:3" in talk("y = sin(x") and "')' was expected" in talk("y = sin(x")
-    assert "f.wrl:5" in talk("y = x\n\ny = wrong") and "no field or event wrong" in talk("\ny = wrong")
+    assert "f.wrl:5" in talk("y = x\n\ny = wrong") and "no field or event wrong" in talk(
+        "\ny = wrong")
     assert "there is no function sinn" in talk("y = sinn(x)")
     assert "too many parentheses" in talk("y = " + "(" * 300 + "x" + ")" * 300)
     assert "no field or eventOut of the Script: x" in talk("x = 1")
@@ -142,7 +169,15 @@ def test_python_without_its_package_says_so(vv):
     lonely.mkdir(mode=0o755)
     shutil.copy(found["library"], lonely)
     vv.write("alone.wrl", HEADER + 'Script { url "python:print(1)" }')
-    talk = vv("alone.wrl", "--check", "--trust", "--script-path", lonely, env={"PYTHONPATH": "", "PYTHONNOUSERSITE": "1"}).talk
+    talk = vv("alone.wrl",
+              "--check",
+              "--trust",
+              "--script-path",
+              lonely,
+              env={
+                  "PYTHONPATH": "",
+                  "PYTHONNOUSERSITE": "1"
+              }).talk
     if "Script: 1" in talk:
         pytest.skip("the package is installed for all of Python")
     assert "alone.wrl:2" in talk and "the Python package xvrml, whose nodes Scripts in Python use, cannot be imported" in talk

@@ -85,10 +85,11 @@ def test_files_of_other_formats_are_named(vv, content, name):
 def test_help_and_version(vv):
     done = vv("--help")
     assert done.returncode == 0 and done.talk == ""
-    for option in ("--output", "--size", "--viewpoint", "--camera", "--fit", "--fov", "--headlight", "--spp", "--depth", "--shadows",
-                   "--seed", "--threads", "--colour", "--stats", "--check", "--strict", "--info", "--list-nodes", "--list-viewpoints",
-                   "--json", "--write", "--channels", "--limit", "--allow-absolute", "--record", "--shader-path", "--quiet",
-                   "--verbose", "--version"):
+    for option in ("--output", "--size", "--viewpoint", "--camera", "--fit", "--fov", "--headlight",
+                   "--spp", "--depth", "--shadows", "--seed", "--threads", "--colour", "--stats",
+                   "--check", "--strict", "--info", "--list-nodes", "--list-viewpoints", "--json",
+                   "--write", "--channels", "--limit", "--allow-absolute", "--record",
+                   "--shader-path", "--quiet", "--verbose", "--version"):
         assert option in done.text
     assert max(map(len, done.text.splitlines())) <= 130
     assert vv("-h").text == done.text
@@ -150,8 +151,14 @@ def test_check_and_strict(vv):
 
 
 def test_missing_texture_and_plugin(vv):
-    vv.write("texture.wrl", HEADER + 'Shape { appearance Appearance { material Material { } texture ImageTexture { url "no.png" } } geometry Box { } }')
-    vv.write("plugin.wrl", HEADER + 'Shape { appearance ORTAppearance { shader ORTShader { name "X" file "nosuchlibrary" } } geometry Box { } }')
+    vv.write(
+        "texture.wrl", HEADER +
+        'Shape { appearance Appearance { material Material { } texture ImageTexture { url "no.png" } } geometry Box { } }'
+    )
+    vv.write(
+        "plugin.wrl", HEADER +
+        'Shape { appearance ORTAppearance { shader ORTShader { name "X" file "nosuchlibrary" } } geometry Box { } }'
+    )
     for name in ("texture.wrl", "plugin.wrl"):
         done = vv(name, "-o", "x.png", *SMALL)
         assert done.returncode == 0 and f"{name}:2:" in done.talk, done.talk
@@ -170,16 +177,22 @@ def test_many_problems_are_counted(vv):
 
 
 def test_control_characters_do_not_reach_the_terminal(vv):
-    vv.write("evil.wrl", HEADER.encode() + b"Box { si\x1b[31mse 1 }\nNoSuch\x07 { }\nNo\xe2\x80\xaeSuch { }\n")
+    vv.write("evil.wrl",
+             HEADER.encode() + b"Box { si\x1b[31mse 1 }\nNoSuch\x07 { }\nNo\xe2\x80\xaeSuch { }\n")
     done = vv("evil.wrl", "-o", "x.png", *SMALL)
     assert b"\x1b" not in done.stderr and b"\x07" not in done.stderr
-    assert "\u202e".encode() not in done.stderr and b"\\xe2\\x80\\xaeSuch" in done.stderr, "the direction of text must not change"
+    assert "\u202e".encode(
+    ) not in done.stderr and b"\\xe2\\x80\\xaeSuch" in done.stderr, "the direction of text must not change"
 
 
 def test_quiet(vv):
     assert vv("box.wrl", "-q", "-o", "x.png", *SMALL).talk == ""
-    assert vv("box.wrl", "-o", "x.png", *SMALL).talk == "", "a picture that is there at once needs no words"
-    vv.write("v.wrl", HEADER + 'Shape { appearance Appearance { texture ImageTexture { url "no.png" } } geometry Box { } }')
+    assert vv("box.wrl", "-o", "x.png",
+              *SMALL).talk == "", "a picture that is there at once needs no words"
+    vv.write(
+        "v.wrl", HEADER +
+        'Shape { appearance Appearance { texture ImageTexture { url "no.png" } } geometry Box { } }'
+    )
     assert "warning" in vv("v.wrl", "-o", "x.png", *SMALL).talk
     assert vv("v.wrl", "-q", "-o", "x.png", *SMALL).talk == ""
 

@@ -12,12 +12,15 @@ from conftest import BOX, HEADER, read_ppm
 def mesh(low, high, colours=None):
     """Returns a box as exporters write it, an IndexedFaceSet. colours: of the faces -x +x -y +y -z
     +z."""
-    points = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+    points = [
+        (x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])
+    ]
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    colour = "" if not colours else "colorPerVertex FALSE color Color { color [ %s ] }" % ", ".join("%g %g %g" % c for c in colours)
+    colour = "" if not colours else "colorPerVertex FALSE color Color { color [ %s ] }" % ", ".join(
+        "%g %g %g" % c for c in colours)
     return """Shape { appearance Appearance { material Material { } } geometry IndexedFaceSet { coord Coordinate { point [ %s ] }
-        coordIndex [ %s ] %s } }\n""" % (", ".join("%g %g %g" % p for p in points),
-                                         " ".join("%d %d %d %d -1" % f for f in faces), colour)
+        coordIndex [ %s ] %s } }\n""" % (", ".join("%g %g %g" % p for p in points), " ".join(
+        "%d %d %d %d -1" % f for f in faces), colour)
 
 
 CUBE = mesh((1, 2, 3), (3, 4, 5))  # no axis is preferred
@@ -33,14 +36,16 @@ def info(vv, text, *arguments):
 @pytest.mark.parametrize("text, axis, reason", [
     (HEADER + "# kicad StepUp wrl exported\n" + CUBE, "z", "kicad"),
     ("#VRML V2.0 utf8 CosmoWorlds V1.0\n" + mesh((0, 0, 0), (5, 5, 1)), "y", "cosmoworlds"),
-    ("\n\n# a blank line\n".join(["#VRML V2.0 utf8", CUBE]).replace("# a blank", "# FreeCAD"), "z", "freecad"),
+    ("\n\n# a blank line\n".join(["#VRML V2.0 utf8", CUBE]).replace("# a blank",
+                                                                    "# FreeCAD"), "z", "freecad"),
     (CUBE + "# kicad is named too late\n", "y", "nothing"),
     ('WorldInfo { title "Made by OpenSCAD" }' + CUBE, "z", "openscad"),
     ("PROTO Joint [ field SFVec3f jointAxis 0 0 1 ] { Group { } }\n" + CUBE, "z", "jointAxis"),
     ("PROTO Joint [ field SFVec3f center 0 0 1 ] { Group { } }\n" + CUBE, "y", "nothing"),
     ('NavigationInfo { type [ "WALK", "ANY" ] }' + mesh((0, 0, 0), (5, 5, 1)), "y", "WALK"),
     ('NavigationInfo { type "EXAMINE" }' + mesh((1, 2, 0), (5, 5, 1)), "z", "z = 0"),
-    ("Background { skyColor [ 0 0 1, 1 1 1 ] skyAngle 1.5 }" + mesh((1, 2, 0), (5, 5, 1)), "y", "Background"),
+    ("Background { skyColor [ 0 0 1, 1 1 1 ] skyAngle 1.5 }" + mesh((1, 2, 0),
+                                                                    (5, 5, 1)), "y", "Background"),
     ("Background { skyColor 0 0 1 }" + mesh((1, 2, 0), (5, 5, 1)), "z", "z = 0"),
     ("Shape { geometry Cone { } }" + mesh((1, 2, 0), (5, 5, 1)), "y", "Cone"),
     (mesh((1, 0, 3), (3, 4, 5)), "y", "y = 0"),
@@ -73,7 +78,8 @@ def counts(rows):
 
 
 # The upper face is blue, the front and right ones are red and green, the others white.
-@pytest.mark.parametrize("up, top, front, right", [("x", 1, 5, 2), ("y", 3, 5, 1), ("z", 5, 2, 1), ("-x", 0, 5, 3), ("-y", 2, 5, 0),
+@pytest.mark.parametrize("up, top, front, right", [("x", 1, 5, 2), ("y", 3, 5, 1), ("z", 5, 2, 1),
+                                                   ("-x", 0, 5, 3), ("-y", 2, 5, 0),
                                                    ("-z", 4, 3, 1)])
 def test_three_quarters(vv, up, top, front, right):
     colours = [(1, 1, 1)] * 6
@@ -83,7 +89,9 @@ def test_three_quarters(vv, up, top, front, right):
     assert not any(min(p) > 0 for row in rows for p in row), "nothing of the other faces"
     red, green, blue = counts(rows)
     assert red > green > blue > 20, (red, green, blue)
-    across = lambda c: [x for row in rows for x, p in enumerate(row) if p[c] > max(p[:c] + p[c + 1:])]
+    across = lambda c: [
+        x for row in rows for x, p in enumerate(row) if p[c] > max(p[:c] + p[c + 1:])
+    ]
     mean = lambda values: sum(values) / len(values)
     assert mean(across(0)) < mean(across(1)), "the front to the left"
     down = [y for y, row in enumerate(rows) for p in row if p[2] > max(p[:2])]
@@ -99,7 +107,8 @@ def border(rows):
 @pytest.mark.parametrize("how", [("--fit",), ("--camera", "300,400,500:50,15,22", "--fit")])
 def test_a_turntable_stays_in_the_window(vv, size, up, how):
     vv.write("rod.wrl", HEADER + mesh((-100, 5, 7), (200, 25, 37)))
-    assert vv("rod.wrl", *how, "--up", up, "--turntable", 8, "--size", size, "--spp", 4, "-o", "t.ppm").returncode == 0
+    assert vv("rod.wrl", *how, "--up", up, "--turntable", 8, "--size", size, "--spp", 4, "-o",
+              "t.ppm").returncode == 0
     widest = 0
     for number in range(8):
         rows = read_ppm((vv.folder / f"t-{number:04}.ppm").read_bytes())[2]
@@ -115,7 +124,8 @@ def test_a_turntable_goes_round_the_axis(vv):
     """The top stays in place; the sides rotate."""
     colours = [(1, 0, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 1, 1), (0, 0, 1)]
     vv.write("part.wrl", HEADER + "# KiCad\n" + mesh((10, 20, 30), (12, 22, 31), colours))
-    assert vv("part.wrl", "--turntable", 4, "--size", "48x36", "--spp", 1, "-o", "t.ppm").returncode == 0
+    assert vv("part.wrl", "--turntable", 4, "--size", "48x36", "--spp", 1, "-o",
+              "t.ppm").returncode == 0
     seen = [counts(read_ppm((vv.folder / f"t-{n:04}.ppm").read_bytes())[2]) for n in range(4)]
     assert all(blue > 100 and abs(blue - seen[0][2]) <= 12 for _, _, blue in seen), seen
     assert len({(red > green) for red, green, _ in seen}) == 2, seen
@@ -132,7 +142,8 @@ def test_text_is_read_from_the_front(vv):
 
 def test_camera_with_fit(vv):
     """Uses the direction of --camera and the distance of --fit."""
-    vv.write("cube.wrl", HEADER + mesh((10, 20, 30), (12, 22, 32), [(1, 0, 0), (0, 1, 0)] + [(0, 0, 1)] * 4))
+    vv.write("cube.wrl", HEADER + mesh((10, 20, 30), (12, 22, 32), [(1, 0, 0),
+                                                                    (0, 1, 0)] + [(0, 0, 1)] * 4))
     near = vv.picture("--camera", "11.5,21,31:11,21,31", "--fit", world="cube.wrl")
     assert counts(near)[1] > 100 and counts(near)[0] == counts(near)[2] == 0, "it looks along -x"
     assert near == vv.picture("--camera", "9111,21,31:11,21,31", "--fit", world="cube.wrl")
@@ -154,13 +165,17 @@ def test_the_light_of_models(vv):
     vv.write("cube.wrl", HEADER + CUBE)
     shown = faces(vv.picture("--size", "64x48", world="cube.wrl"))
     lone = faces(vv.picture("--size", "64x48", "--headlight", "on", world="cube.wrl"))
-    assert all(b[0] - a[0] >= 25 for a, b in zip(shown, shown[1:])), "each face has a brightness of its own"
+    assert all(b[0] - a[0] >= 25
+               for a, b in zip(shown, shown[1:])), "each face has a brightness of its own"
     assert shown[0][0] > 100 and shown[-1][0] < 255, "none is dark, none is burnt out"
-    assert shown != lone and not any(map(any, sum(vv.picture("--headlight", "off", world="cube.wrl"), [])))
+    assert shown != lone and not any(
+        map(any, sum(vv.picture("--headlight", "off", world="cube.wrl"), [])))
 
 
-@pytest.mark.parametrize("more", ["NavigationInfo { }", "DirectionalLight { on FALSE }",
-                                  "Viewpoint { position 2 3 14 }", "Transform { children PointLight { location 2 3 99 intensity 0 } }"])
+@pytest.mark.parametrize("more", [
+    "NavigationInfo { }", "DirectionalLight { on FALSE }", "Viewpoint { position 2 3 14 }",
+    "Transform { children PointLight { location 2 3 99 intensity 0 } }"
+])
 def test_worlds_that_bring_light_keep_theirs(vv, more):
     vv.write("own.wrl", HEADER + CUBE + more)
     assert vv.picture(world="own.wrl") == vv.picture("--headlight", "on", world="own.wrl")
@@ -168,7 +183,9 @@ def test_worlds_that_bring_light_keep_theirs(vv, more):
 
 def test_same_bytes_with_any_threads(vv):
     vv.write("cube.wrl", HEADER + CUBE)
-    assert vv.picture("--threads", "1", world="cube.wrl") == vv.picture("--threads", "3", world="cube.wrl")
+    assert vv.picture("--threads", "1", world="cube.wrl") == vv.picture("--threads",
+                                                                        "3",
+                                                                        world="cube.wrl")
 
 
 # --- Background ---
@@ -188,7 +205,8 @@ def read_png(data):
     n = {2: 3, 6: 4}[colour]
     raw, before, rows = zlib.decompress(packed), bytearray(width * n), []
     for y in range(height):
-        how, line = raw[y * (width * n + 1)], bytearray(raw[y * (width * n + 1) + 1:(y + 1) * (width * n + 1)])
+        how, line = raw[y * (width * n + 1)], bytearray(raw[y * (width * n + 1) + 1:(y + 1) *
+                                                            (width * n + 1)])
         for i in range(width * n):
             a, b, c = line[i - n] if i >= n else 0, before[i], before[i - n] if i >= n else 0
             p = a + b - c
@@ -216,7 +234,8 @@ def test_background_none(vv):
     assert opaque == 3 and plain[0][0] == (0, 0, 255) and plain[12][16] == rows[12][16][:3]
     inside = rows[12][16][:3]
     edge = [p for row in rows for p in row if 0 < p[3] < 255]
-    assert edge and all(abs(a - b) <= 3 for p in edge if p[3] > 60 for a, b in zip(p[:3], inside)), "colours as of the surface"
+    assert edge and all(abs(a - b) <= 3 for p in edge if p[3] > 60
+                        for a, b in zip(p[:3], inside)), "colours as of the surface"
 
 
 def test_background_none_in_a_file_without_alpha(vv):
@@ -228,14 +247,15 @@ def test_background_none_in_a_file_without_alpha(vv):
 
 def srgb(byte):
     v = byte / 255
-    return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4
+    return v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055)**2.4
 
 
 def display(v):
-    return 255 * (12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055)
+    return 255 * (12.92 * v if v <= 0.0031308 else 1.055 * v**(1 / 2.4) - 0.055)
 
 
-@pytest.mark.parametrize("colour, corner", [("white", (255, 255, 255)), ("#f80", (255, 136, 0)), ("#336699", (51, 102, 153)),
+@pytest.mark.parametrize("colour, corner", [("white", (255, 255, 255)), ("#f80", (255, 136, 0)),
+                                            ("#336699", (51, 102, 153)),
                                             ("0.2,0.4,1", (51, 102, 255)), ("Black", (0, 0, 0))])
 def test_background_colour(vv, colour, corner):
     components, rows = png(vv, "--background", colour, spp="16")
@@ -243,7 +263,9 @@ def test_background_colour(vv, colour, corner):
     _, clear = png(vv, "--background", "none", spp="16")
     for row, other in zip(rows, clear):
         for p, (*c, a) in zip(row, other):  # composited over the colour in linear light
-            wanted = [display(srgb(x) * a / 255 + srgb(y) * (1 - a / 255)) for x, y in zip(c, corner)]
+            wanted = [
+                display(srgb(x) * a / 255 + srgb(y) * (1 - a / 255)) for x, y in zip(c, corner)
+            ]
             assert all(abs(x - y) <= 4 for x, y in zip(p, wanted))
     assert png(vv, "--background", colour, "--colour", "vrml97")[1][0][0] == corner
 
@@ -252,16 +274,20 @@ def test_background_file(vv):
     """A background picture of twice the width: its middle is visible, its sides are cut off."""
     columns = [(255, 0, 0)] * 16 + [(0, 255, 0)] * 32 + [(0, 0, 255)] * 16
     raw = b"".join(b"\0" + b"".join(bytes(p) for p in columns) for _ in range(24))
-    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-    vv.write("wide.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 64, 24, 8, 2, 0, 0, 0)) +
-             chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
+    chunk = lambda kind, body: struct.pack(">I", len(body)) + kind + body + struct.pack(
+        ">I", zlib.crc32(kind + body))
+    vv.write(
+        "wide.png",
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 64, 24, 8, 2, 0, 0, 0)) +
+        chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
     components, rows = png(vv, "--background", "wide.png")
     assert components == 3 and {rows[0][0], rows[0][-1], rows[-1][0], rows[-1][-1]} == {(0, 255, 0)}
     assert rows[12][16] == png(vv)[1][12][16]
 
 
-@pytest.mark.parametrize("wrong, word", [("whit", "colour"), ("#12", "colour"), ("1,2,3", "0 to 1"), ("1,1", "colour"),
-                                         ("#gggggg", "colour"), ("0.5,0.5,nan", "colour")])
+@pytest.mark.parametrize("wrong, word", [("whit", "colour"), ("#12", "colour"), ("1,2,3", "0 to 1"),
+                                         ("1,1", "colour"), ("#gggggg", "colour"),
+                                         ("0.5,0.5,nan", "colour")])
 def test_wrong_backgrounds(vv, wrong, word):
     done = vv("box.wrl", "-o", "x.png", f"--background={wrong}")
     assert done.returncode == 2 and "--background" in done.talk and word in done.talk

@@ -12,18 +12,21 @@ import time
 import pytest
 from conftest import HEADER, SMALL, find_vv, read_pfm, read_ppm
 
-
-# Output ----------------------------------------------------------------------------------------------------------------
+# Output ------------------------------------------------------------------------------------------
 
 
 def test_output_to_a_full_device(vv):
     done = vv("box.wrl", "-o", "-", *SMALL)
     assert done.returncode == 0
-    full = subprocess.run([vv.program, "box.wrl", "-o", "-", *SMALL], cwd=vv.folder, stdout=open("/dev/full", "wb"), stderr=subprocess.PIPE)
+    full = subprocess.run([vv.program, "box.wrl", "-o", "-", *SMALL],
+                          cwd=vv.folder,
+                          stdout=open("/dev/full", "wb"),
+                          stderr=subprocess.PIPE)
     assert full.returncode == 1 and os.strerror(errno.ENOSPC) in full.stderr.decode()
     os.symlink("/dev/full", vv.folder / "full.png")
     done = vv("box.wrl", "-o", "full.png", *SMALL)
-    assert done.returncode == 1 and os.strerror(errno.ENOSPC) in done.talk and "full.png" in done.talk
+    assert done.returncode == 1 and os.strerror(
+        errno.ENOSPC) in done.talk and "full.png" in done.talk
     assert not vv.leftovers()
 
 
@@ -77,13 +80,15 @@ def test_reader_that_goes_away(vv):
     os.close(read_end)
     lists = subprocess.run([vv.program, "--list-nodes"], stdout=write_end, stderr=subprocess.PIPE)
     assert lists.returncode == 0 and lists.stderr == b""
-    picture = subprocess.run([vv.program, "box.wrl", "-o", "-", *SMALL], cwd=vv.folder, stdout=write_end, stderr=subprocess.PIPE)
+    picture = subprocess.run([vv.program, "box.wrl", "-o", "-", *SMALL],
+                             cwd=vv.folder,
+                             stdout=write_end,
+                             stderr=subprocess.PIPE)
     assert picture.returncode == 1 and os.strerror(errno.EPIPE) in picture.stderr.decode()
     os.close(write_end)
 
 
-# Signals ---------------------------------------------------------------------------------------------------------------
-
+# Signals ----------------------------------------------------------------------------------------
 
 # Takes far longer than a test may, so only the signal can end it.
 LONG = ("--size", "1600x1200", "--spp", "4096", "--threads", "1")
@@ -109,9 +114,12 @@ def test_interrupt_keeps_the_picture(vv):
 
 
 def test_an_interrupted_picture_shows_all_of_the_world(vv):
-    vv.write("white.wrl", HEADER + "Background { skyColor 1 1 1 } Shape { appearance Appearance { material Material { "
-             "emissiveColor .5 .5 .5 } } geometry Sphere { } }")
-    running = vv.start("white.wrl", "-o", "part.pfm", "--size", "320x240", "--spp", "65536", "--threads", "1")
+    vv.write(
+        "white.wrl", HEADER +
+        "Background { skyColor 1 1 1 } Shape { appearance Appearance { material Material { "
+        "emissiveColor .5 .5 .5 } } geometry Sphere { } }")
+    running = vv.start("white.wrl", "-o", "part.pfm", "--size", "320x240", "--spp", "65536",
+                       "--threads", "1")
     wait_until_rendering(running)
     running.send_signal(signal.SIGINT)
     _, talk = running.communicate(timeout=30)
@@ -148,7 +156,8 @@ def wait_for_handler(process, number):
     """Waits until the program handles the signal, which takes a while after its start on a busy
     machine."""
     for _ in range(1000):
-        caught = re.search(r"SigCgt:\s*(\w+)", pathlib.Path(f"/proc/{process.pid}/status").read_text())
+        caught = re.search(r"SigCgt:\s*(\w+)",
+                           pathlib.Path(f"/proc/{process.pid}/status").read_text())
         if int(caught[1], 16) >> (number - 1) & 1:
             return
         time.sleep(0.01)
@@ -157,37 +166,53 @@ def wait_for_handler(process, number):
 
 def test_interrupt_before_there_is_anything(vv):
     os.mkfifo(vv.folder / "pipe.wrl")
-    running = subprocess.Popen([vv.program, "-", "-o", "x.png"], cwd=vv.folder, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+    running = subprocess.Popen([vv.program, "-", "-o", "x.png"],
+                               cwd=vv.folder,
+                               stdin=subprocess.PIPE,
+                               stderr=subprocess.PIPE)
     wait_for_handler(running, signal.SIGINT)
     running.send_signal(signal.SIGINT)
     running.communicate(timeout=10)
     assert running.returncode == 130 and not (vv.folder / "x.png").exists()
 
 
-# Reports ---------------------------------------------------------------------------------------------------------------
+# Reports ----------------------------------------------------------------------------------------
 
 
 def test_statistics(vv):
-    done = vv("box.wrl", "-o", "x.png", "--stats", "stats.json", "--size", "40x30", "--spp", "4", "--threads", "2")
+    done = vv("box.wrl", "-o", "x.png", "--stats", "stats.json", "--size", "40x30", "--spp", "4",
+              "--threads", "2")
     assert done.returncode == 0, done.talk
     stats = json.loads((vv.folder / "stats.json").read_text())
     assert stats["schema"] == 1 and stats["version"] and "box.wrl" in stats["command"]
     keys = {
-        "scene": "path nodes shapes triangles unique_triangles objects instances textures lights warnings",
-        "image": "width height spp channels",
-        "scripts": "scripts started calls seconds",
-        "time": "parse graph map build first_pass render write total",
-        "rays": "camera shadow secondary per_second",
-        "transport": "chosen reason claim leaves_out",
-        "error": "mean_rel mean_rel_interval half_width p99 pixels_trusted unmet level method",
-        "memory": "peak_rss bvh scene",
-        "cluster": "workers tiles tiles_here retries duplicates bytes bytes_sent bytes_received machines",
-        "left_out": "cut_by_depth cut_by_energy clipped unreached_lights shader_faults wrong_hits rejected_rays",
-        "machine": "isa threads embree",
+        "scene":
+            "path nodes shapes triangles unique_triangles objects instances textures lights warnings",
+        "image":
+            "width height spp channels",
+        "scripts":
+            "scripts started calls seconds",
+        "time":
+            "parse graph map build first_pass render write total",
+        "rays":
+            "camera shadow secondary per_second",
+        "transport":
+            "chosen reason claim leaves_out",
+        "error":
+            "mean_rel mean_rel_interval half_width p99 pixels_trusted unmet level method",
+        "memory":
+            "peak_rss bvh scene",
+        "cluster":
+            "workers tiles tiles_here retries duplicates bytes bytes_sent bytes_received machines",
+        "left_out":
+            "cut_by_depth cut_by_energy clipped unreached_lights shader_faults wrong_hits rejected_rays",
+        "machine":
+            "isa threads embree",
     }
     for group, names in keys.items():
         assert set(stats[group]) == set(names.split()), group
-    assert stats["scene"]["path"] == "box.wrl" and stats["scene"]["shapes"] == 1 and stats["scene"]["warnings"] == 0
+    assert stats["scene"]["path"] == "box.wrl" and stats["scene"]["shapes"] == 1 and stats["scene"][
+        "warnings"] == 0
     assert stats["scene"]["triangles"] == 12
     assert stats["image"] == {"width": 40, "height": 30, "spp": 4, "channels": ["rgba"]}
     assert stats["rays"]["camera"] == 40 * 30 * 4
@@ -213,13 +238,15 @@ def test_list_nodes(vv):
     assert (size["type"], size["access"], size["default"]) == ("SFVec3f", "field", "2 2 2")
     vv.write("proto.wrl", HEADER + "PROTO Lamp [ field SFFloat power 2.5 ] { Group { } } Lamp { }")
     data = json.loads(vv("proto.wrl", "--list-nodes", "--json").text)
-    assert data["prototypes"][0]["name"] == "Lamp" and data["prototypes"][0]["fields"][0]["default"] == "2.5"
+    assert data["prototypes"][0]["name"] == "Lamp" and data["prototypes"][0]["fields"][0][
+        "default"] == "2.5"
 
 
 def test_list_viewpoints(vv):
     assert vv("box.wrl", "--list-viewpoints").text == "0\t-\tfront\n1\tBack\tfrom behind\n"
     data = json.loads(vv("box.wrl", "--list-viewpoints", "--json").text)
-    assert [v["name"] for v in data] == ["", "Back"] and [v["description"] for v in data] == ["front", "from behind"]
+    assert [v["name"] for v in data] == ["", "Back"] and [v["description"] for v in data
+                                                         ] == ["front", "from behind"]
     assert len(data[0]["matrix"]) == 16
 
 
@@ -228,7 +255,14 @@ def test_info(vv):
     assert "nodes" in text and "bounds      -1 -1 -1  to  1 1 1" in text
     data = json.loads(vv("box.wrl", "--info", "--json").text)
     assert data["bounds"] == {"minimum": [-1, -1, -1], "maximum": [1, 1, 1]}
-    assert data["types"] == {"Appearance": 1, "Box": 1, "Material": 1, "Shape": 1, "Transform": 1, "Viewpoint": 2}
+    assert data["types"] == {
+        "Appearance": 1,
+        "Box": 1,
+        "Material": 1,
+        "Shape": 1,
+        "Transform": 1,
+        "Viewpoint": 2
+    }
     assert set(data["names"]) == {"Back", "Place", "Thing", "Paint", "Cube"}
     vv.write("nothing.wrl", HEADER)
     assert json.loads(vv("nothing.wrl", "--info", "--json").text)["bounds"] is None
@@ -253,7 +287,8 @@ def test_recording(vv):
 def test_empty_world_makes_a_picture(vv):
     vv.write("empty.wrl", HEADER)
     assert vv("empty.wrl", "-o", "x.ppm", *SMALL).returncode == 0
-    assert all(p == (0, 0, 0) for row in read_ppm((vv.folder / "x.ppm").read_bytes())[2] for p in row)
+    assert all(
+        p == (0, 0, 0) for row in read_ppm((vv.folder / "x.ppm").read_bytes())[2] for p in row)
 
 
 def test_progress_lines(vv):

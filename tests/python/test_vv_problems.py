@@ -9,7 +9,9 @@ SCRIPT = 'Script { url "javascript: function initialize() { var i; for (i = 0; i
 
 def test_repeated_sentences_are_folded(vv):
     light = "DirectionalLight {{ intensity {} }}\n"
-    vv.write("many.wrl", HEADER + "".join(light.format(2 + i) for i in range(48)) + "Shape { geometry Box { } }")
+    vv.write(
+        "many.wrl",
+        HEADER + "".join(light.format(2 + i) for i in range(48)) + "Shape { geometry Box { } }")
     done = vv("many.wrl", "-o", "x.png", *SMALL)
     assert done.returncode == 0
     assert done.talk.count("is outside of its range") == 1
@@ -20,8 +22,10 @@ def test_repeated_sentences_are_folded(vv):
 
 
 def test_faces_that_nobody_can_see_are_told_to_authors_only(vv):
-    vv.write("flat.wrl", HEADER + "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 2 0 0, 0 1 0 ] } "
-             "coordIndex [ 0 1 2 -1 0 1 3 -1 ] } }")
+    vv.write(
+        "flat.wrl", HEADER +
+        "Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 2 0 0, 0 1 0 ] } "
+        "coordIndex [ 0 1 2 -1 0 1 3 -1 ] } }")
     assert "area" not in vv("flat.wrl", "-o", "x.png", *SMALL).talk
     done = vv("flat.wrl", "--check", "--strict")
     assert done.returncode == 0 and "note: IndexedFaceSet: 1 dropped for having no area (first at index 0)" in done.talk
@@ -39,13 +43,17 @@ def test_last_line_after_errors(vv):
 
 
 def test_hints_for_pictures_that_show_nothing(vv):
-    vv.write("dark.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } "
-             "geometry Box { size 20 20 2 } }")
+    vv.write(
+        "dark.wrl", HEADER +
+        "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } "
+        "geometry Box { size 20 20 2 } }")
     talk = vv("dark.wrl", "-o", "x.png", *SMALL).talk
     assert talk == "vv: the picture is black: the world has no light and its headlight is off; --headlight on\n"
     assert vv("dark.wrl", "-o", "x.png", "--headlight", "on", *SMALL).talk == ""
-    vv.write("away.wrl", HEADER + "Viewpoint { orientation 0 1 0 3.14159 }\nShape { geometry Box { } }")
-    assert vv("away.wrl", "-o", "x.png", *SMALL).talk == "vv: nothing is in view from here: --fit shows all of the world\n"
+    vv.write("away.wrl",
+             HEADER + "Viewpoint { orientation 0 1 0 3.14159 }\nShape { geometry Box { } }")
+    assert vv("away.wrl", "-o", "x.png",
+              *SMALL).talk == "vv: nothing is in view from here: --fit shows all of the world\n"
     assert vv("away.wrl", "-o", "x.png", "--fit", *SMALL).talk == ""
     vv.write("empty.wrl", HEADER)
     assert "no shapes" in vv("empty.wrl", "-o", "x.png", *SMALL).talk
@@ -57,25 +65,35 @@ def test_scripts_are_counted(vv):
     done = vv("scripts.wrl", "-v", "-o", "x.png", "--stats", "s.json", *SMALL)
     assert "vv: 40 of 40 Scripts started in " in done.talk and "vv: 40 of 40 Scripts run; " in done.talk
     scripts = json.loads((vv.folder / "s.json").read_text())["scripts"]
-    assert scripts["scripts"] == scripts["started"] == 40 and scripts["calls"] >= 80 and scripts["seconds"] > 0
+    assert scripts["scripts"] == scripts["started"] == 40 and scripts["calls"] >= 80 and scripts[
+        "seconds"] > 0
 
 
 def test_script_time_of_a_world_is_limited(vv):
-    vv.write("spin.wrl", HEADER + 'Script { url "javascript: function initialize() { while (1); }" }\n' * 20 + "Shape { geometry Box { } }")
+    vv.write(
+        "spin.wrl",
+        HEADER + 'Script { url "javascript: function initialize() { while (1); }" }\n' * 20 +
+        "Shape { geometry Box { } }")
     done = vv("spin.wrl", "-o", "x.png", "--limit", "worldScriptSeconds=1", *SMALL, timeout=60)
     assert done.returncode == 0 and (vv.folder / "x.png").exists()
-    assert done.talk.count("limit worldScriptSeconds=1: ") == 1 and "--limit worldScriptSeconds=60" in done.talk
+    assert done.talk.count(
+        "limit worldScriptSeconds=1: ") == 1 and "--limit worldScriptSeconds=60" in done.talk
 
 
 def test_a_script_is_heard_each_time_that_it_prints(vv):
-    vv.write("twice.wrl", HEADER + 'Script { url "javascript: function initialize() { for (var i = 0; i < 3; i++) print(\'again\'); }" }')
+    vv.write(
+        "twice.wrl", HEADER +
+        'Script { url "javascript: function initialize() { for (var i = 0; i < 3; i++) print(\'again\'); }" }'
+    )
     for options in ([], ["-v"]):
         assert vv("twice.wrl", "-o", "x.png", *options, *SMALL).talk.count("again") == 3
 
 
 def test_errors_are_not_lost_among_other_messages(vv):
-    vv.write("prints.wrl", HEADER + 'Script { url "javascript: function initialize() { for (var i = 0; i < 300; i++) print(\'line \' + i); '
-             'undefinedfn(); }" }\nShape { geometry Box { } }')
+    vv.write(
+        "prints.wrl", HEADER +
+        'Script { url "javascript: function initialize() { for (var i = 0; i < 300; i++) print(\'line \' + i); '
+        'undefinedfn(); }" }\nShape { geometry Box { } }')
     for options in ([], ["-q"]):
         assert "undefinedfn" in vv("prints.wrl", "-o", "x.png", *options, *SMALL).talk
     assert "undefinedfn" in vv("prints.wrl", "--check").talk
@@ -93,10 +111,14 @@ def test_names_with_digits_are_not_folded(vv):
 
 
 def test_what_comes_again_in_a_sequence_is_counted(vv):
-    vv.write("again.wrl", HEADER + "DEF T TimeSensor { loop TRUE }\nDEF S Script { eventIn SFFloat f url \"javascript: function f() { "
-             "Browser.createVrmlFromString('Material { shininess 2 }'); }\" }\nROUTE T.fraction_changed TO S.f\nShape { geometry Box { } }")
+    vv.write(
+        "again.wrl", HEADER +
+        "DEF T TimeSensor { loop TRUE }\nDEF S Script { eventIn SFFloat f url \"javascript: function f() { "
+        "Browser.createVrmlFromString('Material { shininess 2 }'); }\" }\nROUTE T.fraction_changed TO S.f\nShape { geometry Box { } }"
+    )
     talk = vv("again.wrl", "-o", "x.png", "--frames", "0-5", *SMALL).talk
-    assert talk.count("outside of its range") == 1 and "vv: 5 more like those above came later; -v shows all" in talk
+    assert talk.count("outside of its range"
+                     ) == 1 and "vv: 5 more like those above came later; -v shows all" in talk
 
 
 def test_hints_are_given_only_if_they_help(vv):
@@ -105,6 +127,9 @@ def test_hints_are_given_only_if_they_help(vv):
     assert vv("black.wrl", "-o", "x.png", *SMALL).talk == ""
     vv.write("point.wrl", HEADER + "Transform { scale 0 0 0 children Shape { geometry Box { } } }")
     assert "--fit" not in vv("point.wrl", "-o", "x.png", *SMALL).talk
-    vv.write("dark.wrl", HEADER + "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } "
-             "geometry Box { size 20 20 2 } }")
-    assert vv("dark.wrl", "-o", "x.png", "--frames", "0-2", *SMALL).talk.count("--headlight on") == 1
+    vv.write(
+        "dark.wrl", HEADER +
+        "NavigationInfo { headlight FALSE }\nShape { appearance Appearance { material Material { } } "
+        "geometry Box { size 20 20 2 } }")
+    assert vv("dark.wrl", "-o", "x.png", "--frames", "0-2",
+              *SMALL).talk.count("--headlight on") == 1

@@ -39,14 +39,21 @@ def obeyed(data):
     """Returns the control characters of the output, except line feed and tab, and bytes that are
     not UTF-8."""
     text = data.decode("utf-8", errors="surrogateescape")
-    return [c for c in text if c not in "\n\t" and (unicodedata.category(c) == "Cc" or 0xDC80 <= ord(c) <= 0xDCFF)]
+    return [
+        c for c in text
+        if c not in "\n\t" and (unicodedata.category(c) == "Cc" or 0xDC80 <= ord(c) <= 0xDCFF)
+    ]
 
 
-COMMANDS = [["--list-viewpoints"], ["--info"], ["--list-nodes"], ["--explain"], ["--check"], ["--check", "-v"],
-            ["--list-viewpoints", "--json"], ["--info", "--json"], ["--list-nodes", "--json"], ["--explain", "--json"],
-            ["-o", "a.png", *SMALL], ["-o", "a.png", *SMALL, "--strict"], ["-o", "a.png", *SMALL, "-v"], ["-o", "b.png", "--stats", "-", *SMALL],
-            ["-o", "c.png", "--viewpoint", "nobody", *SMALL], ["-o", "d.png", "--viewpoint", "all", "-v", *SMALL],
-            ["-o", "e.png", "-D", "Nothing.x=1", *SMALL], ["-o", "f.png", "--shader", "Nothing=Mirror", *SMALL]]
+COMMANDS = [["--list-viewpoints"], ["--info"], ["--list-nodes"], ["--explain"], ["--check"],
+            ["--check", "-v"], ["--list-viewpoints", "--json"], ["--info", "--json"],
+            ["--list-nodes", "--json"], ["--explain", "--json"], ["-o", "a.png", *SMALL],
+            ["-o", "a.png", *SMALL, "--strict"], ["-o", "a.png", *SMALL, "-v"],
+            ["-o", "b.png", "--stats", "-", *SMALL],
+            ["-o", "c.png", "--viewpoint", "nobody", *SMALL],
+            ["-o", "d.png", "--viewpoint", "all", "-v", *SMALL],
+            ["-o", "e.png", "-D", "Nothing.x=1", *SMALL],
+            ["-o", "f.png", "--shader", "Nothing=Mirror", *SMALL]]
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
@@ -69,7 +76,11 @@ def test_a_written_world_keeps_its_bytes_unless_a_terminal_reads(vv):
     vv.write("a.wrl", nasty("#VRML V2.0 utf8\nWorldInfo { title \"@\" }\n"))
     assert NASTY in vv("a.wrl", "--write", "-").stdout
     master, slave = os.openpty()
-    done = subprocess.run([vv.program, "a.wrl", "--write", "-"], cwd=vv.folder, stdout=slave, stderr=subprocess.DEVNULL, timeout=60)
+    done = subprocess.run([vv.program, "a.wrl", "--write", "-"],
+                          cwd=vv.folder,
+                          stdout=slave,
+                          stderr=subprocess.DEVNULL,
+                          timeout=60)
     os.close(slave)
     shown = b""
     try:
@@ -82,7 +93,7 @@ def test_a_written_world_keeps_its_bytes_unless_a_terminal_reads(vv):
     assert obeyed(shown.replace(b"\r\n", b"\n")) == []
 
 
-# Outputs and inputs -----------------------------------------------------------------------------------------------------
+# Outputs and inputs -----------------------------------------------------------------------------
 
 WHOLE = HEADER + """Viewpoint { position 0 0 5 }
 Shape { appearance Appearance { material Material { } texture ImageTexture { url "image.ppm" } } geometry Box { } }
@@ -97,7 +108,8 @@ def whole(vv):
     vv.write("image.ppm", b"P6 2 2 255\n" + bytes(range(12)))
     vv.write("sky.pfm", b"PF\n2 1\n-1.0\n" + bytes(24))
     vv.write("input.txt", "0 key F\n")
-    for link, to in (("link.png", "world.wrl"), ("part.png", "part.wrl"), ("null.ppm", "/dev/null")):
+    for link, to in (("link.png", "world.wrl"), ("part.png", "part.wrl"), ("null.ppm",
+                                                                           "/dev/null")):
         (vv.folder / link).symlink_to(to)
     os.link(vv.folder / "world.wrl", vv.folder / "hard.png")
     assert vv("world.wrl", "-o", "reference.exr", *SMALL).returncode == 0
@@ -105,7 +117,11 @@ def whole(vv):
 
 
 def contents(folder):
-    return {p.name: p.read_bytes() for p in folder.iterdir() if p.is_file() and p.resolve().parent == folder.resolve()}
+    return {
+        p.name: p.read_bytes()
+        for p in folder.iterdir()
+        if p.is_file() and p.resolve().parent == folder.resolve()
+    }
 
 
 @pytest.mark.parametrize("arguments, what", [
@@ -136,10 +152,12 @@ def test_no_output_replaces_what_is_read_or_another_output(whole, arguments, wha
 
 
 def test_files_beside_inputs_and_devices_are_no_inputs(whole):
-    assert whole("world.wrl", "-o", "fresh.png", "--stats", "fresh.json", "--write", "fresh.wrl", *SMALL).returncode == 0
+    assert whole("world.wrl", "-o", "fresh.png", "--stats", "fresh.json", "--write", "fresh.wrl",
+                 *SMALL).returncode == 0
     # replaced
     assert whole("world.wrl", "-o", "fresh.png", "--stats", "fresh.json", *SMALL).returncode == 0
-    assert whole("world.wrl", "-o", "null.ppm", "-o", "null.ppm", "--stats", "/dev/null", *SMALL).returncode == 0
+    assert whole("world.wrl", "-o", "null.ppm", "-o", "null.ppm", "--stats", "/dev/null",
+                 *SMALL).returncode == 0
 
 
 def test_a_world_that_is_named_like_a_picture_is_kept(whole):
@@ -164,40 +182,58 @@ def test_the_recording_that_is_replayed_is_kept(whole):
         pytest.skip("openrt-replay is not built")
     assert whole("world.wrl", "-o", "a.png", "--record", "a.ort", *SMALL).returncode == 0
     before = (whole.folder / "a.ort").read_bytes()
-    done = subprocess.run([replay, "a.ort", "-o", "./a.ort"], cwd=whole.folder, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([replay, "a.ort", "-o", "./a.ort"],
+                          cwd=whole.folder,
+                          capture_output=True,
+                          text=True,
+                          timeout=60)
     assert done.returncode == 2 and "another name" in done.stderr
     assert (whole.folder / "a.ort").read_bytes() == before
 
 
-# Limits of the system ------------------------------------------------------------------------------------------------------
+# Limits of the system ---------------------------------------------------------------------------
 
 
 def limited(kind, amount):
     return lambda: resource.setrlimit(kind, (amount, amount))
 
 
-@pytest.mark.parametrize("output", [["-o", "a.png"], ["-o", "a.exr"], ["--write", "a.wrl"], ["-o", "ppm:-", "--stats", "a.json"]])
+@pytest.mark.parametrize(
+    "output",
+    [["-o", "a.png"], ["-o", "a.exr"], ["--write", "a.wrl"], ["-o", "ppm:-", "--stats", "a.json"]])
 def test_a_file_that_may_not_grow_is_an_error_and_leaves_nothing(vv, output):
-    vv.write("long.wrl", HEADER + "Viewpoint { position 0 0 5 }\nShape { geometry Text { string \"" + "x" * 9000 + "\" } }\nShape { geometry Box { } }\n")
+    vv.write(
+        "long.wrl", HEADER + "Viewpoint { position 0 0 5 }\nShape { geometry Text { string \"" +
+        "x" * 9000 + "\" } }\nShape { geometry Box { } }\n")
     with open(vv.folder / "out", "wb") as out:
-        done = subprocess.run([vv.program, "long.wrl", *output, "--size", "200x150", "--spp", "1"], cwd=vv.folder, stderr=subprocess.PIPE,
-                              stdout=subprocess.DEVNULL if "--stats" in output else out, timeout=60,
+        done = subprocess.run([vv.program, "long.wrl", *output, "--size", "200x150", "--spp", "1"],
+                              cwd=vv.folder,
+                              stderr=subprocess.PIPE,
+                              stdout=subprocess.DEVNULL if "--stats" in output else out,
+                              timeout=60,
                               preexec_fn=limited(resource.RLIMIT_FSIZE, 100))
     assert done.returncode == 1, (done.returncode, done.stderr)
     assert b"cannot write" in done.stderr and b"too large" in done.stderr, done.stderr
     assert vv.leftovers() == [] and not (vv.folder / output[-1]).exists()
 
 
-def nested(depth, kind="Transform { scale 1 1 1 children [ ", inside="Shape { appearance Appearance { material Material { } } geometry Box { } }"):
+def nested(depth,
+           kind="Transform { scale 1 1 1 children [ ",
+           inside="Shape { appearance Appearance { material Material { } } geometry Box { } }"):
     return HEADER + "Viewpoint { position 0 0 5 }\n" + kind * depth + inside + " ] }" * depth + "\n"
 
 
-@pytest.mark.parametrize("arguments", [["--check"], ["-o", "a.png", *SMALL], ["--info"], ["--write", "b.wrl"], ["--list-nodes"], ["--explain"],
-                                       ["-o", "a.png", "--time", "1", *SMALL]], ids=" ".join)
+@pytest.mark.parametrize("arguments",
+                         [["--check"], ["-o", "a.png", *SMALL], ["--info"], ["--write", "b.wrl"],
+                          ["--list-nodes"], ["--explain"], ["-o", "a.png", "--time", "1", *SMALL]],
+                         ids=" ".join)
 @pytest.mark.parametrize("kilobytes", [256, 64])
 def test_a_small_stack_is_enough_for_deep_worlds(vv, arguments, kilobytes):
     vv.write("deep.wrl", nested(900))
-    done = subprocess.run([vv.program, "deep.wrl", *arguments], cwd=vv.folder, capture_output=True, timeout=120,
+    done = subprocess.run([vv.program, "deep.wrl", *arguments],
+                          cwd=vv.folder,
+                          capture_output=True,
+                          timeout=120,
                           preexec_fn=limited(resource.RLIMIT_STACK, kilobytes << 10))
     assert done.returncode == 0, (done.returncode, done.stderr[-500:])
 

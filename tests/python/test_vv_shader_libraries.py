@@ -11,7 +11,8 @@ import pytest
 
 VV = pathlib.Path(os.environ.get("OPENRT_VV", "vv"))
 PLUGINS = VV.parent.parent / "tests/plugins"
-pytestmark = pytest.mark.skipif(not (PLUGINS / "faulty.so").exists(), reason="the test plug-ins were not built")
+pytestmark = pytest.mark.skipif(not (PLUGINS / "faulty.so").exists(),
+                                reason="the test plug-ins were not built")
 
 WORLD = """#VRML V2.0 utf8
 Shape { appearance ORTAppearance { shader ORTShader { name "%s" file "%s" } } geometry Box { } }
@@ -20,8 +21,13 @@ Shape { appearance ORTAppearance { shader ORTShader { name "%s" file "%s" } } ge
 
 def test_a_crash_names_the_shader(tmp_path):
     (tmp_path / "crash.wrl").write_text(WORLD % ("Crash", "faulty"))
-    done = subprocess.run([VV, "crash.wrl", "-o", "a.png", "--size", "8x6", "--spp", "1", "--shader-path", PLUGINS], cwd=tmp_path,
-                          capture_output=True, text=True, timeout=60, preexec_fn=no_core)
+    done = subprocess.run(
+        [VV, "crash.wrl", "-o", "a.png", "--size", "8x6", "--spp", "1", "--shader-path", PLUGINS],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        preexec_fn=no_core)
     assert done.returncode == -signal.SIGSEGV, done.stderr
     assert "vv: crash (SIGSEGV) in the shader Crash of faulty\n" in done.stderr
     assert not list(tmp_path.glob("a.png*"))
@@ -29,9 +35,15 @@ def test_a_crash_names_the_shader(tmp_path):
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_one_signal_ends_a_render_that_hangs_in_a_shader(tmp_path, number):
-    (tmp_path / "hang.wrl").write_text("#VRML V2.0 utf8\nViewpoint { position 0 0 5 }\n" + (WORLD % ("Hang", "faulty")).split("\n", 1)[1])
-    with subprocess.Popen([VV, "hang.wrl", "-o", "a.png", "--size", "64x48", "--spp", "1", "--threads", "2", "--shader-path", PLUGINS],
-                          cwd=tmp_path, stderr=subprocess.PIPE, text=True) as vv:
+    (tmp_path / "hang.wrl").write_text("#VRML V2.0 utf8\nViewpoint { position 0 0 5 }\n" +
+                                       (WORLD % ("Hang", "faulty")).split("\n", 1)[1])
+    with subprocess.Popen([
+            VV, "hang.wrl", "-o", "a.png", "--size", "64x48", "--spp", "1", "--threads", "2",
+            "--shader-path", PLUGINS
+    ],
+                          cwd=tmp_path,
+                          stderr=subprocess.PIPE,
+                          text=True) as vv:
         time.sleep(2)
         assert vv.poll() is None, vv.stderr.read()
         begin = time.monotonic()
@@ -55,7 +67,10 @@ def test_watch_sees_a_shader_library_change(tmp_path):
     shaders.mkdir(mode=0o755)
     shutil.copy(PLUGINS / "versions/1/version.so", shaders / "version.so")
     (tmp_path / "a.wrl").write_text(WORLD % ("Versioned", "version"))
-    command = [VV, "a.wrl", "-o", "a.png", "--size", "8x6", "--spp", "1", "--watch", "--shader-path", shaders]
+    command = [
+        VV, "a.wrl", "-o", "a.png", "--size", "8x6", "--spp", "1", "--watch", "--shader-path",
+        shaders
+    ]
     watching = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
     try:
         picture = tmp_path / "a.png"

@@ -38,7 +38,9 @@ def moving(vv):
 
 def center(rows):
     """Returns the column of the white cube's middle; None if it is not visible."""
-    columns = [x for row in rows for x, pixel in enumerate(row) if pixel[0] > 200 and pixel[1] > 200]
+    columns = [
+        x for row in rows for x, pixel in enumerate(row) if pixel[0] > 200 and pixel[1] > 200
+    ]
     return sum(columns) / len(columns) if columns else None
 
 
@@ -46,11 +48,14 @@ def picture_of(path):
     return read_ppm(path.read_bytes())[2]
 
 
-# Time ------------------------------------------------------------------------------------------------------------------
+# Time -------------------------------------------------------------------------------------------
 
 
 def test_time_moves_the_world(moving):
-    columns = [center(moving.picture("--time", t, world="moving.wrl")) for t in ("0", "0.25", "0.5", "0.75", "1", "1.5", "2")]
+    columns = [
+        center(moving.picture("--time", t, world="moving.wrl"))
+        for t in ("0", "0.25", "0.5", "0.75", "1", "1.5", "2")
+    ]
     assert columns[0] < columns[1] < columns[2] < columns[3] < columns[4]
     assert columns[5] == columns[2] and columns[6] == columns[0]
 
@@ -60,26 +65,37 @@ def test_without_time_it_is_time_zero(moving):
 
 
 def test_a_frame_alone_is_the_frame_of_a_sequence(moving):
-    assert moving("moving.wrl", "--frames", "90-100/5", "-o", "all-{frame:4}.exr", *SMALL).returncode == 0
+    assert moving("moving.wrl", "--frames", "90-100/5", "-o", "all-{frame:4}.exr",
+                  *SMALL).returncode == 0
     assert moving("moving.wrl", "--frames", "100", "-o", "one.exr", *SMALL).returncode == 0
-    assert moving("moving.wrl", "--frames", "100", "-o", "again.exr", "--threads", "1", *SMALL).returncode == 0
+    assert moving("moving.wrl", "--frames", "100", "-o", "again.exr", "--threads", "1",
+                  *SMALL).returncode == 0
     one = (moving.folder / "one-0100.exr").read_bytes()
-    assert one == (moving.folder / "all-0100.exr").read_bytes() == (moving.folder / "again-0100.exr").read_bytes()
+    assert one == (moving.folder / "all-0100.exr").read_bytes() == (moving.folder /
+                                                                    "again-0100.exr").read_bytes()
     assert one != (moving.folder / "all-0090.exr").read_bytes()
-    assert sorted(p.name for p in moving.folder.glob("all-*")) == ["all-0090.exr", "all-0095.exr", "all-0100.exr"]
+    assert sorted(p.name for p in moving.folder.glob("all-*")) == [
+        "all-0090.exr", "all-0095.exr", "all-0100.exr"
+    ]
 
 
 def test_time_is_where_the_frame_is(moving):
     assert moving("moving.wrl", "--frames", "15", "-o", "frame.ppm", *SMALL).returncode == 0
-    assert picture_of(moving.folder / "frame-0015.ppm") == moving.picture("--time", "0.5", world="moving.wrl")
+    assert picture_of(moving.folder / "frame-0015.ppm") == moving.picture("--time",
+                                                                          "0.5",
+                                                                          world="moving.wrl")
 
 
 def test_fps_says_when_a_frame_is(moving):
-    assert moving("moving.wrl", "--frames", "5", "--fps", "10", "-o", "frame.ppm", *SMALL).returncode == 0
-    assert picture_of(moving.folder / "frame-0005.ppm") == moving.picture("--time", "0.5", world="moving.wrl")
+    assert moving("moving.wrl", "--frames", "5", "--fps", "10", "-o", "frame.ppm",
+                  *SMALL).returncode == 0
+    assert picture_of(moving.folder / "frame-0005.ppm") == moving.picture("--time",
+                                                                          "0.5",
+                                                                          world="moving.wrl")
 
 
-@pytest.mark.parametrize("name,made", [("a.ppm", "a-0002.ppm"), ("a-{frame}.ppm", "a-2.ppm"), ("{frame:3}/a.ppm", "002/a.ppm"),
+@pytest.mark.parametrize("name,made", [("a.ppm", "a-0002.ppm"), ("a-{frame}.ppm", "a-2.ppm"),
+                                       ("{frame:3}/a.ppm", "002/a.ppm"),
                                        ("a.b{frame:6}.ppm", "a.b000002.ppm")])
 def test_names_of_frames(moving, name, made):
     (moving.folder / "002").mkdir()
@@ -89,17 +105,25 @@ def test_names_of_frames(moving, name, made):
 
 
 def test_all_viewpoints_of_all_frames(moving):
-    done = moving("moving.wrl", "--frames", "0-1", "--viewpoint", "all", "-o", "{viewpoint}-{frame:2}.ppm", *SMALL)
+    done = moving("moving.wrl", "--frames", "0-1", "--viewpoint", "all", "-o",
+                  "{viewpoint}-{frame:2}.ppm", *SMALL)
     assert done.returncode == 0, done.talk
-    assert sorted(p.name for p in moving.folder.glob("*.ppm")) == ["0-00.ppm", "0-01.ppm", "Far-00.ppm", "Far-01.ppm"]
-    assert moving("moving.wrl", "--frames", "1", "--viewpoint", "Far", "-o", "one.ppm", *SMALL).returncode == 0
-    assert (moving.folder / "one-0001.ppm").read_bytes() == (moving.folder / "Far-01.ppm").read_bytes()
+    assert sorted(p.name for p in moving.folder.glob("*.ppm")) == [
+        "0-00.ppm", "0-01.ppm", "Far-00.ppm", "Far-01.ppm"
+    ]
+    assert moving("moving.wrl", "--frames", "1", "--viewpoint", "Far", "-o", "one.ppm",
+                  *SMALL).returncode == 0
+    assert (moving.folder / "one-0001.ppm").read_bytes() == (moving.folder /
+                                                             "Far-01.ppm").read_bytes()
 
 
 def test_turntable_comes_round(vv):
-    vv.write("side.wrl", HEADER + "Viewpoint { position 0 0 8 } Transform { translation 2 0 0 children Shape { appearance Appearance {"
-             " material Material { emissiveColor 1 1 1 } } geometry Box { } } } Transform { translation -2 0 0 children Shape {"
-             " appearance Appearance { material Material { emissiveColor 1 0 0 diffuseColor 0 0 0 } } geometry Box { } } }")
+    vv.write(
+        "side.wrl", HEADER +
+        "Viewpoint { position 0 0 8 } Transform { translation 2 0 0 children Shape { appearance Appearance {"
+        " material Material { emissiveColor 1 1 1 } } geometry Box { } } } Transform { translation -2 0 0 children Shape {"
+        " appearance Appearance { material Material { emissiveColor 1 0 0 diffuseColor 0 0 0 } } geometry Box { } } }"
+    )
     assert vv("side.wrl", "--turntable", "4", "-o", "t.ppm", *SMALL).returncode == 0
     pictures = [picture_of(vv.folder / f"t-{i:04}.ppm") for i in range(4)]
     middle = len(pictures[0][0]) / 2
@@ -117,18 +141,24 @@ def test_stats_of_a_sequence(moving):
     assert [f["frame"] for f in stats["frames"]] == [0, 2, 4]
     assert [f["world_time"] for f in stats["frames"]] == pytest.approx([0, 2 / 30, 4 / 30])
     assert stats["schema"] == 1 and stats["rays"]["camera"] == 3 * 32 * 24
-    assert stats["time"]["render"] == pytest.approx(sum(f["time"]["render"] for f in stats["frames"]))
+    assert stats["time"]["render"] == pytest.approx(
+        sum(f["time"]["render"] for f in stats["frames"]))
 
 
 def test_check_runs_the_world(vv):
-    vv.write("wide.wrl", HEADER + "DEF T TimeSensor { loop TRUE } DEF I ScalarInterpolator { key [0 1] keyValue [0 1] }\n"
-             "Shape { appearance Appearance { material DEF M Material { } } geometry Box { } } ROUTE T.fraction_changed TO I.set_fraction ROUTE I.value_changed TO M.set_transparency")
+    vv.write(
+        "wide.wrl", HEADER +
+        "DEF T TimeSensor { loop TRUE } DEF I ScalarInterpolator { key [0 1] keyValue [0 1] }\n"
+        "Shape { appearance Appearance { material DEF M Material { } } geometry Box { } } ROUTE T.fraction_changed TO I.set_fraction ROUTE I.value_changed TO M.set_transparency"
+    )
     done = vv("wide.wrl", "--check", "--frames", "0-10")
     assert done.returncode == 0, done.talk
 
 
-@pytest.mark.parametrize("options", [("--frames", "x"), ("--frames", "5-1"), ("--frames", "1-2/0"), ("--time", "-1"), ("--fps", "0"),
-                                     ("--frames", "1", "--time", "2"), ("--frames", "1", "--turntable", "2"), ("--turntable", "0")])
+@pytest.mark.parametrize("options", [("--frames", "x"), ("--frames", "5-1"), ("--frames", "1-2/0"),
+                                     ("--time", "-1"), ("--fps", "0"),
+                                     ("--frames", "1", "--time", "2"),
+                                     ("--frames", "1", "--turntable", "2"), ("--turntable", "0")])
 def test_wrong_times(moving, options):
     done = moving("moving.wrl", *options, "-o", "x.ppm", *SMALL)
     assert done.returncode == 2 and "expected" in done.talk or "only one" in done.talk
@@ -151,7 +181,7 @@ def test_an_interrupt_ends_a_sequence(moving):
     assert moving.leftovers() == []
 
 
-# Films -----------------------------------------------------------------------------------------------------------------
+# Films ------------------------------------------------------------------------------------------
 
 # A film whose left half is white and turns grey: a MovieTexture must show the values put in.
 FADING = HEADER + """
@@ -168,7 +198,8 @@ ROUTE Fade.value_changed TO Paint.set_emissiveColor
 def test_a_gif_holds_the_frames(moving):
     image = pytest.importorskip("PIL.Image")
     moving.write("fading.wrl", FADING)
-    done = moving("fading.wrl", "--frames", "0-7", "--fps", "8", "-o", "v.gif", "-o", "v.ppm", *SMALL)
+    done = moving("fading.wrl", "--frames", "0-7", "--fps", "8", "-o", "v.gif", "-o", "v.ppm",
+                  *SMALL)
     assert done.returncode == 0, done.talk
     with image.open(moving.folder / "v.gif") as film:
         assert film.n_frames == 8 and film.size == (32, 24) and film.info["loop"] == 0
@@ -199,16 +230,20 @@ def test_a_film_needs_no_program(moving, suffix, signature):
 
 def test_an_mp4_shows_what_was_put_in(moving):
     moving.write("fading.wrl", FADING)
-    done = moving("fading.wrl", "--frames", "0-7", "--fps", "8", "-o", "v.mp4", "-o", "v.ppm", "--size", "64x48", "--spp", "1")
+    done = moving("fading.wrl", "--frames", "0-7", "--fps", "8", "-o", "v.mp4", "-o", "v.ppm",
+                  "--size", "64x48", "--spp", "1")
     if "has no encoder" in done.talk:
         pytest.skip("the ffmpeg libraries are not in this build")
     assert done.returncode == 0, done.talk
-    moving.write("cinema.wrl", HEADER + """Viewpoint { position 0 0 2.4142 } NavigationInfo { headlight FALSE }
+    moving.write(
+        "cinema.wrl",
+        HEADER + """Viewpoint { position 0 0 2.4142 } NavigationInfo { headlight FALSE }
 Shape { appearance Appearance { texture MovieTexture { url "v.mp4" loop TRUE } } geometry IndexedFaceSet { solid FALSE
   coord Coordinate { point [-1 -1 0, 1 -1 0, 1 1 0, -1 1 0] } coordIndex [0 1 2 3]
   texCoord TextureCoordinate { point [0 0, 1 0, 1 1, 0 1] } texCoordIndex [0 1 2 3] } }""")
     for number in (1, 4, 6):
-        assert moving("cinema.wrl", "--time", str((number + 0.5) / 8), "-o", "s.ppm", "--size", "48x48", "--spp", "1").returncode == 0
+        assert moving("cinema.wrl", "--time", str((number + 0.5) / 8), "-o", "s.ppm", "--size",
+                      "48x48", "--spp", "1").returncode == 0
         shown = read_ppm((moving.folder / "s.ppm").read_bytes())[2][24][12]
         wanted = read_ppm((moving.folder / f"v-000{number}.ppm").read_bytes())[2][24][16]
         assert all(abs(a - b) <= 8 for a, b in zip(shown, wanted)), (number, shown, wanted)
@@ -229,7 +264,8 @@ def test_a_film_needs_a_sequence(moving):
 
 def test_a_film_of_an_interrupted_sequence_is_whole(moving):
     image = pytest.importorskip("PIL.Image")
-    running = moving.start("moving.wrl", "--frames", "0-100000", "-o", "v.gif", "-o", "f.ppm", *SMALL)
+    running = moving.start("moving.wrl", "--frames", "0-100000", "-o", "v.gif", "-o", "f.ppm",
+                           *SMALL)
     while not (moving.folder / "f-0002.ppm").exists():
         assert running.poll() is None
         time.sleep(0.01)
@@ -241,7 +277,7 @@ def test_a_film_of_an_interrupted_sequence_is_whole(moving):
     assert moving.leftovers() == []
 
 
-# -D --------------------------------------------------------------------------------------------------------------------
+# -D ---------------------------------------------------------------------------------------------
 
 
 def test_a_field_gets_another_value(moving):
@@ -260,18 +296,23 @@ def test_changed_fields_are_written(moving):
     assert done.returncode == 0 and "size 3 2 1" in done.text
 
 
-@pytest.mark.parametrize("definition,told", [
-    ("Plaze.translation=0 0 1", "Place"), ("Place.translatoin=0 0 1", "translation"), ("Place.translation=0 0", "SFVec3f"),
-    ("Place.translation=0 0 1 2", "SFVec3f"), ("Clock.loop=yes", "SFBool"), ("Paint.transparency=2", "range"),
-    ("Clock.fraction_changed=1", "eventOut"), ("Light.size=2", "exposedField"), ("nonsense", "DEF.FIELD=VALUE"),
-    ("Way.keyValue=[0 0 0", "MFVec3f")])
+@pytest.mark.parametrize("definition,told", [("Plaze.translation=0 0 1", "Place"),
+                                             ("Place.translatoin=0 0 1", "translation"),
+                                             ("Place.translation=0 0", "SFVec3f"),
+                                             ("Place.translation=0 0 1 2", "SFVec3f"),
+                                             ("Clock.loop=yes", "SFBool"),
+                                             ("Paint.transparency=2", "range"),
+                                             ("Clock.fraction_changed=1", "eventOut"),
+                                             ("Light.size=2", "exposedField"),
+                                             ("nonsense", "DEF.FIELD=VALUE"),
+                                             ("Way.keyValue=[0 0 0", "MFVec3f")])
 def test_wrong_definitions(moving, definition, told):
     done = moving("moving.wrl", "-D", definition, "-o", "x.ppm", *SMALL)
     assert done.returncode == 2 and told in done.talk
     assert not (moving.folder / "x.ppm").exists()
 
 
-# --explain -------------------------------------------------------------------------------------------------------------
+# --explain --------------------------------------------------------------------------------------
 
 
 def test_explain_tells_objects_and_reasons(moving):
@@ -288,13 +329,16 @@ def test_explain_tells_objects_and_reasons(moving):
 
 
 def test_explain_counts_instances_in_instances(vv):
-    vv.write("nested.wrl", HEADER + """
+    vv.write(
+        "nested.wrl", HEADER + """
         DEF Outer ORTInstance { children DEF Inner ORTInstance { children Shape { geometry Box { } } } }
-        Transform { translation 3 0 0 children [ USE Inner, Transform { translation 3 0 0 children USE Outer } ] }""")
-    assert json.loads(vv("nested.wrl", "--explain", "--json").text)["totals"]["instanced_triangles"] == 3 * 12
+        Transform { translation 3 0 0 children [ USE Inner, Transform { translation 3 0 0 children USE Outer } ] }"""
+    )
+    assert json.loads(vv("nested.wrl", "--explain",
+                         "--json").text)["totals"]["instanced_triangles"] == 3 * 12
 
 
-# --watch ---------------------------------------------------------------------------------------------------------------
+# --watch ----------------------------------------------------------------------------------------
 
 
 def wait_for(condition, running, seconds=60):
@@ -327,19 +371,24 @@ def test_watch_renders_again(vv):
     assert vv.leftovers() == []
 
 
-# --node-path -----------------------------------------------------------------------------------------------------------
+# --node-path ------------------------------------------------------------------------------------
 
 PLUGINS = find_vv().parent.parent / "examples/nodes"
 SPRING = HEADER + "Viewpoint { position 0 1 6 } Shape { appearance Appearance { material Material { } } geometry Spring { } }"
 
 
-@pytest.mark.skipif(not (PLUGINS / "springs.so").exists(), reason="the example plug-in is not built")
+@pytest.mark.skipif(not (PLUGINS / "springs.so").exists(),
+                    reason="the example plug-in is not built")
 def test_nodes_of_a_plugin(vv):
     vv.write("spring.wrl", SPRING)
     assert vv("spring.wrl", "--check").returncode == 4  # an unknown node
     assert vv("spring.wrl", "--check", "--node-path", PLUGINS).returncode == 0
-    assert vv("spring.wrl", "--check", env={"XVRML_NODE_PATH": f"/nonexistent:{PLUGINS}"}).returncode == 0
-    assert any(pixel != (0, 0, 0) for row in vv.picture("--node-path", PLUGINS, world="spring.wrl") for pixel in row)
+    assert vv("spring.wrl", "--check", env={
+        "XVRML_NODE_PATH": f"/nonexistent:{PLUGINS}"
+    }).returncode == 0
+    assert any(pixel != (0, 0, 0)
+               for row in vv.picture("--node-path", PLUGINS, world="spring.wrl")
+               for pixel in row)
     assert "Spring {" in vv("--list-nodes", "--node-path", PLUGINS).text
     written = vv("spring.wrl", "--write", "-", "--node-path", PLUGINS).text
     assert "Spring {" in written
@@ -352,17 +401,26 @@ def test_a_file_that_is_no_plugin_is_refused(vv):
     assert done.returncode == 0 and "plugins/not.so" in done.talk
 
 
-# Scripts and scenes ----------------------------------------------------------------------------------------------------
+# Scripts and scenes -----------------------------------------------------------------------------
 
 
 def test_info_announces_scripts(vv):
-    vv.write("scripts.wrl", HEADER + 'Script { url "javascript: function initialize() {}" } Script { url [ "Javascript:x", "a.class" ] }\n'
-             'Script { url "things/Mover.class" } Script { } PROTO P [ ] { Group { } Script { url "nosuch:x" } }')
+    vv.write(
+        "scripts.wrl", HEADER +
+        'Script { url "javascript: function initialize() {}" } Script { url [ "Javascript:x", "a.class" ] }\n'
+        'Script { url "things/Mover.class" } Script { } PROTO P [ ] { Group { } Script { url "nosuch:x" } }'
+    )
     done = vv("scripts.wrl", "--info", "--json", "-q")
     assert done.returncode == 0, done.talk
     scripts = {one["protocol"]: one for one in json.loads(done.text)["scripts"]}
-    assert {name: (one["count"], one["declared"]) for name, one in scripts.items()} == {
-        "javascript": (2, 0), "java": (1, 0), "none": (1, 0), "nosuch": (0, 1)}
+    assert {
+        name: (one["count"], one["declared"]) for name, one in scripts.items()
+    } == {
+        "javascript": (2, 0),
+        "java": (1, 0),
+        "none": (1, 0),
+        "nosuch": (0, 1)
+    }
     assert scripts["nosuch"]["engine"] is False
     assert "2 javascript" in vv("scripts.wrl", "--info", "-q").text
 
@@ -374,5 +432,10 @@ def test_the_globe_turns_under_the_lamp(vv):
     assert vv(scene, "--frames", "0-240/60", "-o", "g.ppm", *SMALL).returncode == 0
     pictures = [picture_of(vv.folder / f"g-{i:04}.ppm") for i in (0, 60, 120, 180, 240)]
     assert len({str(p) for p in pictures[:4]}) == 4
-    differences = [abs(a - b) for one, other in zip(pictures[0], pictures[4]) for p, q in zip(one, other) for a, b in zip(p, q)]
+    differences = [
+        abs(a - b)
+        for one, other in zip(pictures[0], pictures[4])
+        for p, q in zip(one, other)
+        for a, b in zip(p, q)
+    ]
     assert sum(differences) / len(differences) < 0.5  # eight seconds are one cycle

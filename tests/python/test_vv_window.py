@@ -13,17 +13,29 @@ from conftest import HEADER, ROOT, find_vv
 from window_driver import PATIENCE, SENSORS, SIZE, SPINNING, Shot, blue, coloured, framebuffer, green, red, screen, window  # noqa: F401
 
 
-
 def without_display(vv, **env):
-    kept = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")}
-    return subprocess.run([vv.program, "box.wrl"], cwd=vv.folder, env={**kept, **env}, capture_output=True, text=True, timeout=60)
+    kept = {
+        k: v
+        for k, v in os.environ.items()
+        if k not in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER")
+    }
+    return subprocess.run([vv.program, "box.wrl"],
+                          cwd=vv.folder,
+                          env={
+                              **kept,
+                              **env
+                          },
+                          capture_output=True,
+                          text=True,
+                          timeout=60)
 
 
 @pytest.mark.parametrize("env", [{}, {"DISPLAY": ":no"}])
 def test_without_a_display_one_line_says_so(vv, env):
     done = without_display(vv, **env)
     assert done.returncode == 1 and done.stdout == ""
-    assert len(done.stderr.splitlines()) == 1 and done.stderr.startswith("vv: error: no window: "), done.stderr
+    assert len(done.stderr.splitlines()) == 1 and done.stderr.startswith(
+        "vv: error: no window: "), done.stderr
     assert "-o picture.png" in done.stderr
 
 
@@ -71,7 +83,11 @@ def test_the_printed_command_gives_the_same_view(window, vv):
     done = vv(*command[1:-2], "-o", "again.png")
     assert done.returncode == 0, done.talk
     again = Shot(vv.folder / "again.png")
-    far = sum(max(abs(p - q) for p, q in zip(a, b)) > 2 for r, s in zip(shot.rows, again.rows) for a, b in zip(r, s))
+    far = sum(
+        max(abs(p - q)
+            for p, q in zip(a, b)) > 2
+        for r, s in zip(shot.rows, again.rows)
+        for a, b in zip(r, s))
     assert (again.width, again.height) == SIZE and far < SIZE[0] * SIZE[1] / 200
 
 
@@ -79,7 +95,8 @@ def test_examine_turns_moves_and_zooms(window):
     w = window(coloured("1 0 0"))
     w.drag(0, 0.9, 0.5, 0.9)  # the world follows the pointer
     eye = w.camera()[0]
-    assert math.hypot(*eye) == pytest.approx(5, abs=1e-3) and eye[0] == pytest.approx(-5 * math.sin(math.pi / 4), abs=0.2)
+    assert math.hypot(*eye) == pytest.approx(5, abs=1e-3) and eye[0] == pytest.approx(
+        -5 * math.sin(math.pi / 4), abs=0.2)
     w.key("BackSpace")
     w.move(0, 0.9)
     w.tool("click", 4)
@@ -91,8 +108,9 @@ def test_examine_turns_moves_and_zooms(window):
 
 
 def test_walking_by_keys_and_by_mouse_on_the_ground(window):
-    w = window(HEADER + "NavigationInfo { type \"WALK\" speed 4 } Viewpoint { position 0 1.6 30 } "
-               "Transform { translation 0 -1 0 children Shape { geometry Box { size 100 2 100 } } }")
+    w = window(
+        HEADER + "NavigationInfo { type \"WALK\" speed 4 } Viewpoint { position 0 1.6 30 } "
+        "Transform { translation 0 -1 0 children Shape { geometry Box { size 100 2 100 } } }")
     w.tool("keydown", "Up")
     w.wait(lambda: w.camera()[0][2] < 29.5, "ahead")
     w.tool("keyup", "Up")
@@ -139,15 +157,18 @@ def test_headlight_key(window):
 
 
 def test_frame_all_shows_a_world_far_away(window):
-    w = window(HEADER + "Viewpoint { position 0 0 500 } NavigationInfo { type \"EXAMINE\" } Shape { appearance Appearance { "
-               "material Material { diffuseColor 1 0 0 } } geometry Box {} }")
+    w = window(
+        HEADER +
+        "Viewpoint { position 0 0 500 } NavigationInfo { type \"EXAMINE\" } Shape { appearance Appearance { "
+        "material Material { diffuseColor 1 0 0 } } geometry Box {} }")
     assert w.shot().share(red) < 0.01
     w.key("f")
     w.until(lambda s: s.share(red) > 0.2)
 
 
 def test_a_world_without_viewpoint_is_seen_whole_as_in_a_picture(window, vv):
-    w = window(HEADER + "Transform { translation 40 3 2 children Shape { geometry Box { size 6 1 1 } } }")
+    w = window(HEADER +
+               "Transform { translation 40 3 2 children Shape { geometry Box { size 6 1 1 } } }")
     shot = w.until(lambda s: s.width == SIZE[0])
     assert vv("world.wrl", "-o", "p.png", "--size", "%dx%d" % SIZE, "--spp", 1).returncode == 0
     still = Shot(vv.folder / "p.png")
@@ -156,9 +177,10 @@ def test_a_world_without_viewpoint_is_seen_whole_as_in_a_picture(window, vv):
 
 def test_an_anchor_leads_to_another_world_and_a_bad_one_nowhere(window, vv):
     vv.write("other.wrl", coloured("0 0 1"))
-    anchors = ('Anchor { url "missing.wrl" children Transform { translation -1.2 0 0 children Shape { geometry Box { size 1 1 1 } } } } '
-               'Anchor { url "other.wrl" description "away" children Transform { translation 1.2 0 0 children Shape { geometry '
-               'Box { size 1 1 1 } } } }')
+    anchors = (
+        'Anchor { url "missing.wrl" children Transform { translation -1.2 0 0 children Shape { geometry Box { size 1 1 1 } } } } '
+        'Anchor { url "other.wrl" description "away" children Transform { translation 1.2 0 0 children Shape { geometry '
+        'Box { size 1 1 1 } } } }')
     w = window(HEADER + "Viewpoint { position 0 0 5 } " + anchors)
     w.click(-0.45, 0)
     w.said("missing.wrl")
@@ -182,7 +204,9 @@ def test_watch_reads_a_changed_file_and_keeps_the_viewer(window, vv):
     assert blue(*w.shot().at(0, 0))
 
 
-@pytest.mark.parametrize("arguments, word, code", [(["absent.wrl"], "absent.wrl", 3), (["box.wrl", "--viewpoint", "Nowhere"], "Nowhere", 2)])
+@pytest.mark.parametrize("arguments, word, code",
+                         [(["absent.wrl"], "absent.wrl", 3),
+                          (["box.wrl", "--viewpoint", "Nowhere"], "Nowhere", 2)])
 def test_what_cannot_be_shown_is_said_in_the_window(window, arguments, word, code):
     w = window(*arguments, ready=False)
     w.said(word)
@@ -227,7 +251,9 @@ def test_the_screen_shows_the_picture_and_the_overlay(window, screen):
 def test_a_script_that_never_ends_leaves_the_window_alone(window):
     if not (find_vv().parents[1] / "lib/xvrml/scripts/ecmascript.so").exists():
         pytest.skip("the ECMAScript engine is not built")
-    w = window(SPINNING + """DEF S Script { eventIn SFFloat turn url "javascript: function turn() { print('begun'); while (true); }" }
+    w = window(
+        SPINNING +
+        """DEF S Script { eventIn SFFloat turn url "javascript: function turn() { print('begun'); while (true); }" }
                              ROUTE Clock.fraction_changed TO S.turn""")
     w.said("begun")
     first = w.shot().bytes
@@ -255,6 +281,11 @@ def test_the_page_lists_the_keys(vv):
     done = vv("--list-keys")
     assert done.returncode == 0
     page = (ROOT / "docs/window.md").read_text()
-    rows = {tuple(cell.strip() for cell in line.strip("|").split("|")) for line in page.splitlines() if line.startswith("|")}
+    rows = {
+        tuple(cell.strip()
+              for cell in line.strip("|").split("|"))
+        for line in page.splitlines()
+        if line.startswith("|")
+    }
     for line in done.text.splitlines():
         assert (line[:24].strip(), line[24:].strip()) in rows, line

@@ -41,10 +41,14 @@ def test_the_same_input_gives_the_same_bytes(vv):
 
 def test_with_and_without_a_window_input_gives_the_same_bytes(window, vv):
     vv.write("world.wrl", SPINNING)
-    vv.write("in.txt", "0.2 press left 0 0.5\n0.4 move 0.3 0.1\n0.6 release left\n0.7 key F\n1 save w.png\n1.1 quit\n")
+    vv.write(
+        "in.txt",
+        "0.2 press left 0 0.5\n0.4 move 0.3 0.1\n0.6 release left\n0.7 key F\n1 save w.png\n1.1 quit\n"
+    )
     w = window("world.wrl", "--input", "in.txt", "--spp", 3, ready=False)
     assert w.program.wait(PATIENCE) == 0
-    done = vv("world.wrl", "--input", "in.txt", "--time", 1, "-o", "h.png", "--size", "%dx%d" % SIZE, "--spp", 3)
+    done = vv("world.wrl", "--input", "in.txt", "--time", 1, "-o", "h.png", "--size",
+              "%dx%d" % SIZE, "--spp", 3)
     assert done.returncode == 0, done.talk
     assert (vv.folder / "w.png").read_bytes() == (vv.folder / "h.png").read_bytes()
 
@@ -60,7 +64,8 @@ def test_what_was_recorded_can_be_played(window, vv):
     assert "press left" in text and "down PageDown" in text
     end = float(text.splitlines()[-1].split()[0]) + 2
     for name in ("a.png", "b.png"):
-        assert vv("world.wrl", "--input", "in.txt", "--time", end, "-o", name, "--size", "%dx%d" % SIZE, "--spp", 1).returncode == 0
+        assert vv("world.wrl", "--input", "in.txt", "--time", end, "-o", name, "--size",
+                  "%dx%d" % SIZE, "--spp", 1).returncode == 0
     assert (vv.folder / "a.png").read_bytes() == (vv.folder / "b.png").read_bytes()
     shot = Shot(vv.folder / "a.png")
     assert shot.share(blue) > 0.01 and shot.share(red) == 0
@@ -73,12 +78,15 @@ def test_what_cannot_be_recorded_is_told(window):
     assert w.end() == 1
 
 
-@pytest.mark.parametrize("line, word", [("x", "number"), ("0 jump", "no event"), ("1 move 0", "a place"), ("1 press up", "middle"),
-                                        ("1 key H super", "shift"), ("1 leave it", "not expected"), ("2 leave\n1 leave", "earlier")])
+@pytest.mark.parametrize("line, word", [("x", "number"), ("0 jump", "no event"),
+                                        ("1 move 0", "a place"), ("1 press up", "middle"),
+                                        ("1 key H super", "shift"), ("1 leave it", "not expected"),
+                                        ("2 leave\n1 leave", "earlier")])
 def test_a_script_that_is_wrong_names_its_line(vv, line, word):
     vv.write("in.txt", "# first\n" + line + "\n")
     done = vv("box.wrl", "--input", "in.txt", "-o", "x.png")
-    assert done.returncode == 2 and re.search(r"in\.txt:[23]: ", done.talk) and word in done.talk, done.talk
+    assert done.returncode == 2 and re.search(r"in\.txt:[23]: ",
+                                              done.talk) and word in done.talk, done.talk
     assert vv("box.wrl", "--input", "absent.txt", "-o", "x.png").returncode == 3
 
 
@@ -86,10 +94,18 @@ def test_sound_arrives_with_its_pitch_on_its_side(window, vv):
     rate, tone = 8000, 500
     with wave.open(str(vv.folder / "tone.wav"), "wb") as file:
         file.setnchannels(1), file.setsampwidth(2), file.setframerate(rate)
-        file.writeframes(b"".join(struct.pack("<h", int(16000 * math.sin(2 * math.pi * tone * i / rate))) for i in range(rate)))
-    w = window(HEADER + "Viewpoint { position 0 0 0 } Sound { location 5 0 0 minFront 20 minBack 20 maxFront 90 maxBack 90 intensity 1 "
-               "source AudioClip { url \"tone.wav\" loop TRUE pitch 2 } } Shape { geometry Box {} }",
-               env={"SDL_AUDIODRIVER": "disk", "SDL_DISKAUDIOFILE": "sound.raw", "SDL_DISKAUDIODELAY": "5"})
+        file.writeframes(b"".join(
+            struct.pack("<h", int(16000 * math.sin(2 * math.pi * tone * i / rate)))
+            for i in range(rate)))
+    w = window(
+        HEADER +
+        "Viewpoint { position 0 0 0 } Sound { location 5 0 0 minFront 20 minBack 20 maxFront 90 maxBack 90 intensity 1 "
+        "source AudioClip { url \"tone.wav\" loop TRUE pitch 2 } } Shape { geometry Box {} }",
+        env={
+            "SDL_AUDIODRIVER": "disk",
+            "SDL_DISKAUDIOFILE": "sound.raw",
+            "SDL_DISKAUDIODELAY": "5"
+        })
     raw = vv.folder / "sound.raw"
     w.wait(lambda: raw.exists() and raw.stat().st_size > 8 * 48000, "sound")
     assert w.end() == 0

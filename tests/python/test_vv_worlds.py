@@ -37,7 +37,8 @@ def middle(rows):
 
 @pytest.mark.parametrize("fields, moves", [("loop TRUE startTime 0 stopTime 1", False),
                                            ("loop TRUE startTime 1 stopTime 0", True),
-                                           ("loop TRUE", True), ("startTime 1", False), ("", False)])
+                                           ("loop TRUE", True), ("startTime 1", False),
+                                           ("", False)])
 def test_times_are_seconds_since_1970(vv, fields, moves):
     vv.write("timed.wrl", TIMED % fields)
     for time in ("0", "0.5", "1.5"):
@@ -53,7 +54,8 @@ def test_the_epoch_can_be_chosen(vv):
     assert vv("timed.wrl", "--epoch", "soon", "-o", "a.ppm").returncode == 2
 
 
-@pytest.mark.parametrize("options, times", [((), [0]), (("--time", "0.1"), [0, 1 / 30, 2 / 30, 0.1]),
+@pytest.mark.parametrize("options, times", [((), [0]),
+                                            (("--time", "0.1"), [0, 1 / 30, 2 / 30, 0.1]),
                                             (("--frames", "0-2"), [0, 1 / 30, 2 / 30])])
 def test_a_script_is_told_each_time_once(vv, options, times):
     vv.write("tells.wrl", TELLS)
@@ -72,7 +74,16 @@ def test_old_habits_are_off_and_explained(vv):
     on = vv("old.wrl", "--explain", "--compat", "scripts,textures").text
     assert "compat scripts on" in on and "compat textures on" in on
     compat = json.loads(vv("old.wrl", "--explain", "--json", "--compat", "scripts").text)["compat"]
-    assert compat == {"scripts": {"on": True, "affected": 1}, "textures": {"on": False, "affected": 1}}
+    assert compat == {
+        "scripts": {
+            "on": True,
+            "affected": 1
+        },
+        "textures": {
+            "on": False,
+            "affected": 1
+        }
+    }
     vv.write("plain.wrl", TIMED % "")
     assert "compat" not in vv("plain.wrl", "--explain").text
 

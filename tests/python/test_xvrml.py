@@ -4,10 +4,6 @@ import os
 import pathlib
 import re
 import signal
-import subprocess
-import sys
-import threading
-import time
 
 import pytest
 
@@ -48,13 +44,14 @@ def world(text=EVERYTHING):
     return xvrml.load((text if text.startswith("#") else HEADER + text).encode())
 
 
-# Loading ----------------------------------------------------------------------------------------------------------------
+# Loading ----------------------------------------------------------------------------------------
 
 
 def test_sources(box):
     data = box.read_bytes()
-    for source in (box, str(box), os.fsencode(box).decode(), data, bytearray(data), memoryview(data), io.BytesIO(data),
-                   io.StringIO(data.decode()), open(box, "rb"), open(box)):
+    for source in (box, str(box), os.fsencode(box).decode(), data, bytearray(data),
+                   memoryview(data), io.BytesIO(data), io.StringIO(data.decode()), open(box, "rb"),
+                   open(box)):
         w = xvrml.load(source)
         assert w.names == ("Back", "Cube", "Paint", "Place", "Thing")
         if hasattr(source, "close"):
@@ -105,7 +102,8 @@ def test_limits():
 
 def test_names():
     w = world()
-    assert set(w) == {"All", "Other"} and len(w) == 2 and "All" in w and "Any" not in w and 5 not in w
+    assert set(w) == {"All", "Other"
+                     } and len(w) == 2 and "All" in w and "Any" not in w and 5 not in w
     with pytest.raises(KeyError, match="did you mean Other"):
         w["Othr"]
     with pytest.raises(TypeError, match="DEF name"):
@@ -114,7 +112,7 @@ def test_names():
     assert [n.node_type for n in w.roots] == ["Everything", "Group"]
 
 
-# Fields -----------------------------------------------------------------------------------------------------------------
+# Fields -----------------------------------------------------------------------------------------
 
 
 def test_get_every_type():
@@ -122,7 +120,8 @@ def test_get_every_type():
     assert n.aBool is True
     assert n.aColor == (0.25, 0.5, 0.75)
     assert n.aFloat == 1.5
-    assert n.anImage.tolist() == [[[0, 0, 255], [255, 255, 255]], [[255, 0, 0], [0, 255, 0]]], "first row at the top"
+    assert n.anImage.tolist() == [[[0, 0, 255], [255, 255, 255]],
+                                  [[255, 0, 0], [0, 255, 0]]], "first row at the top"
     assert n.anInt == -7
     assert n.aNode is None
     assert n.aRotation == (0, 1, 0, 0.5)
@@ -145,7 +144,8 @@ VALUES = {
     "aBool": [False, np.bool_(False)],
     "aColor": [(1, 0, 0.5), [0, 1, 0], np.array([0.5, 0.5, 0.5])],
     "aFloat": [2, 2.5, np.float32(3), np.int64(4)],
-    "anImage": [np.zeros((2, 3, 4), np.uint8), [[1, 2], [3, 4]], np.arange(6).reshape(3, 2, 1)],
+    "anImage": [np.zeros((2, 3, 4), np.uint8), [[1, 2], [3, 4]],
+                np.arange(6).reshape(3, 2, 1)],
     "anInt": [5, -(2**31), 2**31 - 1, np.int8(3)],
     "aRotation": [(1, 0, 0, 3.0)],
     "aString": ["", "ä€𝄞", 'quote " and \\'],
@@ -154,12 +154,15 @@ VALUES = {
     "aVec3f": [(3, 4, 5), np.arange(3)],
     "colors": [[(1, 1, 1)], np.zeros((0, 3)), []],
     "floats": [[1, 2, 3], np.linspace(0, 1, 5), []],
-    "ints": [[1, 2], np.arange(3, dtype=np.uint8), range(4), []],
+    "ints": [[1, 2], np.arange(3, dtype=np.uint8),
+             range(4), []],
     "rotations": [[(0, 0, 1, 1)], []],
     "strings": [["x"], ("y", "z"), []],
     "times": [[0.5], []],
     "points2": [np.ones((4, 2)), []],
-    "points3": [np.ones((1000, 3)), np.ones((6, 3))[::2], np.ones((3, 3), order="F"), []],
+    "points3": [np.ones((1000, 3)),
+                np.ones((6, 3))[::2],
+                np.ones((3, 3), order="F"), []],
 }
 
 
@@ -173,7 +176,8 @@ def test_set(field):
             expected = np.asarray(value)
             if field == "anImage" and expected.ndim == 2:
                 expected = expected[:, :, None]
-            assert got.size == expected.size and (got.size == 0 or np.array_equal(got, expected.astype(got.dtype)))
+            assert got.size == expected.size and (got.size == 0 or
+                                                  np.array_equal(got, expected.astype(got.dtype)))
         elif isinstance(got, tuple):
             assert got == tuple(value)
         else:
@@ -181,30 +185,71 @@ def test_set(field):
 
 
 WRONG = [
-    ("aBool", 1, TypeError), ("aBool", "TRUE", TypeError), ("aBool", None, TypeError),
-    ("aColor", (1, 2), ValueError), ("aColor", "red", TypeError), ("aColor", 1, ValueError), ("aColor", (1, float("nan"), 0), ValueError),
-    ("aFloat", "1", TypeError), ("aFloat", None, TypeError), ("aFloat", True, TypeError), ("aFloat", float("inf"), ValueError),
-    ("aFloat", 1e300, ValueError), ("aFloat", 1j, TypeError), ("aFloat", (1,), TypeError),
-    ("anImage", np.zeros((2, 2, 5), np.uint8), ValueError), ("anImage", np.full((1, 1), 256), ValueError),
-    ("anImage", np.zeros((2, 2)), TypeError), ("anImage", "x", TypeError),
-    ("anInt", 1.0, TypeError), ("anInt", 2**31, ValueError), ("anInt", 10**30, ValueError), ("anInt", True, TypeError),
-    ("aNode", "Group", TypeError), ("aNode", 0, TypeError),
+    ("aBool", 1, TypeError),
+    ("aBool", "TRUE", TypeError),
+    ("aBool", None, TypeError),
+    ("aColor", (1, 2), ValueError),
+    ("aColor", "red", TypeError),
+    ("aColor", 1, ValueError),
+    ("aColor", (1, float("nan"), 0), ValueError),
+    ("aFloat", "1", TypeError),
+    ("aFloat", None, TypeError),
+    ("aFloat", True, TypeError),
+    ("aFloat", float("inf"), ValueError),
+    ("aFloat", 1e300, ValueError),
+    ("aFloat", 1j, TypeError),
+    ("aFloat", (1,), TypeError),
+    ("anImage", np.zeros((2, 2, 5), np.uint8), ValueError),
+    ("anImage", np.full((1, 1), 256), ValueError),
+    ("anImage", np.zeros((2, 2)), TypeError),
+    ("anImage", "x", TypeError),
+    ("anInt", 1.0, TypeError),
+    ("anInt", 2**31, ValueError),
+    ("anInt", 10**30, ValueError),
+    ("anInt", True, TypeError),
+    ("aNode", "Group", TypeError),
+    ("aNode", 0, TypeError),
     ("aRotation", (0, 1, 0), ValueError),
-    ("aString", b"bytes", TypeError), ("aString", 5, TypeError), ("aString", None, TypeError),
-    ("aTime", "now", TypeError), ("aTime", float("nan"), ValueError),
-    ("aVec2f", (1, 2, 3), ValueError), ("aVec3f", (1, 2), ValueError), ("aVec3f", (1, 2, "x"), TypeError),
-    ("aVec3f", [(1, 2, 3)], ValueError), ("aVec3f", (1, (2, 3), 4), (ValueError, TypeError)),
-    ("colors", (1, 0, 0), ValueError), ("colors", [(1, 2)], ValueError), ("colors", [(1, 2, 3), (1, 2)], (ValueError, TypeError)),
-    ("floats", [[1, 2]], ValueError), ("floats", 1, ValueError), ("floats", ["a"], TypeError), ("floats", None, TypeError),
-    ("ints", [1.5], TypeError), ("ints", [2**31], ValueError), ("ints", [[1]], ValueError), ("ints", np.uint64([2**63]), ValueError),
-    ("nodes", [None], TypeError), ("nodes", 5, TypeError), ("nodes", "ab", TypeError),
-    ("strings", "word", TypeError), ("strings", [1], TypeError), ("strings", None, TypeError),
-    ("points3", np.ones((3, 2)), ValueError), ("points3", np.ones((2, 3, 1)), ValueError), ("points3", [[1, 2, np.inf]], ValueError),
-    ("points3", {"a": 1}, TypeError), ("points3", object(), TypeError),
+    ("aString", b"bytes", TypeError),
+    ("aString", 5, TypeError),
+    ("aString", None, TypeError),
+    ("aTime", "now", TypeError),
+    ("aTime", float("nan"), ValueError),
+    ("aVec2f", (1, 2, 3), ValueError),
+    ("aVec3f", (1, 2), ValueError),
+    ("aVec3f", (1, 2, "x"), TypeError),
+    ("aVec3f", [(1, 2, 3)], ValueError),
+    ("aVec3f", (1, (2, 3), 4), (ValueError, TypeError)),
+    ("colors", (1, 0, 0), ValueError),
+    ("colors", [(1, 2)], ValueError),
+    ("colors", [(1, 2, 3), (1, 2)], (ValueError, TypeError)),
+    ("floats", [[1, 2]], ValueError),
+    ("floats", 1, ValueError),
+    ("floats", ["a"], TypeError),
+    ("floats", None, TypeError),
+    ("ints", [1.5], TypeError),
+    ("ints", [2**31], ValueError),
+    ("ints", [[1]], ValueError),
+    ("ints", np.uint64([2**63]), ValueError),
+    ("nodes", [None], TypeError),
+    ("nodes", 5, TypeError),
+    ("nodes", "ab", TypeError),
+    ("strings", "word", TypeError),
+    ("strings", [1], TypeError),
+    ("strings", None, TypeError),
+    ("points3", np.ones((3, 2)), ValueError),
+    ("points3", np.ones((2, 3, 1)), ValueError),
+    ("points3", [[1, 2, np.inf]], ValueError),
+    ("points3", {
+        "a": 1
+    }, TypeError),
+    ("points3", object(), TypeError),
 ]
 
 
-@pytest.mark.parametrize("field, value, error", WRONG, ids=[f"{f}-{i}" for i, (f, _, _) in enumerate(WRONG)])
+@pytest.mark.parametrize("field, value, error",
+                         WRONG,
+                         ids=[f"{f}-{i}" for i, (f, _, _) in enumerate(WRONG)])
 def test_wrong_values_change_nothing(field, value, error):
     n = world()["All"]
     before = getattr(n, field)
@@ -215,7 +260,8 @@ def test_wrong_values_change_nothing(field, value, error):
 
 
 def test_ranges():
-    w = world("Shape { appearance Appearance { material DEF M Material { } } geometry DEF S Sphere { } }")
+    w = world(
+        "Shape { appearance Appearance { material DEF M Material { } } geometry DEF S Sphere { } }")
     for value in (-0.1, 1.1):
         with pytest.raises(ValueError, match="transparency.*0 to 1"):
             w["M"].transparency = value
@@ -226,7 +272,9 @@ def test_ranges():
 
 
 def test_axes_of_rotations_are_normalised():
-    w = world("DEF A Transform { } DEF O OrientationInterpolator { } DEF E Transform { rotation 0 5 0 1 }")
+    w = world(
+        "DEF A Transform { } DEF O OrientationInterpolator { } DEF E Transform { rotation 0 5 0 1 }"
+    )
     a, o = w["A"], w["O"]
     for runs in (False, True):
         if runs:
@@ -253,7 +301,9 @@ def test_nodes_as_values():
     assert n.aNode is None
     with pytest.raises(ValueError, match="same world"):
         n.aNode = world()["Other"]
-    shapes = world("DEF S Shape { appearance Appearance { material DEF M Material { } } geometry DEF B Box { } }")
+    shapes = world(
+        "DEF S Shape { appearance Appearance { material DEF M Material { } } geometry DEF B Box { } }"
+    )
     with pytest.raises(ValueError, match="geometry.*Material"):
         shapes["S"].geometry = shapes["M"]
     shapes["S"].geometry = None
@@ -316,167 +366,7 @@ def test_writing(tmp_path):
         w.save(tmp_path / "no/such/folder.wrl")
 
 
-# Pictures ---------------------------------------------------------------------------------------------------------------
-
-
-def test_render_by_transport(box):
-    world = xvrml.load(box)
-    assert world.render(size=(8, 6), spp=1).stats["transport"] == "direct"
-    for transport in ("direct", "whitted", "path"):
-        stats = world.render(size=(8, 6), spp=1, transport=transport, clamp=2).stats
-        assert stats["transport"] == transport and stats["transport_reason"]
-        assert set(stats["left_out"]) == {
-            "cut_by_depth", "cut_by_energy", "clipped", "unreached_lights", "shader_faults", "wrong_hits", "rejected_rays"
-        }  # fmt: skip
-        assert stats["transport_leaves_out"] == ([] if transport == "path" else ["interreflection"])
-    stats = world.render(size=(8, 6), spp=32, channels=["rgba", "error"]).stats
-    assert stats["error_mean"] >= 0 and stats["error_mean_interval"] >= 0
-    for wrong in ({"transport": "paths"}, {"error": 2}, {"time_limit": -1}, {"clamp": float("nan")}):
-        with pytest.raises(ValueError, match=next(iter(wrong))):
-            world.render(size=(8, 6), **wrong)
-
-
-def test_render(box):
-    w = xvrml.load(box)
-    p = w.render(size=(40, 30), spp=2)
-    assert p.shape == (30, 40, 4) and p.array.shape == p.shape and p.array.dtype == np.float32
-    assert np.asarray(p).shape == p.shape and np.array(p, dtype=np.float64).dtype == np.float64
-    assert p[15, 20].tolist() == p.array[15, 20].tolist()
-    assert p.array[15, 20, 0] > 3 * p.array[15, 20, 1] > 0, "a red box in the middle"
-    assert not p.array[0, 0, :3].any(), "nothing in the corner"
-    assert p.channels == ("rgba", "z") and p.stats["camera_rays"] == 40 * 30 * 2 and p.stats["triangles"] == 12
-    assert p.display.shape == (30, 40, 3) and p.display.dtype == np.uint8
-    with pytest.raises(KeyError, match="rgba"):
-        p["normal"]
-
-
-def test_channels(box):
-    w = xvrml.load(box)
-    p = w.render(size=(40, 30), spp=1, channels=("z", "normal", "albedo", "position", "id", "samples"), colour="vrml97")
-    assert p["z"][15, 20] == pytest.approx(4, abs=1e-4) and np.isinf(p["z"][0, 0])
-    assert p["normal"][15, 20] == pytest.approx([0, 0, 1], abs=1e-5)
-    assert p["albedo"][15, 20] == pytest.approx([0.8, 0.2, 0.1], abs=1e-5)
-    assert p["position"][15, 20, 2] == pytest.approx(1, abs=1e-4)
-    assert p["samples"].min() == p["samples"].max() == 1
-    assert p["id"][0, 0] == 0 and p.names[p["id"][15, 20]] in ("Thing", "Cube", "Place")
-    assert w.render(size=(4, 3), spp=1, channels="z")["z"].shape == (3, 4)
-
-
-def test_changes_show(box):
-    w = xvrml.load(box)
-    before = w.render(size=(40, 30), spp=1).array
-    w["Paint"].diffuseColor = (0, 0, 1)
-    blue = w.render(size=(40, 30), spp=1).array
-    assert blue[15, 20, 2] > blue[15, 20, 0] == 0
-    w["Place"].translation = (100, 0, 0)
-    assert not w.render(size=(40, 30), spp=1).array[..., :3].any()
-    w["Place"].translation = (0, 0, 0)
-    w["Paint"].diffuseColor = (0.8, 0.2, 0.1)
-    assert np.array_equal(w.render(size=(40, 30), spp=1).array, before)
-    w["Cube"].size = (0.2, 0.2, 0.2)
-    assert 0 < (w.render(size=(40, 30), spp=1).array[..., 0] > 0).sum() < (before[..., 0] > 0).sum() / 20
-    w["Place"].children = []
-    assert not w.render(size=(40, 30), spp=1).array[..., :3].any()
-
-
-def test_views(box):
-    w = xvrml.load(box)
-    assert [(v.name, v.description) for v in w.viewpoints] == [("", "front"), ("Back", "from behind")]
-    assert w.viewpoints[0].matrix.shape == (4, 4)
-    z = lambda **more: w.render(size=(8, 6), spp=1, channels="position", **more)["position"][3, 4, 2]
-    assert z() == pytest.approx(1, abs=1e-4) and z(viewpoint=0) == z(viewpoint="front") == z()
-    assert z(viewpoint="Back") == z(viewpoint=1) == z(viewpoint=-1) == pytest.approx(-1, abs=1e-4)
-    assert z(camera=((0, 0, -9), (0, 0, 0))) == pytest.approx(-1, abs=1e-4)
-    assert z(camera=[(0, 0, 9), (0, 0, 0), (1, 0, 0)]) == pytest.approx(1, abs=1e-4)
-    assert z(fit=True) == pytest.approx(1, abs=1e-4)
-
-
-@pytest.mark.parametrize("wrong, error", [
-    ({"size": (0, 5)}, ValueError), ({"size": (5,)}, ValueError), ({"size": (65536, 65536)}, ValueError), ({"size": "big"}, Exception),
-    ({"spp": 0}, ValueError), ({"spp": 2.5}, TypeError), ({"seed": -1}, ValueError), ({"depth": -1}, ValueError), ({"threads": -1}, ValueError),
-    ({"viewpoint": "Bck"}, KeyError), ({"viewpoint": 2}, IndexError), ({"viewpoint": 1.5}, TypeError), ({"colour": "srgb"}, ValueError),
-    ({"headlight": "dim"}, ValueError), ({"channels": ("depth",)}, ValueError), ({"camera": (1, 2)}, ValueError),
-    ({"camera": ((0, 0, 0), (0, 0, 0))}, ValueError), ({"fit": True, "viewpoint": 0}, ValueError), ({"fov": 0}, ValueError),
-    ({"nonsense": 1}, TypeError),
-])
-def test_wrong_options(box, wrong, error):
-    with pytest.raises(error):
-        xvrml.load(box).render(**wrong)
-
-
-def test_headlight(box):
-    w = xvrml.load(box)
-    r = lambda value: w.render(size=(8, 6), spp=1, headlight=value).array[..., :3].any()
-    assert r(True) and r("on") and r("auto") and not r(False) and not r("off")
-
-
-def test_same_bytes_as_vv(box, vv):
-    assert vv("box.wrl", "-o", "vv.exr", "--size", "40x30", "--spp", "3", "--threads", "1").returncode == 0
-    w = xvrml.load(box)
-    pictures = [w.render(size=(40, 30), spp=3, threads=t, channels="rgba") for t in (1, 2)]
-    assert np.array_equal(pictures[0].array, pictures[1].array)
-    pictures[0].save(vv.folder / "python.exr")
-    assert (vv.folder / "python.exr").read_bytes() == (vv.folder / "vv.exr").read_bytes()
-
-
-def test_save(box, tmp_path):
-    p = xvrml.load(box).render(size=(16, 12), spp=1)
-    for name, start in (("a.png", b"\x89PNG"), ("a.jpg", b"\xff\xd8"), ("a.exr", b"\x76\x2f\x31\x01"), ("a.ppm", b"P6"), ("a.pfm", b"PF")):
-        p.save(tmp_path / name)
-        assert (tmp_path / name).read_bytes().startswith(start)
-    assert p._repr_png_() == (tmp_path / "a.png").read_bytes()
-    with pytest.raises(ValueError, match="suffix"):
-        p.save(tmp_path / "a.bmp")
-    with pytest.raises(OSError):
-        p.save(tmp_path / "no/such/a.png")
-
-
-def test_a_picture_outlives_its_object(box):
-    array = xvrml.load(box).render(size=(16, 12), spp=1).array
-    assert array[6, 8, 0] > 0
-
-
-def test_other_threads_run_meanwhile(box):
-    w = xvrml.load(box)
-    counted, stop = [0], threading.Event()
-
-    def count():
-        while not stop.is_set():
-            counted[0] += 1
-            time.sleep(0.001)
-
-    counter = threading.Thread(target=count)
-    counter.start()
-    w.render(size=(400, 300), spp=16, threads=1)
-    stop.set()
-    counter.join()
-    assert counted[0] > 3
-
-
-def test_changes_wait_for_the_picture(box):
-    w = xvrml.load(box)
-    expected = w.render(size=(200, 150), spp=16).array
-    pictures = []
-    worker = threading.Thread(target=lambda: pictures.append(w.render(size=(200, 150), spp=16).array))
-    worker.start()
-    for i in range(200):
-        w["Place"].translation = (0, 0, 0)
-    worker.join()
-    assert np.array_equal(pictures[0], expected)
-
-
-def test_keyboard_interrupt(box):
-    code = f"""
-import os, signal, threading, time, xvrml
-w = xvrml.load({str(box)!r})
-threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-try:
-    w.render(size=(2000, 2000), spp=65536)
-except KeyboardInterrupt:
-    print("interrupted", w.render(size=(4, 3), spp=1).shape)
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
-    assert done.stdout == "interrupted (3, 4, 4)\n", done.stderr
+# The package ------------------------------------------------------------------------------------
 
 
 def test_package():
@@ -486,4 +376,5 @@ def test_package():
     stub = (folder / "__init__.pyi").read_text() + (folder / "nodes.pyi").read_text()
     for name in xvrml.__all__:
         assert name in stub
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler, "importing leaves signals alone"
+    assert signal.getsignal(
+        signal.SIGINT) is signal.default_int_handler, "importing leaves signals alone"

@@ -20,7 +20,6 @@ Image = pytest.importorskip("PIL.Image")
 SIZE = (160, 120)
 PATIENCE = 20  # seconds, for things that take a moment on an idle machine
 
-
 SENSORS = HEADER + """
 Viewpoint { position 0 0 10 fieldOfView 0.785398 description "front" }
 DirectionalLight { direction -1 -1 -1 }
@@ -52,8 +51,10 @@ ROUTE Turn.value_changed TO Place.set_rotation
 
 
 def coloured(colour, extra=""):
-    return HEADER + ("Viewpoint { position 0 0 5 } NavigationInfo { type [ \"EXAMINE\" \"ANY\" ] } " + extra +
-                     " Shape { appearance Appearance { material Material { diffuseColor %s } } geometry Box {} }" % colour)
+    return HEADER + (
+        "Viewpoint { position 0 0 5 } NavigationInfo { type [ \"EXAMINE\" \"ANY\" ] } " + extra +
+        " Shape { appearance Appearance { material Material { diffuseColor %s } } geometry Box {} }"
+        % colour)
 
 
 def needs(*tools):
@@ -96,13 +97,23 @@ class Window:
 
     def __init__(self, folder, display, arguments, env=None):
         self.folder = folder
-        self.env = {**os.environ, "DISPLAY": display, "SDL_AUDIODRIVER": "dummy", "SDL_RENDER_DRIVER": "software", **(env or {})}
+        self.env = {
+            **os.environ, "DISPLAY": display,
+            "SDL_AUDIODRIVER": "dummy",
+            "SDL_RENDER_DRIVER": "software",
+            **(env or {})
+        }
         self.env.pop("WAYLAND_DISPLAY", None)
-        self.program = subprocess.Popen([find_vv(), *map(str, arguments), "-v"], cwd=folder, env=self.env, stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, text=True)
+        self.program = subprocess.Popen([find_vv(), *map(str, arguments), "-v"],
+                                        cwd=folder,
+                                        env=self.env,
+                                        stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE,
+                                        text=True)
         self.out, self.err = [], []
         for stream, lines in ((self.program.stdout, self.out), (self.program.stderr, self.err)):
-            threading.Thread(target=lambda s=stream, l=lines: [l.append(x.rstrip("\n")) for x in s], daemon=True).start()
+            threading.Thread(target=lambda s=stream, l=lines: [l.append(x.rstrip("\n")) for x in s],
+                             daemon=True).start()
 
     def wait(self, test, what):
         end = time.monotonic() + PATIENCE
@@ -120,12 +131,17 @@ class Window:
 
     def ready(self, pictures=1):
         self.said("first picture", pictures)
-        self.id = self.wait(lambda: self.tool("search", "--pid", str(self.program.pid)).split(), "window")[0]
+        self.id = self.wait(lambda: self.tool("search", "--pid", str(self.program.pid)).split(),
+                            "window")[0]
         self.tool("windowfocus", "--sync", self.id)
         return self
 
     def tool(self, *arguments):
-        return subprocess.run(["xdotool", *map(str, arguments)], env=self.env, capture_output=True, text=True, timeout=PATIENCE).stdout
+        return subprocess.run(["xdotool", *map(str, arguments)],
+                              env=self.env,
+                              capture_output=True,
+                              text=True,
+                              timeout=PATIENCE).stdout
 
     def key(self, *names):
         self.tool("key", *names)
@@ -201,7 +217,10 @@ def window(vv, screen):
         if world is not None and world.startswith("#VRML"):
             vv.write("world.wrl", world)
             world = "world.wrl"
-        one = Window(vv.folder, screen[0], [*([world] if world else []), "--size", "%dx%d" % SIZE, "--spp", 1, *arguments], env)
+        one = Window(
+            vv.folder, screen[0],
+            [*([world] if world else []), "--size",
+             "%dx%d" % SIZE, "--spp", 1, *arguments], env)
         opened.append(one)
         if ready:
             one.ready()
@@ -227,7 +246,11 @@ def framebuffer(path):
     """Returns the rows of (r, g, b) that the X server shows, from an XWD file."""
     data = path.read_bytes()
     header = struct.unpack_from(">25I", data)
-    start, width, height, order, stride, colours = header[0], header[4], header[5], header[7], header[12], header[19]
+    start, width, height, order, stride, colours = header[0], header[4], header[5], header[
+        7], header[12], header[19]
     pixels = data[start + 12 * colours:]
     pick = (2, 1, 0) if order == 0 else (1, 2, 3)
-    return [[tuple(pixels[y * stride + 4 * x + i] for i in pick) for x in range(width)] for y in range(height)]
+    return [[tuple(pixels[y * stride + 4 * x + i]
+                   for i in pick)
+             for x in range(width)]
+            for y in range(height)]

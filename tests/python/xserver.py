@@ -14,8 +14,13 @@ def display(size="1024x768", *options):
     if not shutil.which("Xvfb"):
         pytest.skip("Xvfb is not installed")
     reading, writing = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{size}x24", "-nolisten", "tcp", *options], pass_fds=[writing],
-                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    server = subprocess.Popen([
+        "Xvfb", "-displayfd",
+        str(writing), "-screen", "0", f"{size}x24", "-nolisten", "tcp", *options
+    ],
+                              pass_fds=[writing],
+                              stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL)
     os.close(writing)
     before = os.environ.get("DISPLAY")
     try:

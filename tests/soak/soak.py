@@ -69,8 +69,10 @@ def report(what, samples, talk):
     hours = max(late[len(late) // 2][0] - early[len(early) // 2][0], 1) / 3600
     handles = statistics.median(s[2] for s in late) - statistics.median(s[2] for s in early)
     good = after - before <= max(1 << 20, 0.02 * before) and handles <= 3
-    print(f"{'ok ' if good else 'BAD'}  {what}: {samples[-1][0] / 60:.1f} minutes, memory {before / 2**20:.1f} to {after / 2**20:.1f} MB "
-          f"({(after - before) / hours / 2**20:+.2f} MB an hour), {handles:+.0f} descriptors; {talk}", flush=True)
+    print(
+        f"{'ok ' if good else 'BAD'}  {what}: {samples[-1][0] / 60:.1f} minutes, memory {before / 2**20:.1f} to {after / 2**20:.1f} MB "
+        f"({(after - before) / hours / 2**20:+.2f} MB an hour), {handles:+.0f} descriptors; {talk}",
+        flush=True)
     return good
 
 
@@ -84,13 +86,25 @@ def window(seconds, out):
     with display("640x480") as name:
         # One arena for all threads. With one arena per thread the C library's heap grows for an
         # hour and hides a small leak.
-        env = {**os.environ, "DISPLAY": name, "SDL_AUDIODRIVER": "dummy", "SDL_RENDER_DRIVER": "software", "MALLOC_ARENA_MAX": "1"}
+        env = {
+            **os.environ, "DISPLAY": name,
+            "SDL_AUDIODRIVER": "dummy",
+            "SDL_RENDER_DRIVER": "software",
+            "MALLOC_ARENA_MAX": "1"
+        }
         with open(out / "window.log", "w") as log:
-            program = subprocess.Popen([vv, "world.wrl", "--watch", "--size", "200x150", "--spp", "4", "--threads", "1"], cwd=folder, env=env,
-                                       stdout=log, stderr=log)
+            program = subprocess.Popen(
+                [vv, "world.wrl", "--watch", "--size", "200x150", "--spp", "4", "--threads", "1"],
+                cwd=folder,
+                env=env,
+                stdout=log,
+                stderr=log)
 
             def tool(*arguments):
-                subprocess.run(["xdotool", *map(str, arguments)], env=env, capture_output=True, timeout=60)
+                subprocess.run(["xdotool", *map(str, arguments)],
+                               env=env,
+                               capture_output=True,
+                               timeout=60)
 
             begin, sampled = time.monotonic(), 0.0
             time.sleep(3)
@@ -101,18 +115,22 @@ def window(seconds, out):
                 elif choice < 0.7:
                     tool("click", 1)
                 elif choice < 0.8:
-                    tool("mousedown", 1, "mousemove", rng.randrange(200), rng.randrange(150), "mouseup", 1)
+                    tool("mousedown", 1, "mousemove", rng.randrange(200), rng.randrange(150),
+                         "mouseup", 1)
                 elif choice < 0.99:
                     tool("key", rng.choice(KEYS))
                 else:
-                    world.write_text(WORLD.replace("cycleInterval 3", f"cycleInterval {rng.uniform(1, 5):.3f}"))
+                    world.write_text(
+                        WORLD.replace("cycleInterval 3", f"cycleInterval {rng.uniform(1, 5):.3f}"))
                 actions += 1
                 time.sleep(rng.uniform(0.05, 0.3))
                 if now - sampled >= EVERY and program.poll() is None:
                     sampled = now
                     samples.append((now, resident(program.pid), descriptors(program.pid)))
             if program.poll() is not None:
-                print(f"BAD  window: it ended with {program.returncode} after {now / 60:.1f} minutes; {out / 'window.log'}", flush=True)
+                print(
+                    f"BAD  window: it ended with {program.returncode} after {now / 60:.1f} minutes; {out / 'window.log'}",
+                    flush=True)
                 good = False
             program.kill()
             program.wait()
@@ -156,7 +174,8 @@ def master(seconds, out):
     (out / "cluster.json").write_text(json.dumps(samples))
     if wrong:
         print(f"BAD  cluster: {wrong} of {frames} frames are wrong", flush=True)
-    return bool(samples) and report("cluster", samples, f"{frames} frames, {wrong} wrong, {done} times trouble") and not wrong
+    return bool(samples) and report(
+        "cluster", samples, f"{frames} frames, {wrong} wrong, {done} times trouble") and not wrong
 
 
 def main():
@@ -171,8 +190,12 @@ def main():
     if given.window != given.cluster:
         return 0 if (window if given.window else master)(seconds, out) else 1
     # Each part runs in a process of its own, so that the memory of one is measured.
-    parts = [subprocess.Popen([sys.executable, __file__, "--minutes", str(given.minutes), "--out", str(out), part])
-             for part in ("--window", "--cluster")]
+    parts = [
+        subprocess.Popen(
+            [sys.executable, __file__, "--minutes",
+             str(given.minutes), "--out",
+             str(out), part]) for part in ("--window", "--cluster")
+    ]
     return max(part.wait() for part in parts)
 
 

@@ -16,15 +16,21 @@ import xml.etree.ElementTree as ElementTree
 HERE = pathlib.Path(__file__).resolve().parent
 # page, title, domain, headers
 PAGES = [
-    ("openrt", "OpenRT: the C API", "c", [f"libopenrt/include/openrt/{name}.h" for name in ("openrt", "context", "geometry", "shader", "frame", "query", "worker")]),
+    ("openrt", "OpenRT: the C API", "c", [
+        f"libopenrt/include/openrt/{name}.h" for name in ("openrt", "context", "geometry", "shader",
+                                                          "frame", "query", "worker")
+    ]),
     ("openrts", "OpenRTS: the shader SDK in C", "c", ["libopenrt/include/openrt/openrts.h"]),
     ("openrts-cpp", "OpenRTS: the shader SDK in C++", "cpp",
      ["libopenrt/include/openrt/openrts.hpp", "libopenrt/include/openrt/openrts_values.hpp"]),
     ("xscript", "The SDK of script engines", "c", ["libxvrml/include/xvrml/xscript.h"]),
-    ("xvrml", "XVRML: the scene graph in C++", "cpp",
-     [f"libxvrml/include/xvrml/{name}.h" for name in
-      ("world", "browser", "mapper", "node", "types", "diagnostics", "limits", "camera", "viewer", "media", "change",
-       "behaviour", "node_plugin", "node_table", "script_engines", "value_text")]),
+    ("xvrml", "XVRML: the scene graph in C++", "cpp", [
+        f"libxvrml/include/xvrml/{name}.h" for name in ("world", "browser", "mapper", "node",
+                                                        "types", "diagnostics", "limits", "camera",
+                                                        "viewer", "media", "change", "behaviour",
+                                                        "node_plugin", "node_table",
+                                                        "script_engines", "value_text")
+    ]),
 ]
 DOXYFILE = """
 PROJECT_NAME = {name}
@@ -50,11 +56,18 @@ PREDEFINED = RT_API= XS_EXPORT= RTS_EXPORT= {defines}
 def run_doxygen(name, domain, headers, root, scratch):
     out = scratch / name
     out.mkdir(parents=True, exist_ok=True)
-    config = DOXYFILE.format(name=name, headers=" ".join(f'"{root / h}"' for h in headers), python=sys.executable,
-                             filter=HERE / "header_filter.py", out=out, c="YES" if domain == "c" else "NO",
+    config = DOXYFILE.format(name=name,
+                             headers=" ".join(f'"{root / h}"' for h in headers),
+                             python=sys.executable,
+                             filter=HERE / "header_filter.py",
+                             out=out,
+                             c="YES" if domain == "c" else "NO",
                              defines="" if domain == "c" else "__cplusplus")
     subprocess.run(["doxygen", "-"], input=config, text=True, check=True, stdout=subprocess.DEVNULL)
-    return {c.get("id"): c for f in sorted((out / "xml").glob("*.xml")) for c in ElementTree.parse(f).getroot().findall("compounddef")}
+    return {
+        c.get("id"): c for f in sorted((out / "xml").glob("*.xml"))
+        for c in ElementTree.parse(f).getroot().findall("compounddef")
+    }
 
 
 def flat(element):
@@ -105,8 +118,12 @@ class Text:
                         lines += ["* " + body[0], *("  " + line for line in body[1:])]
                     lines.append("")
                 elif child.tag == "programlisting":
-                    code = ["".join(" " if e.tag == "sp" else (e.text or "") + (e.tail or "") if e.tag != "sp" else ""
-                                    for e in self.leaves(line)) for line in child.findall("codeline")]
+                    code = [
+                        "".join(" " if e.tag == "sp" else (e.text or "") +
+                                (e.tail or "") if e.tag != "sp" else ""
+                                for e in self.leaves(line))
+                        for line in child.findall("codeline")
+                    ]
                     lines += [".. code-block:: text", "", *("   " + line for line in code), ""]
                 else:
                     lines += self.blocks(child)
@@ -135,7 +152,8 @@ class _Leaf:
 
 
 def described(text, member):
-    return text.blocks(member.find("briefdescription")) + text.blocks(member.find("detaileddescription"))
+    return text.blocks(member.find("briefdescription")) + text.blocks(
+        member.find("detaileddescription"))
 
 
 def indent(lines, by="   "):
@@ -152,7 +170,9 @@ def template_of(member):
     if parameters is None:
         return ""
     return "template <" + ", ".join(
-        flat(p.find("type")) + (" " + flat(p.find("declname")) if p.find("declname") is not None else "") for p in parameters) + "> "
+        flat(p.find("type")) +
+        (" " + flat(p.find("declname")) if p.find("declname") is not None else "")
+        for p in parameters) + "> "
 
 
 def signature(member, domain):
@@ -183,20 +203,26 @@ DIRECTIVE = {"function": "function", "typedef": "type", "variable": "member", "d
 
 
 class Page:
+
     def __init__(self, domain, compounds, text):
         self.domain, self.compounds, self.text = domain, compounds, text
         self.done = set()
 
     def directive(self, kind, signatures, body):
         prefix = f".. {self.domain}:{kind}:: "
-        return [prefix + signatures[0], *(" " * len(prefix) + s for s in signatures[1:]), "", *indent(body), ""]
+        return [
+            prefix + signatures[0], *(" " * len(prefix) + s for s in signatures[1:]), "",
+            *indent(body), ""
+        ]
 
     def enum(self, member):
         name, out = flat(member.find("name")), []
         values = []
         for value in member.findall("enumvalue"):
             initial = flat(value.find("initializer"))
-            values += self.directive("enumerator", [flat(value.find("name")) + (" " + initial if initial else "")], described(self.text, value))
+            values += self.directive(
+                "enumerator", [flat(value.find("name")) + (" " + initial if initial else "")],
+                described(self.text, value))
         said = described(self.text, member)
         if not name or name.startswith("@"):
             return [*said, *values]
@@ -211,7 +237,8 @@ class Page:
         name = flat(member.find("name"))
         if kind not in DIRECTIVE or name.startswith("@"):
             return []
-        if kind == "typedef" and re.search(rf"^(struct|enum|union) {name}$", flat(member.find("type"))):
+        if kind == "typedef" and re.search(rf"^(struct|enum|union) {name}$",
+                                           flat(member.find("type"))):
             return []  # C's second name for the same type
         if kind == "define":
             if name.endswith(("_API", "_EXPORT", "_H", "_HPP")):
@@ -240,8 +267,12 @@ class Page:
         for section in compound.findall("sectiondef"):
             if section.get("kind", "").startswith(("private", "protected")):
                 continue
-            members = [m for m in section.findall("memberdef") if m.get("id") not in self.done and m.get("prot", "public") == "public"]
-            if section.get("kind") == "user-defined" and members and all(m.get("kind") in ("function", "variable") for m in members):
+            members = [
+                m for m in section.findall("memberdef")
+                if m.get("id") not in self.done and m.get("prot", "public") == "public"
+            ]
+            if section.get("kind") == "user-defined" and members and all(
+                    m.get("kind") in ("function", "variable") for m in members):
                 # one shared description
                 self.done.update(m.get("id") for m in members)
                 kinds = {m.get("kind") for m in members}
@@ -249,13 +280,18 @@ class Page:
                 body = self.text.blocks(section.find("description"))
                 for m in members:
                     body += described(self.text, m)
-                entries.append((line_of(members[0]), self.directive(directive, [signature(m, self.domain) for m in members], body)))
+                entries.append((line_of(members[0]),
+                                self.directive(directive,
+                                               [signature(m, self.domain) for m in members], body)))
                 continue
             for together in self.by_line(members):
                 self.done.update(m.get("id") for m in together)
                 if len(together) > 1:
                     body = [line for m in together for line in described(self.text, m)]
-                    entries.append((line_of(together[0]), self.directive("member", [signature(m, self.domain) for m in together], body)))
+                    entries.append(
+                        (line_of(together[0]),
+                         self.directive("member", [signature(m, self.domain) for m in together],
+                                        body)))
                 else:
                     entries.append((line_of(together[0]), self.member(together[0])))
         for inner in compound.findall("innerclass"):
@@ -270,7 +306,8 @@ class Page:
         """Groups variables that one line declares; they share its comment."""
         out = []
         for member in members:
-            if out and member.get("kind") == out[-1][0].get("kind") == "variable" and line_of(member) == line_of(out[-1][0]):
+            if out and member.get("kind") == out[-1][0].get("kind") == "variable" and line_of(
+                    member) == line_of(out[-1][0]):
                 out[-1].append(member)
             else:
                 out.append([member])
@@ -282,38 +319,54 @@ class Page:
             return []
         bases = [flat(b) for b in compound.findall("basecompoundref") if b.get("prot") == "public"]
         kind = compound.get("kind")
-        body = self.text.blocks(compound.find("briefdescription")) + self.text.blocks(compound.find("detaileddescription"))
+        body = self.text.blocks(compound.find("briefdescription")) + self.text.blocks(
+            compound.find("detaileddescription"))
         for _, lines in sorted(self.sections(compound), key=lambda e: e[0]):
             body += lines
         shown = name.split("::")[-1] if self.depth_of(name) else re.sub(r"^(rts|xvrml)::", "", name)
-        sign = template_of(compound) + shown + (" : public " + ", ".join(bases) if bases and self.domain == "cpp" else "")
-        return self.directive({"class": "class", "struct": "struct", "union": "union"}[kind], [sign], body)
+        sign = template_of(compound) + shown + (" : public " + ", ".join(bases)
+                                                if bases and self.domain == "cpp" else "")
+        return self.directive({
+            "class": "class",
+            "struct": "struct",
+            "union": "union"
+        }[kind], [sign], body)
 
     def depth_of(self, name):
         """Returns the depth of nesting in other structures (not name spaces) of the page."""
         outer = name.rsplit("::", 1)[0]
-        return any(flat(c.find("compoundname")) == outer and c.get("kind") in ("class", "struct") for c in self.compounds.values())
+        return any(
+            flat(c.find("compoundname")) == outer and c.get("kind") in ("class", "struct")
+            for c in self.compounds.values())
 
     def title(self, text, line):
         return [text, line * len(text), ""]
 
     def header(self, path, root, single):
         filtered = path.name
-        compound = next(c for c in self.compounds.values() if c.get("kind") == "file" and flat(c.find("compoundname")) == filtered)
+        compound = next(c for c in self.compounds.values()
+                        if c.get("kind") == "file" and flat(c.find("compoundname")) == filtered)
         out = [] if single else self.title(path.parent.name + "/" + path.name, "-")
         out += [f"``#include <{path.parent.name}/{path.name}>``", ""]
-        out += self.text.blocks(compound.find("briefdescription")) + self.text.blocks(compound.find("detaileddescription"))
+        out += self.text.blocks(compound.find("briefdescription")) + self.text.blocks(
+            compound.find("detaileddescription"))
         groups = []
         for c in self.compounds.values():
-            if c.get("kind") == "group" and flat(c.find("compoundname")).startswith(re.sub(r"\W", "_", path.name) + "_"):
+            if c.get("kind") == "group" and flat(
+                    c.find("compoundname")).startswith(re.sub(r"\W", "_", path.name) + "_"):
                 groups.append((c, sorted(self.sections(c), key=lambda e: e[0])))
         groups.sort(key=lambda g: g[1][0][0] if g[1] else ("", 0))
-        names = {flat(c.find("compoundname")) for c in self.compounds.values() if c.get("kind") == "namespace"} - {""}
+        names = {
+            flat(c.find("compoundname"))
+            for c in self.compounds.values()
+            if c.get("kind") == "namespace"
+        } - {""}
         space = next((n for n in sorted(names) if "::" not in n and n in ("rts", "xvrml")), None)
         own = sorted(self.sections(compound), key=lambda e: e[0])
         if space and self.domain == "cpp":
             # members of the name space that this header declares
-            inside = next(c for c in self.compounds.values() if flat(c.find("compoundname")) == space)
+            inside = next(
+                c for c in self.compounds.values() if flat(c.find("compoundname")) == space)
             own += [e for e in self.sections_in(inside, path)]
             own.sort(key=lambda e: e[0])
             out += [f".. cpp:namespace:: {space}", ""]
@@ -330,7 +383,8 @@ class Page:
         entries = []
         for section in namespace.findall("sectiondef"):
             for member in section.findall("memberdef"):
-                if line_of(member)[0].endswith(f"/{path.parent.name}/{path.name}") and member.get("id") not in self.done:
+                if line_of(member)[0].endswith(f"/{path.parent.name}/{path.name}") and member.get(
+                        "id") not in self.done:
                     self.done.add(member.get("id"))
                     entries.append((line_of(member), self.member(member)))
         return entries
@@ -373,4 +427,5 @@ def write_pages(root, out, scratch):
 
 
 if __name__ == "__main__":
-    write_pages(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
+    write_pages(
+        pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))

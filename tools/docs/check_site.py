@@ -8,6 +8,7 @@ import urllib.parse
 
 
 class Page(html.parser.HTMLParser):
+
     def __init__(self, path):
         super().__init__()
         self.ids, self.links = set(), []
@@ -28,10 +29,12 @@ def wrong_links(folder):
             parts = urllib.parse.urlsplit(link)
             if parts.scheme or parts.netloc:
                 continue
-            target = (path.parent / urllib.parse.unquote(parts.path)).resolve() if parts.path else path
+            target = (path.parent /
+                      urllib.parse.unquote(parts.path)).resolve() if parts.path else path
             if not target.exists():
                 yield f"{path.relative_to(folder)}: no {link}"
-            elif parts.fragment and target in pages and urllib.parse.unquote(parts.fragment) not in pages[target].ids:
+            elif parts.fragment and target in pages and urllib.parse.unquote(
+                    parts.fragment) not in pages[target].ids:
                 yield f"{path.relative_to(folder)}: no such place: {link}"
     if len(pages) < 30:
         yield f"only {len(pages)} pages"

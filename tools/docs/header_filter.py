@@ -22,7 +22,9 @@ def slug(title):
 def groups_of(text, name):
     """Returns (group id, title) of each part of a header."""
     prefix = re.sub(r"\W", "_", name)
-    return [(f"{prefix}_{slug(m.group(1))}", m.group(1)) for m in map(SECTION.match, text.split("\n")) if m]
+    return [(f"{prefix}_{slug(m.group(1))}", m.group(1))
+            for m in map(SECTION.match, text.split("\n"))
+            if m]
 
 
 def escape(text):
@@ -50,8 +52,12 @@ def plain(block):
         return [re.sub(r"^\s*// ?", "", line).rstrip() for line in block]
     lines = re.sub(r"^\s*/\* ?|\s*\*/\s*$", "", "\n".join(block)).split("\n")
     margin = 3 + len(block[0]) - len(block[0].lstrip())  # margin of the text after "/* "
-    return [re.sub(r"^\s*\* ?", "", line) if re.match(r"\s*\*", line) else line[min(margin, len(line) - len(line.lstrip())):]
-            for line in lines]
+    return [
+        re.sub(r"^\s*\* ?", "", line)
+        if re.match(r"\s*\*", line) else line[min(margin,
+                                                  len(line) - len(line.lstrip())):]
+        for line in lines
+    ]
 
 
 def trailing(line):
@@ -94,7 +100,8 @@ def run_of(lines, i):
 def filtered(text, name):
     prefix = re.sub(r"\W", "_", name)
     lines, out, i, group = text.split("\n"), [], 0, None
-    guard = max((n for n, line in enumerate(lines) if line.startswith(("#ifdef __cplusplus", "} // namespace", "} /* extern"))),
+    guard = max((n for n, line in enumerate(lines)
+                 if line.startswith(("#ifdef __cplusplus", "} // namespace", "} /* extern"))),
                 default=len(lines))
     while i < len(lines):
         line = lines[i]
@@ -125,7 +132,10 @@ def filtered(text, name):
             elif end < len(lines) and not lines[end].strip():
                 out += [f"/** @addtogroup {group}", *said, "*/"] if group else [""]
             elif following:
-                out += [f"/** @name run {end}", *said, "*/", "/**@{*/", *(trailing(code) for code in lines[end:following]), "/**@}*/"]
+                out += [
+                    f"/** @name run {end}", *said, "*/", "/**@{*/",
+                    *(trailing(code) for code in lines[end:following]), "/**@}*/"
+                ]
                 end = following
             else:
                 out += ["/**", *said, "*/"]

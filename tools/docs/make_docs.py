@@ -19,13 +19,20 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 PROGRAMS = ["openrt-worker", "openrt-replay", "nodegen"]
 # Headers that pages name, and the pages that describe them.
-HEADERS = {"openrt/openrt.h": "openrt", "openrt/openrts.h": "openrts", "openrt/openrts.hpp": "openrts-cpp", "xvrml/xscript.h": "xscript"}
+HEADERS = {
+    "openrt/openrt.h": "openrt",
+    "openrt/openrts.h": "openrts",
+    "openrt/openrts.hpp": "openrts-cpp",
+    "xvrml/xscript.h": "xscript"
+}
 
 
 def lacking():
     missing = [] if shutil.which("doxygen") else ["doxygen"]
-    for module, package in (("sphinx", "python3-sphinx"), ("myst_parser", "python3-myst-parser"), ("furo", "furo")):
-        if subprocess.run([sys.executable, "-c", f"import {module}"], capture_output=True).returncode:
+    for module, package in (("sphinx", "python3-sphinx"), ("myst_parser", "python3-myst-parser"),
+                            ("furo", "furo")):
+        if subprocess.run([sys.executable, "-c", f"import {module}"],
+                          capture_output=True).returncode:
             missing.append(package)
     return missing
 
@@ -36,6 +43,7 @@ def title_of(page):
 
 
 class Site:
+
     def __init__(self, root, build, out):
         self.root, self.build, self.out = root, build, out
         self.source = out.parent / "docs-source"
@@ -48,7 +56,8 @@ class Site:
             if piece.startswith("```"):
                 piece = re.sub(r"\A```(\w+) file=(\S+)\n", self.named_block, piece)
             else:
-                piece = re.sub(r"\[([^\]\n]*)\]\((\.\./[^)\n]+)\)", lambda m: self.outside(m, page), piece)
+                piece = re.sub(r"\[([^\]\n]*)\]\((\.\./[^)\n]+)\)", lambda m: self.outside(m, page),
+                               piece)
                 piece = re.sub(r"(?<!\[)`([^`\n]+)`(?!\])", lambda m: self.linked(m, page), piece)
                 piece = piece.replace("](docs/", "](")
             out.append(piece)
@@ -61,10 +70,12 @@ class Site:
     def outside(self, match, page):
         """Converts a link upwards: a page of docs/ stays a link, a file beside docs/ becomes plain
         text."""
-        target = pathlib.Path(os.path.normpath(self.root / "docs" / page.parent / match.group(2).split("#")[0]))
+        target = pathlib.Path(
+            os.path.normpath(self.root / "docs" / page.parent / match.group(2).split("#")[0]))
         if target.is_relative_to(self.root / "docs"):
             return match.group(0)
-        if target.name in ("README.md", "HACKING.md", "CHANGELOG.md") and target.parent == self.root:
+        if target.name in ("README.md", "HACKING.md",
+                           "CHANGELOG.md") and target.parent == self.root:
             return f"[{match.group(1)}]({'../' * (len(page.parts) - 1)}{target.name.lower()})"
         return match.group(1)
 
@@ -78,7 +89,8 @@ class Site:
             target = self.root / "docs" / inner
             if name in ("README.md", "HACKING.md", "CHANGELOG.md"):
                 return f"[{name}]({up}{name.lower()})"
-            if (name.startswith(("docs/", "decisions/")) or len(page.parts) == 1) and target.exists():
+            if (name.startswith(
+                ("docs/", "decisions/")) or len(page.parts) == 1) and target.exists():
                 return f"[{title_of(target)}]({up}{inner})"
         for header, reference in HEADERS.items():
             if name == header or name.endswith("include/" + header):
@@ -106,7 +118,8 @@ class Site:
         with (self.source / "documentation.md").open("a", encoding="utf-8") as file:
             file.write("\n## Blocks of each page\n\n" + blocks.table(self.root) + "\n")
         decisions = sorted((docs / "decisions").glob("[0-9]*.md"))
-        listed = "\n\n```{toctree}\n:maxdepth: 1\n\n" + "\n".join(p.stem for p in decisions) + "\n```\n"
+        listed = "\n\n```{toctree}\n:maxdepth: 1\n\n" + "\n".join(
+            p.stem for p in decisions) + "\n```\n"
         with (self.source / "decisions/README.md").open("a", encoding="utf-8") as file:
             file.write(listed)
         for picture in [*docs.glob("images/*")]:
@@ -118,14 +131,19 @@ class Site:
 
     def present(self, index):
         """Removes entries of the contents whose pages this build lacks."""
+
         def entry(match):
             name = match.group(0)
-            return name if any((self.source / (name + end)).exists() for end in (".md", ".rst")) else None
+            return name if any(
+                (self.source / (name + end)).exists() for end in (".md", ".rst")) else None
 
         def contents(match):
-            lines = [line for line in match.group(0).split("\n")
-                     if not re.fullmatch(r"[a-z][\w/-]*", line) or entry(re.match(".*", line))]
+            lines = [
+                line for line in match.group(0).split("\n")
+                if not re.fullmatch(r"[a-z][\w/-]*", line) or entry(re.match(".*", line))
+            ]
             return "\n".join(lines)
+
         return re.sub(r"```\{toctree\}.*?```", contents, index, flags=re.S)
 
     def generate(self):
@@ -135,13 +153,20 @@ class Site:
         import api_pages
         import options_page
         import python_page
-        api_pages.write_pages(self.root, self.source / "reference", self.out.parent / "docs-doxygen")
+        api_pages.write_pages(self.root, self.source / "reference",
+                              self.out.parent / "docs-doxygen")
         self.put("reference/vv.rst", options_page.vv_page(self.build / "bin/vv"))
-        self.put("reference/programs.md", options_page.programs_page([p for n in PROGRAMS if (p := self.build / "bin" / n).exists()]))
+        self.put(
+            "reference/programs.md",
+            options_page.programs_page(
+                [p for n in PROGRAMS if (p := self.build / "bin" / n).exists()]))
         nodes = next(self.build.rglob("generated/nodes.md"))
         self.put("reference/nodes.md", self.node_page(nodes.read_text(encoding="utf-8")))
-        shaders = subprocess.run([sys.executable, self.root / "tools/make_shader_classes.py", self.build / "bin/vv"], check=True,
-                                 capture_output=True, text=True).stdout
+        shaders = subprocess.run(
+            [sys.executable, self.root / "tools/make_shader_classes.py", self.build / "bin/vv"],
+            check=True,
+            capture_output=True,
+            text=True).stdout
         self.put("shader-classes.md", self.site_text(shaders, pathlib.Path("shader-classes.md")))
         package = self.build / "python/xvrml"
         if package.is_dir():
@@ -156,11 +181,19 @@ class Site:
         self.source.mkdir(parents=True)
         self.generate()
         self.copy_pages()
-        version = ".".join(re.findall(r"OPENRT_VERSION_\w+ (\d+)", (self.root / "libopenrt/include/openrt/context.h").read_text())[:3])
-        env = {**os.environ, "OPENRT_DOCS_TOOLS": str(HERE), "OPENRT_VERSION": version, "PYTHONDONTWRITEBYTECODE": "1"}
+        version = ".".join(
+            re.findall(r"OPENRT_VERSION_\w+ (\d+)",
+                       (self.root / "libopenrt/include/openrt/context.h").read_text())[:3])
+        env = {
+            **os.environ, "OPENRT_DOCS_TOOLS": str(HERE),
+            "OPENRT_VERSION": version,
+            "PYTHONDONTWRITEBYTECODE": "1"
+        }
         options = ["-W", "--keep-going"] if strict else []
-        command = [sys.executable, "-m", "sphinx", "-q", "-E", "-j", "2", "-b", "html", *options, "-d", self.out.parent / "docs-doctrees",
-                   self.source, self.out]
+        command = [
+            sys.executable, "-m", "sphinx", "-q", "-E", "-j", "2", "-b", "html", *options, "-d",
+            self.out.parent / "docs-doctrees", self.source, self.out
+        ]
         return subprocess.run([str(c) for c in command], env=env).returncode
 
 
@@ -168,7 +201,8 @@ def main():
     arguments = [a for a in sys.argv[1:] if not a.startswith("--")]
     root, build, out = (pathlib.Path(a).resolve() for a in arguments)
     if missing := lacking():
-        print("make_docs: these packages are missing:", *missing, "(tools/install-packages.sh docs)")
+        print("make_docs: these packages are missing:", *missing,
+              "(tools/install-packages.sh docs)")
         return 77
     status = Site(root, build, out).run("--strict" in sys.argv)
     if "--check" in sys.argv:

@@ -8,12 +8,16 @@ def escape(text):
 
 
 def help_of(program):
-    return subprocess.run([str(program), "--help"], capture_output=True, text=True, timeout=60).stdout
+    return subprocess.run([str(program), "--help"], capture_output=True, text=True,
+                          timeout=60).stdout
 
 
 def vv_page(vv):
     """Returns the options of vv by group; each is a target of links and of the search."""
-    lines = ["vv", "==", "", "*Made from the table of options of the program.*", "", ".. program:: vv", "", ".. code-block:: text", ""]
+    lines = [
+        "vv", "==", "", "*Made from the table of options of the program.*", "", ".. program:: vv",
+        "", ".. code-block:: text", ""
+    ]
     text = help_of(vv).split("\n")
     first = next(i for i, line in enumerate(text) if re.fullmatch(r"[A-Z]\w+", line))
     lines += ["   " + line if line else "" for line in text[1:first]]
@@ -49,7 +53,9 @@ def vv_page(vv):
 
 def programs_page(programs):
     """Returns the help of the other programs, as they print it."""
-    out = ["# Other programs", "", "*What `--help` prints.* `vv` has [a page of its own](vv.rst).", ""]
+    out = [
+        "# Other programs", "", "*What `--help` prints.* `vv` has [a page of its own](vv.rst).", ""
+    ]
     for program in programs:
         text = re.sub(r"\S*/(?=" + re.escape(program.name) + r"\b)", "", help_of(program)).strip()
         out += [f"## {program.name}", "", "```text", text, "```", ""]

@@ -31,6 +31,7 @@ def pane(house, band, side=1):
     outer, out_normals = house.patch(columns, rows, -.0005)
     inner, in_normals = house.patch(columns, rows, -.0055)
     if band in (0, 6):  # both halves
+
         def full(points):
             n, result = len(columns), []
             for r in range(len(rows)):
@@ -38,7 +39,9 @@ def pane(house, band, side=1):
                 other = [(x, y, -z) for x, y, z in (line[:0:-1] if band == 0 else line[-2::-1])]
                 result += other + line if band == 0 else line + other
             return result
-        outer, out_normals, inner, in_normals = (full(p) for p in (outer, out_normals, inner, in_normals))
+
+        outer, out_normals, inner, in_normals = (
+            full(p) for p in (outer, out_normals, inner, in_normals))
         columns = list(range(2 * len(columns) - 1))
     n, m = len(columns), len(rows)
     total = n * m
@@ -47,7 +50,9 @@ def pane(house, band, side=1):
     normals = out_normals + [tuple(-c for c in v) for v in in_normals]
     faces += [tuple(i + total for i in f) for f in faces_of(m, n)]
     # The edge has points of its own, because its normals differ.
-    loop = [(0, c) for c in range(n)] + [(r, n - 1) for r in range(1, m)] + [(m - 1, c) for c in range(n - 2, -1, -1)] + [(r, 0) for r in range(m - 2, 0, -1)]
+    loop = [(0, c) for c in range(n)] + [(r, n - 1) for r in range(1, m)] + [
+        (m - 1, c) for c in range(n - 2, -1, -1)
+    ] + [(r, 0) for r in range(m - 2, 0, -1)]
     centre = tuple(sum(p[a] for p in outer) / total for a in range(3))
     start = len(points)
     for r, c in loop:
@@ -61,7 +66,8 @@ def pane(house, band, side=1):
             points.append(face[r * n + c])
             normals.append(tuple(x / length for x in away))
     k = len(loop)
-    faces += [(start + 2 * i, start + 2 * i + 1, start + 2 * ((i + 1) % k) + 1, start + 2 * ((i + 1) % k)) for i in range(k)]
+    faces += [(start + 2 * i, start + 2 * i + 1, start + 2 * ((i + 1) % k) + 1,
+               start + 2 * ((i + 1) % k)) for i in range(k)]
     return surface(points, normals, faces, True, side)
 
 
@@ -69,18 +75,22 @@ def car():
     from scenes import car_parts as parts
     skin = Skin()
     house = Greenhouse(skin)
-    paint = "DEF Paint " + shader("CarPaint", "carpaint", "color color .42 .012 .018", "color flakeColor .6 .13 .1", "1f flakes .25", "1f flakeRoughness .45",
-                                  "1f flakeSize .0012", "1f flakeSpread .06")
+    paint = "DEF Paint " + shader(
+        "CarPaint", "carpaint", "color color .42 .012 .018", "color flakeColor .6 .13 .1",
+        "1f flakes .25", "1f flakeRoughness .45", "1f flakeSize .0012", "1f flakeSpread .06")
     glass = "DEF Pane " + shader("Glass", "glass", "1f index 1.52", "color absorption 9 4 6")
     text = [
         "# A coupe in a studio. Written by tools/make_scenes.py.",
         'WorldInfo { title "Car" info [ "part of OpenRT\'s examples" ] }',
         'NavigationInfo { type "EXAMINE" headlight FALSE }',
-        viewpoint((5.6, 1.4, 4.5), (.42, .50, -.06), .475, "DEF Front Viewpoint", 'description "Front" '),
+        viewpoint((5.6, 1.4, 4.5), (.42, .50, -.06), .475, "DEF Front Viewpoint",
+                  'description "Front" '),
         viewpoint((-5.2, 1.75, 4.6), (0, .55, 0), .5, "DEF Rear Viewpoint", 'description "Rear" '),
         viewpoint((.05, .62, 7.2), (.05, .60, 0), .5, "DEF Side Viewpoint", 'description "Side" '),
-        viewpoint((.20, 1.225, .44), (.40, 1.15, 0), .5, "DEF Mirrors Viewpoint", 'description "Mirrors in each other" '),
-        viewpoint((-.42, 1.12, -.34), (.6, 1.04, -.36), .8, "DEF Driver Viewpoint", 'description "Driver" '),
+        viewpoint((.20, 1.225, .44), (.40, 1.15, 0), .5, "DEF Mirrors Viewpoint",
+                  'description "Mirrors in each other" '),
+        viewpoint((-.42, 1.12, -.34), (.6, 1.04, -.36), .8, "DEF Driver Viewpoint",
+                  'description "Driver" '),
         *parts.studio(),
         both("Hull", paint, lambda side: hull(skin, house, side)),
         both("Pillars", "USE Paint", lambda side: pillars(house, side)),

@@ -34,17 +34,20 @@ def section(half, shoulder, middle, sill):
     beyond it."""
     side = shoulder - sill
     rise = middle - shoulder
-    return [(.70 * half, sill - .005), (.90 * half, sill - .01), (.975 * half, sill + .06 * side), (.995 * half, sill + .28 * side),
-            (1.012 * half, sill + .55 * side), (.998 * half, sill + .80 * side), (.975 * half, shoulder - .02), (.93 * half, shoulder + .028),
-            (.80 * half, shoulder + .42 * rise + .012), (.52 * half, shoulder + .88 * rise), (.22 * half, middle + .012), (0, middle + .014)]
+    return [(.70 * half, sill - .005), (.90 * half, sill - .01), (.975 * half, sill + .06 * side),
+            (.995 * half, sill + .28 * side), (1.012 * half, sill + .55 * side),
+            (.998 * half, sill + .80 * side), (.975 * half, shoulder - .02),
+            (.93 * half, shoulder + .028), (.80 * half, shoulder + .42 * rise + .012),
+            (.52 * half, shoulder + .88 * rise), (.22 * half, middle + .012), (0, middle + .014)]
 
 
 def basis(t):
-    return ((1 - t) ** 3 / 6, (3 * t ** 3 - 6 * t * t + 4) / 6, (-3 * t ** 3 + 3 * t * t + 3 * t + 1) / 6, t ** 3 / 6)
+    return ((1 - t)**3 / 6, (3 * t**3 - 6 * t * t + 4) / 6, (-3 * t**3 + 3 * t * t + 3 * t + 1) / 6,
+            t**3 / 6)
 
 
 def slopes(t):
-    return (-(1 - t) ** 2 / 2, (3 * t * t - 4 * t) / 2, (-3 * t * t + 2 * t + 1) / 2, t * t / 2)
+    return (-(1 - t)**2 / 2, (3 * t * t - 4 * t) / 2, (-3 * t * t + 2 * t + 1) / 2, t * t / 2)
 
 
 def unit(v):
@@ -63,11 +66,14 @@ def spline(points, u):
     position = min(max(u, 0.0), 1.0) * (n - 1)
     i = min(int(position), n - 2)
     t = position - i
-    ends = [tuple(2 * a - b for a, b in zip(points[0], points[1]))] + list(points) + [tuple(2 * a - b for a, b in zip(points[-1], points[-2]))]
-    return tuple(sum(w * p[a] for w, p in zip(basis(t), ends[i:i + 4])) for a in range(len(points[0])))
+    ends = [tuple(2 * a - b for a, b in zip(points[0], points[1]))
+           ] + list(points) + [tuple(2 * a - b for a, b in zip(points[-1], points[-2]))]
+    return tuple(
+        sum(w * p[a] for w, p in zip(basis(t), ends[i:i + 4])) for a in range(len(points[0])))
 
 
 class Skin:
+
     def __init__(self):
         self.net = []
         for x, half, shoulder, middle, sill in SECTIONS:
@@ -85,7 +91,9 @@ class Skin:
         if i < 0:
             return tuple(2 * a - b for a, b in zip(self.control(0, j), self.control(1, j)))
         if i >= self.rows:
-            return tuple(2 * a - b for a, b in zip(self.control(self.rows - 1, j), self.control(self.rows - 2, j)))
+            return tuple(2 * a - b
+                         for a, b in zip(self.control(self.rows -
+                                                      1, j), self.control(self.rows - 2, j)))
         return self.net[i][j]
 
     def at(self, u, v):
@@ -145,16 +153,20 @@ class Greenhouse:
     ROOF, CROWN = 1.325, 1.375
     # The ends of the windows at the deck and at the roof: z on the windscreen, x on the sides, z on
     # the rear window.
-    BREAKS = [("z", 0, 0), ("z", .60, .435), ("x", .50, .03), ("x", -.36, -.37), ("x", -.43, -.43), ("x", -1.02, -.63), ("r", .50, .36), ("r", 0, 0)]
+    BREAKS = [("z", 0, 0), ("z", .60, .435), ("x", .50, .03), ("x", -.36, -.37), ("x", -.43, -.43),
+              ("x", -1.02, -.63), ("r", .50, .36), ("r", 0, 0)]
     STEPS = [9, 3, 10, 2, 8, 7, 9]
     GLASS = {0, 2, 4, 6}
-    ROWS = [0, .015, .06] + [.06 + .50 * i / 7 for i in range(1, 8)] + [.575, .61, .65, .70, .76, .82, .88, .94, 1]
+    ROWS = [0, .015, .06] + [.06 + .50 * i / 7 for i in range(1, 8)
+                            ] + [.575, .61, .65, .70, .76, .82, .88, .94, 1]
     FIRST, LAST = 2, 9  # first and last row with glass
 
     def __init__(self, skin):
         self.skin = skin
         self.marks, self.bands = [], []
-        angles = [(self.angle(self.BASE, k, b), self.angle(self.TOP, k, t)) for k, b, t in self.BREAKS]
+        angles = [
+            (self.angle(self.BASE, k, b), self.angle(self.TOP, k, t)) for k, b, t in self.BREAKS
+        ]
         for band, (one, other) in enumerate(zip(angles, angles[1:])):
             for s in range(self.STEPS[band]):
                 f = s / self.STEPS[band]
@@ -168,15 +180,15 @@ class Greenhouse:
         middle, length, width, power = outline
         if kind == "x":
             share = (value - middle) / length
-            return math.acos(math.copysign(abs(share) ** (power / 2), share))
-        a = math.asin((value / width) ** (power / 2))
+            return math.acos(math.copysign(abs(share)**(power / 2), share))
+        a = math.asin((value / width)**(power / 2))
         return a if kind == "z" else math.pi - a
 
     @staticmethod
     def outline(outline, a):
         middle, length, width, power = outline
         c, s = math.cos(a), math.sin(a)
-        return middle + length * math.copysign(abs(c) ** (2 / power), c), width * abs(s) ** (2 / power)
+        return middle + length * math.copysign(abs(c)**(2 / power), c), width * abs(s)**(2 / power)
 
     def controls(self, base, top):
         bx, bz = self.outline(self.BASE, base)
@@ -186,22 +198,26 @@ class Greenhouse:
         def between(f, out):
             x, y, z = (p + (q - p) * f for p, q in zip(b, t))
             flank = abs(math.sin((base + top) / 2))
-            return (x + out * (.35 if math.cos(base) > 0 else -.35) * (1 - flank), y + out * .25, z + out * flank)
+            return (x + out * (.35 if math.cos(base) > 0 else -.35) * (1 - flank), y + out * .25,
+                    z + out * flank)
 
         middle = self.TOP[0]
-        inner = [(middle + (tx - middle) * f, self.ROOF + (self.CROWN - self.ROOF) * r, tz * f) for f, r in ((.80, .62), (.4, .95), (0, 1.0))]
+        inner = [(middle + (tx - middle) * f, self.ROOF + (self.CROWN - self.ROOF) * r, tz * f)
+                 for f, r in ((.80, .62), (.4, .95), (0, 1.0))]
         return [b, between(.3, .03), between(.62, .032), (t[0], t[1] - .012, t[2]), *inner]
 
     def at(self, column, t):
         return spline(self.columns[column], t)
 
     def normal(self, column, t):
+
         def place(c, s):
             last = len(self.columns) - 1
             if c < 0 or c > last:
                 x, y, z = self.at(-c if c < 0 else 2 * last - c, s)
                 return (x, y, -z)
             return self.at(c, s)
+
         if t > .999:
             return (0.0, 1.0, 0.0)
         h = .004
@@ -228,7 +244,9 @@ class Greenhouse:
 
 def faces_of(rows, columns, keep=lambda r, c: True):
     return [(r * columns + c, r * columns + c + 1, (r + 1) * columns + c + 1, (r + 1) * columns + c)
-            for r in range(rows - 1) for c in range(columns - 1) if keep(r, c)]
+            for r in range(rows - 1)
+            for c in range(columns - 1)
+            if keep(r, c)]
 
 
 def surface(points, normals, faces, solid=False, side=1):
@@ -252,8 +270,9 @@ def surface(points, normals, faces, solid=False, side=1):
     listed = ", ".join(" ".join(number(round(c, 4)) for c in points[i]) for i in used)
     vectors = ", ".join(" ".join(number(round(c, 3)) for c in normals[i]) for i in used)
     indices = " ".join(" ".join(str(i) for i in face) + " -1" for face in turned)
-    return (f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'}\n    coord Coordinate {{ point [ {listed} ] }}\n"
-            f"    normal Normal {{ vector [ {vectors} ] }}\n    coordIndex [ {indices} ] }}")
+    return (
+        f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'}\n    coord Coordinate {{ point [ {listed} ] }}\n"
+        f"    normal Normal {{ vector [ {vectors} ] }}\n    coordIndex [ {indices} ] }}")
 
 
 def hull(skin, house, side, along=90, across=28):
@@ -271,14 +290,18 @@ def hull(skin, house, side, along=90, across=28):
     middle, length, width, power = house.BASE
 
     def in_cabin(p):
-        return p[1] > .75 and abs((p[0] - middle) / (length - .1)) ** power + abs(p[2] / (width - .09)) ** power < 1
+        return p[1] > .75 and abs(
+            (p[0] - middle) / (length - .1))**power + abs(p[2] / (width - .09))**power < 1
 
     def in_arch(p):
-        return p[1] < .80 and p[2] > .3 and any(math.hypot(p[0] - x, p[1] - HUB) < ARCH for x in AXLES)
+        return p[1] < .80 and p[2] > .3 and any(
+            math.hypot(p[0] - x, p[1] - HUB) < ARCH for x in AXLES)
 
     gone = [in_cabin(p) or in_arch(p) for p in points]
-    faces = faces_of(along + 1, columns, lambda r, c: not any(gone[i] for i in (
-        r * columns + c, r * columns + c + 1, (r + 1) * columns + c + 1, (r + 1) * columns + c)))
+    faces = faces_of(
+        along + 1, columns,
+        lambda r, c: not any(gone[i] for i in (r * columns + c, r * columns + c + 1,
+                                               (r + 1) * columns + c + 1, (r + 1) * columns + c)))
     # Points beside the hole of a wheel are moved to its edge.
     count = {}
     for face in faces:

@@ -51,7 +51,10 @@ LAKES = """
 
 
 def polygons(text):
-    return [[tuple(float(n) for n in point.split()) for point in line.split(",")] for line in text.strip().split("\n")]
+    return [[tuple(float(n)
+                   for n in point.split())
+             for point in line.split(",")]
+            for line in text.strip().split("\n")]
 
 
 def fill(rows, outlines, value):
@@ -65,14 +68,16 @@ def fill(rows, outlines, value):
                     crossings.append(x0 + (x1 - x0) * (latitude - y0) / (y1 - y0))
             crossings.sort()
             for left, right in zip(crossings[::2], crossings[1::2]):
-                first, last = (max(0, math.ceil((x + 180) / 360 * width - .5)) for x in (left, right))
+                first, last = (
+                    max(0, math.ceil((x + 180) / 360 * width - .5)) for x in (left, right))
                 for x in range(first, min(last, width)):
                     rows[y][x] = value
 
 
 STEPS = 48  # number of shades of land between the poles and the equator
-BANDS = [(0, (58, 110, 52)), (10, (84, 128, 58)), (18, (190, 160, 92)), (28, (206, 172, 104)), (38, (140, 150, 78)), (50, (96, 130, 70)),
-         (60, (84, 112, 74)), (68, (150, 160, 140)), (74, (228, 232, 232)), (90, (244, 246, 248))]
+BANDS = [(0, (58, 110, 52)), (10, (84, 128, 58)), (18, (190, 160, 92)), (28, (206, 172, 104)),
+         (38, (140, 150, 78)), (50, (96, 130, 70)), (60, (84, 112, 74)), (68, (150, 160, 140)),
+         (74, (228, 232, 232)), (90, (244, 246, 248))]
 
 
 def shade(latitude):
@@ -88,8 +93,11 @@ def earth(width=1024):
     rows = [[0] * width for _ in range(height)]
     fill(rows, polygons(LAND), 1)
     fill(rows, polygons(LAKES), 0)
-    ocean = [(24, 70, 116), (32, 84, 132), (44, 100, 148), (90, 140, 176), (16, 40, 62)]  # deep, middle, shore, lines, coast
-    palette = ocean + [shade(90 * i / (STEPS - 1)) for i in range(STEPS)] + [tuple(int(.72 * c) for c in shade(90 * i / (STEPS - 1))) for i in range(STEPS)]
+    ocean = [(24, 70, 116), (32, 84, 132), (44, 100, 148), (90, 140, 176),
+             (16, 40, 62)]  # deep, middle, shore, lines, coast
+    palette = ocean + [shade(90 * i / (STEPS - 1)) for i in range(STEPS)] + [
+        tuple(int(.72 * c) for c in shade(90 * i / (STEPS - 1))) for i in range(STEPS)
+    ]
     near = [rows]
     for _ in range(2):  # distance from the shore
         last = near[-1]
@@ -114,20 +122,31 @@ def earth(width=1024):
     for y in range(height):
         latitude = 90 - 180 * (y + .5) / height
         line = bytearray()
-        parallel = abs(latitude / 15 - round(latitude / 15)) * 15 < 90 / height and abs(latitude) < 80
+        parallel = abs(latitude / 15 -
+                       round(latitude / 15)) * 15 < 90 / height and abs(latitude) < 80
         for x in range(width):
             longitude = 360 * (x + .5) / width - 180
-            meridian = abs(longitude / 15 - round(longitude / 15)) * 15 < 90 / height and abs(latitude) < 80
-            step = min(STEPS - 1, int(abs(latitude + 4 * math.sin(longitude / 23) + 3 * math.sin(longitude / 9 + latitude / 7)) / 90 * STEPS))
+            meridian = abs(longitude / 15 -
+                           round(longitude / 15)) * 15 < 90 / height and abs(latitude) < 80
+            step = min(
+                STEPS - 1,
+                int(
+                    abs(latitude + 4 * math.sin(longitude / 23) +
+                        3 * math.sin(longitude / 9 + latitude / 7)) / 90 * STEPS))
             if rows[y][x]:
-                edge = not all(rows[min(max(y + b, 0), height - 1)][(x + a) % width] for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1)))
+                edge = not all(rows[min(max(y + b, 0), height - 1)][(x + a) % width]
+                               for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1)))
                 line.append(4 if edge else 5 + step + (STEPS if parallel or meridian else 0))
             else:
-                line.append(3 if parallel or meridian else 2 if near[1][y][x] else 1 if near[2][y][x] else 0)
+                line.append(3 if parallel or meridian else
+                            2 if near[1][y][x] else 1 if near[2][y][x] else 0)
         data += b"\0" + bytes(line)
 
     def chunk(kind, content):
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(
+            ">I", zlib.crc32(kind + content))
 
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0))
-            + chunk(b"PLTE", bytes(c for colour in palette for c in colour)) + chunk(b"IDAT", zlib.compress(data, 9)) + chunk(b"IEND", b""))
+    return (b"\x89PNG\r\n\x1a\n" +
+            chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)) +
+            chunk(b"PLTE", bytes(c for colour in palette for c in colour)) +
+            chunk(b"IDAT", zlib.compress(data, 9)) + chunk(b"IEND", b""))

@@ -9,21 +9,21 @@ from scenes.parts import curve, mesh, tube
 # back (crest) as (forward, up), and half of the width; measured in a drawing.
 SIDE = [
     # forward, up      back,  up    half width
-    (.20, .245,      -.205, .245,   .165),
-    (.20, .30,       -.215, .31,    .160),
-    (.165, .39,      -.225, .41,    .148),
-    (.12, .48,       -.215, .53,    .132),
-    (.085, .56,      -.185, .655,   .118),
-    (.07, .63,       -.14, .77,     .107),
-    (.07, .685,      -.08, .865,    .100),
-    (.085, .715,     -.01, .935,    .100),
-    (.11, .715,      .065, .955,    .108),
-    (.15, .69,       .13, .925,     .112),
-    (.185, .65,      .195, .875,    .104),
-    (.22, .605,      .255, .815,    .092),
-    (.255, .565,     .31, .755,     .082),
-    (.295, .535,     .36, .70,      .078),
-    (.33, .525,      .385, .65,     .072),
+    (.20, .245, -.205, .245, .165),
+    (.20, .30, -.215, .31, .160),
+    (.165, .39, -.225, .41, .148),
+    (.12, .48, -.215, .53, .132),
+    (.085, .56, -.185, .655, .118),
+    (.07, .63, -.14, .77, .107),
+    (.07, .685, -.08, .865, .100),
+    (.085, .715, -.01, .935, .100),
+    (.11, .715, .065, .955, .108),
+    (.15, .69, .13, .925, .112),
+    (.185, .65, .195, .875, .104),
+    (.22, .605, .255, .815, .092),
+    (.255, .565, .31, .755, .082),
+    (.295, .535, .36, .70, .078),
+    (.33, .525, .385, .65, .072),
 ]
 COLUMNS = 24
 
@@ -40,7 +40,7 @@ def knight_head():
             a = 2 * math.pi * i / COLUMNS
             c, s = math.cos(a), math.sin(a)  # c = 1: crest, s: sideways
             power = .8
-            cc, ss = math.copysign(abs(c) ** power, c), math.copysign(abs(s) ** power, s)
+            cc, ss = math.copysign(abs(c)**power, c), math.copysign(abs(s)**power, s)
             wide = half
             if t < .62 and c > 0:  # the neck narrows towards the mane
                 wide *= 1 - .45 * c * c * min(1.0, t * 4)
@@ -74,9 +74,11 @@ def add(points, faces, more):
 def ear(side):
     """Returns a leaf shape on the poll."""
     rows = []
-    for up, wide, deep in ((-.03, .03, .026), (.02, .036, .028), (.06, .03, .022), (.1, .014, .012), (.118, .004, .004)):
+    for up, wide, deep in ((-.03, .03, .026), (.02, .036, .028), (.06, .03, .022), (.1, .014, .012),
+                           (.118, .004, .004)):
         x, y, z = side * (.052 + up * .25), .925 + up, .0 - up * .35 - .02
-        rows.append([(x + wide * math.cos(a), y, z - deep * math.sin(a)) for a in (2 * math.pi * i / 10 for i in range(10))])
+        rows.append([(x + wide * math.cos(a), y, z - deep * math.sin(a))
+                     for a in (2 * math.pi * i / 10 for i in range(10))])
     return tube(rows)
 
 
@@ -84,6 +86,9 @@ def ball(centre, radius, n=10):
     rows = []
     for k in range(1, 6):
         a = -math.pi / 2 + math.pi * k / 6
-        rows.append([(centre[0] + radius * math.cos(a) * math.cos(b), centre[1] + radius * math.sin(a), centre[2] - radius * math.cos(a) * math.sin(b))
-                     for b in (2 * math.pi * i / n for i in range(n))])
+        rows.append([
+            (centre[0] + radius * math.cos(a) * math.cos(b), centre[1] + radius * math.sin(a),
+             centre[2] - radius * math.cos(a) * math.sin(b))
+            for b in (2 * math.pi * i / n for i in range(n))
+        ])
     return tube(rows)

@@ -31,7 +31,8 @@ def shape(appearance, geometry):
 
 def at(place, *children, turn=None):
     rotation = f" rotation {numbers(turn)}" if turn else ""
-    return f"Transform {{ translation {numbers(place)}{rotation} children [\n  " + "\n  ".join(children) + " ] }"
+    return f"Transform {{ translation {numbers(place)}{rotation} children [\n  " + "\n  ".join(
+        children) + " ] }"
 
 
 def box(*size):
@@ -41,21 +42,24 @@ def box(*size):
 def quad(a, b, c, d, solid=False):
     """Returns a quadrilateral that faces the side from which a b c d run counter-clockwise."""
     points = ", ".join(numbers(p) for p in (a, b, c, d))
-    return (f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'} coord Coordinate {{ point [ {points} ] }} "
-            "coordIndex [ 0 1 2 3 ] }")
+    return (
+        f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'} coord Coordinate {{ point [ {points} ] }} "
+        "coordIndex [ 0 1 2 3 ] }")
 
 
 def lathe(profile, steps=48, crease=0.6, solid=False, up=False):
     """Returns the surface that a curve of points (distance from the axis, position along it) sweeps
     about +z, or +y: an Extrusion along a circle. With the axis on the left and the curve followed
     from its first point to its last, the outside is on its left."""
-    circle = [(math.cos(2 * math.pi * i / steps), math.sin(2 * math.pi * i / steps), 0) for i in range(steps)]
+    circle = [(math.cos(2 * math.pi * i / steps), math.sin(2 * math.pi * i / steps), 0)
+              for i in range(steps)]
     if up:
         circle = [(x, 0, -y) for x, y, _ in circle]
     spine = ", ".join(numbers(p) for p in circle + circle[:1])
     section = ", ".join(numbers((r - 1, z)) for r, z in profile)
-    return (f"Extrusion {{ beginCap FALSE endCap FALSE solid {'TRUE' if solid else 'FALSE'} creaseAngle {crease}\n"
-            f"    spine [ {spine} ]\n    crossSection [ {section} ] }}")
+    return (
+        f"Extrusion {{ beginCap FALSE endCap FALSE solid {'TRUE' if solid else 'FALSE'} creaseAngle {crease}\n"
+        f"    spine [ {spine} ]\n    crossSection [ {section} ] }}")
 
 
 def mesh(points, faces, crease=0.0, solid=True, extra=""):
@@ -63,8 +67,9 @@ def mesh(points, faces, crease=0.0, solid=True, extra=""):
     from outside."""
     listed = ", ".join(numbers(p) for p in points)
     indices = " ".join(" ".join(str(i) for i in face) + " -1" for face in faces)
-    return (f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'} creaseAngle {number(crease)} {extra}\n"
-            f"    coord Coordinate {{ point [ {listed} ] }}\n    coordIndex [ {indices} ] }}")
+    return (
+        f"IndexedFaceSet {{ solid {'TRUE' if solid else 'FALSE'} creaseAngle {number(crease)} {extra}\n"
+        f"    coord Coordinate {{ point [ {listed} ] }}\n    coordIndex [ {indices} ] }}")
 
 
 def tube(rows, closed_rings=True, caps=True):
@@ -83,7 +88,8 @@ def tube(rows, closed_rings=True, caps=True):
             points.append(tuple(sum(p[a] for p in rows[k]) / n for a in range(3)))
             for i in range(n):
                 j = (i + 1) % n
-                faces.append((middle, k * n + i, k * n + j) if turn > 0 else (middle, k * n + j, k * n + i))
+                faces.append((middle, k * n + i, k * n + j) if turn > 0 else (middle, k * n + j,
+                                                                              k * n + i))
     return points, faces
 
 
@@ -92,23 +98,30 @@ def curve(points, steps=6):
     repeated end points, which suffices for profiles."""
     line = []
     for i in range(len(points) - 1):
-        a, b, c, d = points[max(i - 1, 0)], points[i], points[i + 1], points[min(i + 2, len(points) - 1)]
+        a, b, c, d = points[max(i - 1,
+                                0)], points[i], points[i + 1], points[min(i + 2,
+                                                                          len(points) - 1)]
         for s in range(steps):
             t = s / steps
-            line.append(tuple(q + t / 2 * (r - p + t * (2 * p - 5 * q + 4 * r - s3 + t * (3 * (q - r) + s3 - p)))
-                              for p, q, r, s3 in zip(a, b, c, d)))
+            line.append(
+                tuple(q + t / 2 * (r - p + t * (2 * p - 5 * q + 4 * r - s3 + t *
+                                                (3 * (q - r) + s3 - p)))
+                      for p, q, r, s3 in zip(a, b, c, d)))
     return line + [tuple(points[-1])]
 
 
 def arc(x, y, rx, ry, start, end, steps=8):
     """Returns points of an ellipse about (x, y); angles in degrees."""
     return [(x + rx * math.cos(math.radians(start + (end - start) * i / steps)),
-             y + ry * math.sin(math.radians(start + (end - start) * i / steps))) for i in range(steps + 1)]
+             y + ry * math.sin(math.radians(start + (end - start) * i / steps)))
+            for i in range(steps + 1)]
 
 
 def world(title, view, *parts):
-    return (HEADER + f'WorldInfo {{ title "{title}" }}\nNavigationInfo {{ type "EXAMINE" headlight FALSE }}\n{view}\n'
-            + "\n".join(parts) + "\n")
+    return (
+        HEADER +
+        f'WorldInfo {{ title "{title}" }}\nNavigationInfo {{ type "EXAMINE" headlight FALSE }}\n{view}\n'
+        + "\n".join(parts) + "\n")
 
 
 def viewpoint(position, target, angle, kind="Viewpoint", extra=""):

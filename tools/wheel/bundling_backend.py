@@ -18,8 +18,8 @@ from scikit_build_core.build import *
 from scikit_build_core import build as _build
 
 # Libraries that exist wherever a Python for glibc runs.
-_SYSTEM = ("libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libutil.so", "libresolv.so", "libnsl.so",
-           "ld-linux", "libgcc_s.so", "libstdc++.so")
+_SYSTEM = ("libc.so", "libm.so", "libdl.so", "libpthread.so", "librt.so", "libutil.so",
+           "libresolv.so", "libnsl.so", "ld-linux", "libgcc_s.so", "libstdc++.so")
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
@@ -28,8 +28,13 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         out = pathlib.Path(plain) / "bundled"
         # Runs in a process of its own: it changes auditwheel's policies, and auditwheel logs
         # through the root logger.
-        subprocess.run([sys.executable, __file__, str(pathlib.Path(plain) / name), str(out)], check=True,
-                       env={**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)})
+        subprocess.run([sys.executable, __file__,
+                        str(pathlib.Path(plain) / name),
+                        str(out)],
+                       check=True,
+                       env={
+                           **os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)
+                       })
         made, = out.glob("*.whl")
         target = pathlib.Path(wheel_directory) / made.name
         target.write_bytes(made.read_bytes())

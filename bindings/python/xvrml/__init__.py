@@ -25,8 +25,9 @@ from . import _arguments, _world
 from . import _xvrml
 from ._camera import Pinhole
 from ._world import loads
-from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError, Picture, RenderError, ViewpointInfo,
-                     Worker, World, load_node_plugins, __version__)
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError,
+                     Picture, RenderError, ViewpointInfo, Worker, World, load_node_plugins,
+                     __version__)
 
 load = _arguments.explained(_xvrml.load)
 for _class in (World, Browser, Cluster, Film, Node, Picture):
@@ -39,8 +40,11 @@ for _line in load_node_plugins():
 from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have classes too
 from .nodes import *  # noqa: E402,F401,F403
 
-__all__ = ["Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError", "Picture", "Pinhole", "RenderError",
-           "ViewpointInfo", "Worker", "World", "load", "load_node_plugins", "loads", "__version__", *nodes.__all__]
+__all__ = [
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError",
+    "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
+    "load_node_plugins", "loads", "__version__", *nodes.__all__
+]
 
 _SUBMODULES = ("dask", "interop", "rt")
 
@@ -53,11 +57,13 @@ def __getattr__(name):
         try:
             return _importlib.import_module(f".{name}", __name__)
         except ModuleNotFoundError as error:
-            raise AttributeError(f"xvrml.{name} needs the package {error.name}, which is not installed") from error
+            raise AttributeError(
+                f"xvrml.{name} needs the package {error.name}, which is not installed") from error
     try:
         return getattr(nodes, name)
     except AttributeError:
         known = [*__all__, *_SUBMODULES, "nodes"]
-        near = _difflib.get_close_matches(name, known, 1) or [k for k in known if k.lower() == name.lower()]
+        near = _difflib.get_close_matches(name, known,
+                                          1) or [k for k in known if k.lower() == name.lower()]
         hint = f"; did you mean {near[0]}?" if near else ""
         raise AttributeError(f"module xvrml has no attribute {name}{hint}") from None

@@ -13,8 +13,18 @@ _OPTIONAL = r"(?:Optional|typing\.Optional)\[(.*)\]"
 _LIST = r"(?:List|list|Sequence)\[([\w.]+)(?:\[(\d+)\])?\]"
 _PAIR = r"(?:Tuple|tuple)\[int, int\]"
 _MANY = {"int": "whole numbers", "float": "numbers", "str": "texts"}
-_WORDS = {"int": "a whole number", "float": "a number", "str": "a text", "bool": "True or False", "object": "any object",
-          "dict": "a dict", "list": "a list", "tuple": "a tuple", "bytes": "bytes", "None": "None"}
+_WORDS = {
+    "int": "a whole number",
+    "float": "a number",
+    "str": "a text",
+    "bool": "True or False",
+    "object": "any object",
+    "dict": "a dict",
+    "list": "a list",
+    "tuple": "a tuple",
+    "bytes": "bytes",
+    "None": "None"
+}
 
 
 def _split(text):
@@ -75,7 +85,8 @@ def _fits(value, kind):
     several = re.fullmatch(_LIST, kind)
     if several or re.fullmatch(_PAIR, kind):
         try:
-            good = not isinstance(value, (str, bytes, dict)) and all(_fits(v, several[1] if several else "int") for v in value)
+            good = not isinstance(value, (str, bytes, dict)) and all(
+                _fits(v, several[1] if several else "int") for v in value)
             return good and len(value) == int(several[2] or len(value) if several else 2)
         except TypeError:
             return False
@@ -98,7 +109,8 @@ def _fits(value, kind):
 def _short(value):
     text = repr(value)
     text = text if len(text) <= 40 else text[:37] + "..."
-    return text if value is None or isinstance(value, bool) else f"the {type(value).__name__} {text}"
+    return text if value is None or isinstance(value,
+                                               bool) else f"the {type(value).__name__} {text}"
 
 
 def sentence(function, args, kwargs):
@@ -114,7 +126,8 @@ def sentence(function, args, kwargs):
     for given in kwargs:
         if given not in names:
             near = difflib.get_close_matches(given, shown, 1)
-            return f"{name}(): there is no argument {given}" + (f"; did you mean {near[0]}?" if near else f" (there are: {', '.join(shown)})")
+            return f"{name}(): there is no argument {given}" + (
+                f"; did you mean {near[0]}?" if near else f" (there are: {', '.join(shown)})")
     for position, value in enumerate(args):
         if position >= len(order):
             return f"{name}(): {len(args)} arguments were given, at most {len(order)} can be; the rest go by name"
@@ -123,17 +136,21 @@ def sentence(function, args, kwargs):
     for given, value in kwargs.items():
         if not _fits(value, names[given]):
             return f"{name}(): {given}: {_describe(names[given])} expected, not {_short(value)}"
-    missing = [n for n in order[len(args):] if n not in kwargs and n not in optional and n != "self"]
+    missing = [
+        n for n in order[len(args):] if n not in kwargs and n not in optional and n != "self"
+    ]
     if missing:
         return f"{name}(): {' and '.join(missing)} must be given"
     for given, value in [*zip(order, args), *kwargs.items()]:  # the types are right
-        for one in [value] if names[given] in ("int", "Optional[int]") else value if re.fullmatch(_PAIR, names[given]) else []:
+        for one in [value] if names[given] in (
+                "int", "Optional[int]") else value if re.fullmatch(_PAIR, names[given]) else []:
             if one is not None and abs(operator.index(one)) >= 1 << 31:
                 return f"{name}(): {given}: a number nearer to 0 expected, not {_short(one)}"
     return f"{name}(): the arguments do not fit {name}({', '.join(shown)})"
 
 
 def _wrapped(function):
+
     @functools.wraps(function)
     def call(*args, **kwargs):
         try:
@@ -160,20 +177,25 @@ def _wrapped_setter(cls, name, setter):
         except TypeError as error:
             if not kind or "incompatible" not in str(error):
                 raise
-        raise TypeError(f"{cls.__name__}.{name}: {_describe(kind[1])} expected, not {_short(value)}")
+        raise TypeError(
+            f"{cls.__name__}.{name}: {_describe(kind[1])} expected, not {_short(value)}")
 
     return assign
 
 
 def _compiled(value):
-    return type(value).__name__ in ("instancemethod", "builtin_function_or_method") or isinstance(value, types.BuiltinFunctionType)
+    return type(value).__name__ in ("instancemethod", "builtin_function_or_method") or isinstance(
+        value, types.BuiltinFunctionType)
 
 
 def explain_class(cls):
     """Wraps the compiled methods and property setters of a class."""
     for name, value in list(vars(cls).items()):
         if isinstance(value, property) and value.fset and _compiled(value.fset):
-            setattr(cls, name, property(value.fget, _wrapped_setter(cls, name, value.fset), value.fdel, value.__doc__))
+            setattr(
+                cls, name,
+                property(value.fget, _wrapped_setter(cls, name, value.fset), value.fdel,
+                         value.__doc__))
         if name in ("__new__", "__getattr__", "__setattr__") or not _compiled(value):
             continue
         setattr(cls, name, _wrapped(inspect.unwrap(getattr(cls, name))))
@@ -209,7 +231,8 @@ def whole(name, value, low=1, high=None):
     except TypeError:
         raise TypeError(f"{name}: a whole number expected, not {_short(value)}") from None
     if made < low or (high is not None and made > high):
-        span = "above 0" if (low, high) == (1, None) else f"from {low} on" if high is None else f"from {low} to {high}"
+        span = "above 0" if (low, high) == (
+            1, None) else f"from {low} on" if high is None else f"from {low} to {high}"
         raise ValueError(f"{name}: a whole number {span} expected, not {made}")
     return made
 
@@ -223,7 +246,8 @@ def _expected(shape):
     sides = [str(side) if side is not None else "n" for side in shape if side is not ...]
     if shape[0] is ...:
         return f"numbers of shape (..., {', '.join(sides)})"
-    return f"{sides[0]} numbers" if len(sides) == 1 and shape[0] else f"numbers of shape ({', '.join(sides)})"
+    return f"{sides[0]} numbers" if len(
+        sides) == 1 and shape[0] else f"numbers of shape ({', '.join(sides)})"
 
 
 def array(name, value, shape):
@@ -239,7 +263,8 @@ def array(name, value, shape):
         raise TypeError(f"{name}: {_expected(shape)} expected, not {_short(value)}") from None
     wanted = [side for side in shape if side is not ...]
     last = found.shape[found.ndim - len(wanted):] if found.ndim >= len(wanted) else None
-    if last is None or (shape[0] is not ... and found.ndim != len(wanted)) or any(w not in (None, n) for w, n in zip(wanted, last)):
+    if last is None or (shape[0] is not ... and found.ndim != len(wanted)) or any(
+            w not in (None, n) for w, n in zip(wanted, last)):
         raise ValueError(f"{name}: {_expected(shape)} expected, not of shape {found.shape}")
     return found
 

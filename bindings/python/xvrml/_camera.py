@@ -52,7 +52,8 @@ class Pinhole:
         self._K = _matrix("K", K, 3, 3)
         k = self._K
         if not (k[0, 0] > 0 and k[1, 1] > 0) or k[1, 0] != 0 or not np.array_equal(k[2], [0, 0, 1]):
-            raise ValueError("K: [[fx, s, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0 expected")
+            raise ValueError(
+                "K: [[fx, s, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0 expected")
         self._T = np.eye(4) if T is None else _rigid("T", T)
         self._center = _arguments.number("center", center)
         for matrix in (self._K, self._T):
@@ -108,7 +109,8 @@ class Pinhole:
         width, height = _arguments.whole("width", width), _arguments.whole("height", height)
         column, row = np.meshgrid(np.arange(width) + self._center, np.arange(height) + self._center)
         pose = self.pose
-        directions = np.stack([column, row, np.ones_like(column)], -1) @ (pose[:3, :3] @ np.linalg.inv(self._K)).T
+        directions = np.stack([column, row, np.ones_like(column)],
+                              -1) @ (pose[:3, :3] @ np.linalg.inv(self._K)).T
         rays = np.empty((height, width, 6), np.float32)
         rays[..., :3] = pose[:3, 3]
         rays[..., 3:] = directions
@@ -124,7 +126,8 @@ class Pinhole:
         """Returns [fx, fy, cx, cy, s] and the pose row by row. cx and cy are measured from the
         picture's left and upper edges."""
         k, edge = self._K, 0.5 - self._center
-        return [k[0, 0], k[1, 1], k[0, 2] + edge, k[1, 2] + edge, k[0, 1]], self.pose.ravel().tolist()
+        return [k[0, 0], k[1, 1], k[0, 2] + edge, k[1, 2] + edge, k[0,
+                                                                    1]], self.pose.ravel().tolist()
 
 
 def _again(K, T, center):
@@ -138,4 +141,5 @@ def _of(columns, fovy, width, height):
     pose = np.array(columns, np.float64).reshape(4, 4).T
     pose[:3, 1:3] *= -1
     focal = height / 2 / np.tan(fovy / 2)
-    return Pinhole.from_pose([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]], pose)
+    return Pinhole.from_pose([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]],
+                             pose)

@@ -7,6 +7,7 @@ _SECONDS = 5  # seconds between two lines of a log
 
 
 class Bar:
+
     def __init__(self, stream=None, width=30):
         self._stream = stream or sys.stderr
         self._width = width
@@ -21,10 +22,12 @@ class Bar:
         left = f"{seconds / done - seconds:.0f} s left" if done > 0.02 else ""
         if self._terminal:
             full = int(self._width * min(max(done, 0), 1))
-            self._stream.write(f"\r[{'#' * full}{'.' * (self._width - full)}] {100 * done:3.0f} %  {left:<12}")
+            self._stream.write(
+                f"\r[{'#' * full}{'.' * (self._width - full)}] {100 * done:3.0f} %  {left:<12}")
         elif now >= self._next:
             self._next = now + _SECONDS
-            self._stream.write(f"xvrml: {100 * done:.0f} %, {seconds:.0f} s{', ' + left if left else ''}\n")
+            self._stream.write(
+                f"xvrml: {100 * done:.0f} %, {seconds:.0f} s{', ' + left if left else ''}\n")
         else:
             return
         self._stream.flush()

@@ -22,8 +22,12 @@ def loads(text, path="<memory>", *, limits=None, allow_absolute=False):
     that the text stands for; relative URLs are resolved against it. Raises ParseError."""
     from ._xvrml import load
     if not isinstance(text, (str, bytes, bytearray, memoryview)):
-        raise TypeError(f"loads(): text: a str or bytes expected, not the {type(text).__name__} {text!r}; load() takes files")
-    return load(_Text(text if isinstance(text, str) else bytes(text), str(path)), limits=limits, allow_absolute=allow_absolute)
+        raise TypeError(
+            f"loads(): text: a str or bytes expected, not the {type(text).__name__} {text!r}; load() takes files"
+        )
+    return load(_Text(text if isinstance(text, str) else bytes(text), str(path)),
+                limits=limits,
+                allow_absolute=allow_absolute)
 
 
 def _reduce(self):
@@ -31,7 +35,9 @@ def _reduce(self):
     path. The copy's clock starts again."""
     from ._xvrml import Browser
     if isinstance(self, Browser):
-        raise TypeError("a Browser cannot be pickled: it runs; pickle the World that it was made from, or its to_vrml()")
+        raise TypeError(
+            "a Browser cannot be pickled: it runs; pickle the World that it was made from, or its to_vrml()"
+        )
     return loads, (self.to_vrml(), self.path)
 
 
@@ -43,7 +49,8 @@ def _end(world, end):
             raise ValueError(f"'NAME.event' expected, not {end!r}")
         return world[name], event
     if not isinstance(end, (tuple, list)) or len(end) != 2:
-        raise TypeError(f"'NAME.event' or a tuple (node, 'event') expected, not {_arguments._short(end)}")
+        raise TypeError(
+            f"'NAME.event' or a tuple (node, 'event') expected, not {_arguments._short(end)}")
     return tuple(end)
 
 
@@ -73,7 +80,8 @@ def unroute(self, source, target):
 def _times(name, start, stop, fps):
     """Returns the numbers of the first picture and of the one after the last, at fps pictures per
     second."""
-    start, stop = _arguments.number(f"{name}: start", start), _arguments.number(f"{name}: stop", stop)
+    start, stop = _arguments.number(f"{name}: start",
+                                    start), _arguments.number(f"{name}: stop", stop)
     fps = _arguments.number(f"{name}: fps", fps, above=0)
     if stop < start:
         raise ValueError(f"{name}: stop={stop:g} is before start={start:g}")
@@ -83,7 +91,8 @@ def _times(name, start, stop, fps):
 def _pictures(self, first, end, fps, options):
     step = math.ceil(self.time * fps - 1e-9)  # the first step that is not in the past
     if first < step:
-        raise ValueError(f"the world's time is {self.time} already: it does not go back to {first / fps}")
+        raise ValueError(
+            f"the world's time is {self.time} already: it does not go back to {first / fps}")
     for number in range(first, end):
         for between in range(step, number + 1):
             self.time = max(between / fps, self.time)

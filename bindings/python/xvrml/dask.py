@@ -23,7 +23,17 @@ from . import Browser, World
 __all__ = ["render_frames"]
 
 
-def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, in_flight=None, threads=1, browser=None, **options):
+def render_frames(world,
+                  times,
+                  client=None,
+                  *,
+                  out=None,
+                  fps=30.0,
+                  retries=3,
+                  in_flight=None,
+                  threads=1,
+                  browser=None,
+                  **options):
     """Renders the world at each of these times (seconds of its clock) on a Dask cluster, in order.
 
     world      a path that every Dask worker can read; or bytes or an xvrml.World, which are sent to
@@ -46,8 +56,10 @@ def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, i
         try:
             from distributed import get_client
         except ModuleNotFoundError as error:
-            raise ModuleNotFoundError(f"render_frames() without a client needs the package {error.name}, which is not installed: "
-                                      "pip install xvrml[dask]", name=error.name) from None
+            raise ModuleNotFoundError(
+                f"render_frames() without a client needs the package {error.name}, which is not installed: "
+                "pip install xvrml[dask]",
+                name=error.name) from None
         client = get_client()
     times, fps, suffix = list(times), float(fps), None
     if not fps > 0:
@@ -58,7 +70,8 @@ def render_frames(world, times, client=None, *, out=None, fps=30.0, retries=3, i
         suffix = pathlib.Path(str(out)).suffix
         if len(times) > 1 and str(out).format(frame=0) == str(out).format(frame=1):
             raise ValueError("out: a path with {frame} in it expected, not " + str(out))
-    frames = _frames(_source(world), times, client, suffix, fps, int(retries), in_flight, dict(options, threads=threads), browser or {})
+    frames = _frames(_source(world), times, client, suffix, fps, int(retries), in_flight,
+                     dict(options, threads=threads), browser or {})
     if out is None:
         return frames
     paths = []
@@ -78,8 +91,17 @@ def _frames(source, times, client, suffix, fps, retries, in_flight, options, bro
     try:
         while waiting or out_there:
             while waiting and len(out_there) < most:
-                out_there.append(client.submit(_render, source, waiting.popleft(), fps, suffix, options, browser, retries=retries,
-                                               pure=False, key=None))
+                out_there.append(
+                    client.submit(_render,
+                                  source,
+                                  waiting.popleft(),
+                                  fps,
+                                  suffix,
+                                  options,
+                                  browser,
+                                  retries=retries,
+                                  pure=False,
+                                  key=None))
             yield out_there[0].result()
             out_there.popleft()  # the cluster forgets the result together with the future
     finally:

@@ -8,6 +8,7 @@ from . import World
 
 _Source = Union[str, bytes, "os.PathLike[str]", World]
 
+
 @overload
 def render_frames(
     world: _Source,
@@ -21,7 +22,10 @@ def render_frames(
     threads: int = ...,
     browser: Optional[Mapping[str, Any]] = ...,
     **options: Any,
-) -> Iterator[npt.NDArray[np.float32]]: ...
+) -> Iterator[npt.NDArray[np.float32]]:
+    ...
+
+
 @overload
 def render_frames(
     world: _Source,
@@ -35,4 +39,5 @@ def render_frames(
     threads: int = ...,
     browser: Optional[Mapping[str, Any]] = ...,
     **options: Any,
-) -> List[str]: ...
+) -> List[str]:
+    ...

@@ -14,7 +14,11 @@ def from_trimesh(mesh, color=None):
     each of its nodes."""
     import xvrml
     if hasattr(mesh, "graph") and hasattr(mesh, "geometry"):
-        shapes = {name: from_trimesh(one, color) for name, one in mesh.geometry.items() if hasattr(one, "faces")}
+        shapes = {
+            name: from_trimesh(one, color)
+            for name, one in mesh.geometry.items()
+            if hasattr(one, "faces")
+        }
         group = xvrml.Group()
         children = []
         for name in mesh.graph.nodes_geometry:
@@ -25,14 +29,17 @@ def from_trimesh(mesh, color=None):
             if np.linalg.det(matrix[:3, :3]) > 0:
                 children.append(_placed(shapes[geometry], matrix))
             else:  # a Transform cannot mirror
-                children.append(from_trimesh(mesh.geometry[geometry].copy().apply_transform(matrix), color))
+                children.append(
+                    from_trimesh(mesh.geometry[geometry].copy().apply_transform(matrix), color))
         group.children = children
         return group
     faces = np.asarray(mesh.faces)
     index = np.full((len(faces), 4), -1, np.int32)
     index[:, :3] = faces
-    geometry = xvrml.IndexedFaceSet(coord=xvrml.Coordinate(point=np.asarray(mesh.vertices, np.float32)), coordIndex=index.ravel(),
-                                    solid=bool(mesh.is_watertight))
+    geometry = xvrml.IndexedFaceSet(
+        coord=xvrml.Coordinate(point=np.asarray(mesh.vertices, np.float32)),
+        coordIndex=index.ravel(),
+        solid=bool(mesh.is_watertight))
     visual = getattr(mesh, "visual", None)
     if color is None and getattr(visual, "kind", None) == "vertex":
         geometry.color = xvrml.Color(color=np.asarray(visual.vertex_colors)[:, :3] / 255)
@@ -53,7 +60,10 @@ def _placed(shape, matrix):
     if np.linalg.det(vt) < 0:
         vt, u = -vt, -u
     rotation = u @ vt
-    return xvrml.Transform(translation=matrix[:3, 3], rotation=_axis_angle(rotation), scale=s, scaleOrientation=_axis_angle(vt.T),
+    return xvrml.Transform(translation=matrix[:3, 3],
+                           rotation=_axis_angle(rotation),
+                           scale=s,
+                           scaleOrientation=_axis_angle(vt.T),
                            children=[shape])
 
 
@@ -85,18 +95,24 @@ def to_trimesh(world, spheres=32):
     import trimesh
     scene = trimesh.Scene()
     for mesh in _meshes(world, spheres):
-        made = trimesh.Trimesh(mesh.vertices, mesh.faces if mesh.ccw else mesh.faces[:, ::-1], process=False)
+        made = trimesh.Trimesh(mesh.vertices,
+                               mesh.faces if mesh.ccw else mesh.faces[:, ::-1],
+                               process=False)
         color = _color(mesh)
-        made.visual.vertex_colors = (np.clip(mesh.colors if mesh.colors is not None else np.tile(color, (len(mesh.vertices), 1)), 0, 1)
-                                     * 255).astype(np.uint8)
+        made.visual.vertex_colors = (np.clip(
+            mesh.colors if mesh.colors is not None else np.tile(color,
+                                                                (len(mesh.vertices), 1)), 0, 1) *
+                                     255).astype(np.uint8)
         scene.add_geometry(made, node_name=mesh.node.def_name or None, transform=mesh.matrix)
     return scene
 
 
 def _color(mesh):
     appearance = mesh.node.appearance
-    material = appearance.material if appearance is not None and hasattr(appearance, "material") else None
-    return material.diffuseColor if material is not None and hasattr(material, "diffuseColor") else (0.8, 0.8, 0.8)
+    material = appearance.material if appearance is not None and hasattr(appearance,
+                                                                         "material") else None
+    return material.diffuseColor if material is not None and hasattr(
+        material, "diffuseColor") else (0.8, 0.8, 0.8)
 
 
 def to_pyvista(world, spheres=32):
@@ -123,7 +139,8 @@ def to_pil(image):
 def from_pil(image):
     """Returns a PixelTexture made from a PIL.Image."""
     import xvrml
-    pixels = np.asarray(image if image.mode in ("L", "LA", "RGB", "RGBA") else image.convert("RGBA"))
+    pixels = np.asarray(image if image.mode in ("L", "LA", "RGB",
+                                                "RGBA") else image.convert("RGBA"))
     return xvrml.PixelTexture(image=pixels)
 
 

@@ -21,7 +21,10 @@ from ._camera import Pinhole, _matrix, _rigid
 from ._xvrml import rt as _rt
 from ._xvrml.rt import Context, Error, Instance, Light, Object, Shader, Texture
 
-__all__ = ["Context", "Error", "Instance", "Light", "Object", "Raycaster", "Shader", "Texture", "create_rays_pinhole"]
+__all__ = [
+    "Context", "Error", "Instance", "Light", "Object", "Raycaster", "Shader", "Texture",
+    "create_rays_pinhole"
+]
 
 for _class in (Context, Instance, Light, Object, Shader, Texture):
     _arguments.explain_class(_class)
@@ -86,7 +89,9 @@ class Raycaster:
     def add_mesh(self, mesh):
         """Adds an xvrml.Mesh at its place. Returns its number, or None for lines and points."""
         if not hasattr(mesh, "kind"):
-            raise TypeError(f"add_mesh(): mesh: a Mesh of World.meshes() expected, not {_arguments._short(mesh)}")
+            raise TypeError(
+                f"add_mesh(): mesh: a Mesh of World.meshes() expected, not {_arguments._short(mesh)}"
+            )
         if mesh.kind == "sphere":
             thing, kept = self._context.sphere(mesh.radius), None
         elif mesh.kind == "triangles":
@@ -123,14 +128,15 @@ class Raycaster:
     def list_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
         """Returns all hits, nearest first: the arrays of cast_rays, of shape (n,), and ray_ids and
         ray_splits. The hits of ray i are ray_splits[i] to ray_splits[i + 1]."""
-        return self._numbered(self._context.list_intersections(rays, tnear=tnear, tfar=tfar), (*_FIVE[:4], "primitive_normals", "ray_ids",
-                                                                                              "ray_splits"))
+        return self._numbered(self._context.list_intersections(rays, tnear=tnear, tfar=tfar),
+                              (*_FIVE[:4], "primitive_normals", "ray_ids", "ray_splits"))
 
     def compute_closest_points(self, query_points, nthreads=0, *, radius=np.inf):
         """Returns the surface points nearest to points (..., 3), as a dict of points, distances,
         geometry_ids, primitive_ids, primitive_uvs and primitive_normals. radius: maximum distance;
         NaN and INVALID_ID if no surface is that near."""
-        return self._numbered(self._context.compute_closest_points(query_points, radius=radius), ("points", "distances", *_FIVE[1:]))
+        return self._numbered(self._context.compute_closest_points(query_points, radius=radius),
+                              ("points", "distances", *_FIVE[1:]))
 
     def compute_distance(self, query_points, nthreads=0):
         """Returns the distances from points (..., 3) to the nearest surface."""
@@ -140,7 +146,8 @@ class Raycaster:
         """Returns 1 for points (..., 3) inside closed surfaces, otherwise 0. A point is inside if a
         ray from it crosses an odd number of surfaces. nsamples: rays per point, an odd number; the
         majority decides."""
-        points = _arguments.numbers("query_points", query_points, (..., 3), finite=False).astype(np.float32)
+        points = _arguments.numbers("query_points", query_points, (..., 3),
+                                    finite=False).astype(np.float32)
         nsamples = _arguments.whole("nsamples", nsamples, 1, 65535)
         votes = np.zeros(points.shape[:-1], np.int32)
         directions = np.random.default_rng(0).normal(size=(nsamples, 3)).astype(np.float32)
@@ -154,7 +161,8 @@ class Raycaster:
         inside = self.compute_occupancy(query_points, nsamples=nsamples) > 0
         return np.where(inside, -1, 1).astype(np.float32) * self.compute_distance(query_points)
 
-    create_rays_pinhole = staticmethod(lambda *args, **options: create_rays_pinhole(*args, **options))
+    create_rays_pinhole = staticmethod(
+        lambda *args, **options: create_rays_pinhole(*args, **options))
 
 
 def create_rays_pinhole(*args, **options):
@@ -168,10 +176,12 @@ def create_rays_pinhole(*args, **options):
     to camera (4x4); camera x points to the right, y down, z forward. The middle of a picture is at
     (width_px / 2, height_px / 2), as in Open3D.
     """
-    by_matrices = any(name in options for name in _BY_MATRICES[:2]) or (
-        len(args) > 0 and hasattr(args[0], "__len__") and not isinstance(args[0], (str, bytes)))
+    by_matrices = any(name in options for name in _BY_MATRICES[:2]) or (len(args) > 0 and hasattr(
+        args[0], "__len__") and not isinstance(args[0], (str, bytes)))
     if not args and not options:
-        raise TypeError(f"create_rays_pinhole(): {', '.join(_BY_VIEW)} must be given, or {', '.join(_BY_MATRICES)}")
+        raise TypeError(
+            f"create_rays_pinhole(): {', '.join(_BY_VIEW)} must be given, or {', '.join(_BY_MATRICES)}"
+        )
     names = _BY_MATRICES if by_matrices else _BY_VIEW
     given = dict(zip(names, args))
     for name in options:
@@ -180,7 +190,9 @@ def create_rays_pinhole(*args, **options):
             raise TypeError(f"create_rays_pinhole(): {name} {wrong}")
     given.update(options)
     if len(args) > len(names):
-        raise TypeError(f"create_rays_pinhole(): {len(args)} arguments were given, at most {len(names)} can be: {', '.join(names)}")
+        raise TypeError(
+            f"create_rays_pinhole(): {len(args)} arguments were given, at most {len(names)} can be: {', '.join(names)}"
+        )
     missing = [name for name in names if name not in given]
     if missing:
         raise TypeError(f"create_rays_pinhole(): {', '.join(missing)} must be given")
@@ -202,16 +214,22 @@ def _rays_of_matrices(intrinsic_matrix, extrinsic_matrix, width_px, height_px):
 def _rays_of_view(fov_deg, center, eye, up, width_px, height_px):
     fov_deg = _arguments.number("create_rays_pinhole(): fov_deg", fov_deg, above=0)
     if fov_deg >= 180:
-        raise ValueError(f"create_rays_pinhole(): fov_deg: an angle between 0 and 180 degrees expected, not {fov_deg:g}")
+        raise ValueError(
+            f"create_rays_pinhole(): fov_deg: an angle between 0 and 180 degrees expected, not {fov_deg:g}"
+        )
     eye, center, up = (_arguments.numbers(f"create_rays_pinhole(): {name}", value, (3,))
                        for name, value in (("eye", eye), ("center", center), ("up", up)))
     distance = np.linalg.norm(center - eye)
     if not distance > 0:
-        raise ValueError("create_rays_pinhole(): eye and center are the same point: a direction of view expected")
+        raise ValueError(
+            "create_rays_pinhole(): eye and center are the same point: a direction of view expected"
+        )
     ahead = (center - eye) / distance
     right = np.cross(ahead, up)
     if not np.linalg.norm(right) > 1e-9 * np.linalg.norm(up):
-        raise ValueError("create_rays_pinhole(): up: a direction across the view expected, not one along it, nor 0 0 0")
+        raise ValueError(
+            "create_rays_pinhole(): up: a direction across the view expected, not one along it, nor 0 0 0"
+        )
     right /= np.linalg.norm(right)
     down = np.cross(ahead, right)
     size = 2 * np.tan(np.radians(fov_deg) / 2) / width_px

@@ -1,0 +1,246 @@
+"""Tests that Python renders worlds: pictures, channels, options, threads, interruption."""
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+np = pytest.importorskip("numpy")
+xvrml = pytest.importorskip("xvrml")
+
+
+def test_render_by_transport(box):
+    world = xvrml.load(box)
+    assert world.render(size=(8, 6), spp=1).stats["transport"] == "direct"
+    for transport in ("direct", "whitted", "path"):
+        stats = world.render(size=(8, 6), spp=1, transport=transport, clamp=2).stats
+        assert stats["transport"] == transport and stats["transport_reason"]
+        assert set(stats["left_out"]) == {
+            "cut_by_depth", "cut_by_energy", "clipped", "unreached_lights", "shader_faults",
+            "wrong_hits", "rejected_rays"
+        }  # fmt: skip
+        assert stats["transport_leaves_out"] == ([] if transport == "path" else ["interreflection"])
+    stats = world.render(size=(8, 6), spp=32, channels=["rgba", "error"]).stats
+    assert stats["error_mean"] >= 0 and stats["error_mean_interval"] >= 0
+    for wrong in ({
+            "transport": "paths"
+    }, {
+            "error": 2
+    }, {
+            "time_limit": -1
+    }, {
+            "clamp": float("nan")
+    }):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            world.render(size=(8, 6), **wrong)
+
+
+def test_render(box):
+    w = xvrml.load(box)
+    p = w.render(size=(40, 30), spp=2)
+    assert p.shape == (30, 40, 4) and p.array.shape == p.shape and p.array.dtype == np.float32
+    assert np.asarray(p).shape == p.shape and np.array(p, dtype=np.float64).dtype == np.float64
+    assert p[15, 20].tolist() == p.array[15, 20].tolist()
+    assert p.array[15, 20, 0] > 3 * p.array[15, 20, 1] > 0, "a red box in the middle"
+    assert not p.array[0, 0, :3].any(), "nothing in the corner"
+    assert p.channels == (
+        "rgba", "z") and p.stats["camera_rays"] == 40 * 30 * 2 and p.stats["triangles"] == 12
+    assert p.display.shape == (30, 40, 3) and p.display.dtype == np.uint8
+    with pytest.raises(KeyError, match="rgba"):
+        p["normal"]
+
+
+def test_channels(box):
+    w = xvrml.load(box)
+    p = w.render(size=(40, 30),
+                 spp=1,
+                 channels=("z", "normal", "albedo", "position", "id", "samples"),
+                 colour="vrml97")
+    assert p["z"][15, 20] == pytest.approx(4, abs=1e-4) and np.isinf(p["z"][0, 0])
+    assert p["normal"][15, 20] == pytest.approx([0, 0, 1], abs=1e-5)
+    assert p["albedo"][15, 20] == pytest.approx([0.8, 0.2, 0.1], abs=1e-5)
+    assert p["position"][15, 20, 2] == pytest.approx(1, abs=1e-4)
+    assert p["samples"].min() == p["samples"].max() == 1
+    assert p["id"][0, 0] == 0 and p.names[p["id"][15, 20]] in ("Thing", "Cube", "Place")
+    assert w.render(size=(4, 3), spp=1, channels="z")["z"].shape == (3, 4)
+
+
+def test_changes_show(box):
+    w = xvrml.load(box)
+    before = w.render(size=(40, 30), spp=1).array
+    w["Paint"].diffuseColor = (0, 0, 1)
+    blue = w.render(size=(40, 30), spp=1).array
+    assert blue[15, 20, 2] > blue[15, 20, 0] == 0
+    w["Place"].translation = (100, 0, 0)
+    assert not w.render(size=(40, 30), spp=1).array[..., :3].any()
+    w["Place"].translation = (0, 0, 0)
+    w["Paint"].diffuseColor = (0.8, 0.2, 0.1)
+    assert np.array_equal(w.render(size=(40, 30), spp=1).array, before)
+    w["Cube"].size = (0.2, 0.2, 0.2)
+    assert 0 < (w.render(size=(40, 30), spp=1).array[..., 0]
+                > 0).sum() < (before[..., 0] > 0).sum() / 20
+    w["Place"].children = []
+    assert not w.render(size=(40, 30), spp=1).array[..., :3].any()
+
+
+def test_views(box):
+    w = xvrml.load(box)
+    assert [(v.name, v.description) for v in w.viewpoints] == [("", "front"),
+                                                               ("Back", "from behind")]
+    assert w.viewpoints[0].matrix.shape == (4, 4)
+    z = lambda **more: w.render(size=(8, 6), spp=1, channels="position", **more)["position"][3, 4, 2
+                                                                                            ]
+    assert z() == pytest.approx(1, abs=1e-4) and z(viewpoint=0) == z(viewpoint="front") == z()
+    assert z(viewpoint="Back") == z(viewpoint=1) == z(viewpoint=-1) == pytest.approx(-1, abs=1e-4)
+    assert z(camera=((0, 0, -9), (0, 0, 0))) == pytest.approx(-1, abs=1e-4)
+    assert z(camera=[(0, 0, 9), (0, 0, 0), (1, 0, 0)]) == pytest.approx(1, abs=1e-4)
+    assert z(fit=True) == pytest.approx(1, abs=1e-4)
+
+
+@pytest.mark.parametrize("wrong, error", [
+    ({
+        "size": (0, 5)
+    }, ValueError),
+    ({
+        "size": (5,)
+    }, ValueError),
+    ({
+        "size": (65536, 65536)
+    }, ValueError),
+    ({
+        "size": "big"
+    }, Exception),
+    ({
+        "spp": 0
+    }, ValueError),
+    ({
+        "spp": 2.5
+    }, TypeError),
+    ({
+        "seed": -1
+    }, ValueError),
+    ({
+        "depth": -1
+    }, ValueError),
+    ({
+        "threads": -1
+    }, ValueError),
+    ({
+        "viewpoint": "Bck"
+    }, KeyError),
+    ({
+        "viewpoint": 2
+    }, IndexError),
+    ({
+        "viewpoint": 1.5
+    }, TypeError),
+    ({
+        "colour": "srgb"
+    }, ValueError),
+    ({
+        "headlight": "dim"
+    }, ValueError),
+    ({
+        "channels": ("depth",)
+    }, ValueError),
+    ({
+        "camera": (1, 2)
+    }, ValueError),
+    ({
+        "camera": ((0, 0, 0), (0, 0, 0))
+    }, ValueError),
+    ({
+        "fit": True,
+        "viewpoint": 0
+    }, ValueError),
+    ({
+        "fov": 0
+    }, ValueError),
+    ({
+        "nonsense": 1
+    }, TypeError),
+])
+def test_wrong_options(box, wrong, error):
+    with pytest.raises(error):
+        xvrml.load(box).render(**wrong)
+
+
+def test_headlight(box):
+    w = xvrml.load(box)
+    r = lambda value: w.render(size=(8, 6), spp=1, headlight=value).array[..., :3].any()
+    assert r(True) and r("on") and r("auto") and not r(False) and not r("off")
+
+
+def test_same_bytes_as_vv(box, vv):
+    assert vv("box.wrl", "-o", "vv.exr", "--size", "40x30", "--spp", "3", "--threads",
+              "1").returncode == 0
+    w = xvrml.load(box)
+    pictures = [w.render(size=(40, 30), spp=3, threads=t, channels="rgba") for t in (1, 2)]
+    assert np.array_equal(pictures[0].array, pictures[1].array)
+    pictures[0].save(vv.folder / "python.exr")
+    assert (vv.folder / "python.exr").read_bytes() == (vv.folder / "vv.exr").read_bytes()
+
+
+def test_save(box, tmp_path):
+    p = xvrml.load(box).render(size=(16, 12), spp=1)
+    for name, start in (("a.png", b"\x89PNG"), ("a.jpg", b"\xff\xd8"),
+                        ("a.exr", b"\x76\x2f\x31\x01"), ("a.ppm", b"P6"), ("a.pfm", b"PF")):
+        p.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes().startswith(start)
+    assert p._repr_png_() == (tmp_path / "a.png").read_bytes()
+    with pytest.raises(ValueError, match="suffix"):
+        p.save(tmp_path / "a.bmp")
+    with pytest.raises(OSError):
+        p.save(tmp_path / "no/such/a.png")
+
+
+def test_a_picture_outlives_its_object(box):
+    array = xvrml.load(box).render(size=(16, 12), spp=1).array
+    assert array[6, 8, 0] > 0
+
+
+def test_other_threads_run_meanwhile(box):
+    w = xvrml.load(box)
+    counted, stop = [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    w.render(size=(400, 300), spp=16, threads=1)
+    stop.set()
+    counter.join()
+    assert counted[0] > 3
+
+
+def test_changes_wait_for_the_picture(box):
+    w = xvrml.load(box)
+    expected = w.render(size=(200, 150), spp=16).array
+    pictures = []
+    worker = threading.Thread(
+        target=lambda: pictures.append(w.render(size=(200, 150), spp=16).array))
+    worker.start()
+    for i in range(200):
+        w["Place"].translation = (0, 0, 0)
+    worker.join()
+    assert np.array_equal(pictures[0], expected)
+
+
+def test_keyboard_interrupt(box):
+    code = f"""
+import os, signal, threading, time, xvrml
+w = xvrml.load({str(box)!r})
+threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    w.render(size=(2000, 2000), spp=65536)
+except KeyboardInterrupt:
+    print("interrupted", w.render(size=(4, 3), spp=1).shape)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "interrupted (3, 4, 4)\n", done.stderr
