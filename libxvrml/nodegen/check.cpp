@@ -148,6 +148,7 @@ class Checker {
       if (field->text.empty()) field->text = above.text;
       if (!field->change) field->change = above.change;
       if (field->accepts.empty()) field->accepts = above.accepts;
+      field->urls = field->urls || above.urls;
     }
   }
 
@@ -171,11 +172,21 @@ class Checker {
                    fmt::format("{} is of type {}: it accepts no nodes", field.name,
                                fieldTypeName(field.type)));
     }
+    if (field.urls && field.urlsSource.line) checkUrls(field);
     for (const Reference& name : field.accepts) {
       if (!types_.count(name.name) &&
           reported_.insert({*name.source.file, name.source.line, name.source.column}).second)
         model_.error(name.source, fmt::format("unknown node or abstract type {}", name.name));
     }
+  }
+
+  void checkUrls(const FieldSpec& field) {
+    if (field.type != FieldType::MFString)
+      model_.error(field.urlsSource, fmt::format("{} is of type {}: only an MFString holds URLs",
+                                                 field.name, fieldTypeName(field.type)));
+    else if (!field.hasStorage())
+      model_.error(field.urlsSource, fmt::format("{} is an {}: it has no value that holds URLs",
+                                                 field.name, accessName(field.access)));
   }
 
   void checkDefault(const FieldSpec& field) {

@@ -33,6 +33,8 @@ struct FieldSpec {
   std::optional<Change> change;
   SourcePosition changeSource;
   std::vector<Reference> accepts;
+  bool urls = false;         // the strings are URLs
+  SourcePosition urlsSource; // where the field says so; an inherited `urls` has none
   std::string text;
 
   bool hasStorage() const { return access == Access::field || access == Access::exposedField; }

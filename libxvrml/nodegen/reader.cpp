@@ -165,7 +165,7 @@ class Reader {
     }
   }
 
-  // attribute ::= "change" kind | "accepts" name { name } | string
+  // attribute ::= "change" kind | "accepts" name { name } | "urls" | string
   bool readAttribute(FieldSpec& field) {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::string)) {
@@ -177,6 +177,13 @@ class Reader {
       if (field.change) fail(token, fmt::format("{} says twice what it changes", field.name));
       take();
       readChange(field);
+      return true;
+    }
+    if (token.is("urls")) {
+      if (field.urls) fail(token, fmt::format("{} says twice that it holds URLs", field.name));
+      take();
+      field.urls = true;
+      field.urlsSource = lexer_.place(token.at());
       return true;
     }
     if (!token.is("accepts")) return false;
@@ -202,8 +209,9 @@ class Reader {
 
   static bool isWord(const Token& token) {
     Access access = Access::field;
-    return token.is(TokenKind::identifier) && (token.text == "change" || token.text == "accepts" ||
-                                               accessFromName(token.text, access));
+    return token.is(TokenKind::identifier) &&
+           (token.text == "change" || token.text == "accepts" || token.text == "urls" ||
+            accessFromName(token.text, access));
   }
 
   // Reads a name. Names become C++ and Python names, so they have letters, digits and underscores

@@ -67,9 +67,9 @@ std::string writeRange(const std::optional<FieldRange>& range) {
 std::string writeRow(const TypeSpec& type, const FieldSpec& field) {
   const std::string offset =
       field.hasStorage() ? fmt::format("offsetof({}, {})", type.name, cppMember(field)) : "0";
-  return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}}},\n",
+  return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}, {}}},\n",
                      cppString(field.name), fieldTypeName(field.type), accessName(field.access),
-                     changeName(*field.change), offset, writeRange(field.range),
+                     changeName(*field.change), field.urls, offset, writeRange(field.range),
                      cppString(joinNames(field.accepts)), cppString(field.text));
 }
 

@@ -26,7 +26,7 @@ std::string code(std::string_view text) {
 std::string referenceRow(const FieldSpec& field) {
   return fmt::format("| {} {} **{}** | {} | {} | {} | {} | {} |\n", accessName(field.access),
                      fieldTypeName(field.type), cell(field.name), code(field.valueText),
-                     code(field.rangeText), cell(joinNames(field.accepts)),
+                     code(field.rangeText), field.urls ? "URLs" : cell(joinNames(field.accepts)),
                      changeName(*field.change), cell(field.text));
 }
 

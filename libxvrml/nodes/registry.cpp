@@ -4,6 +4,7 @@
 #include "nodes/registry.h"
 
 #include <atomic>
+#include <cstddef>
 #include <mutex>
 #include <unordered_map>
 
@@ -66,6 +67,10 @@ std::vector<std::string> splitWords(std::string_view words) {
 
 } // namespace
 
+// The flag must not move the members after it: plug-ins are refused only for another size.
+static_assert(offsetof(FieldRow, holdsUrls) == offsetof(FieldRow, change) + sizeof(Change) &&
+              offsetof(FieldRow, offset) == sizeof(const char*) + sizeof(uint32_t));
+
 NodeType makeNodeType(const NodeRow& row, int index) {
   NodeType type{row.name,   index,     splitWords(row.roles), row.component, row.text, {},
                 row.create, row.clause};
@@ -75,6 +80,7 @@ NodeType makeNodeType(const NodeRow& row, int index) {
                            field.type,
                            field.access,
                            field.change,
+                           field.holdsUrls,
                            field.offset,
                            {},
                            field.range,

@@ -51,11 +51,12 @@ TEST(DynamicNode, HoldsWhatItsTypeDeclares) {
   type->name = "Thing";
   type->index = -1;
   type->fields.push_back(
-      {"go", FieldType::SFBool, Access::eventIn, Change::none, 0, {}, {}, "", ""});
+      {"go", FieldType::SFBool, Access::eventIn, Change::none, false, 0, {}, {}, "", ""});
   type->fields.push_back({"title",
                           FieldType::SFString,
                           Access::field,
                           Change::none,
+                          false,
                           0,
                           std::string("none"),
                           {},
@@ -65,6 +66,7 @@ TEST(DynamicNode, HoldsWhatItsTypeDeclares) {
                           FieldType::MFVec3f,
                           Access::exposedField,
                           Change::none,
+                          false,
                           1,
                           MFVec3f{{1, 2, 3}},
                           {},

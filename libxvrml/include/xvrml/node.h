@@ -63,6 +63,9 @@ struct FieldInfo {
   FieldType type;
   Access access;
   Change change;
+  // The strings of this MFString are URLs, relative to the node's file. Always false in the type of
+  // a prototype: use holdsUrls() of world.h for nodes of any type.
+  bool holdsUrls = false;
   // Static nodes: bytes from the start of the Node. Dynamic nodes: index of the value. Events:
   // unused.
   uint32_t offset;
