@@ -20,10 +20,7 @@ std::vector<std::string> usedFiles(const xvrml::World& world) {
     const std::string base = node.source.file ? *node.source.file : world.path;
     files.insert(base);
     for (const xvrml::FieldInfo& field : node.type().fields) {
-      const bool value =
-          field.access == xvrml::Access::field || field.access == xvrml::Access::exposedField;
-      if (!value || field.type != xvrml::FieldType::MFString) continue;
-      if (!field.name.ends_with("url") && !field.name.ends_with("Url")) continue;
+      if (!holdsUrls(node, field)) continue;
       for (const std::string& url : *static_cast<const xvrml::MFString*>(node.storage(field)))
         if (auto resolved = xvrml::resolveUrl(url, base, world.options); resolved.error.empty())
           files.insert(resolved.path);

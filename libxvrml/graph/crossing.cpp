@@ -13,8 +13,11 @@
 namespace xvrml {
 namespace {
 
-bool isUrlField(const FieldInfo& field) {
-  return field.type == FieldType::MFString && (field.name == "url" || field.name.ends_with("Url"));
+// Returns whether the strings that pass are URLs. A Script gets the same URLs as the other nodes of
+// the body that are connected to the field.
+bool passesUrls(const IsAssignment& c) {
+  return holdsUrls(c.node, c.to) ||
+         (dynamic_cast<const ScriptNode*>(&c.node) && holdsUrls(c.instance, c.from));
 }
 
 // Converts relative URLs written in the instance's file for a node that is in another file (4.5.3).
@@ -76,9 +79,9 @@ void assignThroughIs(const IsAssignment& c, const Value& value, Diagnostics& dia
     using T = std::remove_reference_t<decltype(target)>;
     target = std::get<T>(value);
     if constexpr (std::is_same_v<T, MFString>) {
-      const bool foreign = isUrlField(c.to) && c.instance.isGiven(c.from) &&
-                           c.instance.source.file && c.node.source.file;
-      if (foreign) rebaseUrls(target, *c.instance.source.file, *c.node.source.file);
+      const bool foreign = c.given && c.instance.source.file && c.node.source.file;
+      if (foreign && passesUrls(c))
+        rebaseUrls(target, *c.instance.source.file, *c.node.source.file);
     } else if constexpr (std::is_same_v<T, NodeRef>) {
       if (!acceptsNode(c, target, diagnostics)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {

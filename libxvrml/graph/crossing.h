@@ -12,6 +12,7 @@ struct IsAssignment {
   const FieldInfo& from; // field of the interface
   Node& node;            // node in the body
   const FieldInfo& to;   // the node's field that IS `from`, of the same type
+  bool given;            // the value stands in the instance's file, not in the declaration's
   bool checkCycles;      // the value may hold the node itself
 };
 

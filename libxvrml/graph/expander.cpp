@@ -90,6 +90,7 @@ bool Expander::addNested(Plan& plan, ProtoInstance& nested, const SourcePosition
       nested.declaration->resolved = nullptr;
     return false;
   }
+  findUrlFields(*nested.declaration);
   plan.expandedNodes = saturatingAdd(plan.expandedNodes, innerPlan->expandedNodes);
   plan.bytes = saturatingAdd(plan.bytes, innerPlan->bytes);
   return true;
@@ -136,6 +137,7 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
   }
   good = good && addDefaults(*plan, where);
   --depth_;
+  if (good) findUrlFields(*declaration);
   plan->usable = good;
   plan->computing = false;
   return plan;
@@ -313,6 +315,7 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
   if (!definition) return;
   const PlanPtr plan = this->plan(definition, instance.source);
   if (!plan->usable) return;
+  findUrlFields(*instance.declaration);
   const Limits& limits = state_.options.limits;
   const std::string& name = definition->type->name;
   if (saturatingAdd(state_.world.nodeCount, plan->expandedNodes) > limits.expandedNodes) {
@@ -372,7 +375,7 @@ void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration&
     if (!to || !holdsValue(*to)) continue;
     const FieldInfo* from = fieldOf(instance.type(), connection.interfaceName);
     if (from && holdsValue(*from) && from->type == to->type) {
-      connect(instance, *from, instance.values[from->offset], connection);
+      connect(instance, *from, instance.values[from->offset], connection, instance.isGiven(*from));
       continue;
     }
     const FieldInfo* declared = fieldOf(*definition.type, connection.interfaceName);
@@ -382,7 +385,33 @@ void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration&
     auto found = undeclared.find(declared->name);
     if (found == undeclared.end())
       found = undeclared.emplace(declared->name, copyDefault(*declared, inlines)).first;
-    connect(instance, *declared, found->second, connection);
+    connect(instance, *declared, found->second, connection, false);
+  }
+}
+
+// Finds the declaration's fields that hold URLs (ProtoDeclaration::urlFields): those of a PROTO are
+// connected to such fields of the body, those of an EXTERNPROTO belong to its definition. The
+// prototypes that the body uses, and the definition, must have been looked at before.
+void Expander::findUrlFields(ProtoDeclaration& declaration) {
+  std::vector<bool>& urls = declaration.urlFields;
+  if (!urls.empty() || declaration.type->fields.empty()) return;
+  urls.resize(declaration.type->fields.size());
+  const auto listNamed = [&](const NodeType& type, std::string_view name) {
+    const FieldInfo* field = fieldOf(type, name);
+    return field && field->type == FieldType::MFString && holdsValue(*field) ? field : nullptr;
+  };
+  if (const ProtoDeclaration* definition = declaration.resolved.get()) {
+    for (const FieldInfo& field : declaration.type->fields) {
+      if (field.type != FieldType::MFString || !holdsValue(field)) continue;
+      const FieldInfo* defined = listNamed(*definition->type, field.name);
+      urls[field.offset] = defined && definition->holdsUrls(*defined);
+    }
+    return;
+  }
+  for (const IsConnection& connection : declaration.is) {
+    const FieldInfo* from = listNamed(*declaration.type, connection.interfaceName);
+    const FieldInfo* to = listNamed(connection.node->type(), connection.field);
+    if (from && to && holdsUrls(*connection.node, *to)) urls[from->offset] = true;
   }
 }
 
@@ -391,15 +420,15 @@ void Expander::addCyclic(const NodeRef& node) {
 }
 
 void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value,
-                       const IsConnection& connection) {
+                       const IsConnection& connection, bool given) {
   Node& node = *connection.node;
   const FieldInfo& to = *fieldOf(node.type(), connection.field);
   if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
   if (!state_.selfContaining.empty() && node.type().index < 0 && holdsNodes(to))
     addCyclic(connection.node); // it may hold itself; more is not known
-  const void* const given =
+  const void* const storage =
       std::visit([](const auto& alternative) -> const void* { return &alternative; }, value);
-  if (!state_.budget.take(valueBytes(to.type, given))) {
+  if (!state_.budget.take(valueBytes(to.type, storage))) {
     if (!std::exchange(state_.full, true))
       state_.diagnostics.error(instance.source,
                                fmt::format("the world takes more memory than {}; values of "
@@ -407,7 +436,7 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
                                            state_.budget.name(), instance.type().name, from.name));
     return;
   }
-  const IsAssignment assignment{instance, from, node, to, !state_.selfContaining.empty()};
+  const IsAssignment assignment{instance, from, node, to, given, !state_.selfContaining.empty()};
   assignThroughIs(assignment, value, state_.diagnostics);
 }
 

@@ -55,7 +55,8 @@ class Expander {
   void applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition,
                         std::vector<NodeRef>& inlines);
   void connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value,
-               const IsConnection& connection);
+               const IsConnection& connection, bool given);
+  void findUrlFields(ProtoDeclaration& declaration);
 
   LoadState& state_;
   Resolve resolve_;

@@ -9,6 +9,16 @@
 #include "parse/builder.h"
 
 namespace xvrml {
+namespace {
+
+// Returns whether a field that a Script declares holds URLs, by its name `...Url`. There is no
+// other way to know, if no field beside it IS the same one: the Script's program alone decides what
+// it does with the strings.
+bool scriptFieldNamedForUrls(const FieldInfo& field) {
+  return field.type == FieldType::MFString && holdsValue(field) && field.name.ends_with("Url");
+}
+
+} // namespace
 
 // Returns the prototype with this name. A name is valid from the end of its declaration to the end
 // of the enclosing scope, prototypes within it included.
@@ -80,6 +90,7 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
   field.type = type;
   field.access = access;
   field.change = Change::none;
+  field.holdsUrls = isScript() && scriptFieldNamedForUrls(field);
   field.offset = 0;
   field.defaultValue = defaultValue(type);
   const uint64_t limit = state_.options.limits.interfaceFields;

@@ -45,7 +45,7 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
           to->type != from->type)
         continue;
       if (isMultiple(to->type)) leaveToViews(*connection.node, *to);
-      assignThroughIs({*instance, *from, *connection.node, *to, true}, instance->get(*from),
+      assignThroughIs({*instance, *from, *connection.node, *to, true, true}, instance->get(*from),
                       world.diagnostics);
       // The expansion is made again on demand.
       if (NodeRef* standsFor = connection.node->expansion()) *standsFor = {};

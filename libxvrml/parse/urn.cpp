@@ -24,6 +24,7 @@ ProtoPtr builtinPrototype(std::string_view url, const NodeType& wanted) {
     if (declared && declared->type == field.type && field.access == Access::exposedField)
       field.access = declared->access;
     field.change = Change::none;
+    field.holdsUrls = false; // the expander finds it, as for any prototype
     proto->is.push_back({node, field.name, field.name});
     addField(*interface, std::move(field));
   }

@@ -52,6 +52,14 @@ struct ProtoDeclaration {
   std::string baseUrl;           // the file that holds the declaration
   ProtoPtr resolved;             // EXTERNPROTO: the declaration that was found, null if none
   SourcePosition source;
+  // Indexed by FieldInfo::offset: the field is connected by IS to a field of the body that holds
+  // URLs, also through further prototypes. Set when the first instance is expanded. May be shorter
+  // than the field list.
+  std::vector<bool> urlFields;
+
+  bool holdsUrls(const FieldInfo& field) const {
+    return holdsValue(field) && field.offset < urlFields.size() && urlFields[field.offset];
+  }
 };
 
 // An instance of a prototype: the values of its interface, and a copy of the body. Instances share
@@ -77,6 +85,13 @@ class ProtoInstance : public DynamicNode {
     given[field.offset] = true;
   }
 };
+
+// Returns whether the strings of the node's field are URLs, relative to the node's file. Those of a
+// prototype instance are known once it has been expanded.
+inline bool holdsUrls(const Node& node, const FieldInfo& field) {
+  const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
+  return instance ? instance->declaration->holdsUrls(field) : field.holdsUrls;
+}
 
 // A Script node: fields url, directOutput and mustEvaluate, and those that it declares.
 class ScriptNode : public DynamicNode {
