@@ -28,29 +28,38 @@ void append(Diagnostics& to, const Diagnostics& from) {
   for (const Diagnostic& d : from.list()) to.add(d);
 }
 
-// Loads the first of the URLs that is a world. Returns null after a warning. budget: of the world
-// that the result joins; null: the result has a budget of its own.
-std::unique_ptr<World> loadFirst(const std::vector<std::string>& urls, const std::string& base,
-                                 const LoadOptions& options, Diagnostics& diagnostics,
-                                 const SourcePosition& where, std::string_view what,
-                                 std::string* fragment, const BudgetPtr& budget) {
+// A call of the Browser object that loads the first of some URLs that is a world.
+struct LoadCall {
+  std::string_view function; // as ISO/IEC 14772-1 spells it
+  std::vector<std::string> urls;
+  std::string base;     // the URLs are relative to it
+  SourcePosition where; // the calling Script; of other programs the running world
+};
+
+struct LoadedUrl {
+  std::unique_ptr<World> world; // null: no URL is a world
+  std::string fragment;
+};
+
+// Loads the world that a program in the world `caller` asks for. The caller gets a warning if no
+// URL is a world. budget: of the world that the result joins; null: the result has its own budget.
+LoadedUrl loadFirst(const LoadCall& call, World& caller, const BudgetPtr& budget) {
   std::string reasons;
-  for (const std::string& url : urls) {
-    const ResolvedUrl resolved = resolveUrl(url, base, options);
+  for (const std::string& url : call.urls) {
+    const ResolvedUrl resolved = resolveUrl(url, call.base, caller.options);
     std::string reason = resolved.error;
     if (reason.empty()) {
       try {
-        auto loaded = budget ? loadWorldInto(budget, resolved.path, options)
-                             : loadWorld(resolved.path, options);
-        if (fragment) *fragment = resolved.fragment;
-        return loaded;
+        return {budget ? loadWorldInto(budget, resolved.path, caller.options)
+                       : loadWorld(resolved.path, caller.options),
+                resolved.fragment};
       } catch (const LoadError& error) { reason = error.diagnostic.text(); }
     }
     if (reasons.size() < 400) reasons += (reasons.empty() ? "" : "; ") + reason;
   }
-  diagnostics.warn(where,
-                   fmt::format("{}: {}", what, reasons.empty() ? "it names no URL" : reasons));
-  return nullptr;
+  caller.diagnostics.warn(call.where, fmt::format("{}: {}", call.function,
+                                                  reasons.empty() ? "it names no URL" : reasons));
+  return {};
 }
 
 // Charges nodes made by programs to the budget only while they are made. Counting them longer would
@@ -155,33 +164,31 @@ MFNode Browser::createVrmlFromString(std::string_view text) {
 
 void Browser::createVrmlFromUrl(const std::vector<std::string>& urls, Node& node,
                                 std::string_view eventIn, const std::string& base) {
-  impl_->addJob([this, urls, to = NodeRef(&node), in = std::string(eventIn),
-                 base = base.empty() ? impl_->world->path : base, where = impl_->callerPosition()] {
+  LoadCall call{"createVrmlFromURL", urls, base.empty() ? impl_->world->path : base,
+                impl_->callerPosition()};
+  impl_->addJob([this, call = std::move(call), to = NodeRef(&node), in = std::string(eventIn)] {
     World& world = *impl_->world;
-    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, where,
-                                  "createVrmlFromURL", nullptr, TemporaryCharge(world).budget());
-    if (!loaded || !to->live) return;
-    MFNode nodes = impl_->adopt(*loaded);
+    const LoadedUrl loaded = loadFirst(call, world, TemporaryCharge(world).budget());
+    if (!loaded.world || !to->live) return;
+    MFNode nodes = impl_->adopt(*loaded.world);
     impl_->engine->dispatch(*to, in, std::move(nodes));
   });
 }
 
 void Browser::loadUrl(const std::vector<std::string>& urls,
                       const std::vector<std::string>& parameters, const std::string& base) {
-  impl_->addJob([this, urls, parameters, base = base.empty() ? impl_->world->path : base,
-                 where = impl_->callerPosition()] {
-    if (impl_->options.loadUrl && impl_->options.loadUrl(urls, parameters, base)) return;
+  LoadCall call{"loadURL", urls, base.empty() ? impl_->world->path : base, impl_->callerPosition()};
+  impl_->addJob([this, call = std::move(call), parameters] {
+    if (impl_->options.loadUrl && impl_->options.loadUrl(call.urls, parameters, call.base)) return;
     const auto bind = [&](const std::string& name) {
       const NodeRef view = node(name);
       if (!view || !impl_->engine->dispatch(*view, "set_bind", true))
         impl_->world->diagnostics.warn(
-            where, fmt::format("loadURL: there is no viewpoint '{}'", name.substr(0, 100)));
+            call.where, fmt::format("loadURL: there is no viewpoint '{}'", name.substr(0, 100)));
     };
     World& world = *impl_->world;
-    if (!urls.empty() && urls[0].starts_with('#')) return bind(urls[0].substr(1));
-    std::string fragment;
-    const auto loaded = loadFirst(urls, base, world.options, world.diagnostics, where, "loadURL",
-                                  &fragment, nullptr);
+    if (!call.urls.empty() && call.urls[0].starts_with('#')) return bind(call.urls[0].substr(1));
+    const auto [loaded, fragment] = loadFirst(call, world, nullptr);
     if (!loaded) return;
     append(world.diagnostics, loaded->diagnostics);
     setBudget(world, budgetOf(*loaded));

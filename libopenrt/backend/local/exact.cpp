@@ -125,29 +125,28 @@ bool isHitInSinglePrecision(const RelativeTriangle& s, const Vec3d& direction, f
   return t >= near && t <= far;
 }
 
-void refineHit(const Record& r, uint32_t primitive, const Vec3d& origin, const Vec3d& direction,
-               float near, float far, float& t, float& u, float& v) {
+std::optional<TriangleHit> refineHit(const Record& r, uint32_t primitive, const RaySegment& ray) {
   const uint32_t* corner = r.indices + 3 * size_t(primitive);
   const auto place = [&](int k) {
     const float* p = r.vertices + 3 * size_t(corner[k]);
     return r.instanced ? Vec3d{p[0], p[1], p[2]} : Vec3d{p[0], p[1], p[2]} * double(r.scale);
   };
-  Vec3d from = origin, d = direction;
+  Vec3d from = ray.origin, d = ray.direction;
   if (r.instanced) {
     Matrix4d m;
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 4; j++) m.m[size_t(4 * j + i)] = r.toRender.r[i][j];
     const Matrix4d back = inverse(m);
-    from = back.point(origin);
-    d = back.vector(direction);
+    from = back.point(ray.origin);
+    d = back.vector(ray.direction);
   }
   const RelativeTriangle seen{place(0) - from, place(1) - from, place(2) - from};
   TriangleHit at;
-  if (!intersectTriangle(seen, d, at) && !std::isfinite(closestPointToLine(seen, d, 7, at))) return;
-  if (!std::isfinite(at.t) || !std::isfinite(at.u) || !std::isfinite(at.v)) return;
-  t = std::clamp(float(at.t), near, far);
-  u = float(at.u);
-  v = float(at.v);
+  if (!intersectTriangle(seen, d, at) && !std::isfinite(closestPointToLine(seen, d, 7, at)))
+    return {};
+  if (!std::isfinite(at.t) || !std::isfinite(at.u) || !std::isfinite(at.v)) return {};
+  at.t = double(std::clamp(float(at.t), ray.near, ray.far));
+  return at;
 }
 
 } // namespace openrt

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "render/records.h"
 #include "scene/matrix.h"
@@ -59,10 +60,16 @@ inline bool grazes(const float normal[3], const float direction[3]) {
   return !(along * along > 0x1p-12f * n * d); // also true if the products leave the range of floats
 }
 
-// Recomputes the hit of a ray (in render space) with triangle `primitive` of a record in double
-// precision. If the ray misses the triangle, the hit moves to the closest point of its edges. t
-// stays within [near, far].
-void refineHit(const Record& record, uint32_t primitive, const Vec3d& origin,
-               const Vec3d& direction, float near, float far, float& t, float& u, float& v);
+// A ray in render space with its interval of t.
+struct RaySegment {
+  Vec3d origin, direction;
+  float near, far;
+};
+
+// Recomputes the hit of a ray with triangle `primitive` of a record in double precision. If the ray
+// misses the triangle, the hit moves to the closest point of its edges. t is rounded to float and
+// stays within the interval. Returns nothing if the result is not finite.
+std::optional<TriangleHit> refineHit(const Record& record, uint32_t primitive,
+                                     const RaySegment& ray);
 
 } // namespace openrt

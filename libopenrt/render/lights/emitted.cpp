@@ -10,6 +10,14 @@
 
 namespace openrt {
 
+// Light samples at the hits of a batch, one for each hit at most.
+struct TileRenderer::LightSamples {
+  Rays rays;           // the shadow rays; count: number of samples
+  LightSample* sample; // by ray
+  uint32_t* hit;       // by ray: index of the hit in the batch
+  float* response[3];  // by ray: BSDF times MIS weight over pdf
+};
+
 // Returns the reference point for light sampling at a hit. twoSided: emitters behind the surface
 // count as well.
 LightSampleContext TileRenderer::lightSampleContext(const Points& points, uint32_t i,
@@ -25,21 +33,63 @@ LightSampleContext TileRenderer::lightSampleContext(const Points& points, uint32
   return from;
 }
 
+// Samples an emitter for each hit with a non-specular lobe.
+TileRenderer::LightSamples TileRenderer::chooseLightSamples(const RtsBatch& batch,
+                                                            const Sampling& sampling) {
+  const Points& points = *batch.points;
+  const RtsHits& hits = points.hits;
+  LightSamples out{};
+  Rays& rays = out.rays;
+  rays.allocate(arena_, hits.count);
+  out.sample = arena_.take<LightSample>(hits.count);
+  out.hit = arena_.take<uint32_t>(hits.count);
+  float *pick[2], *place[2];
+  draw(sampling.random, Draw::emitter, 0, pick);
+  draw(sampling.random, Draw::place, 0, place);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < hits.count; i++) {
+    bool wanted = false;
+    for (uint32_t l = 0; l < batch.lobeCount; l++)
+      wanted |= sampling.selectionProbability[l] && sampling.selectionProbability[l][i] > 0;
+    if (!wanted) continue;
+    const LightSampleContext from = lightSampleContext(points, i, transmitsAt(batch, i));
+    const LightSample lightSample = scene_.emitters.choose(
+        from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24, place[0][i], place[1][i]);
+    if (!(lightSample.pdf > 0)) continue;
+    float origin[3];
+    liftPoint(points, i, lightSample.direction, origin);
+    for (int k = 0; k < 3; k++) {
+      rays.org[k][n] = origin[k];
+      rays.dir[k][n] = lightSample.direction[k];
+    }
+    rays.tnear[n] = 0;
+    rays.tfar[n] = lightSample.distance * (1 + 0x1p-10f);
+    out.hit[n] = i;
+    out.sample[n++] = lightSample;
+  }
+  rays.count = n;
+  return out;
+}
+
 // Computes the BSDF response of the hits to their light samples, with the MIS weight of light
-// sampling (balance heuristic). Removes the samples with response 0 and returns how many are left.
-uint32_t TileRenderer::weightLightSamples(const RtsBatch& batch, const RtsHits& hits,
-                                          float* const selectionProbability[], Rays& rays,
-                                          LightSample* lightSamples, uint32_t* hitOf, uint32_t n,
-                                          float* response[3]) {
-  for (int k = 0; k < 3; k++) response[k] = arena_.takeZero<float>(padded(n));
+// sampling (balance heuristic). Removes the samples with response 0.
+void TileRenderer::weightLightSamples(const RtsBatch& batch, const Sampling& sampling,
+                                      LightSamples& samples) {
+  Rays& rays = samples.rays;
+  const uint32_t n = rays.count;
+  LightSample* lightSamples = samples.sample;
+  uint32_t* hitOf = samples.hit;
+  float* response[3];
+  for (int k = 0; k < 3; k++) response[k] = samples.response[k] = arena_.takeZero<float>(padded(n));
   ArenaScope scope(arena_);
   LobeValues lobeValues(arena_, n, &batch);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    if (!selectionProbability[l]) continue;
-    lobeValues.evaluate(batch.lobes[l], hits, n, hitOf, rays.dir);
+    const float* selectionProbability = sampling.selectionProbability[l];
+    if (!selectionProbability) continue;
+    lobeValues.evaluate(batch.lobes[l], batch.points->hits, n, hitOf, rays.dir);
     for (uint32_t r = 0; r < n; r++) {
       float w[3];
-      const float followed = selectionProbability[l][hitOf[r]];
+      const float followed = selectionProbability[hitOf[r]];
       if (!(followed > 0) || !weightAt(batch.lobes[l], hitOf[r], w)) continue;
       const float scale = 1 / (lightSamples[r].pdf + followed * lobeValues.pdf[r]);
       for (int k = 0; k < 3; k++) response[k][r] += w[k] * lobeValues.value[k][r] * scale;
@@ -58,48 +108,22 @@ uint32_t TileRenderer::weightLightSamples(const RtsBatch& batch, const RtsHits& 
     hitOf[left] = hitOf[r];
     lightSamples[left++] = lightSamples[r];
   }
-  return left;
+  rays.count = left;
 }
 
-void TileRenderer::sampleEmitters(const RtsBatch& batch, const Points& points,
-                                  const uint32_t* order, const Paths& paths, const Random& random,
-                                  float* const selectionProbability[], const Crossing* crossing,
-                                  float* const radiance[3]) {
+// Adds to `radiance` the light of one light sample at each hit. crossing: by hit; null if no
+// boundary of a medium is hit.
+void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& sampling,
+                                  const Crossing* crossing, float* const radiance[3]) {
   ArenaScope scope(arena_);
-  const RtsHits& hits = points.hits;
+  const RtsHits& hits = batch.points->hits;
   const Emitters& emitters = scene_.emitters;
-  Rays rays;
-  rays.allocate(arena_, hits.count);
-  auto* lightSamples = arena_.take<LightSample>(hits.count);
-  auto* hitOf = arena_.take<uint32_t>(hits.count); // index of the hit in the batch, by light sample
-  float *pick[2], *place[2];
-  draw(random, Draw::emitter, 0, pick);
-  draw(random, Draw::place, 0, place);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < hits.count; i++) {
-    bool wanted = false;
-    for (uint32_t l = 0; l < batch.lobeCount; l++)
-      wanted |= selectionProbability[l] && selectionProbability[l][i] > 0;
-    if (!wanted) continue;
-    const LightSampleContext from = lightSampleContext(points, i, transmitsAt(batch, i));
-    const LightSample lightSample = emitters.choose(
-        from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24, place[0][i], place[1][i]);
-    if (!(lightSample.pdf > 0)) continue;
-    float origin[3];
-    liftPoint(points, i, lightSample.direction, origin);
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][n] = origin[k];
-      rays.dir[k][n] = lightSample.direction[k];
-    }
-    rays.tnear[n] = 0;
-    rays.tfar[n] = lightSample.distance * (1 + 0x1p-10f);
-    hitOf[n] = i;
-    lightSamples[n++] = lightSample;
-  }
-  float* response[3];
-  n = weightLightSamples(batch, hits, selectionProbability, rays, lightSamples, hitOf, n, response);
+  LightSamples samples = chooseLightSamples(batch, sampling);
+  weightLightSamples(batch, sampling, samples);
+  const Rays& rays = samples.rays;
+  const LightSample* lightSamples = samples.sample;
+  const uint32_t n = rays.count;
   if (n == 0) return;
-  rays.count = n;
   counters_.shadow += n;
   RayHits found;
   found.allocate(arena_, n);
@@ -107,18 +131,18 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Points& points,
   skipCulledBacks(scene_, arena_, counters_, rays, found);
 
   const auto add = [&](uint32_t ray, const float light[3]) {
-    const uint32_t i = hitOf[ray];
+    const uint32_t i = samples.hit[ray];
     float left[3] = {light[0], light[1], light[2]};
     if (!scene_.shaders->media().empty()) { // absorption of the medium between hit and emitter
       float towards = 0;
       for (int k = 0; k < 3; k++) towards += hits.geometric[k][i] * rays.dir[k][ray];
       const MediaStack& media =
-          towards < 0 && crossing ? crossing[i].behind : paths.state[order[i]].media;
+          towards < 0 && crossing ? crossing[i].behind : batch.states[batch.order[i]].media;
       absorb(mediumOf(media, scene_.shaders->media()), std::min(found.t[ray], 1e30f),
              scene_.shaders->media(), left);
     }
     for (int k = 0; k < 3; k++)
-      if (std::isfinite(left[k])) radiance[k][i] += response[k][ray] * left[k];
+      if (std::isfinite(left[k])) radiance[k][i] += samples.response[k][ray] * left[k];
   };
   auto* lanes = arena_.take<uint32_t>(n);
   auto* sorted = arena_.take<uint32_t>(n);

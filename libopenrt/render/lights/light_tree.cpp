@@ -8,7 +8,6 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t bins = 12;
 constexpr uint32_t none = ~0u;
 constexpr uint32_t balanceFrom = 28; // deeper nodes are split in halves, which bounds the depth
 
@@ -93,6 +92,24 @@ struct BinaryNode {
   bool leaf;
 };
 
+// Equal bins of an axis between the extreme centres of the lights.
+struct Bins {
+  static constexpr uint32_t count = 12;
+  int axis = -1; // -1: none
+  float low = 0, high = 0;
+  // Returns the bin of a centre's coordinate on the axis.
+  uint32_t of(float centre) const {
+    return std::min(uint32_t((double(centre) - low) / (double(high) - low) * count), count - 1);
+  }
+};
+
+// A split of a range at the upper end of a bin. Infinite cost: none was found.
+struct Cut {
+  double cost = std::numeric_limits<double>::infinity();
+  Bins bins;
+  uint32_t last = 0; // the last bin whose lights go to the first child
+};
+
 class Builder {
  public:
   Builder(std::span<const LightBounds> lights, std::vector<uint32_t>& order)
@@ -112,18 +129,16 @@ class Builder {
     for (int k = 1; k < 3; k++)
       if (high[k] - low[k] > high[widest] - low[widest]) widest = k;
     if (!(high[widest] - low[widest] > 0)) return middle; // all lights are in one place
-    double best = std::numeric_limits<double>::infinity();
-    int dimension = -1;
-    uint32_t cut = 0;
+    Cut best;
     // With many lights only the widest axis is tried.
     const bool all = range.end - range.begin <= 1u << 14;
     for (int k = 0; k < 3 && range.steps < balanceFrom; k++)
       if ((all || k == widest) && high[k] > low[k])
-        tryCuts(range, whole, k, low[k], high[k], best, dimension, cut);
+        tryCuts(range, whole, {k, low[k], high[k]}, best);
     const auto first = order_.begin() + range.begin, last = order_.begin() + range.end;
-    if (dimension >= 0) {
+    if (best.bins.axis >= 0) {
       const auto found = std::stable_partition(first, last, [&](uint32_t i) {
-        return bin(i, dimension, low[dimension], high[dimension]) <= cut;
+        return best.bins.of(centre(i, best.bins.axis)) <= best.last;
       });
       if (found != first && found != last) return uint32_t(found - order_.begin());
     }
@@ -136,15 +151,12 @@ class Builder {
 
  private:
   float centre(uint32_t i, int k) const { return lights_[i].low[k] / 2 + lights_[i].high[k] / 2; }
-  uint32_t bin(uint32_t i, int k, float low, float high) const {
-    return std::min(uint32_t((double(centre(i, k)) - low) / (double(high) - low) * bins), bins - 1);
-  }
-  void tryCuts(const Range& range, const LightBounds& whole, int k, float low, float high,
-               double& best, int& dimension, uint32_t& cut) const {
-    LightBounds in[bins];
-    bool used[bins] = {};
+  // Sorts the lights of a range into bins and replaces `best` if a cut between them costs less.
+  void tryCuts(const Range& range, const LightBounds& whole, Bins bins, Cut& best) const {
+    LightBounds in[Bins::count];
+    bool used[Bins::count] = {};
     for (uint32_t i = range.begin; i < range.end; i++) {
-      const uint32_t b = bin(order_[i], k, low, high);
+      const uint32_t b = bins.of(centre(order_[i], bins.axis));
       if (used[b])
         unite(in[b], lights_[order_[i]]);
       else {
@@ -155,7 +167,7 @@ class Builder {
     double size[3];
     for (int j = 0; j < 3; j++) size[j] = double(whole.high[j]) - whole.low[j];
     const double longest = std::max({size[0], size[1], size[2]}),
-                 factor = longest / std::max(size[k], 1e-3 * longest);
+                 factor = longest / std::max(size[bins.axis], 1e-3 * longest);
     const auto add = [](LightBounds& sum, bool& any, const LightBounds& more) {
       if (any)
         unite(sum, more);
@@ -166,20 +178,16 @@ class Builder {
     };
     bool any = false, anyAbove = false;
     LightBounds sum, above;
-    double belowCost[bins];
-    for (uint32_t b = 0; b < bins; b++) {
+    double belowCost[Bins::count];
+    for (uint32_t b = 0; b < Bins::count; b++) {
       if (used[b]) add(sum, any, in[b]);
       belowCost[b] = any ? cost(sum, size) : 0;
     }
-    for (uint32_t b = bins - 1; b > 0; b--) {
+    for (uint32_t b = Bins::count - 1; b > 0; b--) {
       if (used[b]) add(above, anyAbove, in[b]);
       if (!anyAbove) continue;
       const double c = factor * (belowCost[b - 1] + cost(above, size));
-      if (belowCost[b - 1] > 0 && c < best) {
-        best = c;
-        dimension = k;
-        cut = b - 1;
-      }
+      if (belowCost[b - 1] > 0 && c < best.cost) best = {c, bins, b - 1};
     }
   }
 

@@ -91,13 +91,21 @@ class TileRenderer {
   };
   Random randomOf(const Paths& paths, const uint32_t* order, uint32_t n);
   void draw(const Random& random, Draw what, uint32_t pairOffset, float* square[2]);
-  const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits,
-                                const Random& random);
+  // Random decisions at the hits of a batch. Without path tracing every pointer is null.
+  struct Sampling {
+    Random random;
+    float* choices[2];                         // by hit: to select a sample, for Russian roulette
+    const LobeSamples* samples[RTS_MAX_LOBES]; // by lobe; null for specular lobes
+    // By lobe and hit: probability that the lobe's sample is followed. spawnRays() writes it, light
+    // sampling reads it. Null if the lobe is specular or emitters are not sampled.
+    float* selectionProbability[RTS_MAX_LOBES];
+  };
+  const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const Random& random);
+  Sampling sampleLobes(const RtsBatch& batch, const Paths& paths, bool emitters);
   void passThroughBoundary(const Points& points, uint32_t i, uint32_t lane,
                            const Crossing& crossing, Paths& paths);
-  void spawnRays(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane,
-                 Paths& paths, const LobeSamples* const samples[], const Boundaries& boundaries,
-                 float* const choices[2], float* const selectionProbability[]);
+  void spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& sampling,
+                 const Boundaries& boundaries, Paths& paths);
   // Returns whether the ray's hits on area lights are left to light tracing, so that only the sky
   // counts.
   bool canOnlyReachSky(const RayState& ray) const {
@@ -113,13 +121,11 @@ class TileRenderer {
   float emissionMisWeight(const RayState& ray, const Points& points, uint32_t i) const;
   // emitted.cpp: light sampling of emissive surfaces and of the sky.
   LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool twoSided) const;
-  uint32_t weightLightSamples(const RtsBatch& batch, const RtsHits& hits,
-                              float* const selectionProbability[], Rays& rays,
-                              LightSample* lightSamples, uint32_t* hitOf, uint32_t n,
-                              float* response[3]);
-  void sampleEmitters(const RtsBatch& batch, const Points& points, const uint32_t* order,
-                      const Paths& paths, const Random& random, float* const selectionProbability[],
-                      const Crossing* crossing, float* const radiance[3]);
+  struct LightSamples; // the light samples of a batch
+  LightSamples chooseLightSamples(const RtsBatch& batch, const Sampling& sampling);
+  void weightLightSamples(const RtsBatch& batch, const Sampling& sampling, LightSamples& samples);
+  void sampleEmitters(const RtsBatch& batch, const Sampling& sampling, const Crossing* crossing,
+                      float* const radiance[3]);
   void attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]);
   void addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples);
 

@@ -38,54 +38,45 @@ class Frame {
     return {x * s_[0] + y * s_[1] + z * s_[2], x * t_[0] + y * t_[1] + z * t_[2],
             x * n_[0] + y * n_[1] + z * n_[2]};
   }
-  void toWorld(const Vec& v, float* const out[3], uint32_t i) const {
-    for (int k = 0; k < 3; k++) out[k][i] = float(v.x * s_[k] + v.y * t_[k] + v.z * n_[k]);
+  void toWorld(const Vec& v, float out[3]) const {
+    for (int k = 0; k < 3; k++) out[k] = float(v.x * s_[k] + v.y * t_[k] + v.z * n_[k]);
   }
 
  private:
   float n_[3], s_[3], t_[3];
 };
 
-Vec toEye(const Frame& frame, const RtsHits& hits, uint32_t hit) {
-  return unit(frame.toLocal(-double(hits.direction[0][hit]), -double(hits.direction[1][hit]),
-                            -double(hits.direction[2][hit])));
-}
-Vec towards(const Frame& frame, const float* const direction[3], uint32_t i) {
-  return unit(frame.toLocal(direction[0][i], direction[1][i], direction[2][i]));
-}
-
-void put(float* const value[3], uint32_t i, double v) {
-  for (int k = 0; k < 3; k++) value[k][i] = float(v);
-}
+// Value (of every colour) and pdf of a lobe for one direction.
+struct LobeValue {
+  float value = 0, pdf = 0;
+};
+// A direction sampled from a lobe, with value / pdf. pdf 0: no direction was sampled.
+struct SampledDirection {
+  float direction[3] = {}, quotient = 0, pdf = 0;
+};
 
 // Lambert
 // -------------------------------------------------------------------------------------------------
 
-void evaluateDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit,
-                     const float* const direction[3], float* const value[3], float* pdf) {
-  for (uint32_t i = 0; i < n; i++) {
-    const uint32_t h = hit[i];
-    const float cosine = lobe->normal[0][h] * direction[0][i] +
-                         lobe->normal[1][h] * direction[1][i] +
-                         lobe->normal[2][h] * direction[2][i];
-    pdf[i] = std::max(cosine, 0.0f) * float(M_1_PI);
-    for (int k = 0; k < 3; k++) value[k][i] = pdf[i];
+class LambertLobe { // A diffuse lobe at one hit.
+ public:
+  LambertLobe(const RtsLobe& lobe, const RtsHits&, uint32_t hit)
+      : normal_{lobe.normal[0][hit], lobe.normal[1][hit], lobe.normal[2][hit]} {}
+  LobeValue evaluate(const float w[3]) const {
+    const float pdf = std::max(dot3(normal_, w), 0.0f) * float(M_1_PI);
+    return {pdf, pdf};
   }
-}
+  SampledDirection sample(float u1, float u2) const {
+    SampledDirection out;
+    sampleCosineHemisphere(normal_, u1, u2, out.direction);
+    out.quotient = 1;
+    out.pdf = std::max(dot3(out.direction, normal_), 0.0f) * float(M_1_PI);
+    return out;
+  }
 
-void sampleDiffuse(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32_t* hit,
-                   const float* const square[2], float* const direction[3],
-                   float* const quotient[3], float* pdf) {
-  for (uint32_t i = 0; i < n; i++) {
-    const float normal[3] = {lobe->normal[0][hit[i]], lobe->normal[1][hit[i]],
-                             lobe->normal[2][hit[i]]};
-    float out[3];
-    sampleCosineHemisphere(normal, square[0][i], square[1][i], out);
-    for (int k = 0; k < 3; k++) direction[k][i] = out[k];
-    pdf[i] = std::max(dot3(out, normal), 0.0f) * float(M_1_PI);
-    put(quotient, i, 1);
-  }
-}
+ private:
+  float normal_[3];
+};
 
 // Microfacets
 // -------------------------------------------------------------------------------------------------
@@ -127,130 +118,162 @@ double fresnelAt(double cosine, double eta) {
   return fresnel(std::min(1.0, std::max(0.0, cosine)), eta, behind);
 }
 
-struct Glossy {
-  Facets facets;
-  double eta; // relative index for the Fresnel term; 0: no Fresnel term
-  Glossy(const RtsLobe& lobe, uint32_t hit)
-      : facets(lobe.parameter[0][hit]), eta(lobe.parameter[1][hit]) {}
-  double reflectance(double cosine) const { return eta > 0 ? fresnelAt(cosine, eta) : 1; }
+// A direction sampled in the frame of a lobe, with value / pdf.
+struct LocalSample {
+  Vec direction;
+  double quotient, pdf;
 };
 
-void evaluateGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
-                    const float* const direction[3], float* const value[3], float* pdf) {
-  for (uint32_t i = 0; i < n; i++) {
-    const Frame frame(*lobe, hit[i]);
-    const Vec v = toEye(frame, *hits, hit[i]), w = towards(frame, direction, i);
-    put(value, i, 0);
-    pdf[i] = 0;
-    if (!(v.z > 0) || !(w.z > 0)) continue;
-    const Glossy g(*lobe, hit[i]);
+// Reflection by rough facets at one hit. v points to the eye, above the surface; w to the light.
+class Glossy {
+ public:
+  Glossy(const RtsLobe& lobe, uint32_t hit)
+      : facets_(lobe.parameter[0][hit]), eta_(lobe.parameter[1][hit]) {}
+  LobeValue evaluate(const Vec& v, const Vec& w) const {
+    if (!(w.z > 0)) return {};
     const Vec h = unit(v + w);
-    const double d = g.facets.distribution(h);
-    put(value, i, g.reflectance(dot(v, h)) * d * g.facets.shadowing(v, w) / (4 * v.z));
-    pdf[i] = float(g.facets.masking(v) * d / (4 * v.z));
+    const double d = facets_.distribution(h);
+    return {float(reflectance(dot(v, h)) * d * facets_.shadowing(v, w) / (4 * v.z)),
+            float(facets_.masking(v) * d / (4 * v.z))};
   }
-}
-
-void sampleGlossy(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
-                  const float* const square[2], float* const direction[3], float* const quotient[3],
-                  float* pdf) {
-  for (uint32_t i = 0; i < n; i++) {
-    const Frame frame(*lobe, hit[i]);
-    const Vec v = toEye(frame, *hits, hit[i]);
-    put(quotient, i, 0);
-    put(direction, i, 0);
-    pdf[i] = 0;
-    if (!(v.z > 0)) continue;
-    const Glossy g(*lobe, hit[i]);
-    const Vec h = g.facets.visible(v, square[0][i], square[1][i]);
+  std::optional<LocalSample> sample(const Vec& v, double u1, double u2) const {
+    const Vec h = facets_.visible(v, u1, u2);
     const Vec w = unit(2 * dot(v, h) * h + -1 * v);
-    if (!(w.z > 0)) continue;
-    frame.toWorld(w, direction, i);
-    put(quotient, i, g.reflectance(dot(v, h)) * g.facets.shadowing(v, w) / g.facets.masking(v));
-    pdf[i] = float(g.facets.masking(v) * g.facets.distribution(h) / (4 * v.z));
+    if (!(w.z > 0)) return {};
+    return LocalSample{w, reflectance(dot(v, h)) * facets_.shadowing(v, w) / facets_.masking(v),
+                       facets_.masking(v) * facets_.distribution(h) / (4 * v.z)};
   }
-}
 
-// A rough dielectric boundary, both sides. eta: index on the viewer's side over that on the far
-// side. The low digits of the second random number choose between reflection and refraction; they
-// are as evenly distributed as the leading ones.
-struct Boundary {
-  Facets facets;
-  double eta;
+ private:
+  double reflectance(double cosine) const { return eta_ > 0 ? fresnelAt(cosine, eta_) : 1; }
+  Facets facets_;
+  double eta_; // relative index for the Fresnel term; 0: no Fresnel term
+};
+
+// A rough dielectric boundary at one hit, both sides. v points to the eye, w to the light.
+class Boundary {
+ public:
   Boundary(const RtsLobe& lobe, uint32_t hit)
-      : facets(lobe.parameter[1][hit]), eta(lobe.parameter[0][hit]) {
-    if (!(eta > 0) || !std::isfinite(eta)) eta = 1;
+      : facets_(lobe.parameter[1][hit]), eta_(lobe.parameter[0][hit]) {
+    if (!(eta_ > 0) || !std::isfinite(eta_)) eta_ = 1;
   }
+  LobeValue evaluate(const Vec& v, const Vec& w) const {
+    double value, pdf;
+    evaluateAt(v, w, value, pdf);
+    return {float(value), float(pdf)};
+  }
+  // The low digits of the second random number choose between reflection and refraction; they are
+  // as evenly distributed as the leading ones.
+  std::optional<LocalSample> sample(const Vec& v, double u1, double u2) const {
+    const Vec h = facets_.visible(v, u1, u2);
+    const double choice = u2 * 4096.0 - std::floor(u2 * 4096.0), cosine = std::min(1.0, dot(v, h));
+    if (!(cosine > 0)) return {};
+    double behind;
+    const double f = fresnel(cosine, eta_, behind);
+    const bool reflected = choice < f;
+    const Vec w =
+        unit(reflected ? 2 * cosine * h + -1 * v : (eta_ * cosine - behind) * h + -eta_ * v);
+    if (reflected ? !(w.z > 0) : !(w.z < 0)) return {};
+    double value, pdf;
+    evaluateAt(v, w, value, pdf);
+    if (!(pdf > 0)) return {};
+    return LocalSample{
+        w, (reflected ? 1 : eta_ * eta_) * facets_.shadowing(v, w) / facets_.masking(v), pdf};
+  }
+
+ private:
   // Computes value and pdf for light from w. The facet normal that scatters it to v is on v's side.
   void evaluateAt(const Vec& v, const Vec& w, double& value, double& pdf) const {
     value = pdf = 0;
     if (!(v.z > 0) || w.z == 0) return;
     const bool reflected = w.z > 0;
     // Walter's equations 13 and 16, scaled by the index of the far side
-    Vec h = reflected ? unit(v + w) : unit(eta * v + w);
+    Vec h = reflected ? unit(v + w) : unit(eta_ * v + w);
     if (h.z < 0) h = -1 * h;
     const double vh = dot(v, h), wh = dot(w, h);
     if (!(vh > 0) || (reflected ? wh <= 0 : wh >= 0)) return;
-    const double f = fresnelAt(vh, eta), d = facets.distribution(h);
+    const double f = fresnelAt(vh, eta_), d = facets_.distribution(h);
     if (reflected) {
-      value = f * d * facets.shadowing(v, w) / (4 * v.z);
-      pdf = f * facets.masking(v) * d / (4 * v.z);
+      value = f * d * facets_.shadowing(v, w) / (4 * v.z);
+      pdf = f * facets_.masking(v) * d / (4 * v.z);
       return;
     }
-    const double root = eta * vh + wh; // with radiance scaled by eta^2, as at the smooth boundary
+    const double root = eta_ * vh + wh; // with radiance scaled by eta^2, as at the smooth boundary
     if (root == 0) return;
     const double spread = std::fabs(wh) / (root * root);
-    pdf = (1 - f) * facets.visiblePdf(v, h) * spread;
-    value = (1 - f) * d * facets.shadowing(v, w) * vh * spread / v.z * eta * eta;
+    pdf = (1 - f) * facets_.visiblePdf(v, h) * spread;
+    value = (1 - f) * d * facets_.shadowing(v, w) * vh * spread / v.z * eta_ * eta_;
   }
+  Facets facets_;
+  double eta_; // index on the viewer's side over that on the far side
 };
 
-void evaluateBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
-                      const float* const direction[3], float* const value[3], float* pdf) {
+// A lobe of microfacets at one hit. Transforms directions between the world and the frame of the
+// lobe, in which `Model` (Glossy, Boundary) computes.
+template <class Model> class MicrofacetLobe {
+ public:
+  MicrofacetLobe(const RtsLobe& lobe, const RtsHits& hits, uint32_t hit)
+      : frame_(lobe, hit), model_(lobe, hit),
+        eye_(unit(frame_.toLocal(-double(hits.direction[0][hit]), -double(hits.direction[1][hit]),
+                                 -double(hits.direction[2][hit])))) {}
+  LobeValue evaluate(const float w[3]) const {
+    if (!(eye_.z > 0)) return {};
+    return model_.evaluate(eye_, unit(frame_.toLocal(w[0], w[1], w[2])));
+  }
+  SampledDirection sample(float u1, float u2) const {
+    SampledDirection out;
+    if (!(eye_.z > 0)) return out;
+    const std::optional<LocalSample> local = model_.sample(eye_, u1, u2);
+    if (!local) return out;
+    frame_.toWorld(local->direction, out.direction);
+    out.quotient = float(local->quotient);
+    out.pdf = float(local->pdf);
+    return out;
+  }
+
+ private:
+  Frame frame_;
+  Model model_;
+  Vec eye_;
+};
+
+// Function tables
+// -------------------------------------------------------------------------------------------------
+
+// Implements RtsLobeFunctions::evaluate hit by hit.
+template <class Lobe> void evaluateEach(const RtsLobe* lobe, const RtsHits* hits, uint32_t n,
+                                        const uint32_t* hit, const float* const direction[3],
+                                        float* const value[3], float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
-    const Frame frame(*lobe, hit[i]);
-    double f, p;
-    Boundary(*lobe, hit[i])
-        .evaluateAt(toEye(frame, *hits, hit[i]), towards(frame, direction, i), f, p);
-    put(value, i, f);
-    pdf[i] = float(p);
+    const float w[3] = {direction[0][i], direction[1][i], direction[2][i]};
+    const LobeValue at = Lobe(*lobe, *hits, hit[i]).evaluate(w);
+    for (int k = 0; k < 3; k++) value[k][i] = at.value;
+    pdf[i] = at.pdf;
   }
 }
 
-void sampleBoundary(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
-                    const float* const square[2], float* const direction[3],
-                    float* const quotient[3], float* pdf) {
+// Implements RtsLobeFunctions::sample hit by hit.
+template <class Lobe> void sampleEach(const RtsLobe* lobe, const RtsHits* hits, uint32_t n,
+                                      const uint32_t* hit, const float* const square[2],
+                                      float* const direction[3], float* const quotient[3],
+                                      float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
-    const Frame frame(*lobe, hit[i]);
-    const Vec v = toEye(frame, *hits, hit[i]);
-    put(quotient, i, 0);
-    put(direction, i, 0);
-    pdf[i] = 0;
-    if (!(v.z > 0)) continue;
-    const Boundary b(*lobe, hit[i]);
-    const Vec h = b.facets.visible(v, square[0][i], square[1][i]);
-    const double choice = square[1][i] * 4096.0 - std::floor(square[1][i] * 4096.0),
-                 cosine = std::min(1.0, dot(v, h));
-    if (!(cosine > 0)) continue;
-    double behind;
-    const double f = fresnel(cosine, b.eta, behind);
-    const bool reflected = choice < f;
-    const Vec w =
-        unit(reflected ? 2 * cosine * h + -1 * v : (b.eta * cosine - behind) * h + -b.eta * v);
-    if (reflected ? !(w.z > 0) : !(w.z < 0)) continue;
-    double value, p;
-    b.evaluateAt(v, w, value, p);
-    if (!(p > 0)) continue;
-    frame.toWorld(w, direction, i);
-    put(quotient, i,
-        (reflected ? 1 : b.eta * b.eta) * b.facets.shadowing(v, w) / b.facets.masking(v));
-    pdf[i] = float(p);
+    const SampledDirection at = Lobe(*lobe, *hits, hit[i]).sample(square[0][i], square[1][i]);
+    for (int k = 0; k < 3; k++) {
+      direction[k][i] = at.direction[k];
+      quotient[k][i] = at.quotient;
+    }
+    pdf[i] = at.pdf;
   }
 }
 
-const RtsLobeFunctions diffuse{sizeof(RtsLobeFunctions), 0, evaluateDiffuse, sampleDiffuse};
-const RtsLobeFunctions glossy{sizeof(RtsLobeFunctions), 0, evaluateGlossy, sampleGlossy};
-const RtsLobeFunctions boundary{sizeof(RtsLobeFunctions), 1, evaluateBoundary, sampleBoundary};
+template <class Lobe> constexpr RtsLobeFunctions functionsOf(uint32_t transmits) {
+  return {sizeof(RtsLobeFunctions), transmits, evaluateEach<Lobe>, sampleEach<Lobe>};
+}
+
+constexpr RtsLobeFunctions diffuse = functionsOf<LambertLobe>(0);
+constexpr RtsLobeFunctions glossy = functionsOf<MicrofacetLobe<Glossy>>(0);
+constexpr RtsLobeFunctions boundary = functionsOf<MicrofacetLobe<Boundary>>(1);
 
 float checked(float v) { return v > 0 && std::isfinite(v) ? v : 0.0f; }
 

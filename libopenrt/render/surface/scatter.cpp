@@ -103,29 +103,14 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   addLights(batch, hits, radiance);
   const bool path = tracesPaths(scene_.frame.transport);
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
-  Random random{};
-  float* choices[2] = {};
-  if (path) {
-    random = randomOf(paths, order, hits.count);
-    draw(random, Draw::choice, 0, choices);
-  }
-  const LobeSamples* samples[RTS_MAX_LOBES] = {};
-  float* selectionProbability[RTS_MAX_LOBES] = {};
-  for (uint32_t l = 0; path && l < batch.lobeCount; l++) {
-    if (!nonSpecularFunctions(batch.lobes[l])) continue;
-    samples[l] = sampleLobe(batch, l, hits, random);
-    if (emitters) selectionProbability[l] = arena_.takeZero<float>(size);
-  }
+  const Sampling sampling = path ? sampleLobes(batch, paths, emitters) : Sampling{};
   for (uint32_t i = 0; i < hits.count; i++) {
     if (boundaries.crossing && !boundaries.crossing[i].visible)
       passThroughBoundary(points, i, order[i], boundaries.crossing[i], paths);
     else
-      spawnRays(batch, points, i, order[i], paths, samples, boundaries, choices,
-                selectionProbability);
+      spawnRays(batch, i, sampling, boundaries, paths);
   }
-  if (emitters)
-    sampleEmitters(batch, points, order, paths, random, selectionProbability, boundaries.crossing,
-                   radiance);
+  if (emitters) sampleEmitters(batch, sampling, boundaries.crossing, radiance);
   float* fog[4];
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
@@ -200,8 +185,9 @@ void TileRenderer::draw(const Random& random, Draw what, uint32_t pairOffset, fl
 }
 
 // Samples a direction for every hit from a non-specular lobe.
-const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, const RtsHits& hits,
+const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l,
                                             const Random& random) {
+  const RtsHits& hits = batch.points->hits;
   auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count, &batch);
   ArenaScope scope(arena_);
   const uint32_t* all = arena_.takeNumbers(hits.count);
@@ -209,6 +195,21 @@ const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l, c
   draw(random, Draw::direction, l ? hash(l, 0x6c6f6265u) : 0, square);
   samples->sample(batch.lobes[l], hits, hits.count, all, square);
   return samples;
+}
+
+// Takes the random decisions at the hits of a batch. emitters: they are sampled at these hits.
+TileRenderer::Sampling TileRenderer::sampleLobes(const RtsBatch& batch, const Paths& paths,
+                                                 bool emitters) {
+  const uint32_t n = batch.points->hits.count;
+  Sampling sampling{};
+  sampling.random = randomOf(paths, batch.order, n);
+  draw(sampling.random, Draw::choice, 0, sampling.choices);
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    if (!nonSpecularFunctions(batch.lobes[l])) continue;
+    sampling.samples[l] = sampleLobe(batch, l, sampling.random);
+    if (emitters) sampling.selectionProbability[l] = arena_.takeZero<float>(padded(n));
+  }
+  return sampling;
 }
 
 // Spawns a ray straight through a boundary that has no effect on light.
@@ -228,12 +229,12 @@ void TileRenderer::passThroughBoundary(const Points& points, uint32_t i, uint32_
 }
 
 // Spawns the rays that continue the path from hit i: all samples, or one selected sample.
-// selectionProbability gets the probability of each lobe's sample to be followed. It must not
-// depend on the sampled directions, because the MIS weights of light sampling use it.
-void TileRenderer::spawnRays(const RtsBatch& batch, const Points& points, uint32_t i, uint32_t lane,
-                             Paths& paths, const LobeSamples* const samples[],
-                             const Boundaries& boundaries, float* const choices[2],
-                             float* const selectionProbability[]) {
+// Writes the selection probability of each lobe's sample. The probability must not depend on the
+// sampled directions, because the MIS weights of light sampling use it.
+void TileRenderer::spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& sampling,
+                             const Boundaries& boundaries, Paths& paths) {
+  const Points& points = *batch.points;
+  const uint32_t lane = batch.order[i];
   const RayState ray = paths.state[lane];
   const bool path = tracesPaths(scene_.frame.transport),
              direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
@@ -241,8 +242,8 @@ void TileRenderer::spawnRays(const RtsBatch& batch, const Points& points, uint32
                           ray.channel);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (direct && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
-    bsdfSamples.add(l, batch.lobes[l], samples[l]);
-    if (samples[l]) markRandom(ray.path);
+    bsdfSamples.add(l, batch.lobes[l], sampling.samples[l]);
+    if (sampling.samples[l]) markRandom(ray.path);
   }
   float carried[BsdfSamples::maximum], sum = 0;
   for (uint32_t w = 0; w < bsdfSamples.count; w++) {
@@ -255,9 +256,10 @@ void TileRenderer::spawnRays(const RtsBatch& batch, const Points& points, uint32
   if (!(sum > 0)) return;
   const bool all = !path || bsdfSamples.count == 1 || ray.splits == 0;
   for (uint32_t w = 0; w < bsdfSamples.count; w++)
-    if (selectionProbability[bsdfSamples.list[w].lobe])
-      selectionProbability[bsdfSamples.list[w].lobe][i] = all ? 1 : carried[w] / sum;
-  const float choice = path ? choices[0][i] : 0, survival = path ? choices[1][i] : 0;
+    if (float* probability = sampling.selectionProbability[bsdfSamples.list[w].lobe])
+      probability[i] = all ? 1 : carried[w] / sum;
+  const float choice = path ? sampling.choices[0][i] : 0,
+              survival = path ? sampling.choices[1][i] : 0;
   const auto send = [&](uint32_t w, float probability) {
     const BsdfSample& sample = bsdfSamples.list[w];
     if (sample.rejected) return;

@@ -31,6 +31,23 @@ VRML97_INLINE uint32_t wholeLanes(uint32_t n) {
 VRML97_INLINE float larger(float a, float b) { return a > b ? a : b; }  // b where a is NaN
 VRML97_INLINE float smaller(float a, float b) { return a < b ? a : b; } // b where a is NaN
 
+// The arrays of n vectors. No other pointer of a loop leads to them, so the loop can be vectorised.
+// GCC knows this only if the struct is a parameter by value.
+struct VectorArrays {
+  float* __restrict x;
+  float* __restrict y;
+  float* __restrict z;
+};
+struct ConstVectorArrays {
+  const float* __restrict x;
+  const float* __restrict y;
+  const float* __restrict z;
+};
+VRML97_INLINE VectorArrays arraysOf(float* const v[3]) { return {v[0], v[1], v[2]}; }
+VRML97_INLINE ConstVectorArrays constArraysOf(const float* const v[3]) {
+  return {v[0], v[1], v[2]};
+}
+
 VRML97_INLINE uint32_t bitsOf(float x) { return __builtin_bit_cast(uint32_t, x); }
 VRML97_INLINE float floatOf(uint32_t bits) { return __builtin_bit_cast(float, bits); }
 

@@ -43,100 +43,92 @@ Raster rasterOf(const float size[2], double height) {
           static_cast<float>(height / static_cast<double>(size[1]))};
 }
 
-VRML97_CLONES void perspectiveRays(const Raster raster, uint32_t n, const float* __restrict px,
-                                   const float* __restrict py, float* __restrict ox,
-                                   float* __restrict oy, float* __restrict oz, float* __restrict dx,
-                                   float* __restrict dy, float* __restrict dz) {
+// The arrays of n pixels; restrict as in VectorArrays.
+struct PixelArrays {
+  const float* __restrict x;
+  const float* __restrict y;
+};
+
+VRML97_CLONES void perspectiveRays(const Raster raster, uint32_t n, const PixelArrays pixel,
+                                   const VectorArrays origin, const VectorArrays direction) {
   for (uint32_t i = 0; i < n; i++) {
-    const float x = (px[i] - raster.middle[0]) * raster.step;
-    const float y = (raster.middle[1] - py[i]) * raster.step;
+    const float x = (pixel.x[i] - raster.middle[0]) * raster.step;
+    const float y = (raster.middle[1] - pixel.y[i]) * raster.step;
     const float scale = 1.0f / squareRoot(x * x + y * y + 1.0f);
-    ox[i] = oy[i] = oz[i] = 0.0f;
-    dx[i] = x * scale;
-    dy[i] = y * scale;
-    dz[i] = -scale;
+    origin.x[i] = origin.y[i] = origin.z[i] = 0.0f;
+    direction.x[i] = x * scale;
+    direction.y[i] = y * scale;
+    direction.z[i] = -scale;
   }
 }
 
-VRML97_CLONES void orthographicRays(const Raster raster, uint32_t n, const float* __restrict px,
-                                    const float* __restrict py, float* __restrict ox,
-                                    float* __restrict oy, float* __restrict oz,
-                                    float* __restrict dx, float* __restrict dy,
-                                    float* __restrict dz) {
+VRML97_CLONES void orthographicRays(const Raster raster, uint32_t n, const PixelArrays pixel,
+                                    const VectorArrays origin, const VectorArrays direction) {
   for (uint32_t i = 0; i < n; i++) {
-    ox[i] = (px[i] - raster.middle[0]) * raster.step;
-    oy[i] = (raster.middle[1] - py[i]) * raster.step;
-    oz[i] = dx[i] = dy[i] = 0.0f;
-    dz[i] = -1.0f;
+    origin.x[i] = (pixel.x[i] - raster.middle[0]) * raster.step;
+    origin.y[i] = (raster.middle[1] - pixel.y[i]) * raster.step;
+    origin.z[i] = direction.x[i] = direction.y[i] = 0.0f;
+    direction.z[i] = -1.0f;
   }
 }
 
 void generatePerspective(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
                          const float* const xy[2], const float size[2], RtsRays* out) {
-  constexpr double halfDegree = 3.14159265358979323846 / 360.0;
-  const double height =
-      2.0 * std::tan(static_cast<double>(static_cast<const PerspectiveParams*>(params)->fovy) *
-                     halfDegree);
-  perspectiveRays(rasterOf(size, height), wholeLanes(n), xy[0], xy[1], out->origin[0],
-                  out->origin[1], out->origin[2], out->direction[0], out->direction[1],
-                  out->direction[2]);
+  const double height = planeHeight(static_cast<const PerspectiveParams*>(params)->fovy);
+  perspectiveRays(rasterOf(size, height), wholeLanes(n), {xy[0], xy[1]}, arraysOf(out->origin),
+                  arraysOf(out->direction));
 }
 
 void generateOrthographic(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
                           const float* const xy[2], const float size[2], RtsRays* out) {
   const double height = static_cast<const OrthographicParams*>(params)->height;
-  orthographicRays(rasterOf(size, height), wholeLanes(n), xy[0], xy[1], out->origin[0],
-                   out->origin[1], out->origin[2], out->direction[0], out->direction[1],
-                   out->direction[2]);
+  orthographicRays(rasterOf(size, height), wholeLanes(n), {xy[0], xy[1]}, arraysOf(out->origin),
+                   arraysOf(out->direction));
 }
 
 // Projects points to the picture. A surface of area A that faces the eye at distance r has the
 // solid angle A / r^2. On the plane z = -1 a solid angle at the angle t from the axis covers an
 // area larger by 1 / cos(t)^3.
-void projectPerspective(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
-                        const float* const local[3], const float* const*, const float size[2],
-                        RtsProjection* out) {
-  constexpr double halfDegree = 3.14159265358979323846 / 360.0;
-  const double height =
-      2.0 * std::tan(static_cast<double>(static_cast<const PerspectiveParams*>(params)->fovy) *
-                     halfDegree);
-  const double pixels = static_cast<double>(size[1]) / height; // pixels per unit of the plane
-  for (uint32_t i = 0; i < n; i++) {
-    const double x = local[0][i], y = local[1][i], depth = -static_cast<double>(local[2][i]);
-    const double scale = depth > 0 ? pixels / depth : 0;
+class PerspectiveProjection {
+ public:
+  static constexpr int parallel = 0;
+  using Params = PerspectiveParams;
+  PerspectiveProjection(const Params& params, const float size[2])
+      : pixels_(static_cast<double>(size[1]) / planeHeight(params.fovy)) {}
+  Projected project(const float local[3], const float*) const {
+    const double x = local[0], y = local[1], depth = -static_cast<double>(local[2]);
+    const double scale = depth > 0 ? pixels_ / depth : 0;
     const double weight = scale * scale * std::sqrt(x * x + y * y + depth * depth) / depth;
-    writeProjection(out, i, size, 0.5 * static_cast<double>(size[0]) + x * scale,
-                    0.5 * static_cast<double>(size[1]) - y * scale, depth > 0 ? weight : 0);
-    out->toEye[0][i] = -local[0][i];
-    out->toEye[1][i] = -local[1][i];
-    out->toEye[2][i] = -local[2][i];
+    return {x * scale, y * scale, depth > 0 ? weight : 0, {-local[0], -local[1], -local[2]}};
   }
-  out->parallel = 0;
-}
 
-void projectOrthographic(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
-                         const float* const local[3], const float* const*, const float size[2],
-                         RtsProjection* out) {
-  const double pixels = static_cast<double>(size[1]) /
-                        static_cast<double>(static_cast<const OrthographicParams*>(params)->height);
-  for (uint32_t i = 0; i < n; i++) {
-    const double x = local[0][i], y = local[1][i];
-    writeProjection(out, i, size, 0.5 * static_cast<double>(size[0]) + x * pixels,
-                    0.5 * static_cast<double>(size[1]) - y * pixels,
-                    local[2][i] < 0 && local[2][i] >= -noLimit ? pixels * pixels : 0);
-    out->toEye[0][i] = out->toEye[1][i] = 0.0f;
-    out->toEye[2][i] = 1.0f;
+ private:
+  double pixels_; // pixels per unit of the plane
+};
+
+class OrthographicProjection {
+ public:
+  static constexpr int parallel = 1;
+  using Params = OrthographicParams;
+  OrthographicProjection(const Params& params, const float size[2])
+      : pixels_(static_cast<double>(size[1]) / static_cast<double>(params.height)) {}
+  Projected project(const float local[3], const float*) const {
+    const double x = local[0], y = local[1];
+    return {x * pixels_,
+            y * pixels_,
+            local[2] < 0 && local[2] >= -noLimit ? pixels_ * pixels_ : 0,
+            {0.0f, 0.0f, 1.0f}};
   }
-  out->parallel = 1;
-}
+
+ private:
+  double pixels_; // pixels per unit of local space
+};
 
 } // namespace
 
-const RtsClass perspectiveCameraClass =
-    cameraClass<PerspectiveParams>("PerspectiveCamera", "all rays start in one point",
-                                   perspectiveParams, generatePerspective, projectPerspective);
-const RtsClass orthographicCameraClass =
-    cameraClass<OrthographicParams>("OrthographicCamera", "all rays are parallel",
-                                    orthographicParams, generateOrthographic, projectOrthographic);
+const RtsClass perspectiveCameraClass = cameraClass<PerspectiveProjection>(
+    "PerspectiveCamera", "all rays start in one point", perspectiveParams, generatePerspective);
+const RtsClass orthographicCameraClass = cameraClass<OrthographicProjection>(
+    "OrthographicCamera", "all rays are parallel", orthographicParams, generateOrthographic);
 
 } // namespace vrml97

@@ -69,8 +69,6 @@ DiskPoint samplePointOnLens(float u, float v, int32_t blades) {
           r * ((1 - part) * std::sin(first) + part * std::sin(second))};
 }
 
-double planeHeight(float fovy) { return 2.0 * std::tan(static_cast<double>(fovy) * (pi / 360.0)); }
-
 // Rays start at a sampled point of the lens and pass through the point where the pinhole camera's
 // ray hits the focal plane.
 void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, uint32_t n,
@@ -102,33 +100,32 @@ void generateThinLens(const RtsHost* host, RtsBatch* batch, const void* params, 
   }
 }
 
-// The line from the point on the lens through the given point hits the focal plane at the pixel.
-// The weight is that of the perspective camera.
-void projectThinLens(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
-                     const float* const local[3], const float* const lens[2], const float size[2],
-                     RtsProjection* out) {
-  const auto& p = *static_cast<const ThinLensParams*>(params);
-  // pixels: per unit of the plane z = -1.
-  const double pixels = static_cast<double>(size[1]) / planeHeight(p.fovy), focus = p.focus;
-  for (uint32_t i = 0; i < n; i++) {
+// Projects a point along the line from the point of the lens: the pixel is where the line hits the
+// focal plane. The weight is that of the perspective camera.
+class ThinLensProjection {
+ public:
+  static constexpr int parallel = 0;
+  using Params = ThinLensParams;
+  ThinLensProjection(const Params& params, const float size[2])
+      : params_(params), pixels_(static_cast<double>(size[1]) / planeHeight(params.fovy)) {}
+  Projected project(const float local[3], const float lens[2]) const {
     const DiskPoint unit =
-        p.radius > 0 ? samplePointOnLens(lens[0][i], lens[1][i], p.blades) : DiskPoint{0, 0};
-    const double lx = unit.x * static_cast<double>(p.radius),
-                 ly = unit.y * static_cast<double>(p.radius);
-    const double x = static_cast<double>(local[0][i]) - lx,
-                 y = static_cast<double>(local[1][i]) - ly;
-    const double depth = -static_cast<double>(local[2][i]);
+        params_.radius > 0 ? samplePointOnLens(lens[0], lens[1], params_.blades) : DiskPoint{0, 0};
+    const double lx = unit.x * static_cast<double>(params_.radius),
+                 ly = unit.y * static_cast<double>(params_.radius), focus = params_.focus;
+    const double x = static_cast<double>(local[0]) - lx, y = static_cast<double>(local[1]) - ly;
+    const double depth = -static_cast<double>(local[2]);
     const double away = std::sqrt(x * x + y * y + depth * depth);
-    writeProjection(out, i, size,
-                    0.5 * static_cast<double>(size[0]) + (lx / focus + x / depth) * pixels,
-                    0.5 * static_cast<double>(size[1]) - (ly / focus + y / depth) * pixels,
-                    depth > 0 ? pixels * pixels / (depth * depth) * away / depth : 0);
-    out->toEye[0][i] = static_cast<float>(-x);
-    out->toEye[1][i] = static_cast<float>(-y);
-    out->toEye[2][i] = static_cast<float>(depth);
+    return {(lx / focus + x / depth) * pixels_,
+            (ly / focus + y / depth) * pixels_,
+            depth > 0 ? pixels_ * pixels_ / (depth * depth) * away / depth : 0,
+            {static_cast<float>(-x), static_cast<float>(-y), static_cast<float>(depth)}};
   }
-  out->parallel = 0;
-}
+
+ private:
+  const ThinLensParams& params_;
+  double pixels_; // pixels per unit of the plane z = -1
+};
 
 // Panorama ----------------------------------------------------------------------------------------
 
@@ -170,34 +167,35 @@ void generatePanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
   }
 }
 
-// Every row has the same number of pixels, but its circle of latitude shrinks with the cosine.
-void projectPanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
-                     const float* const local[3], const float* const*, const float size[2],
-                     RtsProjection* out) {
-  const auto& p = *static_cast<const PanoramaParams*>(params);
-  const double across =
-      static_cast<double>(size[0]) / (static_cast<double>(p.horizontal) * (pi / 180));
-  const double up = static_cast<double>(size[1]) / (static_cast<double>(p.vertical) * (pi / 180));
-  for (uint32_t i = 0; i < n; i++) {
-    const double x = local[0][i], y = local[1][i], z = local[2][i];
+// Projects to longitude and latitude. Every row has the same number of pixels, but its circle of
+// latitude shrinks with the cosine.
+class PanoramaProjection {
+ public:
+  static constexpr int parallel = 0;
+  using Params = PanoramaParams;
+  PanoramaProjection(const Params& params, const float size[2])
+      : across_(static_cast<double>(size[0]) /
+                (static_cast<double>(params.horizontal) * (pi / 180))),
+        up_(static_cast<double>(size[1]) / (static_cast<double>(params.vertical) * (pi / 180))) {}
+  Projected project(const float local[3], const float*) const {
+    const double x = local[0], y = local[1], z = local[2];
     const double level = std::sqrt(x * x + z * z), away2 = level * level + y * y;
-    writeProjection(out, i, size, 0.5 * static_cast<double>(size[0]) + std::atan2(x, -z) * across,
-                    0.5 * static_cast<double>(size[1]) - std::atan2(y, level) * up,
-                    across * up / (std::sqrt(away2) * level));
-    out->toEye[0][i] = -local[0][i];
-    out->toEye[1][i] = -local[1][i];
-    out->toEye[2][i] = -local[2][i];
+    return {std::atan2(x, -z) * across_,
+            std::atan2(y, level) * up_,
+            across_ * up_ / (std::sqrt(away2) * level),
+            {-local[0], -local[1], -local[2]}};
   }
-  out->parallel = 0;
-}
+
+ private:
+  double across_, up_; // pixels per radian
+};
 
 } // namespace
 
-const RtsClass thinLensClass = cameraClass<ThinLensParams>(
+const RtsClass thinLensClass = cameraClass<ThinLensProjection>(
     "ThinLens", "a lens: what is not at the distance of focus is blurred", thinLensParams,
-    generateThinLens, projectThinLens);
-const RtsClass panoramaClass =
-    cameraClass<PanoramaParams>("Panorama", "everything around, longitude and latitude",
-                                panoramaParams, generatePanorama, projectPanorama);
+    generateThinLens);
+const RtsClass panoramaClass = cameraClass<PanoramaProjection>(
+    "Panorama", "everything around, longitude and latitude", panoramaParams, generatePanorama);
 
 } // namespace vrml97

@@ -137,18 +137,17 @@ void illuminateDirectional(const RtsHost*, RtsBatch*, const void* params, uint32
 }
 
 // Writes the vectors to the light, and the attenuation to `factor`: 0 beyond the radius.
-VRML97_CLONES void attenuation(const PointParams p, uint32_t n, const float* __restrict px,
-                               const float* __restrict py, const float* __restrict pz,
-                               float* __restrict tx, float* __restrict ty, float* __restrict tz,
-                               float* __restrict factor) {
+VRML97_CLONES void attenuation(const PointParams p, uint32_t n, const ConstVectorArrays point,
+                               const VectorArrays toLight, float* __restrict factor) {
   for (uint32_t i = 0; i < n; i++) {
-    const float x = p.location[0] - px[i], y = p.location[1] - py[i], z = p.location[2] - pz[i];
+    const float x = p.location[0] - point.x[i], y = p.location[1] - point.y[i],
+                z = p.location[2] - point.z[i];
     const float d = squareRoot(x * x + y * y + z * z);
     const float f =
         1.0f / larger(p.attenuation[0] + d * (p.attenuation[1] + d * p.attenuation[2]), 1.0f);
-    tx[i] = x;
-    ty[i] = y;
-    tz[i] = z;
+    toLight.x[i] = x;
+    toLight.y[i] = y;
+    toLight.z[i] = z;
     factor[i] = d <= p.radius ? f : 0.0f;
   }
 }
@@ -171,8 +170,7 @@ void illuminatePoint(const RtsHost* host, RtsBatch* batch, const void* params, u
                      const float* const local[3], RtsIllumination* out) {
   const auto& p = *static_cast<const PointParams*>(params);
   float* factor = host->scratch(batch, wholeLanes(n));
-  attenuation(p, wholeLanes(n), local[0], local[1], local[2], out->toLight[0], out->toLight[1],
-              out->toLight[2], factor);
+  attenuation(p, wholeLanes(n), constArraysOf(local), arraysOf(out->toLight), factor);
   colour(p.light, wholeLanes(n), factor, out);
 }
 
@@ -196,23 +194,22 @@ Cone coneOf(const SpotParams& p) {
 }
 
 // Applies a uniform cone, which needs only the cosine.
-VRML97_CLONES void hardCone(const Cone cone, uint32_t n, const float* __restrict tx,
-                            const float* __restrict ty, const float* __restrict tz,
+VRML97_CLONES void hardCone(const Cone cone, uint32_t n, const ConstVectorArrays toLight,
                             float* __restrict factor) {
   for (uint32_t i = 0; i < n; i++) {
-    const float along = -(tx[i] * cone.axis[0] + ty[i] * cone.axis[1] + tz[i] * cone.axis[2]);
-    const float length = squareRoot(tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i]);
+    const float x = toLight.x[i], y = toLight.y[i], z = toLight.z[i];
+    const float along = -(x * cone.axis[0] + y * cone.axis[1] + z * cone.axis[2]);
+    const float length = squareRoot(x * x + y * y + z * z);
     factor[i] = along > cone.cosCut * length ? factor[i] : 0.0f;
   }
 }
 
 // Applies a cone with a soft edge. The angle is computed from the dot and the cross product,
 // because the cosine alone loses half of the digits near the axis.
-VRML97_CLONES void softCone(const Cone cone, uint32_t n, const float* __restrict tx,
-                            const float* __restrict ty, const float* __restrict tz,
+VRML97_CLONES void softCone(const Cone cone, uint32_t n, const ConstVectorArrays toLight,
                             float* __restrict factor) {
   for (uint32_t i = 0; i < n; i++) {
-    const float x = tx[i], y = ty[i], z = tz[i];
+    const float x = toLight.x[i], y = toLight.y[i], z = toLight.z[i];
     const float along = -(x * cone.axis[0] + y * cone.axis[1] + z * cone.axis[2]);
     const float cx = y * cone.axis[2] - z * cone.axis[1];
     const float cy = z * cone.axis[0] - x * cone.axis[2];
@@ -227,11 +224,9 @@ void illuminateSpot(const RtsHost* host, RtsBatch* batch, const void* params, ui
                     const float* const local[3], RtsIllumination* out) {
   const auto& p = *static_cast<const SpotParams*>(params);
   float* factor = host->scratch(batch, wholeLanes(n));
-  attenuation(p.point, wholeLanes(n), local[0], local[1], local[2], out->toLight[0],
-              out->toLight[1], out->toLight[2], factor);
+  attenuation(p.point, wholeLanes(n), constArraysOf(local), arraysOf(out->toLight), factor);
   const Cone cone = coneOf(p);
-  (cone.slope > 0 ? softCone : hardCone)(cone, wholeLanes(n), out->toLight[0], out->toLight[1],
-                                         out->toLight[2], factor);
+  (cone.slope > 0 ? softCone : hardCone)(cone, wholeLanes(n), constArraysOf(out->toLight), factor);
   colour(p.point.light, wholeLanes(n), factor, out);
 }
 

@@ -35,9 +35,16 @@ void Accel::refineMultiHit(const Rays& rays, MultiHit& p) const {
   const float d[3] = {rays.dir[0][p.ray], rays.dir[1][p.ray], rays.dir[2][p.ray]};
   float n[3] = {p.ng[0], p.ng[1], p.ng[2]};
   if (r.instanced) normalToRender(r, p.ng, n);
-  if (r.primitive == edit::Primitive::Triangles && grazes(n, d))
-    refineHit(r, p.primitive, {rays.org[0][p.ray], rays.org[1][p.ray], rays.org[2][p.ray]},
-              {d[0], d[1], d[2]}, rays.tnear[p.ray], rays.tfar[p.ray], p.t, p.u, p.v);
+  if (r.primitive != edit::Primitive::Triangles || !grazes(n, d)) return;
+  const RaySegment ray{{rays.org[0][p.ray], rays.org[1][p.ray], rays.org[2][p.ray]},
+                       {d[0], d[1], d[2]},
+                       rays.tnear[p.ray],
+                       rays.tfar[p.ray]};
+  if (const auto hit = refineHit(r, p.primitive, ray)) {
+    p.t = float(hit->t);
+    p.u = float(hit->u);
+    p.v = float(hit->v);
+  }
 }
 
 void Accel::allHits(const Rays& rays, std::vector<MultiHit>& out) const {

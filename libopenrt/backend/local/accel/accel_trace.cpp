@@ -35,8 +35,15 @@ void refineGrazingHit(const Record& r, const Rays& rays, float far, RayHits& hit
     normalToRender(r, k, n);
   }
   if (!grazes(n, d)) return;
-  refineHit(r, hits.primitive[lane], {rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]},
-            {d[0], d[1], d[2]}, rays.tnear[lane], far, hits.t[lane], hits.u[lane], hits.v[lane]);
+  const RaySegment ray{{rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]},
+                       {d[0], d[1], d[2]},
+                       rays.tnear[lane],
+                       far};
+  if (const auto hit = refineHit(r, hits.primitive[lane], ray)) {
+    hits.t[lane] = float(hit->t);
+    hits.u[lane] = float(hit->u);
+    hits.v[lane] = float(hit->v);
+  }
 }
 
 // Fills a packet with the rays from number `first` on and returns how many were rejected. Rejected
