@@ -14,11 +14,6 @@ RTqualityInfo qualityInfo(RTenum quality) {
   return {};
 }
 
-bool isQualityInRange(RTenum quality, double value) {
-  const RTqualityInfo info = qualityInfo(quality);
-  return (value >= info.minimum && value <= info.maximum) || (info.zeroIsAuto && value == 0);
-}
-
 std::string qualityRange(RTenum quality) {
   const RTqualityInfo info = qualityInfo(quality);
   return fmt::format("a {}number from {:.10g} to {:.10g}", info.isReal ? "" : "whole ",

@@ -11,8 +11,6 @@ namespace picture {
 
 // Returns what the library knows about a setting (RT_SAMPLES_PER_PIXEL ...).
 RTqualityInfo qualityInfo(RTenum quality);
-// Returns whether the library accepts the value.
-bool isQualityInRange(RTenum quality, double value);
 // Returns "a whole number from 1 to 65536" or "a number from 0 to 1", for messages.
 std::string qualityRange(RTenum quality);
 // Returns the names of a setting's values, for example "auto", "direct" and so on for RT_TRANSPORT.

@@ -1,4 +1,6 @@
-// convert.cpp: Converts the 20 field types to and from Python. [GIL held]
+// convert.cpp: Converts the 20 field types to and from Python. plugins/script/python/values.cpp
+// does the same for Scripts; a change of what counts as a number, a truth value or a text is made
+// in both (docs/decisions/0045-two-conversions-to-python.md). [GIL held]
 #include <cmath>
 #include <cstring>
 #include <limits>

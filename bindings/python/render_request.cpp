@@ -18,7 +18,7 @@ namespace {
 // Checks a value against the range that the library gives a quality setting (RT_*).
 int inRange(const char* name, RTenum quality, long long value) {
   const RTqualityInfo info = picture::qualityInfo(quality);
-  if (!picture::isQualityInRange(quality, double(value)))
+  if (!rtIsQualityAllowed(quality, double(value)))
     throw py::value_error(fmt::format("{}: {:.10g} to {:.10g} expected, not {}", name, info.minimum,
                                       info.maximum, value));
   return int(value);
@@ -198,7 +198,7 @@ void setWhole(const char* name, const Given& given, RenderRequest& request) {
 template <auto argument, RTenum quality, auto member>
 void setNumber(const char* name, const Given& given, RenderRequest& request) {
   const double value = given.*argument;
-  if (!picture::isQualityInRange(quality, value))
+  if (!rtIsQualityAllowed(quality, value))
     throw py::value_error(fmt::format("{}: {} expected", name, picture::qualityRange(quality)));
   request.settings.*member = value;
 }

@@ -140,6 +140,11 @@ int rtGetQualityInfo(int number, RTqualityInfo* info) {
   return 1;
 }
 
+int rtIsQualityAllowed(RTenum quality, double value) {
+  const QualitySetting* setting = findQuality(quality);
+  return setting && setting->allows(value) ? 1 : 0;
+}
+
 void rtSwapBuffers(void) {
   guarded("rtSwapBuffers", [](Context& c) {
     requireNoDefinition(c);

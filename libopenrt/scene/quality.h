@@ -1,8 +1,9 @@
 // quality.h: the one table of quality settings (openrt/frame.h). rtQuality checks values against
-// it, rtGetQualityInfo publishes it, and readers of recordings and messages check frames against
-// it. [any thread]
+// it, rtGetQualityInfo and rtIsQualityAllowed publish it, and readers of recordings and messages
+// check frames against it. [any thread]
 #pragma once
 
+#include <cmath>
 #include <span>
 
 #include "edits_generated.h"
@@ -16,8 +17,10 @@ struct QualitySetting {
   double (*get)(const edit::FrameSettingsT& frame);
   void (*set)(edit::FrameSettingsT& frame, double value);
 
-  // Returns whether the value is in the range. 0 may be allowed outside of it.
+  // Returns whether the value is in the range, and whole if the setting is. 0 may be allowed
+  // outside of the range.
   bool allows(double value) const {
+    if (!info.isReal && value != std::trunc(value)) return false;
     return (value >= info.minimum && value <= info.maximum) || (info.zeroIsAuto && value == 0);
   }
 };

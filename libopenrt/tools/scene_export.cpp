@@ -103,15 +103,18 @@ class Export {
     return {{"shader", shader}, {"matrix", matrix.m}};
   }
 
-  // Returns the position of an array in the array file; each array is written once.
-  Json writeArray(const ArrayPtr& array) {
+  // Returns the place of an array in the array file; each array is written once. valueSize: bytes
+  // of a value.
+  Json writeArray(const ArrayPtr& array, size_t valueSize = 4) {
     if (!array) return nullptr;
     const auto [found, fresh] = offsets_.try_emplace(array.get(), end_);
     if (fresh) {
+      const size_t padding = (4 - array->size() % 4) % 4; // every array begins at a multiple of 4
       bytes_.write(array->data(), array->size());
-      end_ += array->size();
+      bytes_.write("\0\0\0", padding);
+      end_ += array->size() + padding;
     }
-    return {{"offset", found->second}, {"count", array->size() / 4}};
+    return {{"offset", found->second}, {"count", array->size() / valueSize}};
   }
 
   Json mesh(const Geometry& g, const Matrix4d& toWorld, uint32_t shader) {
@@ -190,8 +193,12 @@ class Export {
 
   Json image(const TextureImage& texture) {
     const edit::TextureT& d = texture.description;
-    return {{"width", d.width},   {"height", d.height}, {"components", d.components},
-            {"float", d.isFloat}, {"srgb", d.srgb},     {"texels", writeArray(texture.texels)}};
+    return {{"width", d.width},
+            {"height", d.height},
+            {"components", d.components},
+            {"float", d.isFloat},
+            {"srgb", d.srgb},
+            {"texels", writeArray(texture.texels, d.isFloat ? sizeof(float) : 1)}};
   }
 
   const Scene& scene_;

@@ -104,6 +104,31 @@ double determinant(const Matrix& m) {
   return std::isfinite(d) && finite(m) ? d : 0;
 }
 
+double largestStretch(const Matrix& m) {
+  double longest = 0;
+  for (int i = 0; i < 3; ++i) longest = std::max(longest, row(m, i).length());
+  if (!(longest > 0) || !std::isfinite(longest)) return longest;
+  // The squared singular values are the eigenvalues of this symmetric matrix.
+  double g[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) g[i][j] = (row(m, i) / longest).dot(row(m, j) / longest);
+  // Rotations and scales leave only rounding errors beside the diagonal.
+  const double shear = std::abs(g[0][1]) + std::abs(g[0][2]) + std::abs(g[1][2]);
+  if (!(shear > 1e-12)) return longest;
+  // O. K. Smith, "Eigenvalues of a symmetric 3 x 3 matrix", CACM 4(4), 1961.
+  const double mean = (g[0][0] + g[1][1] + g[2][2]) / 3;
+  for (int i = 0; i < 3; ++i) g[i][i] -= mean;
+  double squares = 0;
+  for (const auto& line : g)
+    for (const double x : line) squares += x * x;
+  const double p = std::sqrt(squares / 6);
+  const double det = g[0][0] * (g[1][1] * g[2][2] - g[1][2] * g[2][1]) -
+                     g[0][1] * (g[1][0] * g[2][2] - g[1][2] * g[2][0]) +
+                     g[0][2] * (g[1][0] * g[2][1] - g[1][1] * g[2][0]);
+  const double angle = std::acos(std::clamp(det / (2 * p * p * p), -1.0, 1.0)) / 3;
+  return longest * std::max(1.0, std::sqrt(mean + 2 * p * std::cos(angle)));
+}
+
 bool invert(const Matrix& m, Matrix& inverse) {
   const double d = determinant(m);
   if (d == 0) return false;

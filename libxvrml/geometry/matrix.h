@@ -43,6 +43,9 @@ Vector transformDirection(const Matrix& m, const Vector& v);
 bool finite(const Matrix& m);
 // Returns 0 if the linear part is singular or not finite.
 double determinant(const Matrix& m);
+// Returns the largest length of a transformed unit vector: the largest singular value of the linear
+// part. Without shear it is the length of the longest axis.
+double largestStretch(const Matrix& m);
 // Computes the affine inverse. Returns false if there is none.
 bool invert(const Matrix& m, Matrix& inverse);
 

@@ -277,11 +277,7 @@ double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from) {
   const Mesh& m = get(mesh);
   double far = 0;
   if (m.kind == Mesh::Kind::sphere) {
-    double longest = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      longest = std::max(longest,
-                         Vector(matrix.x[axis][0], matrix.x[axis][1], matrix.x[axis][2]).length());
-    far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * longest;
+    far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * largestStretch(matrix);
     return std::isfinite(far) ? far : 0;
   }
   for (const uint32_t index : m.indices) {

@@ -49,7 +49,7 @@ class Meshes {
   // Grows bounds by the mesh, transformed by `matrix`.
   void grow(Bounds& bounds, int32_t mesh, const Matrix& matrix);
   // Returns the largest distance of the transformed mesh from a point. For a sphere scaled
-  // non-uniformly this is an upper bound.
+  // non-uniformly, or sheared, this is an upper bound.
   double reach(int32_t mesh, const Matrix& matrix, const Vector& from);
   // Frees the arrays; get() builds them again.
   void release();

@@ -73,6 +73,33 @@ TEST(MapOptions, BadOnesAreNamedAndTheOthersKept) {
   EXPECT_NE(errors[2].find("'x'"), std::string::npos);
 }
 
+TEST(MapOptions, ATextIsNotCutAtACommaInSilence) {
+  std::vector<std::string> errors;
+  auto options = parseShaderOptions({"1f a 1 texture t data:image/png;base64,iVBORw0 1f b 2",
+                                     "file f a,b.ies", "string s one,two,three", "1f c 3"},
+                                    errors);
+  ASSERT_EQ(options.size(), 2u);
+  EXPECT_EQ(options[0].name, "a");
+  EXPECT_EQ(options[1].name, "c");
+  EXPECT_EQ(errors,
+            (std::vector<std::string>{
+                "option t: a comma ends 'data:image/png;base64'; write a value that has a comma in "
+                "single quotes",
+                "option f: a comma ends 'a'; write a value that has a comma in single quotes",
+                "option s: a comma ends 'one'; write a value that has a comma in single quotes"}));
+  // In quotes it is whole. A comma may also stand between two options.
+  options = parse({"texture t 'data:image/png;base64,iVBORw0',1f b 2", "string s x,1f c 3",
+                   "file f a.ies, 1f d 4", "string s last,"});
+  ASSERT_EQ(options.size(), 7u);
+  EXPECT_EQ(options[0].text, "data:image/png;base64,iVBORw0");
+  EXPECT_EQ(options[2].text, "x");
+  EXPECT_EQ(options[4].text, "a.ies");
+  EXPECT_EQ(options[6].text, "last");
+  errors = errorsOf({"string s x, nothing y"}); // with a blank it is a wrong option
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NE(errors[0].find("option type 'nothing'"), std::string::npos) << errors[0];
+}
+
 TEST(MapOptions, NotMoreThanAnyShaderHas) {
   std::string text;
   for (size_t i = 0; i < maximumShaderOptions + 10; ++i) text += "1f a 1 ";

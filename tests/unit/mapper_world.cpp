@@ -107,6 +107,20 @@ TEST_F(MapWorld, FieldOfViewIsForTheSmallerSide) {
   EXPECT_NEAR(std::tan(c.fovy / 2) * 0.5, std::tan(0.4), 1e-6);
 }
 
+TEST_F(MapWorld, ASphereAroundAShearedSphereHoldsAllOfIt) {
+  // An ellipsoid with half-axes of 1, 4 and 1. Its turned axes are shorter than 3.
+  OpenRTMapper& mapper =
+      load("Transform { scale 1 4 1 children Transform { rotation 0 0 1 0.7853982 children "
+           "Shape { geometry Sphere { } } } }");
+  EXPECT_NEAR(mapper.bounds().maximum[1], 4, 1e-6);
+  EXPECT_NEAR(mapper.boundingSphere().radius, 4, 1e-6);
+  EXPECT_NEAR(load("Transform { scale 1 8 1 scaleOrientation 0 0 1 0.7 children Shape { geometry "
+                   "Sphere { } } }")
+                  .boundingSphere()
+                  .radius,
+              8, 1e-6);
+}
+
 TEST_F(MapWorld, BoundsAreThoseOfTheShapes) {
   const Bounds b =
       load(

@@ -169,11 +169,21 @@ const Named needContext[] = {
     CALL(rtClosestPoints, 1, floats, 1, &closest),
 };
 // Functions that need no context.
-const char* const anywhere[] = {
-    "rtGetError",      "rtGetErrorMessage", "rtNewContext", "rtMakeCurrent",
-    "rtGetCurrent",    "rtDeleteContext",   "rtInit",       "rtExit",
-    "rtCancel",        "rtProgress",        "rtSnapshot",   "rtGetWorkers",
-    "rtRunningShader", "rtGetQualityInfo"};
+const char* const anywhere[] = {"rtGetError",
+                                "rtGetErrorMessage",
+                                "rtNewContext",
+                                "rtMakeCurrent",
+                                "rtGetCurrent",
+                                "rtDeleteContext",
+                                "rtInit",
+                                "rtExit",
+                                "rtCancel",
+                                "rtProgress",
+                                "rtSnapshot",
+                                "rtGetWorkers",
+                                "rtRunningShader",
+                                "rtGetQualityInfo",
+                                "rtIsQualityAllowed"};
 
 enum State { Outside, Definition, List };
 struct Wrong {
@@ -400,10 +410,10 @@ const Wrong wrong[] = {
     WRONG(OPERATION, Outside, rtExit), // without rtInit
 };
 // Functions that fail only without a context, or never.
-const char* const infallible[] = {"rtErrorCallback", "rtLogCallback",     "rtLoadName",
-                                  "rtPushMatrix",    "rtLoadIdentity",    "rtGetError",
-                                  "rtGetCurrent",    "rtGetErrorMessage", "rtInit",
-                                  "rtRunningShader", "rtFinishFrame",     "rtGetQualityInfo"};
+const char* const infallible[] = {
+    "rtErrorCallback", "rtLogCallback",    "rtLoadName",        "rtPushMatrix", "rtLoadIdentity",
+    "rtGetError",      "rtGetCurrent",     "rtGetErrorMessage", "rtInit",       "rtRunningShader",
+    "rtFinishFrame",   "rtGetQualityInfo", "rtIsQualityAllowed"};
 
 class EveryCall : public ApiTest {
  protected:

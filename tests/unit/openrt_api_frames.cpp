@@ -73,12 +73,23 @@ TEST_F(Frames, TheTableOfQualitySettingsIsWhatIsAccepted) {
       EXPECT_EQ(set(info, good), RTenum(RT_NO_ERROR)) << good;
     EXPECT_EQ(set(info, 0),
               RTenum(info.zeroIsAuto || info.minimum <= 0 ? RT_NO_ERROR : RT_INVALID_VALUE));
+    for (const double value :
+         {info.minimum, info.maximum, info.defaultValue, 0.0, info.minimum - 1, info.maximum + 1})
+      if (info.isReal || (value >= INT32_MIN && value <= INT32_MAX)) {
+        EXPECT_EQ(rtIsQualityAllowed(info.quality, value), set(info, value) == RTenum(RT_NO_ERROR))
+            << value;
+      }
+    EXPECT_EQ(rtIsQualityAllowed(info.quality, NAN), 0);
+    EXPECT_EQ(rtIsQualityAllowed(info.quality, info.defaultValue), 1);
+    if (!info.isReal) { EXPECT_EQ(rtIsQualityAllowed(info.quality, info.minimum + .5), 0); }
     if (info.quality == RT_SEED) continue; // every int is a seed
     EXPECT_EQ(set(info, info.minimum - 1),
               RTenum(info.zeroIsAuto && info.minimum == 1 ? RT_NO_ERROR : RT_INVALID_VALUE));
     if (info.quality == RT_CLAMP) continue; // its maximum is the largest float
     EXPECT_EQ(set(info, info.maximum + 1), RTenum(RT_INVALID_VALUE));
   }
+  EXPECT_EQ(rtIsQualityAllowed(0, 0), 0);
+  EXPECT_EQ(rtIsQualityAllowed(99, 1), 0);
   EXPECT_EQ(count, RT_TILE_SIZE);
   EXPECT_EQ(names.size(), size_t(count));
   EXPECT_EQ(settings.size(), size_t(count));

@@ -209,9 +209,17 @@ TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean
   const double before = map.summary().meanInterval;
   ASSERT_LT(before, .3);
   EXPECT_EQ(map.summary().trusted, pixels);
-  EXPECT_FALSE(map.addMissing(0, .3, .2)); // less than half of 2
-  for (size_t i = 1; i < pixels; i++)
-    EXPECT_TRUE(map.addMissing(i, .3, .2)); // more than a tenth of it
+  // The bound is more than a tenth of 2, and less than the half that it is at pixel 0. A tile that
+  // begins elsewhere reports the picture's own numbers of its pixels.
+  std::vector<size_t> distrusted;
+  const auto add = [&](size_t pixel) { distrusted.push_back(pixel); };
+  map.addMissing({0, 0, 20, 8}, .3, .2, add);
+  EXPECT_EQ(distrusted.size(), 159u);
+  EXPECT_EQ(distrusted.front(), 1u);
+  map.addMissing({12, 8, 20, 20}, .3, .2, add);
+  EXPECT_EQ(distrusted.at(159), 8u * 20 + 12);
+  map.addMissing({0, 8, 12, 20}, .3, .2, add);
+  EXPECT_EQ(distrusted.size(), pixels - 1);
   EXPECT_EQ(map.summary().trusted, 1u);
   EXPECT_NEAR(map.summary().meanInterval, std::hypot(before, .1), 1e-6);
 }

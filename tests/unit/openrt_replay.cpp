@@ -202,6 +202,41 @@ TEST_F(Replay, ValuesOfVerticesAndAReload) {
   }
 }
 
+TEST_F(Replay, AnExportCountsTheValuesOfTextures) {
+  const RTcontext context =
+      rtNewContext(("threads=1 record=\"" + (folder / "textures").string() + "\"").c_str());
+  ASSERT_NE(context, nullptr) << (rtGetError(), rtGetErrorMessage());
+  RTid textures[2];
+  rtGenTextures(2, textures);
+  std::string bytes = "fifteen  texels";
+  rtBindTexture(textures[0]);
+  rtTexImage2D(1, 5, 3, RT_UNSIGNED_BYTE, bytes.data());
+  const float floats[3] = {1, 2, 3};
+  rtBindTexture(textures[1]);
+  rtTexImage2D(3, 1, 1, RT_FLOAT, floats);
+  rtPerspective(45);
+  rtFrameBuffer(width, height, RT_RGBA);
+  rendered();
+  rtDeleteContext(context);
+  ASSERT_EQ(replay(quoted("textures") + " --export " + quoted("scene.json")), 0) << said();
+  const auto contents = [&](const char* name) {
+    std::ifstream file(folder / name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  std::string json = contents("scene.json");
+  std::erase_if(json, [](char c) { return c == ' ' || c == '\n'; });
+  EXPECT_NE(json.find("\"components\":1,\"float\":false,\"srgb\":false,\"texels\":{\"offset\":0,"
+                      "\"count\":15}"),
+            std::string::npos)
+      << json;
+  EXPECT_NE(json.find("\"components\":3,\"float\":true,\"srgb\":false,\"texels\":{\"offset\":16,"
+                      "\"count\":3}"),
+            std::string::npos)
+      << json;
+  bytes.append(1, '\0').append(reinterpret_cast<const char*>(floats), sizeof floats);
+  EXPECT_EQ(contents("scene.json.bin"), bytes);
+}
+
 TEST_F(Replay, ExitCodes) {
   recordFrames(folder / "good");
   EXPECT_EQ(replay("--help"), 0);

@@ -125,6 +125,28 @@ TEST(Matrix, FieldOfViewIsForTheSmallerSide) {
   EXPECT_NEAR(verticalFieldOfView(4, 1), pi / 4, 1e-12);
 }
 
+TEST(Matrix, TheLargestStretchIsTheLargestSingularValue) {
+  EXPECT_EQ(largestStretch(Matrix()), 1);
+  EXPECT_EQ(largestStretch(scaling({2, -7, 3})), 7);
+  EXPECT_EQ(largestStretch(scaling({0, 0, 0})), 0);
+  EXPECT_EQ(largestStretch(translation({5, 6, 7})), 1);
+  // The axes of a turned scale have their lengths, up to rounding.
+  const Matrix turn = rotation(Vector(1, 2, 3), 0.6);
+  EXPECT_NEAR(largestStretch(compose(turn, scaling({2, 3, 4}))), 4, 1e-14);
+  // A scale of something turned shears it: the stretch stays, the axes get shorter.
+  EXPECT_NEAR(largestStretch(compose(scaling({2, 3, 4}), turn)), 4, 1e-9);
+  EXPECT_NEAR(largestStretch(compose(scaling({1, 1e30, 1}), turn)), 1e30, 1e21);
+  EXPECT_NEAR(largestStretch(compose(scaling({1, 0, 0}), turn)), 1, 1e-9);
+  TransformFields fields;
+  fields.scale = {1, 8, 1};
+  fields.scaleOrientation = {0, 0, 1, 0.7f};
+  EXPECT_NEAR(largestStretch(transformMatrix(fields)), 8, 1e-6);
+  // x' = x + y: the golden ratio.
+  Matrix shear;
+  shear.x[1][0] = 1;
+  EXPECT_NEAR(largestStretch(shear), std::numbers::phi, 1e-9);
+}
+
 TEST(Matrix, RigidDropsScaleAndKeepsDirections) {
   const Matrix turn = rotation(Vector(1, 2, 3), 0.6);
   const Matrix m = compose(translation({1, 2, 3}), compose(turn, scaling({2, 3, 4})));

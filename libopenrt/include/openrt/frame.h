@@ -109,6 +109,9 @@ typedef struct RTqualityInfo {
 /* Writes what is known about quality setting number 0, 1 ... Returns 1, or 0 if there are not so
  * many, or if info is NULL or info->size is not set. Works without a context. [any-thread] */
 RT_API int rtGetQualityInfo(int number, RTqualityInfo* info);
+/* Returns 1 if rtQuality or rtQualityf accepts the value for the quality setting, else 0, also for
+ * an unknown setting. Works without a context. [any-thread] */
+RT_API int rtIsQualityAllowed(RTenum quality, double value);
 
 /* Sets size (1 .. 65536 pixels each way, at most 2^28 in all) and channels of the frames that
  * follow. [context-thread] */

@@ -396,7 +396,8 @@ struct RtsHost {
   /* Writes a point of the unit square for each hit (camera: each point of the picture; transport:
    * each ray). Every pair (0..3) is a sequence of its own, well distributed over the samples of a
    * pixel and the same whenever the picture is rendered. A call makes the pixel's value a Monte
-   * Carlo estimate. */
+   * Carlo estimate. The points are (0.5, 0.5) in the functions of an environment and in `project`.
+   */
   void (*random)(RtsBatch* batch, uint32_t pair, float* const square[2]);
   /* For `shade` and `radiance`: writes the radiance (and, if rgba[3] is not NULL, the alpha) that
    * arrives along rays, shaded by the engine. May nest up to the depth limit, at most 64 times;
@@ -407,6 +408,9 @@ struct RtsHost {
   /* Writes the transmittance (by colour, 0..1) between each ray's origin and end: 0 where blocked.
    */
   void (*occluded)(RtsBatch* batch, const RtsRequest* rays, float* const transmission[3]);
+  /* The following functions describe hits. The functions of cameras, environments and transports
+   * have no hits: for each of their n points, directions or rays the host then writes a throughput
+   * of 1, and 0 for everything else. */
   /* Writes position and geometric normal (not unit) of the hits in the frame of the object
    * (rtBeginObject) that the surface belongs to, which rtInstantiateObject places. Either may be
    * NULL. */

@@ -119,13 +119,19 @@ void ErrorMap::doubtConstants(
     }
 }
 
-bool ErrorMap::addMissing(size_t pixel, double bound, double expected) {
-  if (noise_.empty() || !noise_[pixel].finished) return false;
-  if (expected > 0) missing_ += std::min(1.0, expected / double(noise_[pixel].scale));
-  if (!noise_[pixel].random || !(bound > double(relative_[pixel]) * double(noise_[pixel].scale)))
-    return false;
-  relative_[pixel] = -std::fabs(relative_[pixel]);
-  return true;
+void ErrorMap::addMissing(const Tile& tile, double bound, double expected,
+                          const std::function<void(size_t pixel)>& distrusted) {
+  if (noise_.empty()) return;
+  for (uint32_t y = tile.y0; y < tile.y1; y++)
+    for (uint32_t x = tile.x0; x < tile.x1; x++) {
+      const size_t pixel = size_t(y) * width_ + x;
+      const PixelNoise& noise = noise_[pixel];
+      if (!noise.finished) continue;
+      if (expected > 0) missing_ += std::min(1.0, expected / double(noise.scale));
+      if (!noise.random || !(bound > double(relative_[pixel]) * double(noise.scale))) continue;
+      relative_[pixel] = -std::fabs(relative_[pixel]);
+      distrusted(pixel);
+    }
 }
 
 ErrorSummary ErrorMap::summary() const {

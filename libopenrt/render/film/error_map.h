@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render/film/picture_error.h"
+#include "render/frame/tiles.h"
 
 namespace openrt {
 
@@ -52,13 +53,15 @@ class ErrorMap {
   // becomes what the rule of three allows for. The same is done at the border of a picture that is
   // not of one colour. Calls `changed` for each such pixel.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
-  // Records the radiance that a finished pixel may lack because no sample has found it (ledger.h),
-  // summed over the colours.
-  //  - bound: bound by the samples of the pixel's tile. It takes the trust of a pixel with random
-  //    samples whose interval is narrower. Returns whether it did.
+  // Records the radiance that each finished pixel of a tile may lack because no sample has found it
+  // (ledger.h), summed over the colours.
+  //  - bound: bound by the samples of the tile. It takes the trust of the pixels with random
+  //  samples
+  //    whose interval is narrower, and `distrusted` is called for each of these.
   //  - expected: bound if light is found equally often everywhere in the picture. It widens the
   //    interval of the summary's mean.
-  bool addMissing(size_t pixel, double bound, double expected);
+  void addMissing(const Tile& tile, double bound, double expected,
+                  const std::function<void(size_t pixel)>& distrusted);
   // Returns the statistics of the picture.
   ErrorSummary summary() const;
 

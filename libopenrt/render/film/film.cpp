@@ -63,11 +63,9 @@ void Film::finishErrors() {
 }
 
 void Film::addMissing(const Tile& tile, double bound, double expected) {
-  for (uint32_t y = tile.y0; y < tile.y1; y++)
-    for (uint32_t x = tile.x0; x < tile.x1; x++)
-      if (const size_t pixel = size_t(y) * width_ + x;
-          errors_.addMissing(pixel, bound, expected) && has(RT_TRUST))
-        plane(RT_TRUST)[pixel] = 0;
+  errors_.addMissing(tile, bound, expected, [this](size_t pixel) {
+    if (has(RT_TRUST)) plane(RT_TRUST)[pixel] = 0;
+  });
 }
 
 bool Film::read(uint32_t channel, std::span<float> out) const {

@@ -68,11 +68,7 @@ struct FrameWork::Impl {
   double pathsOf(uint32_t tile) const {
     return double(tiles[tile].ledger.samples) * double(grid.at(tile).pixels());
   }
-  Ledger wholeLedger() const {
-    Ledger all;
-    for (uint32_t i = 0; i < count; i++) all.add(tiles[i].ledger);
-    return all;
-  }
+  void judgeErrors();
   void advance();
   void finishWaitingTiles();
   void notifyChange();
@@ -83,6 +79,7 @@ struct FrameWork::Impl {
   const RequiredSums required;
   Film film;
   mutable std::shared_mutex ending; // exclusive while the picture as a whole is evaluated
+  double unmet = 0;                 // RTstats.errorUnmet, once over
   std::unique_ptr<TileState[]> tiles;
   std::unique_ptr<LightImage> light, early; // null if there is no light tracing
   std::unique_ptr<Pilots> pilots;           // null without a target error
@@ -239,6 +236,26 @@ void FrameWork::Impl::finishWaitingTiles() {
   }
 }
 
+// Evaluates the errors of the finished picture as a whole.
+void FrameWork::Impl::judgeErrors() {
+  film.finishErrors();
+  if (film.errors().empty()) return;
+  double paths = 0;
+  Ledger whole;
+  for (uint32_t i = 0; i < count; i++) {
+    paths += pathsOf(i);
+    whole.add(tiles[i].ledger);
+  }
+  unmet = whole.missedRadiance(whole, paths);
+  // A tile is trusted by what its own paths met: in another place of the picture another lamp may
+  // be the one that is met.
+  for (uint32_t i = 0; i < count; i++) {
+    const Ledger& tile = tiles[i].ledger;
+    film.addMissing(grid.at(i), tile.missedRadiance(tile, pathsOf(i)),
+                    tile.missedRadiance(whole, pathsOf(i)));
+  }
+}
+
 // Advances the frame after each change.
 void FrameWork::Impl::advance() {
   finishWaitingTiles();
@@ -251,15 +268,7 @@ void FrameWork::Impl::advance() {
   if (last) {
     {
       std::unique_lock alone(ending);
-      film.finishErrors();
-      // A tile is trusted by what its own paths met: in another place of the picture another lamp
-      // may be the one that is met.
-      const Ledger whole = wholeLedger();
-      for (uint32_t i = 0; i < count; i++) {
-        const Ledger& tile = tiles[i].ledger;
-        film.addMissing(grid.at(i), tile.missedRadiance(tile, pathsOf(i)),
-                        tile.missedRadiance(whole, pathsOf(i)));
-      }
+      judgeErrors();
     }
     std::lock_guard lock(mutex);
     over = true;
@@ -398,13 +407,10 @@ RayCounters FrameWork::counters() const {
 void FrameWork::describeError(RTstats& stats) const {
   stats.errorLevel = 0.95;
   if (impl_->film.errors().empty()) return;
-  double paths = 0;
-  for (uint32_t i = 0; i < impl_->count; i++) paths += impl_->pathsOf(i);
-  const Ledger whole = impl_->wholeLedger();
   const ErrorSummary s = impl_->film.errors().summary();
   stats.errorMean = s.mean;
   stats.errorMeanInterval = s.meanInterval;
-  stats.errorUnmet = whole.missedRadiance(whole, paths);
+  stats.errorUnmet = impl_->unmet;
   stats.errorHalfWidth = s.halfWidth;
   stats.errorP99 = s.p99;
   stats.errorPixels = s.pixels;

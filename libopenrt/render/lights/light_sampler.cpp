@@ -89,6 +89,7 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
   batch.scene = &scene;
   batch.arena = &arena;
   batch.counters = &counters;
+  batch.lanes = 2;
   {
     const RunningShader running(*slot.shader.shaderClass);
     slot.shader.shaderClass->illuminate(&scene.host, &batch, slot.shader.params, 2, places, &light);

@@ -185,6 +185,8 @@ void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& s
     out.ambient[k] = arena_.takeZero<float>(lanes);
   }
   RtsBatch batch = makeBatch(points);
+  batch.points = nullptr; // the light gets one place, not the hits
+  batch.lanes = 1;
   const float* places[3] = {local[0], local[1], local[2]};
   const RunningShader running(*light.shader.shaderClass);
   light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
@@ -386,6 +388,8 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   const float *place[3] = {local[0], local[1], local[2]}, *square[2] = {uv[0], uv[1]};
   const float extent[2] = {float(width_), float(height_)};
   RtsBatch asking = batch;
+  asking.points = nullptr; // the camera gets n places, not the hits
+  asking.lanes = n;
   {
     const RunningShader running(*camera.shaderClass);
     camera.shaderClass->project(&scene_.host, &asking, camera.params, n, place, square, extent,

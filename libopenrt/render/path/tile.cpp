@@ -246,6 +246,7 @@ void TileRenderer::evaluateSky(const Rays& rays, const uint32_t* lanes, uint32_t
   }
   const ShaderSlot& environment = scene_.environment.shader;
   RtsBatch batch = makeBatch();
+  batch.lanes = n;
   const float* directions[3] = {direction[0], direction[1], direction[2]};
   const RunningShader running(*environment.shaderClass);
   environment.shaderClass->miss(&scene_.host, &batch, environment.params, n, directions, rgba);
@@ -301,6 +302,7 @@ void TileRenderer::attenuate(const Points& points, const Paths& paths, const uin
   }
   for (int k = 0; k < 4; k++) fog[k] = arena_.takeZero<float>(size);
   RtsBatch batch = makeBatch();
+  batch.lanes = n;
   const float* vectors[3] = {fromEye[0], fromEye[1], fromEye[2]};
   const RunningShader running(*environment.shaderClass);
   environment.shaderClass->attenuate(&scene_.host, &batch, environment.params, n, vectors, fog,

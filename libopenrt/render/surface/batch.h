@@ -40,9 +40,13 @@ struct RtsBatch {
   const openrt::RayState* states = nullptr; // ray states of the wave, by lane
   const uint32_t* order = nullptr;          // lanes of the hits; null: camera rays, in order
   uint32_t rays = 0;                        // number of camera rays
+  uint32_t lanes = 0; // number of lanes of a batch that has neither hits nor camera rays
   // By hit: number of rays it has traced; allocated with the first request.
   uint32_t* requests = nullptr;
   // Lobes that the shader has added (`surface`).
   RtsLobe lobes[RTS_MAX_LOBES];
   uint32_t lobeCount = 0;
+
+  // Returns the number of lanes that the host functions write where the batch has no hits.
+  uint32_t lanesWithoutHits() const { return rays ? rays : lanes; }
 };

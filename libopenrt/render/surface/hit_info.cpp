@@ -10,6 +10,14 @@
 namespace openrt {
 namespace {
 
+// Fills three arrays of a batch without hits; `arrays` may be null.
+void fillVectors(const RtsBatch& batch, float* const arrays[3], float value) {
+  for (int k = 0; arrays && k < 3; k++) std::fill_n(arrays[k], batch.lanesWithoutHits(), value);
+}
+void fillNumbers(const RtsBatch& batch, uint32_t* array, uint32_t value) {
+  if (array) std::fill_n(array, batch.lanesWithoutHits(), value);
+}
+
 const Record& recordAt(const RtsBatch& batch, uint32_t i) {
   return batch.scene->records[batch.points->record[i]];
 }
@@ -64,7 +72,11 @@ void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3]
 } // namespace
 
 void localOf(const RtsBatch& batch, float* const position[3], float* const normal[3]) {
-  if (!batch.points) return;
+  if (!batch.points) {
+    fillVectors(batch, position, 0);
+    fillVectors(batch, normal, 0);
+    return;
+  }
   const RtsHits& hits = batch.points->hits;
   for (uint32_t i = 0; i < hits.count; i++) {
     const Affine& m = recordAt(batch, i).toObject;
@@ -81,7 +93,11 @@ void localOf(const RtsBatch& batch, float* const position[3], float* const norma
 }
 
 void derivativesOf(const RtsBatch& batch, float* const alongS[3], float* const alongT[3]) {
-  if (!batch.points) return;
+  if (!batch.points) {
+    fillVectors(batch, alongS, 0);
+    fillVectors(batch, alongT, 0);
+    return;
+  }
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     for (int k = 0; k < 3; k++) alongS[k][i] = alongT[k][i] = 0;
     const edit::Primitive primitive = recordAt(batch, i).primitive;
@@ -91,7 +107,10 @@ void derivativesOf(const RtsBatch& batch, float* const alongS[3], float* const a
 }
 
 void idsOf(const RtsBatch& batch, uint32_t* name, uint32_t* instance, uint32_t* primitive) {
-  if (!batch.points) return;
+  if (!batch.points) {
+    for (uint32_t* array : {name, instance, primitive}) fillNumbers(batch, array, 0);
+    return;
+  }
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const Record& r = recordAt(batch, i);
     if (name) name[i] = r.name;
@@ -101,7 +120,11 @@ void idsOf(const RtsBatch& batch, uint32_t* name, uint32_t* instance, uint32_t* 
 }
 
 void pathsOf(const RtsBatch& batch, uint32_t level, uint32_t* depth, float* const throughput[3]) {
-  if (!batch.points) return;
+  if (!batch.points) {
+    fillNumbers(batch, depth, 0);
+    fillVectors(batch, throughput, 1);
+    return;
+  }
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     if (depth) depth[i] = level;
     for (int k = 0; throughput && k < 3; k++)

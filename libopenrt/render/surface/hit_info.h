@@ -1,5 +1,5 @@
 // hit_info.h: data about hits that shaders may request beyond RtsHits (defined in openrts.h).
-// [render]
+// A batch without hits gets the values that openrts.h promises. [render]
 #pragma once
 
 #include <cstdint>

@@ -14,6 +14,7 @@ class Words {
   explicit Words(std::string_view text) : rest_(text) {}
   std::optional<std::string_view> peek() const { return Words(*this).next(); }
   std::optional<std::string_view> next() {
+    cut_ = false;
     const size_t start = rest_.find_first_not_of(" \t\r\n,");
     if (start == std::string_view::npos) return std::nullopt;
     rest_.remove_prefix(start);
@@ -22,12 +23,17 @@ class Words {
     const std::string_view word = rest_.substr(quoted ? 1 : 0, end == std::string_view::npos ? end
                                                                : quoted ? end - 1
                                                                         : end);
+    cut_ = !quoted && end < rest_.size() && rest_[end] == ',' &&
+           rest_.find_first_of(" \t\r\n,", end + 1) != end + 1 && end + 1 < rest_.size();
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : quoted ? end + 1 : end);
     return word;
   }
+  // Returns whether a comma without a blank ended the last word, so that it may be part of one.
+  bool cut() const { return cut_; }
 
  private:
   std::string_view rest_;
+  bool cut_ = false;
 };
 
 template <class T> bool number(std::string_view word, T& out) {
@@ -91,6 +97,11 @@ std::string readValues(Words& words, std::string_view type, ShaderOption& option
   return {};
 }
 
+bool isText(const ShaderOption& option) {
+  return option.type == ShaderOption::Type::text || option.type == ShaderOption::Type::texture ||
+         option.type == ShaderOption::Type::file;
+}
+
 bool knownType(std::string_view type) {
   return floatsOf(type) > 0 || type == "1i" || type == "bool" || type == "string" ||
          type == "texture" || type == "file" || type == "floats";
@@ -103,7 +114,15 @@ std::vector<ShaderOption> parseShaderOptions(const MFString& options,
   std::vector<ShaderOption> result;
   for (const std::string& text : options) {
     Words words(text);
+    bool cut = false; // the last option of this string is a text that a comma ended
     while (const auto type = words.next()) {
+      if (cut && !knownType(*type)) {
+        // Part of a text, such as the second half of a,b.png.
+        errors.push_back("option " + result.back().name + ": a comma ends '" + result.back().text +
+                         "'; write a value that has a comma in single quotes");
+        result.pop_back();
+        break;
+      }
       const auto name = words.next();
       if (!knownType(*type) || !name) {
         errors.push_back(
@@ -124,6 +143,7 @@ std::vector<ShaderOption> parseShaderOptions(const MFString& options,
         break;
       }
       result.push_back(std::move(option));
+      cut = isText(result.back()) && words.cut();
     }
   }
   return result;

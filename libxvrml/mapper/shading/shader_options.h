@@ -32,8 +32,9 @@ inline constexpr size_t maximumShaderOptions = 10'000;
 
 // Returns the valid options in order; `errors` receives one sentence per invalid option.
 // Types: 1i 1f 2f 3f 4f 16f bool color string texture file floats.
-// A string or URL ends at the next blank or comma, or is enclosed in 'single quotes'. A list of
-// floats ends at the first word that is not a number.
+// A string or URL ends at the next blank or comma, or is enclosed in 'single quotes'. It is an
+// error if the rest of a word follows the comma. A list of floats ends at the first word that is
+// not a number.
 std::vector<ShaderOption> parseShaderOptions(const MFString& options,
                                              std::vector<std::string>& errors);
 

@@ -215,7 +215,13 @@ std::vector<int32_t> wholesOf(const py::handle& object, bool many, const Target&
 
 int32_t boolOf(const py::handle& object, const Target& target) {
   if (PyBool_Check(object.ptr())) return object.ptr() == Py_True;
-  if (std::string(py::str(py::type::handle_of(object).attr("__name__"))) == "bool_")
+  const py::handle type = py::type::handle_of(object);
+  const auto named = [&](const char* attribute) {
+    return std::string(py::str(type.attr(attribute)));
+  };
+  // numpy's truth value is called bool_ before version 2 and bool since then.
+  if ((named("__name__") == "bool_" || named("__name__") == "bool") &&
+      named("__module__") == "numpy")
     return PyObject_IsTrue(object.ptr()) == 1;
   target.wrongType(object);
 }

@@ -1,6 +1,7 @@
 // values.h: Converts VRML's values to Python objects and back, in the shapes of the Python binding.
-// It shares no code with bindings/python/convert.cpp, which checks ranges and node types, needs
-// numpy and fills the library's own types. Needs Python's lock (GIL). [the browser's thread]
+// It shares no code with bindings/python/convert.cpp
+// (docs/decisions/0045-two-conversions-to-python.md). A change of what counts as a number, a truth
+// value or a text is made in both. Needs Python's lock (GIL). [the browser's thread]
 #pragma once
 
 #include <functional>

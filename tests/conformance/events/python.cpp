@@ -121,6 +121,24 @@ TEST_F(Python, WithNumpyListsOfNumbersAreReadOnlyArrays) {
   EXPECT_EQ(r.messages(), Log{});
 }
 
+// The classes have the names that numpy's have, so that the test needs no version of numpy.
+TEST_F(Python, TruthValuesOfNumpyAreTakenByTheirNamesBeforeAndSinceVersion2) {
+  const auto gives = [](const std::string& module, const std::string& name, const char* value) {
+    return echo("SFBool",
+                "\ndef in_(value): script.out = type('" + name + "', (), {'__module__': '" +
+                    module + "', '__bool__': lambda self: " + value + "})()",
+                true, trusting());
+  };
+  for (const char* name : {"bool_", "bool"}) {
+    EXPECT_EQ(gives("numpy", name, "True"), "TRUE");
+    EXPECT_EQ(gives("numpy", name, "False"), "FALSE");
+  }
+  EXPECT_EQ(gives("elsewhere", "bool", "True"),
+            "4: Script S: TypeError: out (SFBool): True or False expected, not bool");
+  EXPECT_EQ(gives("numpy", "int64", "True"),
+            "4: Script S: TypeError: out (SFBool): True or False expected, not int64");
+}
+
 TEST_F(Python, FieldsAreAttributes) {
   Scripted r("DEF S Script { eventIn SFInt32 add field SFInt32 sum 10 eventOut SFInt32 out field "
              "MFString words [ \"a\" \"b\" ]\n"
