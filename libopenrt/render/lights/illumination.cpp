@@ -121,8 +121,19 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& many, const RtsHi
     }
     auto* reach = arena.take<float>(size);
     const float* const places[3] = {position[0], position[1], position[2]};
+    // The light's own batch: the host's functions write a value for each of its hits, not for each
+    // hit of the surface.
+    RtsBatch own = batch;
+    own.points = nullptr;
+    own.requests = nullptr;
+    own.rays = m;
+    if (batch.order) {
+      auto* lanesOfHits = arena.take<uint32_t>(m);
+      for (uint32_t i = 0; i < m; i++) lanesOfHits[i] = batch.order[order[begin + i]];
+      own.order = lanesOfHits;
+    }
     const bool parallel =
-        evaluateLight(batch, batch.scene->lights[light], m, places, local, part, reach);
+        evaluateLight(own, batch.scene->lights[light], m, places, local, part, reach);
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t to = order[begin + i];
       for (int k = 0; k < 3; k++) {
