@@ -31,7 +31,7 @@ const RtsParam thinLensParams[] = {
      {0.0f},
      0.0f,
      noLimit,
-     "of the lens; 0: everything is in focus"},
+     "radius of the lens; 0: everything is in focus"},
     {"focus",
      RTS_FLOAT,
      offsetof(ThinLensParams, focus),
@@ -45,7 +45,7 @@ const RtsParam thinLensParams[] = {
      {0.0f},
      0.0f,
      64.0f,
-     "corners of the opening, a regular polygon within the lens; below 3: round"}};
+     "number of corners of the opening, a regular polygon within the lens; below 3: round"}};
 
 struct DiskPoint {
   double x, y;
@@ -194,7 +194,7 @@ void projectPanorama(const RtsHost*, RtsBatch*, const void* params, uint32_t n,
 } // namespace
 
 const RtsClass thinLensClass = cameraClass<ThinLensParams>(
-    "ThinLens", "a lens: what is not at the distance of focus is blurred", thinLensParams,
+    "ThinLens", "a lens: everything outside the plane of focus is blurred", thinLensParams,
     generateThinLens, projectThinLens);
 const RtsClass panoramaClass =
     cameraClass<PanoramaParams>("Panorama", "everything around, longitude and latitude",
