@@ -122,7 +122,7 @@ void BackgroundLayer::read(const std::string& file, bool linear) {
   width_ = read.width;
   height_ = read.height;
   const size_t components = size_t(read.components), w = size_t(width_), h = size_t(height_);
-  if (w == 0 || h == 0) throw std::runtime_error(file + ": the picture is empty");
+  if (w == 0 || h == 0) throw std::runtime_error(file + ": the picture has no pixels");
   rgb_.resize(w * h * 3);
   for (size_t y = 0; y < h; ++y)
     for (size_t x = 0; x < w; ++x) {

@@ -160,7 +160,7 @@ struct LiveRenderer::Impl {
     } catch (const std::bad_alloc&) {
       return "not enough memory";
     } catch (const std::exception& e) { return e.what(); } catch (...) {
-      return "it could not be rendered";
+      return "the picture could not be rendered";
     }
   }
 

@@ -91,7 +91,8 @@ void Stage::open(const std::function<bool()>& stop) {
   if (settings.cluster) {
     const auto listener = [this](int level, const char* text) { listen(level, text, this); };
     const RTcontext lent = settings.cluster->borrow(listener, stop);
-    if (!lent) throw RenderError("given up: the cluster makes another picture");
+    if (!lent)
+      throw RenderError("interrupted while the cluster was still rendering another picture");
     borrowed_ = true;
     context_ = lent;
   } else {

@@ -37,19 +37,19 @@ const char* transportName(RTenum transport) {
 
 std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves) {
   static constexpr std::pair<uint32_t, OmittedLight> table[] = {
-      {RT_LEAVES_IMAGES, {"mirror_images", "mirror images and what is behind glass"}},
-      {RT_LEAVES_BETWEEN, {"interreflection", "light that goes from surface to surface"}},
+      {RT_LEAVES_IMAGES, {"mirror_images", "reflections in mirrors and the view through glass"}},
+      {RT_LEAVES_BETWEEN, {"interreflection", "light between surfaces"}},
       {RT_LEAVES_EMITTERS, {"emitters", "light of emitters on other surfaces"}},
       {RT_LEAVES_SKY, {"sky", "light of the sky on surfaces"}},
       {RT_LEAVES_CAUSTICS,
-       {"caustics", "light of lamps without extent that comes by way of mirrors or glass"}},
+       {"caustics", "light from point and directional lamps through mirrors or glass"}},
   };
   std::vector<OmittedLight> list;
   for (const auto& [bit, left] : table)
     if (leaves & bit) list.push_back(left);
   if (transport == RT_TRANSPORT_LIGHT && (leaves & RT_LEAVES_CAUSTICS))
-    list.back().text = "light of lamps without extent that comes by way of mirrors or glass and is "
-                       "itself seen that way";
+    list.back().text = "light from point and directional lamps through mirrors or glass, where it "
+                       "is itself seen through them";
   return list;
 }
 

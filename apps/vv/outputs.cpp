@@ -77,7 +77,8 @@ void refuseKept(const Options& options) {
 void checkOutputs(const Options& options) {
   for (const Output& output : options.outputs) {
     if (output.path == "-" && ::isatty(STDOUT_FILENO))
-      throw Failure{exitUsage, "-o -: a picture is not written to a terminal"};
+      throw Failure{exitUsage,
+                    "-o -: standard output is a terminal; redirect it to a file or a pipe"};
     if (output.film == picture::FilmKind::none) continue;
     if (const std::string why = picture::whyNoFilm(output.film); !why.empty())
       throw Failure{exitRender, output.path + ": " + why};

@@ -140,8 +140,8 @@ class Pictures {
                  (output.format == picture::Format::png || output.format == picture::Format::exr);
         });
     if (!kept)
-      sayWarning("--background none: only png and exr keep what is transparent; it is black in the "
-                 "other files");
+      sayWarning("--background none: only png and exr files can be transparent; the background is "
+                 "black in the other files");
   }
 
   // Closes the renderer, because a recording is complete only then.
@@ -372,8 +372,8 @@ class Pictures {
   void reportLast(const picture::RenderResult& result) {
     for (const std::string& line : clusterLines(result)) say(line);
     if (const xvrml::ScriptCounts counts = browser_.scripts(); counts.started > 0)
-      say(fmt::format("vv: {} of {} Scripts run; {} calls have taken {}", counts.started,
-                      counts.scripts, counts.calls, duration(counts.seconds)));
+      say(fmt::format("vv: {} of {} Scripts run; {} calls took {}", counts.started, counts.scripts,
+                      counts.calls, duration(counts.seconds)));
   }
 
   // Explains why a picture has not reached --error, from the samples that it took.
@@ -389,16 +389,17 @@ class Pictures {
     }
     if (full > 0)
       return fmt::format(
-          "{:.3g} % of its pixels have taken {} samples, the most allowed; --spp allows more",
-          100 * full, options_.render.samples);
-    if (options_.render.timeLimit > 0) return "--time-limit has ended it";
-    const std::string taken = fmt::format(
-        "its pixels have taken at most {:.0f} of the {} samples allowed, ", largest, most);
+          "{:.3g} % of the pixels took {} samples, the most allowed; --spp allows more", 100 * full,
+          options_.render.samples);
+    if (options_.render.timeLimit > 0)
+      return "the time limit ended the rendering; --time-limit allows more time";
+    const std::string taken =
+        fmt::format("its pixels took at most {:.0f} of the {} samples allowed, ", largest, most);
     if (result.stats.transport == RT_TRANSPORT_LIGHT)
-      return taken + "and paths from lamps, whose number --error does not change; --spp N without "
-                     "--error takes N of both a pixel";
-    return taken + "which were enough in the pilots that decide it, and this picture has met more "
-                   "noise than they have; a smaller --error takes more";
+      return taken + "and --error does not change the number of paths from lamps; --spp N without "
+                     "--error takes N of both per pixel";
+    return taken + "which was enough in the pilot samples that decide it, but the picture is "
+                   "noisier than these; a smaller --error takes more samples";
   }
 
   void finishSequence() {

@@ -54,7 +54,7 @@ std::string_view takeValue(std::string_view& text, std::string_view key) {
 
 void ContextConfig::set(std::string_view key, std::string_view value) {
   if (value.find('\0') != value.npos)
-    fail(RT_INVALID_VALUE, std::string(key) + ": a null character in its value");
+    fail(RT_INVALID_VALUE, std::string(key) + ": the value contains a null character");
   constexpr std::string_view debugging = "debug:";
   if (key == "backend") {
     const bool wrapped = value.starts_with(debugging);
@@ -73,8 +73,8 @@ void ContextConfig::set(std::string_view key, std::string_view value) {
   else
     fail(RT_INVALID_VALUE,
          "unknown option \"" + std::string(key) +
-             "\"; known are backend, threads, file, record, shaderpath, and of backend=cluster "
-             "workers, listen, key, allow, local, split, require, tolerant");
+             "\"; the options are backend, threads, file, record, shaderpath, and for "
+             "backend=cluster workers, listen, key, allow, local, split, require, tolerant");
 }
 
 bool ContextConfig::setCluster(std::string_view key, std::string_view value) {
@@ -114,11 +114,11 @@ void ContextConfig::check() const {
   if (backend == BackendKind::Record && file.empty())
     fail(RT_INVALID_VALUE, "backend=record needs file=PATH");
   if (backend == BackendKind::Record && !record.empty())
-    fail(RT_INVALID_VALUE, "record=PATH is for backends that render");
+    fail(RT_INVALID_VALUE, "record=PATH needs a backend that renders");
   if (backend != BackendKind::Record && !file.empty())
-    fail(RT_INVALID_VALUE, "file=PATH is for backend=record");
+    fail(RT_INVALID_VALUE, "file=PATH needs backend=record");
   if (backend != BackendKind::Cluster && !clusterKey_.empty())
-    fail(RT_INVALID_VALUE, clusterKey_ + "= is for backend=cluster");
+    fail(RT_INVALID_VALUE, clusterKey_ + "= needs backend=cluster");
   if (backend == BackendKind::Cluster && cluster.workers.empty() && cluster.listen.empty())
     fail(RT_INVALID_VALUE,
          "backend=cluster needs workers=HOST[:PORT],... or listen=ADDRESS[:PORT], or both");

@@ -73,17 +73,17 @@ std::exception_ptr Context::close() noexcept {
 
 Definition& Context::openDefinition() {
   require(definition.has_value(), RT_INVALID_OPERATION,
-          "not between rtBeginObject and rtEndObject");
+          "only allowed between rtBeginObject and rtEndObject");
   return *definition;
 }
 
 void Context::requireOutsideList() const {
   require(!definition || !definition->builder.inList(), RT_INVALID_OPERATION,
-          "between rtBegin and rtEnd");
+          "not allowed between rtBegin and rtEnd");
 }
 
 void Context::requireOutsideDefinition() const {
-  require(!definition, RT_INVALID_OPERATION, "between rtBeginObject and rtEndObject");
+  require(!definition, RT_INVALID_OPERATION, "not allowed between rtBeginObject and rtEndObject");
 }
 
 GeometryState Context::latch(edit::Primitive primitive) {
@@ -129,7 +129,7 @@ RTid Context::stockCamera(const char* className, RTid& cached) {
   if (cached && scene.shaders.find(cached)) return cached;
   const RtsClass& table = findClass(className, "");
   if (table.kind != RTS_CAMERA)
-    fail(RT_PLUGIN_ERROR, std::string("the stock class ") + className + " is no camera class");
+    fail(RT_PLUGIN_ERROR, std::string("the stock class ") + className + " is not a camera class");
   return cached = scene.newShader(scene.newShaderClass(table, className, ""));
 }
 

@@ -26,7 +26,7 @@ void setFrameBuffer(Context& c, int width, int height, uint32_t channels) {
               static_cast<size_t>(width) * static_cast<size_t>(height) <= maxPixels,
           RT_INVALID_VALUE, "a frame has 1 to 65536 pixels a side and at most 2^28 in all");
   require(channels != 0 && (channels & ~allChannels) == 0, RT_INVALID_VALUE,
-          "no channel, or one that is unknown");
+          "the channels are 0 or contain an unknown one");
   c.scene.frame.width = static_cast<uint32_t>(width);
   c.scene.frame.height = static_cast<uint32_t>(height);
   c.scene.frame.channels = channels;
@@ -55,8 +55,8 @@ void readPixels(Context& c, RTenum channel, float* out, size_t count) {
   const size_t needed = components * frame.width * frame.height;
   require(out != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
   if (count < needed)
-    fail(RT_INVALID_VALUE, "room for " + std::to_string(count) + " floats; the channel has " +
-                               std::to_string(needed));
+    fail(RT_INVALID_VALUE, "the array has room for " + std::to_string(count) +
+                               " floats; the channel has " + std::to_string(needed));
   require(c.backend().read(channel, {out, needed}), RT_INVALID_OPERATION,
           "the backend has no such channel");
 }
@@ -100,7 +100,7 @@ void occludedRays(Context& c, size_t count, const RTray* rays, uint8_t* occluded
 int pick(Context& c, double x, double y, RThit* hit) {
   require(hit != nullptr, RT_INVALID_VALUE, "the pointer is NULL");
   require(std::isfinite(x) && std::isfinite(y) && std::fabs(x) <= 1e9 && std::fabs(y) <= 1e9,
-          RT_INVALID_VALUE, "the place is not finite, or far outside any picture");
+          RT_INVALID_VALUE, "x or y is not finite, or far outside any picture");
   require(c.scene.frame.width > 0, RT_INVALID_OPERATION,
           "no frame buffer: call rtFrameBuffer first");
   require(c.scene.camera.shader != 0, RT_INVALID_OPERATION,

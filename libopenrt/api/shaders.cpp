@@ -34,9 +34,9 @@ const RtsParam& parameter(Context& c, int handle, std::initializer_list<RtsType>
   const RtsClass& table = c.scene.classOf(bound(c));
   const RtsParam& param = declaredParameter(table, handle, types);
   if (inList(c))
-    fail(RT_INVALID_OPERATION, std::string("parameter ") + param.name + " of the class " +
-                                   table.name +
-                                   " is of the whole shader: not between rtBegin and rtEnd");
+    fail(RT_INVALID_OPERATION,
+         std::string("parameter ") + param.name + " of the class " + table.name +
+             " has one value for the whole shader: set it outside rtBegin and rtEnd");
   return param;
 }
 
@@ -161,7 +161,8 @@ void rtParameterString(int handle, const char* utf8) {
     require(utf8 != nullptr, RT_INVALID_VALUE, "the text is NULL");
     edit::ParameterT e = edited(handle);
     e.text = utf8;
-    require(e.text.size() <= maxStringLength, RT_INVALID_VALUE, "a text of more than 2^24 bytes");
+    require(e.text.size() <= maxStringLength, RT_INVALID_VALUE,
+            "the text has more than 2^24 bytes");
     c.scene.setParameter(c.boundShader, std::move(e));
   });
 }

@@ -141,7 +141,7 @@ void ShaderLibrary::open(const std::string& file) {
 
 void ShaderLibrary::readClasses() {
   void* symbol = dlsym(handle, RTS_ENTRY_NAME);
-  if (!symbol) failLoading(path, "exports no " RTS_ENTRY_NAME ", so it is no shader plug-in");
+  if (!symbol) failLoading(path, "exports no " RTS_ENTRY_NAME ", so it is not a shader plug-in");
   for (const RtsClass& c : checkPlugin(static_cast<const RtsPlugin*>(symbol),
                                        plugin_files::exportedBytes(symbol), path)) {
     auto loaded = std::make_unique<LoadedClass>();

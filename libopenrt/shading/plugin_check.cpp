@@ -90,7 +90,8 @@ void checkParameters(const RtsClass& shaderClass, const std::string& where) {
                                std::to_string(shaderClass.paramSize) + " bytes; at most " +
                                std::to_string(maxVaryingBytes));
     if (frequency > RTS_PER_VERTEX || (frequency != RTS_PER_SHADER && !numbers))
-      throw std::runtime_error(where + ": parameter " + param.name + ": cannot change that often");
+      throw std::runtime_error(where + ": parameter " + param.name +
+                               ": cannot have this frequency");
   }
   std::sort(ranges.begin(), ranges.end());
   for (size_t i = 1; i < ranges.size(); i++)

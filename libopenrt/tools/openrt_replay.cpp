@@ -170,7 +170,7 @@ int run(const Options& options) {
     std::error_code none; // if one of them does not exist, they differ
     if (!written.empty() && std::filesystem::equivalent(written, options.recording, none))
       return reportError(Usage,
-                         written + ": it is the recording that is read; another name is needed");
+                         written + ": this is the recording that is read; choose another name");
   }
   const ShaderRegistry shaders(shaderFolders(options.shaderPath));
   std::unique_ptr<RecordingReader> reader;

@@ -64,39 +64,38 @@ int reportError(ExitCode code, const std::string& message) {
 
 std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   Options o;
-  CLI::App app("Lends this machine to masters: renders parts of their pictures.", "openrt-worker");
+  CLI::App app("Renders parts of pictures for masters on other machines.", "openrt-worker");
   auto* listen = app.add_option("--listen", o.listen,
                                 "wait for masters at [ADDRESS][:PORT] (default 127.0.0.1:7447; "
                                 "port 0: any that is free)")
                      ->expected(0, 1);
   app.add_option("--connect", o.connect,
-                 "call a master that listens at HOST[:PORT], again and again")
+                 "connect to a master that listens at HOST[:PORT], and again whenever it has left")
       ->excludes(listen);
+  app.add_option("--key", o.key,
+                 "key file, needed for other machines: the same one as on the other side, or one "
+                 "that it allows");
+  app.add_option("--allow", o.allow, "file with further public keys to accept, one per line");
   app.add_option(
-      "--key", o.key,
-      "key file; needed beyond this machine, the same one or one that the other side allows");
-  app.add_option("--allow", o.allow,
-                 "file of public keys that are let in besides one's own, one a line");
-  app.add_option("--new-key", o.newKey,
-                 "make a key file (never over an existing one), print its public key, and end");
+      "--new-key", o.newKey,
+      "write a new key file, print its public key, and exit; existing files are never overwritten");
   app.add_option("--threads", o.threads,
-                 "threads that work (default: as many as the process may use)")
+                 "number of render threads (default: as many as the process may use)")
       ->check(CLI::Range(0, 1024));
   app.add_option("--shader-path", o.shaderPath,
                  "folders with shader libraries, separated by colons");
   app.add_option("--cache", o.cache,
-                 "megabytes of arrays that are kept for the next scene (default 1024)")
+                 "megabytes of arrays to keep for the next scene (default 1024)")
       ->check(CLI::Range(size_t(0), size_t(1) << 24));
-  app.add_flag("--once", o.once, "end when the first master has left");
-  app.add_flag("-q,--quiet", o.quiet, "say nothing but errors");
+  app.add_flag("--once", o.once, "exit when the first master has left");
+  app.add_flag("-q,--quiet", o.quiet, "print errors only");
   app.set_version_flag("--version", std::string("openrt-worker ") +
                                         std::to_string(OPENRT_VERSION_MAJOR) + "." +
                                         std::to_string(OPENRT_VERSION_MINOR) + "." +
                                         std::to_string(OPENRT_VERSION_PATCH));
   try {
     app.parse(argc, argv);
-    if (!o.allow.empty() && o.key.empty())
-      throw CLI::ValidationError("--allow", "of no use without --key");
+    if (!o.allow.empty() && o.key.empty()) throw CLI::ValidationError("--allow", "needs --key");
   } catch (const CLI::ParseError& e) {
     exitCode = app.exit(e, std::cout, std::cerr) == 0 ? Done : Usage;
     return std::nullopt;
@@ -142,7 +141,8 @@ int serve(const Options& o) {
   WorkerService worker(options);
   service = &worker;
   if (!o.quiet) {
-    const char* how = options.wire.keys.empty() ? "plain, for this machine only" : "with keys";
+    const char* how =
+        options.wire.keys.empty() ? "without keys, for this machine only" : "with keys";
     if (o.connect.empty())
       std::printf("listening at %s (%s)\n", worker.address().c_str(), how);
     else

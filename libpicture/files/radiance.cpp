@@ -21,7 +21,8 @@ xvrml::RadianceImage readOpenExr(const std::string& path) {
     for (size_t x = 0; x < w; ++x)
       for (size_t c = 0; c < 3; ++c) {
         const float v = picture.rgb[3 * (y * w + x) + c] = rgba[4 * ((h - 1 - y) * w + x) + c];
-        if (!(v >= 0) || v > 1e30f) throw std::runtime_error("holds numbers that are no radiance");
+        if (!(v >= 0) || v > 1e30f)
+          throw std::runtime_error("contains numbers that cannot be radiance");
       }
   return picture;
 }

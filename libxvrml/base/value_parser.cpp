@@ -99,7 +99,7 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
     p = start;
     if (readNumber(p, lexer_.end(), real) == NumberError::none && endsNumber(p, lexer_.end()) &&
         std::trunc(real) == real && std::abs(real) < 16777216.0f) {
-      lexer_.warn(start, fmt::format("{} is not an integer as {} wants; read as {}",
+      lexer_.warn(start, fmt::format("{} is not an integer, but {} needs one; read as {}",
                                      describe(found), name, real));
       out = static_cast<Scalar>(real);
       return true;
@@ -169,8 +169,8 @@ bool ValueParser::single(Image& out) {
   lexer_.seek(p);
   const auto [width, height, components] = header;
   if (width < 0 || height < 0)
-    return fail(start,
-                fmt::format("SFImage of {} x {} pixels: sizes are not negative", width, height));
+    return fail(
+        start, fmt::format("SFImage of {} x {} pixels: sizes must not be negative", width, height));
   if (components < 0 || components > 4)
     return fail(start, fmt::format("SFImage of {} components: expected 0 to 4", components));
   const uint64_t pixels = components > 0 ? uint64_t(width) * uint64_t(height) : 0;

@@ -79,7 +79,7 @@ Share mediaShare(const Events& events) {
 }
 
 std::string overBudgetMessage(uint64_t bytes, const Budget& budget) {
-  return fmt::format("with all that the world holds its {} bytes are more than {}", bytes,
+  return fmt::format("together with the rest of the world, its {} bytes are more than {}", bytes,
                      budget.name());
 }
 

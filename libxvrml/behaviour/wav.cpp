@@ -50,10 +50,10 @@ void readFormat(const uint8_t* p, uint64_t bytes, WavInfo& info, uint32_t& bytes
 
 WavInfo readHeader(File& file) {
   uint8_t head[40] = {};
-  if (!file.read(0, head, 12)) throw std::runtime_error("the file is no sound");
+  if (!file.read(0, head, 12)) throw std::runtime_error("the file is not a sound");
   if (is(head, "MThd")) throw std::runtime_error("MIDI is not played");
   if (!is(head, "RIFF") || !is(head + 8, "WAVE"))
-    throw std::runtime_error("the file is no WAVE sound");
+    throw std::runtime_error("the file is not a WAVE sound");
   WavInfo info;
   uint32_t bytesPerSecond = 0, frameBytes = 0;
   bool hasFormat = false, hasData = false;

@@ -328,8 +328,8 @@ void Expander::expandOne(ProtoInstance& instance, std::vector<NodeRef>& inlines)
   }
   if (plan->bytes > state_.budget.left() || !state_.budget.take(plan->ownBytes)) {
     state_.diagnostics.error(instance.source,
-                             fmt::format("copies of prototype '{}' take, with all that the world "
-                                         "holds, more memory than {}; not expanded",
+                             fmt::format("copies of prototype '{}' and the rest of the world take "
+                                         "more memory than {}; not expanded",
                                          name, state_.budget.name()));
     return;
   }

@@ -180,7 +180,7 @@ std::string describe(const NodeType& type, const FieldInfo& field, const RangeFa
   const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index)
                                  : type.name + "." + field.name;
   const std::string done = fault.given == fault.used
-                               ? "is left as it is, and what cannot be drawn is left out"
+                               ? "is kept, and parts that cannot be drawn are skipped"
                                : fmt::format("becomes {}", fault.used);
   return fmt::format(
       "{}: {} is outside of its range {} and {}{}", where, fault.given, describe(field.range), done,

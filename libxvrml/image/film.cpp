@@ -215,7 +215,7 @@ std::unique_ptr<FilmData::Impl> load(const RegularFile& file, const Limits& limi
   context->io_open = refuseOpen;
   context->format_whitelist = av_strdup(formats);
   if (avformat_open_input(&context, "", nullptr, nullptr) < 0)
-    fail("the file is no film of a known kind"); // this has freed the context
+    fail("the file is not a film of a known kind"); // this has freed the context
   const Owned<AVFormatContext> format(context);
   {
     std::vector<AVDictionary*> options(format->nb_streams, nullptr);

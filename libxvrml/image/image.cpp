@@ -34,9 +34,10 @@ void checkImageSize(uint64_t width, uint64_t height, uint64_t components, uint64
                     "take at most 4 bytes for each pixel of the limit 'imagePixels' ({})",
                     format, width, height, bytes, room.limits.imagePixels));
   if (room.budget && bytes + working > room.budget->left())
-    throw std::runtime_error(fmt::format(
-        "{} picture of {} x {} pixels takes {} bytes: with all that the world holds more than {}",
-        format, width, height, bytes + working, room.budget->name()));
+    throw std::runtime_error(fmt::format("{} picture of {} x {} pixels takes {} bytes: together "
+                                         "with the rest of the world, more than {}",
+                                         format, width, height, bytes + working,
+                                         room.budget->name()));
 }
 
 void checkFileSize(uint64_t fileBytes, uint64_t leastBytes, const char* format) {
@@ -74,7 +75,7 @@ std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& r
                                          file.size(), room.limits.fileBytes));
   if (room.budget && file.size() > room.budget->left())
     throw std::runtime_error(
-        fmt::format("{} bytes are, with all that the world holds, more than {}", file.size(),
+        fmt::format("{} bytes are, together with the rest of the world, more than {}", file.size(),
                     room.budget->name()));
   std::vector<uint8_t> bytes(size_t(file.size()) + 1);
   bytes.resize(file.read(0, bytes.data(), size_t(file.size())));

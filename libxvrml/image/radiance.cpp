@@ -152,7 +152,7 @@ bool looksLikeRadiance(const uint8_t* bytes, size_t size) {
 RadianceImage decodeRadiance(const uint8_t* bytes, size_t size, const Limits& limits) {
   const Bytes content(bytes, size);
   if (!looksLikeRadiance(bytes, size))
-    refuse("is no picture of radiance (OpenEXR, Radiance or colour PFM)");
+    refuse("is not a picture of radiance (OpenEXR, Radiance or colour PFM)");
   RadianceImage image = content[0] == '#'   ? decodeHdr(content, limits)
                         : content[0] == 'P' ? decodePfm(content, limits)
                                             : decodeExr(content, limits);

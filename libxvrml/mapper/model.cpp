@@ -110,7 +110,7 @@ UpGuess fromBounds(const Bounds& b) {
     if (liesAbout(1)) return {Axis::z, "x and y are centred about 0, z is not"};
     return {Axis::y, "x and z are centred about 0, y is not"};
   }
-  return {Axis::y, "nothing speaks against y"};
+  return {Axis::y, "there is no sign of another axis"};
 }
 
 } // namespace

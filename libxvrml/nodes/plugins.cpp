@@ -27,7 +27,7 @@ std::string sizesText(const uint32_t (&sizes)[8]) {
 // none after a wrong version.
 std::string whyRefused(const NodePlugin& plugin) {
   if (plugin.magic != nodePluginMagic)
-    return fmt::format("its {} does not begin as one", nodePluginSymbol);
+    return fmt::format("its {} has a wrong magic number", nodePluginSymbol);
   if (plugin.major != nodePluginMajor || plugin.minor > nodePluginMinor)
     return fmt::format(
         "it is made for version {}.{} of the node plug-in interface, this library has {}.{}",

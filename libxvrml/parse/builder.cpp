@@ -65,7 +65,8 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
   const NodeType* known = findNodeType(type.text);
   if (!known) {
     if (isLost(type.text)) {
-      lexer_.warn(type.at(), fmt::format("no node: prototype {} was left out", describe(type)));
+      lexer_.warn(type.at(), fmt::format("this node is left out, because prototype {} was left out",
+                                         describe(type)));
     } else {
       lexer_.error(type.at(), fmt::format("{} is not a known node type{}", describe(type),
                                           nearest::suggestion(type.text, nodeTypes())));
@@ -130,11 +131,9 @@ void Builder::closeNode(bool good) {
   nodes_.pop_back();
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (good && frame.expanded > limit) {
-    lexer_.error(
-        frame.type.at(),
-        fmt::format(
-            "{} stands for {} nodes with all that is USEd in it: more than limit expandedNodes={}",
-            describe(frame.type), frame.expanded, limit));
+    lexer_.error(frame.type.at(), fmt::format("{} contains {} nodes, shared ones counted at each "
+                                              "USE: more than limit expandedNodes={}",
+                                              describe(frame.type), frame.expanded, limit));
     good = false;
   }
   if (!good) return rollBack(frame.mark);
@@ -145,7 +144,7 @@ void Builder::closeNode(bool good) {
   const Mark now = mark();
   const bool keeps = now.names > frame.mark.names && now.connections == frame.mark.connections;
   if (!accepts(nodeTargets_.back(), frame.type, *frame.node,
-               keeps ? "; what DEF names in it can be USEd" : "")) {
+               keeps ? "; the DEF names in it can still be USEd" : "")) {
     keeps ? keepNames(frame.mark) : rollBack(frame.mark);
   } else if (!place(frame.type, frame.node, frame.expanded)) {
     rollBack(frame.mark);
@@ -250,7 +249,7 @@ void Builder::nullNode(const Token& token) {
            nodeTarget.holder->type().index < 0)
     static_cast<MFNode*>(nodeTarget.storage)->emplace_back();
   else
-    lexer_.warn(token.at(), "NULL is no node of a list; it is left out");
+    lexer_.warn(token.at(), "NULL cannot be in a list of nodes; it is left out");
 }
 
 bool Builder::hasField(std::string_view name) const {

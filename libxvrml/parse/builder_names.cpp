@@ -19,8 +19,7 @@ bool mayConnect(Access ofNode, Access ofInterface) {
 // exposedField. "" if it does nothing.
 std::string_view intendedMeaning(Access ofNode, Access ofInterface) {
   if (ofInterface != Access::exposedField) return {};
-  if (ofNode == Access::field)
-    return "it takes the value that the instance is given, and no events";
+  if (ofNode == Access::field) return "it takes the value of the instance, but no events";
   return ofNode == Access::eventIn ? "it takes the events" : "it sends the events";
 }
 

@@ -215,7 +215,7 @@ void Loader::checkInterface(const ProtoDeclaration& wanted, const ProtoDeclarati
         wanted.source,
         fmt::format("EXTERNPROTO '{}' declares {} {} '{}' {} the prototype in {}",
                     wanted.type->name, accessName(field.access), fieldTypeName(field.type),
-                    field.name, declared ? "otherwise than" : "that is not in", place));
+                    field.name, declared ? "differently from" : "that is not in", place));
   }
 }
 
@@ -283,8 +283,8 @@ void Loader::checkSize(Scope& scope) {
                                            limit, root->type().name));
     else if (deep)
       state_.diagnostics.error(root->source,
-                               fmt::format("nodes nested {} deep with all prototypes and Inlines, "
-                                           "{} at most can be; {} is left out",
+                               fmt::format("with all prototypes and Inlines, nodes are nested {} "
+                                           "deep, but {} is the maximum; {} is left out",
                                            size.depth, Parser::maximumNesting, root->type().name));
     else
       sum += size.nodes;

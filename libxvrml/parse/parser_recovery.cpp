@@ -22,8 +22,8 @@ constexpr X3dStatement x3dStatements[] = {
     {"COMPONENT", nullptr},
     {"META", nullptr},
     {"UNIT", "lengths and angles are taken as metres and radians"},
-    {"IMPORT", "the name that it brings is unknown"},
-    {"EXPORT", "the name stays the file's own"}};
+    {"IMPORT", "the imported name is unknown"},
+    {"EXPORT", "the name is not exported"}};
 
 const X3dStatement* x3dStatement(const Token& token) {
   if (!token.is(TokenKind::identifier)) return nullptr;

@@ -153,7 +153,7 @@ void TextBuffer::fit() {
 }
 
 std::string TextBuffer::overLimitText() const {
-  return "takes, with all that the world holds, more than " +
+  return "takes, together with the rest of the world, more than " +
          (share_.budget() ? share_.budget()->name() : std::string());
 }
 
@@ -243,13 +243,13 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
     if (comment && current.find("VRML") != current.npos) {
       if (current.find("V1.0") != current.npos) {
         refuse(*file,
-               "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). A converter such "
-               "as vrml1tovrml2 makes one of it",
+               "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). Convert it, for "
+               "example with vrml1tovrml2",
                1);
       }
       if (current.find("2.0") != current.npos) {
-        return warn(fmt::format(
-            "the file does not begin with exactly '{}'; read as VRML97 all the same", exact));
+        return warn(
+            fmt::format("the file does not begin with exactly '{}'; read as VRML97 anyway", exact));
       }
       refuse(*file,
              fmt::format("is not VRML97: expected '{}', found '{}'", exact, current.substr(0, 60)),
@@ -262,7 +262,7 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
   }
   if (otherFormat(text_)) refuseOther(*file, text_);
   if (looksLikeVrml(text_))
-    return warn(fmt::format("the header '{}' is missing; read as VRML97 all the same", exact));
+    return warn(fmt::format("the header '{}' is missing; read as VRML97 anyway", exact));
   if (text_.empty()) refuse(*file, fmt::format("is empty: expected '{}'", exact));
   refuse(*file, fmt::format("is not a VRML97 world: expected it to begin with '{}'", exact), 1);
 }

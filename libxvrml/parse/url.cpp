@@ -119,7 +119,7 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
 bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::string& why) {
   const size_t comma = url.find(',');
   if (urlScheme(url) != "data" || comma == url.npos) {
-    why = "no data: URL";
+    why = "this is not a data: URL";
     return false;
   }
   std::string_view head = url.substr(5, comma - 5), body = url.substr(comma + 1);

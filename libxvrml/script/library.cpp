@@ -21,7 +21,7 @@ std::vector<XsEngine> loadScriptLibrary(const std::string& path) {
     void* symbol = dlsym(handle, XS_ENTRY_NAME);
     if (!symbol)
       throw std::runtime_error("script library " + path +
-                               ": exports no " XS_ENTRY_NAME ", so it is no script plug-in");
+                               ": exports no " XS_ENTRY_NAME ", so it is not a script plug-in");
     return checkScriptPlugin(static_cast<const XsPlugin*>(symbol),
                              plugin_files::exportedBytes(symbol), path);
   } catch (...) {

@@ -44,7 +44,7 @@ bool ProgramFinder::usable(const XsEngine* engine, const std::string& protocol) 
       found += (found.empty() ? "" : ", ") + std::string(one->name);
     missing_.emplace_back(
         protocol, fmt::format("no script engine for '{}' is installed (looked in: {}; found: {}); "
-                              "Scripts of this protocol stay silent",
+                              "Scripts of this protocol do nothing",
                               protocol, engines_.searched(), found.empty() ? "none" : found));
     return false;
   }
@@ -52,7 +52,7 @@ bool ProgramFinder::usable(const XsEngine* engine, const std::string& protocol) 
     missing_.emplace_back(
         protocol,
         fmt::format("'{}' is run by engine {}, whose programs can do whatever the user can: only "
-                    "in worlds that are trusted (vv --trust); Scripts of this protocol stay silent",
+                    "in worlds that are trusted (vv --trust); Scripts of this protocol do nothing",
                     protocol, engine->name));
     return false;
   }
@@ -72,7 +72,7 @@ bool ProgramFinder::fileProgram(const std::string& url, const std::string& base,
   const std::string suffix = suffixOf(url);
   program.engine = suffix.empty() ? nullptr : engines_.bySuffix(suffix);
   if (!program.engine && suffix.empty()) {
-    append(reasons_, fmt::format("'{}': no known kind of program", url.substr(0, 100)));
+    append(reasons_, fmt::format("'{}' is not a known kind of program", url.substr(0, 100)));
     return false;
   }
   if (!usable(program.engine, suffix)) return false;

@@ -78,7 +78,7 @@ struct ValueReader {
   bool one(size_t i, Image& out) {
     const XsImage& image = value.of.images[i];
     if (image.width < 0 || image.height < 0 || image.components < 0 || image.components > 4) {
-      why = fmt::format("no image: {} x {} x {}", image.width, image.height, image.components);
+      why = fmt::format("not an image: {} x {} x {}", image.width, image.height, image.components);
       return false;
     }
     const uint64_t pixels = uint64_t(image.width) * uint64_t(image.height),
@@ -187,7 +187,7 @@ bool takeText(const XsString& text, const Limits& limits, std::string& out, std:
   }
   const std::string_view characters(text.data ? text.data : "", text.bytes);
   if (!isUtf8(characters)) {
-    why = "a text that is no UTF-8";
+    why = "a text that is not UTF-8";
     return false;
   }
   out = characters;

@@ -11,7 +11,11 @@ struct Checker : rts::Surface<Checker> {
                               "fraction of light scattered by the cube at the origin, 0..1",
                               0,
                               1};
-  rts::Param<rts::Color> odd{"odd", {0.1f, 0.1f, 0.1f}, "that of its neighbours, 0..1", 0, 1};
+  rts::Param<rts::Color> odd{"odd",
+                             {0.1f, 0.1f, 0.1f},
+                             "fraction of light scattered by the neighbouring cubes, 0..1",
+                             0,
+                             1};
   rts::Param<rts::Vec3> size{
       "size",
       {1, 1, 1},

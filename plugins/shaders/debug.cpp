@@ -11,13 +11,13 @@ struct Debug : rts::Surface<Debug> {
   rts::Param<int32_t> show{
       "show", 0,
       "0: shading normal, 1: geometric normal, 2: texture coordinates, 3: front green, back red, "
-      "4: name, 5: instance, 6: triangle, 7: distance, 8: surfaces met before, 9, 10: direction of "
-      "growing s, t, 11: place in the object, 12: colour of the geometry",
+      "4: name, 5: instance, 6: triangle, 7: distance, 8: number of surfaces hit before, 9, 10: "
+      "direction of growing s, t, 11: place in the object, 12: colour of the geometry",
       0, 12};
-  rts::Param<float> scale{
-      "scale", 1,
-      "distance, depth or length of the object that is one: white, or a turn of the colours",
-      1e-30f, 1e30f};
+  rts::Param<float> scale{"scale", 1,
+                          "distance, depth or length of the object that is shown as white, or as "
+                          "one turn of the colours",
+                          1e-30f, 1e30f};
 
   rts::Shaded shade(const rts::Hit& hit) const {
     const rts::Color c = color(hit);

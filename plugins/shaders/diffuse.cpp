@@ -4,10 +4,10 @@
 namespace {
 
 struct Diffuse : rts::Surface<Diffuse> {
-  static constexpr const char* text = "scatters light evenly; may send out light of its own";
+  static constexpr const char* text = "scatters light evenly and may emit light";
   rts::Param<rts::Color> reflectance{
       "reflectance", {0.8f, 0.8f, 0.8f}, "fraction of light scattered, 0..1", 0, 1, rts::PerVertex};
-  rts::Param<rts::Color> emission{"emission", {0, 0, 0}, "radiance sent out"};
+  rts::Param<rts::Color> emission{"emission", {0, 0, 0}, "emitted radiance"};
   rts::Param<rts::Texture> texture{"texture", "multiplies reflectance"};
 
   bool emits() const { return rts::largest(emission) > 0; }

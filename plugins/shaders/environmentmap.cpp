@@ -47,7 +47,7 @@ const RtsParam params[] = {
      {0.0f},
      0.0f,
      0.0f,
-     "of the picture about +y, counter-clockwise seen from above, radians"},
+     "rotation of the picture about +y, counter-clockwise seen from above, radians"},
 };
 
 VRML97_CLONES void places(float rotation, uint32_t n, const float* __restrict x,

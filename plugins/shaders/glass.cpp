@@ -17,17 +17,19 @@ struct Glass : rts::Surface<Glass> {
   rts::Param<rts::Color> indexByColor{
       "indexByColor",
       {0, 0, 0},
-      "index of red, green and blue; where above 0 instead of the above",
+      "index of refraction for red, green and blue; a value above 0 replaces index and abbe",
       0,
       10};
   rts::Param<rts::Color> absorption{
-      "absorption", {0, 0, 0}, "of light inside, per unit of length in the world (Beer-Lambert)"};
-  rts::Param<rts::Color> tint{"tint", {1, 1, 1}, "of all light that meets the surface, 0..1", 0, 1};
+      "absorption",
+      {0, 0, 0},
+      "absorption of light inside, per unit of length in the world (Beer-Lambert)"};
+  rts::Param<rts::Color> tint{
+      "tint", {1, 1, 1}, "tint of all light that hits the surface, 0..1", 0, 1};
   rts::Param<int32_t> priority{"priority", 0,
-                               "where bodies overlap the one of the highest is there"};
+                               "where bodies overlap, the one with the highest priority counts"};
   rts::Param<int32_t> shadow{
-      "shadow", 0,
-      "1: opaque to the straight rays that ask for lights; 0: lets them through unbent", 0, 1};
+      "shadow", 0, "1: blocks shadow rays; 0: lets shadow rays pass straight through", 0, 1};
 
   rts::Medium medium() const {
     return {{indexAt(0.6114f, indexByColor->r), indexAt(0.5491f, indexByColor->g),

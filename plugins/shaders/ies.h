@@ -125,7 +125,7 @@ inline bool rising(const std::vector<float>& angles) {
 // Parses a file. Returns null, or an error message; `line` is then the line of the error.
 inline const char* parse(std::string_view text, Photometry& out, int& line) {
   line = 1;
-  if (text.empty()) return "no profile: give the text of an IES LM-63 file";
+  if (text.empty()) return "the profile is empty: give the text of an IES LM-63 file";
   // Skips the keywords before the line TILT=... Only the two oldest formats (1986, 1991) have a
   // second factor; later formats have 1 in its place.
   const bool factorLater = text.substr(0, 5) != "IESNA" && text.substr(0, 4) != "IES:"
@@ -143,7 +143,7 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
       tilt = here.substr(5);
       break;
     }
-    if (text.empty()) return "not an IES file: there is no line TILT=";
+    if (text.empty()) return "this is not an IES file: there is no line TILT=";
   }
   if (tilt == "INCLUDE")
     return "TILT=INCLUDE is not supported: the lamp's output would depend on how the luminaire "
@@ -156,10 +156,10 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
   for (double& value : head) {
     const bool good = reader.number(value);
     line = reader.line();
-    if (!good) return "a number of the luminaire's description is missing or none";
+    if (!good) return "a number of the luminaire's description is missing or not a number";
   }
   const double factor = head[2] * head[10] * (factorLater ? head[11] : 1);
-  if (!(factor >= 0)) return "a negative multiplier or ballast factor";
+  if (!(factor >= 0)) return "the multiplier or the ballast factor is negative";
   if (!(head[3] >= 1 && head[3] <= double(maxAngles)) ||
       !(head[4] >= 1 && head[4] <= double(maxAngles)) || head[3] != std::floor(head[3]) ||
       head[4] != std::floor(head[4]) || head[3] * head[4] > double(maxValues))
@@ -168,11 +168,11 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
   const auto rows = size_t(head[3]), columns = size_t(head[4]);
   const char* message = nullptr;
   if (!reader.numbers(rows, 1, out.vertical))
-    message = "a vertical angle is missing or no number";
+    message = "a vertical angle is missing or not a number";
   else if (!rising(out.vertical) || out.vertical.front() < 0 || out.vertical.back() > 180)
     message = "vertical angles must rise from 0 to 180 degrees";
   else if (!reader.numbers(columns, 1, out.horizontal))
-    message = "a horizontal angle is missing or no number";
+    message = "a horizontal angle is missing or not a number";
   else if (!rising(out.horizontal) || out.horizontal.front() < 0 || out.horizontal.back() > 360)
     message = "horizontal angles must rise from 0 to 360 degrees";
   else if (const float first = out.horizontal.front(), last = out.horizontal.back();
@@ -180,7 +180,7 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
            !(first == 90 && last == 270))
     message = "horizontal angles must run from 0 to 0, 90, 180 or 360 degrees, or from 90 to 270";
   else if (!reader.numbers(rows * columns, factor, out.candela))
-    message = "a candela value is missing, no number, or too large";
+    message = "a candela value is missing, not a number, or too large";
   else if (*std::min_element(out.candela.begin(), out.candela.end()) < 0)
     message = "a candela value is negative";
   line = reader.line();

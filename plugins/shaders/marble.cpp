@@ -9,7 +9,8 @@ struct Marble : rts::Surface<Marble> {
   static constexpr const char* text = "carved from marble: bent veins, polish";
   rts::Param<rts::Color> stone{
       "stone", {0.85f, 0.84f, 0.8f}, "fraction of light that the stone scatters, 0..1", 0, 1};
-  rts::Param<rts::Color> vein{"vein", {0.25f, 0.27f, 0.3f}, "that of the veins, 0..1", 0, 1};
+  rts::Param<rts::Color> vein{
+      "vein", {0.25f, 0.27f, 0.3f}, "fraction of light that the veins scatter, 0..1", 0, 1};
   rts::Param<rts::Vec3> across{
       "across", {1, 0.6f, 0.2f}, "direction across the veins, in the object's space"};
   rts::Param<float> veins{"veins", 2, "veins per unit of length", 0, 1e6f};

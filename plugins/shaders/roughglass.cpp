@@ -12,10 +12,13 @@ struct RoughGlass : rts::Surface<RoughGlass> {
   rts::Param<float> roughness{"roughness", 0.2f,
                               "width of the distribution of slopes (alpha of GGX)", 0, 1};
   rts::Param<rts::Color> absorption{
-      "absorption", {0, 0, 0}, "of light inside, per unit of length in the world (Beer-Lambert)"};
-  rts::Param<rts::Color> tint{"tint", {1, 1, 1}, "of all light that meets the surface, 0..1", 0, 1};
+      "absorption",
+      {0, 0, 0},
+      "absorption of light inside, per unit of length in the world (Beer-Lambert)"};
+  rts::Param<rts::Color> tint{
+      "tint", {1, 1, 1}, "tint of all light that hits the surface, 0..1", 0, 1};
   rts::Param<int32_t> priority{"priority", 0,
-                               "where bodies overlap the one of the highest is there"};
+                               "where bodies overlap, the one with the highest priority counts"};
 
   rts::Medium medium() const { return {{index, index, index}, absorption, priority}; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {

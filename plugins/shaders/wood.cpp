@@ -9,9 +9,10 @@ struct Wood : rts::Surface<Wood> {
       "carved from wood: rings about an axis, grain along it, varnish";
   rts::Param<rts::Color> light{
       "light", {0.62f, 0.38f, 0.18f}, "fraction of light that early wood scatters, 0..1", 0, 1};
-  rts::Param<rts::Color> dark{"dark", {0.3f, 0.14f, 0.05f}, "that of late wood, 0..1", 0, 1};
+  rts::Param<rts::Color> dark{
+      "dark", {0.3f, 0.14f, 0.05f}, "fraction of light that late wood scatters, 0..1", 0, 1};
   rts::Param<rts::Vec3> axis{"axis", {0, 1, 0}, "direction of the trunk, in the object's space"};
-  rts::Param<rts::Vec3> pith{"pith", {0, 0, 0}, "a point of the middle of the trunk"};
+  rts::Param<rts::Vec3> pith{"pith", {0, 0, 0}, "a point on the axis of the trunk"};
   rts::Param<float> rings{"rings", 8, "rings per unit of length", 0, 1e6f};
   rts::Param<float> wobble{"wobble", 0.4f, "how uneven the rings are, in rings", 0, 10};
   rts::Param<float> grain{"grain", 0.3f, "how strong the fine grain is", 0, 1};

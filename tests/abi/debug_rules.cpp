@@ -115,7 +115,7 @@ TEST_F(DebugRules, UnusedShaders) {
   shader("Sky", "everything");
   picture(1);
   EXPECT_EQ(log.count("debug: unused-shader: "), 3u) << all();
-  EXPECT_TRUE(log.has("(Everything) is on no geometry: call rtBindShader")) << all();
+  EXPECT_TRUE(log.has("(Everything) is used by no geometry: call rtBindShader")) << all();
   EXPECT_TRUE(log.has("rtUseLight") && log.has("rtUseEnvironment")) << all();
 }
 
@@ -229,7 +229,7 @@ TEST_F(DebugRules, ThePictureIsTheOtherBackends) {
   shader("Nan", "faulty");
   rtInstantiateObject(square());
   EXPECT_EQ(picture(2)[4 + 2], 0.5f);
-  EXPECT_EQ(log.count("shader Nan of faulty answered with NaN"), 1u);
+  EXPECT_EQ(log.count("shader Nan of faulty returned NaN"), 1u);
   RThit hit{};
   EXPECT_EQ(rtPick(1, 1, &hit), 1);
   EXPECT_EQ(stats().shaderFaults, 2u);

@@ -33,7 +33,7 @@ TEST_F(Faults, NaNInRadianceIsZeroCountedAndNamedOnceAFrame) {
       EXPECT_EQ(pixels[4 * i + size_t(k)], left && k < 2 ? 0.0f : 0.5f) << i << " " << k;
   }
   EXPECT_EQ(stats().shaderFaults, 8u);
-  EXPECT_EQ(log.count("shader Nan of faulty answered with NaN or infinity"), 1u);
+  EXPECT_EQ(log.count("shader Nan of faulty returned NaN or infinity"), 1u);
   EXPECT_TRUE(log.has("(8 points)"));
   picture(4);
   EXPECT_EQ(log.count("shader Nan of faulty"), 2u); // another frame reports again

@@ -67,9 +67,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"parameter_type", "unknown type 99"},
         Refused{"parameter_unnamed", "a parameter without a name"},
         Refused{"minor_0_too_large", "that of ABI 1.0 has"},
-        Refused{"frequency_value", "parameter b: cannot change that often"},
+        Refused{"frequency_value", "parameter b: cannot have this frequency"},
         Refused{"frequency_size", "cannot change by hit in a structure of 32768 bytes"},
-        Refused{"frequency_type", "parameter b: cannot change that often"},
+        Refused{"frequency_type", "parameter b: cannot have this frequency"},
         Refused{"parameter_default", "default that is not finite"},
         Refused{"parameter_range", "its range is empty"}),
     [](const auto& info) { return std::string(info.param.library); });

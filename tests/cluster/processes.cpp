@@ -109,7 +109,7 @@ TEST(ClusterProcesses, AWorkerThatIsKilledInMidFrameIsMadeUpFor) {
     EXPECT_EQ(rtFinishFrame(), 1);
     EXPECT_EQ(different(pixels(longer()), one), 0u);
     EXPECT_EQ(statistics().workers, uint32_t(3 - victims));
-    EXPECT_EQ(context.said("all workers have gone"), victims == 3);
+    EXPECT_EQ(context.said("all workers have left"), victims == 3);
   }
 }
 
@@ -124,7 +124,7 @@ TEST(ClusterProcesses, AllGoneAndNoThreadsOfItsOwnTheMasterFinishesAllTheSame) {
   for (auto& worker : helping) worker->kill();
   EXPECT_EQ(rtFinishFrame(), 1);
   EXPECT_EQ(different(pixels(longer()), one), 0u);
-  EXPECT_TRUE(context.said("all workers have gone"));
+  EXPECT_TRUE(context.said("all workers have left"));
   EXPECT_GT(statistics().tilesLocal, 0u);
 }
 

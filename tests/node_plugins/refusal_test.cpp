@@ -20,7 +20,7 @@ TEST(NodePluginRefusals, EachNamesBothSides) {
     return false;
   };
   EXPECT_EQ(refused.size(), 8u);
-  EXPECT_TRUE(told("MAGIC", "does not begin as one"));
+  EXPECT_TRUE(told("MAGIC", "has a wrong magic number"));
   EXPECT_TRUE(told("MAJOR", "version 2.0") && told("MAJOR", "has 1.0"));
   EXPECT_TRUE(told("MINOR", "version 1.1") && told("MINOR", "has 1.0"));
   EXPECT_TRUE(told("SIZE", "8 bytes"));

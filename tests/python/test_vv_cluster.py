@@ -265,12 +265,12 @@ def test_without_a_cluster_its_statistics_are_empty(vv):
 
 
 @pytest.mark.parametrize("arguments, text", [
-    (("--key", "k"), "--key goes with --workers or --listen-workers"),
-    (("--split", "tiles"), "--split goes with --workers"),
-    (("--local-threads", "0"), "--local-threads goes with --workers"),
-    (("--require-workers",), "--require-workers goes with --workers"),
-    (("--tolerant",), "--tolerant goes with --workers"),
-    (("--workers", "a", "--allow-keys", "k"), "--allow-keys goes with --key"),
+    (("--key", "k"), "--key needs --workers or --listen-workers"),
+    (("--split", "tiles"), "--split needs --workers"),
+    (("--local-threads", "0"), "--local-threads needs --workers"),
+    (("--require-workers",), "--require-workers needs --workers"),
+    (("--tolerant",), "--tolerant needs --workers"),
+    (("--workers", "a", "--allow-keys", "k"), "--allow-keys needs --key"),
     (("--workers", ""), "--workers: HOST[:PORT],... or @FILE was expected"),
     (("--workers", "@"), "--workers: HOST[:PORT],... or @FILE was expected"),
     (("--workers", "a", "--split", "halves"),
@@ -287,7 +287,7 @@ def test_usage(vv, arguments, text):
 
 def test_workers_are_for_pictures(vv):
     done = vv("box.wrl", "--check", "--workers", "127.0.0.1")
-    assert done.returncode == 2 and "go with -o, or with the window" in done.talk
+    assert done.returncode == 2 and "need -o or the window" in done.talk
 
 
 @pytest.mark.parametrize("content, line", [("127.0.0.1:7447\nhost:port\n", 2),

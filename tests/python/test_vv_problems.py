@@ -37,8 +37,8 @@ def test_last_line_after_errors(vv):
     done = vv("wrong.wrl", "-o", "x.png", *SMALL)
     assert done.returncode == 0
     last = done.talk.strip().splitlines()[-1]
-    assert last == "vv: what the 2 errors name (wrong.wrl:2, wrong.wrl:4) is left out; --strict refuses such a world"
-    assert "left out" not in vv("box.wrl", "-o", "x.png", *SMALL).talk
+    assert last == "vv: 2 errors: parts of the world are missing (wrong.wrl:2, wrong.wrl:4); --strict refuses such a world"
+    assert "are missing" not in vv("box.wrl", "-o", "x.png", *SMALL).talk
     assert vv("wrong.wrl", "--strict", "-o", "x.png", *SMALL).returncode == 4
 
 

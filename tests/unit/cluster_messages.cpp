@@ -251,7 +251,7 @@ TEST(Messages, textsThatAreTooLongAreRefused) {
   const auto table = wire::Failed::Pack(builder, &failed).Union();
   wire::FinishHeaderBuffer(builder, wire::CreateHeader(builder, 42, wire::Any::Failed, table));
   const auto* bytes = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
-  EXPECT_EQ(problem({{bytes, bytes + builder.GetSize()}}), "Failed: a text that is too long");
+  EXPECT_EQ(problem({{bytes, bytes + builder.GetSize()}}), "Failed: a text is too long");
 }
 
 TEST(Messages, eachKindIsForOneSideOrForTheWire) {

@@ -203,7 +203,7 @@ class UselessWorker {
       say(std::move(need));
       if (way_ == Misbehaviour::refuses)
         return say(message::Failed{.epoch = scene->epoch,
-                                   .why = "shader library vrml97 is another file here"});
+                                   .why = "shader library vrml97 differs from the master's"});
       if (scene->prepare && way_ != Misbehaviour::neverReady) ready();
     }
     if (const auto* prepare = std::get_if<message::Prepare>(&m.body)) {
@@ -375,7 +375,7 @@ TEST(Useless, whereAWorkerIsRequiredThePictureIsMadeOrRefusedInTime) {
           << names.at(way) << ": " << out.failure;
     }
     if (way == Misbehaviour::refuses) {
-      EXPECT_NE(out.failure.find("another file"), std::string::npos)
+      EXPECT_NE(out.failure.find("differs from the master"), std::string::npos)
           << "it says why: " << out.failure;
     }
   }

@@ -74,13 +74,13 @@ TEST(Ies, Symmetries) {
 
 TEST(Ies, WhatIsWrongIsSaid) {
   const std::string numbers = "1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 ";
-  EXPECT_EQ(bad(""), "no profile: give the text of an IES LM-63 file 1");
-  EXPECT_EQ(bad("#VRML V2.0 utf8\nShape {}"), "not an IES file: there is no line TILT= 2");
+  EXPECT_EQ(bad(""), "the profile is empty: give the text of an IES LM-63 file 1");
+  EXPECT_EQ(bad("#VRML V2.0 utf8\nShape {}"), "this is not an IES file: there is no line TILT= 2");
   EXPECT_NE(bad("IESNA91\nTILT=INCLUDE\n" + numbers).find("TILT=INCLUDE"), std::string::npos);
   EXPECT_NE(bad("IESNA91\nTILT=../../etc/passwd\n" + numbers).find("only TILT=NONE"),
             std::string::npos);
   EXPECT_EQ(bad(file(head, numbers + "1")),
-            "a candela value is missing, no number, or too large 5");
+            "a candela value is missing, not a number, or too large 5");
   EXPECT_EQ(bad(file(head, numbers + "1 -1")), "a candela value is negative 5");
   EXPECT_NE(bad(file(head, numbers + "1 nan")).find("candela"), std::string::npos);
   EXPECT_NE(bad(file(head, numbers + "1 1e39")).find("candela"), std::string::npos);
@@ -100,7 +100,7 @@ TEST(Ies, WhatIsWrongIsSaid) {
             std::string::npos);
   EXPECT_NE(bad(file(head, "1 1 1 1 2 1 1 0 0 0 1 1 1 0 0 45 1 1")).find("must run"),
             std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 -1 1 1 1 1 0 0 0 1 1 1 0 0 1")).find("negative multiplier"),
+  EXPECT_NE(bad(file(head, "1 1 -1 1 1 1 1 0 0 0 1 1 1 0 0 1")).find("ballast factor is negative"),
             std::string::npos);
   EXPECT_NE(bad(file(head, "1 1 x")).find("description"), std::string::npos);
 }

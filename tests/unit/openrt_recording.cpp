@@ -327,23 +327,23 @@ INSTANTIATE_TEST_SUITE_P(
     Recording, Faults,
     testing::Values(
         Fault{"IndexBeyondPoints", [](Example& e) { e.indices[1] = 3; },
-              "an index beyond the points"},
+              "an index is beyond the points"},
         Fault{"PointNotFinite", [](Example& e) { e.points[4] = notANumber; },
-              "a point that is not finite"},
+              "a point is not finite"},
         Fault{"IndicesAsNormals", [](Example& e) { e.geometry.normals = 2; },
-              "normals that are wrong in size"},
+              "the normals have a wrong size"},
         Fault{"TexelsAsPoints", [](Example& e) { e.geometry.points = 3; },
-              "points of a wrong size"},
+              "the points have a wrong size"},
         Fault{"TexelsAsIndices", [](Example& e) { e.geometry.indices = 3; },
-              "indices of a wrong size"},
+              "the indices have a wrong size"},
         Fault{"UnknownArray", [](Example& e) { e.geometry.points = 77; }, "did not arrive"},
-        Fault{"NoPoints", [](Example& e) { e.geometry.points = 0; }, "a geometry without vertices"},
+        Fault{"NoPoints", [](Example& e) { e.geometry.points = 0; }, "a geometry has no vertices"},
         Fault{"UnknownPrimitive", [](Example& e) { e.geometry.primitive = edit::Primitive(9); },
               "unknown primitive"},
         Fault{"SphereWithPoints",
               [](Example& e) { e.geometry.primitive = edit::Primitive::Sphere; },
-              "a sphere with vertices"},
-        Fault{"NoWidth", [](Example& e) { e.geometry.width = 0; }, "a width that is not positive"},
+              "a sphere has vertices"},
+        Fault{"NoWidth", [](Example& e) { e.geometry.width = 0; }, "a width is not positive"},
         Fault{"NoMatrix", [](Example& e) { e.geometry.matrix.reset(); }, "a matrix is missing"},
         Fault{"MatrixOfZeros",
               [](Example& e) { e.instance.matrix = std::make_unique<edit::Matrix>(); },
@@ -351,7 +351,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"UnknownShader", [](Example& e) { e.geometry.shader = 44; }, "unknown id 44"},
         Fault{"TextureAsShader", [](Example& e) { e.geometry.shader = 1; }, "unknown id 1"},
         Fault{"LightAsSurface", [](Example& e) { e.surfaceClass.name = "Lamp"; },
-              "a parameter that its class does not have"},
+              "a parameter is not in its class"},
         Fault{"CameraAsSurface",
               [](Example& e) {
                 e.surfaceClass.name = "Eye";
@@ -369,19 +369,19 @@ INSTANTIATE_TEST_SUITE_P(
                 e.parameter.floats = {0, 0};
               },
               "a wrong number of values"},
-        Fault{"ParameterIndex", [](Example& e) { e.parameter.index = 10; },
-              "that its class does not have"},
+        Fault{"ParameterIndex", [](Example& e) { e.parameter.index = 10; }, "is not in its class"},
         Fault{"IdTwice", [](Example& e) { e.object.id = 3; }, "names two kinds"},
-        Fault{"NoId", [](Example& e) { e.object.id = 0; }, "an edit without an id"},
+        Fault{"NoId", [](Example& e) { e.object.id = 0; }, "an edit has no id"},
         Fault{"InstanceOfNothing", [](Example& e) { e.instance.object = 6; }, "unknown id 6"},
         Fault{"ObjectInItself", [](Example& e) { e.instance.parent = 4; },
-              "an object that contains itself"},
-        Fault{"TextureSize", [](Example& e) { e.texture.width = 3; }, "texels of a wrong size"},
+              "an object contains itself"},
+        Fault{"TextureSize", [](Example& e) { e.texture.width = 3; },
+              "the texels have a wrong size"},
         Fault{"TextureHuge", [](Example& e) { e.texture.width = e.texture.height = 65536; },
               "impossible size"},
         Fault{"TextureWrap", [](Example& e) { e.texture.wrapS = edit::Wrap(5); }, "unknown wrap"},
         Fault{"FrameSize", [](Example& e) { e.frame.width = 70000; },
-              "a frame of an impossible size"},
+              "a frame has an impossible size"},
         Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 10; }, "unknown channels"},
         Fault{"FrameSamples", [](Example& e) { e.frame.samples = 0; }, "impossible samples"},
         Fault{"DeletedUnknown", [](Example& e) { add(e.edits, edit::DeleteLightT()).id = 5; },
@@ -410,7 +410,7 @@ INSTANTIATE_TEST_SUITE_P(
                 light.matrix = identity();
                 add(e.edits, std::move(light));
               },
-              "in a role of another kind"},
+              "a role that its kind does not allow"},
         Fault{"SurfaceAsCamera",
               [](Example& e) {
                 edit::CameraT camera;
@@ -418,7 +418,7 @@ INSTANTIATE_TEST_SUITE_P(
                 camera.matrix = identity();
                 add(e.edits, std::move(camera));
               },
-              "in a role of another kind"},
+              "a role that its kind does not allow"},
         Fault{"EmptyEdit",
               [](Example& e) { e.edits.edits.push_back(std::make_unique<edit::EditT>()); },
               "an empty edit"}),
@@ -447,22 +447,23 @@ TEST_F(Recording, ParametersOfGeometryAreChecked) {
          giveParameter(e, 5, false, 4);
          e.extra = {1, 2, 3};
        }},
-      {"no such parameter", "a parameter that its class does not have",
+      {"no such parameter", "a parameter is not in its class",
        [](Example& e) { giveParameter(e, 99); }},
-      {"another frequency", "cannot have like that",
+      {"another frequency", "frequency is not that of its class",
        [](Example& e) { giveParameter(e, 2, false); }},
-      {"of the whole shader", "cannot have like that", [](Example& e) { giveParameter(e, 1); }},
-      {"no values", "a parameter without values", [](Example& e) { giveParameter(e, 2, true, 0); }},
+      {"of the whole shader", "frequency is not that of its class",
+       [](Example& e) { giveParameter(e, 1); }},
+      {"no values", "a parameter has no values", [](Example& e) { giveParameter(e, 2, true, 0); }},
       {"an array that is not there", "did not arrive",
        [](Example& e) { giveParameter(e, 2, true, 77); }},
-      {"too few", "of a wrong size", [](Example& e) { giveParameter(e, 2, true, 2); }},
-      {"too many", "of a wrong size", [](Example& e) { giveParameter(e, 3); }},
-      {"one float too many", "of a wrong size",
+      {"too few", "have a wrong size", [](Example& e) { giveParameter(e, 2, true, 2); }},
+      {"too many", "have a wrong size", [](Example& e) { giveParameter(e, 3); }},
+      {"one float too many", "have a wrong size",
        [](Example& e) {
          giveParameter(e, 5, false, 4);
          e.extra = {1, 2, 3, 4};
        }},
-      {"nothing in it", "of a wrong size",
+      {"nothing in it", "have a wrong size",
        [](Example& e) {
          giveParameter(e, 5, false, 4);
          e.extra.emplace();
@@ -482,18 +483,18 @@ TEST_F(Recording, ParametersOfGeometryAreChecked) {
          giveParameter(e);
          giveParameter(e);
        }},
-      {"of no shader", "parameters of no shader",
+      {"of no shader", "parameters but no shader",
        [](Example& e) {
          giveParameter(e);
          e.geometry.shader = 0;
        }},
-      {"of a sphere", "a sphere with parameters",
+      {"of a sphere", "a sphere has parameters",
        [](Example& e) {
          giveParameter(e);
          e.geometry.primitive = edit::Primitive::Sphere;
          e.geometry.points = e.geometry.indices = 0;
        }},
-      {"of another class", "cannot have like that",
+      {"of another class", "frequency is not that of its class",
        [](Example& e) {
          giveParameter(e);
          e.surfaceClass.name = "Everything";
@@ -513,14 +514,14 @@ TEST_F(Recording, ParametersOfGeometryAreChecked) {
   unknown.geometry.parameters[0]->values = 2;
   EXPECT_EQ(refusal(unknown.file()), "");
   unknown.geometry.parameters[0]->values = 3;
-  EXPECT_NE(refusal(unknown.file()).find("of a wrong size"), std::string::npos);
+  EXPECT_NE(refusal(unknown.file()).find("have a wrong size"), std::string::npos);
 }
 
 TEST_F(Recording, OtherFilesAreNamedAsSuch) {
   EXPECT_NE(refusal(Bytes(16, 'x')).find("not a recording"), std::string::npos);
   Bytes newer = header();
   newer[8] = 2;
-  EXPECT_NE(refusal(newer).find("a recording of version 2; this program reads version 1"),
+  EXPECT_NE(refusal(newer).find("the recording has version 2; this program reads version 1"),
             std::string::npos);
   EXPECT_THROW(openRecording("/nonexistent/file", nullptr), BadRecording);
 }

@@ -21,40 +21,44 @@ void setSplit(Options& o, const std::string& v) {
 
 const OptionInfo table[] = {
     {"--workers", "HOST[:PORT],...|@FILE", "Cluster",
-     "Machines that render, too: an openrt-worker listens there (port 7447 where none is said). "
-     "@FILE: a file with one a line, # begins a comment. The picture has the same bytes however "
-     "many there are, and whatever becomes of them (docs/cluster.md).",
+     "Share the rendering with these machines; openrt-worker --listen must run on each (default "
+     "port 7447). @FILE reads the list from a file with one machine per line; # begins a comment. "
+     "The picture has the same bytes for any number of machines, even if some of them fail "
+     "(docs/cluster.md).",
      [](Options& o, const std::string& v) {
        o.cluster.workers = given(v, "HOST[:PORT],... or @FILE");
      }},
     {"--listen-workers", "ADDRESS[:PORT]", "Cluster",
-     "Workers call in here (openrt-worker --connect): 0.0.0.0 is every address of this machine.",
+     "Wait at this address for workers that connect (openrt-worker --connect). 0.0.0.0 is every "
+     "address of this machine.",
      [](Options& o, const std::string& v) { o.cluster.listen = given(v, "ADDRESS[:PORT]"); }},
     {"--key", "FILE", "Cluster",
-     "The key file that workers have, too (openrt-worker --new-key FILE makes one). Without one "
-     "only loopback addresses are used.",
+     "Key file, the same one that the workers have (openrt-worker --new-key FILE makes one). "
+     "Without a key, only loopback addresses can be used.",
      [](Options& o, const std::string& v) { o.cluster.key = given(v, "a file name"); }},
     {"--allow-keys", "FILE", "Cluster",
-     "Public keys of workers that are let in beside those with the same key file, one a line.",
+     "File with public keys of further workers to accept, one per line. Workers with the same key "
+     "file are always accepted.",
      [](Options& o, const std::string& v) { o.cluster.allow = given(v, "a file name"); }},
     {"--local-threads", "N", "Cluster",
-     "Threads of this machine that render beside the workers (default: as --threads); 0: none as "
-     "long as a worker lives.",
+     "Number of threads of this machine that render beside the workers (default: as --threads). "
+     "With 0, this machine renders only if no worker is connected.",
      [](Options& o, const std::string& v) {
        o.cluster.localThreads = int(readInteger(v, 0, 1024));
      }},
     {"--split", "auto|tiles|samples|frames", "Cluster",
-     "What the work is cut into: tiles of a picture, samples, or whole pictures of a sequence "
-     "(default auto: by what is to be done). The bytes are the same.",
+     "How to divide the work: into tiles of a picture, into samples, or into whole pictures of a "
+     "sequence. auto (default) decides for each task. The pictures have the same bytes in every "
+     "case.",
      setSplit},
     {"--require-workers", "[N]", "Cluster",
-     "Without N workers (default 1) there is no picture: exit code 6 when they are missing for 10 "
-     "seconds. Else this machine finishes alone.",
+     "Stop with exit code 6 if fewer than N workers (default 1) are connected for 10 seconds. "
+     "Without this option, this machine finishes the picture alone.",
      [](Options& o, const std::string& v) {
        o.cluster.require = v.empty() ? 1 : int(readInteger(v, 1, 65536));
      }},
     {"--tolerant", "", "Cluster",
-     "Take workers of another instruction set or version, too: the last digits of a picture may "
+     "Accept workers with another instruction set or version. The last digits of a picture may "
      "then differ from run to run.",
      [](Options& o, const std::string&) { o.cluster.tolerant = true; }},
 };

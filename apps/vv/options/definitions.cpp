@@ -26,7 +26,7 @@ NodeRef findNode(const std::string& text, const std::string& name, const World& 
   if (found != world.scope.names.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& [one, node] : world.scope.names) known.push_back(one);
-  fail(text, known.empty() ? "the world names no node with DEF"
+  fail(text, known.empty() ? "no node of the world has a DEF name"
                            : fmt::format("no node is called {}{}", name, didYouMean(name, known)));
 }
 

@@ -28,8 +28,9 @@ void addOutput(Options& o, const std::string& value) {
       return o.outputs.push_back({file, *format});
     }
     if (picture::filmOf("film." + value.substr(0, colon)) != picture::FilmKind::none)
-      throw UsageError(fmt::format("a film is known by its suffix: -o {}.{}, not \"{}\"", file,
-                                   value.substr(0, colon), value));
+      throw UsageError(fmt::format(
+          "the suffix of the file name selects a film format: write -o {}.{} instead of \"{}\"",
+          file, value.substr(0, colon), value));
   }
   checkFramePlace(value);
   if (const picture::FilmKind film = picture::filmOf(value); film != picture::FilmKind::none)
@@ -89,7 +90,7 @@ void setChannels(Options& o, const std::string& value) {
   for (std::string_view name : split(value, ',')) {
     const picture::Channel* channel = picture::findChannel(name);
     if (!channel)
-      throw UsageError(fmt::format("channels out of {} were expected, not \"{}\"", known, name));
+      throw UsageError(fmt::format("one of the channels {} was expected, not \"{}\"", known, name));
     channels |= channel->bit;
   }
   o.render.channels = channels | RT_RGBA;
@@ -130,103 +131,108 @@ void notEmpty(const std::string& value, const char* what) {
 
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
-     "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). FORMAT:FILE "
-     "says it where the suffix does not. - is standard output (PNG; exr:- and so on for another "
-     "format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm "
-     "or gif makes a film. May be given several times.",
+     "Write the picture to FILE. The suffix selects the format (exr, png, jpg, ppm, pfm); "
+     "FORMAT:FILE selects it for any other name. - writes a PNG to standard output (exr:- an "
+     "OpenEXR file, and so on). In a sequence, {frame:4} in the name is replaced by the frame "
+     "number with four digits; the suffix mp4, webm or gif makes a film. May be given several "
+     "times.",
      addOutput, true},
-    {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",
+    {"--size", "WxH", "Picture",
+     "Width and height of pictures and of the window, in pixels (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
     {"--channels", "LIST", "Picture",
-     "Channels of an EXR file, out of rgba, z, normal, albedo, position, id, samples, variance, "
-     "error, trust (default rgba). error and trust: the 95 % interval of each colour and whether "
-     "it can be trusted; asking for them changes how the samples are made.",
+     "Channels of an EXR file, separated by commas: rgba, z, normal, albedo, position, id, "
+     "samples, variance, error, trust (default rgba). error is the half-width of the 95 % interval "
+     "of each colour, trust is 1 where that interval can be trusted. With error or trust, other "
+     "sample positions are used.",
      setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
-     "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, "
-     "JPEG and PPM get the sRGB curve. vrml97: the standard's equation on the numbers as written, "
-     "no curve anywhere.",
+     "linear (default): colours of the file are decoded from sRGB, light is added linearly, and "
+     "PNG, JPEG and PPM files get the sRGB curve. vrml97: the standard's lighting equation is "
+     "applied to the numbers as written, without any curve.",
      setColour},
     {"--background", "none|COLOUR|FILE", "Picture",
-     "What shows where nothing is drawn; the world's Background is not there then, in mirrors "
-     "neither. none: nothing; a PNG has alpha. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B "
-     "from 0 to 1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
+     "Replace the world's Background, which then is not seen in mirrors either. none: nothing; PNG "
+     "and EXR files are transparent there. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 "
+     "to 1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
      setBackground},
     {"--viewpoint", "NAME|N|all", "View",
-     "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: "
-     "a picture each; {viewpoint} in the file name, or else a suffix, tells them apart.",
+     "Look from this viewpoint, given by DEF name, description or number from 0 (default: the "
+     "first). all makes a picture from each viewpoint; its name replaces {viewpoint} in the file "
+     "name, or is added before the suffix.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a name, a number or all");
        o.viewpoint = v;
      }},
     {"--camera", "PX,PY,PZ:TX,TY,TZ[:UX,UY,UZ]", "View",
-     "Look from a position at a target, with this up vector (default: the axis of --up, or else "
-     "0,1,0). With --fit: in this direction, from as far away as all of the world is in the "
-     "picture.",
+     "Look from a position at a target. The up vector defaults to the axis of --up, or else to "
+     "0,1,0. With --fit only the direction is used: the camera moves back until the whole world is "
+     "in the picture.",
      [](Options& o, const std::string& v) { o.view.lookAt = readCamera(v); }},
     {"--fit", "", "View",
-     "Place the camera so that the whole world is seen: in the direction of the first Viewpoint or "
-     "of --camera; in a world without Viewpoint from three quarters, which is the default there.",
+     "Place the camera so that the whole world is in the picture. It looks in the direction of "
+     "--camera or of the first Viewpoint. A world without Viewpoint is shown in three-quarter "
+     "view, and there --fit is the default.",
      [](Options& o, const std::string&) { o.view.fit = true; }},
     {"--up", "x|y|z|-x|-y|-z", "View",
-     "The axis that points up: of the view from three quarters, of --turntable and of --camera "
-     "(default: y in a world with a Viewpoint; else guessed from what wrote the file and how it "
-     "lies, --info says it).",
+     "The axis that points up, for the three-quarter view, --turntable and --camera. Default: y in "
+     "a world with a Viewpoint; otherwise it is guessed from the program that wrote the file and "
+     "from the shape of the model (--info gives the reason).",
      [](Options& o, const std::string& v) { o.view.up = readAxis(v); }},
     {"--fov", "DEGREES", "View",
-     "The smaller of the two angles of view, instead of the viewpoint's.",
+     "Angle of view across the shorter side of the picture, instead of the viewpoint's.",
      [](Options& o, const std::string& v) { o.view.fov = readNumber(v, 0, 180); }},
     {"--camera-shader", "CLASS[:PARAM=VALUE...]", "View",
-     "Another camera at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama "
+     "Use a camera shader at the same place: ThinLens:radius=.1:focus=5 (depth of field), Panorama "
      "(everything around).",
      [](Options& o, const std::string& v) { o.cameraShader = v; }},
     {"--headlight", "on|off|auto", "View",
-     "Light at the camera; auto (default): as NavigationInfo says. A world without Viewpoint, "
-     "NavigationInfo and lights gets three soft lights about the camera instead.",
+     "Turn the light at the camera on or off. auto (default) follows NavigationInfo; a world "
+     "without Viewpoint, NavigationInfo and lights gets three soft lights around the camera "
+     "instead.",
      setHeadlight},
     {"--time", "SECONDS", "Time",
-     "The world so long after it was loaded (default 0). Time goes in steps of 1/fps up to here, "
-     "as in a sequence; no wall clock is read.",
+     "Show the world this many seconds after it was loaded (default 0). World time advances in "
+     "steps of 1/fps, as in a sequence; the clock of the machine is not used.",
      [](Options& o, const std::string& v) { o.time = readSeconds(v); }},
     {"--epoch", "SECONDS|now", "Time",
-     "When the world is loaded, in seconds since 1970, which startTime and Scripts count in. "
-     "Default 1729728000 (24 October 2024), always the same for reproducible pictures; in the "
-     "window now, the clock of this machine.",
+     "Date and time at which the world is loaded, in seconds since 1970; startTime and Scripts use "
+     "it. The default is always 1729728000 (24 October 2024), so that pictures are reproducible. "
+     "In the window the default is now, the clock of this machine.",
      [](Options& o, const std::string& v) {
        o.epoch = v == "now" ? secondsSince1970() : readNumber(v, -1, 1e11);
      }},
     {"--frames", "A-B[/STEP]", "Time",
-     "A picture of each frame from A to B: frame N shows the world at N/fps seconds, and is the "
-     "same picture in any sequence that holds it. The number is put where {frame:4} stands in the "
-     "file name, or else before its suffix.",
+     "Make a picture of each frame from A to B. Frame N shows the world at N/fps seconds and is "
+     "the same picture in every sequence that contains it. Its number replaces {frame:4} in the "
+     "file name, or is added before the suffix.",
      [](Options& o, const std::string& v) { o.frames = readFrames(v); }},
     {"--fps", "F", "Time",
-     "Frames a second, of sequences, films and the window, and steps of the world's clock (default "
-     "30).",
+     "Frames per second of sequences, films and the window, and steps per second of the world's "
+     "clock (default 30).",
      [](Options& o, const std::string& v) { o.fps = readNumber(v, 0.001, 100000); }},
     {"--turntable", "N", "Time",
-     "N pictures, once around the axis that points up (--up) through the world's centre, from the "
-     "chosen view on.",
+     "Make N pictures, once around the world's centre, beginning at the chosen view. The camera "
+     "turns about the axis that points up (--up).",
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
     {"--input", "FILE", "Time",
-     "What somebody does to the world, from a script instead of mouse and keys: a line each, "
-     "SECONDS and what happens (move X Y, press left, release left, key PageDown, viewpoint NAME "
-     "...; docs/window.md). Time goes in steps of 1/fps from 0, so that the same script makes the "
-     "same pictures, in the window and with -o (which by default shows the world at the script's "
-     "end).",
+     "Replay mouse and keyboard input from FILE, one event per line: SECONDS EVENT (move X Y, "
+     "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). World time "
+     "advances in steps of 1/fps from 0, so the same script makes the same pictures in the window "
+     "and with -o. With -o, the picture shows the end of the script by default.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.inputScript = v;
      }},
     {"--record-input", "FILE", "Time",
-     "Write down what is done in the window, for --input. Time begins at 0.",
+     "Write the mouse and keyboard input of the window to FILE, for --input. Its time begins at 0.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.recordInput = v;
      }},
     {"-D,--define", "DEF.FIELD=VALUE", "Change",
-     "Give a field of a node with a DEF name another value before rendering, in VRML's own "
-     "spelling (Door.translation='0 0 2', Sign.string='\"open\"'). May be given several times.",
+     "Set a field of a node with a DEF name before rendering. The value is written as in a VRML "
+     "file (Door.translation='0 0 2', Sign.string='\"open\"'). May be given several times.",
      [](Options& o, const std::string& v) {
        const size_t equals = v.find('=');
        const size_t dot = v.find('.');
@@ -236,22 +242,23 @@ const OptionInfo table[] = {
      },
      true},
     {"--compat", "LIST", "Change",
-     "Habits of other browsers instead of the standard's rules, out of scripts (a Script without "
-     "directOutput TRUE may change nodes, as in the browsers of 1997), textures (a colour texture "
-     "multiplies diffuseColor, as in X3D). --explain says what they change.",
+     "Follow other browsers instead of the standard. LIST is one or both of: scripts (a Script "
+     "without directOutput TRUE may change nodes, as in the browsers of 1997), textures (a colour "
+     "texture multiplies diffuseColor, as in X3D). --explain says what they change.",
      setCompat},
     {"--old-world", "", "Change",
-     "As browsers of the nineties showed it: --compat scripts,textures --colour vrml97 --shadows "
-     "off.",
+     "Show the world as browsers of the nineties did: the same as --compat scripts,textures "
+     "--colour vrml97 --shadows off.",
      [](Options& o, const std::string&) {
        setCompat(o, "scripts,textures");
        o.render.linear = o.render.shadows = false;
      }},
     {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
-     "Give a shape, the shapes of an appearance or all below a group another surface shader: "
-     "Ball=Glass:index=1.33, Wall=Diffuse:reflectance=.8,.1,.1. * stands for all shapes without a "
-     "shader of their own, LIBRARY/CLASS for a class of a plug-in. A texture is a file, @FILE the "
-     "content of one. May be given several times.",
+     "Replace the surface shader of a shape, of all shapes with an appearance, or of everything "
+     "below a group: Ball=Glass:index=1.33, Wall=Diffuse:reflectance=.8,.1,.1. DEF is * for all "
+     "shapes that have no shader yet. CLASS is LIBRARY/CLASS for a class of a plug-in. The VALUE "
+     "of a texture is a file name; @FILE as VALUE reads a text from a file. May be given several "
+     "times.",
      [](Options& o, const std::string& v) {
        const size_t equals = v.find('=');
        if (equals == v.npos || equals == 0)
@@ -260,8 +267,9 @@ const OptionInfo table[] = {
      },
      true},
     {"--environment", "FILE[:INTENSITY]", "Change",
-     "Light from all around instead of the world's Background: a picture of radiance (exr, hdr, "
-     "pfm), columns of equal longitude, its middle towards -z.",
+     "Light the world from all around with a picture of radiance (exr, hdr, pfm), instead of its "
+     "Background. The picture is a longitude-latitude map with its middle towards -z; INTENSITY "
+     "multiplies it.",
      [](Options& o, const std::string& v) {
        const size_t colon = v.rfind(':');
        const bool factor = colon != v.npos && colon > 0 && v.find('/', colon) == v.npos;
@@ -271,49 +279,52 @@ const OptionInfo table[] = {
        notEmpty(o.render.environment, "a file name");
      }},
     {"--spp", "N", "Quality",
-     "Samples per pixel, 1 to 65536 (default 16; in the window 256, one after the other).",
+     "Samples per pixel, 1 to 65536 (default 16; in the window 256, added one after the other).",
      [](Options& o, const std::string& v) {
        o.samples = readWholeQuality(RT_SAMPLES_PER_PIXEL, v);
      }},
     {"--error", "E|E%", "Quality",
-     "Take as many samples in each part of the picture as it needs for a mean relative half-width "
-     "E of the 95 % interval, at most --spp (here by default 4096).",
+     "Sample each part of the picture until the average error bar is E of the brightness (for "
+     "example 2%), with at most --spp samples per pixel (default here 4096).",
      [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
     {"--time-limit", "SECONDS", "Quality",
-     "Take samples in rounds over the whole picture for about this time, at most --spp (here by "
-     "default 65536). Such a picture depends on the speed of the machine.",
+     "Sample the whole picture in rounds for about this time, with at most --spp samples per pixel "
+     "(default here 65536). Such a picture depends on the speed of the machine.",
      [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
-    {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
+    {"--depth", "N", "Quality",
+     "Maximum number of surfaces that a path may pass through or bounce off, 0 to 10000 (default "
+     "25).",
      [](Options& o, const std::string& v) { o.render.depth = readWholeQuality(RT_MAX_DEPTH, v); }},
     {"--transport", "auto|direct|whitted|path|light", "Quality",
-     "How light is followed: auto (default: what the shaders of the world ask for; --explain and "
-     "--stats say which and why), direct (lights alone), whitted (and mirrors and glass), path "
-     "(and light between surfaces), light (and what lamps send through mirrors and lenses).",
+     "Light transport algorithm. auto (default) chooses by the shaders of the world; --explain and "
+     "--stats say which and why. direct: only direct light. whitted: also mirrors and glass. path: "
+     "also light between surfaces. light: also light from lamps through mirrors and lenses.",
      setTransport},
     {"--energy-cut", "E", "Quality",
-     "whitted: branches of reflection and refraction that carry less than this share of a camera "
-     "ray end, 0 to 1 (default 1/4096).",
+     "With whitted, end branches of reflection and refraction that carry less than this share of "
+     "the camera ray, 0 to 1 (default 1/4096).",
      [](Options& o, const std::string& v) { o.render.energyCut = v == "0" ? 0 : readShare(v); }},
     {"--clamp", "RADIANCE", "Quality",
-     "No sample is brighter than this. It takes away fireflies, and light: the statistics say how "
+     "Limit the radiance of each sample. This removes fireflies, but also light; --stats says how "
      "much (default: no limit).",
      [](Options& o, const std::string& v) { o.render.clamp = readQuality(RT_CLAMP, v); }},
     {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
      [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
-    {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
+    {"--seed", "N", "Quality", "Choose another set of sample positions (default 0).",
      [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
     {"--threads", "N", "Quality",
-     "Render threads; 0 (default): as many as the process may use. The picture does not depend on "
-     "it.",
+     "Number of render threads; 0 (default) is as many as the process may use. The picture does "
+     "not depend on it.",
      [](Options& o, const std::string& v) { o.render.threads = int(readInteger(v, 0, 1024)); }},
     {"--check", "", "Inspect",
-     "Read the world, report every problem, make no picture; exit code 4 if there is any.",
+     "Read the world and report every problem, without making a picture. The exit code is 4 if "
+     "there is any problem.",
      [](Options& o, const std::string&) { o.check = true; }},
     {"--strict", "", "Inspect",
-     "Any problem of the world ends the program: exit code 4, or 5 for a plug-in or a texture that "
-     "is missing.",
+     "Stop at any problem of the world, with exit code 4, or 5 if a plug-in or a texture is "
+     "missing.",
      [](Options& o, const std::string&) { o.strict = true; }},
-    {"--info", "", "Inspect", "Say what the world holds.",
+    {"--info", "", "Inspect", "Describe the world: nodes, bounds, viewpoints, Scripts, problems.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::info); }},
     {"--list-nodes", "", "Inspect",
      "List the node types with their fields; with a FILE also the prototypes it declares.",
@@ -324,16 +335,16 @@ const OptionInfo table[] = {
      "List the classes of all shader plug-ins with their parameters.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::listShaders); }},
     {"--list-engines", "", "Inspect",
-     "List the script engines: what they serve, whether they need --trust, the library they come "
-     "from.",
+     "List the script engines: the programs they run, whether they need --trust, and the library "
+     "they come from.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::listEngines); }},
     {"--list-keys", "", "Inspect", "List what keys and mouse do in the window.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::listKeys); }},
     {"--explain", "", "Inspect",
-     "Say how light is followed and why, and what objects the world is rendered as: each with the "
-     "reason, its triangles, bytes and instances.",
+     "Print the light transport algorithm and why it was chosen, and the objects that the world is "
+     "rendered as: each with the reason, its triangles, bytes and instances.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::explain); }},
-    {"--json", "", "Inspect", "--info, --explain and the lists as JSON.",
+    {"--json", "", "Inspect", "Print --info, --explain and the lists as JSON.",
      [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect",
      "Write statistics as JSON, one file for a whole sequence; - is standard output.",
@@ -342,70 +353,71 @@ const OptionInfo table[] = {
        o.stats = v;
      }},
     {"--compare", "REF.exr", "Inspect",
-     "Say how far the picture is off another one of the same size and view: RMSE, relMSE, bias "
-     "with its interval, largest difference. -o is not needed.",
+     "Compare the picture with another one of the same size and view: RMSE, relMSE, bias with its "
+     "interval, largest difference. -o is not needed.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "an OpenEXR file");
        o.compare = v;
      }},
     {"--audit", "[N]", "Inspect",
-     "Do the error bars hold? Renders the picture with N seeds (default 20) and once with many "
-     "more samples (or takes the picture of --compare instead), and says how many of the 95 % "
-     "intervals hold the truth. Exit code 4 if it is not 93 to 97 % of those that are trusted.",
+     "Test the error bars: render the picture with N seeds (default 20) and once with many more "
+     "samples (or read the picture of --compare instead), and print how many of the 95 % intervals "
+     "contain the true value. The exit code is 4 if these are not 93 to 97 % of the trusted "
+     "intervals.",
      [](Options& o, const std::string& v) {
        o.audit = v.empty() ? 20 : int(readInteger(v, 2, 10000));
      }},
     {"--watch", "", "Inspect",
      "Make the pictures again whenever the world's file, or one that it uses, changes, until "
-     "interrupted; in the window: read it again, the viewer stays.",
+     "interrupted. In the window, reload the world and keep the view.",
      [](Options& o, const std::string&) { o.watch = true; }},
     {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.write = v;
      }},
-    {"--record", "FILE", "Write", "Keep the scene as OpenRT edits, for openrt-replay.",
+    {"--record", "FILE", "Write", "Write the scene as OpenRT edits, for openrt-replay.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.render.record = v;
      }},
     {"--limit", "NAME=VALUE", "Trust",
-     "Raise or lower a limit on what a world may cost; a wrong name lists them. May be given "
-     "several times.",
+     "Raise or lower a limit on the memory and work that a world may need; a wrong NAME prints the "
+     "list of limits. May be given several times.",
      setLimit, true},
     {"--allow-absolute", "", "Trust", "Follow absolute paths and file: URLs named inside a world.",
      [](Options& o, const std::string&) { o.load.allowAbsolute = true; }},
-    {"--shader-path", "DIR[:DIR...]", "Trust", "Folders where shader plug-ins are looked up first.",
+    {"--shader-path", "DIR[:DIR...]", "Trust", "Folders to search first for shader plug-ins.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a folder");
        o.render.shaderPath = v;
      }},
     {"--trust", "", "Trust",
-     "Scripts may use engines whose programs can do whatever you can (native:, python:, Tk "
+     "Let Scripts use engines whose programs can do whatever you can (native:, python:, Tk "
      "windows; --list-engines says which).",
      [](Options& o, const std::string&) { o.running.trustScripts = true; }},
-    {"--allow-net", "", "Trust", "Scripts may use the network, as far as their engine can.",
+    {"--allow-net", "", "Trust", "Let Scripts use the network, if their engine supports it.",
      [](Options& o, const std::string&) { o.running.allowNetwork = true; }},
     {"--script-path", "DIR[:DIR...]", "Trust",
-     "Folders where script engines are looked up, before $XVRML_SCRIPT_PATH and the installed "
-     "ones; nothing that others may write or replace.",
+     "Folders to search for script engines, before $XVRML_SCRIPT_PATH and the installed ones. "
+     "Folders that other users may write to are refused.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a folder");
        o.running.scriptPath = v;
      }},
     {"--node-path", "DIR[:DIR...]", "Trust",
-     "Folders where node plug-ins are looked up, before $XVRML_NODE_PATH and the installed ones.",
+     "Folders to search for node plug-ins, before $XVRML_NODE_PATH and the installed ones.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a folder");
        o.nodePath = v;
      }},
-    {"-q,--quiet", "", "Talk", "Errors only.",
+    {"-q,--quiet", "", "Talk", "Print errors only.",
      [](Options& o, const std::string&) { o.quiet = true; }},
-    {"-v,--verbose", "", "Talk", "Every warning, and times.",
+    {"-v,--verbose", "", "Talk", "Print every warning, and times.",
      [](Options& o, const std::string&) { o.verbose = true; }},
-    {"--version", "", "Talk", "The version.",
+    {"--version", "", "Talk", "Print the version.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::version); }},
-    {"-h,--help", "", "Talk", "This text.",
+    {"-h,--help", "", "Talk", "Print this text.",
      [](Options& o, const std::string&) { o.jobs.push_back(Job::help); }},
 };
 

@@ -91,7 +91,7 @@ struct Rule {
 // The first broken rule is reported.
 constexpr Rule rules[] = {
     {[](const Options& o) { return !o.viewpoint.empty() && (o.view.lookAt || o.view.fit); },
-     "--viewpoint: not with --camera or --fit, which look from elsewhere"},
+     "--viewpoint cannot be used with --camera or --fit, which choose another view"},
     {[](const Options& o) {
        return !o.render.environment.empty() && o.render.background.kind != Background::Kind::world;
      },
@@ -100,7 +100,7 @@ constexpr Rule rules[] = {
      "only one of --quiet and --verbose can be used"},
     {[](const Options& o) { return printed(o) > 1; }, "only one thing can go to standard output"},
     {[](const Options& o) { return o.json && inspectionsOf(o) == 0; },
-     "--json goes with --info, --explain, --list-nodes, --list-viewpoints, --list-shaders or "
+     "--json needs --info, --explain, --list-nodes, --list-viewpoints, --list-shaders or "
      "--list-engines"},
     {[](const Options& o) { return inspectionsOf(o) > 1; },
      "only one of --info, --explain, --list-nodes, --list-viewpoints, --list-shaders and "
@@ -111,54 +111,54 @@ constexpr Rule rules[] = {
     {[](const Options& o) { return o.frames && o.turntable; },
      "only one of --frames and --turntable can be used"},
     {[](const Options& o) { return o.isSequence() && !o.makesPictures() && !o.check; },
-     "--frames and --turntable go with -o (or, to try a world out, with --check)"},
+     "--frames and --turntable need -o (or --check, to test a world)"},
     {[](const Options& o) { return o.isSequence() && writesToStandardOutput(o); },
      "a sequence needs file names, not standard output"},
     {[](const Options& o) { return o.watch && !o.makesPictures() && !o.opensWindow(); },
-     "--watch goes with -o, or with the window"},
+     "--watch needs -o or the window"},
     {[](const Options& o) { return o.watch && o.input == "-"; },
      "--watch needs a file, not standard input"},
     // files beside the picture
-    {[](const Options& o) { return !o.stats.empty() && !o.makesPictures(); },
-     "--stats goes with -o"},
+    {[](const Options& o) { return !o.stats.empty() && !o.makesPictures(); }, "--stats needs -o"},
     {[](const Options& o) { return !o.render.record.empty() && !o.makesPictures(); },
-     "--record goes with -o"},
+     "--record needs -o"},
     {[](const Options& o) { return !o.render.record.empty() && !showsOnePicture(o); },
-     "--record keeps one picture's scene: not with --viewpoint all, --frames or --turntable"},
+     "--record writes the scene of one picture: it cannot be used with --viewpoint all, --frames "
+     "or --turntable"},
     {[](const Options& o) { return o.audit && o.isSequence(); },
-     "--audit is for one picture: not with --frames or --turntable"},
+     "--audit tests one picture: it cannot be used with --frames or --turntable"},
     {[](const Options& o) { return (o.audit || !o.compare.empty()) && printed(o) > 0; },
      "--audit and --compare write to standard output: nothing else can go there"},
     {[](const Options& o) { return o.audit && o.render.timeLimit > 0; },
-     "--audit: not with --time-limit, which makes no picture twice"},
+     "--audit cannot be used with --time-limit, whose pictures differ from run to run"},
     // the cluster
     {[](const Options& o) { return !o.cluster.allow.empty() && o.cluster.key.empty(); },
-     "--allow-keys goes with --key"},
+     "--allow-keys needs --key"},
     {[](const Options& o) { return o.cluster.used() && !o.makesPictures() && !o.opensWindow(); },
-     "--workers and --listen-workers go with -o, or with the window"},
+     "--workers and --listen-workers need -o or the window"},
     {[](const Options& o) { return o.check && o.makesPictures(); },
-     "--check makes no picture: not with -o"},
+     "--check makes no picture: it cannot be used with -o"},
     {[](const Options& o) {
        return o.makesPictures() && o.allViewpoints() && writesToStandardOutput(o);
      },
      "--viewpoint all needs file names, not standard output"},
     // the window
     {[](const Options& o) { return o.opensWindow() && o.allViewpoints(); },
-     "--viewpoint all goes with -o"},
+     "--viewpoint all needs -o"},
     {[](const Options& o) {
        return !o.recordInput.empty() && (!o.opensWindow() || !o.inputScript.empty());
      },
-     "--record-input goes with the window, and not with --input"},
+     "--record-input needs the window and cannot be used with --input"},
     {[](const Options& o) {
        return !o.inputScript.empty() && !o.makesPictures() && !o.opensWindow();
      },
-     "--input goes with -o, or with the window"},
+     "--input needs -o or the window"},
     {[](const Options& o) { return !o.inputScript.empty() && o.opensWindow() && o.time; },
      "only one of --input and --time can be used in the window"},
     {[](const Options& o) {
        return !o.inputScript.empty() && (o.audit || o.turntable || o.allViewpoints());
      },
-     "--input: not with --audit, --turntable or --viewpoint all"},
+     "--input cannot be used with --audit, --turntable or --viewpoint all"},
     {[](const Options& o) {
        const JobInfo* job = o.job();
        return o.input.empty() && !o.opensWindow() && (!job || job->needsWorld);
@@ -177,7 +177,7 @@ void checkCluster(const Options& options) {
                                                 {c.tolerant, "--tolerant"}};
   for (const auto& [isGiven, name] : given)
     if (isGiven && !c.used())
-      throw UsageError(fmt::format("{} goes with --workers or --listen-workers", name));
+      throw UsageError(fmt::format("{} needs --workers or --listen-workers", name));
 }
 
 // Checks combinations of options.
@@ -294,11 +294,13 @@ std::string wrapped(std::string_view text, size_t indent, size_t width) {
 std::string helpText() {
   constexpr size_t indent = 26, width = 100;
   std::string out =
-      "vv: renders VRML97 worlds.\n\n"
-      "  vv world.wrl                    a window to look at it; F1 there lists the keys\n"
-      "  vv world.wrl -o picture.png     first viewpoint, or the whole world in view; shadows; 16 "
-      "samples a pixel\n"
-      "  vv world.wrl --check            say what is wrong with the world\n\n"
+      "vv: renders VRML97 worlds.\n"
+      "\n"
+      "  vv world.wrl                    opens the world in a window; F1 lists the keys\n"
+      "  vv world.wrl -o picture.png     writes a picture from the first viewpoint, or of the "
+      "whole world\n"
+      "  vv world.wrl --check            reports what is wrong with the world\n"
+      "\n"
       "FILE is .wrl, .wrz or .wrl.gz; - is standard input.\n";
   const char* group = "";
   for (const OptionInfo& option : optionTable()) {

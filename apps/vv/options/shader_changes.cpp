@@ -28,7 +28,7 @@ Node& findNode(const std::string& text, const std::string& name, const World& wo
   for (const auto& [one, node] : world.scope.names) known.push_back(one);
   const std::string near = nearest::word(name, known);
   fail(text, known.empty()
-                 ? "the world names no node with DEF; * stands for all shapes"
+                 ? "no node of the world has a DEF name; use * for all shapes"
                  : fmt::format("no node is called {}{}", name,
                                near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
@@ -106,7 +106,7 @@ void changeShaders(const std::vector<std::string>& texts, const std::string& sha
     } catch (const UsageError& error) { throw Failure{exitUsage, error.what()}; }
     const std::vector<nodes::Shape*> shapes = shapesOf(world, name == "*" ? nullptr : &below);
     if (shapes.empty() && name != "*")
-      fail(text, fmt::format("no shape uses {} or stands below it", name));
+      fail(text, fmt::format("{} is not part of a shape, and no shape is below it", name));
     give(shapes, shader, world);
   }
 }

@@ -95,7 +95,7 @@ bool Audit::run(const picture::View& view) {
     if (result.interrupted) return false;
     reference.colours = coloursOf(result.picture);
     reference.worth = most / samples_;
-    reference_ = fmt::format("a picture of {} samples, and the others of the series", most);
+    reference_ = fmt::format("a picture of {} samples and the other pictures of the series", most);
   }
   if (progress_) progress_("");
   coverage_ = picture::countCoverage(shots, reference, width, height, tileEdge);
@@ -129,21 +129,23 @@ std::string Audit::text() const {
       100 * c.trustedShare(), 100 * double(c.exact) / double(c.pixels), c.exact - c.exactHeld,
       c.exact - c.exactHeld == 1 ? "is" : "are");
   if (c.intervals())
-    text += fmt::format(
-        "coverage    {:.4f} +- {:.4f} of the trusted 95 % intervals (wanted: 0.93 to 0.97); of all "
-        "pixels {:.4f}\n"
-        "tiles       5 % of those of {}x{} pixels have less than {:.3f} (wanted: at least 0.90)\n",
-        c.share(), c.shareInterval(), double(c.held) / double(c.pixels), tileEdge, tileEdge,
-        c.worstTiles);
+    text += fmt::format("coverage    {:.4f} +- {:.4f} of the trusted 95 % intervals (wanted: 0.93 "
+                        "to 0.97); of all pixels {:.4f}\n"
+                        "tiles       5 % of the tiles of {}x{} pixels have a coverage below {:.3f} "
+                        "(wanted: at least 0.90)\n",
+                        c.share(), c.shareInterval(), double(c.held) / double(c.pixels), tileEdge,
+                        tileEdge, c.worstTiles);
   text += fmt::format(
-      "mean error  said {:.5g} +- {:.2g}, was {:.5g}; it was what was said in {} of {} pictures\n",
+      "mean error  predicted {:.5g} +- {:.2g}, measured {:.5g}; both agree in {} of {} pictures\n",
       c.promised, c.promisedInterval, c.meanError, c.promiseHeld, c.shots);
   text +=
       fmt::format("bias        {:+.2g} +- {:.2g} of the picture's mean\n", c.bias, c.biasInterval);
   if (c.cost > 0)
-    text += fmt::format("variance    {:.3g} of that of as many independent samples\n", c.cost);
+    text += fmt::format("variance    {:.3g} times that of the same number of independent samples\n",
+                        c.cost);
   const std::string wrong = whatIsWrong();
-  return text + (wrong.empty() ? "the error bars hold\n" : "they do not hold: " + wrong + "\n");
+  return text +
+         (wrong.empty() ? "the error bars hold\n" : "the error bars do not hold: " + wrong + "\n");
 }
 
 } // namespace vv

@@ -77,8 +77,8 @@ std::vector<std::string> clusterLines(const picture::RenderResult& result) {
   if (result.workers.empty()) return {};
   const RTstats& s = result.stats;
   std::vector<std::string> lines;
-  lines.push_back(fmt::format("vv: cluster: {}; {} of {} jobs by workers, {} handed out again, {} "
-                              "in vain, {} sent, {} received",
+  lines.push_back(fmt::format("vv: cluster: {}; {} of {} jobs done by workers, {} handed out "
+                              "again, {} done twice, {} sent, {} received",
                               workersText(result.workers), s.tilesRemote,
                               s.tilesRemote + s.tilesLocal, s.reissued, s.duplicates,
                               bytesText(s.bytesSent), bytesText(s.bytesReceived)));

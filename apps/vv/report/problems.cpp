@@ -121,9 +121,8 @@ void Problems::reportEnd(const xvrml::World& world) const {
   }
   const std::string where =
       fmt::format("{}{}", fmt::join(places, ", "), more ? " and further lines" : "");
-  say(fmt::format("vv: {}{} is left out; --strict refuses such a world",
-                  errors == 1 ? "what the error names"
-                              : fmt::format("what the {} errors name", errors),
+  say(fmt::format("vv: {} error{}: parts of the world are missing{}; --strict refuses such a world",
+                  errors, errors == 1 ? "" : "s",
                   places.empty() ? "" : fmt::format(" ({})", where)));
 }
 

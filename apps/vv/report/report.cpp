@@ -309,18 +309,18 @@ std::string compatText(const Options& options, const Compat& compat) {
                         compat.scripts == 1 ? "1 Script holds nodes"
                                             : fmt::format("{} Scripts hold nodes", compat.scripts),
                         options.run.directOutputAlways
-                            ? "what they do to them is done, as in browsers of 1997"
-                            : "what they do to them is ignored (6.40); --compat scripts does it, "
-                              "as browsers of 1997 did");
+                            ? "their changes to these nodes are carried out, as in browsers of 1997"
+                            : "their changes to these nodes are ignored (6.40); --compat scripts "
+                              "carries them out, as browsers of 1997 did");
   if (compat.textures > 0)
     text += fmt::format(
         "compat textures {}: {} appearance{} with a texture and a diffuseColor that is not white; "
         "{}\n",
         options.render.multiplyTextures ? "on" : "off", compat.textures,
         compat.textures == 1 ? "" : "s",
-        options.render.multiplyTextures
-            ? "a colour picture multiplies it, as in X3D"
-            : "a colour picture replaces it (4.14.3); --compat textures multiplies, as X3D does");
+        options.render.multiplyTextures ? "a colour texture multiplies diffuseColor, as in X3D"
+                                        : "a colour texture replaces diffuseColor (4.14.3); "
+                                          "--compat textures multiplies them, as X3D does");
   return text;
 }
 
@@ -456,8 +456,8 @@ std::string describeWorld(const xvrml::World& world,
   for (const auto& [protocol, count] : scriptsByProtocol(counts))
     text += fmt::format("scripts     {} {}{}: {}\n", count.first, protocol,
                         count.second ? fmt::format(", {} in prototypes", count.second) : "",
-                        xvrml::hasScriptEngine(protocol, scriptPath) ? "engine there"
-                                                                     : "no engine for them");
+                        xvrml::hasScriptEngine(protocol, scriptPath) ? "an engine is installed"
+                                                                     : "no engine is installed");
   text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(),
                       world.diagnostics.warnings());
   for (const auto& [type, count] : counts.types) text += fmt::format("  {:>8}  {}\n", count, type);

@@ -279,7 +279,7 @@ class Window {
   std::string bottomLine() {
     if (!loading_.empty()) return fmt::format("loading {} ...", loading_);
     if (!message_.empty() && seconds() < messageEnds_) return message_;
-    if (!session_) return failed_ ? message_ : "drop a file here; F1 lists the keys";
+    if (!session_) return failed_ ? message_ : "drop a world file here; F1 lists the keys";
     if (!session_->resting()) return bottom_;
     if (const xvrml::ScriptCounts counts = session_->browser().scripts(); counts.waiting > 0)
       return fmt::format("starting Scripts: {} of {} ...", counts.scripts - counts.waiting,

@@ -13,7 +13,7 @@ constexpr size_t maxStride = size_t(1) << 31;
 AttributeSource checkedSource(int size, int least, int most, RTenum type, bool doubles,
                               size_t stride, const void* pointer) {
   require(size >= least && size <= most, RT_INVALID_VALUE,
-          "this attribute does not have so many components");
+          "this attribute cannot have so many components");
   require(type == RT_FLOAT || (doubles && type == RT_DOUBLE), RT_INVALID_ENUM,
           doubles ? "the type must be RT_FLOAT or RT_DOUBLE" : "the type must be RT_FLOAT");
   const size_t packed =

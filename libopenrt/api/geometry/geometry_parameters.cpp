@@ -24,7 +24,7 @@ void setPointer(Context& c, int handle, size_t stride, const float* pointer) {
   const auto index = static_cast<uint32_t>(handle);
   if (frequencyOf(table, index) == RT_PER_SHADER)
     fail(RT_INVALID_OPERATION, std::string("parameter ") + param.name + " of the class " +
-                                   table.name + " is of the whole shader");
+                                   table.name + " has one value for the whole shader");
   const VaryingParameter own = varyingParameter(table, index);
   const size_t packed = own.floats * sizeof(float);
   require(stride == 0 || (stride >= packed && stride <= maxStride), RT_INVALID_VALUE,
@@ -50,7 +50,7 @@ const RtsParam& declaredParameter(const RtsClass& table, int handle,
   for (RtsType type : types)
     if (param.type == type) return param;
   fail(RT_INVALID_PARAMETER, std::string("parameter ") + param.name + " of the class " +
-                                 table.name + " is of another type");
+                                 table.name + " has another type");
 }
 
 bool setVaryingValue(Context& c, int handle, std::initializer_list<RtsType> types,

@@ -137,7 +137,8 @@ void ObjectBuilder::vertex(double x, double y, double z) {
 
 void ObjectBuilder::appendWide(double x, double y, double z) {
   if (std::fabs(x) > maxCoordinate || std::fabs(y) > maxCoordinate || std::fabs(z) > maxCoordinate)
-    fail(RT_INVALID_VALUE, "a coordinate beyond 1e38 beside vertices in double");
+    fail(RT_INVALID_VALUE,
+         "a coordinate is beyond 1e38, which cannot be mixed with vertices in double");
   wide_.push_back({x, y, z});
 }
 
@@ -147,7 +148,7 @@ void ObjectBuilder::widenList() {
   for (size_t i = listStart_; i < vertices_.count(); i++) {
     const float* p = vertices_.points() + 3 * i;
     if (std::max({std::fabs(p[0]), std::fabs(p[1]), std::fabs(p[2])}) > maxCoordinate)
-      fail(RT_INVALID_VALUE, "a vertex in double beside coordinates beyond 1e38");
+      fail(RT_INVALID_VALUE, "a vertex in double cannot be mixed with coordinates beyond 1e38");
     points.push_back({p[0], p[1], p[2]});
   }
   wide_ = std::move(points);

@@ -32,9 +32,9 @@ void farFromOrigin(uint32_t id, const Object& object, const RuleContext&, const 
     if (extent > 0 && reach * 0x1p-23 * steps > extent)
       report(id, nameOf("object", id) + " is " + std::to_string(extent) + " large and " +
                      std::to_string(reach) +
-                     " away from the origin of its coordinates in float, which are too coarse "
-                     "there: give them in double (rtVertex3d, RT_DOUBLE) or about its own middle, "
-                     "and place it with rtTranslated");
+                     " away from the origin, where coordinates in float are too coarse: give them "
+                     "in double (rtVertex3d, RT_DOUBLE), or relative to the object's centre and "
+                     "place it with rtTranslated");
   }
 }
 
@@ -73,14 +73,14 @@ void wrongSides(uint32_t id, const Object& object, const RuleContext&, const Rep
     if (2 * s.opposite > s.triangles)
       report(id, std::to_string(s.opposite) + " of " + std::to_string(s.triangles) +
                      " triangles of " + nameOf("object", id) +
-                     " have normals on the other side than the order of their corners says: turn "
-                     "the normals or the order, or rtEnable(RT_CW_FRONT)");
+                     " have normals that disagree with the order of their corners: reverse the "
+                     "normals or the order, or call rtEnable(RT_CW_FRONT)");
     const bool closed = s.triangles >= 4 && length(s.area) < 1e-3 * s.total;
     if (g.cull && closed && s.volume < 0)
       report(id, nameOf("object", id) +
-                     " is closed, its faces look inwards and RT_CULL_FACE is on: from outside its "
-                     "near side is not there; turn the order of the corners, or RT_CW_FRONT "
-                     "(mirrored matrices are made up for)");
+                     " is closed, its faces look inwards and RT_CULL_FACE is on, so its near side "
+                     "is invisible from outside: reverse the order of the corners, or RT_CW_FRONT "
+                     "(mirrored matrices are compensated)");
   }
 }
 

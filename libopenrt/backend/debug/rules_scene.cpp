@@ -24,9 +24,8 @@ void channels(const RuleContext& f, const Report& report) {
            "RT_ERROR and RT_TRUST of " + std::to_string(frame.samples) +
                " samples a pixel are never trusted: at least 32 are needed (RT_SAMPLES_PER_PIXEL)");
   if ((frame.channels & ~uint32_t(RT_SAMPLES)) == 0)
-    report(
-        RT_SAMPLES,
-        "the frame has no channel but RT_SAMPLES: nothing of the picture can be read; add RT_RGBA");
+    report(RT_SAMPLES,
+           "the frame has only the channel RT_SAMPLES, so no picture can be read: add RT_RGBA");
 }
 
 bool drawable(const Scene& scene, uint32_t id) {
@@ -47,7 +46,7 @@ void flatInstances(const RuleContext& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances)
     if (!instance.matrix.usable())
       report(id, "the matrix of " + nameOf("instance", id) +
-                     " is singular or out of range, so nothing of it is drawn: to hide it use "
+                     " is singular or out of range, so it is not drawn: to hide it use "
                      "rtInstanceVisible, else check its scale factors");
 }
 
@@ -56,7 +55,7 @@ void neverPlaced(const RuleContext& f, const Report& report) {
   for (const auto& [id, instance] : f.scene.instances) placed.insert(instance.object);
   for (const auto& [id, object] : f.scene.objects)
     if (!object.geometries.empty() && !placed.contains(id))
-      report(id, nameOf("object", id) + " is defined but nowhere in the scene: place it with "
+      report(id, nameOf("object", id) + " is defined but not placed in the scene: place it with "
                                         "rtInstantiateObject, or delete it");
 }
 
@@ -64,10 +63,11 @@ void redefined(const RuleContext& f, const Report& report) {
   constexpr uint64_t often = 4;
   for (const auto& [id, history] : f.histories)
     if (history.definitions >= often && !history.hinted)
-      report(id, nameOf("object", id) + " was defined " + std::to_string(history.definitions) +
-                     " times: call rtObjectHint(object, RT_DYNAMIC) before its first definition, "
-                     "so that the first redefinition need not build the scene anew; to move it use "
-                     "rtInstanceMatrix");
+      report(
+          id,
+          nameOf("object", id) + " was defined " + std::to_string(history.definitions) +
+              " times: call rtObjectHint(object, RT_DYNAMIC) before its first definition, so that "
+              "the first redefinition does not rebuild the scene; to move it use rtInstanceMatrix");
 }
 
 constexpr Rule table[] = {

@@ -29,9 +29,11 @@ void unusedShaders(const RuleContext& f, const Report& report) {
     const RtsClass* table = f.classOf(id);
     if (!table || used.contains(id)) continue;
     if (table->kind == RTS_SURFACE)
-      report(id, nameOfShader(f, id) +
-                     " is on no geometry: call rtBindShader before rtBegin, the arrays or rtSphere "
-                     "(it is latched there), or rtInstanceShader or rtDefaultShader");
+      report(
+          id,
+          nameOfShader(f, id) +
+              " is used by no geometry: call rtBindShader before rtBegin, the arrays or rtSphere "
+              "(which take the bound shader), or call rtInstanceShader or rtDefaultShader");
     if (table->kind == RTS_LIGHT)
       report(id, nameOfShader(f, id) + " gives no light: turn it on with rtUseLight");
     if (table->kind == RTS_ENVIRONMENT)
@@ -52,9 +54,9 @@ void removedParameters(const RuleContext& f, const Report& report) {
     const RtsClass* table = f.classOf(id);
     for (const auto& [index, parameter] : values.parameters)
       if (table && index < table->paramCount && !*table->params[index].name)
-        report(id, nameOfShader(f, id) + " has a value for parameter " + std::to_string(index) +
-                       ", which its library has no longer since it was loaded anew: ask "
-                       "rtParameterHandle again");
+        report(id,
+               nameOfShader(f, id) + " has a value for parameter " + std::to_string(index) +
+                   ", which its library lost when it was reloaded: call rtParameterHandle again");
   }
 }
 
@@ -84,8 +86,8 @@ void overriddenParameters(const RuleContext& f, const Report& report) {
       if (!g.parameters.empty() && f.classOf(g.shader) != f.classOf(instance.shader))
         report(id, nameOf("instance", id) + " draws " + nameOf("object", instance.object) +
                        " with " + nameOfShader(f, instance.shader) +
-                       ", another class than its own: the values that its triangles or vertices "
-                       "have for parameters are ignored");
+                       ", whose class differs from its own: the parameter values of its triangles "
+                       "or vertices are ignored");
   }
 }
 

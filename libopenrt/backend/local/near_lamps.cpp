@@ -120,9 +120,9 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   if (!(gap > 0)) return {};
   char text[320];
   std::snprintf(text, sizeof text,
-                "a lamp is %.3g away from the surface that it lights, but rays step %.2g off that "
-                "surface: what it gets from the lamp is wrong. Keep lamps of this world %.2g away, "
-                "or make the surface smaller (docs/accuracy.md)",
+                "a lamp is %.3g away from the surface that it lights, but rays start %.2g above "
+                "that surface, so its light from the lamp is wrong. Keep lamps of this world %.2g "
+                "away, or make the surface smaller (docs/accuracy.md)",
                 gap, step, wanted * step);
   return text;
 }

@@ -50,10 +50,9 @@ void unpackEdits(std::span<const std::byte> bytes, edit::EditsT& edits) {
       buffer, bytes.size(), depth,
       static_cast<flatbuffers::uoffset_t>(bytes.size() / bytesPerTable + 1));
   if (!edit::VerifyEditsBuffer(verifier))
-    throw std::runtime_error("edits that are no valid flatbuffer");
+    throw std::runtime_error("the edits are not a valid flatbuffer");
   const edit::Edits& packed = *edit::GetEdits(buffer);
-  if (unpackedBytes(packed) > bytes.size())
-    throw std::runtime_error("edits that share their parts");
+  if (unpackedBytes(packed) > bytes.size()) throw std::runtime_error("the edits share their parts");
   packed.UnPackTo(&edits);
 }
 

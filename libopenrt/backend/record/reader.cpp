@@ -23,7 +23,7 @@ RecordingReader::RecordingReader(std::FILE* file, std::string name, const Shader
   read(&header, sizeof(header), false);
   if (std::memcmp(header.magic, magic, sizeof(magic)) != 0) fail("not a recording");
   if (header.version != version)
-    fail("a recording of version " + std::to_string(header.version) +
+    fail("the recording has version " + std::to_string(header.version) +
          "; this program reads version " + std::to_string(version));
   if (header.reserved != 0) fail("a reserved field is not 0");
 }
@@ -66,7 +66,7 @@ void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, ui
   // zstd compresses a block of 128 KiB to 4 bytes at best.
   constexpr uint64_t bestRatio = 1 << 16;
   if (id == 0 || commit.arrays.contains(id))
-    fail("array " + std::to_string(id) + " twice, or without a number");
+    fail("array " + std::to_string(id) + " appears twice or has no number");
   if (bytes > limits_.arrayBytes || stored > ZSTD_compressBound(bytes) ||
       bytes > bestRatio * stored)
     fail("an array of " + std::to_string(bytes) + " bytes in " + std::to_string(stored));
@@ -75,8 +75,8 @@ void RecordingReader::readArray(uint64_t id, uint64_t bytes, uint64_t stored, ui
   auto array = std::make_shared<Array>(bytes);
   const size_t size = ZSTD_decompress(array->data(), bytes, packed.data(), packed.size());
   if (ZSTD_isError(size)) fail(std::string("zstd: ") + ZSTD_getErrorName(size));
-  if (size != bytes) fail("an array that is shorter than it claims");
-  if (XXH3_64bits(array->data(), bytes) != hash) fail("an array with a wrong checksum");
+  if (size != bytes) fail("an array is shorter than it claims");
+  if (XXH3_64bits(array->data(), bytes) != hash) fail("an array has a wrong checksum");
   commit.arrays.emplace(id, std::move(array));
 }
 
@@ -85,7 +85,7 @@ void RecordingReader::readEdits(uint64_t bytes, uint64_t stored, uint64_t hash, 
     fail("edits of " + std::to_string(bytes) + " bytes");
   countBytes(bytes);
   const std::vector<uint8_t> buffer = readPayload(bytes);
-  if (XXH3_64bits(buffer.data(), buffer.size()) != hash) fail("edits with a wrong checksum");
+  if (XXH3_64bits(buffer.data(), buffer.size()) != hash) fail("the edits have a wrong checksum");
   try {
     unpackEdits(std::as_bytes(std::span(buffer)), commit.edits);
   } catch (const std::runtime_error& e) { fail(e.what()); }

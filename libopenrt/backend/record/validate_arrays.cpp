@@ -17,8 +17,7 @@ void demand(bool condition, const char* what) {
 const Array* arrayOf(const Commit& commit, ArrayId id) {
   if (id == 0) return nullptr;
   const auto found = commit.arrays.find(id);
-  demand(found != commit.arrays.end() && found->second,
-         "an array that did not arrive with its edit");
+  demand(found != commit.arrays.end() && found->second, "an array did not arrive with its edit");
   return found->second.get();
 }
 
@@ -50,39 +49,39 @@ size_t cornersOf(edit::Primitive primitive) {
 void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   if (g.primitive == edit::Primitive::Sphere) {
     demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors,
-           "a sphere with vertices");
+           "a sphere has vertices");
     return;
   }
   const size_t corners = cornersOf(g.primitive);
   const Array* points = arrayOf(commit, g.points);
   const Array* indices = arrayOf(commit, g.indices);
-  demand(points && indices, "a geometry without vertices");
-  demand(points->size() % (3 * sizeof(float)) == 0, "points of a wrong size");
-  demand(indices->size() % (corners * sizeof(uint32_t)) == 0, "indices of a wrong size");
+  demand(points && indices, "a geometry has no vertices");
+  demand(points->size() % (3 * sizeof(float)) == 0, "the points have a wrong size");
+  demand(indices->size() % (corners * sizeof(uint32_t)) == 0, "the indices have a wrong size");
   const size_t vertices = points->count<float>() / 3;
-  checkFinite(*points, "a point that is not finite");
+  checkFinite(*points, "a point is not finite");
   for (size_t i = 0; i < indices->count<uint32_t>(); i++)
-    demand(indices->as<uint32_t>()[i] < vertices, "an index beyond the points");
-  checkAttribute(commit, g.normals, vertices, 3, "normals that are wrong in size or not finite");
+    demand(indices->as<uint32_t>()[i] < vertices, "an index is beyond the points");
+  checkAttribute(commit, g.normals, vertices, 3, "the normals have a wrong size or are not finite");
   checkAttribute(commit, g.texCoords, vertices, 2,
-                 "texture coordinates that are wrong in size or not finite");
-  checkAttribute(commit, g.colors, vertices, 4, "colours that are wrong in size or not finite");
+                 "the texture coordinates have a wrong size or are not finite");
+  checkAttribute(commit, g.colors, vertices, 4, "the colours have a wrong size or are not finite");
 }
 
 void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParameterT& own,
                           const Commit& commit, const RtsParam* param) {
-  demand(g.primitive != edit::Primitive::Sphere, "a sphere with parameters of its own");
+  demand(g.primitive != edit::Primitive::Sphere, "a sphere has parameters of its own");
   const Array* values = arrayOf(commit, own.values);
-  demand(values != nullptr, "a parameter without values");
+  demand(values != nullptr, "a parameter has no values");
   const Array& counted = *arrayOf(commit, own.perVertex ? g.points : g.indices);
   const size_t count = own.perVertex ? counted.count<float>() / 3
                                      : counted.count<uint32_t>() / cornersOf(g.primitive);
   demand(count > 0 && values->size() % (count * sizeof(float)) == 0,
-         "values of a parameter of a wrong size");
+         "the values of a parameter have a wrong size");
   const size_t floats = values->count<float>() / count;
   demand(param ? floats == parameterFloats(param->type) : floats >= 1 && floats <= 16,
-         "values of a parameter of a wrong size");
-  checkFinite(*values, "a parameter's value that is not finite");
+         "the values of a parameter have a wrong size");
+  checkFinite(*values, "a parameter's value is not finite");
   for (size_t i = 0; param && i < count; i++) {
     const std::string problem =
         valueProblem(*param, std::span<const float>(values->as<float>() + floats * i, floats));
@@ -95,21 +94,21 @@ void checkTexture(const edit::TextureT& t, const Commit& commit, const edit::Tex
   demand(t.components >= 1 && t.components <= 4 && t.width >= 1 && t.height >= 1 &&
              t.width <= maxSide && t.height <= maxSide &&
              uint64_t(t.width) * t.height <= uint64_t(1) << 28,
-         "a texture of an impossible size");
+         "a texture has an impossible size");
   demand(t.wrapS <= edit::Wrap::MAX && t.wrapT <= edit::Wrap::MAX, "an unknown wrap");
-  demand(t.texels != 0, "a texture without texels");
+  demand(t.texels != 0, "a texture has no texels");
   const auto found = commit.arrays.find(t.texels);
   if (found == commit.arrays.end()) {
-    demand(current && t.texels == current->texels, "texels that did not arrive with their edit");
+    demand(current && t.texels == current->texels, "the texels did not arrive with their edit");
     demand(t.width == current->width && t.height == current->height &&
                t.components == current->components && t.isFloat == current->isFloat,
-           "texels of a wrong size");
+           "the texels have a wrong size");
     return;
   }
   const uint64_t values = uint64_t(t.width) * t.height * t.components;
   demand(found->second->size() == values * (t.isFloat ? sizeof(float) : 1),
-         "texels of a wrong size");
-  if (t.isFloat) checkFinite(*found->second, "a texel that is not finite");
+         "the texels have a wrong size");
+  if (t.isFloat) checkFinite(*found->second, "a texel is not finite");
 }
 
 } // namespace openrt

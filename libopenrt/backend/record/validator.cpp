@@ -22,18 +22,18 @@ void demand(bool condition, const char* what) {
 void checkMatrix(const edit::Matrix* matrix) {
   demand(matrix != nullptr, "a matrix is missing");
   const auto& m = *matrix->m();
-  for (int i = 0; i < 16; i++) demand(std::isfinite(m.Get(i)), "a matrix that is not finite");
+  for (int i = 0; i < 16; i++) demand(std::isfinite(m.Get(i)), "a matrix is not finite");
   demand(m.Get(3) == 0 && m.Get(7) == 0 && m.Get(11) == 0 && m.Get(15) == 1,
-         "a matrix that is not affine");
+         "a matrix is not affine");
 }
 
 } // namespace
 
 void CommitValidator::defineId(uint32_t id, Kind kind) {
-  demand(id != 0, "an edit without an id");
+  demand(id != 0, "an edit has no id");
   const auto [place, fresh] = liveIds_.emplace(id, kind);
-  demand(fresh || place->second == kind, "an id that names two kinds of things");
-  demand(!deletedIds_.contains(id), "an id that was deleted before");
+  demand(fresh || place->second == kind, "an id names two kinds of things");
+  demand(!deletedIds_.contains(id), "an id was deleted before");
 }
 
 void CommitValidator::deleteId(uint32_t id, Kind kind) {
@@ -50,7 +50,7 @@ void CommitValidator::requireId(uint32_t id, Kind kind) const {
 void CommitValidator::requireShader(uint32_t shader, RtsKind kind) const {
   requireId(shader, Kind::Shader);
   const RtsClass* table = classes_.at(shaderClasses_.at(shader));
-  demand(!table || table->kind == kind, "a shader in a role of another kind");
+  demand(!table || table->kind == kind, "a shader has a role that its kind does not allow");
 }
 
 void CommitValidator::check(const edit::TextureT& texture, const Commit& commit) {
@@ -61,7 +61,7 @@ void CommitValidator::check(const edit::TextureT& texture, const Commit& commit)
 }
 
 void CommitValidator::check(const edit::ShaderClassT& shaderClass) {
-  demand(!liveIds_.contains(shaderClass.id), "a shader class made twice");
+  demand(!liveIds_.contains(shaderClass.id), "a shader class is created twice");
   defineId(shaderClass.id, Kind::ShaderClass);
   classes_[shaderClass.id] =
       shaders_ ? &shaders_->find(shaderClass.name, shaderClass.library) : nullptr;
@@ -76,7 +76,7 @@ void CommitValidator::findClassesAgain() {
 }
 
 void CommitValidator::check(const edit::ShaderT& shader) {
-  demand(!liveIds_.contains(shader.id), "a shader made twice");
+  demand(!liveIds_.contains(shader.id), "a shader is created twice");
   defineId(shader.id, Kind::Shader);
   requireId(shader.shaderClass, Kind::ShaderClass);
   shaderClasses_[shader.id] = shader.shaderClass;
@@ -86,11 +86,11 @@ void CommitValidator::check(const edit::ParameterT& parameter) const {
   requireId(parameter.shader, Kind::Shader);
   const RtsClass* table = classes_.at(shaderClasses_.at(parameter.shader));
   if (!table) return;
-  demand(parameter.index < table->paramCount, "a parameter that its class does not have");
+  demand(parameter.index < table->paramCount, "a parameter is not in its class");
   const RtsParam& param = table->params[parameter.index];
   const bool list = param.type == RTS_FLOATS;
   demand(list || parameter.floats.size() == parameterFloats(param.type),
-         "a parameter with a wrong number of values");
+         "a parameter has a wrong number of values");
   const std::string problem = param.type == RTS_INT
                                   ? valueProblem(param, parameter.integer)
                                   : valueProblem(param, std::span<const float>(parameter.floats));
@@ -99,7 +99,7 @@ void CommitValidator::check(const edit::ParameterT& parameter) const {
 
 void CommitValidator::check(const edit::GeometryT& geometry, const Commit& commit) const {
   checkMatrix(geometry.matrix.get());
-  demand(std::isfinite(geometry.width) && geometry.width > 0, "a width that is not positive");
+  demand(std::isfinite(geometry.width) && geometry.width > 0, "a width is not positive");
   if (geometry.shader != 0) requireShader(geometry.shader, RTS_SURFACE);
   checkGeometryArrays(geometry, commit);
   checkParameters(geometry, commit);
@@ -107,18 +107,19 @@ void CommitValidator::check(const edit::GeometryT& geometry, const Commit& commi
 
 void CommitValidator::checkParameters(const edit::GeometryT& geometry, const Commit& commit) const {
   if (geometry.parameters.empty()) return;
-  demand(geometry.shader != 0, "parameters of no shader");
+  demand(geometry.shader != 0, "a geometry has parameters but no shader");
   const RtsClass* table = classes_.at(shaderClasses_.at(geometry.shader));
   std::unordered_set<uint32_t> seen;
   for (const auto& own : geometry.parameters) {
-    demand(own && seen.insert(own->index).second, "a parameter of a geometry twice, or empty");
+    demand(own && seen.insert(own->index).second,
+           "a geometry has a parameter twice, or an empty one");
     const RtsParam* param = nullptr;
     if (table) {
-      demand(own->index < table->paramCount, "a parameter that its class does not have");
+      demand(own->index < table->paramCount, "a parameter is not in its class");
       const uint8_t frequency =
           table->frequency ? table->frequency[own->index] : uint8_t(RTS_PER_SHADER);
       demand(frequency == (own->perVertex ? RTS_PER_VERTEX : RTS_PER_TRIANGLE),
-             "a parameter that a geometry cannot have like that");
+             "a parameter's frequency is not that of its class");
       param = &table->params[own->index];
     }
     checkParameterValues(geometry, *own, commit, param);
@@ -127,7 +128,8 @@ void CommitValidator::checkParameters(const edit::GeometryT& geometry, const Com
 
 void CommitValidator::check(const edit::ObjectT& object, const Commit& commit) {
   defineId(object.id, Kind::Object);
-  demand(objects_[object.id].children == 0, "an object replaced before its instances were deleted");
+  demand(objects_[object.id].children == 0,
+         "an object is replaced before its instances are deleted");
   for (const auto& geometry : object.geometries) {
     demand(geometry != nullptr, "an empty geometry");
     check(*geometry, commit);
@@ -144,7 +146,7 @@ void CommitValidator::check(const edit::InstanceT& instance) {
   Placement& placement = instances_[instance.id];
   if (!fresh) {
     demand(placement.parent == instance.parent && placement.object == instance.object,
-           "an instance that changes its object");
+           "an instance changes its object");
     return;
   }
   placement = {instance.parent, instance.object};
@@ -164,18 +166,18 @@ void CommitValidator::check(const edit::FrameSettingsT& frame) {
   constexpr uint32_t maxSide = 65536;
   demand(frame.width >= 1 && frame.height >= 1 && frame.width <= maxSide &&
              frame.height <= maxSide && uint64_t(frame.width) * frame.height <= uint64_t(1) << 28,
-         "a frame of an impossible size");
+         "a frame has an impossible size");
   demand(frame.channels != 0 && (frame.channels & ~allChannels) == 0,
-         "a frame with unknown channels");
+         "a frame has unknown channels");
   if (const char* setting = invalidQuality(frame))
-    demand(false, (std::string("a frame of an impossible ") + setting).c_str());
+    demand(false, (std::string("a frame has an impossible ") + setting).c_str());
   hasFrame_ = true;
 }
 
 void CommitValidator::deleteObject(uint32_t id) {
   deleteId(id, Kind::Object);
   demand(objects_[id].children == 0 && objects_[id].users == 0,
-         "an object deleted before its instances");
+         "an object is deleted before its instances");
   objects_.erase(id);
 }
 
@@ -241,7 +243,7 @@ void CommitValidator::checkNesting() const {
   for (; removed < free.size(); removed++)
     for (uint32_t inner : contents[free[removed]])
       if (--containers[inner] == 0) free.push_back(inner);
-  demand(removed == containers.size(), "an object that contains itself");
+  demand(removed == containers.size(), "an object contains itself");
 }
 
 void CommitValidator::check(const Commit& commit) {
@@ -251,7 +253,7 @@ void CommitValidator::check(const Commit& commit) {
   }
   if (nestingChanged_) checkNesting();
   nestingChanged_ = false;
-  demand(hasFrame_ || !commit.edits.render, "a frame before its size is known");
+  demand(hasFrame_ || !commit.edits.render, "a frame begins before its size is known");
 }
 
 } // namespace openrt

@@ -34,7 +34,7 @@ enum {
 /* Settings of rtQuality and rtQualityf. */
 enum {
   RT_SAMPLES_PER_PIXEL = 1, /* 1 .. 65536, default 16 */
-  RT_MAX_DEPTH = 2,         /* number of surfaces a path may meet, 0 .. 10000, default 25 */
+  RT_MAX_DEPTH = 2,         /* maximum number of surfaces on a path, 0 .. 10000, default 25 */
   RT_SEED = 3,              /* default 0 */
   RT_SHADOWS = 4,           /* 1 (default) or 0 */
   RT_TRANSPORT = 5,         /* one of RT_TRANSPORT_* below, default RT_TRANSPORT_AUTO */

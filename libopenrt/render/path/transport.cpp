@@ -22,25 +22,24 @@ struct Choice {
   const char* reason;
 };
 constexpr Choice choices[] = {
-    {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH,
-     "{} asks for the light of other surfaces"},
+    {RT_TRANSPORT_AUTO, asksForAll, 0, RT_TRANSPORT_PATH, "{} needs the light of other surfaces"},
     {RT_TRANSPORT_AUTO, hasScattering, hasEmitters | hasGlow, RT_TRANSPORT_PATH,
-     "{} scatters the light that [] sends out"},
+     "{} scatters the light that [] emits"},
     {RT_TRANSPORT_AUTO, hasScattering, hasSky, RT_TRANSPORT_PATH,
      "{} scatters the light of the sky"},
     {RT_TRANSPORT_AUTO, hasScattering, hasLamps, RT_TRANSPORT_PATH,
      "{} scatters light of lamps from surface to surface"},
     {RT_TRANSPORT_AUTO, hasShading, hasEmitters, RT_TRANSPORT_PATH,
-     "{} is lit by [], which sends out light"},
+     "{} is lit by [], which emits light"},
     {RT_TRANSPORT_AUTO, hasShading, hasSkyLight, RT_TRANSPORT_PATH,
      "{} is lit by the environment []"},
     {RT_TRANSPORT_PATH, hasMirrors | hasStarts | hasProjection, 0, RT_TRANSPORT_LIGHT,
      ", and {} mirrors or refracts"},
     {RT_TRANSPORT_AUTO, hasMirrors, 0, RT_TRANSPORT_WHITTED,
-     "{} mirrors or refracts; nothing asks for light between surfaces"},
+     "{} mirrors or refracts; no surface needs light between surfaces"},
     {RT_TRANSPORT_AUTO, hasLobes, 0, RT_TRANSPORT_WHITTED,
-     "{} answers in lobes; nothing asks for light between surfaces"},
-    {RT_TRANSPORT_AUTO, 0, 0, RT_TRANSPORT_DIRECT, "no surface asks for more than the lights"},
+     "{} has only lobes; no surface needs light between surfaces"},
+    {RT_TRANSPORT_AUTO, 0, 0, RT_TRANSPORT_DIRECT, "no surface needs more than direct light"},
 };
 
 // Light that a transport leaves out of a scene, whether the user or the engine chose the transport.
@@ -150,7 +149,7 @@ TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before) {
     return choice;
   }
   if (choice.transport != RT_TRANSPORT_AUTO) {
-    choice.reason = "asked for";
+    choice.reason = "chosen by the user";
   } else {
     for (const Choice& row : choices) {
       if (row.from != choice.transport || !holds(contents.bits, row.all, row.any)) continue;

@@ -16,14 +16,14 @@ namespace {
 const char* textOf(Fault fault) {
   switch (fault) {
   case Fault::notFinite:
-    return "answered with NaN or infinity; taken as 0. Look for divisions by 0 and roots of "
+    return "returned NaN or infinity, which is replaced by 0. Look for divisions by 0 and roots of "
            "negative numbers";
   case Fault::undeclaredGlossy:
     return "has glossy lobes, but its traits lack RTS_GLOSSY: the automatic transport does not "
            "know that they scatter";
   case Fault::undeclaredEmission:
-    return "has emission, but its traits lack RTS_EMISSIVE: nobody looks for its light, so the "
-           "picture is noisier than it need be";
+    return "has emission, but its traits lack RTS_EMISSIVE: its light is not sampled directly, so "
+           "the picture is noisier than necessary";
   case Fault::undeclaredTransparency:
     return "lets light through, but its traits lack RTS_TRANSPARENT: its shadows are opaque";
   case Fault::undeclaredScattering:

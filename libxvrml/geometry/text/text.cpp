@@ -19,7 +19,7 @@ Justify justifyFrom(const MFString& values, size_t i, Faults& faults) {
   if (values[i] == "BEGIN") return Justify::begin;
   if (values[i] == "MIDDLE") return Justify::middle;
   if (values[i] == "END") return Justify::end;
-  faults.note("FontStyle.justify knows FIRST, BEGIN, MIDDLE and END only");
+  faults.note("FontStyle.justify must be FIRST, BEGIN, MIDDLE or END");
   return otherwise;
 }
 
@@ -38,7 +38,7 @@ struct Style {
     bold = style == "BOLD" || style == "BOLDITALIC";
     italic = style == "ITALIC" || style == "BOLDITALIC";
     if (!bold && !italic && style != "PLAIN" && !style.empty())
-      faults.note("FontStyle.style knows PLAIN, BOLD, ITALIC and BOLDITALIC only");
+      faults.note("FontStyle.style must be PLAIN, BOLD, ITALIC or BOLDITALIC");
     horizontal = node->horizontal;
     leftToRight = node->leftToRight;
     topToBottom = node->topToBottom;

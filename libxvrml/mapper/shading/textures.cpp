@@ -170,7 +170,7 @@ void Textures::remove(RTid texture) {
 void Textures::take(RTid texture, uint64_t wanted) {
   uint64_t& bytes = bytes_[texture];
   if (wanted > bytes && !share_.take(wanted - bytes))
-    throw std::runtime_error("with all that the world holds " + std::to_string(wanted) +
+    throw std::runtime_error("together with the rest of the world, " + std::to_string(wanted) +
                              " bytes are more than " + share_.budget()->name());
   if (wanted < bytes) share_.give(bytes - wanted);
   bytes = wanted;

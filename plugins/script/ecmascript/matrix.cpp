@@ -25,7 +25,7 @@ Matrix* receiver(duk_context* ctx) {
   step(Interpreter::of(ctx));
   duk_push_this(ctx);
   Matrix* data = matrixData(ctx, -1);
-  if (!data) throwType(ctx, "not called on a VrmlMatrix");
+  if (!data) throwType(ctx, "must be called on a VrmlMatrix");
   return data;
 }
 

@@ -15,7 +15,7 @@ SfData* receiver(duk_context* ctx, XsType type, const char* method) {
   duk_push_this(ctx);
   SfData* data = sfData(ctx, -1);
   if (!data || data->type != type)
-    throwType(ctx, "%s.%s: not called on an %s", typeName(type), method, typeName(type));
+    throwType(ctx, "%s.%s: must be called on an %s", typeName(type), method, typeName(type));
   return data;
 }
 

@@ -66,7 +66,7 @@ void imageValue(duk_context* ctx, Interpreter& self, XsImage& image, const char*
   duk_pop(ctx);
   const double w = sf->v[0], h = sf->v[1], n = sf->v[2];
   if (!mf || !(w >= 0 && h >= 0 && n >= 0 && n <= 4) || w * h > maxElements)
-    throwType(ctx, "%s: no image: %g x %g x %g", name, w, h, n);
+    throwType(ctx, "%s: not an image: %g x %g x %g", name, w, h, n);
   image = {int32_t(w), int32_t(h), int32_t(n), 0, nullptr};
   const size_t count = size_t(image.width) * size_t(image.height), bytes = size_t(image.components);
   guardMemory(ctx, [&] { self.pixels.assign(count * bytes + 1, 0); });

@@ -159,7 +159,7 @@ class Reader {
                                        : Argument::Kind::time;
       return argument;
     }
-    fail("'" + word + "' is no field or event of the Script");
+    fail("'" + word + "' is not a field or event of the Script");
   }
 
   void checkResult(const Argument& target) const {
@@ -216,7 +216,7 @@ class Reader {
     const XsField& field = info_.fields[argument.field];
     if (address) {
       if (field.access == XS_EVENT_IN)
-        fail(std::string("'&") + field.name + "': an eventIn is not written to");
+        fail(std::string("'&") + field.name + "': an eventIn cannot be written");
       argument.write = true;
     }
     if (take('.')) {

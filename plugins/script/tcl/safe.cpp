@@ -54,8 +54,8 @@ namespace eval ::tcl::mathfunc {
 )tcl";
 
 int refuse(ClientData data, Tcl_Interp* tcl, int, Tcl_Obj* const[]) {
-  Tcl_SetObjResult(
-      tcl, Tcl_ObjPrintf("%s: only in a world that is trusted", static_cast<const char*>(data)));
+  Tcl_SetObjResult(tcl, Tcl_ObjPrintf("%s: allowed only in a trusted world (vv --trust)",
+                                      static_cast<const char*>(data)));
   Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);
   return TCL_ERROR;
 }
@@ -68,8 +68,8 @@ int package(ClientData data, Tcl_Interp* tcl, int count, Tcl_Obj* const words[])
     return TCL_OK;
   }
   if (!wanted) return refuse(data, tcl, count, words);
-  Tcl_SetObjResult(
-      tcl, Tcl_ObjPrintf("package %s: only in a world that is trusted", Tcl_GetString(words[2])));
+  Tcl_SetObjResult(tcl, Tcl_ObjPrintf("package %s: allowed only in a trusted world (vv --trust)",
+                                      Tcl_GetString(words[2])));
   Tcl_SetErrorCode(tcl, "XVRML", "TRUST", nullptr);
   return TCL_ERROR;
 }

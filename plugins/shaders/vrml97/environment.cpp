@@ -84,14 +84,14 @@ const RtsParam environmentParams[] = {
      {0.0f},
      0.0f,
      noLimit,
-     "distance at which nothing is seen but fog, units of the fog's space; 0: clear air"},
+     "distance at which only fog is seen, units of the fog's space; 0: clear air"},
     {"fogMatrix",
      RTS_MATRIX,
      offsetof(EnvironmentParams, fogMatrix),
      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
      0.0f,
      0.0f,
-     "from local vectors to the fog's space; only its 3x3 part counts"},
+     "matrix from local vectors to the fog's space; only its 3x3 part counts"},
 };
 
 // Colours at angles from a pole. The first angle is 0; angles are clamped to 0..limit and never

@@ -50,7 +50,7 @@ RtsClass makeGlobalIlluminationClass() {
   c.size = sizeof(RtsClass);
   c.kind = RTS_SURFACE;
   c.name = "GlobalIllumination";
-  c.text = "the material and texture of VRML97 in the light of all other surfaces";
+  c.text = "the material and texture of VRML97, also lit by all other surfaces";
   c.paramSize = sizeof(SurfaceParams);
   c.paramCount = surfaceParamCount;
   c.params = surfaceParams;

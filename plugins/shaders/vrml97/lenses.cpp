@@ -31,7 +31,7 @@ const RtsParam thinLensParams[] = {
      {0.0f},
      0.0f,
      noLimit,
-     "of the lens; 0: everything is in focus"},
+     "radius of the lens; 0: everything is in focus"},
     {"focus",
      RTS_FLOAT,
      offsetof(ThinLensParams, focus),
@@ -45,7 +45,7 @@ const RtsParam thinLensParams[] = {
      {0.0f},
      0.0f,
      64.0f,
-     "corners of the opening, a regular polygon within the lens; below 3: round"}};
+     "number of corners of the opening, a regular polygon within the lens; below 3: round"}};
 
 struct DiskPoint {
   double x, y;
@@ -193,7 +193,7 @@ class PanoramaProjection {
 } // namespace
 
 const RtsClass thinLensClass = cameraClass<ThinLensProjection>(
-    "ThinLens", "a lens: what is not at the distance of focus is blurred", thinLensParams,
+    "ThinLens", "a lens: everything outside the plane of focus is blurred", thinLensParams,
     generateThinLens);
 const RtsClass panoramaClass = cameraClass<PanoramaProjection>(
     "Panorama", "everything around, longitude and latitude", panoramaParams, generatePanorama);

@@ -59,13 +59,13 @@ struct SpotParams {
    {1.0f, 0.0f, 0.0f},                                                                             \
    0.0f,                                                                                           \
    noLimit,                                                                                        \
-   "a b c of 1 / max(a + b d + c d^2, 1) at distance d"},                                          \
+   "coefficients a b c of 1 / max(a + b d + c d^2, 1) at distance d"},                             \
       {"location",          RTS_VEC3, offsetof(PointParams, location),                             \
        {0.0f, 0.0f, 0.0f},  0.0f,     0.0f,                                                        \
        "place of the light"},                                                                      \
   {                                                                                                \
     "radius", RTS_FLOAT, offsetof(PointParams, radius), {100.0f}, 0.0f, noLimit,                   \
-        "nothing farther away is lit"                                                              \
+        "distance beyond which nothing is lit"                                                     \
   }
 
 const RtsParam directionalParams[] = {VRML97_LIGHT_PARAMS,
@@ -75,7 +75,7 @@ const RtsParam directionalParams[] = {VRML97_LIGHT_PARAMS,
                                        {0.0f, 0.0f, -1.0f},
                                        0.0f,
                                        0.0f,
-                                       "where the light goes"}};
+                                       "direction in which the light travels"}};
 const RtsParam pointParams[] = {VRML97_LIGHT_PARAMS, VRML97_POINT_PARAMS};
 const RtsParam spotParams[] = {
     VRML97_LIGHT_PARAMS,

@@ -191,13 +191,13 @@ TEST_F(Native, WhatDoesNotFitIsSaid) {
   EXPECT_EQ(message("native_test#\n\nin: out = twise(in)"),
             "5: Script S: native_test has no function 'twise'");
   EXPECT_EQ(message("native_test#out = twice(inn)"),
-            "3: Script S: 'inn' is no field or event of the Script");
+            "3: Script S: 'inn' is not a field or event of the Script");
   EXPECT_EQ(message("native_test#out = twice(in"), "3: Script S: ',' or ')' was expected");
   EXPECT_EQ(message("native_test#out = "), "3: Script S: the name of a function was expected");
   EXPECT_EQ(
       message("native_test#start: twice(in)"),
       "3: Script S: 'start:' is neither an eventIn of the Script nor initialize, poll or shutdown");
-  EXPECT_EQ(message("native_test#twice(&in)"), "3: Script S: '&in': an eventIn is not written to");
+  EXPECT_EQ(message("native_test#twice(&in)"), "3: Script S: '&in': an eventIn cannot be written");
   EXPECT_EQ(message("native_test#twice(in, texts)"),
             "3: Script S: 'texts': a function cannot write an SFImage or MFString; give it host "
             "and self");

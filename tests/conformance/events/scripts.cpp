@@ -165,7 +165,7 @@ TEST_P(Scripts, WrongValuesAreRefused) {
   EXPECT_EQ(
       r.printed(),
       (Log{"wrong: 3 out: expected MFString, got SFInt32", "wrong: 3 out: no value",
-           "wrong: 3 out: a value without data", "wrong: 3 out: a text that is no UTF-8",
+           "wrong: 3 out: a value without data", "wrong: 3 out: a text that is not UTF-8",
            "wrong: 3 out: a text without characters",
            "wrong: 2 Script has no eventOut 'noSuchEvent'", "wrong: 2 Script has no eventOut ''",
            "wrong: 1 the Script does not know a node 123456789",

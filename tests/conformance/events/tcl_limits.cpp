@@ -99,11 +99,11 @@ TEST_F(TclLimits, WhatReachesOutIsRefusedByName) {
 TEST_F(TclLimits, RefusalsSayWhy) {
   W r(W::script("", "foreach c {{open x} {exec ls} {socket a 1} {vwait x} {package require Tk}} "
                     "{catch $c why; puts $why}"));
-  EXPECT_EQ(
-      r.printed(),
-      (Log{"open: only in a world that is trusted", "exec: only in a world that is trusted",
-           "socket: only in a world that is trusted", "vwait: only in a world that is trusted",
-           "package Tk: only in a world that is trusted"}));
+  EXPECT_EQ(r.printed(), (Log{"open: allowed only in a trusted world (vv --trust)",
+                              "exec: allowed only in a trusted world (vv --trust)",
+                              "socket: allowed only in a trusted world (vv --trust)",
+                              "vwait: allowed only in a trusted world (vv --trust)",
+                              "package Tk: allowed only in a trusted world (vv --trust)"}));
 }
 
 TEST_F(TclLimits, WhatComputesIsThere) {

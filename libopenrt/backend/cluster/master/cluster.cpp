@@ -97,8 +97,8 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
     if (!cluster.keyFile.empty())
       wire.keys = readKeys(cluster.keyFile, cluster.allowFile);
     else if (!cluster.allowFile.empty())
-      throw ClusterError("a list of keys that are let in (allow=" + cluster.allowFile +
-                         ") is of no use without key=FILE");
+      throw ClusterError("the list of accepted keys (allow=" + cluster.allowFile +
+                         ") needs key=FILE");
     wire_ = std::make_unique<Wire>(wire);
     BackendOptions local = options;
     if (cluster.local.value_or(0) > 0) local.threads = *cluster.local;
@@ -352,7 +352,7 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
       }
     } catch (const std::exception& e) {
       const std::lock_guard lock(mutex_);
-      broken_ = std::string("the cluster has broken down: ") + e.what();
+      broken_ = std::string("the cluster has failed: ") + e.what();
     }
     std::vector<std::function<void(double)>> left;
     {

@@ -46,7 +46,7 @@ std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
       hosts.push_back(std::move(host));
     }
     if (hosts.size() == before)
-      throw ClusterError(entry.substr(1) + ": the list of workers names nobody");
+      throw ClusterError(entry.substr(1) + ": the list of workers is empty");
   }
   return hosts;
 }

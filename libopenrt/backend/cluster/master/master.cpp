@@ -55,7 +55,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
   if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult);
       // The intended message is unknown.
       !wrong.empty())
-    return impl_->refuse(peer, "a message that cannot be read: " + wrong, now);
+    return impl_->refuse(peer, "a message cannot be read: " + wrong, now);
   const bool greeting = std::holds_alternative<message::Hello>(message.body);
   // The message belongs to a session that has ended.
   if (!greeting && (!remote.welcome || message.session != remote.session)) return;
@@ -68,7 +68,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
     void operator()(message::Ready& ready) const {
       if (ready.epoch > remote.furthest || ready.transport == RT_TRANSPORT_AUTO ||
           !isTransport(ready.transport))
-        return m.strike(remote, "a scene that it cannot have prepared", now);
+        return m.strike(remote, "it cannot have prepared this scene", now);
       // The worker has all arrays of these scenes.
       remote.offered.erase(remote.offered.begin(), remote.offered.upper_bound(ready.epoch));
       m.ready(remote.id, remote.name(), ready.epoch, ready.facts, ready.transport, ready.stats,
@@ -89,7 +89,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
     }
   } const handler{*impl_, remote, now};
   if (!dispatch<Sender::worker>(message.body, handler))
-    impl_->strike(remote, "a message that only masters send", now);
+    impl_->strike(remote, "only masters send this message", now);
 }
 
 void Master::localReady(Epoch epoch, const Prepared& prepared, double now) {
@@ -178,7 +178,7 @@ double Master::advance(double now) {
   for (Peer peer : std::set<Peer>(m.waiting)) {
     Remote& remote = m.remotes.at(peer);
     m.flush(remote);
-    if (remote.outbox.overfull()) m.refuse(peer, "it does not read what it is sent", now);
+    if (remote.outbox.overfull()) m.refuse(peer, "it does not read the messages sent to it", now);
   }
   if (!m.waiting.empty()) next = std::min(next, now + 0.001); // the queue may have room again
   if (!m.hereJoined && m.core && std::isfinite(m.firstCommit))

@@ -105,12 +105,12 @@ bool Master::Impl::agree(FrameEntry& entry, WorkerId worker, const std::string& 
   const std::string both = who + " has found " + whatOf(prepared) + ", " + entry.preparedBy + " " +
                            whatOf(entry.state.prepared);
   if (worker != localId) {
-    refuse(peers.at(worker), "another scene: " + both, now);
+    refuse(peers.at(worker), "it prepared another scene: " + both, now);
     return false;
   }
   for (WorkerId other : std::set<WorkerId>(entry.preparedWorkers))
     if (const auto found = peers.find(other); found != peers.end())
-      refuse(found->second, "another scene: " + both, now);
+      refuse(found->second, "it prepared another scene: " + both, now);
   for (auto& [epoch, candidate] : frames) {
     if (&candidate != &entry) continue;
     scheduler.end(epoch);
@@ -183,9 +183,9 @@ void Master::Impl::finishMerge(const IncomingResult& a, double now) {
   if (remote) remote->merging.erase(a.job.lease);
   if (!a.fits) {
     if (a.unreadable.empty()) scheduler.failed(a.worker, a.epoch, a.job.lease, now);
-    if (remote && a.unreadable.empty()) strike(*remote, "a result that is none of its job", now);
+    if (remote && a.unreadable.empty()) strike(*remote, "the result does not fit its job", now);
     if (remote && !a.unreadable.empty())
-      refuse(remote->peer, "a message that cannot be read: " + a.unreadable, now);
+      refuse(remote->peer, "a message cannot be read: " + a.unreadable, now);
     return endIfComplete(a.epoch);
   }
   scheduler.done(a.worker, a.epoch, a.job.lease, a.result.seconds, now);
@@ -226,7 +226,7 @@ void Master::Impl::end(Epoch epoch) {
 void Master::Impl::fail(Epoch epoch, const std::string& why, bool missing) {
   FrameEntry* entry = unfinished(epoch);
   if (!entry) return;
-  entry->state.failure = why.empty() ? "it cannot be made" : why;
+  entry->state.failure = why.empty() ? "the frame cannot be rendered" : why;
   entry->state.missing = missing;
   if (entry->state.work) entry->state.work->cancel();
   end(epoch);
@@ -259,7 +259,7 @@ bool Master::Impl::hasEnoughWorkers(double now) {
       fewSince = std::numeric_limits<double>::infinity();
     if (alive() == 0 && everJoined && !loggedAlone && core && oldest() != 0) {
       loggedAlone = true;
-      log(2, "all workers have gone: this process goes on alone");
+      log(2, "all workers have left: this process continues alone");
     }
     return true;
   }
@@ -272,8 +272,8 @@ bool Master::Impl::hasEnoughWorkers(double now) {
   const std::string why =
       plural(options.require, "worker") + (options.require == 1 ? " is" : " are") + " needed, " +
       (alive() == 1 ? "there is 1" : "there are " + std::to_string(alive())) +
-      (can == alive() ? "" : " (" + std::to_string(can) + " that can make this picture)") +
-      (lastRefusal.empty() ? "" : "; refused was " + lastRefusal);
+      (can == alive() ? "" : " (" + std::to_string(can) + " can make this picture)") +
+      (lastRefusal.empty() ? "" : "; a worker was refused: " + lastRefusal);
   while (const Epoch epoch = oldest()) fail(epoch, why, true);
   fewSince = std::numeric_limits<double>::infinity();
   return false;
@@ -285,9 +285,9 @@ void Master::Impl::handOut(double now) {
   bool moved = false;
   for (; scheduler.move(now, worker, epoch); moved = true) {
     if (worker == localId && scheduler.stuck(epoch))
-      logOnce(2, "the workers that are there get nowhere: this process helps");
+      logOnce(2, "the connected workers make no progress: this process helps");
     else if (worker == localId && options.localThreads == 0 && alive() > 0 && able() == 0)
-      logOnce(2, "none of the workers can make this picture: this process goes on alone");
+      logOnce(2, "none of the workers can make this picture: this process continues alone");
     sendScene(worker, epoch);
   }
   if (moved) settle();

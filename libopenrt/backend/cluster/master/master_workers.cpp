@@ -12,7 +12,7 @@ constexpr uint32_t mostThreads = 4096; // threads of a worker
 constexpr size_t mostGone = 256;       // departed workers that are remembered
 constexpr size_t mostSaid = 1000;
 constexpr const char* reloadedWhy =
-    "the master has loaded shader libraries anew, and renders alone from there on";
+    "the master has reloaded shader libraries and now renders alone";
 } // namespace
 
 void Master::Impl::log(int level, const std::string& text) const {
@@ -36,7 +36,7 @@ void Master::Impl::joinLocal(double now) {
   const bool reserve = options.localThreads == 0;
   if (reserve && !everJoined && now < firstCommit + options.grace) return;
   if (reserve && !everJoined && options.require == 0)
-    log(2, "no worker has answered yet: this process goes on alone");
+    log(2, "no worker has answered yet: this process continues alone");
   scheduler.join(localId, core->threads(), true, now, reserve);
   hereJoined = true;
 }
@@ -53,13 +53,13 @@ void Master::Impl::refuseAllWorkers(double now) {
 void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
   if (remote.welcome) { // a restarted worker should use a new connection
     const Peer peer = remote.peer;
-    strike(remote, "Hello again", now);
+    strike(remote, "a second Hello", now);
     if (!remotes.contains(peer)) return;
     depart(remote, now);
   }
   remote.host = hello.host;
   if (hello.threads < 1 || hello.threads > mostThreads)
-    return refuse(remote.peer, "a worker with " + std::to_string(hello.threads) + " threads", now);
+    return refuse(remote.peer, "the worker has " + std::to_string(hello.threads) + " threads", now);
   if (reloaded) return refuse(remote.peer, reloadedWhy, now);
   if (const std::string differing = difference(hello, options.self, options.tolerant);
       !differing.empty())
@@ -99,8 +99,9 @@ void Master::Impl::depart(Remote& remote, double now) {
 }
 
 void Master::Impl::strike(Remote& remote, const std::string& what, double now) {
-  logOnce(2, "worker " + remote.name() + " has sent nonsense: " + what);
-  if (++remote.strikes >= mostStrikes) refuse(remote.peer, "it sends nonsense: " + what, now);
+  logOnce(2, "worker " + remote.name() + " has sent an invalid message: " + what);
+  if (++remote.strikes >= mostStrikes)
+    refuse(remote.peer, "it sends invalid messages: " + what, now);
 }
 
 void Master::Impl::refuse(Peer peer, const std::string& why, double now) {

@@ -20,7 +20,7 @@ void check(const wire::Ready& m, const Frames&) {
 
 void check(const wire::Result& m, const Frames&) {
   demand(m.seconds() >= 0 && std::isfinite(m.seconds()), "a result after an impossible time");
-  demand(m.bytes() <= limits::resultBytes, "a result that is too large");
+  demand(m.bytes() <= limits::resultBytes, "the result is too large");
   demand(!m.faults() || m.faults()->size() <= limits::libraries, "too many faults");
 }
 
@@ -32,15 +32,15 @@ void check(const wire::Welcome& m, const Frames&) {
 
 void check(const wire::Scene& m, const Frames& frames) {
   demand(m.epoch() != 0 && m.epoch() <= limits::epochs,
-         "a scene without a number, or with too large a one");
+         "a scene has no number, or too large a one");
   demand(bytesOf(frames) - frames[0].size() <= limits::editBytes, "too many edits");
   if (m.arrays()) {
     uint64_t sum = 0;
     for (const wire::ArrayName* name : *m.arrays()) {
       demand(name->id() != 0 && name->bytes() <= limits::arrayBytes,
-             "an array without a number, or too large");
+             "an array has no number or is too large");
       sum += name->bytes();
-      demand(sum <= limits::sceneBytes, "arrays that are too large together");
+      demand(sum <= limits::sceneBytes, "the arrays are too large together");
     }
   }
   if (m.libraries()) {
@@ -56,7 +56,7 @@ void check(const wire::Piece& m, const Frames& frames) {
          "an array of an impossible size");
   demand(m.offset() < m.stored() && m.offset() % pieceBytes == 0 &&
              frames[1].size() == std::min<uint64_t>(pieceBytes, m.stored() - m.offset()),
-         "a piece that does not fit");
+         "a piece does not fit its array");
 }
 
 void check(const wire::Jobs& m, const Frames&) {

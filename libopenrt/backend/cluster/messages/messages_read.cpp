@@ -67,7 +67,8 @@ void read(const wire::Scene& t, Frames& frames, message::Scene& m) {
     for (const wire::Library* library : *t.libraries())
       library->UnPackTo(&m.libraries.emplace_back());
   m.edits = joined(frames);
-  demand(XXH3_64bits(m.edits.data(), m.edits.size()) == t.hash(), "edits with a wrong checksum");
+  demand(XXH3_64bits(m.edits.data(), m.edits.size()) == t.hash(),
+         "the edits have a wrong checksum");
 }
 
 void read(const wire::Piece& t, Frames& frames, message::Piece& m) {
@@ -87,10 +88,10 @@ std::vector<std::byte> unpackResult(const Frames& frames, uint64_t bytes) {
     return size_t(std::min<uint64_t>(limits::chunkBytes, bytes - i * limits::chunkBytes));
   };
   demand((bytes + limits::chunkBytes - 1) / limits::chunkBytes == frames.size() - 1,
-         "a result in a wrong number of frames");
+         "the result has a wrong number of frames");
   for (size_t i = 0; i + 1 < frames.size(); i++)
     demand(chunkOf(i) <= bestRatio * frames[i + 1].size(),
-           "a result that is larger than its bytes can be");
+           "the result is larger than its bytes can be");
   std::vector<std::byte> result(bytes);
   for (size_t i = 0; i + 1 < frames.size(); i++) {
     const auto& packed = frames[i + 1];
@@ -98,7 +99,7 @@ std::vector<std::byte> unpackResult(const Frames& frames, uint64_t bytes) {
         LZ4_decompress_safe(reinterpret_cast<const char*>(packed.data()),
                             reinterpret_cast<char*>(result.data() + i * limits::chunkBytes),
                             int(packed.size()), int(chunkOf(i)));
-    demand(size >= 0 && size_t(size) == chunkOf(i), "a result that is not packed as it should be");
+    demand(size >= 0 && size_t(size) == chunkOf(i), "the result cannot be unpacked");
   }
   return result;
 }
@@ -108,11 +109,11 @@ void unpackBytes(message::Result& m) {
   if (m.packed.lz4) {
     m.bytes = unpackResult(frames, m.packed.bytes);
   } else {
-    demand(bulkBytes(frames) == m.packed.bytes, "a result of another size than it says");
+    demand(bulkBytes(frames) == m.packed.bytes, "the result has another size than it claims");
     m.bytes = joined(frames);
   }
   demand(XXH3_64bits(m.bytes.data(), m.bytes.size()) == m.packed.hash,
-         "a result with a wrong checksum");
+         "the result has a wrong checksum");
 }
 
 void readBody(const wire::Header& header, Frames& frames, message::Body& body) {
@@ -123,7 +124,7 @@ void readBody(const wire::Header& header, Frames& frames, message::Body& body) {
     using Kind = decltype(kind);
     if (any != kind.any) return;
     const auto* table = header.any_as<typename Kind::Table>();
-    demand(table != nullptr, "a message without its content");
+    demand(table != nullptr, "the message has no content");
     kind.check(*table, frames);
     read(*table, frames, body.emplace<typename Kind::Message>());
   });
@@ -144,10 +145,10 @@ std::string verifyHeader(std::span<const std::byte> frame, uint8_t& kind) {
   // The header, its body, and the libraries.
   constexpr flatbuffers::uoffset_t depth = 4, tables = 2 + 2 * limits::libraries;
   if (frame.size() > limits::headerBytes)
-    return "a header of " + std::to_string(frame.size()) + " bytes";
+    return "the header has " + std::to_string(frame.size()) + " bytes";
   const auto* bytes = reinterpret_cast<const uint8_t*>(frame.data());
   flatbuffers::Verifier verifier(bytes, frame.size(), depth, tables);
-  if (!wire::VerifyHeaderBuffer(verifier)) return "no valid header";
+  if (!wire::VerifyHeaderBuffer(verifier)) return "the header is not valid";
   kind = uint8_t(wire::GetHeader(bytes)->any_type());
   return {};
 }

@@ -53,7 +53,7 @@ Text::Text(std::string text) : std::string(std::move(text)) {
 }
 
 Text::Text(const char* received, size_t size) {
-  demand(size <= limits::textBytes, "a text that is too long");
+  demand(size <= limits::textBytes, "a text is too long");
   assign(received, size);
   clean(*this);
 }

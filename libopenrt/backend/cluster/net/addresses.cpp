@@ -35,23 +35,23 @@ Address Address::parse(std::string_view text) {
   if (const size_t mark = text.find('='); mark != text.npos) {
     a.key = text.substr(mark + 1);
     if (a.key.size() != keyLength)
-      failed(whole, "what follows = must be a public key of 40 characters");
+      failed(whole, "the text after = must be a public key of 40 characters");
     text = text.substr(0, mark);
   }
   for (char c : text)
     if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f)
-      failed(whole, "blanks, or characters that nobody sees");
+      failed(whole, "it contains blanks or invisible characters");
   if (text.starts_with(ipcScheme)) {
     a.ipc = true;
     a.host = text.substr(ipcScheme.size());
-    if (a.host.empty()) failed(whole, "no path");
+    if (a.host.empty()) failed(whole, "the path is missing");
     return a;
   }
   if (text.starts_with(tcpScheme)) text.remove_prefix(tcpScheme.size());
   std::string_view port;
   if (text.starts_with('[')) {
     const size_t end = text.find(']');
-    if (end == text.npos) failed(whole, "no ] after [");
+    if (end == text.npos) failed(whole, "] is missing after [");
     a.host = text.substr(1, end - 1);
     port = text.substr(end + 1);
     if (!port.empty() && port.front() != ':') failed(whole, "only :PORT may follow ]");

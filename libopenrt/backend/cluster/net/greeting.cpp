@@ -70,7 +70,7 @@ std::string difference(const message::Hello& worker, const message::Hello& maste
   compare("instruction set", worker.isa, master.isa);
   compare("ray kernel", worker.kernel, master.kernel);
   compare("system", worker.platform, master.platform);
-  if (!differing.empty()) differing += " (tolerant=1 takes it, and last bits may differ)";
+  if (!differing.empty()) differing += " (tolerant=1 accepts it, but last bits may differ)";
   return differing;
 }
 

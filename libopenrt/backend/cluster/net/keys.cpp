@@ -41,11 +41,11 @@ std::string readSmall(const std::string& path, bool secret) {
   const File file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   struct stat info {};
   if (file.fd < 0 || fstat(file.fd, &info) != 0) failed(path, std::strerror(errno));
-  if (!S_ISREG(info.st_mode)) failed(path, "not a file");
+  if (!S_ISREG(info.st_mode)) failed(path, "this is not a file");
   if (secret && (info.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    failed(path, "a key file that others than its owner may use; chmod 600 it, or make a new key "
-                 "if somebody may have seen it");
-  if (size_t(info.st_size) > longestFile) failed(path, "too large for a file of keys");
+    failed(path, "other users may read or write this key file; chmod 600 it, or make a new key if "
+                 "somebody may have seen it");
+  if (size_t(info.st_size) > longestFile) failed(path, "the file is too large for a file of keys");
   std::string text(size_t(info.st_size), 0);
   size_t got = 0;
   for (ssize_t n;
@@ -73,15 +73,15 @@ template <class Take> void forLines(std::string_view text, const Take& take) {
 
 std::vector<std::string> readAllowed(const std::string& path) {
   std::vector<std::string> keys;
-  forLines(readSmall(path, false),
-           [&](std::string_view first, std::string_view second, size_t number) {
-             if (first == "public") first = second; // the line comes from a key file
-             if (isKey(first))
-               keys.emplace_back(first);
-             else if (first.front() != '#') // no key begins with #
-               failed(path, "line " + std::to_string(number) +
-                                ": not a public key (40 characters, then a comment if you like)");
-           });
+  forLines(
+      readSmall(path, false), [&](std::string_view first, std::string_view second, size_t number) {
+        if (first == "public") first = second; // the line comes from a key file
+        if (isKey(first))
+          keys.emplace_back(first);
+        else if (first.front() != '#') // no key begins with #
+          failed(path, "line " + std::to_string(number) +
+                           ": expected a public key (40 characters, then a comment if you like)");
+      });
   return keys;
 }
 
@@ -94,7 +94,8 @@ std::string makeKeyFile(const std::string& path) {
   File file{
       open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR)};
   if (file.fd < 0)
-    failed(path, errno == EEXIST ? "is there already; a key is never written over a file"
+    failed(path, errno == EEXIST ? "the file exists already; choose another name, because a key is "
+                                   "never written over a file"
                                  : std::strerror(errno));
   const std::string text = std::string("public ") + publicKey + "\nsecret " + secretKey + "\n";
   size_t written = 0;
@@ -112,23 +113,22 @@ std::string makeKeyFile(const std::string& path) {
 
 KeyRing readKeys(const std::string& path, const std::string& allow) {
   KeyRing ring;
-  forLines(readSmall(path, true),
-           [&](std::string_view first, std::string_view second, size_t number) {
-             std::string* place = first == "public"   ? &ring.publicKey
-                                  : first == "secret" ? &ring.secretKey
-                                                      : nullptr;
-             if (!place || !place->empty() || !isKey(second))
-               failed(path, "line " + std::to_string(number) +
-                                ": not a line of a key file, as openrt-worker --new-key makes it");
-             *place = second;
-           });
+  forLines(
+      readSmall(path, true), [&](std::string_view first, std::string_view second, size_t number) {
+        std::string* place = first == "public"   ? &ring.publicKey
+                             : first == "secret" ? &ring.secretKey
+                                                 : nullptr;
+        if (!place || !place->empty() || !isKey(second))
+          failed(path, "line " + std::to_string(number) +
+                           ": expected a line of a key file, as openrt-worker --new-key makes it");
+        *place = second;
+      });
   if (ring.publicKey.empty() || ring.secretKey.empty())
-    failed(path, "not a key file, as openrt-worker --new-key makes it");
+    failed(path, "this is not a key file, as openrt-worker --new-key makes it");
   char publicKey[keyLength + 1];
   if (zmq_curve_public(publicKey, ring.secretKey.c_str()) != 0)
     failed(path, "this build of ZeroMQ has no CURVE");
-  if (ring.publicKey != publicKey)
-    failed(path, "a public key that does not belong to the secret one");
+  if (ring.publicKey != publicKey) failed(path, "the public key does not belong to the secret one");
   if (!allow.empty()) ring.allowed = readAllowed(allow);
   return ring;
 }

@@ -34,8 +34,8 @@ std::string LibraryCheck::problem(std::span<const message::Library> wanted) {
     }
     const Hash& hash = files_.of(path);
     if (hash != library.hash)
-      add(library, " is another file here (" + path + " has hash " + hex(hash) + ", the master's " +
-                       hex(library.hash) + ")");
+      add(library, " differs from the master's (" + path + " has hash " + hex(hash) +
+                       ", the master's " + hex(library.hash) + ")");
   }
   return text;
 }

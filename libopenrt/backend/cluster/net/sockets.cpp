@@ -7,8 +7,8 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "backend/cluster/net/addresses.h"
 #include "backend/cluster/messages/messages.h"
+#include "backend/cluster/net/addresses.h"
 
 namespace openrt::cluster {
 namespace {
@@ -22,18 +22,18 @@ std::string_view textOf(const zmq::message_t& m) { return {m.data<char>(), m.siz
 // more than that.
 std::string failureText(uint16_t event, int value, bool withKeys) {
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH)
-    return "our key is not on its list of keys that are let in";
+    return "our key is not on its list of accepted keys";
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL &&
       value == ZMQ_PROTOCOL_ERROR_ZMTP_MECHANISM_MISMATCH)
-    return withKeys ? "it uses no key, this side does: give --key FILE there, too"
-                    : "it uses a key, this side none: give --key FILE";
+    return withKeys ? "it uses no key, but this side does: give --key FILE there, too"
+                    : "it uses a key, but this side does not: give --key FILE";
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL &&
       value == ZMQ_PROTOCOL_ERROR_ZMTP_CRYPTOGRAPHIC)
     return "it has another key";
   if (event == ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL) return "it does not speak this protocol";
-  return withKeys ? "it closed the connection: it has another key or none, most likely (--key FILE "
-                    "there, too)"
-                  : "it closed the connection: it expects a key, most likely (give --key FILE)";
+  return withKeys ? "it closed the connection: most likely it has another key or none (give --key "
+                    "FILE there, too)"
+                  : "it closed the connection: most likely it expects a key (give --key FILE)";
 }
 
 } // namespace
@@ -153,10 +153,9 @@ bool Authenticator::answer(const std::function<void(const std::string&)>& refuse
                   (key == keys_.publicKey || std::find(keys_.allowed.begin(), keys_.allowed.end(),
                                                        key) != keys_.allowed.end());
   if (!in)
-    refused(shownEndpoint(address) + ": its key " + key +
-            " is not on the list of those that are let in");
+    refused(shownEndpoint(address) + ": its key " + key + " is not on the list of accepted keys");
   const std::string reply[] = {
-      "1.0", number, in ? "200" : "400", in ? "OK" : "this key is not let in", in ? key : "", ""};
+      "1.0", number, in ? "200" : "400", in ? "OK" : "this key is not accepted", in ? key : "", ""};
   for (size_t i = 0; i < std::size(reply); i++)
     socket_.send(zmq::buffer(reply[i]),
                  i + 1 < std::size(reply) ? zmq::send_flags::sndmore : zmq::send_flags::none);

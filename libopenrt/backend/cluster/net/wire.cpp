@@ -26,9 +26,8 @@ std::string remedy(const std::string& what) {
 void checkAddress(const Address& address, const KeyRing& keys) {
   if (keys.empty() && !address.loopback()) throw std::runtime_error(remedy(address.shown()));
   if (keys.empty() && !address.key.empty())
-    throw std::runtime_error(
-        address.shown() +
-        ": a public key of the other side is of no use without a key of one's own");
+    throw std::runtime_error(address.shown() + ": the public key of the other side needs a key on "
+                                               "this side, too: give --key FILE (key=FILE)");
 }
 
 } // namespace
@@ -40,7 +39,8 @@ Wire::Impl::Impl(const WireOptions& options)
     Address address = Address::parse(text);
     checkAddress(address, keys);
     if (address.port == 0 && !address.ipc)
-      throw std::runtime_error(address.shown() + ": a port to call cannot be 0");
+      throw std::runtime_error(address.shown() +
+                               ": the port cannot be 0; it is 0 only for listening");
     calls.emplace_back().address = std::move(address);
   }
   if (!keys.empty() && !options.listen.empty()) authenticator.emplace(context, keys);

@@ -43,7 +43,7 @@ void Wire::Impl::updateCalls(double now) {
     } else if (!call.socket && !call.lookup && now >= call.next) {
       startCall(call, now);
     } else if (!call.peer && (call.socket || call.lookup) && now > call.deadline) {
-      failCall(call, "nobody answers; trying again", now);
+      failCall(call, "there is no answer; trying again", now);
     }
   }
 }
@@ -56,7 +56,7 @@ void Wire::Impl::readCall(Call& call, double now) {
     if (!h) break;
     if (h->kind == Kind::connected) call.fd = h->fd;
     if (h->kind == Kind::failed) end = h->why;
-    if (h->kind == Kind::closed) end = "nobody answers; trying again";
+    if (h->kind == Kind::closed) end = "there is no answer; trying again";
     if (h->kind == Kind::disconnected) end = "the connection was closed";
     if (h->kind != Kind::opened || call.peer) continue;
     call.failures = 0;

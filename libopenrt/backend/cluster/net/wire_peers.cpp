@@ -53,8 +53,8 @@ void Wire::Impl::listen(const std::string& where) {
 void Wire::Impl::watchCallers() {
   while (const std::optional<ConnectionEvent> h = listenMonitor->next()) {
     if (h->kind == ConnectionEvent::Kind::failed)
-      refused("somebody who calls " +
-              shownEndpoint(listenSocket->get(zmq::sockopt::last_endpoint)) + ": " + h->why);
+      refused("a connection to " + shownEndpoint(listenSocket->get(zmq::sockopt::last_endpoint)) +
+              ": " + h->why);
     if (h->kind != ConnectionEvent::Kind::disconnected) continue;
     const auto found = callersByFd.find(h->fd);
     if (found == callersByFd.end()) continue;
@@ -136,7 +136,7 @@ bool Wire::Impl::readFrames(zmq::socket_t& socket, Frames& frames, int& fd, std:
 void Wire::Impl::handleMessage(PeerState& peer, Frames&& frames, bool tooMany, double now) {
   if (peer.hasLeft) {
     if (now - peer.byeSentAt > tellAgain)
-      sayBye(peer, "this side was not heard of for too long; say Hello again", now);
+      sayBye(peer, "this side sent nothing for too long; say Hello again", now);
     return;
   }
   peer.lastReceivedAt = now;
@@ -175,7 +175,7 @@ void Wire::Impl::handleMessage(PeerState& peer, Frames&& frames, bool tooMany, d
 
 void Wire::Impl::countBad(PeerState& peer, const std::string& why, double now) {
   if (++peer.badOnes < mostBad) return;
-  block(peer, "three messages that are none, the last one: " + why, now);
+  block(peer, "three invalid messages, the last one: " + why, now);
 }
 
 void Wire::Impl::block(PeerState& peer, const std::string& why, double now) {
@@ -267,8 +267,7 @@ void Wire::Impl::checkPeers(double now) {
   }
   char text[64];
   for (PeerState* peer : silent) {
-    std::snprintf(text, sizeof text, "nothing was heard of it for %.2g s",
-                  now - peer->lastReceivedAt);
+    std::snprintf(text, sizeof text, "it sent nothing for %.2g s", now - peer->lastReceivedAt);
     leave(*peer, text, now);
   }
 }

@@ -65,9 +65,9 @@ ArrayStream::ArrayStream(ArrayStream&&) noexcept = default;
 
 std::string ArrayStream::put(const message::Piece& piece) {
   Impl& s = *impl_;
-  if (piece.bytes != s.bytes) return "a piece of an array of another size";
+  if (piece.bytes != s.bytes) return "a piece is of an array of another size";
   if (s.stored == 0) s.begin(piece.stored);
-  if (piece.stored != s.stored || piece.offset != s.received) return "a piece out of its turn";
+  if (piece.stored != s.stored || piece.offset != s.received) return "a piece is out of order";
   s.received += piece.data.size();
   ZSTD_inBuffer in{piece.data.data(), piece.data.size(), 0};
   ZSTD_outBuffer out{s.array->data(), s.bytes, s.written};
@@ -80,7 +80,7 @@ std::string ArrayStream::put(const message::Piece& piece) {
   }
   XXH3_128bits_update(s.state.get(), s.array->data() + s.written, out.pos - s.written);
   s.written = out.pos;
-  if (in.pos < in.size) return "an array that is larger than it should be";
+  if (in.pos < in.size) return "an array is larger than it should be";
   return {};
 }
 

@@ -32,7 +32,7 @@ void Worker::sendMessage(message::Body&& body) {
 }
 
 void Worker::joined(Peer peer, const std::string& address, double now) {
-  if (peer_ != 0) return link_.close(peer, "busy: this worker serves another master");
+  if (peer_ != 0) return link_.close(peer, "this worker is busy: it serves another master");
   peer_ = peer;
   address_ = address;
   helloSentAt_ = now;
@@ -42,7 +42,7 @@ void Worker::joined(Peer peer, const std::string& address, double now) {
 void Worker::left(Peer peer, const std::string& why, double) {
   if (peer != peer_) return;
   const std::string text =
-      "master " + address_ + (serving() ? " has left: " : " has not taken us: ") + why;
+      "master " + address_ + (serving() ? " has left: " : " refuses this worker: ") + why;
   // A master that calls again and again is reported once.
   report(serving() ? 1 : text == lastReport_ ? 0 : 2, text);
   lastReport_ = text;
@@ -65,14 +65,14 @@ void Worker::endSession() {
   leases_.clear();
   unanswered_.clear();
   begun_ = unansweredBytes_ = 0;
-  broken_ = "no scene has come yet";
+  broken_ = "no scene has arrived yet";
   validator_.reset();
   cache_.trim();
 }
 
 void Worker::advance(double now) {
   if (peer_ == 0 || serving() || now - helloSentAt_ < patience) return;
-  link_.close(peer_, "no Welcome has come");
+  link_.close(peer_, "no Welcome has arrived");
   endSession();
 }
 
@@ -83,7 +83,7 @@ void Worker::giveUp(const std::string& why) {
 }
 
 void Worker::bad(const std::string& why) {
-  report(2, "master " + address_ + " has sent nonsense: " + why);
+  report(2, "master " + address_ + " has sent an invalid message: " + why);
   link_.bad(peer_, why);
 }
 
@@ -93,8 +93,8 @@ void Worker::message(Peer peer, Frames&& frames, double) {
   if (const std::string why = decode(std::move(frames), m);
       // The intended message is unknown.
       !why.empty()) {
-    const std::string text = "a message that cannot be read: " + why;
-    report(2, "master " + address_ + " has sent " + text);
+    const std::string text = "a message cannot be read: " + why;
+    report(2, "master " + address_ + ": " + text);
     link_.close(peer_, text);
     return endSession();
   }
@@ -111,24 +111,25 @@ void Worker::message(Peer peer, Frames&& frames, double) {
     void operator()(message::Jobs& m) const { w.jobs(m); }
     void operator()(message::Drop& m) const { w.drop(m); }
   } const handler{*this, m.session};
-  if (!dispatch<Sender::master>(m.body, handler)) bad("a message that only workers send");
+  if (!dispatch<Sender::master>(m.body, handler)) bad("only workers send this message");
 }
 
 void Worker::welcome(const message::Welcome& m, uint64_t session) {
   if (serving()) return bad("a second Welcome");
-  if (m.session == 0 || session != m.session) return bad("a Welcome without a session");
+  if (m.session == 0 || session != m.session) return bad("the Welcome has no session");
   if (m.protocol != protocolVersion)
-    return giveUp("protocol " + std::to_string(m.protocol) + " of the master, " +
-                  std::to_string(protocolVersion) + " of the worker: they must be the same");
+    return giveUp("the master has protocol " + std::to_string(m.protocol) + ", the worker " +
+                  std::to_string(protocolVersion) + ": install the same version on both");
   session_ = m.session;
   masters_++;
-  broken_ = "no scene has come yet";
+  broken_ = "no scene has arrived yet";
   link_.pace(m.heartbeat, m.silence);
   report(1, "serving " + address_);
 }
 
 void Worker::jobs(const message::Jobs& m) {
-  if (m.epoch == 0 || m.epoch > newest_ - base_) return bad("jobs of a scene that has not come");
+  if (m.epoch == 0 || m.epoch > newest_ - base_)
+    return bad("the jobs are of a scene that has not arrived");
   const Epoch epoch = base_ + m.epoch;
   const auto frame = frames_.find(epoch);
   if (frame == frames_.end()) return; // the frame was dropped
@@ -139,13 +140,13 @@ void Worker::jobs(const message::Jobs& m) {
     const bool samples = job.job.kind == Job::Kind::samples;
     if (samples ? job.job.number >= pixels || uint64_t(job.job.first) + job.job.count > mostSamples
                 : job.job.number >= LightImage::parts)
-      return bad("a job that the frame does not have");
+      return bad("a job is not in the frame");
   }
   size_t out = m.jobs.size();
   for (const auto& [of, leases] : leases_) out += leases.size();
-  if (out > mostJobs) return bad("more jobs than a worker takes");
+  if (out > mostJobs) return bad("there are more jobs than a worker takes");
   for (const LeasedJob& job : m.jobs)
-    if (!leases_[epoch].insert(job.lease).second) return bad("a lease that is out already");
+    if (!leases_[epoch].insert(job.lease).second) return bad("a lease is in use already");
   executor_.work(epoch, m.jobs);
 }
 

@@ -134,7 +134,7 @@ void WorkerCore::Impl::work(uint32_t thread) {
           sink.done(command.epoch, command.job, std::move(result));
         }
       } else {
-        reportFailure(command.epoch, "a job of a scene that is not prepared");
+        reportFailure(command.epoch, "a job is of a scene that is not prepared");
       }
     } catch (const std::exception& e) {
       mine.runner = nullptr; // it may be in an undefined state
@@ -188,8 +188,7 @@ void WorkerCore::Impl::applyCommit(const Command& command) {
   for (uint32_t i = 0; i < count; i++) running[i].runner = nullptr;
   scene = nullptr;
   applied = command.epoch;
-  if (!command.whole && !intact)
-    throw std::runtime_error("an earlier change of the scene could not be made");
+  if (!command.whole && !intact) throw std::runtime_error("an earlier change of the scene failed");
   intact = false;
   if (command.whole) {
     backend = nullptr; // frees its memory first

@@ -20,10 +20,10 @@ void Worker::refuse(Epoch epoch, const std::string& why) {
 }
 
 void Worker::scene(message::Scene&& m) {
-  if (base_ + m.epoch <= newest_) return bad("a scene that is older than the last");
+  if (base_ + m.epoch <= newest_) return bad("the scene is older than the last");
   if (unanswered_.size() >= limits::scenesAtOnce ||
       unansweredBytes_ + m.edits.size() > limits::scenesBytes)
-    return giveUp("it sends more scenes than can be made");
+    return giveUp("it sends more scenes than this worker can prepare");
   newest_ = base_ + m.epoch;
   unanswered_.emplace_back(newest_, m.edits.size());
   unansweredBytes_ += m.edits.size();
@@ -46,9 +46,9 @@ void Worker::scene(message::Scene&& m) {
 
 void Worker::piece(const message::Piece& m) {
   const auto stream = streams_.find(m.hash);
-  if (stream == streams_.end()) return bad("a piece of an array that nobody asked for");
+  if (stream == streams_.end()) return bad("a piece is of an array that was not needed");
   if (!stream->second.begun() && begun_ >= limits::arraysAtOnce)
-    return bad("pieces of too many arrays at once");
+    return bad("there are pieces of too many arrays at once");
   begun_ += stream->second.begun() ? 0 : 1;
   std::string why;
   try {
@@ -58,7 +58,7 @@ void Worker::piece(const message::Piece& m) {
   }
   if (why.empty() && !stream->second.complete()) return;
   const ArrayPtr array = why.empty() ? stream->second.take() : nullptr;
-  if (why.empty() && !array) why = "an array with a wrong checksum";
+  if (why.empty() && !array) why = "an array has a wrong checksum";
   streams_.erase(stream);
   begun_--;
   if (!array) { // scenes that use it cannot be made
@@ -74,14 +74,13 @@ void Worker::piece(const message::Piece& m) {
 }
 
 void Worker::prepare(const message::Prepare& m) {
-  if (m.epoch == 0 || m.epoch > newest_ - base_)
-    return bad("a scene that has not come is to be prepared");
+  if (m.epoch == 0 || m.epoch > newest_ - base_) return bad("the scene to prepare has not arrived");
   if (pendingScenes_.empty()) {
     if (!broken_.empty()) return sendMessage(message::Failed{.epoch = m.epoch, .why = broken_});
     return executor_.prepare(base_ + m.epoch);
   }
   if (pendingScenes_.size() >= 2 * limits::scenesAtOnce)
-    return giveUp("it asks for more scenes than can be made");
+    return giveUp("it asks for more scenes than this worker can prepare");
   PendingScene& pending = pendingScenes_.emplace_back();
   pending.scene.epoch = m.epoch;
   pending.prepareOnly = true;
@@ -116,9 +115,10 @@ void Worker::apply(PendingScene& pending) {
   auto commit = std::make_shared<Commit>();
   for (const message::ArrayName& name : m.arrays) {
     const ArrayPtr& array = pending.arrays.at(name.hash);
-    if (!array) throw std::runtime_error("an array did not come as it should");
+    if (!array) throw std::runtime_error("an array did not arrive intact");
     if (array->size() != name.bytes || !commit->arrays.emplace(name.id, array).second)
-      throw std::runtime_error("array " + std::to_string(name.id) + " twice, or of two sizes");
+      throw std::runtime_error("array " + std::to_string(name.id) +
+                               " appears twice, or with two sizes");
   }
   unpackEdits(m.edits, commit->edits);
   validator_->check(*commit);
