@@ -157,7 +157,7 @@ void FrameWork::Impl::decide(const FrameSchedule::OutstandingJob& pilot,
   for (uint32_t i = 0; i < count; i++) apply(i, decisions[i]);
 }
 
-// Called under `mutex`.
+// Passes a pilot's decision to the schedule. Called under `mutex`.
 void FrameWork::Impl::apply(uint32_t tile, const Pilots::Decision& decision) {
   if (decision.pilot)
     schedule.addPilot(tile, decision.samples);
@@ -239,7 +239,7 @@ void FrameWork::Impl::finishWaitingTiles() {
   }
 }
 
-// Advances the frame after each change.
+// Finishes waiting tiles, and the frame if nothing is left to do. Called after each change.
 void FrameWork::Impl::advance() {
   finishWaitingTiles();
   bool last = false;
@@ -252,8 +252,8 @@ void FrameWork::Impl::advance() {
     {
       std::unique_lock alone(ending);
       film.finishErrors();
-      // A tile is trusted by what its own paths met: in another place of the picture another lamp
-      // may be the one that is met.
+      // Whether a tile is trusted depends on the emitters that its own paths have hit. Paths
+      // elsewhere in the picture may have hit another lamp.
       const Ledger whole = wholeLedger();
       for (uint32_t i = 0; i < count; i++) {
         const Ledger& tile = tiles[i].ledger;
@@ -380,8 +380,8 @@ float FrameWork::progress() const {
 bool FrameWork::snapshot(uint32_t channel, std::span<float> out) const {
   std::shared_lock notEnding(impl_->ending);
   if (!impl_->film.clear(channel, out)) return false;
-  for (uint32_t i = 0; i < impl_->count;
-       i++) { // locks one tile at a time, so that merging threads do not wait for long
+  // Locks one tile at a time, so that merging threads do not wait for long.
+  for (uint32_t i = 0; i < impl_->count; i++) {
     std::lock_guard lock(impl_->tiles[i].mutex);
     if (impl_->tiles[i].shown) impl_->film.copy(channel, tile(i), out);
   }

@@ -15,7 +15,7 @@ namespace {
 bool sameEmission(const RenderScene& a, const RenderScene& b) {
   if (a.shaders == b.shaders) return true;
   if (!a.shaders->extends(*b.shaders)) return false;
-  for (const Record& r : a.records) { // an unchanged shader keeps its parameter block
+  for (const Record& r : a.records) { // the parameter block of an unchanged shader stays the same
     const ShaderSlot &now = (*a.shaders)[r.shader], &then = (*b.shaders)[r.shader];
     if (((now.traits | then.traits) & RTS_EMISSIVE) && now.params != then.params) return false;
   }
@@ -118,7 +118,8 @@ LightSample Emitters::choose(const LightSampleContext& from, double pick, float 
   return lightSample;
 }
 
-// At an edge the hit may be a neighbouring primitive of the same surface at the same distance.
+// Near an edge the ray may hit a neighbouring primitive of the same surface at the same distance;
+// that hit counts as well.
 bool Emitters::isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
                             float distance) const {
   if (lightSample.record != record) return false;

@@ -38,7 +38,8 @@ void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* 
   }
 }
 
-// Transforms light-space vectors to unit vectors in render space; reach gets their length there.
+// Transforms light-space vectors to unit vectors in render space. Writes their lengths in render
+// space to `reach`.
 void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* reach) {
   for (uint32_t i = 0; i < n; i++) {
     const float x = v[0][i], y = v[1][i], z = v[2][i];

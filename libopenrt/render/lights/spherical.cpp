@@ -90,8 +90,8 @@ bool SphericalTriangle::sample(double u, double v, double direction[3], double& 
     return normalize(direction);
   }
   if (!(solidAngle_ > 0)) return false;
-  // Selects a point on the arc from the first corner to the last that cuts off the fraction u of
-  // the solid angle, then a point on the arc from the second corner to there.
+  // Selects the point on the arc from the first corner to the last that cuts off the fraction u of
+  // the solid angle. Then selects a point on the arc from the second corner to that point.
   const double half = u * solidAngle_ / 2, c = std::cos(half), s = std::sin(half);
   const double x = volume_ * c - others_ * s, y = first_ * s;
   double r[3], end[3];
@@ -174,7 +174,7 @@ bool SphericalEllipsoid::sample(double u, double v, double direction[3], double&
   for (double& l : local) l /= scale;
   // The nearer of the two intersections along the line.
   const double a = dot(local, local), b = dot(eye_, local), c = dot(eye_, eye_) - 1;
-  // From the centre to the line; accurate also if the sphere is small and far away.
+  // Offset of the line from the centre. It is accurate also if the sphere is small and far away.
   double offset[3];
   for (int k = 0; k < 3; k++) offset[k] = eye_[k] - b / a * local[k];
   const double root = std::sqrt(std::max(0.0, (1 - dot(offset, offset)) * a));

@@ -19,7 +19,8 @@ enum Pair : uint32_t {
   aim,
   first,
   perLevel = 4
-}; // pairs of random numbers: those for the light source, then `perLevel` for each level
+  // pairs of random numbers: first those for the light source, then `perLevel` pairs for each level
+};
 enum Use : uint32_t { direction, choice, lens };
 
 // Returns the correction for shading normals in importance transport: flux scales with the cosines
@@ -79,8 +80,8 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
     std::copy_n(start.direction, 3, ray.direction);
     ray.state = state;
   }
-  while (!queue_.empty() &&
-         level_ < scene_.frame.depth) { // the surface that the camera sees counts as one more
+  // The surface that the camera sees counts as one more level.
+  while (!queue_.empty() && level_ < scene_.frame.depth) {
     next_.clear();
     load(uint32_t(queue_.size()));
     counters_.secondary += queue_.size();
@@ -169,7 +170,7 @@ void LightTracer::transmitRays(const Points& points, const uint32_t* order,
   }
 }
 
-// Computes the flux that a light without extent sends to a point, without occlusion.
+// Computes the flux that a light without extent sends to a point, ignoring occlusion.
 void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& start,
                            const float at[3], float flux[3]) {
   const LightSlot& light = scene_.lights[start.light];
@@ -190,7 +191,8 @@ void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& s
   light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
   double squaredDistance = 0;
   for (int k = 0; k < 3; k++) squaredDistance += std::pow(double(at[k]) - start.origin[k], 2);
-  // Factor pi: a light's colour is the radiance of a white Lambert surface.
+  // The factor pi makes irradiance of a light's colour, which is the radiance of a white Lambert
+  // surface.
   const double scale = M_PI * start.weight * (start.parallel ? 1 : squaredDistance);
   for (int k = 0; k < 3; k++) {
     flux[k] = float(out.color[k][0] * scale);
@@ -199,7 +201,7 @@ void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& s
 }
 
 // Multiplies the throughput by the emitted flux when a path has reached its first surface. Returns
-// whether any is left.
+// whether any throughput is left.
 bool LightTracer::applyEmission(const Points& points, uint32_t i, RayState& state) {
   const LightSources::LightRay& start = lightRays_[state.path];
   Departure& departure = departures_[state.path];
@@ -283,7 +285,7 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
   }
   for (uint32_t i = 0; i < n; i++) {
     RayState& state = states_[order[i]];
-    // The boundary has no effect on light.
+    // This boundary has no effect on light.
     if (boundaries.crossing && !boundaries.crossing[i].visible) {
       RayState on = state;
       on.media = boundaries.crossing[i].behind;

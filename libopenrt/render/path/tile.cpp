@@ -37,8 +37,8 @@ void TileRenderer::begin(const Tile& tile) {
         }
 }
 
-// Where faces coincide, a ray's hit may depend on the other rays of its batch. So the waves of a
-// leaf are always the same.
+// Where faces coincide, a ray's hit may depend on the other rays of its batch. So a leaf is always
+// divided into the same waves.
 bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred,
                           uint32_t first, uint32_t samples, std::span<PixelSums> sums,
                           const std::atomic<bool>& stop) {
@@ -61,8 +61,8 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
   return !stopped(); // a wave may have been interrupted
 }
 
-// Allocates working storage for n paths. film: with the arrays for the picture's channels of the
-// first surface.
+// Allocates working storage for n paths. film: whether to allocate also the arrays for the channels
+// that describe the first surface.
 void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
   const uint32_t size = padded(n);
   paths.state = arena_.take<RayState>(size);
@@ -261,7 +261,8 @@ void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t
   for (uint32_t i = 0; i < n; i++) {
     const RayState& ray = paths.state[missed[i]];
     float weight = 0, share = 1;
-    // Light sampling of the sky could have chosen this direction.
+    // Light sampling of the sky could also have chosen this direction, so `share` is the MIS weight
+    // of BSDF sampling.
     if (ray.pdf > 0 && scene_.emitters.any()) {
       const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
       share = ray.pdf / (ray.pdf + scene_.emitters.skyPdf(ray.previous, d));
@@ -279,8 +280,8 @@ void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t
   }
 }
 
-// Evaluates fog at the hits. Along mirrored and refracted paths the whole path length counts, as
-// seen in the ray's direction.
+// Evaluates fog at the hits. On mirrored and refracted paths the fog has the whole path length, in
+// the direction of the current ray.
 void TileRenderer::attenuate(const Points& points, const Paths& paths, const uint32_t* order,
                              float* fog[4]) {
   const ShaderSlot& environment = scene_.environment.shader;

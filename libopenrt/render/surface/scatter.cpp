@@ -2,7 +2,7 @@
 // continue the path. Part of TileRenderer.
 //
 // Transports:
-// * Direct: lights only.
+// * Direct: adds the light of light shaders, and follows only straight transmission.
 // * Whitted: follows every specular reflection and refraction deterministically until a branch
 //   carries less than the frame's energy cut.
 // * Path: also samples a direction from each non-specular lobe. Once a path has split, one sample
@@ -130,7 +130,8 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
     const RayState& ray = paths.state[order[i]];
-    // clear: weight of what lies straight behind; seen: also of mirror images and refractions
+    // clear: weight of straight transmission. seen: weight of all specular lobes, which also show
+    // mirror images and refractions.
     float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0}, covered = 0;
     const bool unseen = boundaries.crossing && !boundaries.crossing[i].visible;
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
