@@ -19,7 +19,7 @@ inline bool isHugeSphere(const Matrix4d& unitToKernel) {
 }
 // Returns whether the record is a huge sphere. Spheres in instances are intersected by the kernels,
 // in single precision.
-inline bool metInDouble(const Record& r) {
+inline bool intersectedInDouble(const Record& r) {
   if (r.primitive != edit::Primitive::Sphere || r.instanced) return false;
   double largest = 0;
   for (int j = 0; j < 3; j++) {

@@ -9,7 +9,7 @@
 namespace openrt {
 
 // Returns the expected error of a constant pixel beside an edge, divided by the bound of that
-// error. Most such pixels are exact. Measured for an edge across pixels with 64 samples: the error
+// error. Most such pixels are exact. For an edge across pixels with 64 samples, the measured error
 // is a tenth of the bound. The corner that no sample hits has an area of 1 / n, and a fraction
 // sqrt(1 / n) of all edges cuts off so small a corner.
 double expectedOfBound(double samples) { return std::min(1.0, .8 / std::sqrt(samples)); }

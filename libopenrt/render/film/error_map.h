@@ -49,8 +49,8 @@ class ErrorMap {
   void store(size_t pixel, const PixelError& e);
   // Widens the intervals of constant pixels beside pixels that differ, and marks them as not
   // trusted. Such a pixel is not known to be exact: an edge may cut a corner that no sample hit.
-  // The new interval is the bound by the rule of three. The same is done at the border of a picture
-  // that is not of one colour. Calls `changed` for each such pixel.
+  // The new interval is the bound given by the rule of three. The same is done at the border of a
+  // picture that is not of one colour. Calls `changed` for each such pixel.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
   // Records the radiance that a finished pixel may lack because no sample has found it (ledger.h),
   // summed over the colours.

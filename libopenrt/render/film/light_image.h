@@ -26,7 +26,7 @@ class LightImage {
   bool complete() const { return added() == all_; }
   // Returns a tile's sums, row by row, from the parts added so far. The variance is infinite with
   // fewer than two parts.
-  void look(const Tile& tile, std::vector<LightSums>& out) const;
+  void read(const Tile& tile, std::vector<LightSums>& out) const;
 
  private:
   struct Pixel {

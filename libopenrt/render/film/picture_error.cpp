@@ -9,8 +9,8 @@
 //   plus a Poisson variable). Closed sums then give the ratio of E|error| to the value that the
 //   pixels' own variances suggest.
 // * Errors sum to zero: pixels with jumps are too bright by as much as the others are too dark. The
-//   second half is distributed over the surrounding pixels, each relative to its own colours. The
-//   window is chosen so large that it contains some jumps.
+//   deficit of the latter is distributed over the surrounding pixels, each relative to its own
+//   colours. The window is chosen so large that it contains some jumps.
 // * The interval is a prediction interval. It covers how far the errors of one picture scatter
 //   about their expectation, and how well the number of jumps determines this expectation. Pixels
 //   are treated as independent.
@@ -111,7 +111,7 @@ class PictureErrorEstimator {
 
   PictureError make() {
     collectCumulants();
-    for (size_t i = 0; i < pixels_.size(); i++) look(i);
+    for (size_t i = 0; i < pixels_.size(); i++) splitError(i);
     distribute();
     return sum();
   }
@@ -159,8 +159,8 @@ class PictureErrorEstimator {
     allShape_ = all_.shape(seconds_, allMet_);
   }
 
-  // Divides the pixel's error into the part at the pixel itself and the part at its neighbours.
-  void look(size_t i) {
+  // Splits the pixel's error into the part at the pixel itself and the part at its neighbours.
+  void splitError(size_t i) {
     const PixelNoise& p = pixels_[i];
     if (!p.finished || !std::isnan(doubted_[i])) return;
     stay_[i] = double(p.own);
@@ -302,17 +302,17 @@ TailShape tailShape(double variance, double jumps) {
   // All values are in units of a jump.
   const double normal = std::sqrt(variance * jumps);
   const auto most = uint32_t(jumps + 6 * std::sqrt(jumps) + 6);
-  double probability = std::exp(-jumps), error = 0, told = 0;
+  double probability = std::exp(-jumps), error = 0, estimated = 0;
   for (uint32_t k = 0; k <= most; k++, probability *= jumps / k) {
     const double e = foldedMean(k - jumps, normal),
                  own = meanOfNormal * std::sqrt(normal * normal + k);
     if (k == 0) out.missing = probability * std::max(0.0, e - own);
     error += probability * e;
-    told += probability * own;
+    estimated += probability * own;
   }
-  if (!(told > 0) || !(error > 0)) return {};
+  if (!(estimated > 0) || !(error > 0)) return {};
   out.without = 1 / std::expm1(jumps);
-  out.factor = std::max(1.0, error / told);
+  out.factor = std::max(1.0, error / estimated);
   out.missing = std::min(.5, out.missing / error);
   return out;
 }

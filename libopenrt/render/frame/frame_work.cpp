@@ -109,9 +109,9 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
                             const FrameSchedule::OutstandingJob* pilot) {
   std::vector<LightSums> lights;
   if (light && light->added() > 1)
-    light->look(tile, lights);
+    light->read(tile, lights);
   else if (early && early->complete())
-    early->look(tile, lights);
+    early->read(tile, lights);
   const bool lamps = !lights.empty();
   std::vector<PixelError> errors;
   if (!film.errors().empty()) {
@@ -121,18 +121,18 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
   }
-  std::vector<PilotPixel> asked(pilot ? sums.size() : 0);
+  std::vector<PilotPixel> pilotPixels(pilot ? sums.size() : 0);
   size_t i = 0;
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++, i++) {
       PixelError* error = errors.empty() ? nullptr : &errors[i];
       if (pilot)
-        asked[i] = pilotPixel(errors[i], lamps ? &lights[i] : nullptr);
+        pilotPixels[i] = pilotPixel(errors[i], lamps ? &lights[i] : nullptr);
       else if (error && lamps)
         openrt::addLight(lights[i], *error);
       if (show) film.store(x, y, sums[i], lamps ? &lights[i] : nullptr, error);
     }
-  if (pilot) decide(*pilot, asked, errors);
+  if (pilot) decide(*pilot, pilotPixels, errors);
 }
 
 // Decides on the tile's next samples. Called under the tile's lock.
@@ -171,11 +171,11 @@ void FrameWork::Impl::finish(const FrameSchedule::OutstandingJob& out, const Sum
                              TileState& state) {
   const bool pilot = out.stage == Stage::pilot,
              show = !pilot || (schedule.rounds() && !out.further);
-  const bool asks = pilot && pilots;
-  store(grid.at(out.job.number), all.sums, out.job.replicates, show, asks ? &out : nullptr);
+  const bool decides = pilot && pilots;
+  store(grid.at(out.job.number), all.sums, out.job.replicates, show, decides ? &out : nullptr);
   state.shown |= show;
   if (!pilot) state.ledger = all.ledger;
-  if (!pilot || asks) return;
+  if (!pilot || decides) return;
   std::lock_guard lock(mutex); // the pilot only measured the time
   schedule.decided(out.job.number, frame.samples);
 }

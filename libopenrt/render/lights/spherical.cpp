@@ -51,10 +51,10 @@ SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3
                farthest = std::max({square[0], square[1], square[2]});
   far_ = nearest > 4 * longest && farthest < 2 * nearest;
   if (!std::isfinite(height_)) height_ = 0;
-  if (!far_) look();
+  if (!far_) computeSolidAngle();
 }
 
-void SphericalTriangle::look() {
+void SphericalTriangle::computeSolidAngle() {
   double size = 1;
   for (int c = 0; c < 3; c++) {
     const double length = std::sqrt(dot(corner_[c], corner_[c]));
@@ -72,7 +72,7 @@ void SphericalTriangle::look() {
 double SphericalTriangle::solidAngle() const {
   if (!far_) return solidAngle_;
   SphericalTriangle near = *this;
-  near.look();
+  near.computeSolidAngle();
   return near.solidAngle_;
 }
 
@@ -128,12 +128,12 @@ bool SphericalTriangle::isNearEdge(const double direction[3], double distance) c
   for (int k = 0; k < 3; k++) place[k] = direction[k] * distance;
   for (int c = 0; c < 3; c++) {
     const double *from = corner_[(c + 1) % 3], *to = corner_[(c + 2) % 3];
-    double edge[3], way[3], turn[3];
+    double edge[3], fromCorner[3], turn[3];
     for (int k = 0; k < 3; k++) {
       edge[k] = to[k] - from[k];
-      way[k] = place[k] - from[k];
+      fromCorner[k] = place[k] - from[k];
     }
-    cross(edge, way, turn);
+    cross(edge, fromCorner, turn);
     // dot(turn, normal) / |normal| is the distance from the edge times its length. An angular error
     // of the ray moves the intersection more at grazing angles.
     const double inside = std::fabs(dot(turn, normal_)) * std::fabs(along);

@@ -31,7 +31,7 @@ class SphericalTriangle {
   bool isNearEdge(const double direction[3], double distance) const;
 
  private:
-  void look();
+  void computeSolidAngle();
   double distanceAlong(const double direction[3]) const;
   // corner_: relative to the eye. normal_: its length is twice the area.
   double corner_[3][3], unit_[3][3], normal_[3];

@@ -260,12 +260,12 @@ void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t
   evaluateSky(paths.rays, missed, n, direction, rgba);
   for (uint32_t i = 0; i < n; i++) {
     const RayState& ray = paths.state[missed[i]];
-    float weight = 0, share = 1;
-    // Light sampling of the sky could also have chosen this direction, so `share` is the MIS weight
-    // of BSDF sampling.
+    float weight = 0, misWeight = 1;
+    // Light sampling of the sky could also have chosen this direction, so BSDF sampling has this
+    // MIS weight.
     if (ray.pdf > 0 && scene_.emitters.any()) {
       const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
-      share = ray.pdf / (ray.pdf + scene_.emitters.skyPdf(ray.previous, d));
+      misWeight = ray.pdf / (ray.pdf + scene_.emitters.skyPdf(ray.previous, d));
     }
     if (ray.specularSinceDiffuse) {
       const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
@@ -273,7 +273,7 @@ void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t
     }
     for (int k = 0; k < 3; k++) {
       if (std::isfinite(rgba[k][i]))
-        paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
+        paths.radiance[k][ray.path] += ray.throughput[k] * misWeight * rgba[k][i];
       weight += ray.throughput[k];
     }
     if (!ray.deflected) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
@@ -360,18 +360,18 @@ void TileRenderer::addShading(const Points& points, const RtsShading& shaded, co
       ledger_.cutByEnergy += double(through);
       continue;
     }
-    NextRay on{.pdf = 0,
-               .deflected = false,
-               .split = false,
-               .twoSided = false,
-               .channel = ray.channel,
-               .branch = ray.branch,
-               .media = ray.media};
+    NextRay nextRay{.pdf = 0,
+                    .deflected = false,
+                    .split = false,
+                    .twoSided = false,
+                    .channel = ray.channel,
+                    .branch = ray.branch,
+                    .media = ray.media};
     for (int k = 0; k < 3; k++) {
-      on.direction[k] = points.hits.direction[k][i];
-      on.weight[k] = transmission[k];
+      nextRay.direction[k] = points.hits.direction[k][i];
+      nextRay.weight[k] = transmission[k];
     }
-    push(points, i, order[i], on, paths);
+    push(points, i, order[i], nextRay, paths);
   }
 }
 

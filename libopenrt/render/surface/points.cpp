@@ -112,7 +112,7 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
   const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
   // t is exact to its last bit, so near the ray's origin the position is known far better than to
   // the rounding error of the radius.
-  if (metInDouble(r))
+  if (intersectedInDouble(r))
     for (int k = 0; k < 3; k++) {
       h.p[k] = p[k];
       h.bound[k] = bound[k];

@@ -168,9 +168,9 @@ float TileRenderer::emissionMisWeight(const RayState& ray, const Points& points,
       scene_.emitters.startsLightPaths(record, primitive, direction))
     return 0;
   if (!(ray.pdf > 0)) return 1;
-  const float chosen =
+  const float lightPdf =
       scene_.emitters.pdf(ray.previous, record, primitive, direction, h.segment[i]);
-  return std::isfinite(chosen) ? ray.pdf / (ray.pdf + chosen) : 0.0f;
+  return std::isfinite(lightPdf) ? ray.pdf / (ray.pdf + lightPdf) : 0.0f;
 }
 
 void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
