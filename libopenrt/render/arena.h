@@ -75,7 +75,7 @@ class Arena {
   size_t current_ = 0;
 };
 
-// Releases at the end of a scope what was allocated within it.
+// Releases, at the end of a scope, the memory that was allocated within it.
 class ArenaScope {
  public:
   explicit ArenaScope(Arena& arena) : arena_(arena), mark_(arena.mark()) {}

@@ -1,6 +1,6 @@
 // flush_denormals.h: RAII guard that flushes denormal floats to zero, as the ray kernels require.
-// Used around all code that computes or rounds the numbers of a picture, so that they do not depend
-// on the thread.
+// It is used around all code that computes or rounds the numbers of a picture, so that these do not
+// depend on the settings of the thread.
 #pragma once
 
 #include <xmmintrin.h>

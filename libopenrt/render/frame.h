@@ -2,10 +2,10 @@
 //
 // No such frame is continuous over all directions. Where it jumps, neighbouring samples choose
 // unrelated points on a light, which makes noise. T. Duff et al., "Building an Orthonormal Basis,
-// Revisited", JCGT 6(1), 2017, jumps along the whole circle z = 0, on which walls and lights often
-// lie; rounding alone then decides on a side. Here a fixed frame is reflected at the plane between
-// its third axis and -n. That is continuous except in one direction, which was chosen so that
-// scenes hardly use it.
+// Revisited", JCGT 6(1), 2017, jumps along the whole circle z = 0, on which the normals of walls
+// and lights often lie. Rounding alone then decides which side of the jump is used. Here a fixed
+// frame is reflected at the plane between its third axis and -n. That is continuous except in one
+// direction, which was chosen so that scenes hardly use it.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ template <class T> inline void basisOf(const T n[3], T s[3], T t[3]) {
     t[k] = second[k] - b * v[k];
   }
   if (square > T(0.01)) return;
-  // Near the jump the sum has lost digits: the frame is made orthogonal again.
+  // Near the jump the sum has lost digits, so the frame is made orthogonal again.
   const T along = s[0] * n[0] + s[1] * n[1] + s[2] * n[2];
   T length = 0;
   for (int k = 0; k < 3; k++) {

@@ -1,6 +1,6 @@
-// huge_spheres.h: tells which spheres are too large for ray intersection in single precision. Its
-// error is about 1e-7 of the radius, which may exceed the height of what stands on the sphere.
-// These spheres are intersected in double precision. [any]
+// huge_spheres.h: tells which spheres are too large for ray intersection in single precision. The
+// error of single precision is about 1e-7 of the radius, which may exceed the height of objects
+// that stand on the sphere. Huge spheres are intersected in double precision. [any]
 #pragma once
 
 #include <algorithm>
@@ -9,15 +9,17 @@
 
 namespace openrt {
 
-// In units of the ray kernels, which are the world's except for extreme worlds.
+// Spheres of at least this radius are huge. It is in units of the ray kernels, which are those of
+// the world except for worlds of extreme size.
 inline constexpr double hugeRadius = 1e4;
 
 inline bool isHugeSphere(const Matrix4d& unitToKernel) {
   return std::max({length(unitToKernel.column(0)), length(unitToKernel.column(1)),
                    length(unitToKernel.column(2))}) >= hugeRadius;
 }
-// The same for a sphere's record. Instances keep the kernels' precision.
-inline bool metInDouble(const Record& r) {
+// Returns whether the record is a huge sphere. Spheres in instances are intersected by the kernels,
+// in single precision.
+inline bool intersectedInDouble(const Record& r) {
   if (r.primitive != edit::Primitive::Sphere || r.instanced) return false;
   double largest = 0;
   for (int j = 0; j < 3; j++) {

@@ -63,14 +63,14 @@ class Intersector {
   virtual ~Intersector() = default;
   virtual void intersect(const Rays& rays, uint32_t mask, Coherence coherence,
                          RayHits& hits) const = 0;
-  // The same without the back faces of culled surfaces. Slower; for rays whose first hit is such a
-  // face.
+  // Intersects rays with the scene as if culled back faces did not exist. It is slower than
+  // intersect(), so it is called only for rays whose first hit is such a face.
   virtual void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const = 0;
   // Finds the nearest hit of each ray that is not on the given record.
   virtual void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const = 0;
   // Writes the bounds of the scene; low > high if it is empty. [any]
   virtual void bounds(float low[3], float high[3]) const = 0;
-  // Sets blocked to 1 where anything lies within the ray's interval.
+  // Sets blocked[i] to 1 if anything lies within the interval of ray i, else to 0.
   virtual void occluded(const Rays& rays, uint32_t mask, Coherence coherence,
                         uint8_t* blocked) const = 0;
 };

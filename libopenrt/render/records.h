@@ -1,5 +1,5 @@
-// records.h: per-geometry data that turn a hit into a shading point. A backend makes the records
-// when it builds a scene; they are immutable while a frame renders.
+// records.h: the data of each geometry from which a hit becomes a shading point. A backend makes
+// the records when it builds a scene; they are immutable while a frame renders.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ inline double determinantOf(const Affine& map) {
          m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
 }
 
-// Returns the inverse of an affine map; zero if it is singular.
+// Returns the inverse of an affine map, or the zero map if it is singular.
 inline Affine inverseOf(const Affine& m) {
   const auto& r = m.r;
   const float c[3][3] = {
@@ -49,8 +49,8 @@ inline Affine inverseOf(const Affine& m) {
 
 struct Record {
   edit::Primitive primitive = edit::Primitive::Triangles;
-  // Vertices are in the kernel's object frame and `toRender` applies; otherwise they are in render
-  // space divided by `scale`.
+  // If true, the vertices are in the kernel's object frame, and `toRender` maps them to render
+  // space. Otherwise they are in render space divided by `scale`.
   bool instanced = false;
   bool cull = false;
   bool flip = false;   // the kernel's geometric normal points to the back

@@ -31,7 +31,7 @@ struct ShaderSlot {
 struct LightSlot {
   ShaderSlot shader;
   Affine toLocal;   // render space -> light's space
-  Affine fromLocal; // vectors: light's space -> render space
+  Affine fromLocal; // light's space -> render space
 };
 
 struct RoleSlot {
@@ -52,7 +52,8 @@ class ShaderTable {
  public:
   ShaderTable(const Scene& scene, const ShaderRegistry& registry,
               const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
-  // The table of the same scene after only parameters of the `changed` shaders have changed.
+  // Makes the table from an older one of the same scene, from which only the parameters of the
+  // `changed` shaders differ.
   ShaderTable(const ShaderTable& before, const std::vector<uint32_t>& changed, const Scene& scene,
               const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   uint32_t slotOf(uint32_t shaderId) const; // slot of a surface shader; 0 for unknown ids
@@ -81,9 +82,9 @@ class ShaderTable {
             const std::map<uint32_t, uint32_t>& textureIndex, const RtsHost& host);
   void setMedium(ShaderSlot& slot, const RtsHost& host);
   std::vector<ShaderSlot> slots_;
-  // By slot; shared between tables while unchanged.
+  // Indexed by slot. Tables share the blocks that have not changed.
   std::vector<std::shared_ptr<const Block>> blocks_;
-  // The requested class by slot, even if the default shader replaces it.
+  // Indexed by slot: the class that the scene requests, even if the default shader replaces it.
   std::vector<const RtsClass*> classes_;
   std::vector<RtsMedium> media_;
   std::shared_ptr<const Slots> slotOf_;
@@ -104,12 +105,12 @@ struct RenderScene {
   float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
   double origin[3] = {0, 0, 0};                       // world position of render space's origin
   Emitters emitters; // path tracing: emissive surfaces and the environment
-  // By light set; null: all lights are evaluated at every hit.
+  // Indexed by light set. Null: every light is evaluated at every hit.
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>
       lightSources;                // light tracing; null if there is nothing to trace
   bool transparentShadows = false; // something transparent may lie between a point and a light
-  // skyKnown: the environment was tested for light; skyShines: it emits some
+  // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.
   bool skyKnown = false, skyShines = false;
   RenderHost host;
   edit::FrameSettingsT frame;

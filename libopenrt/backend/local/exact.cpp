@@ -1,7 +1,7 @@
 // exact.cpp: intersection of a ray and a triangle in double precision (exact.h). Numbers that
 // double precision cannot tell from 0 are recomputed in long double, which has 64 bits of mantissa
-// on x86. They are products of three differences of floats, for triangles a million times longer
-// than high that are hit at an angle of 1e-7.
+// on x86. Such numbers, products of three differences of floats, occur for triangles a million
+// times longer than high that are hit at an angle of 1e-7.
 #include "backend/local/exact.h"
 
 #include <algorithm>
@@ -24,10 +24,10 @@ template <class T> T side(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
   return (ey * sz - ez * sy) * d.x + (ez * sx - ex * sz) * d.y + (ex * sy - ey * sx) * d.z;
 }
 
-// The same, in long double if the double result is below the error bound. The bound depends only on
-// the edge, so both of its triangles choose the same precision. It leaves a factor of 2^20 above
-// the rounding error, because a barycentric weight must be right to about 1e-6 at grazing angles
-// too.
+// Returns side(), recomputed in long double if the double result is below the error bound. The
+// bound depends only on the edge, so both of its triangles choose the same precision. It leaves a
+// factor of 2^20 above the rounding error, because a barycentric weight must be right to about 1e-6
+// at grazing angles too.
 double sideOf(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
   const double rough = side<double>(p, q, d);
   const double doubt = 0x1p-30 * largest(q - p) * (largest(p) + largest(q)) * largest(d);

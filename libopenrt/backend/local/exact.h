@@ -36,7 +36,8 @@ double closestPointToLine(const RelativeTriangle& triangle, const Vec3d& directi
 double intersectPlane(const RelativeTriangle& triangle, const Vec3d& direction);
 
 // Returns whether the single-precision test of the ray kernels hits the triangle within an interval
-// of the ray: Pluecker coordinates as in Embree's robust mode. Used to count its errors.
+// of the ray: Pluecker coordinates as in Embree's robust mode. The result is only used to count the
+// errors of that test.
 bool isHitInSinglePrecision(const RelativeTriangle& triangle, const Vec3d& direction, float near,
                             float far);
 
@@ -49,7 +50,7 @@ inline void normalToRender(const Record& r, const float kernel[3], float out[3])
 
 // Returns whether the ray is at such a grazing angle that single precision misplaces t, u and v by
 // more than about 1e-5 of the triangle's distance. normal: the triangle's normal, of any length, in
-// the frame of the direction. Uses floats, because it is called for every hit.
+// the frame of the direction. It computes in floats, because it is called for every hit.
 inline bool grazes(const float normal[3], const float direction[3]) {
   float along = 0, n = 0, d = 0;
   for (int k = 0; k < 3; k++) {

@@ -67,7 +67,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::shared_ptr<Accel> accel_;
   Flattened flat_;
   PixelFootprint footprint_;
-  // recordsUnmoved_: every record stands where it stood in the last snapshot.
+  // scopedLights_: some light has a scope. recordsUnmoved_: every record is in the same place as in
+  // the last snapshot.
   bool scopedLights_ = false, recordsUnmoved_ = false;
   std::string transportReason_; // why the snapshot's transport was chosen
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;

@@ -13,9 +13,9 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t most = 1024; // shapes that are tested
-// Required distance in multiples of the ray offset: the light of a small lamp is then right to
-// about 1.5 %.
+constexpr uint32_t most = 1024; // maximum number of shapes that are tested
+// Required distance in multiples of the ray offset. At this distance the light of a small lamp has
+// an error of about 1.5 %.
 constexpr double wanted = 128;
 
 // A ray from the centre of a shape in a direction of its light. `skip` is the distance from the

@@ -1,5 +1,5 @@
 // near_lamps.h: finds emitting shapes that are so near to a surface that the offset of spawned rays
-// is not small compared to the distance. Called between frames by LocalBackend.
+// is not small compared to the distance between them. Called between frames by LocalBackend.
 #pragma once
 
 #include <string>

@@ -15,8 +15,8 @@ namespace {
 
 constexpr size_t block = 4096;
 
-// Transforms the kernel's normal out of the instance to the world's axes, turns it to the front and
-// normalises it.
+// Transforms the kernel's normal from the instance's frame to the world's axes, turns it to the
+// front side and normalises it.
 void worldNormal(const Record& r, const float k[3], float out[3]) {
   double n[3] = {k[0], k[1], k[2]};
   if (r.instanced)

@@ -23,8 +23,8 @@ Vec3d cornerOf(const Part& part, uint32_t triangle, int k) {
 }
 
 // Returns whether a ray passes an open edge so closely that it counts as a hit. The neighbour
-// beyond the edge is intersected in single precision, whose rounding might miss it too. The
-// tolerance is four units in the last place of the edge's distance from the ray's origin.
+// beyond the edge is intersected in single precision, whose rounding might also miss. The tolerance
+// is four units in the last place of the edge's distance from the ray's origin.
 bool closesGap(const RelativeTriangle& s, unsigned open, const Vec3d& d, double near,
                TriangleHit& at) {
   const double distance = closestPointToLine(s, d, open, at),
@@ -81,7 +81,7 @@ void boundsOf(const RTCBoundsFunctionArguments* a) {
   const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
   const Vec3d p = cornerOf(part, a->primID, 0), q = cornerOf(part, a->primID, 1),
               r = cornerOf(part, a->primID, 2);
-  // Padded by the tolerance of closesGap().
+  // The bounds are padded by the tolerance of closesGap().
   const auto wide = [](double x, double y, double z, float& low, float& high) {
     const double slack = 0x1p-21 * std::max({std::fabs(x), std::fabs(y), std::fabs(z)});
     low = float(std::min({x, y, z}) - slack);

@@ -1,4 +1,5 @@
-// thin.cpp: converts lines and points to spheres and round curves. Called by AccelBuilder.
+// thin.cpp: converts lines and points to spheres and round curves. Called by AccelBuilder, on the
+// application thread.
 #include "backend/local/thin.h"
 
 #include <cmath>

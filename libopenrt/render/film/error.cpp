@@ -5,13 +5,13 @@
 // of the replicates.
 //
 // A pixel's own estimate of that variance is not enough. Samples of light are skewed, and a pixel
-// that has missed a rare event has both too small a mean and too small a variance: of such
-// intervals 89 % held instead of 95 % (scene `room` of the audit). The variance of the surrounding
-// 5x5 pixels does not depend on what this pixel has missed, and with it 95 % hold. The weights of
-// the two variances are estimated as well: the variances of the window differ by more than sampling
-// noise explains where the differences are real (H. Bühlmann, E. Straub, "Glaubwürdigkeit für
-// Schadensätze", 1970; for intervals G. K. Smyth, "Linear models and empirical Bayes methods",
-// 2004).
+// that has missed a rare event has both too small a mean and too small a variance: only 89 % of
+// such intervals contained the true value instead of 95 % (scene `room` of the audit). The variance
+// of the surrounding 5x5 pixels does not depend on what this pixel has missed. With it 95 % of the
+// intervals contain the true value. The weights of the two variances are estimated as well: where
+// the variances of the window really differ, they differ by more than sampling noise explains (H.
+// Bühlmann, E. Straub, "Glaubwürdigkeit für Schadensätze", 1970; for intervals G. K. Smyth, "Linear
+// models and empirical Bayes methods", 2004).
 #include "render/film/error.h"
 
 #include <algorithm>
@@ -27,7 +27,8 @@ namespace {
 // Defaults of frames whose error is requested.
 constexpr uint32_t fewestSamples = 32, fewestReplicates = 16;
 constexpr uint32_t trustedReplicates = 8;
-constexpr uint32_t reach = 2; // the window: pixels to each side, within the tile
+// number of pixels of the window to each side; the window ends at the border of the tile
+constexpr uint32_t reach = 2;
 constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
 // fewestMeans: minimum effective number of replicate means that carry the variance of a window.
 // fewestHits: minimum number of hits of a rare bright feature in a window.
@@ -103,8 +104,8 @@ void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
 
 // The variance of a pixel's replicates as estimated from a window.
 struct Pool {
-  // mean: of the window's variances. samplingVariance: their variance due to sampling noise. real:
-  // their variance beyond that.
+  // mean: mean of the window's variances. samplingVariance: variance of these due to sampling
+  // noise. real: variance of these beyond sampling noise.
   double mean = 0, samplingVariance = 0, real = 0;
   explicit Pool(const Cell& window) {
     const double n = window.count;
@@ -115,7 +116,8 @@ struct Pool {
     real = std::max(0.0, between - samplingVariance);
   }
   double differing() const { return mean > 0 ? real / (mean * mean) : 0; }
-  // Combines the pixel's own variance with the window's; freedom gets the degrees of freedom.
+  // Combines the pixel's own variance with the window's. Writes the degrees of freedom to
+  // `freedom`.
   double combined(double own, double n, double replicates, double& freedom) const {
     const double weight =
         n > 1 && real + samplingVariance > 0 ? real / (real + samplingVariance) : 1;
@@ -124,10 +126,10 @@ struct Pool {
   }
 };
 
-// Detects rare bright features of a tile from the fourth moments of the samples' grey: how often
-// the affected pixels have hit them.
+// Detects rare bright features of a tile. Estimates from the fourth moments of the samples' grey
+// how often the affected pixels have hit them.
 struct Rare {
-  // Sums over the pixels. square2: of (sum of squares)^2 / samples.
+  // Sums over the pixels. square2: sum of (sum of squares)^2 / samples.
   double square2 = 0, fourth = 0, variance = 0;
   uint32_t pixels = 0;
   float largest[3] = {};
@@ -149,7 +151,8 @@ struct Rare {
     if (!(fourth > 0)) return std::numeric_limits<double>::infinity();
     return std::max(samples * square2 / fourth - 1, 1 / double(pixels));
   }
-  // Returns the mean contribution to a pixel: hits^2 times the variance that one hit causes.
+  // Returns the mean contribution of rare features to a pixel: the root of hits^2 times the
+  // variance that one hit causes.
   double mean(double samples) const { return std::sqrt(variance / pixels * hits(samples)); }
 };
 
@@ -185,7 +188,7 @@ class TileErrors {
     }
     if (!replicates_.many()) return;
     for (size_t i = 0; i < pixels_.size(); i++)
-      if (pixels_[i].replicates >= 2) out_[i].noise.own = 0; // noteNoise()
+      if (pixels_[i].replicates >= 2) out_[i].noise.own = 0; // noteNoise() adds to it
     for (const bool random : {false, true})
       for (int k = 0; k < 3; k++) pool(random, k);
     for (size_t i = 0; i < pixels_.size(); i++) {
@@ -205,9 +208,10 @@ class TileErrors {
   };
 
   // Pools variances. Random and non-random pixels are pooled separately, and exact pixels not at
-  // all. Noise may be equally strong everywhere, or proportional to the light. So either the
-  // variances are pooled, or the variances relative to the brightness of the surrounding 3x3
-  // pixels, whichever differ less.
+  // all. Noise may be equally strong everywhere, or proportional to the light. So two kinds of
+  // variances are compared, and the kind that differs less within the window is pooled: the
+  // variances themselves, and the variances relative to the brightness of the surrounding 3x3
+  // pixels.
   void pool(bool random, int k) {
     std::vector<Cell> cells(pixels_.size()), relative;
     const std::vector<double> bright = brightness(random, k);
@@ -271,12 +275,12 @@ class TileErrors {
   }
 
   void judge(const PixelSums& s, const Pooled& p, bool enough, PixelError& e) const {
-    // All samples are equal, here and in the window.
+    // dark: all samples of the pixel and of its window are equal.
     const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0);
     double half = 0;
     for (int k = 0; k < 3; k++) {
       double h = student95(p.freedom[k]) * std::sqrt(p.variance[k]);
-      if (dark) // no sample has hit anything: the rule of three
+      if (dark) // the rule of three applies, because no sample has hit anything
         h = rare_.largest[k] > 0 ? ruleOfThree / (s.samples * p.window) * rare_.largest[k]
                                  : std::numeric_limits<double>::infinity();
       e.halfWidth[k] = float(h);
@@ -284,8 +288,8 @@ class TileErrors {
     }
     finish(e);
     e.trusted = enough && !dark && !p.few;
-    // Features so rare that most windows have missed them: their mean is missing there, and no
-    // variance shows it.
+    // Some features are so rare that most windows have missed them. The means there lack their
+    // light, and no variance shows it.
     const double hits = rare_.hits(s.samples) * std::min(windowPixels, rare_.pixels);
     if (s.random && hits < fewestHits && rare_.mean(s.samples) > negligible * half)
       e.trusted = false;

@@ -8,10 +8,10 @@
 
 namespace openrt {
 
-// Returns the expected error of a doubted pixel over its bound. Most such pixels are exact.
-// Measured for an edge across pixels with 64 samples: the error is a tenth of the bound. The corner
-// that no sample hits has an area of 1 / n, and a fraction sqrt(1 / n) of all edges cuts off so
-// little.
+// Returns the expected error of a constant pixel beside an edge, divided by the bound of that
+// error. Most such pixels are exact. For an edge across pixels with 64 samples, the measured error
+// is a tenth of the bound. The corner that no sample hits has an area of 1 / n, and a fraction
+// sqrt(1 / n) of all edges cuts off so small a corner.
 double expectedOfBound(double samples) { return std::min(1.0, .8 / std::sqrt(samples)); }
 
 // Returns the range that contains 95 % of the values. Reorders the values.
@@ -61,8 +61,8 @@ bool ErrorMap::beside(uint32_t x, uint32_t y) const {
   return false;
 }
 
-// Writes the range of the colours within two pixels: the far side of an edge that cuts a corner is
-// there.
+// Writes the range of the colours within two pixels, because the far side of an edge that cuts a
+// corner of the pixel lies there.
 void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
   float low[3], high[3];
   for (int k = 0; k < 3; k++) low[k] = high[k] = seen_[size_t(y) * width_ + x].mean[k];
@@ -113,7 +113,7 @@ void ErrorMap::doubtConstants(
       const float edge = relativeError(behind, here.mean);
       doubted_[pixel] = relativeError(expectedOfBound(here.samples) * behind, here.mean);
       if (!noise_.empty())
-        noise_[pixel].own = edge; // its error if there is an edge; used by picture_error.cpp
+        noise_[pixel].own = edge; // the pixel's error if it has an edge; used by picture_error.cpp
       relative_[pixel] = -relativeError(sum, here.mean);
       changed(pixel, half);
     }

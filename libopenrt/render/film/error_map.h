@@ -16,7 +16,7 @@ namespace openrt {
 // Floor for relative errors (sum of the colours), so that errors of dark pixels are not
 // exaggerated.
 inline constexpr float darkest = 0.03f;
-// -ln 0.05: n misses in a row bound a probability by this / n with 95 %
+// -ln 0.05. After n misses in a row, a probability is below this / n with 95 % confidence.
 inline constexpr double ruleOfThree = 2.9957;
 
 struct PixelError {
@@ -48,16 +48,15 @@ class ErrorMap {
   ErrorMap(uint32_t width, uint32_t height, Kind kind);
   bool empty() const { return relative_.empty(); }
   void store(size_t pixel, const PixelError& e);
-  // Widens the intervals of constant pixels beside pixels that differ, and takes their trust. Such
-  // a pixel is not known to be exact: an edge may cut a corner that no sample hit. The interval
-  // becomes what the rule of three allows for. The same is done at the border of a picture that is
-  // not of one colour. Calls `changed` for each such pixel.
+  // Widens the intervals of constant pixels beside pixels that differ, and marks them as not
+  // trusted. Such a pixel is not known to be exact: an edge may cut a corner that no sample hit.
+  // The new interval is the bound given by the rule of three. The same is done at the border of a
+  // picture that is not of one colour. Calls `changed` for each such pixel.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
   // Records the radiance that each finished pixel of a tile may lack because no sample has found it
   // (ledger.h), summed over the colours.
-  //  - bound: bound by the samples of the tile. It takes the trust of the pixels with random
-  //  samples
-  //    whose interval is narrower, and `distrusted` is called for each of these.
+  //  - bound: bound by the samples of the tile. Pixels with random samples whose interval is
+  //    narrower lose their trust; `distrusted` is called for each of these.
   //  - expected: bound if light is found equally often everywhere in the picture. It widens the
   //    interval of the summary's mean.
   void addMissing(const Tile& tile, double bound, double expected,

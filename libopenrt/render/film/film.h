@@ -1,5 +1,5 @@
-// film.h: the film: the channels of the picture as floats, rows from the top. Each writing thread
-// has a tile of its own. Statistics of a pixel are accumulated in double (sums.h) and rounded once.
+// film.h: the film: the channels of the picture as floats, rows from the top. Threads write to
+// different tiles. Statistics of a pixel are accumulated in double (sums.h) and rounded once.
 #pragma once
 
 #include <cstdint>

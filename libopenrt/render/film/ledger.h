@@ -12,8 +12,8 @@ namespace openrt {
 
 inline double sumOf(const float v[3]) { return double(v[0]) + double(v[1]) + double(v[2]); }
 
-// Emitted light that only BSDF sampling can find: the ray comes from a non-specular surface by way
-// of mirrors or smooth boundaries, so light sampling cannot connect to the emitter.
+// Emitted light that only BSDF sampling can find: the ray comes from a non-specular surface via
+// mirrors or smooth boundaries, so light sampling cannot connect to the emitter.
 struct UnsampledLight {
   // Radiance if every such ray hit the brightest emitter that it can reach; summed over the
   // colours.
@@ -26,14 +26,15 @@ struct UnsampledLight {
     rays += c.rays;
     met += c.met;
   }
-  // Counts a ray. brightest: radiance of that emitter, summed over the colours. Its colour is not
-  // known here, so the largest component of the throughput bounds what the ray could contribute.
+  // Counts a ray. brightest: radiance of the brightest emitter that the ray can reach, summed over
+  // the colours. The colour of the emitter is not known here, so the largest component of the
+  // throughput bounds what the ray could contribute.
   void send(const float throughput[3], double brightest) {
     if (!(brightest > 0)) return;
     light += double(std::max({throughput[0], throughput[1], throughput[2]})) * brightest;
     rays++;
   }
-  // Counts what such a ray has hit.
+  // Counts the hit of such a ray if the radiance found there is at least half of `brightest`.
   void meet(const float radiance[3], double brightest) {
     if (sumOf(radiance) >= .5 * brightest) met++;
   }

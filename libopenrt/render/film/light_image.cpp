@@ -60,7 +60,7 @@ LightSums LightImage::at(uint32_t x, uint32_t y) const {
   return out;
 }
 
-void LightImage::look(const Tile& tile, std::vector<LightSums>& out) const {
+void LightImage::read(const Tile& tile, std::vector<LightSums>& out) const {
   std::shared_lock lock(sums_);
   out.clear();
   for (uint32_t y = tile.y0; y < tile.y1; y++)

@@ -1,7 +1,7 @@
 // light_image.h: the part of the picture made by light tracing. Light paths may contribute to any
 // pixel, so the picture is made in a fixed number of parts, each a whole picture rendered by one
-// thread. Their mean and its variance are kept. Parts are added in the order of their numbers,
-// early ones wait, so the sums do not depend on threads. [any]
+// thread. Their mean and its variance are kept. Parts are added in the order of their numbers, and
+// a part that arrives early waits. So the sums do not depend on threads. [any]
 #pragma once
 
 #include <atomic>
@@ -20,13 +20,13 @@ class LightImage {
   static constexpr uint32_t parts = 16; // number of parts of a frame
   LightImage(uint32_t width, uint32_t height, uint32_t all = parts)
       : width_(width), height_(height), all_(all), pixels_(size_t(width) * height), waiting_(all) {}
-  // Adds a part: rgb by pixel. Each number is added once.
+  // Adds a part: rgb by pixel, row by row. Each number may be added once.
   void add(uint32_t number, std::vector<float>&& part);
   uint32_t added() const { return added_.load(std::memory_order_acquire); }
   bool complete() const { return added() == all_; }
   // Returns a tile's sums, row by row, from the parts added so far. The variance is infinite with
   // fewer than two parts.
-  void look(const Tile& tile, std::vector<LightSums>& out) const;
+  void read(const Tile& tile, std::vector<LightSums>& out) const;
 
  private:
   struct Pixel {

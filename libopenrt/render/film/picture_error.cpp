@@ -1,17 +1,19 @@
 // picture_error.cpp: the error of the whole picture.
 //
 // A pixel's own variance is not reliable where light is rare. Pixels that have missed it have too
-// small a variance, and the mean of roots is less than the root of the mean. These pixels are
-// wrong, too, by what they have missed relative to their dark value. Therefore:
-// * Third cumulants, pooled over the surrounding pixels, give the share of rare jumps in the
-//   variance and the mean number of jumps per pixel (method of moments for a normal plus a Poisson
-//   variable). Closed sums then give the ratio of E|error| to what the own variances suggest.
-// * Errors sum to zero: what pixels with jumps have too much, the others have too little. The
-//   latter half is distributed over the surrounding pixels, each relative to its own colours. The
-//   window is chosen so large that it contains some jumps.
+// small a variance, and the mean of the roots of variances is less than the root of their mean.
+// These pixels also have an error of their own: the light that they have missed, relative to their
+// dark value. Therefore:
+// * Third cumulants, pooled over the surrounding pixels, give the share of rare jumps (hits of rare
+//   light) in the variance, and the mean number of jumps per pixel (method of moments for a normal
+//   plus a Poisson variable). Closed sums then give the ratio of E|error| to the value that the
+//   pixels' own variances suggest.
+// * Errors sum to zero: pixels with jumps are too bright by as much as the others are too dark. The
+//   deficit of the latter is distributed over the surrounding pixels, each relative to its own
+//   colours. The window is chosen so large that it contains some jumps.
 // * The interval is a prediction interval. It covers how far the errors of one picture scatter
-//   about their expectation, and how well that is known from the number of jumps. Pixels are
-//   treated as independent.
+//   about their expectation, and how well the number of jumps determines this expectation. Pixels
+//   are treated as independent.
 #include "render/film/picture_error.h"
 
 #include <algorithm>
@@ -36,7 +38,7 @@ constexpr double unsureShape = .3; // relative uncertainty of the correction by 
 // Relative uncertainty of the errors of random pixels: neighbours have correlated errors.
 constexpr double unsureScale = .6;
 constexpr double mostJumps = 24;                 // above this a Poisson variable is taken as normal
-constexpr std::array<uint32_t, 2> reaches{2, 5}; // window sizes: pixels to each side
+constexpr std::array<uint32_t, 2> reaches{2, 5}; // window sizes: number of pixels to each side
 
 double normalDensity(double x) { return 0.398942280401433 * std::exp(-.5 * x * x); }
 double normalBelow(double x) { return .5 * std::erfc(-x * 0.707106781186548); }
@@ -84,12 +86,13 @@ struct Cumulants { // relative cumulants, summed over pixels
     double normal = *middle; // variance of pixels without a jump: mean of the lower half
     for (auto at = seconds.begin(); at != middle; ++at) normal += *at;
     normal /= double(middle - seconds.begin() + 1) * lowerHalf;
-    // That is too large if most pixels have a jump; then the cumulants of equal jumps bound it.
+    // This estimate is too large if most pixels have a jump. Then the cumulants of equal jumps
+    // bound it.
     normal = std::min(normal, std::max(0.0, k2 - k3 * k3 * pixels / fourth));
     const double rest = k2 - normal;
     if (!(rest > 0)) return {};
-    // alike: right if all pixels are alike. apart: right if some pixels have many jumps and others
-    // none.
+    // Two estimates of the mean number of jumps. alike: right if all pixels are alike. apart: right
+    // if some pixels have many jumps and others none.
     const double alike = rest * rest * rest / (k3 * k3),
                  apart = square * (rest / k2) * (rest / k2) / fourth;
     const double jumps = std::min(std::max(alike, apart), mostJumps);
@@ -108,7 +111,7 @@ class PictureErrorEstimator {
 
   PictureError make() {
     collectCumulants();
-    for (size_t i = 0; i < pixels_.size(); i++) look(i);
+    for (size_t i = 0; i < pixels_.size(); i++) splitError(i);
     distribute();
     return sum();
   }
@@ -132,8 +135,8 @@ class PictureErrorEstimator {
     own_.resize(pixels_.size());
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (!random(i)) continue;
-      // Relative to the mean brightness of the 3x3 window: otherwise pixels with a hit would count
-      // for less.
+      // Cumulants are relative to the mean brightness of the 3x3 window. Relative to the pixel's
+      // own brightness, pixels with a hit would count for less.
       double scale = 0, n = 0;
       window(i, 1, [&](size_t at) {
         scale += double(pixels_[at].scale);
@@ -156,8 +159,8 @@ class PictureErrorEstimator {
     allShape_ = all_.shape(seconds_, allMet_);
   }
 
-  // Divides the pixel's error into the part at the pixel itself and the part at its neighbours.
-  void look(size_t i) {
+  // Splits the pixel's error into the part at the pixel itself and the part at its neighbours.
+  void splitError(size_t i) {
     const PixelNoise& p = pixels_[i];
     if (!p.finished || !std::isnan(doubted_[i])) return;
     stay_[i] = double(p.own);
@@ -176,7 +179,8 @@ class PictureErrorEstimator {
     seconds_.clear();
     if (!few) window(i, reach, [&](size_t at) { seconds_.push_back(own_[at].second); });
     const TailShape shape = few ? allShape_ : c.shape(seconds_, met);
-    double lack = 0, all = 0; // numbers of pixels: without a jump, in the window
+    // lack: number of pixels without a jump; all: of all pixels in the window
+    double lack = 0, all = 0;
     if (shape.missing > 0)
       window(i, reach, [&](size_t at) {
         all++;
@@ -185,14 +189,13 @@ class PictureErrorEstimator {
       });
     const double alike =
         std::max(1.0, all - lack) *
-        shape.without; // number of lacking pixels that are of the kind that has jumps
+        shape.without; // expected number of pixels without a jump among those that can have jumps
     const double expected = double(p.own) * shape.factor;
     corrected_ += std::fabs(expected - double(p.own)) / double(p.scale);
     missing_[i] = without > 0 ? shape.missing : 0;
     spread_[i] = missing_[i] * expected;
     stay_[i] = expected - spread_[i];
-    // No pixel lacks a larger fraction of its light than the relative error of the pixel that this
-    // is derived from.
+    // No neighbour lacks a larger fraction of its light than the relative error of pixel i.
     if (without > 0)
       part_[i] =
           std::min(spread_[i] / without, std::min(1.0, alike / lack) * expected / double(p.scale));
@@ -253,7 +256,8 @@ class PictureErrorEstimator {
       double v = varianceOfNormal * (1 - 2 * missing_[i]) * k * k + scattered * scattered;
       if (!std::isnan(doubted_[i]))
         v = kept[i] *
-            std::max(0.0, double(pixels_[i].own) - kept[i]); // own: its error if there is an edge
+            // own: the error of the pixel if it has an edge
+            std::max(0.0, double(pixels_[i].own) - kept[i]);
       variance += v;
       fourth += v * v;
     }
@@ -283,8 +287,8 @@ class PictureErrorEstimator {
   TailShape allShape_;
   double largest_ = 0, corrected_ = 0, allMet_ = 0;
   std::vector<double> stay_, spread_, missing_, lack_;
-  // part_: the pixel's relative share of what its neighbours lack. met_: threshold that tells
-  // pixels with a jump.
+  // part_: the pixel's relative share of what its neighbours lack. met_: second cumulant from which
+  // a pixel is taken to have a jump.
   std::vector<double> part_, met_;
   std::vector<double> seconds_; // working storage
   std::vector<uint32_t> reach_; // window size
@@ -295,20 +299,20 @@ class PictureErrorEstimator {
 TailShape tailShape(double variance, double jumps) {
   TailShape out;
   if (!(jumps > 0) || !(jumps < mostJumps)) return out;
-  // All in units of a jump.
+  // All values are in units of a jump.
   const double normal = std::sqrt(variance * jumps);
   const auto most = uint32_t(jumps + 6 * std::sqrt(jumps) + 6);
-  double probability = std::exp(-jumps), error = 0, told = 0;
+  double probability = std::exp(-jumps), error = 0, estimated = 0;
   for (uint32_t k = 0; k <= most; k++, probability *= jumps / k) {
     const double e = foldedMean(k - jumps, normal),
                  own = meanOfNormal * std::sqrt(normal * normal + k);
     if (k == 0) out.missing = probability * std::max(0.0, e - own);
     error += probability * e;
-    told += probability * own;
+    estimated += probability * own;
   }
-  if (!(told > 0) || !(error > 0)) return {};
+  if (!(estimated > 0) || !(error > 0)) return {};
   out.without = 1 / std::expm1(jumps);
-  out.factor = std::max(1.0, error / told);
+  out.factor = std::max(1.0, error / estimated);
   out.missing = std::min(.5, out.missing / error);
   return out;
 }

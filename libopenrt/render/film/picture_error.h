@@ -21,7 +21,8 @@ struct PixelNoise {
 };
 
 struct PictureError {
-  // Relative. The true mean error of the picture lies within mean +- interval with 95 %.
+  // Relative errors. The true mean error of the picture lies within mean +- interval with 95 %
+  // confidence.
   double mean = 0, interval = 0;
 };
 
@@ -35,9 +36,11 @@ PictureError pictureError(uint32_t width, std::span<const PixelNoise> pixels,
 struct TailShape {
   double factor = 1;  // expected |error| over the mean of what the pixels' own variances suggest
   double without = 0; // number of pixels without a jump for each pixel with one
-  double missing = 0; // share of the error at pixels that had no jump and so cannot know of it
+  // share of the error at pixels without a jump, whose own variance does not show it
+  double missing = 0;
 };
-// variance: of the normal part over that of the jumps. jumps: expected number of jumps in a pixel.
+// variance: variance of the normal part divided by that of the jumps. jumps: expected number of
+// jumps in a pixel.
 TailShape tailShape(double variance, double jumps);
 
 } // namespace openrt

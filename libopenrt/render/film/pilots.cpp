@@ -21,12 +21,14 @@
 namespace openrt {
 namespace {
 
-// Fraction of the target to aim at: a picture is noisier than its pilot as often as less noisy.
+// Fraction of the target to aim at. It is below 1 because a picture is noisier than its pilot as
+// often as less noisy.
 constexpr double margin = .9;
 constexpr double unknownPart = .25; // fraction of the target that untrusted pixels may make up
-constexpr double farthest = 8;      // largest prediction over the pilot's own number of samples
-// growth: from pilot to pilot. share: samples allowed over those of the largest
-// pilot.
+// largest predicted number of samples, divided by that of the pilot
+constexpr double farthest = 8;
+// growth: ratio of the samples of successive pilots. share: samples that the picture may take,
+// divided by those of the largest pilot.
 constexpr uint32_t growth = 4, share = 4;
 
 // Returns the numbers of samples that tiles may take: four per octave, multiples of 32. The last is
@@ -41,7 +43,7 @@ std::vector<uint32_t> ladderOf(uint32_t most) {
   return out;
 }
 
-// Returns the number of samples of the pilot after one of `samples`; 0: there is none.
+// Returns the number of samples of the pilot that follows a pilot of `samples`; 0: there is none.
 uint32_t pilotAfter(uint32_t samples, uint32_t most) {
   uint32_t next = 0;
   for (uint32_t n = most / share; n >= 2 * samples; n /= growth)
@@ -172,7 +174,8 @@ std::vector<Pilots::Decision> Pilots::decideAll() {
 Pilots::Decision Pilots::decide(uint32_t tile, std::span<const PilotPixel> pixels,
                                 uint32_t samples) const {
   Estimate o = estimate(grid_.at(tile), pixels, samples);
-  // With fewer the picture's error would be as unreliable as the last pilot's.
+  // With fewer samples than the last pilot, the picture's error would be as unreliable as that of
+  // the pilot.
   o.wanted = std::max(o.wanted, samples);
   return decision(o, o.unknown, samples);
 }

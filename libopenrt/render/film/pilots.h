@@ -26,7 +26,8 @@ struct PilotPixel {
   bool trusted = false;  // whether the error of the samples alone is trusted
   bool constant = false; // all samples are equal and no path took a random decision
 };
-// Summarises a pixel. error: of the samples alone; the light paths' error is added to it.
+// Summarises a pixel. error: error of the samples alone; this function adds the error of the light
+// paths to it.
 PilotPixel pilotPixel(PixelError& error, const LightSums* light);
 
 class Pilots {
@@ -38,11 +39,11 @@ class Pilots {
     // true: take a further pilot of `samples`; false: take `samples` for the picture
     bool pilot = false;
   };
-  // Stores the first pilot's results of a tile, row by row. [any] Once for each tile.
+  // Stores the first pilot's results of a tile, row by row. Call once for each tile. [any]
   void note(uint32_t tile, std::span<const PilotPixel> pixels, std::span<const PixelError> errors);
   // Decides for all tiles, after note() was called for each.
   std::vector<Decision> decideAll();
-  // Decides after a further pilot of `samples` of a tile. After decideAll(). [any]
+  // Decides after a further pilot of `samples` of a tile. Call after decideAll(). [any]
   Decision decide(uint32_t tile, std::span<const PilotPixel> pixels, uint32_t samples) const;
 
  private:

@@ -13,7 +13,7 @@
 namespace openrt {
 namespace {
 
-// Stored as bytes.
+// PixelSums are stored as bytes.
 static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout_v<PixelSums>);
 
 // Returns the bytes of PixelSums to store. Only the part that the frame needs is stored, because
@@ -24,8 +24,8 @@ size_t keptBytes(const RequiredSums& g) {
   return g.spread ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
 }
 
-// Merges the sums for error estimates. change: what moves the differences of l to the reference
-// point of s.
+// Merges the sums for error estimates. change: the shift that makes the differences of l relative
+// to the reference point of s.
 void mergeTails(PixelSums& s, const PixelSums& l, const double change[3], double size) {
   const double c = change[0] + change[1] + change[2], n = l.samples,
                grey1 = l.delta[0] + l.delta[1] + l.delta[2];

@@ -26,7 +26,7 @@ struct PixelSums { // sums of one pixel, samples added in order
   double rgba[4] = {};
   float depth = 0, position[3] = {}, name = 0; // values of sample 0
   uint32_t samples = 0;
-  // Sums of (x - first) and of its square: avoids cancellation.
+  // Sums of (x - first) and of its square. The difference avoids cancellation.
   double first[3] = {}, delta[3] = {}, delta2[3] = {};
   double normal[3] = {}, albedo[3] = {};
   // Over the complete replicates: sums of their delta, and of its square, cube and fourth power.
@@ -47,8 +47,8 @@ struct PixelSums { // sums of one pixel, samples added in order
     rgba[3] += alpha;
     samples++;
   }
-  void addColor(const float radiance[3],
-                float alpha) { // Replaces add() if the frame does not need the variance.
+  // Replaces add() if the frame does not need the variance.
+  void addColor(const float radiance[3], float alpha) {
     for (int k = 0; k < 3; k++) rgba[k] += radiance[k];
     rgba[3] += alpha;
     samples++;
@@ -82,8 +82,8 @@ struct SumBlock {
   void append(const SumBlock& later, const RequiredSums& required, const Replicates& replicates);
 };
 
-// Frames of at least this many samples are made of leaves and may be made in rounds. With fewer,
-// small waves would cost too much.
+// Frames of at least this many samples are made of leaves and may be made in rounds. In smaller
+// frames the small waves of leaves would cost too much.
 inline constexpr uint32_t fewestOfLeaves = 32;
 // Returns the end of the leaf that starts at `first`. The samples of a leaf are always taken
 // together: [0,1) [1,2) [2,4) ... [16,32) [32,64) [64,96) ...
@@ -104,8 +104,8 @@ class TileSums {
   // Merges the block with all its stored siblings and removes them.
   void join(SumBlock& block, const RequiredSums& required, const Replicates& replicates);
   void keep(const SumBlock& block, const RequiredSums& required);
-  // Returns the number of samples from 0 on without a gap. block: counted as well though it is not
-  // stored; may be null.
+  // Returns the number of samples from 0 on without a gap. block: a block that is not stored but is
+  // counted as well; may be null.
   uint32_t reach(const SumBlock* block) const;
   // Merges the gapless blocks from the left. Returns `block` or `out`, or null if there is none.
   const SumBlock* fold(const SumBlock* block, SumBlock& out, const RequiredSums& required,

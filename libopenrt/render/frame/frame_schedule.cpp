@@ -1,5 +1,5 @@
-// frame_schedule.cpp: the schedule. The samples of a picture depend only on the settings and on
-// pilots, with a time limit also on the time; never on who does which job.
+// frame_schedule.cpp: the schedule. The samples of a picture depend only on the settings and on the
+// pilots, and with a time limit also on the time. They never depend on who does which job.
 #include "render/frame/frame_schedule.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace openrt {
 namespace {
 
-// Largest progressive round, so that the picture keeps improving everywhere.
+// Largest number of samples of a progressive round, so that the picture keeps improving everywhere.
 constexpr uint32_t mostOfRound = 32;
 constexpr uint32_t pilotSeed = 0x70696c6f, furtherSeed = 0x66757274, lightSeed = 0x6c616d70,
                    earlySeed = 0x6561726c;
@@ -23,8 +23,8 @@ bool makesRounds(const edit::FrameSettingsT& frame) {
                              : frame.progressive && frame.samples >= fewestOfLeaves;
 }
 
-// Returns the number of light paths: as many as camera paths. If that number is open, at most a few
-// per pixel.
+// Returns the number of light paths: as many as camera paths. If the number of camera paths is
+// open, at most 64 per pixel.
 uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   constexpr uint32_t mostOfOpen = 64;
   const bool open = frame.targetError > 0 || frame.timeLimit > 0;
@@ -254,7 +254,8 @@ bool FrameSchedule::endTimed(double now) {
     pilot_ = false;
   } else {
     first_ += samples_;
-    // Otherwise the next round would overshoot the limit by more than this one falls short of it.
+    // With less time left, the next round would overshoot the limit by more than this one falls
+    // short of it.
     more = left >= took / 2;
   }
   samples_ = std::min(replicates_.size(), frame_.samples - std::min(first_, frame_.samples));
@@ -270,7 +271,7 @@ bool FrameSchedule::endProgressive() {
     most_ = *std::max_element(wanted_.begin(), wanted_.end());
     pilot_ = false;
     first_ = 0;
-    samples_ = pilotSamples_; // fewer would look noisier than the pilot
+    samples_ = pilotSamples_; // a smaller first round would look noisier than the pilot
   } else
     samples_ = std::clamp(first_, 1u, mostOfRound);
   const uint32_t all = pilot_ ? pilotSamples_ : most_;
@@ -278,9 +279,9 @@ bool FrameSchedule::endProgressive() {
   return first_ < most_;
 }
 
-// Releases parts of light tracing. In progressive frames they are made gradually, as samples are.
-// The early display affects neither the finished picture, which has all parts, nor the result of a
-// pilot.
+// Releases parts of light tracing. In progressive frames the parts are made gradually, like the
+// samples. The early display affects neither the finished picture, which has all parts, nor the
+// result of a pilot.
 void FrameSchedule::wantLight() {
   if (!lamps_) return;
   const uint32_t all = pilot_ ? pilotSamples_ : most_;

@@ -33,7 +33,7 @@ class FrameSchedule {
   struct OutstandingJob { // a job that was handed out and is not done
     Job job;
     Stage stage = Stage::samples;
-    uint32_t until = 0;   // samples of the tile altogether in this stage
+    uint32_t until = 0;   // total number of samples of the tile in this stage
     bool further = false; // not the first pilot of the tile
     uint32_t round = 0;
     bool back = false; // returned by its worker; waits to be handed out again
@@ -42,11 +42,12 @@ class FrameSchedule {
   // Sets the order of the tiles. Only before the first job, and only for frames that are not shown
   // before they are finished.
   void order(std::vector<uint32_t> tiles);
-  // Returns the tile that next() will hand out; the number of tiles if there is none or it is open.
+  // Returns the tile that next() will hand out; the number of tiles if there is none or it is not
+  // known yet.
   uint32_t upcoming() const;
   // Hands out the next job. Returns false if no job is available now.
   bool next(Job& job, uint32_t largest, double now);
-  // Takes a finished job off the outstanding ones. Returns nothing if it is not outstanding.
+  // Takes a finished job off the outstanding ones. Returns nullopt if it is not outstanding.
   std::optional<OutstandingJob> claim(const Job& job);
   // Counts a job as done. Call after its result was merged.
   void done(const OutstandingJob& out, double now);
@@ -128,7 +129,7 @@ class FrameSchedule {
 
   std::unordered_map<Key, OutstandingJob, KeyHash> outstanding_;
   std::deque<Key> back_;
-  // Amounts of work in pixels times samples, or light paths.
+  // Amounts of work: pixels times samples, plus the number of light paths.
   double undone_ = 0, done_ = 0, all_ = 0;
 };
 

@@ -106,9 +106,9 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
                             const FrameSchedule::OutstandingJob* pilot) {
   std::vector<LightSums> lights;
   if (light && light->added() > 1)
-    light->look(tile, lights);
+    light->read(tile, lights);
   else if (early && early->complete())
-    early->look(tile, lights);
+    early->read(tile, lights);
   const bool lamps = !lights.empty();
   std::vector<PixelError> errors;
   if (!film.errors().empty()) {
@@ -118,18 +118,18 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
   }
-  std::vector<PilotPixel> asked(pilot ? sums.size() : 0);
+  std::vector<PilotPixel> pilotPixels(pilot ? sums.size() : 0);
   size_t i = 0;
   for (uint32_t y = tile.y0; y < tile.y1; y++)
     for (uint32_t x = tile.x0; x < tile.x1; x++, i++) {
       PixelError* error = errors.empty() ? nullptr : &errors[i];
       if (pilot)
-        asked[i] = pilotPixel(errors[i], lamps ? &lights[i] : nullptr);
+        pilotPixels[i] = pilotPixel(errors[i], lamps ? &lights[i] : nullptr);
       else if (error && lamps)
         openrt::addLight(lights[i], *error);
       if (show) film.store(x, y, sums[i], lamps ? &lights[i] : nullptr, error);
     }
-  if (pilot) decide(*pilot, asked, errors);
+  if (pilot) decide(*pilot, pilotPixels, errors);
 }
 
 // Decides on the tile's next samples. Called under the tile's lock.
@@ -154,7 +154,7 @@ void FrameWork::Impl::decide(const FrameSchedule::OutstandingJob& pilot,
   for (uint32_t i = 0; i < count; i++) apply(i, decisions[i]);
 }
 
-// Called under `mutex`.
+// Passes a pilot's decision to the schedule. Called under `mutex`.
 void FrameWork::Impl::apply(uint32_t tile, const Pilots::Decision& decision) {
   if (decision.pilot)
     schedule.addPilot(tile, decision.samples);
@@ -168,11 +168,11 @@ void FrameWork::Impl::finish(const FrameSchedule::OutstandingJob& out, const Sum
                              TileState& state) {
   const bool pilot = out.stage == Stage::pilot,
              show = !pilot || (schedule.rounds() && !out.further);
-  const bool asks = pilot && pilots;
-  store(grid.at(out.job.number), all.sums, out.job.replicates, show, asks ? &out : nullptr);
+  const bool decides = pilot && pilots;
+  store(grid.at(out.job.number), all.sums, out.job.replicates, show, decides ? &out : nullptr);
   state.shown |= show;
   if (!pilot) state.ledger = all.ledger;
-  if (!pilot || asks) return;
+  if (!pilot || decides) return;
   std::lock_guard lock(mutex); // the pilot only measured the time
   schedule.decided(out.job.number, frame.samples);
 }
@@ -247,8 +247,8 @@ void FrameWork::Impl::judgeErrors() {
     whole.add(tiles[i].ledger);
   }
   unmet = whole.missedRadiance(whole, paths);
-  // A tile is trusted by what its own paths met: in another place of the picture another lamp may
-  // be the one that is met.
+  // Whether a tile is trusted depends on the emitters that its own paths have hit. Paths elsewhere
+  // in the picture may have hit another lamp.
   for (uint32_t i = 0; i < count; i++) {
     const Ledger& tile = tiles[i].ledger;
     film.addMissing(grid.at(i), tile.missedRadiance(tile, pathsOf(i)),
@@ -256,7 +256,7 @@ void FrameWork::Impl::judgeErrors() {
   }
 }
 
-// Advances the frame after each change.
+// Finishes waiting tiles, and the frame if nothing is left to do. Called after each change.
 void FrameWork::Impl::advance() {
   finishWaitingTiles();
   bool last = false;
@@ -389,8 +389,8 @@ float FrameWork::progress() const {
 bool FrameWork::snapshot(uint32_t channel, std::span<float> out) const {
   std::shared_lock notEnding(impl_->ending);
   if (!impl_->film.clear(channel, out)) return false;
-  for (uint32_t i = 0; i < impl_->count;
-       i++) { // locks one tile at a time, so that merging threads do not wait for long
+  // Locks one tile at a time, so that merging threads do not wait for long.
+  for (uint32_t i = 0; i < impl_->count; i++) {
     std::lock_guard lock(impl_->tiles[i].mutex);
     if (impl_->tiles[i].shown) impl_->film.copy(channel, tile(i), out);
   }

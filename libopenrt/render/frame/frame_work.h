@@ -32,7 +32,7 @@ class FrameWork {
 
   enum class Next : uint8_t {
     job,
-    wait, // for outstanding jobs
+    wait, // nothing can be handed out until outstanding jobs are done
     over
   };
   // Hands out the next job. largest: preferred maximum of samples per pixel; the samples of a tile
@@ -42,14 +42,14 @@ class FrameWork {
   // job. A frame that shows early results keeps its own order.
   void order(std::vector<uint32_t> tiles);
   uint32_t upcoming() const; // Returns the tile that next() will hand out; tiles() if that is open.
-  // Returns a job undone; it is handed out again before others.
+  // Takes back a job that was not done; it is handed out again before others.
   void giveBack(const Job& job);
   // Takes the result of a job that was handed out. Returns true the first time; repeated results
   // are dropped.
   bool take(const Job& job, JobResult&& result);
   // Stops handing out jobs and drops outstanding ones; the picture keeps what is finished.
   void cancel();
-  bool over() const; // all results were taken, or the frame was cancelled
+  bool over() const; // whether all results were taken, or the frame was cancelled
   // Sets a callback for threads that got `wait` and should call next() again. It is called from the
   // thread that hands out or takes a job, once for all waiting threads.
   void onChange(std::function<void()> changed);
@@ -59,10 +59,10 @@ class FrameWork {
   Tile tile(uint32_t number) const;
   float progress() const;
   bool snapshot(uint32_t channel, std::span<float> out) const;
-  const Film& film() const; // once over
+  const Film& film() const; // valid once over() is true
   RayCounters counters() const;
-  void describeError(RTstats& stats) const;  // once over
-  void describeLedger(RTstats& stats) const; // once over
+  void describeError(RTstats& stats) const;  // valid once over() is true
+  void describeLedger(RTstats& stats) const; // valid once over() is true
 
  private:
   struct Impl;

@@ -30,10 +30,8 @@ struct Job {
 };
 
 struct JobResult {
-  std::vector<PixelSums>
-      // Sums of a tile, row by row; fields that the frame does not need are undefined
-      // (RequiredSums).
-      sums;
+  // Sums of a tile, row by row. Fields that the frame does not need are undefined (RequiredSums).
+  std::vector<PixelSums> sums;
   std::vector<float> light; // rgb of the whole picture, row by row
   Ledger ledger;
   RayCounters counters;

@@ -58,7 +58,7 @@ struct JobRunner::Impl {
 bool JobRunner::Impl::samples(const Job& job, const std::atomic<bool>& stop, JobResult& result) {
   const Tile tile = grid.at(job.number);
   spare.push_back(std::move(result.sums));
-  // Blocks of a job that was given up.
+  // The stack still holds the blocks of a job that was given up: reuse their memory.
   for (SumBlock& left : stack) spare.push_back(std::move(left.sums));
   stack.clear();
   const auto append = [&](SumBlock& to, SumBlock& later) {

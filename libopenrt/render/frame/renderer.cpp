@@ -16,8 +16,8 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Returns the maximum number of samples of a job: a picture with few tiles keeps all threads busy
-// until its end.
+// Returns the maximum number of samples of a job: small enough that a picture with few tiles keeps
+// all threads busy until its end.
 uint32_t largestJob(const edit::FrameSettingsT& frame, uint32_t tiles, uint32_t threads) {
   constexpr uint32_t jobsOfThread = 8;
   if (threads < 2 || tiles >= jobsOfThread * threads) return ~0u;

@@ -1,7 +1,7 @@
-// result_codec.h: lossless encoding of job results as bytes. Of a pixel's sums only the fields that
-// the frame's channels need are encoded, field by field: as one value if all pixels have the same,
-// as floats if that loses nothing, else as doubles. Ray counts, faults and seconds are not encoded.
-// [any]
+// result_codec.h: lossless encoding of job results as bytes. The encoder writes only those fields
+// of a pixel's sums that the frame's channels need. It writes each field of all pixels as one value
+// if they all have the same, as floats if that loses nothing, else as doubles. Ray counts, faults
+// and seconds are not encoded. [any]
 //
 // A tile: 9 doubles (Ledger), then each field of all pixels, row by row: a byte for the form (0:
 // one value; 1: floats; 2: all values as they are) and the values.

@@ -31,7 +31,8 @@ double areaOf(const float p[3][3], float normal[3]) {
   return length / 2;
 }
 
-// Returns whether the map reverses the orientation of corners; the kernel's normal does not follow.
+// Returns whether the instance's map reverses the orientation of corners. The kernel's normal is
+// not reversed with it.
 bool mirrors(const Record& r) { return r.instanced && determinantOf(r.toRender) < 0; }
 
 // Probe rays that hit points of a record along given directions, usually the normal.
@@ -46,8 +47,8 @@ struct ProbeRays {
     hits.allocate(arena, capacity);
     order = arena.take<uint32_t>(padded(capacity));
   }
-  void add(const float place[3],
-           const float towards[3]) { // towards: unit direction to the ray's origin
+  // towards: unit direction from the point to the ray's origin.
+  void add(const float place[3], const float towards[3]) {
     for (int k = 0; k < 3; k++) {
       rays.org[k][count] = place[k] + towards[k];
       rays.dir[k][count] = -towards[k];
@@ -96,8 +97,9 @@ void emittedBrightness(const RenderScene& scene, uint32_t record, const ProbeRay
   }
 }
 
-// Returns a normal as the kernel gives it: for an instance in its own frame, up to its length the
-// inverse transpose of kernelNormal's map.
+// Writes a normal as the kernel would return it. For an instance that is the normal in the
+// instance's frame, mapped by the transpose of toRender: the inverse of kernelNormal's map except
+// for the length.
 void kernelNormal(const Record& r, const float normal[3], float out[3]) {
   for (int k = 0; k < 3; k++) out[k] = normal[k];
   if (!r.instanced) return;
@@ -146,7 +148,7 @@ void triangleEmission(const RenderScene& scene, uint32_t record,
   }
 }
 
-// The same for the outside of a sphere, from the ends of its axes.
+// Computes the mean emission of the outside of a sphere from the six ends of its axes.
 Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& arena) {
   const Record& r = scene.records[record];
   ArenaScope scope(arena);
@@ -232,7 +234,8 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
   Arena arena;
   if (r.primitive == edit::Primitive::Sphere) {
     const Brightness emission = sphereEmission(scene, id, arena);
-    const double outside = emission.luminance; // from inside, BSDF sampling finds it
+    // light emitted to the inside is found by BSDF sampling
+    const double outside = emission.luminance;
     firstOf_[id] = uint32_t(shapes_.size());
     brightest_ = std::max(brightest_, emission.sum);
     bounds.push_back(sphereBounds(r, outside));
@@ -292,7 +295,7 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
   const auto& m = r.toRender.r;
   for (int k = 0; k < 3; k++) {
     p.position[k] = float(m[k][0] * l[0] + m[k][1] * l[1] + m[k][2] * l[2] + m[k][3]);
-    // Transformed by the inverse transpose.
+    // Normals are transformed by the inverse transpose.
     n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] + r.fromRender.r[2][k] * l[2];
     length += n[k] * n[k];
   }

@@ -43,10 +43,10 @@ class EmissiveShapes {
   };
   // Samples a point of a shape. u, v: uniform in the unit square.
   Place place(const RenderScene& scene, uint32_t number, float u, float v) const;
-  // Evaluates the emitted radiance of a point in a direction.
+  // Evaluates the radiance that a point emits in a direction.
   void radiance(const RenderScene& scene, uint32_t number, const Place& place,
                 const float towards[3], Arena& arena, float out[3]) const;
-  // Returns the number of a shape; none if it does not emit.
+  // Returns the number of a primitive's shape, or `none` if its record is not emissive.
   uint32_t find(uint32_t record, uint32_t primitive) const {
     const uint32_t first = firstOf_[record];
     return first == none ? none : first + primitive;

@@ -174,8 +174,8 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& samplin
     RtsSurface surface{};
     for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(m));
     RtsBatch inner = makeBatch();
-    // Random decisions are off: the emission must be the one that the sampling tables were built
-    // from.
+    // A null tracer turns off random decisions of the shader, because the emission must be the one
+    // that the sampling tables were built from.
     inner.tracer = nullptr;
     inner.points = &seen;
     {

@@ -15,7 +15,7 @@ namespace {
 bool sameEmission(const RenderScene& a, const RenderScene& b) {
   if (a.shaders == b.shaders) return true;
   if (!a.shaders->extends(*b.shaders)) return false;
-  for (const Record& r : a.records) { // an unchanged shader keeps its parameter block
+  for (const Record& r : a.records) { // the parameter block of an unchanged shader stays the same
     const ShaderSlot &now = (*a.shaders)[r.shader], &then = (*b.shaders)[r.shader];
     if (((now.traits | then.traits) & RTS_EMISSIVE) && now.params != then.params) return false;
   }
@@ -90,12 +90,13 @@ LightSample Emitters::choose(const LightSampleContext& from, double pick, float 
     if (!(lightSample.pdf > 0)) return {};
     lightSample.pdf /= skyJacobian(local);
     const auto& m = scene_->environment.fromLocal.r;
-    double way[3], square = 0;
+    double towards[3], square = 0;
     for (int k = 0; k < 3; k++) {
-      way[k] = double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
-      square += way[k] * way[k];
+      towards[k] =
+          double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
+      square += towards[k] * towards[k];
     }
-    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(way[k] / std::sqrt(square));
+    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k] / std::sqrt(square));
   } else {
     const float* normal = sideOf(from);
     const double left = (pick - double(skyProbability_)) / (1 - double(skyProbability_));
@@ -105,11 +106,11 @@ LightSample Emitters::choose(const LightSampleContext& from, double pick, float 
     const EmissiveShapes::Shape& shape = (*shapes_)[choice.light];
     lightSample.record = shape.record;
     lightSample.primitive = shape.primitive;
-    double way[3], distance = 0;
-    const double alone = sampleShape(shape, from, u, v, way, distance, lightSample.nearEdge);
+    double towards[3], distance = 0;
+    const double alone = sampleShape(shape, from, u, v, towards, distance, lightSample.nearEdge);
     lightSample.pdf = float((1 - double(skyProbability_)) * double(choice.probability) * alone);
     lightSample.distance = float(distance);
-    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(way[k]);
+    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k]);
   }
   const float* normal = sideOf(from);
   if (!(lightSample.pdf > 0) || !std::isfinite(lightSample.pdf) ||
@@ -118,7 +119,8 @@ LightSample Emitters::choose(const LightSampleContext& from, double pick, float 
   return lightSample;
 }
 
-// At an edge the hit may be a neighbouring primitive of the same surface at the same distance.
+// Near an edge the ray may hit a neighbouring primitive of the same surface at the same distance;
+// that hit counts as well.
 bool Emitters::isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
                             float distance) const {
   if (lightSample.record != record) return false;
@@ -135,15 +137,15 @@ float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t pr
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
   if (!shape.sides) return 0;
   const float* normal = sideOf(from);
-  const double way[3] = {direction[0], direction[1], direction[2]};
+  const double towards[3] = {direction[0], direction[1], direction[2]};
   double alone = 0;
   if (shape.sphere) {
     const Record& r = scene_->records[record];
     const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
-    if (shape.sides & 1) alone = seen.pdf(way);
+    if (shape.sides & 1) alone = seen.pdf(towards);
   } else {
     const SphericalTriangle seen(shape.corner, from.position);
-    if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.pdf(way);
+    if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.pdf(towards);
   }
   if (!(alone > 0)) return 0;
   return float((1 - double(skyProbability_)) *

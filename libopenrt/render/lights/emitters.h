@@ -40,8 +40,8 @@ class Emitters {
   // this scene.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
   bool any() const { return skyProbability_ >= 0; }
-  // Return the largest mean radiance, summed over the colours: of the sky's cells alone, and of
-  // these and the sides of shapes.
+  // Return the largest mean radiance, summed over the colours. brightestSky(): of the cells of the
+  // sky. brightest(): of these and of the sides of shapes.
   double brightestSky() const;
   double brightest() const;
   // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point
@@ -54,7 +54,8 @@ class Emitters {
   // cannot sample it.
   float pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
             const float direction[3], float distance) const;
-  // The same for the sky, for a direction in the environment's local space.
+  // Returns the solid-angle pdf of choose() for a direction to the sky, given in the environment's
+  // local space.
   float skyPdf(const LightSampleContext& from, const float local[3]) const;
 
   // Returns whether light paths start on the surface hit along a direction

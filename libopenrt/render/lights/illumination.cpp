@@ -20,13 +20,14 @@ constexpr uint32_t none = ~0u;
 // Returns the light sampler of the batch; null if it evaluates every light of its set.
 const LightSampler* lightSamplerOf(const RtsBatch& batch) {
   if (!batch.tracer || !batch.scene->lightSamplers) return nullptr;
-  const LightSampler& many = (*batch.scene->lightSamplers)[batch.lightSet];
-  return many.chooses() ? &many : nullptr;
+  const LightSampler& sampler = (*batch.scene->lightSamplers)[batch.lightSet];
+  return sampler.chooses() ? &sampler : nullptr;
 }
 
 const LightSlot& lightOf(const RtsBatch& batch, uint32_t i) {
-  const LightSampler* many = lightSamplerOf(batch);
-  return batch.scene->lights[many ? many->always()[i] : batch.scene->lightSets[batch.lightSet][i]];
+  const LightSampler* sampler = lightSamplerOf(batch);
+  return batch.scene
+      ->lights[sampler ? sampler->always()[i] : batch.scene->lightSets[batch.lightSet][i]];
 }
 
 void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* const out[3]) {
@@ -38,7 +39,8 @@ void pointsToLocal(const Affine& m, uint32_t n, const float* const p[3], float* 
   }
 }
 
-// Transforms light-space vectors to unit vectors in render space; reach gets their length there.
+// Transforms light-space vectors to unit vectors in render space. Writes their lengths in render
+// space to `reach`.
 void directionsToRender(const Affine& m, uint32_t n, float* const v[3], float* reach) {
   for (uint32_t i = 0; i < n; i++) {
     const float x = v[0][i], y = v[1][i], z = v[2][i];
@@ -77,7 +79,7 @@ bool evaluateLight(RtsBatch& batch, const LightSlot& light, uint32_t count,
 }
 
 // Samples a light for each hit; the hits of each light are evaluated together.
-void evaluateChosenLights(RtsBatch& batch, const LightSampler& many, const RtsHits& hits,
+void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const RtsHits& hits,
                           RtsIllumination& out) {
   Arena& arena = *batch.arena;
   const uint32_t n = hits.count;
@@ -95,7 +97,7 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& many, const RtsHi
     const float place[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
     const float normal[3] = {hits.normal[0][i], hits.normal[1][i], hits.normal[2][i]};
     const LightSampler::Choice c =
-        many.choose(place, normal, double(square[0][i]) + double(square[1][i]) * 0x1p-24);
+        sampler.choose(place, normal, double(square[0][i]) + double(square[1][i]) * 0x1p-24);
     batch.chosen[i] = c.probability > 0 ? c.light : none;
     probability[i] = c.probability;
     if (c.probability > 0) order[lit++] = i;
@@ -151,8 +153,9 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& many, const RtsHi
 // Allocates the arrays here, because callers open an arena scope for each light.
 uint32_t lightCount(RtsBatch& batch) {
   if (batch.points) allocateLightArrays(batch, batch.points->hits.count);
-  const LightSampler* many = lightSamplerOf(batch);
-  return uint32_t(many ? many->always().size() + 1 : batch.scene->lightSets[batch.lightSet].size());
+  const LightSampler* sampler = lightSamplerOf(batch);
+  return uint32_t(sampler ? sampler->always().size() + 1
+                          : batch.scene->lightSets[batch.lightSet].size());
 }
 
 void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumination& out) {
@@ -164,8 +167,9 @@ void illuminateHits(RtsBatch& batch, uint32_t i, const RtsHits& hits, RtsIllumin
   }
   batch.current = i;
   batch.chosen = nullptr;
-  if (const LightSampler* many = lightSamplerOf(batch); many && i == many->always().size()) {
-    evaluateChosenLights(batch, *many, hits, out);
+  if (const LightSampler* sampler = lightSamplerOf(batch);
+      sampler && i == sampler->always().size()) {
+    evaluateChosenLights(batch, *sampler, hits, out);
     out.directional = 0;
     batch.directional = false;
     return;

@@ -130,7 +130,8 @@ LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, 
 bool sameLights(const RenderScene& a, const RenderScene& b) {
   if (a.lightSets != b.lightSets || a.lights.size() != b.lights.size() || a.textures != b.textures)
     return false;
-  for (size_t i = 0; i < a.lights.size(); i++) { // an unchanged shader keeps its parameter block
+  // the parameter block of an unchanged shader stays the same
+  for (size_t i = 0; i < a.lights.size(); i++) {
     const LightSlot &x = a.lights[i], &y = b.lights[i];
     if (x.shader.shaderClass != y.shader.shaderClass || x.shader.params != y.shader.params ||
         std::memcmp(&x.toLocal, &y.toLocal, sizeof x.toLocal) != 0)
@@ -166,7 +167,7 @@ LightSampler::LightSampler(const RenderScene& scene, const std::vector<uint32_t>
   for (const Placed& p : placed) {
     const LightBounds b = boundsOf(scene, p, distance, arena);
     if (!(b.intensity > 0 || b.irradiance > 0)) {
-      always_.push_back(p.light); // its falloff could not be measured
+      always_.push_back(p.light); // no light was measured, so its falloff is not known
       continue;
     }
     bounds.push_back(b);

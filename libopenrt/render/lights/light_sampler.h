@@ -1,5 +1,5 @@
-// light_sampler.h: the light sampler for the light shaders of a light set in path tracing. A few
-// lights are all evaluated. Of many, one is sampled per hit through a light tree
+// light_sampler.h: the light sampler for the light shaders of a light set in path tracing. If a set
+// has few lights, all are evaluated. If it has many, one is sampled per hit through a light tree
 // (render/lights/light_tree.h) and represents all of them: its colour is divided by its selection
 // probability. Parallel lights and lights whose class does not declare an extent are always
 // evaluated. Built between frames when lights change, read by all render threads.
@@ -17,7 +17,8 @@ struct RenderScene;
 
 class LightSampler {
  public:
-  static constexpr uint32_t few = 16; // sets of up to so many lights are evaluated completely
+  // in sets of at most this many lights, every light is evaluated
+  static constexpr uint32_t few = 16;
 
   // set: indices into RenderScene::lights.
   LightSampler(const RenderScene& scene, const std::vector<uint32_t>& set);

@@ -40,9 +40,9 @@ bool extentOf(const RenderScene& scene, const LightSlot& light, RtsExtent& out) 
   return local.power > 0 && std::isfinite(local.power);
 }
 
-// Returns whether the same records are specular in two scenes with the same records.
+// Returns whether the same records are specular in two scenes that have the same records.
 bool sameSpecularSurfaces(const RenderScene& a, const RenderScene& b) {
-  // extends(): the traits are the same
+  // extends() says that the traits are the same
   return a.shaders == b.shaders || a.shaders->extends(*b.shaders);
 }
 

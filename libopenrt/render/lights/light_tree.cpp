@@ -62,7 +62,7 @@ void unite(LightBounds& a, const LightBounds& b) {
 }
 
 // Cost of a node for split selection: strength times the solid angle lit times the surface area of
-// the box. Flat boxes get a little depth.
+// the box. Flat boxes are treated as if they had a small depth.
 double cost(const LightBounds& b, const double size[3]) {
   const double normals = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
   const double all =
@@ -79,7 +79,7 @@ double cost(const LightBounds& b, const double size[3]) {
 }
 
 struct Range {
-  // parent: the node whose second child this is; none for a first child and the root
+  // parent: the node that has this range as second child; none for a first child and the root
   uint32_t begin, end, parent, steps;
 };
 
@@ -302,8 +302,10 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
 
 struct LightTree::Query {
   float place[3], normal[3];
-  float facing; // added to the cosine at the receiver; 2 if its side does not matter
-  // cut: nothing arrives below this cosine. least: lower bound of the cosine otherwise.
+  // added to the cosine at the receiver; 2 if the side of the receiver does not matter
+  float facing;
+  // cut: cosine at the receiver below which nothing arrives. least: smallest cosine that is used
+  // above that.
   float cut, least;
   Query(const float from[3], const float* side, Side meaning) {
     for (int k = 0; k < 3; k++) {

@@ -1,10 +1,10 @@
 // light_tree.h: light BVH: samples one of many lights with a probability close to its share of the
-// light that arrives. A tree of boxes, cones and intensities with eight children per node. A. Conty
-// Estevez, C. Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018.
-// The importance of nodes follows M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering",
-// 4th ed., 12.6.3, except for the distance falloff, which is in units of the scene. Built between
-// frames, deterministic for the same lights; read by all render threads. Sampling a light costs one
-// walk from the root, its probability another.
+// light that arrives. It is a tree of boxes, cones and intensities with eight children per node. A.
+// Conty Estevez, C. Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG
+// 2018. The importance of nodes follows M. Pharr, W. Jakob, G. Humphreys, "Physically Based
+// Rendering", 4th ed., 12.6.3, except for the distance falloff, which is in units of the scene.
+// Built between frames, deterministic for the same lights; read by all render threads. Sampling a
+// light costs one walk from the root, its probability another.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ class LightTree {
     float probability = 0; // 0: no light reaches the point
   };
 
-  // Meaning of the normal: light counts from its side only, or mostly from its side.
+  // Meaning of the normal: light counts only from the side that it points to (`only`), or mostly
+  // from that side (`likely`).
   enum class Side : uint8_t { only, likely };
 
   void build(std::span<const LightBounds> lights);

@@ -147,7 +147,8 @@ void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color
     compact(s, blocked);
   }
   for (uint32_t i = 0; i < s.rays.count; i++)
-    scaleColor(color, s.lane[i], 0, 0, 0); // too many transparent surfaces: dark, as documented
+    // rays that cross too many transparent surfaces are dark, as documented
+    scaleColor(color, s.lane[i], 0, 0, 0);
 }
 
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {

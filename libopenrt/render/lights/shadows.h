@@ -9,11 +9,11 @@ namespace openrt {
 // is open when the first light is evaluated. So a caller that evaluates several lights in scopes of
 // their own must call this before.
 void allocateLightArrays(RtsBatch& batch, uint32_t n);
-// Multiplies light.color by the transmittance between the points and the light evaluated last,
-// where `wanted`.
+// Multiplies light.color by the transmittance between the points and the light evaluated last, at
+// the points where `wanted` is not 0.
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light);
 
-// Shadow rays, and the index into `color` that each belongs to.
+// Shadow rays, and for each ray the index into `color` that it belongs to.
 struct ShadowRays {
   Rays rays;
   uint32_t* lane;

@@ -19,7 +19,7 @@ double luminance(const float c[3]) {
 }
 
 // Returns the number of columns: as many as the widest texture has texels around the horizon. A
-// single texture covers the whole turn, one of several a quarter.
+// single texture covers the whole horizon, one of several covers a quarter.
 uint32_t columnsFor(const RenderScene& scene) {
   const ShaderSlot& environment = scene.environment.shader;
   uint32_t widest = 0, pictures = 0;
@@ -43,7 +43,7 @@ double SkySampler::solidAngle(uint32_t row) const {
   return 2 * M_PI / columns_ * (std::cos(M_PI * row / rows_) - std::cos(M_PI * (row + 1) / rows_));
 }
 
-// Takes four directions in each cell.
+// Evaluates the environment in four directions of each cell.
 double SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) const {
   const ShaderSlot& environment = scene.environment.shader;
   Arena arena;
@@ -97,7 +97,7 @@ double SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) 
 bool SkySampler::shines(const RenderScene& scene) {
   SkySampler coarse;
   coarse.columns_ = 64;
-  coarse.rows_ = 8; // four directions in each cell
+  coarse.rows_ = 8; // measure() takes four directions in each cell
   std::vector<float> cells(size_t(coarse.columns_) * coarse.rows_);
   coarse.measure(scene, cells);
   return std::any_of(cells.begin(), cells.end(), [](float mean) { return mean > 0; });

@@ -1,8 +1,9 @@
 // sky_sampler.h: importance sampling of the environment by its radiance. A table of equal
 // latitude-longitude cells in its local space has the resolution of the environment's textures, and
-// at least enough for a sun of half a degree. M. Pharr, W. Jakob, G. Humphreys, "Physically Based
-// Rendering", 4th ed., 12.5, without MIS compensation, so that the strategy is also unbiased alone.
-// Built between frames when the environment or its textures change, read by all render threads.
+// at least enough resolution for a sun of half a degree. M. Pharr, W. Jakob, G. Humphreys,
+// "Physically Based Rendering", 4th ed., 12.5, without MIS compensation, so that the strategy is
+// also unbiased alone. Built between frames when the environment or its textures change, read by
+// all render threads.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ class SkySampler {
   bool usable() const { return total_ > 0; }
   // Returns the largest mean radiance of a cell, summed over the colours.
   double brightest() const { return brightest_; }
-  // Returns whether any of 2048 directions of the scene's environment has light. The environment
+  // Returns whether the scene's environment emits light in any of 2048 directions. The environment
   // must have `miss`.
   static bool shines(const RenderScene& scene);
   // Samples a local unit direction from a point of the unit square and returns its solid-angle pdf;

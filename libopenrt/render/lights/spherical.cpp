@@ -51,10 +51,10 @@ SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3
                farthest = std::max({square[0], square[1], square[2]});
   far_ = nearest > 4 * longest && farthest < 2 * nearest;
   if (!std::isfinite(height_)) height_ = 0;
-  if (!far_) look();
+  if (!far_) computeSolidAngle();
 }
 
-void SphericalTriangle::look() {
+void SphericalTriangle::computeSolidAngle() {
   double size = 1;
   for (int c = 0; c < 3; c++) {
     const double length = std::sqrt(dot(corner_[c], corner_[c]));
@@ -72,7 +72,7 @@ void SphericalTriangle::look() {
 double SphericalTriangle::solidAngle() const {
   if (!far_) return solidAngle_;
   SphericalTriangle near = *this;
-  near.look();
+  near.computeSolidAngle();
   return near.solidAngle_;
 }
 
@@ -90,8 +90,8 @@ bool SphericalTriangle::sample(double u, double v, double direction[3], double& 
     return normalize(direction);
   }
   if (!(solidAngle_ > 0)) return false;
-  // Selects a point on the arc from the first corner to the last that cuts off the fraction u of
-  // the solid angle, then a point on the arc from the second corner to there.
+  // Selects the point on the arc from the first corner to the last that cuts off the fraction u of
+  // the solid angle. Then selects a point on the arc from the second corner to that point.
   const double half = u * solidAngle_ / 2, c = std::cos(half), s = std::sin(half);
   const double x = volume_ * c - others_ * s, y = first_ * s;
   double r[3], end[3];
@@ -128,12 +128,12 @@ bool SphericalTriangle::isNearEdge(const double direction[3], double distance) c
   for (int k = 0; k < 3; k++) place[k] = direction[k] * distance;
   for (int c = 0; c < 3; c++) {
     const double *from = corner_[(c + 1) % 3], *to = corner_[(c + 2) % 3];
-    double edge[3], way[3], turn[3];
+    double edge[3], fromCorner[3], turn[3];
     for (int k = 0; k < 3; k++) {
       edge[k] = to[k] - from[k];
-      way[k] = place[k] - from[k];
+      fromCorner[k] = place[k] - from[k];
     }
-    cross(edge, way, turn);
+    cross(edge, fromCorner, turn);
     // dot(turn, normal) / |normal| is the distance from the edge times its length. An angular error
     // of the ray moves the intersection more at grazing angles.
     const double inside = std::fabs(dot(turn, normal_)) * std::fabs(along);
@@ -174,7 +174,7 @@ bool SphericalEllipsoid::sample(double u, double v, double direction[3], double&
   for (double& l : local) l /= scale;
   // The nearer of the two intersections along the line.
   const double a = dot(local, local), b = dot(eye_, local), c = dot(eye_, eye_) - 1;
-  // From the centre to the line; accurate also if the sphere is small and far away.
+  // Offset of the line from the centre. It is accurate also if the sphere is small and far away.
   double offset[3];
   for (int k = 0; k < 3; k++) offset[k] = eye_[k] - b / a * local[k];
   const double root = std::sqrt(std::max(0.0, (1 - dot(offset, offset)) * a));

@@ -25,14 +25,13 @@ class SphericalTriangle {
   bool sample(double u, double v, double direction[3], double& distance) const;
   // Returns the pdf by solid angle.
   double pdf(const double direction[3]) const;
-  bool front() const {
-    return height_ < 0;
-  } // Returns whether the eye is on the side from which the corners turn counter-clockwise.
+  // Returns whether the eye is on the side from which the corners turn counter-clockwise.
+  bool front() const { return height_ < 0; }
   // Returns whether a ray along the direction, rounded to float, may pass an edge.
   bool isNearEdge(const double direction[3], double distance) const;
 
  private:
-  void look();
+  void computeSolidAngle();
   double distanceAlong(const double direction[3]) const;
   // corner_: relative to the eye. normal_: its length is twice the area.
   double corner_[3][3], unit_[3][3], normal_[3];
@@ -45,7 +44,8 @@ class SphericalTriangle {
 };
 
 // The unit sphere under an affine map, seen from outside: directions within the cone that touches
-// it. From inside nothing is sampled: every direction hits it, and BSDF sampling is better there.
+// it. If the eye is inside, no direction is sampled: every direction hits the surface, and BSDF
+// sampling is better there.
 class SphericalEllipsoid {
  public:
   // toLocal: rows of the map into the frame in which it is the unit sphere. toRender: rows of the

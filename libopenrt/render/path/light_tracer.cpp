@@ -13,13 +13,8 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
-enum Pair : uint32_t {
-  which,
-  place,
-  aim,
-  first,
-  perLevel = 4
-}; // pairs of random numbers: those for the light source, then `perLevel` for each level
+// Pairs of random numbers: first those for the light source, then `perLevel` pairs for each level.
+enum Pair : uint32_t { which, place, aim, first, perLevel = 4 };
 enum Use : uint32_t { direction, choice, lens };
 
 // Returns the correction for shading normals in importance transport: flux scales with the cosines
@@ -79,8 +74,8 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
     std::copy_n(start.direction, 3, ray.direction);
     ray.state = state;
   }
-  while (!queue_.empty() &&
-         level_ < scene_.frame.depth) { // the surface that the camera sees counts as one more
+  // The surface that the camera sees counts as one more level.
+  while (!queue_.empty() && level_ < scene_.frame.depth) {
     next_.clear();
     load(uint32_t(queue_.size()));
     counters_.secondary += queue_.size();
@@ -169,7 +164,7 @@ void LightTracer::transmitRays(const Points& points, const uint32_t* order,
   }
 }
 
-// Computes the flux that a light without extent sends to a point, without occlusion.
+// Computes the flux that a light without extent sends to a point, ignoring occlusion.
 void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& start,
                            const float at[3], float flux[3]) {
   const LightSlot& light = scene_.lights[start.light];
@@ -192,7 +187,8 @@ void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& s
   light.shader.shaderClass->illuminate(&scene_.host, &batch, light.shader.params, 1, places, &out);
   double squaredDistance = 0;
   for (int k = 0; k < 3; k++) squaredDistance += std::pow(double(at[k]) - start.origin[k], 2);
-  // Factor pi: a light's colour is the radiance of a white Lambert surface.
+  // The factor pi turns a light's colour into irradiance, because the colour is the radiance of a
+  // white Lambert surface.
   const double scale = M_PI * start.weight * (start.parallel ? 1 : squaredDistance);
   for (int k = 0; k < 3; k++) {
     flux[k] = float(out.color[k][0] * scale);
@@ -201,7 +197,7 @@ void LightTracer::lampFlux(const Points& points, const LightSources::LightRay& s
 }
 
 // Multiplies the throughput by the emitted flux when a path has reached its first surface. Returns
-// whether any is left.
+// whether any throughput is left.
 bool LightTracer::applyEmission(const Points& points, uint32_t i, RayState& state) {
   const LightSources::LightRay& start = lightRays_[state.path];
   Departure& departure = departures_[state.path];
@@ -285,12 +281,12 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
   }
   for (uint32_t i = 0; i < n; i++) {
     RayState& state = states_[order[i]];
-    // The boundary has no effect on light.
+    // This boundary has no effect on light.
     if (boundaries.crossing && !boundaries.crossing[i].visible) {
-      RayState on = state;
-      on.media = boundaries.crossing[i].behind;
+      RayState passed = state;
+      passed.media = boundaries.crossing[i].behind;
       const float d[3] = {hits.direction[0][i], hits.direction[1][i], hits.direction[2][i]};
-      push(points, i, on, d);
+      push(points, i, passed, d);
       continue;
     }
     spawnRay(batch, i, samples, boundaries);
@@ -329,10 +325,10 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples*
     for (int k = 0; k < 3; k++) state.throughput[k] *= departure.attenuation[k];
     departure = {};
   }
-  const float turned = sample.deflected ? adjointCorrection(batch.lobes[sample.lobe], points.hits,
-                                                            i, sample.direction)
-                                        : 1.0f;
-  for (int k = 0; k < 3; k++) state.throughput[k] *= float(sample.weight[k] * turned / kept);
+  const float correction = sample.deflected ? adjointCorrection(batch.lobes[sample.lobe],
+                                                                points.hits, i, sample.direction)
+                                            : 1.0f;
+  for (int k = 0; k < 3; k++) state.throughput[k] *= float(sample.weight[k] * correction / kept);
   state.channel = sample.channel;
   float towards = 0;
   for (int k = 0; k < 3; k++) towards += points.hits.geometric[k][i] * sample.direction[k];
@@ -387,13 +383,13 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   seen.weight = arena_.takeZero<float>(size);
   const float *place[3] = {local[0], local[1], local[2]}, *square[2] = {uv[0], uv[1]};
   const float extent[2] = {float(width_), float(height_)};
-  RtsBatch asking = batch;
-  asking.points = nullptr; // the camera gets n places, not the hits
-  asking.lanes = n;
+  RtsBatch projectBatch = batch;
+  projectBatch.points = nullptr; // the camera gets n places, not the hits
+  projectBatch.lanes = n;
   {
     const RunningShader running(*camera.shaderClass);
-    camera.shaderClass->project(&scene_.host, &asking, camera.params, n, place, square, extent,
-                                &seen);
+    camera.shaderClass->project(&scene_.host, &projectBatch, camera.params, n, place, square,
+                                extent, &seen);
   }
   float* distance = arena_.take<float>(size);
   const auto& m = scene_.camera.fromLocal.r;

@@ -1,6 +1,6 @@
 // light_tracer.h: light tracing for caustics. Follows paths from light sources whose first hit is
-// specular (a mirror or a smooth boundary). Path tracing from the camera finds these paths only by
-// chance, or never if the light has no extent. Each non-specular vertex of a light path is
+// specular (a mirror or a smooth boundary). Path tracing from the camera finds these paths with low
+// probability, or never if the light has no extent. Each non-specular vertex of a light path is
 // connected to the camera: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
 // 1997, chapter 10, with a camera subpath of one vertex. One instance per render thread.
 //
@@ -52,7 +52,8 @@ class LightTracer {
     double pathLength = 0;     // path length from the light to the current hit
     float flux[3] = {0, 0, 0}; // flux at the first surface; already contained in the throughput
     float attenuation[3] = {1, 1, 1}; // flux at the current hit divided by `flux`
-    bool attenuationKnown = true;     // the attenuation is applied, or does not depend on distance
+    // the attenuation has been applied, or the light does not depend on distance
+    bool attenuationKnown = true;
   };
 
   const RenderScene& scene_;

@@ -11,7 +11,7 @@ struct TileRenderer::Paths {
   Rays rays;          // rays of the current wave
   RayState* state;    // indexed by ray lane
   float* travelled;   // copy of state[lane].travelled, in the layout that makePoints reads
-  float* radiance[3]; // from here on indexed by path
+  float* radiance[3]; // this and the following arrays are indexed by path
   float* alpha;
   uint8_t* first; // 1 until the first surface of the path has been shaded
   float *normal[3], *albedo[3], *position[3], *depth; // null if the frame does not have the channel

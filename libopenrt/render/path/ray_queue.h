@@ -17,7 +17,8 @@ enum class PathClass : uint8_t {
   undeflected, // no scattering event yet: the ray still follows the camera ray
   diffuse,     // the first and the last scattering events were non-specular
   caustic,     // as `diffuse`, followed only by specular events since the last non-specular one
-  // The first event was specular. For a path from a light source: light tracing follows it.
+  // The first event was specular. For a path from a light source: this is a path that light tracing
+  // follows.
   specularFirst
 };
 
@@ -32,11 +33,11 @@ struct RayState {
   float pdf = 0;
   // The previous path vertex, where `pdf` was sampled; needed for the light pdf in MIS.
   LightSampleContext previous;
-  MediaStack media = {}; // media that the ray is inside of
+  MediaStack media = {}; // the media that contain the ray
   PathClass pathClass = PathClass::undeflected;
   uint8_t scattered = 0; // the path has a non-specular vertex
-  // The path has a non-specular vertex and only specular ones since: light sampling cannot find
-  // what the ray hits (UnsampledLight, ledger.h).
+  // The path has a non-specular vertex and only specular ones since: light sampling cannot find an
+  // emitter that the ray hits (UnsampledLight, ledger.h).
   uint8_t specularSinceDiffuse = 0;
   uint8_t deflected = 0; // a surface has changed the direction: the pixel's alpha is final
   uint8_t splits = 0;    // number of times the path has split into several rays

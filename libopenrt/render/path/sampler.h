@@ -1,7 +1,7 @@
-// sampler.h: the sampler: low-discrepancy points as a pure function of (pixel, sample index, pair
-// of dimensions, seed, samples per replicate). Each pair of dimensions is a (0,2)-sequence in base
-// 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical Hash-based
-// Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
+// sampler.h: the sampler. Its low-discrepancy points are a pure function of (pixel, sample index,
+// pair of dimensions, seed, samples per replicate). Each pair of dimensions is a (0,2)-sequence in
+// base 2: Sobol's first two dimensions, Owen-scrambled by hashing as in B. Burley, "Practical
+// Hash-based Owen Scrambling", JCGT 9(4), 2020 (hash constants: N. Vegdahl's search).
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ namespace openrt {
   return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
 }
 
-[[gnu::always_inline]] inline uint32_t hash(uint32_t x) { // Integer hash with full avalanche.
+// Hashes an integer with full avalanche.
+[[gnu::always_inline]] inline uint32_t hash(uint32_t x) {
   x ^= x >> 16;
   x *= 0x7feb352du;
   x ^= x >> 15;
@@ -65,9 +66,8 @@ struct Replicates {
   }
 };
 
-[[gnu::always_inline]] inline float toUnit(uint32_t x) {
-  return float(x >> 8) * 0x1p-24f;
-} // in [0, 1)
+// Maps an integer to a float in [0, 1).
+[[gnu::always_inline]] inline float toUnit(uint32_t x) { return float(x >> 8) * 0x1p-24f; }
 
 // Samples one pair of dimensions in one pixel. The first 2^k samples are a (0,k,2)-net for every k.
 class PairSampler {

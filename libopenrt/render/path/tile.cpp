@@ -37,8 +37,8 @@ void TileRenderer::begin(const Tile& tile) {
         }
 }
 
-// Where faces coincide, a ray's hit may depend on the other rays of its batch. So the waves of a
-// leaf are always the same.
+// Where faces coincide, a ray's hit may depend on the other rays of its batch. So a leaf is always
+// divided into the same waves.
 bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool centred,
                           uint32_t first, uint32_t samples, std::span<PixelSums> sums,
                           const std::atomic<bool>& stop) {
@@ -61,8 +61,8 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
   return !stopped(); // a wave may have been interrupted
 }
 
-// Allocates working storage for n paths. film: with the arrays for the picture's channels of the
-// first surface.
+// Allocates working storage for n paths. film: whether to allocate also the arrays for the channels
+// that describe the first surface.
 void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
   const uint32_t size = padded(n);
   paths.state = arena_.take<RayState>(size);
@@ -261,11 +261,12 @@ void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t
   evaluateSky(paths.rays, missed, n, direction, rgba);
   for (uint32_t i = 0; i < n; i++) {
     const RayState& ray = paths.state[missed[i]];
-    float weight = 0, share = 1;
-    // Light sampling of the sky could have chosen this direction.
+    float weight = 0, misWeight = 1;
+    // Light sampling of the sky could also have chosen this direction, so BSDF sampling has this
+    // MIS weight.
     if (ray.pdf > 0 && scene_.emitters.any()) {
       const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
-      share = ray.pdf / (ray.pdf + scene_.emitters.skyPdf(ray.previous, d));
+      misWeight = ray.pdf / (ray.pdf + scene_.emitters.skyPdf(ray.previous, d));
     }
     if (ray.specularSinceDiffuse) {
       const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
@@ -273,15 +274,15 @@ void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t
     }
     for (int k = 0; k < 3; k++) {
       if (std::isfinite(rgba[k][i]))
-        paths.radiance[k][ray.path] += ray.throughput[k] * share * rgba[k][i];
+        paths.radiance[k][ray.path] += ray.throughput[k] * misWeight * rgba[k][i];
       weight += ray.throughput[k];
     }
     if (!ray.deflected) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
   }
 }
 
-// Evaluates fog at the hits. Along mirrored and refracted paths the whole path length counts, as
-// seen in the ray's direction.
+// Evaluates fog at the hits. On mirrored and refracted paths the fog has the whole path length, in
+// the direction of the current ray.
 void TileRenderer::attenuate(const Points& points, const Paths& paths, const uint32_t* order,
                              float* fog[4]) {
   const ShaderSlot& environment = scene_.environment.shader;
@@ -361,18 +362,18 @@ void TileRenderer::addShading(const Points& points, const RtsShading& shaded, co
       ledger_.cutByEnergy += double(through);
       continue;
     }
-    NextRay on{.pdf = 0,
-               .deflected = false,
-               .split = false,
-               .twoSided = false,
-               .channel = ray.channel,
-               .branch = ray.branch,
-               .media = ray.media};
+    NextRay nextRay{.pdf = 0,
+                    .deflected = false,
+                    .split = false,
+                    .twoSided = false,
+                    .channel = ray.channel,
+                    .branch = ray.branch,
+                    .media = ray.media};
     for (int k = 0; k < 3; k++) {
-      on.direction[k] = points.hits.direction[k][i];
-      on.weight[k] = transmission[k];
+      nextRay.direction[k] = points.hits.direction[k][i];
+      nextRay.weight[k] = transmission[k];
     }
-    push(points, i, order[i], on, paths);
+    push(points, i, order[i], nextRay, paths);
   }
 }
 

@@ -33,7 +33,7 @@ class TileRenderer {
   RayCounters& counters() { return counters_; }
   // Energy left out by the last render().
   const Ledger& ledger() const { return ledger_; }
-  // Depth of the wave: number of surfaces that its rays have hit before.
+  // Returns the depth of the wave: the number of surfaces that its paths have hit before.
   uint32_t level() const { return level_; }
   // trace.cpp: services that shaders request from the renderer (RtsHost).
   void randomPoints(const RtsBatch& batch, uint32_t pair, float* const square[2]);
@@ -66,7 +66,7 @@ class TileRenderer {
                   Paths& paths, const float* fog[4]);
   void storeFirstHit(const Points& points, uint32_t i, uint32_t path, float* const albedo[3],
                      Paths& paths);
-  // scatter.cpp: surfaces that are described by lobes (BSDFs).
+  // scatter.cpp: shading of surfaces that are described by lobes (BSDFs).
   void scatterRange(Paths& paths, const Points& points, const Bucket& bucket,
                     const uint32_t* order);
   void addLights(RtsBatch& batch, const RtsHits& hits, float* const radiance[3]);

@@ -15,7 +15,7 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t maxNesting = 64;
-// Keeps the pairs of shaders apart from those of the transports.
+// Keeps the sampler's pairs for shaders apart from those for the transports.
 constexpr uint32_t shaderPairs = 0x73686164;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
@@ -23,8 +23,8 @@ uint32_t pointsOf(const RtsBatch& batch) {
   return batch.points ? batch.points->hits.count : batch.rays;
 }
 
-// Makes the rays of a request whose point belongs to the batch. `to` gets the index in the request,
-// by ray.
+// Makes the rays of a request whose point belongs to the batch. Writes the index in the request of
+// each ray to `to`.
 Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
   Rays rays;
   rays.allocate(*batch.arena, request.count);
@@ -69,7 +69,7 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], request.count, 0.0f);
   if (request.count == 0 || nesting_ == maxNesting || level_ >= scene_.frame.depth) return;
-  // Allocated outside of the scope: it lives as long as the batch.
+  // The counts are allocated outside of the arena scope, because they live as long as the batch.
   if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch));
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);

@@ -12,7 +12,7 @@ constexpr uint32_t light = hasLamps | hasEmitters | hasGlow | hasSky;
 // Rules that choose the transport. Rows are tried from the top; a row whose `from` is the transport
 // chosen so far replaces it. A transport is chosen only if it leaves out no light of lobe-only
 // surfaces. Surfaces that have `shade` are drawn by their own lighting model (that of VRML97) until
-// something meant as light shines on them.
+// something that is meant as light shines on them.
 struct Choice {
   RTenum from;
   // all: bits that must all be set. any: at least one must be set (0: no condition).
@@ -111,7 +111,7 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
     last = &record;
     const ShaderSlot& shader = (*scene.shaders)[record.shader];
     const RtsClass& shaderClass = *shader.shaderClass;
-    if (!shaderClass.surface) continue; // shades itself in every transport
+    if (!shaderClass.surface) continue; // the class has only `shade`, which every transport uses
     // Parameter values of a geometry may make a surface scatter although its shader's values do
     // not.
     const bool scatters = values || !(shader.traits & (RTS_NO_SCATTER | RTS_UNLIT));

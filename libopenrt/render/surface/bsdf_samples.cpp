@@ -24,7 +24,7 @@ void BsdfSamples::add(uint32_t number, const RtsLobe& lobe, const LobeSamples* s
   case RTS_LOBE_REFLECTION: mirror(n, w, 1); break;
   case RTS_LOBE_TRANSPARENT: put(d_, w, 1).deflected = false; break;
   case RTS_LOBE_DIELECTRIC:
-    // dispersion: every colour is refracted separately
+    // Dispersion: every colour is refracted separately.
     if (eta_ && channel_ == 0 && (eta_[0] != eta_[1] || eta_[0] != eta_[2])) {
       for (int k = 0; k < 3; k++) {
         float only[3] = {0, 0, 0};

@@ -7,7 +7,7 @@
 
 namespace openrt {
 
-// One sampled continuation of a path. pdf: by solid angle, of a non-specular lobe; 0: a specular
+// One sampled continuation of a path. pdf: solid-angle pdf of a non-specular lobe; 0: a specular
 // direction.
 struct BsdfSample {
   float direction[3], weight[3], pdf;
@@ -33,8 +33,9 @@ class BsdfSamples {
  public:
   static constexpr uint32_t maximum = 6 * RTS_MAX_LOBES;
   // eta: relative index of refraction (ray's side over far side) by colour if the engine knows it,
-  // else null. channel: that of the ray, as in BsdfSample. fromLamp: the path starts at a light, so
-  // it carries flux (importance transport), which is not scaled by eta squared at boundaries.
+  // else null. channel: channel of the incoming ray, as in BsdfSample. fromLamp: the path starts at
+  // a light, so it carries flux (importance transport), which is not scaled by eta squared at
+  // boundaries.
   BsdfSamples(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel,
               bool fromLamp = false);
   // Adds the samples of one lobe. samples: null for specular lobes. Non-specular lobes without

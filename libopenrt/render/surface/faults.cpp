@@ -33,7 +33,8 @@ const char* textOf(Fault fault) {
   return "";
 }
 
-// Tests the bits of the exponent, so that the loop vectorises.
+// Returns whether all values are finite. It tests the bits of the exponent, so that the loop
+// vectorises.
 bool allFinite(const float* values, uint32_t n) {
   constexpr uint32_t exponent = 0x7f800000;
   uint32_t bad = 0;
@@ -60,8 +61,8 @@ bool anyAbove(float* const group[3], uint32_t i) {
   return group[0][i] > 0 || group[1][i] > 0 || group[2][i] > 0;
 }
 
-// Counts the hits with values above 0 that the class's traits exclude. Hits with parameter values
-// of their geometry are skipped, because traits do not know these.
+// Counts the hits with values above 0 that the class's traits exclude. Hits on geometry with
+// parameter values of its own are skipped, because traits do not cover these values.
 template <class Above> void excludeTrait(const RtsClass& c, RtsBatch& batch, uint32_t trait,
                                          Fault fault, const Above& above) {
   uint64_t hits = 0;

@@ -48,7 +48,7 @@ void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
   }
 }
 
-// Derivatives for the texture coordinates of rtSphere.
+// Computes the derivatives of the position by the texture coordinates of rtSphere.
 void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3],
                        float* const alongT[3]) {
   const Record& r = recordAt(batch, i);

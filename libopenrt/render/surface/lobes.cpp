@@ -1,8 +1,9 @@
 // lobes.cpp: built-in lobes. Microfacets: B. Walter et al., "Microfacet Models for Refraction
 // through Rough Surfaces", EGSR 2007 (the GGX distribution). Height-correlated shadowing: E. Heitz,
 // "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014. Visible normals are sampled as
-// in J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023. In double,
-// because a lobe of width 1e-4 has pdfs of 1e8 and loses its digits near its axis in float.
+// in J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023. Everything
+// is computed in double, because a lobe of width 1e-4 has pdfs of 1e8 and in float loses its digits
+// near its axis.
 #include "render/surface/lobes.h"
 
 #include <cmath>
@@ -150,7 +151,8 @@ class Glossy {
   double eta_; // relative index for the Fresnel term; 0: no Fresnel term
 };
 
-// A rough dielectric boundary at one hit, both sides. v points to the eye, w to the light.
+// A rough dielectric boundary at one hit: reflection and refraction. v points to the eye, w to the
+// light. eta_: index on the viewer's side over that on the far side.
 class Boundary {
  public:
   Boundary(const RtsLobe& lobe, uint32_t hit)
@@ -305,7 +307,7 @@ bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
 
 namespace {
 
-// Returns the class whose lobes a batch has; null if unknown.
+// Returns the class that added the lobes of a batch; null if it is not known.
 const RtsClass* classOf(const RtsBatch* batch) {
   if (!batch || !batch->points) return nullptr;
   return (*batch->scene->shaders)[batch->scene->records[batch->points->record[0]].shader]

@@ -1,4 +1,4 @@
-// media.h: the stack of media that a ray is inside of, and what happens at their boundaries. Media
+// media.h: the stack of the media that contain a ray, and how it changes at their boundaries. Media
 // may overlap; the one with the highest priority wins (C. Schmidt, B. Budge, "Simple Nested
 // Dielectrics in Ray Traced Images", JGT 7(2), 2002). Pure functions.
 #pragma once
@@ -15,15 +15,15 @@ namespace openrt {
 // fifth medium inside four others is ignored.
 using MediaStack = std::array<uint16_t, 4>;
 
-// Returns the medium that a ray with this stack is in, 0 for none. Of equal priorities the one
-// entered last wins.
+// Returns the medium that a ray with this stack is in, 0 for none. If several media have the
+// highest priority, the one entered last wins.
 uint16_t mediumOf(const MediaStack& stack, std::span<const RtsMedium> media);
 
 struct Crossing {
   MediaStack behind; // media stack on the far side of the boundary
   uint16_t from, to; // media on the near and on the far side
   bool visible; // false: the boundary lies inside a medium of higher priority and has no effect
-  bool unknown; // the ray leaves a medium that it never entered: the camera is inside of it
+  bool unknown; // the ray leaves a medium that it never entered: the camera is inside that medium
 };
 // Crosses the boundary of a medium. back: the ray hits it from inside.
 Crossing cross(const MediaStack& stack, uint16_t medium, bool back,

@@ -110,9 +110,9 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
     l[2] = 1;
   }
   const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
-  // t is exact to its last bit: near the ray's origin the position is known far better than the
-  // radius
-  if (metInDouble(r))
+  // t is exact to its last bit, so near the ray's origin the position is known far better than to
+  // the rounding error of the radius.
+  if (intersectedInDouble(r))
     for (int k = 0; k < 3; k++) {
       h.p[k] = p[k];
       h.bound[k] = bound[k];
@@ -195,8 +195,8 @@ void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Poi
   if (!thinHit && away != r.flip) h.flags |= RTS_HIT_BACK;
   const float sign = away ? -1.0f : 1.0f;
   if (h.smooth && !normalize(h.ns)) h.smooth = false;
-  // A given vertex normal is not flipped towards the ray; only seen from the back it is flipped
-  // with the face (two-sided lighting).
+  // A vertex normal given by the geometry is flipped only together with its face, if that is seen
+  // from the back (two-sided lighting). It is not flipped because it points away from the ray.
   const float smoothSign = (h.flags & RTS_HIT_BACK) ? -1.0f : 1.0f;
   float error = 0;
   for (int k = 0; k < 3; k++) {
@@ -210,8 +210,8 @@ void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const Poi
   out.color[3][to] = h.color[3];
   out.uv[0][to] = h.uv[0];
   out.uv[1][to] = h.uv[1];
-  // A face in a plane that contains an axis through the origin has no error along it, but rays must
-  // still be offset.
+  // The bound along the normal is 0 for a face in a coordinate plane through the origin, but rays
+  // must still be offset.
   out.error[to] = std::max(error, 0x1p-6f * std::max({h.bound[0], h.bound[1], h.bound[2]}));
   out.flags[to] = h.flags;
 }

@@ -64,7 +64,7 @@ inline void offsetPoint(const float p[3], const float n[3], float error, float o
   for (int k = 0; k < 3; k++) {
     const float step = n[k] * error, moved = p[k] + step;
     const int32_t bits = std::bit_cast<int32_t>(moved);
-    // Away from or towards zero.
+    // The next float is away from zero or towards it.
     const int32_t outward = (step > 0) == (moved > 0) ? bits + 1 : bits - 1;
     const float next = moved != 0 ? std::bit_cast<float>(outward) : step;
     out[k] = step != 0 ? next : moved;

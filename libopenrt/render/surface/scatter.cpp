@@ -2,7 +2,7 @@
 // continue the path. Part of TileRenderer.
 //
 // Transports:
-// * Direct: lights only.
+// * Direct: adds the light of light shaders, and follows only straight transmission.
 // * Whitted: follows every specular reflection and refraction deterministically until a branch
 //   carries less than the frame's energy cut.
 // * Path: also samples a direction from each non-specular lobe. Once a path has split, one sample
@@ -115,7 +115,8 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
     const RayState& ray = paths.state[order[i]];
-    // clear: weight of what lies straight behind; seen: also of mirror images and refractions
+    // clear: weight of straight transmission. seen: weight of all specular lobes, which also show
+    // mirror images and refractions.
     float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0}, covered = 0;
     const bool unseen = boundaries.crossing && !boundaries.crossing[i].visible;
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
@@ -152,9 +153,9 @@ float TileRenderer::emissionMisWeight(const RayState& ray, const Points& points,
       scene_.emitters.startsLightPaths(record, primitive, direction))
     return 0;
   if (!(ray.pdf > 0)) return 1;
-  const float chosen =
+  const float lightPdf =
       scene_.emitters.pdf(ray.previous, record, primitive, direction, h.segment[i]);
-  return std::isfinite(chosen) ? ray.pdf / (ray.pdf + chosen) : 0.0f;
+  return std::isfinite(lightPdf) ? ray.pdf / (ray.pdf + lightPdf) : 0.0f;
 }
 
 void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {

@@ -15,17 +15,17 @@ inline float dot3(const float a[3], const float b[3]) {
 
 inline float largest(const float v[3]) { return std::max({v[0], v[1], v[2]}); }
 
-// Reflects a direction (towards the surface) at a normal.
+// Reflects a direction that points towards the surface, at a normal.
 inline void reflectAt(const float d[3], const float n[3], float out[3]) {
   const float twice = 2 * dot3(d, n);
   for (int k = 0; k < 3; k++) out[k] = d[k] - twice * n[k];
 }
 
-// Returns the Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine: of
-// the angle of incidence, 0..1. eta: index on the ray's side over that on the far side.
-// cosineBehind gets the cosine of the refracted angle, 0 under total reflection. In double, because
-// near the critical angle the root loses half of the digits. M. Born, E. Wolf, "Principles of
-// Optics", 1.5.2.
+// Returns the Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine:
+// cosine of the angle of incidence, 0..1. eta: index on the ray's side over that on the far side.
+// cosineBehind gets the cosine of the refracted angle, 0 under total reflection. It is computed in
+// double, because near the critical angle the root loses half of the digits. M. Born, E. Wolf,
+// "Principles of Optics", 1.5.2.
 inline double fresnel(double cosine, double eta, double& cosineBehind) {
   const double sineBehind2 = eta * eta * std::max(0.0, 1 - cosine * cosine);
   if (sineBehind2 >= 1) {
@@ -46,13 +46,13 @@ inline void refractAt(const float d[3], const float n[3], double eta, double cos
     r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k];
     length += r[k] * r[k];
   }
-  // Normalised again, so that errors do not grow over a long chain.
+  // The direction is normalised again, so that errors do not grow over a long chain of refractions.
   const double s = length > 0 ? 1 / std::sqrt(length) : 0;
   for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
 }
 
-// Sine and cosine for arguments between -pi/4 and pi/4 by their power series, exact to a unit in
-// the last place.
+// Return sine and cosine of an angle between -pi/4 and pi/4 by their power series, exact to a unit
+// in the last place.
 inline float sineSmall(float x) {
   const float s = x * x;
   return x * (1 + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));

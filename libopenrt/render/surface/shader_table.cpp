@@ -12,8 +12,8 @@
 namespace openrt {
 namespace {
 
-// Returns a host for `release`, which may be called when no frame exists any more. All functions
-// are present but have no scene.
+// Returns a host for `release`, which may be called when no frame exists any more. All its
+// functions are set, but it has no scene.
 const RtsHost& idleHost() {
   static const RenderHost host = [] {
     RenderHost h;

@@ -46,8 +46,8 @@ uint16_t mediumAt(const RenderScene& scene, uint32_t record) {
 }
 
 // Crosses shared faces. Where two media share a face, a ray hits only one of the two surfaces and
-// continues beyond the other, so both are crossed at once. A ray looks for the other face within
-// the error bounds.
+// continues beyond the other, so both are crossed at once. A short ray searches for the other face
+// within the error bounds.
 void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
   const RenderScene& scene = *batch.scene;
   const Points& points = *batch.points;
@@ -127,8 +127,8 @@ void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& 
                      RayState* states) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   if (media.empty()) return;
-  for (uint32_t i = 0; i < rays.count;
-       i++) // Light from infinity is fully absorbed in an absorbing medium.
+  // Light from infinity is fully absorbed in an absorbing medium.
+  for (uint32_t i = 0; i < rays.count; i++)
     absorb(mediumOf(states[i].media, media), std::min(hits.t[i], 1e30f), media,
            states[i].throughput);
 }

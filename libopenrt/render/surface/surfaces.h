@@ -7,9 +7,9 @@
 
 namespace openrt {
 
-// Retraces the rays whose nearest hit is a culled back face with such faces ignored. The rays start
-// again at their origin, because a front and a back face in the same place must not hide each
-// other.
+// Retraces the rays whose nearest hit is a culled back face with such faces ignored. The rays are
+// traced again from their origins, because a front and a back face in the same place must not hide
+// each other.
 void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
                      const Rays& rays, RayHits& hits);
 
@@ -18,8 +18,8 @@ struct Boundaries {
   Crossing* crossing; // indexed by hit
   float (*eta)[3];    // relative index of refraction by colour: ray's side over far side
 };
-// For a batch whose class has a medium, after its `surface`: computes what lies on both sides of
-// each hit. Sets all weights to 0 at boundaries inside a medium of higher priority.
+// Computes the media on both sides of each hit. Called for a batch whose class has a medium, after
+// its `surface`. Sets all weights to 0 at boundaries inside a medium of higher priority.
 void crossBoundaries(RtsBatch& batch, RayState* states, Boundaries& out);
 
 // Attenuates the rays' throughput by the absorption of the media between origin and hit.

@@ -56,8 +56,8 @@ class Accel final : public Intersector {
   friend class AccelBuilder;
   struct Level { // one of the two scenes
     const PartScene* scene = nullptr;
-    uint32_t masks = 0;     // union of the masks of its geometries; 0: it is empty
-    bool instances = false; // it contains instances
+    uint32_t masks = 0;     // union of the masks of its geometries; 0: the scene is empty
+    bool instances = false; // whether the scene contains instances
   };
   template <class Packet> void intersectPackets(const Level& level, const Rays& rays, uint32_t mask,
                                                 const QueryOptions& options, bool first,

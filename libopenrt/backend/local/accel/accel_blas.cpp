@@ -61,8 +61,8 @@ AccelBuilder::cached(const Key& key, const Sign& sign, const Make& make) {
   return entry.blas;
 }
 
-// Drops the scenes that this build did not use, except those of parts that still exist: they may be
-// hidden.
+// Drops the scenes that this build did not use, except those of parts that still exist, because
+// these parts may only be hidden.
 void AccelBuilder::evictUnused() {
   std::erase_if(blases_, [&](const auto& entry) {
     const Key& key = entry.first;
@@ -142,7 +142,7 @@ std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t overr
 }
 
 // Returns the Embree scene of everything static, relative to the render origin, with instances of
-// objects that occur often. Its entries are records.
+// objects that occur often. The number of an entry is also the number of its record.
 std::shared_ptr<const Blas> AccelBuilder::staticBlas() {
   const ScenePart& source = input_->flat.parts[0];
   const PartInfo& info = survey.parts()[0];

@@ -106,7 +106,7 @@ Vec3d closestOnEllipsoid(const Affine& map, const double p[3]) {
   }
   const double sum = high > floor ? square(high) : 0;
   if (high == floor) y[0] = y[1] = y[2] = 0;
-  if (sum < 1) { // p is on the plane of symmetry: both sides are equally close
+  if (sum < 1) { // p is in a plane of symmetry: points on both sides of it are equally close
     const double rest = std::sqrt(std::max(0.0, 1 - sum + y[smallest] * y[smallest]));
     y[smallest] = std::copysign(rest, y[smallest]);
   }

@@ -10,8 +10,8 @@
 namespace openrt {
 namespace {
 
-// Computes the inverse transpose up to a positive factor: its largest element is 1. For directions
-// only.
+// Computes the inverse transpose, scaled by a positive factor so that its largest element is 1. It
+// is used for directions, whose length does not matter.
 void normalMatrixOf(const Matrix4d& m, float out[3][3]) {
   const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
   const Vec3d r[3] = {cross(b, c), cross(c, a), cross(a, b)}; // columns of the cofactor matrix

@@ -129,8 +129,8 @@ void Accel::rejectRecord(const RTCFilterFunctionNArguments* a) {
       a->valid[i] = 0;
 }
 
-// first: the hits are overwritten. Otherwise they hold the hits of the other level, which end the
-// rays.
+// first: whether this level is traced first, so that `hits` is overwritten. Otherwise `hits` holds
+// the hits of the other level, which shorten the rays.
 template <class Packet> void Accel::intersectPackets(const Level& level, const Rays& rays,
                                                      uint32_t mask, const QueryOptions& options,
                                                      bool first, RayHits& hits) const {

@@ -17,7 +17,7 @@ struct BakedTriangles {
   std::vector<uint32_t> kept;     // original number of each triangle in `indices`
   std::vector<uint32_t> slivers;  // original numbers of triangles for double precision
   std::vector<uint8_t> openEdges; // for each sliver (sliver_edges.h)
-  uint64_t degenerate = 0;        // number of dropped triangles
+  uint64_t degenerate = 0;        // number of degenerate triangles, which were dropped
 };
 
 // toKernel: from the geometry's local frame to the kernel's frame.
@@ -34,7 +34,7 @@ struct Box {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   bool empty() const { return !(low.x <= high.x); }
   void add(const Vec3d& p);
-  void add(const Box& box, const Matrix4d& matrix); // the transformed corners
+  void add(const Box& box, const Matrix4d& matrix); // adds the transformed corners of the box
 };
 Box boundsOf(const Geometry& geometry); // transformed by the geometry's own matrix
 

@@ -126,7 +126,8 @@ void BlasBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_
   part->primitiveOf.push_back(0);
 }
 
-// From here on the vertices keep their addresses.
+// Attaches all parts that are still open and commits the scene. From here on the vertices keep
+// their addresses.
 std::shared_ptr<Blas> BlasBuilder::finish() {
   for (auto& [key, part] : merged_)
     if (part) attachTriangles(*blas_, device_, std::move(part), key.first, key.second);

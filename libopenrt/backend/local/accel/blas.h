@@ -15,7 +15,7 @@ namespace openrt {
 
 struct Blas : PartScene {
   Matrix4d fromKernel; // from the Embree scene's frame, scaled near 1, to that of its contents
-  std::vector<const float*> vertices; // of triangles, by entry, in the Embree scene's frame
+  std::vector<const float*> vertices; // vertices of triangles by entry, in the Embree scene's frame
   uint64_t degenerate = 0;            // number of dropped triangles
   bool instances = false;             // contains instances, so it cannot be instanced itself
 };

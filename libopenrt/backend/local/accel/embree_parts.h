@@ -19,9 +19,11 @@ struct EmbreeDevice {
   EmbreeDevice(const EmbreeDevice&) = delete;
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
   RTCDevice device;
-  bool hasNativePackets16 = true;             // packets of 16 are native
-  std::atomic<int64_t> bytes{0};              // memory of all acceleration structures
-  mutable std::atomic<uint64_t> wrongHits{0}; // rejected hits of single precision on slivers
+  // Embree traces packets of 16 rays natively on this CPU
+  bool hasNativePackets16 = true;
+  std::atomic<int64_t> bytes{0}; // memory of all acceleration structures
+  // hits on slivers that single precision reports and double precision rejects
+  mutable std::atomic<uint64_t> wrongHits{0};
 };
 
 struct Blas;
@@ -57,7 +59,7 @@ struct PartScene {
 
 inline constexpr uint32_t nextSlot = ~0u; // the first id after the existing parts
 
-RTCScene newScene(const EmbreeDevice& device); // in robust mode
+RTCScene newScene(const EmbreeDevice& device); // Creates an empty scene in robust mode.
 // Attaches triangles; if `slivers`, as a user geometry that intersects in double precision.
 void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                      uint32_t mask, bool slivers);
@@ -67,7 +69,8 @@ RTCGeometry newSlivers(const EmbreeDevice& device, Part& part);
 // double precision.
 void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                        uint32_t mask);
-RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part); // not yet attached
+// Creates the user geometry of huge spheres without attaching it.
+RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part);
 // Attaches spheres or round linear curves. part.vertices have stride 4: centre and radius. slot:
 // the geometry id.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
@@ -76,7 +79,7 @@ void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part
 void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                     const Matrix4d& matrix, uint32_t slot = nextSlot);
 void detach(PartScene& from, uint32_t slot); // does nothing if the slot is empty
-// These place or hide the instance in a slot.
+// setTransform() moves the instance in a slot, setEnabled() shows or hides it.
 void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix);
 void setEnabled(PartScene& in, uint32_t slot, bool enabled);
 

@@ -46,7 +46,7 @@ class Survey {
   // Surveys the whole scene.
   void take(const Scene& scene, const Flattened& flat);
   // Updates the survey after an object, dynamic before and after, was redefined. Returns false if
-  // rebuilding its Embree scene is not enough.
+  // more than its Embree scene must be rebuilt.
   bool resurveyObject(const Scene& scene, const Flattened& flat, uint32_t object);
   // Updates the bounds of clusters that moved.
   void place(const Flattened& flat, const std::vector<uint32_t>& clusters);
@@ -70,7 +70,8 @@ class Survey {
   bool isShared(uint32_t object) const;
   Box bounds() const;
   std::map<uint32_t, ObjectInfo> objects_;
-  std::unordered_map<uint32_t, uint64_t> uses_; // items of an object over all parts
+  // number of items that place an object, over all parts
+  std::unordered_map<uint32_t, uint64_t> uses_;
   std::unordered_map<uint32_t, uint32_t> partOf_;
   std::vector<PartInfo> parts_;
   std::vector<Box> boxes_; // of clusters, in the world
