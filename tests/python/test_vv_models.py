@@ -241,7 +241,7 @@ def test_background_none(vv):
 def test_background_none_in_a_file_without_alpha(vv):
     small = ("--size", "8x8", "--spp", "1", "--background", "none")
     vv.write("sky.wrl", SKY)
-    assert "only png and exr keep" in vv("sky.wrl", "-o", "x.jpg", *small).talk
+    assert "only EXR and PNG keep" in vv("sky.wrl", "-o", "x.jpg", *small).talk
     assert "keep" not in vv("sky.wrl", "-o", "x.jpg", "-o", "x.png", *small).talk
 
 

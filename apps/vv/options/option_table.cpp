@@ -19,13 +19,13 @@ namespace {
 using xvrml::MapOptions;
 
 void addOutput(Options& o, const std::string& value) {
-  if (value == "-") return o.outputs.push_back({"-", picture::Format::png});
+  if (value == "-") return o.outputs.push_back({"-", picture::formatNamed("png")});
   // FORMAT:FILE selects the format for names with another suffix, or without one.
   if (const size_t colon = value.find(':'); colon != value.npos && colon + 1 < value.size()) {
     const std::string file = value.substr(colon + 1);
-    if (const auto format = picture::formatNamed(value.substr(0, colon))) {
+    if (const picture::Format* format = picture::formatNamed(value.substr(0, colon))) {
       if (file != "-") checkFramePlace(file);
-      return o.outputs.push_back({file, *format});
+      return o.outputs.push_back({file, format});
     }
     if (picture::filmOf("film." + value.substr(0, colon)) != picture::FilmKind::none)
       throw UsageError(fmt::format("a film is known by its suffix: -o {}.{}, not \"{}\"", file,
@@ -33,13 +33,13 @@ void addOutput(Options& o, const std::string& value) {
   }
   checkFramePlace(value);
   if (const picture::FilmKind film = picture::filmOf(value); film != picture::FilmKind::none)
-    return o.outputs.push_back({value, {}, film});
-  auto format = picture::formatOf(value);
+    return o.outputs.push_back({value, nullptr, film});
+  const picture::Format* format = picture::formatOf(value);
   if (!format)
     throw UsageError(
         fmt::format("a file name with one of the suffixes {}, {} was expected, not \"{}\"",
-                    picture::formatNames, picture::filmSuffixes, value));
-  o.outputs.push_back({value, *format});
+                    picture::formatSuffixes(), picture::filmSuffixes, value));
+  o.outputs.push_back({value, format});
 }
 
 void setHeadlight(Options& o, const std::string& value) {
@@ -130,10 +130,10 @@ void notEmpty(const std::string& value, const char* what) {
 
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
-     "Picture to write; the format is that of the suffix (exr, png, jpg, ppm, pfm). FORMAT:FILE "
-     "says it where the suffix does not. - is standard output (PNG; exr:- and so on for another "
-     "format). Of a sequence {frame:4} in the name is the number with four digits, and mp4, webm "
-     "or gif makes a film. May be given several times.",
+     "Picture to write; the format is that of the suffix (" + picture::formatSuffixes() +
+         "). FORMAT:FILE says it where the suffix does not. - is standard output (PNG; exr:- and "
+         "so on for another format). Of a sequence {frame:4} in the name is the number with four "
+         "digits, and mp4, webm or gif makes a film. May be given several times.",
      addOutput, true},
     {"--size", "WxH", "Picture", "Size in pixels, of pictures and of the window (default 800x600).",
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
@@ -143,14 +143,17 @@ const OptionInfo table[] = {
      "it can be trusted; asking for them changes how the samples are made.",
      setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
-     "linear (default): colours of the file are decoded from sRGB, light adds up linearly, PNG, "
-     "JPEG and PPM get the sRGB curve. vrml97: the standard's equation on the numbers as written, "
-     "no curve anywhere.",
+     "linear (default): colours of the file are decoded from sRGB, light adds up linearly, " +
+         picture::formatsWith(&picture::Format::appliesCurve) +
+         " get the sRGB curve. vrml97: the standard's equation on the numbers as written, no "
+         "curve anywhere.",
      setColour},
     {"--background", "none|COLOUR|FILE", "Picture",
      "What shows where nothing is drawn; the world's Background is not there then, in mirrors "
-     "neither. none: nothing; a PNG has alpha. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B "
-     "from 0 to 1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
+     "neither. none: nothing; " +
+         picture::formatsWith(&picture::Format::keepsAlpha) +
+         " have alpha. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 to 1. FILE: a "
+         "picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
      setBackground},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint: DEF name, description or number from 0 (default: the first). all: "
