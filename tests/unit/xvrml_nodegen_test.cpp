@@ -128,7 +128,7 @@ TEST_F(Nodegen, ImportedFilesGiveAbstractTypesOnly) {
 }
 
 constexpr const char* twoNodes =
-    "component \"Mine\"\nabstract thing \"A thing.\" { }\n"
+    "component \"Mine\"\nabstract thing \"A thing.\"\n"
     "Early : thing { \"Added later, before the other.\" }\nLate : thing { \"The first.\" }\n";
 
 TEST_F(Nodegen, AListKeepsTheNumbersOfNodes) {
