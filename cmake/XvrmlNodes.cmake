@@ -1,9 +1,9 @@
 include_guard(GLOBAL)
-# xvrml_generate_nodes(PREFIX spec.node...): runs nodegen on node specifications and sets
-# PREFIX_sources and PREFIX_include. It generates, in namespace xvrml::nodes, the header
+# xvrml_generate_nodes(PREFIX NUMBERS spec.node...): runs nodegen on node specifications and sets
+# PREFIX_sources and PREFIX_include. NUMBERS is the list of the nodes' numbers. It generates, in namespace xvrml::nodes, the header
 # xvrml/nodes.h, one .cpp per component and the list of types, and also the node reference nodes.md
 # and the Python stub nodes.pyi. The files are in the build tree and are never committed.
-function(xvrml_generate_nodes prefix)
+function(xvrml_generate_nodes prefix numbers)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(sources ${out}/nodes_list.cpp)
   foreach(specification ${ARGN})
@@ -12,8 +12,9 @@ function(xvrml_generate_nodes prefix)
   endforeach()
   set(others ${out}/xvrml/nodes.h ${out}/nodes.md ${out}/nodes.pyi)
   add_custom_command(OUTPUT ${sources} ${others}
-                     COMMAND nodegen --output ${out} --reference ${out}/nodes.md --stub ${out}/nodes.pyi ${ARGN}
-                     DEPENDS nodegen ${ARGN} COMMENT "Generating nodes" VERBATIM)
+                     COMMAND nodegen --numbers ${numbers} --output ${out} --reference ${out}/nodes.md
+                             --stub ${out}/nodes.pyi ${ARGN}
+                     DEPENDS nodegen ${numbers} ${ARGN} COMMENT "Generating nodes" VERBATIM)
   set(${prefix}_include ${out} PARENT_SCOPE)
   set(${prefix}_sources ${sources} ${out}/xvrml/nodes.h PARENT_SCOPE)
 endfunction()

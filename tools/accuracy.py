@@ -9,10 +9,16 @@ import pathlib
 import re
 import subprocess
 import sys
+import textwrap
 
 
 def number(text):
     return "" if text == "nan" else "%.6g" % float(text)
+
+
+def paragraph(text):
+    """Returns the lines of a paragraph, wrapped as the pages of docs/ are."""
+    return textwrap.wrap(text, 100, break_long_words=False, break_on_hyphens=False)
 
 
 def order(row):
@@ -27,8 +33,9 @@ def numeric(folder):
     ]
     total = re.search(r"\[==========\] (\d+) tests? .* ran\. \((\d+) ms", run.stdout)
     out = [
-        "Of each test the comparison that came nearest to its tolerance; without numbers: a test that compares pictures, counts or",
-        "conditions. Rays: of the last frame.",
+        *paragraph(
+            "Of each test the comparison that came nearest to its tolerance; without numbers: a "
+            "test that compares pictures, counts or conditions. Rays: of the last frame."),
         "",
         "| id | test | expected | got | tolerance | comparisons | | s | rays |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
@@ -55,11 +62,13 @@ def audit(folder, seeds, edge):
                          stdout=subprocess.PIPE,
                          text=True)
     out = [
-        "%d pictures of %dx%d pixels each, seeds 1 to %d, against a long render (8192 to 65536 samples) and the"
-        % (seeds, edge, edge, seeds),
-        "other pictures, or a closed form. Coverage: of trusted intervals that are not exact. Tiles: 5th percentile over those of 8x8",
-        "pixels. In it: share of the pictures that were off by what was said. Cost: mean square error over that of as many",
-        "independent samples. The last column has what does not hold.",
+        *paragraph(
+            "%d pictures of %dx%d pixels each, seeds 1 to %d, against a long render (8192 to 65536 "
+            "samples) and the other pictures, or a closed form. Coverage: of trusted intervals that "
+            "are not exact. Tiles: 5th percentile over those of 8x8 pixels. In it: share of the "
+            "pictures that were off by what was said. Cost: mean square error over that of as many "
+            "independent samples. The last column has what does not hold." %
+            (seeds, edge, edge, seeds)),
         "",
         "| scene | use | samples | untrusted | exact | wrong | coverage | tiles | of all | off by | said | in it | bias | cost | |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",

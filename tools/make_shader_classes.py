@@ -2,21 +2,31 @@
 """Writes the reference of shader classes from the texts in their plug-ins.
 
 make_shader_classes.py VV > docs/shader-classes.md
+make_shader_classes.py VV --check docs/shader-classes.md
 
-VV: the program vv of a build. --check PAGE writes nothing: it checks that the page agrees with the
-plug-ins, and names the classes that the page lacks.
+VV: the program vv of a build. --check prints the differences between the page and the plug-ins, and
+fails if there are any.
 """
+import difflib
 import json
 import os
 import subprocess
 import sys
+import textwrap
 
 HEAD = """# Shader classes
 
-What `rtNewShaderClass`, `ORTShader` and `vv --shader` find, with all parameters. Written by `tools/make_shader_classes.py` from what the
-plug-ins say of themselves; `vv --list-shaders` prints the same. How they work is in `docs/shaders.md`.
+What `rtNewShaderClass`, `ORTShader` and `vv --shader` find, with all parameters. Written by
+`tools/make_shader_classes.py` from what the plug-ins say of themselves; `vv --list-shaders` prints
+the same. How they work is in `docs/shaders.md`.
 """
-KINDS = ["surface", "light", "camera", "environment", "transport"]
+TITLES = {
+    "surface": "Surfaces",
+    "light": "Lights",
+    "camera": "Cameras",
+    "environment": "Environments",
+    "transport": "Transports"
+}
 
 
 def number(x):
@@ -39,7 +49,11 @@ def row(p):
 
 
 def section(c):
-    lines = [f"### {c['name']}", "", f"Plug-in `{c['library']}`: {c['text']}.", ""]
+    intro = textwrap.fill(f"Plug-in `{c['library']}`: {c['text']}.",
+                          100,
+                          break_long_words=False,
+                          break_on_hyphens=False)
+    lines = [f"### {c['name']}", "", intro, ""]
     if c["parameters"]:
         lines += [
             "| parameter | type | default | range | meaning |", "| --- | --- | --- | --- | --- |"
@@ -47,39 +61,41 @@ def section(c):
     return "\n".join(lines)
 
 
-vv = sys.argv[1]
-env = {k: v for k, v in os.environ.items() if k != "OPENRT_SHADER_PATH"}
-classes = json.loads(
-    subprocess.run([vv, "--list-shaders", "--json"],
-                   env=env,
-                   capture_output=True,
-                   text=True,
-                   check=True).stdout)["shaders"]
-classes.sort(key=lambda c: (KINDS.index(c["kind"]), c["name"]))
-if sys.argv[2:3] != ["--check"]:
+def page(classes):
     text = HEAD
-    for kind in KINDS:
+    for kind, title in TITLES.items():
         some = [section(c) for c in classes if c["kind"] == kind]
         if some:
-            text += "\n## " + {
-                "surface": "Surfaces",
-                "light": "Lights",
-                "camera": "Cameras",
-                "environment": "Environments",
-                "transport": "Transports"
-            }[kind] + "\n\n" + "\n".join(some)
-    print(text.rstrip())
-    sys.exit(0)
+            text += f"\n## {title}\n\n" + "\n".join(some)
+    return text.rstrip() + "\n"
 
-page = open(sys.argv[3], encoding="utf-8").read()
-names = [c["name"] for c in classes]
-listed = [line[4:].strip() for line in page.splitlines() if line.startswith("### ")]
-wrong = [name for name in listed if name not in names]
-wrong += [c["name"] for c in classes if c["name"] in listed and section(c).rstrip() not in page]
-lacking = [name for name in names if name not in listed]
-if lacking:
-    print("not on the page yet:", *lacking)
-if wrong or not listed:
-    sys.exit(
-        f"{sys.argv[3]} is out of date ({', '.join(wrong)}): tools/make_shader_classes.py {vv} > docs/shader-classes.md"
-    )
+
+def read_classes(vv):
+    env = {k: v for k, v in os.environ.items() if k != "OPENRT_SHADER_PATH"}
+    done = subprocess.run([vv, "--list-shaders", "--json"],
+                          env=env,
+                          capture_output=True,
+                          text=True,
+                          check=True)
+    return sorted(json.loads(done.stdout)["shaders"], key=lambda c: c["name"])
+
+
+def main():
+    vv = sys.argv[1]
+    text = page(read_classes(vv))
+    if sys.argv[2:3] != ["--check"]:
+        sys.stdout.write(text)
+        return 0
+    path = sys.argv[3]
+    with open(path, encoding="utf-8") as file:
+        there = file.read()
+    if there == text:
+        return 0
+    sys.stdout.writelines(
+        difflib.unified_diff(there.splitlines(True), text.splitlines(True), path, "the plug-ins"))
+    print(f"{path} is out of date: tools/make_shader_classes.py {vv} > docs/shader-classes.md")
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
+#include "libpicture/files/formats.h"
 #include "nearest.h"
 #include "options/names.h"
 #include "outputs.h"
@@ -136,12 +137,13 @@ class Pictures {
       return;
     const bool kept =
         std::any_of(options_.outputs.begin(), options_.outputs.end(), [](const Output& output) {
-          return output.film == picture::FilmKind::none &&
-                 (output.format == picture::Format::png || output.format == picture::Format::exr);
+          return output.film == picture::FilmKind::none && output.format->keepsAlpha;
         });
     if (!kept)
-      sayWarning("--background none: only png and exr files can be transparent; the background is "
-                 "black in the other files");
+      sayWarning(
+          fmt::format("--background none: only {} files can be transparent; the background is "
+                      "black in the other files",
+                      picture::formatsWith(&picture::Format::keepsAlpha)));
   }
 
   // Closes the renderer, because a recording is complete only then.
@@ -279,7 +281,7 @@ class Pictures {
     if (!finished) return stopped("vv: interrupted before the audit was finished");
     writeOut(audit.text());
     for (const Output& output : options_.outputs)
-      picture::writeFile(pathFor(output.path, job.name), audit.encode(output.format));
+      picture::writeFile(pathFor(output.path, job.name), output.format->encode(audit.picture()));
     return audit.good() ? exitDone : exitProblems;
   }
 
@@ -295,7 +297,7 @@ class Pictures {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
     for (const Output& output : options_.outputs) {
       if (output.film != picture::FilmKind::none) continue;
-      const std::string bytes = picture::encode(wanted, output.format);
+      const std::string bytes = output.format->encode(wanted);
       if (output.path == "-") {
         picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
         continue;

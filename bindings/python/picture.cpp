@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "libpicture/files/atomic_file.h"
+#include "libpicture/files/formats.h"
 #include "libpicture/transport.h"
 #include "objects.h"
 #include "picture_object.h"
@@ -92,14 +93,14 @@ py::array display(const PictureObject& self) {
 
 void save(const PictureObject& self, const py::object& file) {
   const std::string path = toPath(file);
-  const auto format = picture::formatOf(path);
+  const picture::Format* format = picture::formatOf(path);
   if (!format)
     throw py::value_error(fmt::format("a file name with one of the suffixes {} expected, not {}",
-                                      picture::formatNames, path));
+                                      picture::formatSuffixes(), path));
   std::string failure;
   {
     const ReleaseGil release;
-    const std::string bytes = picture::encode(self.picture, *format);
+    const std::string bytes = format->encode(self.picture);
     try {
       picture::writeFile(path, bytes);
     } catch (const std::runtime_error& error) { failure = error.what(); }
@@ -222,11 +223,10 @@ void definePicture(py::module_& module) {
       .def("__getitem__", item)
       .def("__array__", asArray, py::arg("dtype") = py::none(), py::arg("copy") = py::none())
       .def("save", save, py::arg("path"),
-           "Writes a file; the suffix (exr, png, jpg, ppm, pfm) says the format.")
+           ("Writes a file; the suffix (" + picture::formatSuffixes() + ") says the format.")
+               .c_str())
       .def("_repr_png_",
-           [](const PictureObject& self) {
-             return py::bytes(picture::encode(self.picture, picture::Format::png));
-           })
+           [](const PictureObject& self) { return py::bytes(picture::encodePng(self.picture)); })
       .def(py::pickle(&pickled, &unpickled))
       .def("__repr__", [](const PictureObject& self) {
         return fmt::format("<Picture {}x{}>", self.picture.width, self.picture.height);

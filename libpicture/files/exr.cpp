@@ -13,7 +13,7 @@
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
-#include "libpicture/files/picture.h"
+#include "libpicture/files/formats.h"
 #include "openrt/openrt.h"
 
 namespace picture {

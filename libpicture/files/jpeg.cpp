@@ -7,7 +7,7 @@
 
 #include <jpeglib.h>
 
-#include "libpicture/files/picture.h"
+#include "libpicture/files/formats.h"
 
 namespace picture {
 

@@ -1,5 +1,4 @@
-// picture.cpp: Defines the table of channels, converts to display colours, and encodes the two
-// formats that need no library (PPM, PFM).
+// picture.cpp: Defines the table of channels, and converts pictures to display colours.
 #include "libpicture/files/picture.h"
 
 #include <algorithm>
@@ -85,37 +84,6 @@ uint8_t displayByte(float v, bool linear) {
   return linear ? curve.of(v) : rounded(v);
 }
 
-const std::vector<float>& colours(const Picture& picture) {
-  auto found = picture.planes.find(RT_RGBA);
-  if (found == picture.planes.end()) throw std::runtime_error("the picture has no channel rgba");
-  return found->second;
-}
-
-std::string encodePpm(const Picture& picture) {
-  std::string out =
-      "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
-  std::vector<uint8_t> bytes = displayBytes(picture);
-  out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  return out;
-}
-
-// Encodes a portable float map: rows from the bottom up; the negative third number means
-// little-endian.
-std::string encodePfm(const Picture& picture) {
-  static_assert(std::endian::native == std::endian::little);
-  std::string out =
-      "PF\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n-1.0\n";
-  const std::vector<float>& rgba = colours(picture);
-  const size_t width = size_t(picture.width);
-  std::vector<float> row(width * 3);
-  for (int y = picture.height; y-- > 0;) {
-    const float* from = rgba.data() + size_t(y) * width * 4;
-    for (size_t x = 0; x < width; ++x) std::copy_n(from + 4 * x, 3, row.data() + 3 * x);
-    out.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
-  }
-  return out;
-}
-
 } // namespace
 
 std::span<const Channel> channelTable() { return table; }
@@ -126,26 +94,14 @@ const Channel* findChannel(std::string_view name) {
   return nullptr;
 }
 
-std::optional<Format> formatNamed(std::string_view name) {
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return c < 128 ? char(std::tolower(c)) : char(c); });
-  if (lower == "png") return Format::png;
-  if (lower == "jpg" || lower == "jpeg") return Format::jpeg;
-  if (lower == "exr") return Format::exr;
-  if (lower == "ppm") return Format::ppm;
-  if (lower == "pfm") return Format::pfm;
-  return {};
-}
-
-std::optional<Format> formatOf(std::string_view path) {
-  size_t dot = path.rfind('.');
-  if (dot == path.npos || path.find('/', dot) != path.npos) return {};
-  return formatNamed(path.substr(dot + 1));
+const std::vector<float>& rgbaOf(const Picture& picture) {
+  auto found = picture.planes.find(RT_RGBA);
+  if (found == picture.planes.end()) throw std::runtime_error("the picture has no channel rgba");
+  return found->second;
 }
 
 std::vector<uint8_t> displayBytes(const Picture& picture) {
-  const std::vector<float>& rgba = colours(picture);
+  const std::vector<float>& rgba = rgbaOf(picture);
   std::vector<uint8_t> bytes(rgba.size() / 4 * 3);
   for (size_t i = 0; i < rgba.size() / 4; ++i)
     for (size_t c = 0; c < 3; ++c) bytes[3 * i + c] = displayByte(rgba[4 * i + c], picture.linear);
@@ -153,7 +109,7 @@ std::vector<uint8_t> displayBytes(const Picture& picture) {
 }
 
 std::vector<uint8_t> displayBytesAlpha(const Picture& picture) {
-  const std::vector<float>& rgba = colours(picture);
+  const std::vector<float>& rgba = rgbaOf(picture);
   std::vector<uint8_t> bytes(rgba.size());
   for (size_t i = 0; i < rgba.size(); i += 4) {
     const float alpha = rgba[i + 3];
@@ -163,17 +119,6 @@ std::vector<uint8_t> displayBytesAlpha(const Picture& picture) {
           alpha > 0 ? displayByte(rgba[i + c] / std::min(alpha, 1.0f), picture.linear) : 0;
   }
   return bytes;
-}
-
-std::string encode(const Picture& picture, Format format) {
-  switch (format) {
-  case Format::png: return encodePng(picture);
-  case Format::jpeg: return encodeJpeg(picture);
-  case Format::exr: return encodeExr(picture);
-  case Format::ppm: return encodePpm(picture);
-  case Format::pfm: return encodePfm(picture);
-  }
-  throw std::runtime_error("unknown picture format");
 }
 
 } // namespace picture

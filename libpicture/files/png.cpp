@@ -5,7 +5,7 @@
 
 #include <png.h>
 
-#include "libpicture/files/picture.h"
+#include "libpicture/files/formats.h"
 
 namespace picture {
 

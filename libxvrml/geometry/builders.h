@@ -1,5 +1,5 @@
-// builders.h: one function per geometry node. buildMesh (mesh.cpp) chooses among them. Called on
-// the caller's thread.
+// builders.h: the list of geometry nodes, with one function per node. buildMesh (mesh.cpp) chooses
+// among them. Called on the caller's thread.
 #pragma once
 
 #include "geometry/faults.h"
@@ -8,19 +8,24 @@
 
 namespace xvrml {
 
-Mesh buildBox(const nodes::Box& node, const MeshOptions& options, Faults& faults);
-Mesh buildCone(const nodes::Cone& node, const MeshOptions& options, Faults& faults);
-Mesh buildCylinder(const nodes::Cylinder& node, const MeshOptions& options, Faults& faults);
-Mesh buildSphere(const nodes::Sphere& node, const MeshOptions& options, Faults& faults);
-Mesh buildIndexedFaceSet(const nodes::IndexedFaceSet& node, const MeshOptions& options,
-                         Faults& faults);
-Mesh buildIndexedLineSet(const nodes::IndexedLineSet& node, const MeshOptions& options,
-                         Faults& faults);
-Mesh buildPointSet(const nodes::PointSet& node, const MeshOptions& options, Faults& faults);
-Mesh buildElevationGrid(const nodes::ElevationGrid& node, const MeshOptions& options,
-                        Faults& faults);
-Mesh buildExtrusion(const nodes::Extrusion& node, const MeshOptions& options, Faults& faults);
-Mesh buildText(const nodes::Text& node, const MeshOptions& options, Faults& faults);
+// The geometry nodes, those that worlds use most first. Each has a function in a file of its own,
+// Mesh buildBox(const nodes::Box&, const MeshOptions&, Faults&) and so on.
+#define XVRML_GEOMETRY_NODES(X)                                                                    \
+  X(IndexedFaceSet)                                                                                \
+  X(Box)                                                                                           \
+  X(Cone)                                                                                          \
+  X(Cylinder)                                                                                      \
+  X(Sphere)                                                                                        \
+  X(IndexedLineSet)                                                                                \
+  X(PointSet)                                                                                      \
+  X(ElevationGrid)                                                                                 \
+  X(Extrusion)                                                                                     \
+  X(Text)
+
+#define XVRML_DECLARE_BUILDER(name)                                                                \
+  Mesh build##name(const nodes::name& node, const MeshOptions& options, Faults& faults);
+XVRML_GEOMETRY_NODES(XVRML_DECLARE_BUILDER)
+#undef XVRML_DECLARE_BUILDER
 
 // Return the arrays of property nodes, also through a prototype instance. They return an empty span
 // for NULL and for nodes of another type.

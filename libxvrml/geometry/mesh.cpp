@@ -46,19 +46,10 @@ bool tryBuild(Node* node, const MeshOptions& options, Mesh& mesh, Faults& faults
   return typed != nullptr;
 }
 
-// The builders of all geometry nodes; those that worlds use most come first.
-constexpr TryBuild builders[] = {
-    tryBuild<nodes::IndexedFaceSet, buildIndexedFaceSet>,
-    tryBuild<nodes::Box, buildBox>,
-    tryBuild<nodes::Cone, buildCone>,
-    tryBuild<nodes::Cylinder, buildCylinder>,
-    tryBuild<nodes::Sphere, buildSphere>,
-    tryBuild<nodes::IndexedLineSet, buildIndexedLineSet>,
-    tryBuild<nodes::PointSet, buildPointSet>,
-    tryBuild<nodes::ElevationGrid, buildElevationGrid>,
-    tryBuild<nodes::Extrusion, buildExtrusion>,
-    tryBuild<nodes::Text, buildText>,
-};
+// The builders of all geometry nodes, in the order of the list.
+#define XVRML_TRY_BUILD(name) tryBuild<nodes::name, build##name>,
+constexpr TryBuild builders[] = {XVRML_GEOMETRY_NODES(XVRML_TRY_BUILD)};
+#undef XVRML_TRY_BUILD
 
 } // namespace
 

@@ -21,7 +21,7 @@ enum ExitCode { success = 0, usage = 2, unreadable = 3, badSpecification = 4, un
 
 struct Options {
   std::vector<std::string> specifications, imports;
-  std::string output, reference, stub, skeleton, skeletonFile, plugin;
+  std::string output, numbers, reference, stub, skeleton, skeletonFile, plugin;
 };
 
 int fail(ExitCode code, const std::string& message) {
@@ -39,6 +39,9 @@ void describe(CLI::App& app, Options& options) {
       ->allow_extra_args(false);
   app.add_option("-o,--output", options.output,
                  "folder for xvrml/nodes.h, nodes_<component>.cpp and nodes_list.cpp");
+  auto* numbers =
+      app.add_option("--numbers", options.numbers,
+                     "list of the nodes' numbers (typeIndex); default: in the order of the files");
   app.add_option("--reference", options.reference, "file for the node reference, in Markdown");
   app.add_option("--stub", options.stub, "file for the Python stub of the node classes");
   auto* skeleton = app.add_option("--skeleton", options.skeleton,
@@ -49,6 +52,7 @@ void describe(CLI::App& app, Options& options) {
   app.add_option("--plugin", options.plugin,
                  "write for a node plug-in of this name: <plugin>_nodes.h, nodes_<component>.cpp "
                  "and <plugin>_plugin.cpp")
+      ->excludes(numbers) // nodes of a plug-in are numbered when it is loaded
       ->check([](const std::string& name) {
         const bool good =
             xvrml::isIdentifier(name) &&
@@ -125,6 +129,10 @@ int run(const Options& options) {
   };
   if (!readAll(options.imports, true) || !readAll(options.specifications, false)) return unreadable;
   if (model.diagnostics.errors() == 0) check(model);
+  if (options.numbers.empty())
+    numberInOrder(model);
+  else if (model.diagnostics.errors() == 0 && !readNumbers(options.numbers, model))
+    return fail(unreadable, fmt::format("cannot read {}", options.numbers));
   for (const xvrml::Diagnostic& diagnostic : model.diagnostics.list())
     fmt::print(stderr, "{}\n", diagnostic.text());
   if (model.diagnostics.errors() > 0) return badSpecification;

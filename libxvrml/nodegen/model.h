@@ -52,6 +52,7 @@ struct TypeSpec {
   std::string component; // the file's name without folder and extension
   SourcePosition source;
   std::vector<std::string> roles; // all abstract types of the node, nearest first; set by check()
+  int number = -1;                // typeIndex of a node; set by readNumbers() or numberInOrder()
 };
 
 // A .node file.
@@ -82,5 +83,11 @@ bool readSpecification(const std::string& path, bool imported, Model& model);
 
 // Resolves the abstract types, completes the fields from them, and reports inconsistencies.
 void check(Model& model);
+
+// Number the nodes that are not imported: by a list (docs/nodegen.md), or in the order of the
+// files. readNumbers returns false if the list cannot be read. Where the list and the nodes
+// disagree, it reports errors in model.diagnostics.
+bool readNumbers(const std::string& path, Model& model);
+void numberInOrder(Model& model);
 
 } // namespace xvrml::nodegen

@@ -1,6 +1,7 @@
 // write_cpp.cpp: writes the generated C++: a header of structs, one source of constant tables per
 // component, and the list of types.
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -34,14 +35,15 @@ constexpr std::string_view pluginMembers =
     "  static const NodeImplementation implementation; // in the plug-in's own source\n"
     "  NodeRef* expansion() override { return &standsFor_; }\n";
 
-std::string writeStruct(const TypeSpec& type, int index, bool plugin) {
+std::string writeStruct(const TypeSpec& type, bool plugin) {
   std::string text =
       fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseText(type), type.name);
   if (plugin)
     text += pluginMembers;
   else
     text += fmt::format(
-        "  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n", index);
+        "  static constexpr int typeIndex = {};\n  static const NodeType& nodeType();\n",
+        type.number);
   text += fmt::format(
       "  {0}() : Node(nodeType()) {{}}\n  explicit {0}(const NodeType& t) : Node(t) {{}}\n",
       type.name);
@@ -124,9 +126,7 @@ std::string writeHeader(const Model& model, const std::string& plugin) {
                       "nodeCast<nodes::Box>(node) to get at them.\n"
                       "#pragma once\n\n#include \"xvrml/{}.h\"\n\nnamespace xvrml::nodes {{\n\n",
                       plugin.empty() ? "node" : "node_plugin");
-  int index = 0;
-  eachNode(model,
-           [&](const TypeSpec& type) { text += writeStruct(type, index++, !plugin.empty()); });
+  eachNode(model, [&](const TypeSpec& type) { text += writeStruct(type, !plugin.empty()); });
   return text + "} // namespace xvrml::nodes\n";
 }
 
@@ -155,9 +155,9 @@ std::string writeList(const Model& model) {
           "namespace xvrml::nodes {\n\nstd::span<const NodeType* const> builtinNodeTypes();\n\n"
           "std::span<const NodeType* const> builtinNodeTypes() {\n  static const NodeType* const "
           "types[] = {\n";
-  eachNode(model, [&](const TypeSpec& type) {
-    text += fmt::format("      &{}::nodeType(),\n", type.name);
-  });
+  std::map<int, std::string> names; // by number
+  eachNode(model, [&](const TypeSpec& type) { names.emplace(type.number, type.name); });
+  for (const auto& [number, name] : names) text += fmt::format("      &{}::nodeType(),\n", name);
   return text + "  };\n  return types;\n}\n\n} // namespace xvrml::nodes\n";
 }
 

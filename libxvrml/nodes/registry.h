@@ -13,7 +13,7 @@ namespace xvrml {
 bool addNodeTypes(std::span<const NodeType* const> types);
 
 namespace nodes {
-// The types of all .node files, in their order. Written by nodegen.
+// The types of all .node files, in the order of their numbers. Written by nodegen.
 std::span<const NodeType* const> builtinNodeTypes();
 } // namespace nodes
 

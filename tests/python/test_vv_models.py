@@ -241,8 +241,8 @@ def test_background_none(vv):
 def test_background_none_in_a_file_without_alpha(vv):
     small = ("--size", "8x8", "--spp", "1", "--background", "none")
     vv.write("sky.wrl", SKY)
-    assert "only png and exr files can be transparent" in vv("sky.wrl", "-o", "x.jpg", *small).talk
-    assert "keep" not in vv("sky.wrl", "-o", "x.jpg", "-o", "x.png", *small).talk
+    assert "only EXR and PNG files can be transparent" in vv("sky.wrl", "-o", "x.jpg", *small).talk
+    assert "transparent" not in vv("sky.wrl", "-o", "x.jpg", "-o", "x.png", *small).talk
 
 
 def srgb(byte):

@@ -14,6 +14,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -124,6 +125,53 @@ TEST_F(Nodegen, ImportedFilesGiveAbstractTypesOnly) {
       << header;
   EXPECT_EQ(header.find("struct Box"), std::string::npos);
   EXPECT_FALSE(fs::exists(out / "nodes_geometry.cpp"));
+}
+
+constexpr const char* twoNodes =
+    "component \"Mine\"\nabstract thing \"A thing.\"\n"
+    "Early : thing { \"Added later, before the other.\" }\nLate : thing { \"The first.\" }\n";
+
+TEST_F(Nodegen, AListKeepsTheNumbersOfNodes) {
+  writeFile(out / "mine.node", twoNodes);
+  writeFile(out / "numbers.txt", "# a remark\n0 Late\n1 Early\n");
+  const Result result =
+      nodegen(fmt::format("{0}/mine.node --numbers {0}/numbers.txt -o {0}", out.string()));
+  EXPECT_EQ(result.code, 0) << result.output;
+  const std::string header = readFile(out / "xvrml/nodes.h");
+  const auto holds = [](const std::string& text, const char* part) {
+    return text.find(part) != text.npos;
+  };
+  EXPECT_TRUE(holds(header, "struct Late : Node {\n  static constexpr int typeIndex = 0;"))
+      << header;
+  EXPECT_TRUE(holds(header, "struct Early : Node {\n  static constexpr int typeIndex = 1;"));
+  const std::string list = readFile(out / "nodes_list.cpp");
+  EXPECT_LT(list.find("&Late::"), list.find("&Early::")) << list;
+}
+
+TEST_F(Nodegen, AListThatContradictsTheNodesIsRefused) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"0 Late\n", "mine.node:3:1: error: Early has no number: append \"1 Early\" to numbers.txt"},
+      {"0 Late\n2 Early\n", "numbers.txt:2:1: error: number 1 was expected, not \"2\""},
+      {"0 Late\n0 Early\n", "numbers.txt:2:1: error: number 1 was expected, not \"0\""},
+      {"0 Late\n1 Early\n2 Late\n", "numbers.txt:3:1: error: Late has number 0 already"},
+      {"0 Late\n1 Gone\n2 Early\n", "numbers.txt:2:1: error: there is no node \"Gone\""},
+      {"Late\n", "numbers.txt:1:1: error: number 0 was expected, not \"Late\""},
+      {"0\n", "numbers.txt:1:1: error: there is no node \"\""},
+  };
+  writeFile(out / "mine.node", twoNodes);
+  for (const auto& [list, message] : cases) {
+    writeFile(out / "numbers.txt", list);
+    const Result result = run(fmt::format("cd {} && '{}' mine.node --numbers numbers.txt -o code",
+                                          out.string(), NODEGEN_PROGRAM));
+    EXPECT_EQ(result.code, 4) << list;
+    EXPECT_NE(result.output.find(message), std::string::npos) << result.output;
+    EXPECT_FALSE(fs::exists(out / "code")) << list;
+  }
+  EXPECT_EQ(nodegen(fmt::format("{0}/mine.node --numbers {0}/none.txt", out.string())).code, 3);
+  EXPECT_EQ(
+      nodegen(fmt::format("{0}/mine.node --numbers {0}/numbers.txt --plugin mine", out.string()))
+          .code,
+      2);
 }
 
 TEST_F(Nodegen, ASkeletonIsWrittenOnce) {

@@ -129,6 +129,24 @@ TEST(Nodes, AreNumberedInOrderAndDescribed) {
   EXPECT_EQ(findNodeType(""), nullptr);
 }
 
+// Programs have nodes::NAME::typeIndex compiled in. The fingerprint (FNV-1a) is that of the names
+// in the order of their numbers when the numbers were fixed; it never changes. New nodes come
+// after.
+TEST(Nodes, NumbersNeverChange) {
+  constexpr size_t fixedNodes = 61;
+  ASSERT_GE(nodeTypes().size(), fixedNodes);
+  uint64_t fingerprint = 0xcbf29ce484222325;
+  for (const NodeType* type : nodeTypes().first(fixedNodes))
+    for (const char c : type->name + '\n')
+      fingerprint = (fingerprint ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  EXPECT_EQ(fingerprint, 0x9c2532e7d78c72b3u)
+      << "a line of libxvrml/nodes/numbers.txt has changed; older programs would cast wrongly";
+  static_assert(nodes::Appearance::typeIndex == 0);
+  static_assert(nodes::Box::typeIndex == 14);
+  static_assert(nodes::ORTBackground::typeIndex == 44);
+  static_assert(nodes::Switch::typeIndex == 60);
+}
+
 Value defaultOf(const char* node, const char* field) {
   const NodeType* type = findNodeType(node);
   const FieldInfo* info = type ? type->find(field) : nullptr;

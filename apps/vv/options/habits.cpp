@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/film.h"
-#include "libpicture/files/picture.h"
+#include "libpicture/files/formats.h"
 
 namespace vv {
 

@@ -19,13 +19,13 @@ namespace {
 using xvrml::MapOptions;
 
 void addOutput(Options& o, const std::string& value) {
-  if (value == "-") return o.outputs.push_back({"-", picture::Format::png});
+  if (value == "-") return o.outputs.push_back({"-", picture::formatNamed("png")});
   // FORMAT:FILE selects the format for names with another suffix, or without one.
   if (const size_t colon = value.find(':'); colon != value.npos && colon + 1 < value.size()) {
     const std::string file = value.substr(colon + 1);
-    if (const auto format = picture::formatNamed(value.substr(0, colon))) {
+    if (const picture::Format* format = picture::formatNamed(value.substr(0, colon))) {
       if (file != "-") checkFramePlace(file);
-      return o.outputs.push_back({file, *format});
+      return o.outputs.push_back({file, format});
     }
     if (picture::filmOf("film." + value.substr(0, colon)) != picture::FilmKind::none)
       throw UsageError(fmt::format(
@@ -34,13 +34,13 @@ void addOutput(Options& o, const std::string& value) {
   }
   checkFramePlace(value);
   if (const picture::FilmKind film = picture::filmOf(value); film != picture::FilmKind::none)
-    return o.outputs.push_back({value, {}, film});
-  auto format = picture::formatOf(value);
+    return o.outputs.push_back({value, nullptr, film});
+  const picture::Format* format = picture::formatOf(value);
   if (!format)
     throw UsageError(
         fmt::format("a file name with one of the suffixes {}, {} was expected, not \"{}\"",
-                    picture::formatNames, picture::filmSuffixes, value));
-  o.outputs.push_back({value, *format});
+                    picture::formatSuffixes(), picture::filmSuffixes, value));
+  o.outputs.push_back({value, format});
 }
 
 void setHeadlight(Options& o, const std::string& value) {
@@ -131,11 +131,12 @@ void notEmpty(const std::string& value, const char* what) {
 
 const OptionInfo table[] = {
     {"-o,--output", "FILE", "Picture",
-     "Write the picture to FILE. The suffix selects the format (exr, png, jpg, ppm, pfm); "
-     "FORMAT:FILE selects it for any other name. - writes a PNG to standard output (exr:- an "
-     "OpenEXR file, and so on). In a sequence, {frame:4} in the name is replaced by the frame "
-     "number with four digits; the suffix mp4, webm or gif makes a film. May be given several "
-     "times.",
+     "Write the picture to FILE. The suffix selects the format (" + picture::formatSuffixes() +
+         "); FORMAT:FILE selects it for any other name. - writes a PNG to standard output (exr:- "
+         "an "
+         "OpenEXR file, and so on). In a sequence, {frame:4} in the name is replaced by the frame "
+         "number with four digits; the suffix mp4, webm or gif makes a film. May be given several "
+         "times.",
      addOutput, true},
     {"--size", "WxH", "Picture",
      "Width and height of pictures and of the window, in pixels (default 800x600).",
@@ -147,14 +148,16 @@ const OptionInfo table[] = {
      "sample positions are used.",
      setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
-     "linear (default): colours of the file are decoded from sRGB, light is added linearly, and "
-     "PNG, JPEG and PPM files get the sRGB curve. vrml97: the standard's lighting equation is "
-     "applied to the numbers as written, without any curve.",
+     "linear (default): colours of the file are decoded from sRGB, light is added linearly, and " +
+         picture::formatsWith(&picture::Format::appliesCurve) +
+         " files get the sRGB curve. vrml97: the standard's lighting equation is applied to the "
+         "numbers as written, without any curve.",
      setColour},
     {"--background", "none|COLOUR|FILE", "Picture",
-     "Replace the world's Background, which then is not seen in mirrors either. none: nothing; PNG "
-     "and EXR files are transparent there. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 "
-     "to 1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
+     "Replace the world's Background, which then is not seen in mirrors either. none: nothing; " +
+         picture::formatsWith(&picture::Format::keepsAlpha) +
+         " files are transparent there. COLOUR: a name (white), #rgb, #rrggbb, or R,G,B from 0 to "
+         "1. FILE: a picture that covers the whole frame (png, jpg, gif; exr, hdr, pfm).",
      setBackground},
     {"--viewpoint", "NAME|N|all", "View",
      "Look from this viewpoint, given by DEF name, description or number from 0 (default: the "

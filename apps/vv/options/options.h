@@ -12,6 +12,7 @@
 
 #include "libpicture/cluster.h"
 #include "libpicture/files/film.h"
+#include "libpicture/files/formats.h"
 #include "libpicture/renderer.h"
 #include "values.h"
 #include "window/input/input_script.h"
@@ -20,9 +21,9 @@
 namespace vv {
 
 struct Output {
-  std::string path; // "-": standard output
-  picture::Format format = picture::Format::png;
-  // Not none: the file holds all pictures of a sequence, and `format` is unused.
+  std::string path;                        // "-": standard output
+  const picture::Format* format = nullptr; // never null in a file of one picture
+  // Not none: the file holds all pictures of a sequence, and `format` is null.
   picture::FilmKind film = picture::FilmKind::none;
 };
 
@@ -94,7 +95,7 @@ struct OptionInfo {
   const char* names; // "-o,--output"
   const char* argument;
   const char* group;
-  const char* text;
+  std::string text;
   void (*apply)(Options& options, const std::string& value);
   bool repeatable = false;
 };

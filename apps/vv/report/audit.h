@@ -27,8 +27,8 @@ class Audit {
   bool run(const picture::View& view);
   bool good() const;
   std::string text() const;
-  // Encodes the first picture of the series.
-  std::string encode(picture::Format format) const { return picture::encode(first_, format); }
+  // Returns the first picture of the series.
+  const picture::Picture& picture() const { return first_; }
 
  private:
   picture::RenderResult render(const picture::View& view, const std::string& what);

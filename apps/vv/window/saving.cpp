@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/files/atomic_file.h"
+#include "libpicture/files/formats.h"
 #include "options/names.h"
 #include "pictures.h"
 #include "report/messages.h"
@@ -32,11 +33,11 @@ std::string savePicture(const picture::Picture& picture, const std::string& path
                         uint32_t channels) {
   std::string told;
   try {
-    const auto format = picture::formatOf(path);
+    const picture::Format* format = picture::formatOf(path);
     if (!format)
       throw std::runtime_error(
-          fmt::format("{}: the suffix is none of {}", path, picture::formatNames));
-    picture::writeFile(path, picture::encode(wantedPart(picture, channels), *format));
+          fmt::format("{}: the suffix is none of {}", path, picture::formatSuffixes()));
+    picture::writeFile(path, format->encode(wantedPart(picture, channels)));
     told = "saved as " + path;
     say("vv: " + told);
   } catch (const std::exception& error) { sayError(told = error.what()); }

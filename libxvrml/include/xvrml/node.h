@@ -162,7 +162,8 @@ inline NodeRef::~NodeRef() {
 }
 
 // Returns the node if it is exactly of the concrete type, else null: nodeCast<nodes::Box>(ref).
-// Generated structs have a static `typeIndex`.
+// Generated structs have a static `typeIndex`. That of a built-in node never changes, because
+// programs have it compiled in (libxvrml/nodes/numbers.txt).
 template <class T> T* nodeCast(Node* node) {
   return node && node->type().index == T::typeIndex ? static_cast<T*>(node) : nullptr;
 }
@@ -178,7 +179,8 @@ class DynamicNode : public Node {
   const NodeTypePtr typePtr;
 };
 
-// Returns the built-in and plug-in types in the order of the .node files, which is stable.
+// Returns the built-in types in the order of their typeIndex, then those of plug-ins as they were
+// loaded. A type never changes its place: new built-in types get the next numbers.
 std::span<const NodeType* const> nodeTypes();
 const NodeType* findNodeType(std::string_view name);
 
