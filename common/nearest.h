@@ -13,9 +13,9 @@ namespace nearest {
 
 // How different two names may be. Numbers are half edits, so that case can cost less than an edit.
 struct Limits {
-  size_t mostLetters; // a longer name is near to none
-  size_t most;        // largest distance of near names
-  size_t caseCost;    // a change of letter case; insert, delete and replace cost 2
+  size_t maxLetters; // a longer name is near to none
+  size_t most;       // largest distance of near names
+  size_t caseCost;   // a change of letter case; insert, delete and replace cost 2
 };
 
 // Returns the limits for words that people type: options, names in arguments.
@@ -57,7 +57,7 @@ template <class T> const std::string& nameOf(const T& item) {
 // `name`.
 template <class Range>
 const std::string* find(std::string_view name, const Range& known, const Limits& limits) {
-  if (name.size() > limits.mostLetters) return nullptr;
+  if (name.size() > limits.maxLetters) return nullptr;
   const std::string* best = nullptr;
   size_t least = limits.most + 1;
   for (const auto& item : known) {

@@ -19,8 +19,8 @@ struct RenderSettings;
 
 // Values in the syntax of a context's configuration (openrt.h).
 struct ClusterSettings {
-  std::string workers;    // HOST[:PORT],... or @FILE
-  std::string listen;     // ADDRESS[:PORT]
+  std::string workers;    // workers to call: HOST[:PORT],... or @FILE
+  std::string listen;     // where workers may call: ADDRESS[:PORT]
   std::string key, allow; // names of files
   int localThreads = -1;  // rendering threads of this machine; below 0: RenderSettings.threads
   std::string split;      // auto, tiles, samples or frames; empty: auto

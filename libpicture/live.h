@@ -75,7 +75,7 @@ class LiveRenderer {
   void change(const std::function<void(RenderSettings&)>& change);
   // Valid after the first mapping. [not while mapping]
   const std::vector<xvrml::ViewpointInfo>& viewpoints() const;
-  xvrml::Bounds bounds() const; // As above: after the first mapping. [not while mapping]
+  xvrml::Bounds bounds() const; // Valid after the first mapping. [not while mapping]
   // See camera.h; needs the first mapping. [not while mapping]
   xvrml::CameraSettings cameraOf(const View& view, double aspect) const;
   // See camera.h; needs the first mapping. [not while mapping]

@@ -30,14 +30,14 @@ struct RenderSettings {
   bool shadows = true;
   int transport = RT_TRANSPORT_AUTO;
   double error = 0;         // RT_TARGET_ERROR; 0: none
-  double timeLimit = 0;     // seconds; 0: none
+  double timeLimit = 0;     // time limit in seconds (RT_TIME_LIMIT); 0: none
   double energyCut = -1;    // RT_ENERGY_CUT; below 0: the engine's default
   double clamp = 0;         // RT_CLAMP; 0: none
   bool progressive = false; // RT_PROGRESSIVE
   int seed = 0;
   int threads = 0; // 0: as many threads as the process may use
   bool linear = true;
-  bool multiplyTextures = false; // xvrml::MapOptions::multiplyTextures
+  bool multiplyTextures = false; // value of xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
   std::string backend = "local";

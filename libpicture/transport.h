@@ -10,9 +10,9 @@
 
 namespace picture {
 
-std::string transportNames(); // "auto, direct, whitted, path or light"
+std::string transportNames(); // returns "auto, direct, whitted, path or light"
 
-std::optional<int> transportNamed(std::string_view name); // RT_TRANSPORT_*
+std::optional<int> transportNamed(std::string_view name); // returns the RT_TRANSPORT_* value
 // "path" for RT_TRANSPORT_PATH and so on; "plug-in" for others
 const char* transportName(RTenum transport);
 

@@ -12,7 +12,7 @@ import math
 import pathlib
 import sys
 
-WIDTH, HEIGHT, THICK = 40.0, 26.0, 1.6  # mm
+WIDTH, HEIGHT, THICK = 40.0, 26.0, 1.6  # size of the board in mm
 MATERIALS = {  # materials of the models, named as in KiCad's libraries
     "IC-BODY-EPOXY-04": "ambientIntensity 0.29 diffuseColor 0.148 0.145 0.145 specularColor 0.18 0.168 0.16 shininess 0.35",
     "PIN-01": "ambientIntensity 0.271 diffuseColor 0.824 0.82 0.781 specularColor 0.328 0.258 0.172 shininess 0.7",

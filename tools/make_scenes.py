@@ -62,8 +62,8 @@ def mirror_corridor():
 
 
 def cornell():
-    """The Cornell box with its usually quoted dimensions, scaled to a width of one metre, and the
-    colours of its paints and lamp."""
+    """Returns the Cornell box with its usually quoted dimensions, scaled to a width of one metre,
+    and the colours of its paints and lamp."""
     white = shader("Diffuse", "diffuse", "color reflectance .73 .73 .73")
     parts = [
         "DEF Lamp " + shape(
@@ -88,8 +88,8 @@ def cornell():
 
 
 def furnace():
-    """Emission and reflectance add up to 1, so the radiance is 1 everywhere and the objects are
-    invisible."""
+    """Returns a furnace: emission and reflectance add up to 1, so the radiance is 1 everywhere and
+    the objects are invisible."""
     walls = shader("Diffuse", "diffuse", "color emission .5 .4 .2", "color reflectance .5 .6 .8")
     faces = (
         "IndexedFaceSet { solid FALSE coord Coordinate { point [ -4 -4 4, 4 -4 4, 4 4 4, -4 4 4, -4 -4 -4, 4 -4 -4, 4 4 -4, "
@@ -104,8 +104,8 @@ def furnace():
 
 
 def caustic():
-    """Sunlight from a small lamp through a ball of glass and off a ring of gold, onto a wall and a
-    table."""
+    """Returns a caustic: sunlight from a small lamp through a ball of glass and off a ring of gold,
+    onto a wall and a table."""
     matt = "DEF Wall " + shader("Diffuse", "diffuse", "color reflectance .75 .73 .7")
     ring = lathe([(1.0, -.25), (1.0, .25), (1.04, .25), (1.04, -.25), (1.0, -.25)], 64, .5)
     gold = shader("Metal", "metal", "color n .16 .42 1.35", "color k 3.5 2.4 1.8")
@@ -122,7 +122,7 @@ def caustic():
 
 
 def car_paint():
-    """The body of a model car, lofted from a few sections along its length."""
+    """Returns the body of a model car, lofted from a few sections along its length."""
     sections = [(-2.2, .22, .48, .34), (-2.05, .42, .52, .52), (-1.2, .5, .56, .62),
                 (-.7, .54, .58, .7), (0, .56, .76, .74), (.55, .56, .77, .74), (1.2, .54, .6, .72),
                 (1.9, .48, .5, .64), (2.15, .34, .44, .46), (2.25, .2, .38, .3)]
@@ -166,7 +166,7 @@ def car_paint():
 
 
 def carved():
-    """Wood, marble and a chequered table, and a label with a picture."""
+    """Returns wood, marble and a chequered table, and a label with a picture."""
     label = ("PixelTexture { repeatS FALSE repeatT FALSE image 8 8 1 " +
              " ".join("0xE0" if (x in (0, 7) or y in (0, 7) or (x + y) % 3) else "0x30"
                       for y in range(8)
@@ -193,7 +193,7 @@ def carved():
 
 
 def interior():
-    """A room that receives all its light through a pane of glass."""
+    """Returns a room that receives all its light through a pane of glass."""
     plaster = "DEF Plaster " + shader("Diffuse", "diffuse", "color reflectance .75 .73 .68")
     w = "USE Plaster"
     return world(
@@ -226,8 +226,8 @@ def interior():
 
 
 def headlight():
-    """A lamp in the focus of a paraboloid, behind a glass lens, and their light on a wall. Unit:
-    centimetre."""
+    """Returns a lamp in the focus of a paraboloid, behind a glass lens, and their light on a wall.
+    Unit: centimetre."""
     focus, radius, hole = 3.0, 8.0, 1.0
     reflector = lathe([(r, r * r / (4 * focus) - focus)
                        for r in [hole + (radius - hole) * i / 14 for i in range(15)]], 64, 1)
@@ -255,8 +255,8 @@ def headlight():
 
 
 def board():
-    """A circuit board as exported by layout programs: many small shapes, few materials; lit by a
-    sky."""
+    """Returns a circuit board as exported by layout programs: many small shapes, few materials; lit
+    by a sky."""
     parts = []
     plastic = "DEF Black " + shader("Plastic", "plastic", "color color .03 .03 .035",
                                     "1f roughness .25")

@@ -94,7 +94,7 @@ class Pictures {
 
   int make() {
     picture::RenderSettings settings = options_.render;
-    // RTstats then contains the error
+    // With this channel, RTstats contains the error.
     if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE;
     if (settings.error > 0) settings.channels |= RT_SAMPLES; // whyMissed() needs the samples
     warnOfAlpha();

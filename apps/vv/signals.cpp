@@ -16,8 +16,8 @@ namespace vv {
 namespace {
 
 std::atomic<bool> deferred{false}, interruptSeen{false}, saveWanted{false};
-std::atomic<unsigned> patience{0};   // time limit in seconds
-std::atomic<int64_t> interruptAt{0}; // seconds of the steady clock
+std::atomic<unsigned> patience{0};   // time limit after the first SIGINT, in seconds
+std::atomic<int64_t> interruptAt{0}; // steady-clock time of the first SIGINT, in seconds
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int64_t>::is_always_lock_free);
 
 int64_t steadySeconds() {

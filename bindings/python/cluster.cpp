@@ -18,9 +18,9 @@ PyObject* clusterError = nullptr;
 PyObject* scope = nullptr;
 
 struct ClusterObject {
-  std::shared_ptr<picture::Cluster> cluster; // null: closed
+  std::shared_ptr<picture::Cluster> cluster; // the connections to the workers; null after close()
   picture::ClusterSettings settings;
-  // The world that was rendered last; it may still hold the context.
+  // The world that was rendered last. This world may still hold the context.
   std::weak_ptr<WorldObject> holder;
   std::vector<py::object> tokens; // tokens of the nested `with` scopes, innermost last
 

@@ -51,7 +51,7 @@ std::string expectation(FieldType type) {
 struct Target {
   const FieldInfo& field;
   const NodeObject& owner;
-  // Loose owner: the world of the first of its new nodes that is in one.
+  // If the owner is loose: the world of the first new node that is in a world.
   mutable WorldPtr place = nullptr;
 
   std::string text() const {

@@ -153,7 +153,7 @@ std::string description(const NodeType& type) {
 }
 
 PyTypeObject* classOf(const NodeType& type) {
-  if (type.index < 0) return nodeClass; // the type of a prototype or a Script
+  if (type.index < 0) return nodeClass; // nodes of prototypes and Scripts have the class Node
   PyTypeObject*& known = classes()[&type];
   if (known) return known;
   py::dict members;

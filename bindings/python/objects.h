@@ -41,7 +41,8 @@ using WorldPtr = std::shared_ptr<WorldObject>;
 struct WorldObject : std::enable_shared_from_this<WorldObject> {
   std::unique_ptr<xvrml::World> world;     // the world while it is static
   std::unique_ptr<xvrml::Browser> running; // the browser that runs the world
-  WorldPtr joined;                         // the world that loose nodes have joined; null: none
+  // The world that these loose nodes have joined; null: none.
+  WorldPtr joined;
   int rank = 0; // longest chain of joins that leads here, for loose nodes
   // Fields that are sent as events when the world begins to run.
   std::vector<std::pair<xvrml::NodeRef, std::string>> initialEvents;

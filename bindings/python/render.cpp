@@ -138,7 +138,7 @@ py::object Making::picture() {
 
 py::object render(const WorldPtr& self, const RenderArguments& given) {
   Making making{self, given, requestOf(given), progressOf(given.progress), {}};
-  // before the lock: it may wait for another world
+  // Look for the cluster before taking the lock, because this may wait for another world.
   making.request.settings.cluster = clusterFor(given.cluster, self);
   const auto lock = self->lockDrawing();
   if (self->isRenderingHere)

@@ -25,7 +25,7 @@ using Shape = std::vector<py::ssize_t>;
 
 struct Rows { // rows of numbers, with any shape before the last dimension
   Floats values;
-  Shape shape; // without the last dimension
+  Shape shape; // lengths of all dimensions except the last
   size_t count = 0;
   Rows(const py::object& given, const char* name, py::ssize_t width) {
     const std::string expected = fmt::format("numbers of shape (..., {})", width);

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 
-static int32_t stepsOfTurn; /* 0: closed */
+static int32_t stepsOfTurn; /* steps per turn; 0 while the encoder is closed */
 static int32_t lastCount;
 static double firstTime, lastTime; /* times of readings, in seconds since 1970 */
 

@@ -25,10 +25,10 @@ typedef struct Formula {
   const XsHost* host;       /* both are valid until destroy */
   const XsScriptInfo* info; /* the program and the Script's declarations */
   int due;                  /* events have arrived */
-  const char* at;           /* parser: the next character */
-  const char* end;          /* parser: the end of the program */
-  uint32_t line;            /* parser: the line, from 1 */
-  uint32_t depth;           /* parser: nesting depth of parentheses */
+  const char* at;           /* position of the next character (parser) */
+  const char* end;          /* end of the program (parser) */
+  uint32_t line;            /* current line, counted from 1 (parser) */
+  uint32_t depth;           /* nesting depth of parentheses (parser) */
   uint64_t steps;           /* operations since shouldStop was last called */
   double values[];          /* current values of info->fields */
 } Formula;
@@ -201,7 +201,7 @@ static XsResult program(Formula* f, int run) {
     f->depth = 0;
     blanks(f);
     if (f->at < f->end && *f->at != '\n') answer = statement(f, run);
-    while (f->at < f->end && *f->at != '\n') f->at++; /* the rest of a line with an error */
+    while (f->at < f->end && *f->at != '\n') f->at++; /* skips the rest of a line with an error */
     if (f->at < f->end) f->at++;
     if (f->host->shouldStop(f->host, f->info->self, f->steps)) return XS_STOPPED;
     f->steps = 0;

@@ -60,9 +60,9 @@ struct Flattened {
   // Ids of the lights that illuminate an item; set 0 holds the unscoped lights.
   std::vector<std::vector<uint32_t>> lightSets;
   uint64_t rejected = 0;  // items with an unusable matrix within their part
-  bool truncated = false; // more than maxPlacements
+  bool truncated = false; // items beyond maxPlacements were left out
   std::map<std::vector<uint32_t>, uint32_t> setNumbers; // light set to its index
-  uint32_t lightSet(const std::vector<uint32_t>& ids);  // returns its index
+  uint32_t lightSet(const std::vector<uint32_t>& ids);  // returns the index of this set of lights
   uint32_t uniteLightSets(uint32_t a, uint32_t b);      // returns the union of two sets
   // Combines two consecutive paths.
   Inherited inherit(const Inherited& outer, const Inherited& inner);

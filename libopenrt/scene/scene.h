@@ -78,7 +78,8 @@ struct ShaderClassName {
 struct SceneChanges {
   // Instances created, deleted or changed in more than their placement; objects created or deleted.
   bool structure = false;
-  bool shaders = false; // created, deleted, or a new default; not parameters
+  // Shaders were created or deleted, or the default changed; parameters do not count.
+  bool shaders = false;
   bool textures = false, lights = false, camera = false, frame = false;
   std::vector<uint32_t> parameters; // shaders with changed parameters
   // Dynamic instances of which only the matrix or visibility changed.

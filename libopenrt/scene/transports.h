@@ -10,7 +10,7 @@
 namespace openrt {
 
 struct TransportTraits {
-  bool tracesPaths; // follows light between surfaces, with random decisions
+  bool tracesPaths; // the transport follows light between surfaces, with random decisions
 };
 
 // Both are in the order of RT_TRANSPORT_*. RT_TRANSPORT_AUTO is resolved before a frame is

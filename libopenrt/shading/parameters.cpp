@@ -9,7 +9,7 @@ namespace {
 std::string problem(const RtsParam& param, double value) {
   const std::string what = std::string("parameter ") + param.name + ": ";
   if (!std::isfinite(value)) return what + "not finite";
-  if (param.minimum == 0 && param.maximum == 0) return {}; // no range
+  if (param.minimum == 0 && param.maximum == 0) return {}; // the parameter has no range
   if (value >= param.minimum && value <= param.maximum) return {};
   return what + std::to_string(value) + " is outside " + std::to_string(param.minimum) + " .. " +
          std::to_string(param.maximum);

@@ -1,4 +1,4 @@
-// lexer.cpp: tokens of VRML97 text, and the positions of messages.
+// lexer.cpp: reads the tokens of VRML97 text and finds the positions of messages.
 #include "base/lexer.h"
 
 #include <algorithm>

@@ -57,8 +57,8 @@ constexpr bool isVrmlSpace(char c) {
 constexpr bool isVrmlSeparator(char c) {
   return lexer_detail::classes[static_cast<unsigned char>(c)] & lexer_detail::separator;
 }
-bool isIdentifierStart(unsigned char c); // IdFirstChar
-bool isIdentifierRest(unsigned char c);  // IdRestChars
+bool isIdentifierStart(unsigned char c); // returns whether c is an IdFirstChar (Annex A.3)
+bool isIdentifierRest(unsigned char c);  // returns whether c is one of IdRestChars (Annex A.3)
 bool isIdentifier(std::string_view text);
 
 class Lexer {

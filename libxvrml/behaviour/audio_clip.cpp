@@ -33,8 +33,8 @@ struct State : Media {
 
   std::string path; // empty: no file could be read
   std::shared_ptr<const Clip> clip;
-  double position = 0; // in seconds
-  Share share;         // of the world's budget, for the samples
+  double position = 0; // playing position in seconds
+  Share share;         // share of the world's budget for the samples
   Diagnostics* diagnostics = nullptr;
 };
 
@@ -57,7 +57,7 @@ Playing playingOf(const Node& node) {
       }));
     } catch (const std::exception& failure) {
       state->diagnostics->warn(node.source, "AudioClip: no sound: " + std::string(failure.what()));
-      state->path.clear(); // its events continue
+      state->path.clear(); // the clip's events continue
       return {};
     }
   }

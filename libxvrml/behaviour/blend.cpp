@@ -1,4 +1,5 @@
-// blend.cpp: interpolation. Computed in double, because the arguments are floats of any size.
+// blend.cpp: interpolates between two values. It computes in double, because the arguments are
+// floats of any size.
 #include "behaviour/blend.h"
 
 #include <algorithm>

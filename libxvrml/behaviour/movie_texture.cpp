@@ -98,7 +98,7 @@ struct State : Media {
   }
 
   Limits limits;
-  Share share;                          // of the world's budget, for the compressed pictures
+  Share share;                          // share of the world's budget for the compressed pictures
   std::shared_ptr<const FilmData> film; // null: no file could be read
   std::unique_ptr<FilmReader> reader;
   Image image;

@@ -1,4 +1,4 @@
-// sound.cpp: loudness and mixing of sounds for xvrml/media.h (clause 6.42).
+// sound.cpp: computes the loudness of sounds and mixes them for xvrml/media.h (clause 6.42).
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// time_dependent.cpp: the state machine. Decisions where the standard is silent are in
-// docs/decisions/0014.
+// time_dependent.cpp: implements the state machine of time-dependent nodes. Decisions where the
+// standard is silent are in docs/decisions/0014.
 #include "behaviour/time_dependent.h"
 
 #include <algorithm>

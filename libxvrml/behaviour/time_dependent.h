@@ -27,7 +27,8 @@ struct TimeStep {
   bool alreadySent = false; // a step at this very time has already sent fraction and time
   double time = 0;       // in seconds: now, or the exact end if it has passed since the last step
   double cycleStart = 0; // in seconds: start of the cycle that `time` lies in
-  double fraction = 0;   // of that cycle, in [0,1]: 1, never 0, at its end
+  // Part of the cycle that has passed, in [0,1]; 1 at the cycle's end, never 0.
+  double fraction = 0;
 };
 
 class TimeDependent {

@@ -1,4 +1,4 @@
-// wav.cpp: the reader of WAVE files. Sizes in the file are not trusted: a chunk ends at the end of
+// wav.cpp: reads WAVE files. Sizes in the file are not trusted: a chunk ends at the end of
 // the file at the latest.
 #include "behaviour/wav.h"
 

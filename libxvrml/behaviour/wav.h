@@ -14,7 +14,7 @@ struct WavInfo {
   int format = 0;
   int channels = 0, bits = 0;
   double rate = 0;     // frames per second
-  double duration = 0; // in seconds
+  double duration = 0; // length of the sound in seconds
   uint64_t dataAt = 0, dataBytes = 0;
 };
 

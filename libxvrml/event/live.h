@@ -44,9 +44,10 @@ struct Participant {
     uint64_t cascade = 0; // the last cascade in which it sent
     Value last;           // the last value of an eventOut
   };
-  std::vector<Link> links; // in the order in which they were made
+  std::vector<Link> links; // links in the order in which they were made
   std::vector<Out> outs;   // outputs that have sent
-  std::vector<std::pair<uint64_t, std::pair<const FieldInfo*, Listener>>> listeners; // by number
+  // Listeners, each with its number.
+  std::vector<std::pair<uint64_t, std::pair<const FieldInfo*, Listener>>> listeners;
   std::vector<std::pair<Change, std::string>> reasons; // reasons for the bits in Live::reach
   std::unique_ptr<NodeState> state;
   // Index of `links`, used only if there are many.
@@ -64,7 +65,7 @@ struct Live : LiveBase {
   size_t slot;        // index in Engine's list
   uint32_t order;     // position in the order in which nodes became part of the world
   uint16_t reach = 0; // kinds of change that events may bring (xvrml/change.h)
-  bool root = false;  // is a root of the world
+  bool root = false;  // the node is a root of the world
   // Bit set of the fields already in the list of changes, by index in the type.
   uint64_t changed = 0;
   // Nodes that have it among their children, once for each time. Includes prototype instances and

@@ -1,4 +1,4 @@
-// cylinder.cpp: Cylinder (clause 6.14).
+// cylinder.cpp: builds the mesh of a Cylinder (clause 6.14).
 #include "geometry/builders.h"
 #include "geometry/round.h"
 #include "geometry/vector_math.h"

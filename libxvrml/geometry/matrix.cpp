@@ -1,4 +1,4 @@
-// matrix.cpp: composition of the standard's transformations.
+// matrix.cpp: composes the standard's transformations.
 #include "geometry/matrix.h"
 
 #include <algorithm>

@@ -30,7 +30,7 @@ struct Mesh {
   std::span<const Color> colors;
   bool solid = true; // back faces are culled
   bool ccw = true;
-  float radius = 0; // of a sphere
+  float radius = 0; // radius of a sphere
 
   std::vector<Vec3f> ownPoints, ownNormals;
   std::vector<uint32_t> ownIndices;

@@ -1,4 +1,4 @@
-// point_set.cpp: PointSet (clause 6.36).
+// point_set.cpp: builds the points of a PointSet (clause 6.36).
 #include <numeric>
 
 #include "geometry/builders.h"

@@ -1,4 +1,4 @@
-// round.cpp: discs and vertices of Cone and Cylinder (clauses 6.11, 6.14).
+// round.cpp: builds the discs and the vertices of Cone and Cylinder (clauses 6.11, 6.14).
 #include "geometry/round.h"
 
 #include <numbers>

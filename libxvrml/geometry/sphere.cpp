@@ -1,5 +1,5 @@
-// sphere.cpp: Sphere (clause 6.43). The ray tracer intersects spheres exactly, so only the radius
-// is stored.
+// sphere.cpp: builds a Sphere (clause 6.43). The ray tracer intersects spheres exactly, so only the
+// radius is stored.
 #include "geometry/builders.h"
 #include "geometry/vector_math.h"
 

@@ -107,7 +107,7 @@ Expander::PlanPtr Expander::plan(const ProtoPtr& declaration, const SourcePositi
     return known;
   }
   known = std::make_shared<Plan>();
-  PlanPtr plan = known; // the table may move
+  PlanPtr plan = known; // a copy of the pointer, because the table may move
   plan->declaration = declaration;
   plan->computing = true;
   std::vector<Node*> roots = rootsOf(declaration->body);

@@ -18,7 +18,7 @@ struct LoadState {
   World& world;
   const LoadOptions& options;
   Diagnostics& diagnostics;
-  Budget& budget; // of the world, or of the world that this one becomes part of
+  Budget& budget; // budget of the world, or of the world that this one becomes part of
   // Nodes USEd within their own DEF. An IS connection must not make such a node its own descendant
   // (4.4.4).
   std::unordered_set<const Node*> selfContaining;

@@ -74,7 +74,7 @@ std::vector<Channel> readChannels(Reader in) {
     const std::string_view name = in.text();
     if (name.empty()) break;
     const uint32_t kind = in.word();
-    in.take(4); // a flag for perceptual linearity, and reserved bytes
+    in.take(4); // skips a flag for perceptual linearity, and reserved bytes
     const int32_t across = in.integer(), down = in.integer();
     if (kind > 2) refuse("a channel of an unknown type");
     if (across != 1 || down != 1) refuse("a channel with fewer samples than pixels");
@@ -96,7 +96,7 @@ Compression readCompression(uint8_t number) {
 }
 
 Header readHeader(Reader& in) {
-  in.take(4); // magic number
+  in.take(4); // skips the magic number
   const uint32_t version = in.word();
   if ((version & 0xff) != 2 || (version & ~0x4ffu))
     refuse("has tiles, several parts or deep pixels; worlds read plain scan lines");
@@ -105,7 +105,7 @@ Header readHeader(Reader& in) {
   while (true) {
     const std::string_view name = in.text();
     if (name.empty()) break;
-    in.text(); // type
+    in.text(); // skips the name of the type
     const int32_t size = in.integer();
     if (size < 0) refuse("an attribute of a negative size");
     Reader value(in.take(size_t(size)));

@@ -27,7 +27,7 @@ extern "C" {
 namespace xvrml {
 namespace {
 
-constexpr uint64_t maximumFilmBytes = 256ull << 20; // compressed
+constexpr uint64_t maximumFilmBytes = 256ull << 20; // limit for the compressed pictures of a film
 constexpr size_t maximumPictures = 1'000'000;
 // Limit for the pixels decoded on the way to one picture.
 constexpr uint64_t maximumWork = 2'000'000'000;

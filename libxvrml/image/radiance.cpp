@@ -59,7 +59,7 @@ template <class T> T number(std::string_view& line) {
 
 RadianceImage decodePfm(Bytes bytes, const Limits& limits) {
   Reader in(bytes);
-  in.line(); // PF
+  in.line(); // skips the line "PF"
   std::string_view size = in.line(), order = in.line();
   RadianceImage image;
   const int64_t width = number<int64_t>(size), height = number<int64_t>(size);
@@ -71,7 +71,7 @@ RadianceImage decodePfm(Bytes bytes, const Limits& limits) {
   if (in.rest().size() / 4 < count) refuse("it ends too early");
   image.rgb.resize(count);
   std::memcpy(image.rgb.data(), in.rest().data(), count * 4);
-  if (scale > 0) // big-endian
+  if (scale > 0) // a positive scale means big-endian numbers
     for (float& v : image.rgb)
       v = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<uint32_t>(v)));
   return image;
@@ -98,7 +98,7 @@ void readRow(Reader& in, size_t width, std::vector<uint8_t>& row) {
 
 RadianceImage decodeHdr(Bytes bytes, const Limits& limits) {
   Reader in(bytes);
-  in.line(); // #?RADIANCE
+  in.line(); // skips the line "#?RADIANCE"
   while (!in.line().empty()) {}
   std::string_view resolution = in.line();
   if (!resolution.starts_with("-Y ")) refuse("its rows do not run from the top left");

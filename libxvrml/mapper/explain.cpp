@@ -13,7 +13,7 @@ using namespace mapper;
 
 namespace {
 
-constexpr size_t longestPath = 12;     // names
+constexpr size_t longestPath = 12;     // limit on the names in a path
 constexpr uint64_t bytesOfDraw = 1200; // a draw call without its arrays
 
 std::string ownName(const Graph& graph, const Item& item) {

@@ -29,7 +29,7 @@ struct OpenRTMapper::Impl {
   mapper::Environment environment;
   std::optional<mapper::Bound> given; // set by bind(); its places may be out of date
   mapper::Bound bound;
-  CameraSettings camera; // of the last frame; the standard's default before the first frame
+  CameraSettings camera; // camera of the last frame; the standard's default before the first frame
   uint64_t regroupings = 0;
 
   Impl(World& world, const MapOptions& options);

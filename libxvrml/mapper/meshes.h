@@ -79,7 +79,7 @@ class Meshes {
   void count(int32_t mesh, int32_t users);
 
   World& world_;
-  Quota quota_; // for the meshes that are built now
+  Quota quota_; // quota for the meshes that are built now
   std::vector<Entry> entries_;
   std::vector<int32_t> free_, dropped_, built_;
   std::unordered_map<const Node*, int32_t> index_;

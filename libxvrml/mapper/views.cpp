@@ -1,4 +1,4 @@
-// views.cpp: viewpoints and cameras.
+// views.cpp: finds viewpoints and computes cameras.
 #include "mapper/views.h"
 
 #include <algorithm>

@@ -62,7 +62,7 @@ class Environment {
   Textures& textures_;
   CustomShaders& custom_;
   NodeRef background_, fog_;
-  Matrix matrix_, fogMatrix_;  // of the environment; of the fog's coordinate system
+  Matrix matrix_, fogMatrix_;  // matrices of the environment and of the fog's coordinate system
   RTid shader_ = 0, used_ = 0; // our own shader; the shader that the scene uses
   bool stale_ = false;
   uint64_t sets_ = 0;

@@ -1,4 +1,4 @@
-// model.cpp: names of access and change kinds; look-up and messages of a Model.
+// model.cpp: names the kinds of access and change, and implements look-ups and messages of a Model.
 #include "nodegen/model.h"
 
 #include <array>

@@ -26,7 +26,7 @@ struct FieldSpec {
   Access access = Access::field;
   SourcePosition source;
   Value value;           // default value, if the access kind has one
-  std::string valueText; // as written
+  std::string valueText; // default value as written
   SourcePosition valueSource;
   std::optional<FieldRange> range;
   std::string rangeText;

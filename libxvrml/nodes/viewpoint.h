@@ -15,7 +15,7 @@ struct ViewpointFields {
   const float& fieldOfView;
   const bool& jump;
   const std::string& description;
-  Node* shader; // as written; null: the built-in camera
+  Node* shader; // camera shader as written; null: the built-in camera
 };
 
 inline bool isViewpoint(const Node* node) {

@@ -52,7 +52,8 @@ class Builder : public ParseSink {
     Token type;
     std::shared_ptr<NodeType> scriptType; // a Script's own type grows while it is read
     Mark mark;
-    uint64_t expanded = 1;               // number of nodes in it, shared ones counted at each use
+    // Number of nodes in the open node, shared ones counted at each use.
+    uint64_t expanded = 1;
     std::vector<std::string_view> given; // fields read so far
     const FieldInfo* field = nullptr;    // the field that is being read
     const char* fieldAt = nullptr;
@@ -75,7 +76,7 @@ class Builder : public ParseSink {
   struct ScopeFrame {
     Scope* scope;
     ProtoPtr proto;                      // null: the file, or a default value
-    std::shared_ptr<NodeType> protoType; // its interface, which is still growing
+    std::shared_ptr<NodeType> protoType; // interface of the open prototype, which is still growing
     std::unique_ptr<Scope> own;          // the scope of a default value
     std::unordered_map<std::string_view, ProtoPtr> types;
     std::unordered_set<std::string_view> lost;

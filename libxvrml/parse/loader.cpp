@@ -127,7 +127,8 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
     ParsedFile file;
     parse(source, name, file);
     complete(file, depth);
-    InlinedFile& entry = inlined_[key]; // the table may have moved
+    // Looks up the entry again, because the table may have moved.
+    InlinedFile& entry = inlined_[key];
     entry.reading = false;
     entry.bytes = budget_->used() - std::min(budget_->used(), before);
     entry.changing = state_.routes > routes || state_.scripts > scripts;

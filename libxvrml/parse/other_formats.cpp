@@ -1,4 +1,4 @@
-// other_formats.cpp: the signatures, from the specification of each format.
+// other_formats.cpp: recognises file formats by the signatures in their specifications.
 #include "parse/other_formats.h"
 
 #include <algorithm>

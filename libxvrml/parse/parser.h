@@ -33,8 +33,8 @@ class Parser {
   // innermost of these places, never beyond it.
   struct RecoveryPoint {
     enum class Kind : uint8_t { statements, list, interface } kind;
-    size_t nodes;      // number of nodes that were open when it began
-    size_t nodeTarget; // the sink's number for it
+    size_t nodes;      // number of nodes that were open when the place began
+    size_t nodeTarget; // the sink's number for this place
     // Closing braces to ignore here: the parser has already taken one as missing, or has skipped an
     // opening brace.
     uint64_t braces = 0;

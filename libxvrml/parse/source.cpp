@@ -64,7 +64,7 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
     z_stream* stream;
     ~End() { inflateEnd(stream); }
   } end{&stream};
-  constexpr uint64_t freeBytes = 1 << 20; // small files may have any ratio
+  constexpr uint64_t freeBytes = 1 << 20; // files up to this size may have any compression ratio
   const uint64_t byRatio = std::max<uint64_t>(freeBytes, limits.inflateRatio * packed.size());
   const uint64_t most = std::min({limits.inflateBytes, limits.fileBytes, byRatio});
   size_t used = 0;

@@ -29,7 +29,7 @@ class ScriptEngines {
 
   // Returns why libraries were refused since the last call, each once.
   std::vector<std::string> takeRefusals() { return std::exchange(refusals_, {}); }
-  std::string searched() const; // the folders, for messages
+  std::string searched() const; // returns the folders, for messages
 
  private:
   using Names = const char* const* XsEngine::*;

@@ -32,7 +32,7 @@ class Handles {
   struct Entry {
     NodeRef node;
     uint64_t retained = 0;
-    bool lent = false; // it is in lent_
+    bool lent = false; // the handle is in lent_
   };
   Node* own_;
   const XsNode ownNumber_;

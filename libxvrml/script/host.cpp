@@ -42,7 +42,8 @@ ScriptHost::ScriptHost(Browser& browser, Engine& engine, World& world,
 ScriptHost::~ScriptHost() {
   engine_.scripts = nullptr;
   ending_ = closing_ = true;
-  constexpr double grace = 0.25; // in seconds; the user waits no longer for a window to close
+  // Seconds that shutdown() may take; the user waits no longer for a window to close.
+  constexpr double grace = 0.25;
   patience_ = options_.scriptPatience > 0 ? grace : 0;
   shutdownDeadline_ =
       wire::Clock::now() +
@@ -174,15 +175,15 @@ void ScriptHost::receive(ScriptNode& node, const FieldInfo& in, const Value& val
 // Queues an event. While a function of the Script is running in its process, every tick adds
 // events, so the queue is limited.
 void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) {
-  constexpr size_t mostEvents = 1000;
-  constexpr uint64_t mostBytes = 64 << 20;
+  constexpr size_t maxEvents = 1000;
+  constexpr uint64_t maxBytes = 64 << 20;
   if (script.waiting.empty()) script.waitingBytes = 0;
   const uint64_t bytes = bytesOf(value);
   script.waiting.push_back({&in, value, bytes});
   script.waitingBytes += bytes;
   if (script.ready()) return; // they are delivered in this cascade
-  while (script.waiting.size() > mostEvents ||
-         (script.waitingBytes > mostBytes && script.waiting.size() > 1)) {
+  while (script.waiting.size() > maxEvents ||
+         (script.waitingBytes > maxBytes && script.waiting.size() > 1)) {
     script.waitingBytes -= script.waiting.front().bytes;
     script.waiting.pop_front();
     if (script.dropped++ == 0)
@@ -249,7 +250,7 @@ void ScriptHost::tick() {
   if (isTimeUsedUp()) stopAll();
   const double passed = engine_.now() - lastTick_.value_or(engine_.now());
   used_ = std::max(0.0, used_ - passed * run_.worldScriptSeconds);
-  waited_ = std::max(0.0, waited_ - passed * mostWaiting * run_.worldScriptSeconds);
+  waited_ = std::max(0.0, waited_ - passed * maxWaiting * run_.worldScriptSeconds);
   lastTick_ = engine_.now();
   if (processes_) serveRunningCalls();
   for (const Key key : std::vector<Key>(ticking_)) {
@@ -282,7 +283,7 @@ void ScriptHost::end(ScriptNode& node) noexcept {
     script->handles.setOwn(nodeCopy);
     script->waiting.clear();
     ended_.push_back(std::move(script));
-  } catch (const std::bad_alloc&) { // shutdown is not called then
+  } catch (const std::bad_alloc&) { // if the copy fails, shutdown is not called
     bySelf_.erase(script->self);
     if (script->process)
       detach(*script);

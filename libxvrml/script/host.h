@@ -27,7 +27,7 @@ struct Script {
     Value value;
     uint64_t bytes;
   };
-  struct Output { // sent by the running function; passed on when it returns
+  struct Output { // an output of the running function; it is passed on when the function returns
     NodeRef to;   // null: from an eventOut of the Script itself
     const FieldInfo* field;
     Value value;
@@ -41,7 +41,7 @@ struct Script {
   bool busy() const { return process && process->busy(); }
   bool ready() const { return engine && !stopped && !busy(); }
 
-  ScriptNode* node; // in the world; after its destruction `nodeCopy`
+  ScriptNode* node; // node in the world; `nodeCopy` after the node's destruction
   NodeRef nodeCopy; // copy of a destroyed node's fields, for shutdown()
   const XsNode self;
   const XsEngine* engine = nullptr; // null: no runnable program
@@ -169,7 +169,7 @@ class ScriptHost : public ScriptRunner {
   void chargeProcesses();
   bool isTimeUsedUp() const {
     return options_.scriptPatience <= 0 &&
-           (used_ >= run_.worldScriptSeconds || waited_ >= mostWaiting * run_.worldScriptSeconds);
+           (used_ >= run_.worldScriptSeconds || waited_ >= maxWaiting * run_.worldScriptSeconds);
   }
   void stopAll();
   void markReach(Script& script);
@@ -199,7 +199,7 @@ class ScriptHost : public ScriptRunner {
   // Limits of RunOptions::worldScriptSeconds. They count processor time, so that a busy machine
   // stops no Script that would run on an idle one. A sleeping Script uses none, so waiting is
   // limited too.
-  static constexpr double mostWaiting = 10;
+  static constexpr double maxWaiting = 10;
   double used_ = 0, waited_ = 0;   // in seconds: processor time, wall clock time
   std::optional<double> lastTick_; // the world's time at the last tick
   bool limitReported_ = false;

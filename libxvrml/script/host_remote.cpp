@@ -15,7 +15,7 @@ constexpr double forEver = 1e9;
 // request of each.
 constexpr auto tickShare = std::chrono::milliseconds(5);
 constexpr double linger = 0.0002;
-constexpr int mostRestarts = 3;
+constexpr int maxRestarts = 3;
 
 } // namespace
 
@@ -201,7 +201,7 @@ void ScriptHost::restart(Key key, Script& script, const std::string& why) {
   std::erase(ticking_, key);
   detach(script);
   if (script.stopped) return;
-  if (++script.restarts > mostRestarts) {
+  if (++script.restarts > maxRestarts) {
     script.stopped = true;
     script.waiting.clear();
     return log(script, 3, 1,
@@ -219,7 +219,7 @@ void ScriptHost::restart(Key key, Script& script, const std::string& why) {
 void ScriptHost::stopRemote(Script& script) {
   const bool ending = std::exchange(ending_, true);
   const bool creating = script.pending == wire::Op::create;
-  const bool shutting = script.pending == wire::Op::shutdown; // sent early
+  const bool shutting = script.pending == wire::Op::shutdown; // shutdown was sent early
   if (script.pending != wire::Op{}) waitFor(script);
   const bool overdue = isTimeUsedUp() || (closing_ && wire::Clock::now() >= shutdownDeadline_);
   if (script.process && !script.busy() && !creating && !shutting && !overdue)

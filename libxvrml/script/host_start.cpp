@@ -193,9 +193,9 @@ XsResult ScriptHost::makeInterpreter(Script& script, ScriptProgram program) {
       made = answer == XS_OK;
       return answer;
     });
-    if (made && result != XS_OK) engine->destroy(script.interpreter); // stopped
+    if (made && result != XS_OK) engine->destroy(script.interpreter); // the program was stopped
     return result;
-  } catch (...) { // out of memory
+  } catch (...) { // memory is exhausted
     if (made) engine->destroy(script.interpreter);
     dropInterpreter(script);
     throw;

@@ -1,4 +1,4 @@
-// plugin_check.cpp: the rules of the script ABI.
+// plugin_check.cpp: checks a plug-in against the rules of the script ABI.
 #include "script/plugin_check.h"
 
 #include <cstring>
@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t maximumEngines = 256;
 constexpr size_t maximumNames = 256;
 // An engine's structure reaches at least to its last mandatory function.
-constexpr size_t leastEngine = offsetof(XsEngine, initialize);
+constexpr size_t minEngineBytes = offsetof(XsEngine, initialize);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw std::runtime_error(fmt::format("script library {}: {}", path, why));
@@ -59,9 +59,9 @@ size_t checkNames(const char* const* names, const char* what, bool scheme,
 
 XsEngine checkEngine(const XsEngine* theirs, const std::string& path) {
   if (!theirs) refuse(path, "an empty entry in its table of engines");
-  if (theirs->size < leastEngine || theirs->size > sizeof(XsEngine))
+  if (theirs->size < minEngineBytes || theirs->size > sizeof(XsEngine))
     refuse(path, fmt::format("claims an engine structure of {} bytes; this library knows {} to {}",
-                             theirs->size, leastEngine, sizeof(XsEngine)));
+                             theirs->size, minEngineBytes, sizeof(XsEngine)));
   XsEngine ours{};
   // Copies whole pointers only: half a function pointer would be wild.
   std::memcpy(&ours, theirs, theirs->size / sizeof(void*) * sizeof(void*));

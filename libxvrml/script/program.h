@@ -14,7 +14,7 @@ struct ScriptProgram {
   const XsEngine* engine = nullptr; // null: none of the URLs can be run
   std::string scheme;               // such as "javascript"; empty: a file or data: URL
   std::string text;
-  SourcePosition start; // of its first line, as far as known
+  SourcePosition start; // position of the program's first line, as far as known
   size_t url = 0;       // index of the URL
 };
 

@@ -1,4 +1,4 @@
-// value_text.cpp: parses one value with the lexer and the value parser of files.
+// value_text.cpp: parses one value from text, with the lexer and the value parser that read files.
 #include "xvrml/value_text.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// value_writer.cpp: the text of numbers, tuples, lists and images.
+// value_writer.cpp: writes numbers, tuples, lists and images as text.
 #include "write/value_writer.h"
 
 #include <charconv>

@@ -47,7 +47,8 @@ struct Ggx {
     const float a2 = alpha * alpha, x = h.x * h.x + h.y * h.y + a2 * h.z * h.z;
     return a2 / (rts::pi * x * x);
   }
-  // Returns the length of v after scaling x and y by alpha. Smith: cosine / G1 = (cosine + it) / 2.
+  // Returns the length of v after scaling x and y by alpha. In Smith's model, cosine / G1 = (cosine
+  // + this length) / 2.
   float stretchedLength(rts::Vec3 v) const {
     return std::sqrt(v.z * v.z + alpha * alpha * (v.x * v.x + v.y * v.y));
   }

@@ -21,7 +21,7 @@ struct Boundary {
   }
 };
 
-struct Node { // of a Gauss-Legendre quadrature over 0..1
+struct Node { // a node of a Gauss-Legendre quadrature over 0..1
   double place, weight;
 };
 template <int n> std::array<Node, n> gauss() {

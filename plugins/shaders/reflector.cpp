@@ -8,7 +8,7 @@ namespace {
 // interference.
 struct Lacquered {
   rts::Color n, k;
-  float index; // of the layer; up to 1: no layer
+  float index; // index of the layer; up to 1: no layer
 
   rts::Color operator()(float cosine) const {
     if (!(index > 1)) return microfacet::Conductor{n, k}(cosine);

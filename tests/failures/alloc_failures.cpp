@@ -327,8 +327,8 @@ class Sweep {
 // false if nothing could be tested.
 bool watch(Sweep& sweep, Tally& tally) {
   constexpr int patience = 120; // seconds for one allocation, long enough for a busy machine
-  constexpr uint64_t mostDeaths = 50;
-  for (uint64_t deaths = 0; deaths < mostDeaths;) {
+  constexpr uint64_t maxDeaths = 50;
+  for (uint64_t deaths = 0; deaths < maxDeaths;) {
     std::fflush(stdout);
     const pid_t process = fork();
     if (process < 0) return false;

@@ -29,8 +29,8 @@ struct Range {
   uintptr_t begin, end;
   Owner owner;
 };
-constexpr size_t mostRanges = 1024;
-Range ranges[mostRanges];
+constexpr size_t maxRanges = 1024;
+Range ranges[maxRanges];
 std::atomic<size_t> rangeCount{0};
 
 std::atomic<bool> armed{false}, hit{false};
@@ -57,7 +57,7 @@ int addRanges(dl_phdr_info* info, size_t, void*) {
   const Owner owner = ownerOf(info->dlpi_name);
   for (int i = 0; owner != Owner::other && i < info->dlpi_phnum; ++i) {
     const auto& header = info->dlpi_phdr[i];
-    if (header.p_type != PT_LOAD || !(header.p_flags & PF_X) || rangeCount == mostRanges) continue;
+    if (header.p_type != PT_LOAD || !(header.p_flags & PF_X) || rangeCount == maxRanges) continue;
     const uintptr_t begin = info->dlpi_addr + header.p_vaddr;
     ranges[rangeCount++] = {begin, begin + header.p_memsz, owner};
   }

@@ -260,7 +260,7 @@ Bytes pngHeader(uint32_t width, uint32_t height, uint8_t depth, uint8_t type) {
   return bytes;
 }
 
-long mostMemory() { // peak memory of the process in kB
+long maxMemory() { // peak memory of the process in kB
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return usage.ru_maxrss;
@@ -284,9 +284,9 @@ TEST(ImageDamage, HeadersCostNoMemory) {
   gif[7] = gif[9] = 0x40;
   files.push_back(gif);
   for (size_t i = 0; i < files.size(); i++) {
-    const long before = mostMemory();
+    const long before = maxMemory();
     EXPECT_NE(refusal(files[i]), "") << i;
-    EXPECT_LT(mostMemory() - before, 32 << 10)
+    EXPECT_LT(maxMemory() - before, 32 << 10)
         << "kB more for file " << i << " of " << files[i].size() << " bytes";
   }
 }

@@ -251,7 +251,7 @@ class Page:
             macro = name + (f"({', '.join(parameters)})" if parameters else "")
             prefix = f".. c:macro:: {macro}"
             return [prefix, "", *indent(said), ""]
-        # Doxygen puts its members before it
+        # Doxygen lists the members of a union before the union itself.
         if kind == "variable" and re.match(r"union \S*@\d+$", flat(member.find("type"))):
             return [f"The pointers above are one union, ``{name}``.", ""]
         sign = signature(member, self.domain)
@@ -273,7 +273,7 @@ class Page:
             ]
             if section.get("kind") == "user-defined" and members and all(
                     m.get("kind") in ("function", "variable") for m in members):
-                # one shared description
+                # These members share one description.
                 self.done.update(m.get("id") for m in members)
                 kinds = {m.get("kind") for m in members}
                 directive = DIRECTIVE[kinds.pop()] if len(kinds) == 1 else "function"

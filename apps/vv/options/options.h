@@ -41,8 +41,8 @@ enum class Job : uint8_t {
 };
 struct JobInfo {
   Job job;
-  bool inspects;   // prints facts, as JSON with --json; only one of these can be asked for
-  bool needsWorld; // needs a FILE
+  bool inspects;   // the job prints facts, as JSON with --json; only one such job can be asked for
+  bool needsWorld; // the job needs a FILE
 };
 struct Options {
   std::string input; // "-": standard input; empty: none given
@@ -58,13 +58,13 @@ struct Options {
   std::optional<FrameRange> frames;
   double fps = 30;   // rate of frames and films; also the step of the world's clock
   int turntable = 0; // number of pictures around the world; 0: none
-  std::vector<std::string> definitions; // DEF.field=value
-  std::vector<std::string> shaders;     // DEF=Class:param=value
-  std::string cameraShader;             // Class:param=value
-  std::string viewpoint;                // as given: a name, a number or "all"
+  std::vector<std::string> definitions; // texts of the form DEF.field=value
+  std::vector<std::string> shaders;     // texts of the form DEF=Class:param=value
+  std::string cameraShader;             // text of the form Class:param=value
+  std::string viewpoint;                // viewpoint as given: a name, a number or "all"
   bool check = false, strict = false;
   bool json = false;
-  std::vector<Job> jobs; // as asked for, in any order
+  std::vector<Job> jobs; // requested jobs, in any order
   bool watch = false;
   std::string inputScript, recordInput;      // files of user input; empty: none
   std::shared_ptr<const InputScript> script; // contents of inputScript
@@ -74,7 +74,7 @@ struct Options {
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;
-  xvrml::RunOptions run; // its epoch is set by startWorld
+  xvrml::RunOptions run; // options of the Browser; startWorld sets the epoch
   bool quiet = false, verbose = false;
 
   bool allViewpoints() const { return viewpoint == "all"; }

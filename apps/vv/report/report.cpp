@@ -213,7 +213,7 @@ std::string statsJson(const Options& options, const std::string& commandLine,
 
 struct SequenceStats::Impl {
   Json frames = Json::array();
-  picture::RenderResult last{}; // its picture is empty
+  picture::RenderResult last{}; // the last result, without the pixels
   double map = 0, build = 0, render = 0, write = 0, first = 0, tracing = 0;
   uint64_t camera = 0, shadow = 0, secondary = 0;
 };

@@ -13,7 +13,7 @@
 namespace vv {
 
 struct RunTimes {
-  double write = 0, total = 0; // seconds
+  double write = 0, total = 0; // seconds for writing the files; seconds of the whole run
 };
 // The facts of a running world that the statistics contain.
 struct RunningWorld {

@@ -113,7 +113,7 @@ std::string addLibrary(const File& file, Json& classes) {
   if (plugin_files::exportedBytes(symbol) < sizeof(RtsPlugin) || plugin.magic != RTS_MAGIC ||
       plugin.major != RTS_ABI_MAJOR || plugin.classCount == 0 || plugin.classCount > 10000 ||
       !plugin.classes || !plugin.classes[0] || !plugin.classes[0]->name) {
-    rtNewShaderClass("any", file.name.c_str()); // fails; the engine then has the error text
+    rtNewShaderClass("any", file.name.c_str()); // fails and records the error text
     return lastError();
   }
   // the first call checks the tables of all classes

@@ -8,17 +8,17 @@ namespace vv {
 namespace {
 
 constexpr int smallest = -12; // scale 2^(-12/4): an eighth in each direction
-constexpr int best = 4;       // 2^4 samples
+constexpr int best = 4;       // quality step with 2^4 samples
 constexpr double fill = 0.85; // fraction of a frame's time for rendering; the window needs the rest
-constexpr double tooLong = 1.15; // in budgets: a slower frame makes the next picture smaller
-constexpr double roomFor = 0.9;  // in budgets: a better step must be predicted to take at most this
-constexpr int patience = 4;      // number of consecutive such frames before a better step
+constexpr double tooLong = 1.15; // times the budget: a slower frame shrinks the next picture
+constexpr double roomFor = 0.9;  // multiple of the budget that a better step may take, as predicted
+constexpr int patience = 4;      // number of consecutive frames with room before a better step
 // Overlapping frames that are on time count as this fraction of their interval, so that the quality
 // step stays the same.
 constexpr double inTime = 0.7;
 constexpr double assumedPixel = 2e-7; // initial guess in seconds: 800x600 in a tenth of a second
 
-constexpr double leastSide = 64; // pixels
+constexpr double leastSide = 64; // shortest side of a picture, in pixels
 
 } // namespace
 

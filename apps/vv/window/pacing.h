@@ -28,7 +28,7 @@ class Pacing {
   // window and gets all requested samples.
   FrameSize next(int width, int height, bool moving, int samples);
 
-  double predicted(const FrameSize& frame) const; // seconds; 0: nothing is known yet
+  double predicted(const FrameSize& frame) const; // in seconds; 0: unknown
 
  private:
   // Returns the frame size of a quality step, from the smallest picture to the best. Steps are far

@@ -253,7 +253,7 @@ Action Pilot::press(Action action) {
   case Action::still: choose(Navigation::none, "stand still"); break;
   case Action::headlight:
     message_ = hasHeadlight() ? "headlight off" : "headlight on";
-    // back to the world's own setting, or the opposite of it
+    // Returns to the world's own setting, or switches to the opposite of it.
     headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight());
     break;
   case Action::pause:

@@ -77,7 +77,7 @@ class Pilot {
   bool touched_ = false;
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
-  std::set<std::string> held_; // keys
+  std::set<std::string> held_; // keys that are held down
   bool shift_ = false, alt_ = false;
   std::string message_;
 };

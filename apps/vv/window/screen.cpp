@@ -40,7 +40,7 @@ bool isEmulated(SDL_Renderer* renderer) {
     return false;
   using GetString = const unsigned char* (*)(unsigned);
   const auto get = reinterpret_cast<GetString>(SDL_GL_GetProcAddress("glGetString"));
-  const unsigned char* text = get ? get(0x1F01) : nullptr; // GL_RENDERER
+  const unsigned char* text = get ? get(0x1F01) : nullptr; // queries GL_RENDERER
   const std::string_view name = text ? reinterpret_cast<const char*>(text) : "";
   return name.find("llvmpipe") != name.npos || name.find("softpipe") != name.npos ||
          name.find("Software") != name.npos;
@@ -166,7 +166,7 @@ struct Screen::Impl {
 };
 
 Screen::Screen(const std::string& title, int width, int height) : impl_(std::make_unique<Impl>()) {
-  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); // vv installs its own
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1"); // vv installs its own signal handlers
   SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
   SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
   SDL_SetMainReady();

@@ -17,7 +17,7 @@ struct LoadRequest {
 };
 
 struct LoadAnswer {
-  std::unique_ptr<xvrml::World> world; // null: none could be read
+  std::unique_ptr<xvrml::World> world; // the loaded world; null: no URL could be read
   std::string fragment;                // fragment of the URL: a viewpoint
   std::string error;                   // why there is no world
 };

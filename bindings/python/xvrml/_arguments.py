@@ -1,6 +1,6 @@
-"""Readable errors for wrong arguments. If an argument has a wrong type, a compiled function lists
-all its signatures. A wrapped function says instead which argument is wrong, what was expected and
-what was given."""
+"""Raises readable errors for wrong arguments. If an argument has a wrong type, a compiled function
+lists all its signatures. A wrapped function says instead which argument is wrong, what was expected
+and what was given."""
 import difflib
 import functools
 import inspect

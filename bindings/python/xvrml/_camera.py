@@ -1,4 +1,4 @@
-"""Pinhole: cameras given by matrices, in the conventions of OpenCV."""
+"""Defines Pinhole, a camera given by matrices, in the conventions of OpenCV."""
 
 from . import _arguments
 

@@ -1,5 +1,5 @@
-"""The commands of the wheel. Each one replaces this process with the program of the same name in
-the package."""
+"""Runs the commands of the wheel. Each one replaces this process with the program of the same name
+in the package."""
 import os
 import pathlib
 import sys

@@ -1,5 +1,5 @@
-"""The output of progress=True on standard error: a bar on a terminal, otherwise a line every five
-seconds."""
+"""Shows the progress on standard error, for progress=True: a bar on a terminal, otherwise a line
+every five seconds."""
 import sys
 import time
 

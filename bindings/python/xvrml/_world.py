@@ -1,5 +1,5 @@
-"""Methods of World and Node that are written in Python. They import numpy only when they need it:
-the Python of a Script may not have it."""
+"""Implements the methods of World and Node that are written in Python. They import numpy only when
+they need it: the Python of a Script may not have it."""
 import contextlib
 import math
 

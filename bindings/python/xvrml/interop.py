@@ -1,5 +1,5 @@
-"""Conversions to and from other packages: trimesh, PyVista, Pillow, matplotlib. Each package is
-imported on first use.
+"""Converts worlds and pictures to and from other packages: trimesh, PyVista, Pillow, matplotlib.
+Each package is imported on first use.
 
 Pictures often need no conversion: numpy.asarray(image) works, and Jupyter shows an image that ends
 a cell.

@@ -1,5 +1,5 @@
-"""A class for every node type. xvrml.Box(size=(1, 2, 3)) creates a node that is in no world yet;
-keywords are fields.
+"""Provides a class for every node type. xvrml.Box(size=(1, 2, 3)) creates a node that is in no
+world yet; keywords are fields.
 
 The classes come from the tables that nodegen writes from the .node files, including those of node
 plug-ins.

@@ -43,7 +43,7 @@ void requirePointer(const void* pointer) {
 
 ObjectBuilder& builder(Context& c) {
   if (!c.definition) [[unlikely]]
-    c.openDefinition(); // throws
+    c.openDefinition(); // this call throws
   return c.definition->builder;
 }
 

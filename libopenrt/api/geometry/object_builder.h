@@ -38,14 +38,14 @@ struct GeometryState {
 // The array of one attribute of a draw call.
 struct AttributeSource {
   const std::byte* data = nullptr;
-  size_t stride = 0; // bytes
+  size_t stride = 0; // bytes from one element to the next
   int components = 0;
   RTenum type = RT_FLOAT;
 };
 
 // A shader parameter whose value varies over a geometry.
 struct VaryingParameter {
-  uint32_t index = 0;     // in the class's parameter table
+  uint32_t index = 0;     // index in the class's parameter table
   size_t floats = 0;      // number of floats of its type
   bool perVertex = false; // false: per triangle, segment or point
 };
@@ -60,7 +60,7 @@ struct ParameterSource {
 struct DrawCall {
   RTenum mode = RT_TRIANGLES;
   size_t count = 0, vertexCount = 0;
-  const uint32_t* indices = nullptr; // null: 0, 1, 2 ...
+  const uint32_t* indices = nullptr; // vertex indices; null stands for 0, 1, 2 ...
   AttributeSource points, normals, texCoords, colors;
   std::vector<ParameterSource> parameters;
 };
@@ -133,7 +133,7 @@ class ObjectBuilder {
     std::vector<VaryingParameter> layout;
     std::vector<float> values;
   };
-  std::map<uint32_t, Latched> latched_;  // by shader
+  std::map<uint32_t, Latched> latched_;  // latched values, by shader
   std::vector<VaryingParameter> layout_; // parameters of the open geometry
   // If layout_ is not empty: the vertex that completes each primitive of the open geometry.
   std::vector<uint32_t> completing_;

@@ -19,8 +19,8 @@ struct Avatar {
   // From avatarSize: distance to walls, eye height above the ground, highest step that can be
   // climbed.
   double distance = 0.25, height = 1.6, step = 0.75;
-  double speed = 1;      // per second
-  double gravity = 9.81; // per second squared
+  double speed = 1;      // speed in units per second
+  double gravity = 9.81; // acceleration in units per second squared
   Vector up{0, 1, 0};
 };
 

@@ -1,4 +1,5 @@
-// pick.cpp: the picker. The walk uses an explicit stack, so nesting costs no C++ stack.
+// pick.cpp: finds the nearest hit of a ray. The walk over the world uses an explicit stack, so
+// nesting costs no C++ stack.
 #include "behaviour/viewer/pick.h"
 
 #include <algorithm>

@@ -21,12 +21,13 @@ struct PickRules {
 struct Hit {
   struct Step {
     Node* node;
-    Matrix toWorld; // of the node's children; for a Shape: of its geometry
+    Matrix toWorld; // children's coordinates (for a Shape, its geometry's) to world
   };
-  double t;             // along the ray, in units of its direction
-  Vector point, normal; // in world coordinates; the normal is a unit vector
+  double t;             // distance along the ray, in lengths of its direction
+  Vector point, normal; // place and unit normal in world coordinates
   Vec2f texCoord;
-  std::vector<Step> path; // from a root to the Shape, including prototype instances and Inlines
+  // Path of nodes from a root to the Shape, prototype instances and Inlines included.
+  std::vector<Step> path;
 };
 
 class Picker {
@@ -46,7 +47,7 @@ class Picker {
  private:
   struct Entry {
     bool known = false;
-    PickBox bounds; // in the coordinate system of the node's parent
+    PickBox bounds; // bounds in the coordinate system of the node's parent
     std::unique_ptr<PickMesh> mesh;
   };
   const PickBox& boundsOf(Node& node);

@@ -29,7 +29,7 @@ class Pointer {
  private:
   struct Candidate {
     NodeRef sensor;
-    Matrix toWorld; // of the sensor's parent coordinate system
+    Matrix toWorld; // matrix from the sensor's parent coordinate system to the world
   };
   struct Active {
     NodeRef sensor;

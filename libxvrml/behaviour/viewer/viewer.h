@@ -28,7 +28,7 @@ class Viewer {
   void moveTo(const Matrix& view);
   // Returns the viewer to the bound Viewpoint.
   void reset();
-  void restart(); // for a new world that has no Viewpoint bound
+  void restart(); // resets the view for a new world that has no Viewpoint bound
   // Called when the first Viewpoint, if any, is bound: from now on the view is visible.
   void begin() { begun_ = true; }
   // Switches to another bound Viewpoint (null: the standard's default). Called before the events of
@@ -61,7 +61,7 @@ class Viewer {
   const Binding& binding_;
   // The place of the bound Viewpoint when it was last in the scene; it may be removed from there.
   Matrix lastPlace_;
-  Matrix offset_; // from the Viewpoint to the viewer
+  Matrix offset_; // matrix from the Viewpoint to the viewer
   // Offsets of the Viewpoints below the top of the stack; null: of the default Viewpoint.
   std::unordered_map<const Node*, Matrix> saved_;
   double transition_ = 0;

@@ -35,7 +35,7 @@ struct GeometryArrays {
   std::vector<Vec2f> texCoords;
   std::vector<Color> colors;
   bool solid = true, ccw = true;
-  float radius = 0; // of a sphere around the origin
+  float radius = 0; // radius of a sphere around the origin
 };
 // Returns the arrays of a geometry node. sphereSteps: number of parts that a Sphere is cut into
 // from pole to pole, with twice as many around; 0 keeps it a sphere.

@@ -70,7 +70,7 @@ struct FieldInfo {
   // unused.
   uint32_t offset;
   Value defaultValue; // for fields and exposedFields
-  FieldRange range;   // per number; finite ends are rounded to float for float fields
+  FieldRange range;   // range of each number; finite ends are rounded to float for float fields
   // SFNode and MFNode: accepted abstract or concrete node types, separated by blanks; empty: any.
   std::string nodeTypes;
   std::string text; // one line of documentation
@@ -97,8 +97,9 @@ struct NodeType {
   // is rendered.
   NodeRef (*expand)(const Node& node) = nullptr;
 
-  bool is(std::string_view abstractName) const;            // whether `abstract` contains the name
-  const FieldInfo* find(std::string_view fieldName) const; // exact name
+  // Returns whether `abstract` contains the name.
+  bool is(std::string_view abstractName) const;
+  const FieldInfo* find(std::string_view fieldName) const; // finds the exact name
   // Also find set_x and x_changed of an exposedField x (clause 4.7).
   const FieldInfo* findEventIn(std::string_view name) const;
   const FieldInfo* findEventOut(std::string_view name) const;

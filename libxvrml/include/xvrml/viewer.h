@@ -21,9 +21,9 @@ enum class Navigation : uint8_t { none, walk, fly, examine };
 //   right and up move the picture.
 struct NavigationInput {
   double ahead = 0, right = 0, up = 0;
-  double turn = 0; // to the left
-  double tilt = 0; // upwards
-  double roll = 0; // clockwise; fly only
+  double turn = 0; // turn to the left
+  double tilt = 0; // tilt upwards
+  double roll = 0; // roll clockwise; fly only
 };
 
 // Keys that move the viewer:
@@ -40,7 +40,7 @@ struct PickOptions {
 };
 
 struct PickHit {
-  double distance = 0;                     // in lengths of the ray's direction
+  double distance = 0;                     // distance in lengths of the ray's direction
   std::array<double, 3> point{}, normal{}; // in world coordinates; normal: unit vector
   Vec2f texCoord;
   struct Step {

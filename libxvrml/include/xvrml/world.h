@@ -48,7 +48,7 @@ struct ProtoDeclaration {
   Scope body;       // empty for an EXTERNPROTO that is not loaded
   std::vector<IsConnection> is;
   bool isExtern = false;
-  std::vector<std::string> urls; // of an EXTERNPROTO
+  std::vector<std::string> urls; // urls of an EXTERNPROTO
   std::string baseUrl;           // the file that holds the declaration
   ProtoPtr resolved;             // EXTERNPROTO: the declaration that was found, null if none
   SourcePosition source;
@@ -72,7 +72,7 @@ class ProtoInstance : public DynamicNode {
   const ProtoPtr declaration;
   // body.roots[0] stands for the instance (clause 4.8.3); empty if the expansion failed.
   Scope body;
-  std::vector<IsConnection> is; // refers to the nodes of `body`
+  std::vector<IsConnection> is; // IS connections of the nodes in `body`
   // Indexed by FieldInfo::offset: the instance sets the field itself instead of using the
   // prototype's default. May be shorter than the field list.
   std::vector<bool> given;

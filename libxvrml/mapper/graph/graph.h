@@ -42,9 +42,9 @@ enum class Hint : uint8_t { none, merge, instantiate };
 // The reason why an item has an object of its own at every place.
 enum class ObjectReason : uint8_t {
   none,
-  shared,     // instances save memory
-  wanted,     // ORTInstance
-  merged,     // ORTStatic: its content changes together
+  shared,     // the item is shared, and instances save memory
+  wanted,     // the author asks for instances (ORTInstance)
+  merged,     // the author merges the content (ORTStatic), which changes together
   transform,  // events move it
   children,   // events change its content
   appearance, // lines whose colour events change

@@ -1,7 +1,8 @@
-// objects.cpp: the order in which objects are written. An object must exist before another one
-// instantiates it, and definitions do not nest. So places are written from last to first (children
-// come after parents), items in the graph's postorder. The same order makes redefinition safe: the
-// content of an object is up to date before it is written, so no object ever contains itself.
+// objects.cpp: writes objects in an order that OpenRT accepts. An object must exist before another
+// one instantiates it, and definitions do not nest. So places are written from last to first
+// (children come after parents), items in the graph's postorder. The same order makes redefinition
+// safe: the content of an object is up to date before it is written, so no object ever contains
+// itself.
 #include "mapper/graph/objects.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ void Objects::updateForFrame() {
     }
   }
   Place& root = places_.all[0];
-  if (root.instance == 0) { // the world itself
+  if (root.instance == 0) { // this part is the world itself
     rtLoadName(0);
     rtLoadIdentity();
     root.instance = rtInstantiateObject(parts_[size_t(root.part)].object);
@@ -64,7 +65,7 @@ void Objects::definePlace(size_t index) {
   const int32_t part = partOfPlace(index);
   const Place place = places_.all[index];
   const Item& item = graph_.items[place.item];
-  const bool pure = !item.placeDependent; // a level of an LOD
+  const bool pure = !item.placeDependent; // the place is a level of an LOD
   defineBelow(place.item, pure ? none : int32_t(index));
   open(part, item.changes && item.objectReason != ObjectReason::merged);
   expand({place.item, pure ? none : int32_t(index), Matrix()});

@@ -23,8 +23,9 @@ struct Part {
   bool defined = false, dirty = true;
   bool dynamic = false;   // hinted as RT_DYNAMIC
   uint64_t instances = 0; // instances of this part in the defined parts
-  uint64_t shapes = 0, triangles = 0, primitives = 0, drawCalls = 0; // content written into it
-  uint64_t bytes = 0; // taken from the world's budget for its content
+  // Content written into the part.
+  uint64_t shapes = 0, triangles = 0, primitives = 0, drawCalls = 0;
+  uint64_t bytes = 0; // bytes taken from the world's budget for the part's content
   // Instances that one instance of this part becomes when everything below is flattened (decision
   // 2).
   uint64_t flattenedInstances = 0;
@@ -69,12 +70,12 @@ class Objects {
   struct Step {
     ItemId item;
     int32_t place; // index into Places::all; `none` if the item does not depend on its place
-    Matrix matrix; // from the item's content to the object being written
+    Matrix matrix; // matrix from the item's content to the object being written
   };
   struct TrackedInstance { // an instance that events move or colour
     RTid instance;
     int32_t part; // the part that holds the instance
-    Matrix base;  // without the item's own matrix
+    Matrix base;  // matrix without the item's own matrix
   };
 
   // parts.cpp: the list of parts.
@@ -126,7 +127,7 @@ class Objects {
   uint32_t walk_ = 0;
   int32_t writing_ = none;    // the open part
   bool live_ = false;         // the world is running, so dynamic hints are given
-  std::vector<float> colors_; // scratch
+  std::vector<float> colors_; // scratch storage for colours
   uint64_t objects_ = 0, instances_ = 0, definitions_ = 0, moves_ = 0;
 };
 

@@ -26,7 +26,7 @@ struct Place {
   bool split = false;
   bool active = true;    // not in an unselected level of an LOD
   int32_t chosen = none; // for an LOD: the level in use
-  Matrix world;          // of the item's children
+  Matrix world;          // world matrix of the item's children
   // For a split place: the matrix of the item in the parent object, without the item's own matrix.
   Matrix base;
 

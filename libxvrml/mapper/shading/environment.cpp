@@ -66,7 +66,7 @@ void Environment::setAll(ShaderSetup& shader, const RTid (&images)[6]) {
 }
 
 void Environment::clear() {
-  if (shader_ != 0) rtDeleteShader(shader_); // and nothing is used in its place
+  if (shader_ != 0) rtDeleteShader(shader_); // the scene then has no environment
   if (used_ != 0 && used_ != shader_) rtUseEnvironment(0);
   shader_ = used_ = 0;
 }

@@ -1,4 +1,4 @@
-// lights.cpp: lights and their scope (clauses 4.6.6, 6.16, 6.35 and 6.45).
+// lights.cpp: creates lights and sets their scope (clauses 4.6.6, 6.16, 6.35 and 6.45).
 #include "mapper/shading/lights.h"
 
 #include <algorithm>
@@ -71,7 +71,7 @@ RTid Lights::shaderOf(Node& light) {
 
 void Lights::changed(Node& light) {
   const auto found = shaders_.find(&light);
-  if (found == shaders_.end()) return; // read when it is turned on
+  if (found == shaders_.end()) return; // the light is read when it is turned on
   if (isCustom(light)) {
     const RTid before = found->second.shader;
     shaders_.erase(found);

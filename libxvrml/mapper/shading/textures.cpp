@@ -84,7 +84,7 @@ void Textures::clear() {
 
 bool Textures::changed(Node& node) {
   const auto found = nodes_.find(&node);
-  if (found == nodes_.end()) return false; // loaded on first use
+  if (found == nodes_.end()) return false; // the texture is loaded on first use
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
@@ -96,7 +96,7 @@ bool Textures::changed(Node& node) {
     report(world_.diagnostics, node.source, node.type().name);
     return false;
   }
-  if (OwnImage own; before != 0 && ownImage(node, own)) { // it has no picture any more
+  if (OwnImage own; before != 0 && ownImage(node, own)) { // the node has no picture any more
     remove(before);
     --count_;
   }

@@ -52,8 +52,8 @@ class Textures {
   };
   World& world_;
   bool srgb_;
-  Share share_;                              // of the world's budget
-  std::unordered_map<RTid, uint64_t> bytes_; // of each texture
+  Share share_;                              // share of the world's budget
+  std::unordered_map<RTid, uint64_t> bytes_; // bytes of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
   std::unordered_map<const Node*, TextureEntry> nodes_;
   // The texture of each file and repeat mode, or the reason why there is none.

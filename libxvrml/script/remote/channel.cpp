@@ -1,4 +1,5 @@
-// channel.cpp: messages over a socket. Part of the library and of xvrml-script-host.
+// channel.cpp: sends and receives messages over a socket. Part of the library and of
+// xvrml-script-host.
 #include "script/remote/channel.h"
 
 #include <algorithm>

@@ -26,7 +26,7 @@ class Child {
   // error are /dev/null; all other descriptors are closed. The program ends with this process.
   // Returns the browser's end, or -1 with the reason.
   int start(const std::string& program, std::string& why);
-  void limitMemory(uint64_t bytes); // of address space
+  void limitMemory(uint64_t bytes); // limits the address space
   void kill() noexcept;
   // Returns how the process ended, for messages: "ended with code 1". It waits briefly for the end,
   // then kills the process.
@@ -43,7 +43,7 @@ class Child {
   int descriptor_ = -1; // pidfd: refers to this process even if its number is reused
   bool ended_ = false, known_ = false;
   int status_ = 0;
-  long peak_ = 0; // in kB
+  long peak_ = 0; // largest memory use in kB
 };
 
 } // namespace xvrml

@@ -14,7 +14,7 @@ struct ProcessSettings {
   std::string library, engine; // the plug-in's file and the engine's name in it
   uint64_t steps;
   double seconds;
-  uint64_t memory; // per Script; 0: no limit
+  uint64_t memory; // limit on the bytes of one Script; 0: no limit
 };
 
 class ScriptProcess {

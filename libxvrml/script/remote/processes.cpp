@@ -11,7 +11,7 @@ ScriptProcesses::~ScriptProcesses() {
 }
 
 bool ScriptProcesses::start(const ProcessSettings& settings) {
-  if (program_.empty() && noProgram_.empty()) program_ = findScriptHostProgram(noProgram_);
+  if (program_.empty() && whyNoProgram_.empty()) program_ = findScriptHostProgram(whyNoProgram_);
   if (program_.empty()) return false;
   all_.push_back(std::make_shared<ScriptProcess>(program_, settings, host_));
   return true;
@@ -24,7 +24,7 @@ ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t comin
     why = known->second;
     return nullptr;
   }
-  if (ended_ >= mostEnded) {
+  if (ended_ >= maxEnded) {
     why = std::to_string(ended_) + " processes have been ended by programs of this world";
     return nullptr;
   }
@@ -37,7 +37,7 @@ ProcessRef ScriptProcesses::choose(const ProcessSettings& settings, size_t comin
   for (size_t i = empty; i < coming + 1 && all_.size() < most; ++i)
     if (!start(settings)) break;
   if (std::none_of(all_.begin(), all_.end(), fits)) start(settings);
-  why = noProgram_;
+  why = whyNoProgram_;
   for (;;) {
     ProcessRef best;
     for (const ProcessRef& process : all_)

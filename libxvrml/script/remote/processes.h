@@ -13,9 +13,10 @@ using ProcessRef = std::shared_ptr<ScriptProcess>;
 
 class ScriptProcesses {
  public:
-  static constexpr size_t most = 16; // per world; every engine gets at least one
+  // Limit on the processes of a world; every engine gets at least one.
+  static constexpr size_t most = 16;
   // The number of processes that programs may end. It bounds the time spent on starting new ones.
-  static constexpr size_t mostEnded = 100;
+  static constexpr size_t maxEnded = 100;
   explicit ScriptProcesses(const XsHost& host) : host_(host) {}
   ~ScriptProcesses();
   ScriptProcesses(const ScriptProcesses&) = delete;
@@ -33,7 +34,7 @@ class ScriptProcesses {
  private:
   bool start(const ProcessSettings& settings);
   const XsHost& host_;
-  std::string program_, noProgram_;
+  std::string program_, whyNoProgram_;
   std::vector<ProcessRef> all_;
   size_t ended_ = 0;
   // By library and engine: the reason why no process can be started.

@@ -1,4 +1,4 @@
-// wire.cpp: message coding. Part of the library and of xvrml-script-host.
+// wire.cpp: encodes and decodes messages. Part of the library and of xvrml-script-host.
 #include "script/remote/wire.h"
 
 #include <cstring>

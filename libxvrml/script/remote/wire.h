@@ -26,7 +26,7 @@ enum class Op : uint16_t {
   shutdown,
   tick,
   destroy,
-  answer, // to a function of the host
+  answer, // answer to a function of the host
   // From the helper.
   ready = 20, // reply to setup
   failed,     // it cannot serve, with the reason
@@ -69,9 +69,9 @@ class Writer {
   void put(uint32_t number) { put(uint64_t(count_ = number)); }
   void put(int32_t number) { put(uint64_t(uint32_t(number))); }
   void put(double number);
-  void put(const char* name); // may be null
+  void put(const char* name); // a null text is allowed
   void put(const XsString& text);
-  void put(const XsValue* value); // may be null, and of any claimed type
+  void put(const XsValue* value); // a null pointer and any claimed type are allowed
   void put(const XsValue& value) { put(&value); }
   void put(const XsField& field);
   void put(const XsNodeInfo& info);

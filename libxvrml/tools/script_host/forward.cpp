@@ -12,7 +12,7 @@ using namespace wire;
 
 namespace {
 
-constexpr uint64_t stepsOfCall = 100; // as the browser counts
+constexpr uint64_t stepsOfCall = 100; // steps of one call, as the browser counts them
 
 template <size_t I, auto First, auto... Others>
 constexpr auto memberAt(FunctionList<First, Others...>) {
@@ -71,7 +71,7 @@ struct Forward::Function<Member> {
   static R call(const XsHost* host, XsNode self, A... arguments) noexcept {
     try {
       return pass(from(host), self, arguments...);
-    } catch (const std::exception&) { return R(XS_FAILED); } // out of memory
+    } catch (const std::exception&) { return R(XS_FAILED); } // memory is exhausted
   }
 
   static R pass(Forward& host, XsNode self, A... arguments) {
@@ -136,7 +136,7 @@ HostedScript::HostedScript(Message&& made)
 }
 
 Forward::Forward(Channel& channel, uint64_t steps, double seconds)
-    : XsHost{}, channel_(channel), mostSteps_(steps), seconds_(seconds) {
+    : XsHost{}, channel_(channel), maxSteps_(steps), seconds_(seconds) {
   size = sizeof(XsHost);
   major = XS_ABI_MAJOR;
   minor = XS_ABI_MINOR;
@@ -182,7 +182,7 @@ HostedScript* Forward::find(XsNode self) const {
 
 bool Forward::chargeSteps(uint64_t steps) {
   steps_ = steps_ + steps < steps_ ? UINT64_MAX : steps_ + steps;
-  return stopped_ = stopped_ || steps_ > mostSteps_ || isOverTime();
+  return stopped_ = stopped_ || steps_ > maxSteps_ || isOverTime();
 }
 
 // Sends a request and waits for the answer. The browser's time does not count as the program's.

@@ -47,7 +47,7 @@ class Forward : public XsHost {
   wire::Message ask();
 
   wire::Channel& channel_;
-  const uint64_t mostSteps_;
+  const uint64_t maxSteps_;
   const double seconds_;
   uint64_t steps_ = 0;
   wire::Clock::time_point end_;

@@ -85,7 +85,8 @@ class Server {
     const auto op = Op(call.header.op);
     if (op == Op::create) return create(std::move(call));
     const auto found = hostedScripts_.find(call.header.script);
-    if (found == hostedScripts_.end() && op == Op::destroy) return XS_OK; // it could not be created
+    // The Script could not be created.
+    if (found == hostedScripts_.end() && op == Op::destroy) return XS_OK;
     if (found == hostedScripts_.end()) _exit(1);
     HostedScript& hosted = *found->second;
     const auto plain = [&](XsResult (*function)(XsInterpreter, double)) {

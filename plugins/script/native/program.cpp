@@ -14,7 +14,7 @@
 namespace native {
 namespace {
 
-constexpr size_t maxCalls = 1000, mostArguments = 100;
+constexpr size_t maxCalls = 1000, maxArguments = 100;
 constexpr uint32_t maxRoom = 1 << 24;
 
 struct Word {
@@ -65,7 +65,7 @@ class Reader {
     if (take('(')) {
       if (!take(')')) {
         do call.arguments.push_back(argument());
-        while (take(',') && call.arguments.size() < mostArguments);
+        while (take(',') && call.arguments.size() < maxArguments);
         if (!take(')')) fail("',' or ')' was expected");
       }
     } else {

@@ -19,7 +19,7 @@ XsType elementType(XsType type);
 class Slot {
  public:
   Slot() = default;
-  explicit Slot(XsType type); // zero or empty
+  explicit Slot(XsType type); // makes a zero or empty value
   void copy(const XsValue& from);
   // Makes room for this many elements (characters of an SFString), all zero.
   void makeRoom(uint32_t elements);
@@ -28,9 +28,9 @@ class Slot {
   XsValue value(uint32_t count);
   void setText(const char* text);
 
-  void* data();           // elements; for strings const char* const*
-  const char* text();     // SFString
-  const XsImage* image(); // SFImage
+  void* data();           // returns the elements; for strings, const char* const*
+  const char* text();     // returns the text of an SFString
+  const XsImage* image(); // returns the image of an SFImage
   uint32_t count() const { return count_; }
   XsType type() const { return type_; }
 

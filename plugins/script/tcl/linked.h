@@ -11,7 +11,7 @@ struct Linked {
   std::string variable;
   XsType type{};
   Interpreter::Output output{};
-  Object last; // last value
+  Object last; // last value of the variable
 };
 
 } // namespace tclscript

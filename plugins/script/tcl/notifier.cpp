@@ -13,7 +13,7 @@ namespace {
 
 struct Watched {
   int file;
-  int mask;  // TCL_READABLE, TCL_WRITABLE, TCL_EXCEPTION
+  int mask;  // events to wait for: TCL_READABLE, TCL_WRITABLE, TCL_EXCEPTION
   int ready; // the bits that are set in a queued event
   Tcl_FileProc* call;
   ClientData data;

@@ -37,7 +37,7 @@ constexpr const char* namespacesThatGo[] = {
 struct Ensemble {
   const char* name;
   const char* space;
-  const char* keep; // a Tcl list
+  const char* keep; // subcommands that stay, as a Tcl list
 };
 constexpr Ensemble ensembles[] = {
     {"::info", "::tcl::info",

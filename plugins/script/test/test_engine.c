@@ -72,19 +72,19 @@ static XsValue strings(const XsString* list, uint32_t count, XsType type) {
 
 /* --- Commands: send, read, write, post --- */
 
-static XsResult echo(Call* c) { /* OUT */
+static XsResult echo(Call* c) { /* arguments: OUT */
   if (!c->event) return XS_FAILED;
   return answer(
       c, c->self->host->send(c->self->host, c->self->info->self, c->words[1], &c->event->value));
 }
 
-static XsResult sendText(Call* c) { /* OUT TEXT: an SFString */
+static XsResult sendText(Call* c) { /* arguments: OUT TEXT; sends an SFString */
   XsString s = text(strlen(c->rest) > strlen(c->words[1]) ? c->rest + strlen(c->words[1]) + 1 : "");
   XsValue value = strings(&s, 1, XS_SFSTRING);
   return answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[1], &value));
 }
 
-static XsResult add(Call* c) { /* FIELD OUT: sends the SFInt32 field plus the event */
+static XsResult add(Call* c) { /* arguments: FIELD OUT; sends the SFInt32 field plus the event */
   const XsHost* host = c->self->host;
   const XsNode self = c->self->info->self;
   XsValue field;
@@ -97,14 +97,14 @@ static XsResult add(Call* c) { /* FIELD OUT: sends the SFInt32 field plus the ev
   return result != XS_OK ? result : answer(c, host->send(host, self, c->words[2], &value));
 }
 
-static XsResult after(Call* c) { /* N OUT: sends the Nth event and drops the others */
+static XsResult after(Call* c) { /* arguments: N OUT; sends the Nth event and drops the others */
   return ++c->self->count == atoi(c->words[1])
              ? answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[2],
                                              &c->event->value))
              : XS_OK;
 }
 
-static XsResult readNode(Call* c) { /* NODE FIELD OUT */
+static XsResult readNode(Call* c) { /* arguments: NODE FIELD OUT */
   const XsHost* host = c->self->host;
   XsValue value;
   const XsResult result =
@@ -113,12 +113,13 @@ static XsResult readNode(Call* c) { /* NODE FIELD OUT */
                                    : result);
 }
 
-static XsResult writeField(Call* c) { /* FIELD: writes the event's value to a field of the Script */
+static XsResult
+writeField(Call* c) { /* argument: FIELD; writes the event's value to a field of the Script */
   return answer(
       c, c->self->host->write(c->self->host, c->self->info->self, c->words[1], &c->event->value));
 }
 
-static XsResult post(Call* c) { /* NODE EVENTIN: posts the event, or TRUE without one */
+static XsResult post(Call* c) { /* arguments: NODE EVENTIN; posts the event, or TRUE without one */
   const int32_t yes = 1;
   XsValue value = {XS_SFBOOL, 1, {&yes}};
   if (c->event) value = c->event->value;
@@ -126,7 +127,7 @@ static XsResult post(Call* c) { /* NODE EVENTIN: posts the event, or TRUE withou
                                        c->words[2], &value));
 }
 
-static XsResult describe(Call* c) { /* NODE: prints its type, name and fields */
+static XsResult describe(Call* c) { /* argument: NODE; prints its type, name and fields */
   static const char* const access[] = {"", "field", "exposedField", "eventIn", "eventOut"};
   const XsHost* host = c->self->host;
   XsNodeInfo info = {sizeof(XsNodeInfo), 0, NULL, NULL};
@@ -145,7 +146,7 @@ static XsResult describe(Call* c) { /* NODE: prints its type, name and fields */
   return XS_OK;
 }
 
-static XsResult find(Call* c) { /* NODE NAME: prints the field with this name */
+static XsResult find(Call* c) { /* arguments: NODE NAME; prints the field with this name */
   XsField field;
   char line[300];
   const XsResult result = c->self->host->findField(c->self->host, c->self->info->self,
@@ -173,7 +174,8 @@ static XsResult drop(Call* c) {
 
 /* --- The Browser object --- */
 
-static XsResult browser(Call* c) { /* OUT: an MFString of the Browser's properties */
+static XsResult
+browser(Call* c) { /* argument: OUT; sends an MFString of the Browser's properties */
   const XsHost* host = c->self->host;
   const XsNode self = c->self->info->self;
   XsString s;
@@ -196,12 +198,12 @@ static XsResult browser(Call* c) { /* OUT: an MFString of the Browser's properti
   return answer(c, host->send(host, self, c->words[1], &value));
 }
 
-static XsResult description(Call* c) { /* TEXT */
+static XsResult description(Call* c) { /* argument: TEXT */
   return answer(c,
                 c->self->host->setDescription(c->self->host, c->self->info->self, text(c->rest)));
 }
 
-static XsResult create(Call* c) { /* OUT VRML: creates nodes and sends them */
+static XsResult create(Call* c) { /* arguments: OUT VRML; creates nodes and sends them */
   const XsHost* host = c->self->host;
   XsValue nodes;
   const XsResult result = host->createVrmlFromString(host, c->self->info->self,
@@ -210,13 +212,13 @@ static XsResult create(Call* c) { /* OUT VRML: creates nodes and sends them */
                                    : result);
 }
 
-static XsResult fromUrl(Call* c) { /* NODE EVENTIN URL */
+static XsResult fromUrl(Call* c) { /* arguments: NODE EVENTIN URL */
   const XsString url = text(c->words[3]);
   return answer(c, c->self->host->createVrmlFromUrl(c->self->host, c->self->info->self, 1, &url,
                                                     nodeOf(c, c->words[1]), c->words[2]));
 }
 
-static XsResult load(Call* c) { /* URL PARAMETER */
+static XsResult load(Call* c) { /* arguments: URL PARAMETER */
   const XsString url = text(c->words[1]), parameter = text(c->words[2]);
   return answer(c, c->self->host->loadUrl(c->self->host, c->self->info->self, 1, &url,
                                           *c->words[2] ? 1 : 0, &parameter));
@@ -228,7 +230,7 @@ static XsResult replace(Call* c) { /* replaces the world by the event's nodes */
                                                c->event->value.count, c->event->value.of.nodes));
 }
 
-static XsResult addRoute(Call* c) { /* NODE OUT NODE IN */
+static XsResult addRoute(Call* c) { /* arguments: NODE OUT NODE IN */
   const XsHost* host = c->self->host;
   const XsNode from = nodeOf(c, c->words[1]), to = nodeOf(c, c->words[3]);
   return answer(c, host->addRoute(host, c->self->info->self, from, c->words[2], to, c->words[4]));
@@ -243,7 +245,7 @@ static XsResult deleteRoute(Call* c) {
 
 /* --- Time, messages, errors --- */
 
-static XsResult now(Call* c) { /* OUT: SFTime */
+static XsResult now(Call* c) { /* argument: OUT, an SFTime */
   const double time = c->self->host->now(c->self->host, c->self->info->self);
   const XsValue value = {XS_SFTIME, 1, {&time}};
   return answer(c, c->self->host->send(c->self->host, c->self->info->self, c->words[1], &value));
@@ -253,7 +255,7 @@ static XsResult print(Call* c) {
   say(c->self, 0, 0, c->rest);
   return XS_OK;
 }
-static XsResult error(Call* c) { /* LINE TEXT */
+static XsResult error(Call* c) { /* arguments: LINE TEXT */
   say(c->self, 3, (uint32_t)atoi(c->words[1]), c->rest + strlen(c->words[1]) + 1);
   return XS_FAILED;
 }
@@ -266,7 +268,7 @@ static XsResult loop(Call* c) { /* runs until it is stopped */
   return XS_STOPPED;
 }
 
-static XsResult wrong(Call* c) { /* OUT: sends values that the host must refuse */
+static XsResult wrong(Call* c) { /* argument: OUT; sends values that the host must refuse */
   const XsHost* host = c->self->host;
   const XsNode self = c->self->info->self;
   const int32_t number = 1;

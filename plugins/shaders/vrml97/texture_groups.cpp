@@ -1,6 +1,6 @@
-// texture_groups.cpp: batches with one texture, which is most of them, are sampled in place. The
-// lanes of other batches are sorted by texture in scratch memory, so the cost does not grow with
-// the number of textures. [render]
+// texture_groups.cpp: samples the textures of a batch. Most batches have one texture and are
+// sampled in place. The lanes of other batches are sorted by texture in scratch memory, so the cost
+// does not grow with the number of textures. [render]
 #include "vrml97/texture_groups.h"
 
 #include <algorithm>

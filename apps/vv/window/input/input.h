@@ -16,11 +16,11 @@ struct InputEvent {
     release,   // button, at x, y
     leave,     // the pointer has left the window, or the window has lost it
     wheel,     // amount: notches, away from the user
-    down,      // key
-    up,        // key
-    viewpoint, // text: name, description or number from 0
-    save,      // text: file
-    open,      // text: file
+    down,      // the key `text` goes down
+    up,        // the key `text` goes up
+    viewpoint, // go to the viewpoint `text`: a name, a description or a number from 0
+    save,      // save the picture to the file `text`
+    open,      // open the file `text`
     quit
   };
   Kind kind = Kind::move;

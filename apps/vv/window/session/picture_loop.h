@@ -54,7 +54,7 @@ class PictureLoop {
   bool isFinished(const Pilot& pilot) const;
   // The frames per second while something moves; 0: nothing moves.
   double frameRate() const { return isMoving() && gap_ > 0 ? 1 / gap_ : 0; }
-  const picture::LivePicture& facts() const { return facts_; } // without the pixels
+  const picture::LivePicture& facts() const { return facts_; } // state without the pixels
 
  private:
   using RendererState = picture::LiveRenderer::State;
@@ -72,7 +72,7 @@ class PictureLoop {
   const Options& options_;
   picture::LiveRenderer renderer_;
   Pacing pacing_;
-  int width_ = 0, height_ = 0; // of the window
+  int width_ = 0, height_ = 0; // size of the window in pixels
 
   Phase phase_ = Phase::unstarted;
   Shown shown_ = Shown::nothing;

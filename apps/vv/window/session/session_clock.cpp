@@ -6,8 +6,8 @@ namespace vv {
 
 namespace {
 
-constexpr int mostSteps = 10;        // maximum number of steps before a picture
-constexpr double mostPassing = 0.25; // seconds; a slow picture does not cause a burst of steps
+constexpr int maxSteps = 10;        // maximum number of steps before a picture
+constexpr double maxPassing = 0.25; // seconds; a slow picture does not cause a burst of steps
 
 } // namespace
 
@@ -18,7 +18,7 @@ void SessionClock::read(double seconds) {
 }
 
 void SessionClock::pass() {
-  if (mode_ == Mode::stepped) due_ += std::min(passed_, mostPassing);
+  if (mode_ == Mode::stepped) due_ += std::min(passed_, maxPassing);
 }
 
 void SessionClock::run(const Driven& driven) {
@@ -28,7 +28,7 @@ void SessionClock::run(const Driven& driven) {
     driven.step(time_);
     return;
   case Mode::stepped:
-    for (int i = 0; i < mostSteps && timeOfStep() <= due_ && !driven.held(); ++i) {
+    for (int i = 0; i < maxSteps && timeOfStep() <= due_ && !driven.held(); ++i) {
       time_ = timeOfStep();
       if (!driven.step(time_)) return;
       ++next_;

@@ -20,7 +20,7 @@ void Mixer::set(const std::vector<xvrml::Heard>& audible) {
 // Updates the voices. The clocks of world and device drift, and ticks are late, so a voice jumps to
 // the new position only if it is far off.
 void Mixer::updateVoices(std::vector<Voice>& fresh) {
-  constexpr double farOff = 0.2; // seconds
+  constexpr double farOff = 0.2; // tolerated drift in seconds
   for (Voice& voice : voices_) {
     voice.wanted = false;
     voice.next = {};

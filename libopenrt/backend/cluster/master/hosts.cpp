@@ -21,7 +21,7 @@ std::string trimmed(std::string line) {
 } // namespace
 
 std::vector<std::string> readHosts(const std::vector<std::string>& entries) {
-  constexpr size_t most = 65536; // workers
+  constexpr size_t most = 65536; // limit on the workers in a list
   std::vector<std::string> hosts;
   for (const std::string& entry : entries) {
     if (!entry.starts_with('@')) {

@@ -1,5 +1,6 @@
-// job_costs.cpp: the median comes from a histogram of logarithms with eight bins per octave. It is
-// exact to 5 %, far less than jobs differ by, and its size is constant.
+// job_costs.cpp: estimates the costs of jobs. The median comes from a histogram of logarithms with
+// eight bins per octave. It is exact to 5 %, far less than jobs differ by, and its size is
+// constant.
 #include "backend/cluster/master/job_costs.h"
 
 #include <algorithm>

@@ -24,7 +24,7 @@ class JobCosts {
   uint32_t jobs() const { return jobs_; }
 
  private:
-  static constexpr int perOctave = 8, octaves = 52, lowest = -44; // from 2^-44 s
+  static constexpr int perOctave = 8, octaves = 52, lowest = -44; // the shortest time is 2^-44 s
   double quantile(double share) const;
   double seconds_ = 0, units_ = 0, priorSeconds_ = 0, priorUnits_ = 0, median_ = 0, expensive_ = 0;
   // next_: number of jobs at which the quantiles are computed again.

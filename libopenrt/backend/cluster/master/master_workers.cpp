@@ -7,10 +7,10 @@
 
 namespace openrt::cluster {
 namespace {
-constexpr uint32_t mostStrikes = 3;    // invalid messages before a worker is refused
+constexpr uint32_t maxStrikes = 3;     // invalid messages before a worker is refused
 constexpr uint32_t mostThreads = 4096; // threads of a worker
-constexpr size_t mostGone = 256;       // departed workers that are remembered
-constexpr size_t mostSaid = 1000;
+constexpr size_t maxGone = 256;        // departed workers that are remembered
+constexpr size_t maxSaid = 1000;
 constexpr const char* reloadedWhy =
     "the master has reloaded shader libraries and now renders alone";
 } // namespace
@@ -21,7 +21,7 @@ void Master::Impl::log(int level, const std::string& text) const {
 }
 
 void Master::Impl::logOnce(int level, const std::string& text) {
-  if (loggedTexts.size() < mostSaid && loggedTexts.insert(text).second) log(level, text);
+  if (loggedTexts.size() < maxSaid && loggedTexts.insert(text).second) log(level, text);
 }
 
 Remote* Master::Impl::remoteOf(WorkerId id) {
@@ -86,7 +86,7 @@ void Master::Impl::depart(Remote& remote, double now) {
     RTworker last = describe(remote, false);
     last.lost += scheduler.tally(remote.id).out;
     gone.push_back(last);
-    if (gone.size() > mostGone) gone.erase(gone.begin());
+    if (gone.size() > maxGone) gone.erase(gone.begin());
     peers.erase(remote.id);
     scheduler.leave(remote.id, now);
   }
@@ -100,7 +100,7 @@ void Master::Impl::depart(Remote& remote, double now) {
 
 void Master::Impl::strike(Remote& remote, const std::string& what, double now) {
   logOnce(2, "worker " + remote.name() + " has sent an invalid message: " + what);
-  if (++remote.strikes >= mostStrikes)
+  if (++remote.strikes >= maxStrikes)
     refuse(remote.peer, "it sends invalid messages: " + what, now);
 }
 

@@ -38,7 +38,7 @@ class Outbox {
   };
   struct QueuedArray {
     OfferPtr array;
-    uint64_t offset = 0; // into the packed bytes
+    uint64_t offset = 0; // offset of the next piece in the packed bytes
   };
   std::deque<QueuedMessage> messages_;
   size_t bytes_ = 0; // sum over messages_

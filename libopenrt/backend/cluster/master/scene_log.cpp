@@ -25,7 +25,7 @@ void SceneLog::settle(Epoch epoch) {
     whole_.reset();
   }
   while (!log_.empty() && log_.front().epoch <= base_ &&
-         (log_.size() > mostCommits || bytes_ > mostBytes))
+         (log_.size() > maxCommits || bytes_ > maxBytes))
     dropFirst();
 }
 

@@ -33,7 +33,7 @@ class SceneLog {
 
  private:
   // Limits on the commits kept for workers that lag behind.
-  static constexpr size_t mostCommits = 256, mostBytes = size_t(64) << 20;
+  static constexpr size_t maxCommits = 256, maxBytes = size_t(64) << 20;
   struct Entry {
     Epoch epoch = 0;
     ParcelPtr parcel;

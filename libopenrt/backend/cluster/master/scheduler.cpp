@@ -1,5 +1,5 @@
-// scheduler.cpp: leases: which worker has which job, and what happens to the job when the worker
-// finishes it, fails or is lost.
+// scheduler.cpp: keeps the leases, which say which worker has which job, and what happens to the
+// job when the worker finishes it, fails or is lost.
 #include "backend/cluster/master/scheduler.h"
 
 #include <algorithm>
@@ -60,7 +60,7 @@ void Scheduler::Impl::leave(Worker& w) {
 }
 
 void Scheduler::Impl::recordFailure(Worker& w) {
-  if (w.tally.blocked || ++w.tally.failed < options.mostFailed) return;
+  if (w.tally.blocked || ++w.tally.failed < options.maxFailed) return;
   updateTotals(w, -1);
   w.tally.blocked = true;
   forgetAll(w, ~Epoch(0));

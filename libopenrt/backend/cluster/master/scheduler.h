@@ -44,7 +44,7 @@ struct SchedulerOptions {
   uint32_t maxCopies = 3;  // limit on the copies of a job
   // Seconds without progress after which the local worker helps with the oldest frame.
   double stuck = 10;
-  uint32_t mostFailed = 3; // failed jobs after which a worker gets no more jobs
+  uint32_t maxFailed = 3; // failed jobs after which a worker gets no more jobs
 };
 
 // The scheduler's view of a frame's work (implemented by FrameSource).

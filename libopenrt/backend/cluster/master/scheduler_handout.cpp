@@ -18,8 +18,8 @@ constexpr double largestBundle = 64;
 constexpr double masterHeadroom = 1.75;
 // Seconds of work that a worker keeps waiting when it reports a result, besides its link.
 constexpr double turnaround = 8e-3;
-constexpr double leastWaiting = 0.25; // jobs per thread waiting behind the running one
-constexpr double mixedUntil = 0.7;    // part of the frame's work in which cheap tiles are mixed
+constexpr double minWaiting = 0.25; // jobs per thread waiting behind the running one
+constexpr double mixedUntil = 0.7;  // part of the frame's work in which cheap tiles are mixed
 // A tile may cost this many times the average: one in 32 may cost as much as all the others.
 constexpr double maxTileCostRatio = 32;
 constexpr double parts = 4; // a job is one of this many parts of the work left for a thread
@@ -96,7 +96,7 @@ double Scheduler::Impl::queueDepth(const Frame& f) const {
   double most = std::clamp(options.inFlight, 1u, uint32_t(mostInFlight));
   // With few waiting jobs, other workers get theirs sooner.
   if (f.lastSeconds > 0)
-    most = std::min(most, 1 + std::max(leastWaiting, turnaround / f.lastSeconds));
+    most = std::min(most, 1 + std::max(minWaiting, turnaround / f.lastSeconds));
   return std::clamp(std::ceil(left / together), 1.0, most) * together;
 }
 
@@ -259,7 +259,7 @@ bool Scheduler::Impl::next(double now, Handout& out) {
     }
     if (reissue(f, g, now, out) || reissueLocally(f, g, now, out)) return true;
     if (!f.needsPinned && pinnedWorkers > 0 && g.pinned.empty() && f.firstLate() <= now)
-      f.needsPinned = mayMove = true; // once, for the local worker
+      f.needsPinned = mayMove = true; // this is done once, for the local worker
   }
   return false;
 }

@@ -1,4 +1,4 @@
-// checks.cpp: the check of each kind of message (kinds.h). They run after the flatbuffer has been
+// checks.cpp: checks each kind of message (kinds.h). The checks run after the flatbuffer has been
 // verified and before anything is copied, so they bound the memory that a message takes. [any]
 #include <algorithm>
 #include <cmath>

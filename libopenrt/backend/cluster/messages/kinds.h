@@ -56,7 +56,7 @@ using Library = wire::LibraryT; // bare name, like that of a plug-in; content ha
 struct Scene {
   using TableType = wire::Scene;
   Epoch epoch = 0;
-  bool whole = false, prepare = false; // as in WorkerCore::scene
+  bool whole = false, prepare = false; // parameters of WorkerCore::scene()
   std::vector<ArrayName> arrays;       // arrays that the commit adds
   std::vector<Library> libraries;      // libraries that the commit adds
   std::vector<std::byte> edits;        // output of packEdits (backend/record/edits_bytes.h)

@@ -1,5 +1,6 @@
-// seal.cpp: the seal covers the header, and only the sizes of the bulk frames. Their content has
-// its own checksum in the header, which is verified where there is time for it. [any]
+// seal.cpp: adds and checks seals. A seal covers the header, and only the sizes of the bulk frames.
+// The content of bulk frames has its own checksum in the header, which is verified where there is
+// time. [any]
 #include "backend/cluster/net/seal.h"
 
 #include <array>

@@ -1,6 +1,6 @@
 // seal.h: the last frame of every message: its number and a checksum. It detects messages that were
-// lost, repeated or damaged, whatever transport carries them (docs/protocol.md, "Seals"). Added and
-// removed by the Wire.
+// lost, repeated or damaged, whatever transport carries them (docs/protocol.md, "Seals"). The Wire
+// adds and removes seals.
 #pragma once
 
 #include "backend/cluster/net/wire.h"

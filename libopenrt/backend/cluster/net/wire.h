@@ -40,7 +40,7 @@ struct Event {
   // refused: a call that was not answered, or a caller that was not let in. It is reported once;
   // the Wire keeps trying.
   enum class Kind : uint8_t { nothing, joined, message, left, refused, woken } kind = Kind::nothing;
-  Peer peer = 0; // 0 if refused
+  Peer peer = 0; // the peer; 0 for a refused call
   // message: its header is verified (messages.h); never a Beat or a Bye
   Frames frames;
   // joined: the peer's address; left, refused: the reason, for the user
@@ -72,7 +72,7 @@ class Wire {
   std::string address() const;
   void wake(); // [any] makes receive() return
   struct Traffic {
-    uint64_t sent = 0, received = 0; // bytes
+    uint64_t sent = 0, received = 0; // bytes sent and received
     double latency = 0;              // smoothed round trip of heartbeats in seconds
   };
   // Returns the counters of a peer, for a while also after it has left.

@@ -7,9 +7,9 @@
 #include <map>
 #include <unordered_map>
 
+#include "backend/cluster/messages/messages.h"
 #include "backend/cluster/net/addresses.h"
 #include "backend/cluster/net/flow.h"
-#include "backend/cluster/messages/messages.h"
 #include "backend/cluster/net/sockets.h"
 #include "backend/cluster/net/wire.h"
 
@@ -25,7 +25,7 @@ struct Wire::Impl {
     double next = 0, deadline = 0;  // time of the next attempt; time limit of this one
     uint32_t failures = 0;          // failed attempts in a row
     // Connections in a row that the other side ended soon with a Bye.
-    uint32_t byes = 0;
+    uint32_t endedSoon = 0;
     double joined = 0; // when the connection was established
     int fd = -1;
     Peer peer = 0;           // set once the other side has answered

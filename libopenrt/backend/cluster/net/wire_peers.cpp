@@ -1,6 +1,6 @@
-// wire_peers.cpp: peers: their messages, their heartbeats, and the socket of the callers. The
-// connection of a caller cannot be closed from here (ZeroMQ has no such call), so messages of a
-// blocked caller are ignored. [wire]
+// wire_peers.cpp: serves the peers: their messages, their heartbeats, and the socket of the
+// callers. The connection of a caller cannot be closed from here (ZeroMQ has no such call), so
+// messages of a blocked caller are ignored. [wire]
 #include <algorithm>
 #include <cmath>
 #include <system_error>
@@ -12,11 +12,11 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr int mostBad = 3;
+constexpr int maxBad = 3;
 // Limits on what is read before another socket's turn.
 constexpr size_t mostAtOnce = 64, bytesAtOnce = size_t(64) << 20;
 constexpr size_t smallFrame = 4096; // smaller frames are copied instead of handed over
-constexpr size_t mostFormer = 4096;
+constexpr size_t maxFormer = 4096;
 // Seconds after which the round trip is measured although there is traffic.
 constexpr double measureAgain = 1;
 // Seconds after which a peer that has left is told so again.
@@ -174,7 +174,7 @@ void Wire::Impl::handleMessage(PeerState& peer, Frames&& frames, bool tooMany, d
 }
 
 void Wire::Impl::countBad(PeerState& peer, const std::string& why, double now) {
-  if (++peer.badOnes < mostBad) return;
+  if (++peer.badOnes < maxBad) return;
   block(peer, "three invalid messages, the last one: " + why, now);
 }
 
@@ -228,15 +228,15 @@ void Wire::Impl::leave(PeerState& peer, const std::string& why, double now, bool
     return;
   }
   Call& call = *peer.call;
-  const bool junk = peer.badOnes >= mostBad;
+  const bool junk = peer.badOnes >= maxBad;
   // A peer that ends may be called again at once. One that refuses us is called less and less
   // often.
-  call.byes = bye && now - call.joined < soon ? std::min(call.byes + 1, 10u) : 0;
+  call.endedSoon = bye && now - call.joined < soon ? std::min(call.endedSoon + 1, 10u) : 0;
   forget(peer.id);
   hangUp(call,
-         junk        ? afterJunk
-         : call.byes ? std::min(shunned, again * std::pow(4.0, call.byes - 1))
-                     : again,
+         junk             ? afterJunk
+         : call.endedSoon ? std::min(shunned, again * std::pow(4.0, call.endedSoon - 1))
+                          : again,
          junk);
 }
 
@@ -245,7 +245,7 @@ void Wire::Impl::forget(Peer peer) {
   if (found == peers.end()) return;
   const PeerState& state = found->second;
   former[peer] = state.traffic;
-  if (former.size() > mostFormer) former.erase(former.begin());
+  if (former.size() > maxFormer) former.erase(former.begin());
   if (const auto route = routes.find(state.route); route != routes.end() && route->second == peer)
     routes.erase(route);
   if (const auto fd = callersByFd.find(state.fd); fd != callersByFd.end() && fd->second == peer)

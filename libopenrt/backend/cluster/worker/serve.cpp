@@ -1,4 +1,5 @@
-// serve.cpp: tasks for the session wait in one queue, its messages to the wire in another.
+// serve.cpp: runs the threads of a worker. One queue holds tasks for the session, another one the
+// session's messages to the wire.
 #include "backend/cluster/worker/serve.h"
 
 #include <atomic>
@@ -17,7 +18,7 @@ namespace openrt::cluster {
 namespace {
 
 // Bytes that the session has not read. Above this limit nothing is received.
-constexpr size_t mostWaiting = size_t(512) << 20;
+constexpr size_t maxWaiting = size_t(512) << 20;
 constexpr size_t overhead = 512; // approximate size of a waiting message besides its frames
 // Seconds to wait for messages; `hurry` while a message could not be sent.
 constexpr double idle = 0.05, hurry = 0.001;
@@ -190,7 +191,7 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
     double advanced = 0;
     while (!stopping) {
       const bool all = flush();
-      if (bytesWaiting() > mostWaiting) {
+      if (bytesWaiting() > maxWaiting) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
         continue;
       }

@@ -11,9 +11,9 @@
 namespace openrt::cluster {
 namespace {
 
-constexpr double patience = 5;       // seconds that a master may take to answer
-constexpr size_t mostJobs = 1 << 16; // outstanding jobs
-constexpr size_t mostFrames = 256;   // frames that are prepared and not dropped
+constexpr double patience = 5;      // seconds that a master may take to answer
+constexpr size_t maxJobs = 1 << 16; // outstanding jobs
+constexpr size_t maxFrames = 256;   // frames that are prepared and not dropped
 
 } // namespace
 
@@ -135,16 +135,16 @@ void Worker::jobs(const message::Jobs& m) {
   if (frame == frames_.end()) return; // the frame was dropped
   const edit::FrameSettingsT& f = frame->second;
   const uint64_t pixels = uint64_t(f.width) * f.height;
-  constexpr uint64_t mostSamples = uint64_t(1) << 17; // per pixel
+  constexpr uint64_t maxSamples = uint64_t(1) << 17; // per pixel
   for (const LeasedJob& job : m.jobs) {
     const bool samples = job.job.kind == Job::Kind::samples;
-    if (samples ? job.job.number >= pixels || uint64_t(job.job.first) + job.job.count > mostSamples
+    if (samples ? job.job.number >= pixels || uint64_t(job.job.first) + job.job.count > maxSamples
                 : job.job.number >= LightImage::parts)
       return bad("a job is not in the frame");
   }
   size_t out = m.jobs.size();
   for (const auto& [of, leases] : leases_) out += leases.size();
-  if (out > mostJobs) return bad("there are more jobs than a worker takes");
+  if (out > maxJobs) return bad("there are more jobs than a worker takes");
   for (const LeasedJob& job : m.jobs)
     if (!leases_[epoch].insert(job.lease).second) return bad("a lease is in use already");
   executor_.work(epoch, m.jobs);
@@ -166,7 +166,7 @@ void Worker::ready(Epoch epoch, const Prepared& prepared) {
   if (epoch <= base_ || !serving()) return; // from the session of a former master
   answered(epoch);
   frames_[epoch] = prepared.frame;
-  if (frames_.size() > mostFrames) frames_.erase(frames_.begin());
+  if (frames_.size() > maxFrames) frames_.erase(frames_.begin());
   message::Ready m;
   m.epoch = epoch - base_;
   m.facts = prepared.facts;

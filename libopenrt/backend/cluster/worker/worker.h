@@ -10,8 +10,8 @@
 #include <set>
 #include <string>
 
-#include "backend/cluster/net/libraries.h"
 #include "backend/cluster/messages/messages.h"
+#include "backend/cluster/net/libraries.h"
 #include "backend/cluster/worker/array_cache.h"
 
 namespace openrt {
@@ -35,7 +35,8 @@ struct WorkerOptions {
   message::Hello self; // Hello of this process (greeting.h)
   const ShaderRegistry* shaders = nullptr;
   size_t cacheBytes = size_t(1) << 30;
-  std::function<void(int level, const std::string& text)> log; // may be empty
+  // Receives messages for the user; may be empty.
+  std::function<void(int level, const std::string& text)> log;
 };
 
 // Functions of the Wire.
@@ -74,7 +75,8 @@ class Worker {
     bool prepareOnly = false;
   };
   void sendMessage(message::Body&& body);
-  void welcome(const message::Welcome& m, uint64_t session); // session: that of the header
+  // Session: number in the message's header.
+  void welcome(const message::Welcome& m, uint64_t session);
   void scene(message::Scene&& m);
   void piece(const message::Piece& m);
   void prepare(const message::Prepare& m);

@@ -1,6 +1,6 @@
-// worker_core.cpp: all requests wait in one queue. Threads take jobs from its front. Changes of the
-// scene and queries are run by the control thread alone, once they are at the front and no job
-// runs.
+// worker_core.cpp: orders the requests of a worker. All requests wait in one queue. Threads take
+// jobs from its front. Changes of the scene and queries are run by the control thread alone, once
+// they are at the front and no job runs.
 #include "backend/cluster/worker/worker_core.h"
 
 #include <algorithm>
