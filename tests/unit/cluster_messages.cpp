@@ -5,8 +5,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/messages/statistics.h"
+#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/worker/array_cache.h"
 #include "messages_generated.h"
 #include "unit/cluster_wires.h"
