@@ -1,6 +1,8 @@
 // cluster.cpp: Implements the Python class Cluster. [GIL held; released while waiting]
 #include <chrono>
+#include <functional>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -8,6 +10,7 @@
 #include <pybind11/stl.h>
 
 #include "cluster_object.h"
+#include "libpicture/worker_facts.h"
 #include "parameters.h"
 
 namespace {
@@ -186,26 +189,21 @@ void defineCluster(py::module_& module) {
               .release()
               .ptr();
 
-  py::class_<RTworker>(module, "Worker", "What one machine of a cluster has done since it joined.")
-      .def_property_readonly(
-          "name", [](const RTworker& w) { return toText(w.name); },
-          "Host and address; 'here': this process.")
-      .def_property_readonly("here", [](const RTworker& w) { return picture::isHere(w); })
-      .def_property_readonly(
-          "alive", [](const RTworker& w) { return w.alive != 0; },
-          "False: it has left, or was refused.")
-      .def_readonly("threads", &RTworker::threads)
-      .def_readonly("tiles", &RTworker::jobs, "Jobs done: tiles, or parts of their samples.")
-      .def_readonly("late", &RTworker::late,
-                    "Results that came when somebody else had done the job.")
-      .def_readonly("lost", &RTworker::lost, "Jobs that were taken away because it left.")
-      .def_readonly("rays", &RTworker::rays)
-      .def_readonly("bytes_sent", &RTworker::bytesSent)
-      .def_readonly("bytes_received", &RTworker::bytesReceived)
-      .def_readonly("busy_seconds", &RTworker::busySeconds, "Of all its threads.")
-      .def_readonly("latency", &RTworker::latency,
-                    "Seconds that a job is under way beyond the work.")
-      .def("__repr__", workerText);
+  py::class_<RTworker> worker(module, "Worker",
+                              "What one machine of a cluster has done since it joined.");
+  picture::forEachWorkerFact([&](const picture::WorkerFact& fact, auto get) {
+    worker.def_property_readonly(
+        fact.attribute,
+        [get](const RTworker& w) {
+          const auto value = std::invoke(get, w);
+          if constexpr (std::is_pointer_v<decltype(value)>)
+            return toText(value);
+          else
+            return value;
+        },
+        fact.help);
+  });
+  worker.def("__repr__", workerText);
   py::class_<ClusterObject, ClusterPtr> cluster(
       module, "Cluster",
       "Machines that render together: `with Cluster([\"a:7447\", \"b\"], key=\"cluster.key\")`. "

@@ -1,4 +1,5 @@
 """Tests the Python package: worlds, nodes through the field tables, pictures."""
+import ast
 import io
 import os
 import pathlib
@@ -376,5 +377,12 @@ def test_package():
     stub = (folder / "__init__.pyi").read_text() + (folder / "nodes.pyi").read_text()
     for name in xvrml.__all__:
         assert name in stub
+    for described in ast.parse((folder / "__init__.pyi").read_text()).body:
+        # the attributes of errors are those of instances
+        if isinstance(described, ast.ClassDef) and not described.name.endswith("Error"):
+            there = {name for name in vars(getattr(xvrml, described.name)) if name[0] != "_"}
+            members = {f.name for f in described.body if isinstance(f, ast.FunctionDef)}
+            members |= {f.target.id for f in described.body if isinstance(f, ast.AnnAssign)}
+            assert {name for name in members if name[0] != "_"} == there, described.name
     assert signal.getsignal(
         signal.SIGINT) is signal.default_int_handler, "importing leaves signals alone"

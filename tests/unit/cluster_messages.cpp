@@ -5,8 +5,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/messages/statistics.h"
+#include "backend/cluster/net/greeting.h"
 #include "backend/cluster/worker/array_cache.h"
 #include "messages_generated.h"
 #include "unit/cluster_wires.h"
@@ -287,6 +287,9 @@ TEST(Messages, textsCannotMoveTheCursor) {
 TEST(Messages, numbersThatCannotBe) {
   const auto refused = [](message::Body body) { return !problem(of(std::move(body))).empty(); };
   EXPECT_TRUE(refused(message::Hello{.threads = 0}));
+  EXPECT_FALSE(refused(message::Hello{.threads = 1}));
+  EXPECT_FALSE(refused(message::Hello{.threads = 65536}));
+  EXPECT_TRUE(refused(message::Hello{.threads = 65537}));
   EXPECT_TRUE(refused(message::Ready{1, {}, 99, {}}));
   EXPECT_TRUE(refused(
       message::Welcome{.protocol = protocolVersion, .session = 1, .heartbeat = 0, .silence = 0}));

@@ -1,12 +1,15 @@
 #include "cluster_report.h"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <string_view>
+#include <type_traits>
 
 #include <fmt/format.h>
 
 #include "describe.h"
+#include "libpicture/worker_facts.h"
 
 namespace vv {
 
@@ -18,16 +21,40 @@ std::string bytesText(uint64_t bytes) {
   return fmt::format("{:.0f} MB", double(bytes) * 1e-6);
 }
 
+template <class Number> std::string numberText(picture::FactUnit unit, Number number) {
+  switch (unit) {
+  case picture::FactUnit::million: return fmt::format("{:.1f}", double(number) * 1e-6);
+  case picture::FactUnit::bytes: return bytesText(uint64_t(number));
+  case picture::FactUnit::milliseconds: return fmt::format("{:.1f} ms", double(number) * 1e3);
+  case picture::FactUnit::seconds: return fmt::format("{:.1f} s", double(number));
+  case picture::FactUnit::none: break;
+  }
+  if constexpr (std::is_floating_point_v<Number>) return fmt::format("{:.1f}", number);
+  return fmt::format("{}", number);
+}
+
+std::string headings() {
+  std::string line = fmt::format("{:<24}", "machine");
+  picture::forEachWorkerFact([&](const picture::WorkerFact& fact, auto) {
+    if (*fact.heading) line += fmt::format(" {:>{}}", fact.heading, fact.width);
+  });
+  return line;
+}
+
 std::string lineOf(const std::string& name, const RTworker& w) {
-  std::string line =
-      fmt::format("{:<24} {:>7} {:>9} {:>9.1f}", name, w.threads, w.jobs, double(w.rays) * 1e-6);
-  if (picture::isHere(w))
-    return line + fmt::format(" {:>9} {:>9} {:>9} {:>7.1f} s", "", "", "", w.busySeconds);
-  line += fmt::format(" {:>9} {:>9} {:>6.1f} ms {:>7.1f} s", bytesText(w.bytesSent),
-                      bytesText(w.bytesReceived), w.latency * 1e3, w.busySeconds);
-  if (w.late) line += fmt::format("  {} late", w.late);
-  if (w.lost) line += fmt::format("  {} lost", w.lost);
-  return line + (w.alive ? "" : "  gone");
+  const bool here = picture::isHere(w);
+  std::string line = fmt::format("{:<24}", name), notes;
+  picture::forEachWorkerFact([&](const picture::WorkerFact& fact, auto get) {
+    const auto value = std::invoke(get, w);
+    if constexpr (std::is_arithmetic_v<decltype(value)>) {
+      const std::string text = numberText(fact.unit, value);
+      if (*fact.heading)
+        line += fmt::format(" {:>{}}", here && fact.ofLink ? "" : text, fact.width);
+      if (*fact.note && value != 0) notes += fmt::format("  {} {}", text, fact.note);
+    }
+  });
+  if (here) return line;
+  return line + notes + (w.alive ? "" : "  gone");
 }
 
 } // namespace
@@ -82,8 +109,7 @@ std::vector<std::string> clusterLines(const picture::RenderResult& result) {
                               workersText(result.workers), s.tilesRemote,
                               s.tilesRemote + s.tilesLocal, s.reissued, s.duplicates,
                               bytesText(s.bytesSent), bytesText(s.bytesReceived)));
-  lines.push_back(fmt::format("  {:<24} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}", "machine",
-                              "threads", "jobs", "Mray", "sent", "received", "latency", "busy"));
+  lines.push_back("  " + headings());
   for (const RTworker& worker : result.workers)
     lines.push_back(
         "  " + lineOf(picture::isHere(worker) ? "this process" : oneLine(worker.name), worker));

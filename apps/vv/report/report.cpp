@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -11,8 +12,8 @@
 #include <sys/resource.h>
 
 #include "describe.h"
-#include "libpicture/cluster.h"
 #include "libpicture/transport.h"
+#include "libpicture/worker_facts.h"
 #include "printable.h"
 #include "transport_words.h"
 #include "xvrml/nodes.h"
@@ -56,19 +57,13 @@ Json transportJson(const Options& options, const RTstats& s) {
 Json clusterJson(const picture::RenderResult& result) {
   const RTstats& s = result.stats;
   Json machines = Json::array();
-  for (const RTworker& w : result.workers)
-    machines.push_back({{"name", w.name},
-                        {"here", picture::isHere(w)},
-                        {"alive", w.alive != 0},
-                        {"threads", w.threads},
-                        {"tiles", w.jobs},
-                        {"rays", w.rays},
-                        {"bytes_sent", w.bytesSent},
-                        {"bytes_received", w.bytesReceived},
-                        {"late", w.late},
-                        {"lost", w.lost},
-                        {"busy", w.busySeconds},
-                        {"latency", w.latency}});
+  for (const RTworker& worker : result.workers) {
+    Json machine;
+    picture::forEachWorkerFact([&](const picture::WorkerFact& fact, auto get) {
+      machine[fact.key] = std::invoke(get, worker);
+    });
+    machines.push_back(std::move(machine));
+  }
   return {{"workers", s.workers},           {"tiles", s.tilesRemote},
           {"tiles_here", s.tilesLocal},     {"retries", s.reissued},
           {"duplicates", s.duplicates},     {"bytes", s.bytesSent + s.bytesReceived},

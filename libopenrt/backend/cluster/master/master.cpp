@@ -22,7 +22,7 @@ uint64_t largestResultOf(const edit::FrameSettingsT& frame) {
 Master::Impl::Impl(const MasterOptions& o, Send s, WorkerCore* h)
     : options(o), send(std::move(s)), core(h), scheduler(o.schedule), scenes(o.local.shaders),
       nextSession(o.session) {
-  here.threads = h ? h->threads() : 0;
+  here.facts.threads = h ? h->threads() : 0;
   here.host = "here";
 }
 
@@ -50,7 +50,7 @@ void Master::message(Peer peer, Frames&& frames, double now) {
   // The worker has left; another one does its jobs.
   if (found == impl_->remotes.end()) return;
   Remote& remote = found->second;
-  remote.bytesReceived += bytesOf(frames);
+  remote.facts.bytesReceived += bytesOf(frames);
   Message message;
   if (const std::string wrong = decodePacked(std::move(frames), message, impl_->largestResult);
       // The intended message is unknown.
@@ -111,7 +111,7 @@ void Master::localFailed(Epoch epoch, const std::string& why, double now) {
 void Master::localDone(Epoch epoch, const LeasedJob& job, JobResult&& result, double now) {
   Impl& m = *impl_;
   if (auto out = m.here.out.find(epoch); out != m.here.out.end() && out->second > 0) out->second--;
-  m.here.rays += result.counters.camera + result.counters.shadow + result.counters.secondary;
+  m.here.facts.rays += result.counters.camera + result.counters.shadow + result.counters.secondary;
   FrameEntry* entry = m.unfinished(epoch);
   if (!entry || !entry->state.work || !m.scheduler.find(localId, epoch, job.lease)) {
     m.scheduler.done(localId, epoch, job.lease, result.seconds, now);
@@ -230,9 +230,9 @@ Master::Totals Master::totals() const {
   t.bytesReceived = impl_->goneReceived;
   t.threads = impl_->options.localThreads;
   for (const auto& [peer, remote] : impl_->remotes) {
-    t.bytesSent += remote.bytesSent;
-    t.bytesReceived += remote.bytesReceived;
-    if (remote.welcome) t.threads += remote.threads;
+    t.bytesSent += remote.facts.bytesSent;
+    t.bytesReceived += remote.facts.bytesReceived;
+    if (remote.welcome) t.threads += remote.facts.threads;
   }
   return t;
 }

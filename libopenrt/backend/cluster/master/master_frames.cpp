@@ -87,8 +87,8 @@ void Master::Impl::ready(WorkerId worker, const std::string& who, Epoch epoch,
   scheduler.ready(worker, epoch, now);
   entry->preparedWorkers.insert(worker);
   if (entry->state.work) return;
-  uint32_t totalThreads = hereJoined && options.localThreads > 0 ? here.threads : 0;
-  for (const auto& [id, peer] : peers) totalThreads += remotes.at(peer).threads;
+  uint32_t totalThreads = hereJoined && options.localThreads > 0 ? here.facts.threads : 0;
+  for (const auto& [id, peer] : peers) totalThreads += remotes.at(peer).facts.threads;
   entry->preparedBy = who;
   entry->state.prepared = prepared;
   entry->state.work =
@@ -191,7 +191,8 @@ void Master::Impl::finishMerge(const IncomingResult& a, double now) {
   scheduler.done(a.worker, a.epoch, a.job.lease, a.result.seconds, now);
   if (a.first) {
     const RayCounters& rays = a.result.counters;
-    if (remote && a.worker != localId) remote->rays += rays.camera + rays.shadow + rays.secondary;
+    if (remote && a.worker != localId)
+      remote->facts.rays += rays.camera + rays.shadow + rays.secondary;
     (a.worker == localId ? jobsHere : jobsRemote)++;
   }
   endIfComplete(a.epoch);

@@ -25,7 +25,6 @@ struct Remote {
   std::string address, host;
   bool welcome = false; // Hello was accepted; it may work
   uint64_t session = 0;
-  uint32_t threads = 0;
   uint32_t strikes = 0; // invalid messages
   uint64_t logged = 0;  // log lines it has sent
   Epoch sent = 0;       // epoch of the scene it has or is being sent; 0: none
@@ -35,7 +34,9 @@ struct Remote {
   std::map<Epoch, std::vector<OfferPtr>> offered;
   std::map<Epoch, uint32_t> out;     // outstanding jobs by frame
   std::unordered_set<Lease> merging; // leases whose results are being merged
-  uint64_t bytesSent = 0, bytesReceived = 0, rays = 0;
+  // What the master counts or is told of the worker. describe() adds the name and the numbers of
+  // the scheduler.
+  RTworker facts{};
   std::string name() const {
     return host.empty() ? address : address.empty() ? host : host + " (" + address + ")";
   }

@@ -65,23 +65,23 @@ void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
       !differing.empty())
     return refuse(remote.peer, differing, now);
   remote.welcome = true;
-  remote.threads = hello.threads;
+  remote.facts.threads = hello.threads;
   remote.id = nextWorker++;
   remote.session = nextSession++;
   remote.sent = remote.furthest = 0;
   peers[remote.id] = remote.peer;
   everJoined = true;
   loggedAlone = false;
-  log(1, "worker " + remote.name() + " has joined: " + std::to_string(remote.threads) +
-             (remote.threads == 1 ? " thread, " : " threads, ") + hello.isa);
+  log(1, "worker " + remote.name() + " has joined: " + std::to_string(remote.facts.threads) +
+             (remote.facts.threads == 1 ? " thread, " : " threads, ") + hello.isa);
   queueMessage(remote, usualWelcome(remote.session));
-  scheduler.join(remote.id, remote.threads, false, now);
+  scheduler.join(remote.id, remote.facts.threads, false, now);
 }
 
 void Master::Impl::depart(Remote& remote, double now) {
   waiting.erase(remote.peer);
-  goneSent += remote.bytesSent;
-  goneReceived += remote.bytesReceived;
+  goneSent += remote.facts.bytesSent;
+  goneReceived += remote.facts.bytesReceived;
   if (remote.welcome) {
     RTworker last = describe(remote, false);
     last.lost += scheduler.tally(remote.id).out;
@@ -95,7 +95,7 @@ void Master::Impl::depart(Remote& remote, double now) {
   remote.offered.clear();
   remote.out.clear();
   remote.merging.clear();
-  remote.bytesSent = remote.bytesReceived = remote.rays = 0;
+  remote.facts = {};
 }
 
 void Master::Impl::strike(Remote& remote, const std::string& what, double now) {
@@ -122,7 +122,7 @@ void Master::Impl::queueMessage(Remote& remote, message::Body&& body) {
 bool Master::Impl::deliver(Remote& remote, Frames&& frames) {
   const size_t bytes = bytesOf(frames);
   if (!send(remote.peer, std::move(frames))) return false;
-  remote.bytesSent += bytes;
+  remote.facts.bytesSent += bytes;
   return true;
 }
 
@@ -164,18 +164,14 @@ void Master::Impl::need(Remote& remote, const message::Need& need, double now) {
 }
 
 RTworker Master::Impl::describe(const Remote& remote, bool isAlive) const {
-  RTworker w{};
+  RTworker w = remote.facts;
   w.size = sizeof(w);
   std::snprintf(w.name, sizeof w.name, "%s", remote.name().c_str());
   const WorkerTally& tally = scheduler.tally(remote.id);
-  w.threads = remote.threads;
   w.alive = isAlive;
   w.jobs = tally.jobs;
   w.late = tally.late;
   w.lost = tally.lost;
-  w.bytesSent = remote.bytesSent;
-  w.bytesReceived = remote.bytesReceived;
-  w.rays = remote.rays;
   w.busySeconds = tally.busy;
   w.latency = tally.latency;
   return w;

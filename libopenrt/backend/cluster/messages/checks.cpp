@@ -1,17 +1,16 @@
-// checks.cpp: checks each kind of message (kinds.h). The checks run after the flatbuffer has been
-// verified and before anything is copied, so they bound the memory that a message takes. [any]
+// checks.cpp: runs the check of each kind of message, and has those checks that are too large for a
+// row of the table (kinds.h). They run after the flatbuffer has been verified and before anything
+// is copied, so they bound the memory that a message takes. [any]
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "backend/cluster/messages/messages.h"
 #include "backend/cluster/messages/statistics.h"
 #include "scene/transports.h"
 
 namespace openrt::cluster {
-
-void check(const wire::Hello& m, const Frames&) {
-  demand(m.threads() >= 1 && m.threads() <= 65536, "an impossible number of threads");
-}
+namespace {
 
 void check(const wire::Ready& m, const Frames&) {
   demand(isTransport(m.transport()), "an unknown transport");
@@ -68,6 +67,21 @@ void check(const wire::Jobs& m, const Frames&) {
                uint64_t(job->first()) + job->count() <= uint64_t(1) << 32,
            "an impossible job");
   }
+}
+
+} // namespace
+
+void checkBody(const wire::Header& header, const Frames& frames) {
+  forEachKind([&](auto kind) {
+    using Kind = decltype(kind);
+    if (header.any_type() != kind.any) return;
+    const auto* table = header.any_as<typename Kind::Table>();
+    demand(table != nullptr, "the message has no content");
+    if constexpr (std::is_same_v<typename Kind::Check, ByFunction>)
+      check(*table, frames);
+    else
+      Kind::Check::check(*table, frames);
+  });
 }
 
 } // namespace openrt::cluster

@@ -3,6 +3,7 @@
 // messages, and the dispatch of master and worker follow from the table. [any]
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
@@ -83,47 +84,59 @@ struct BulkFrames {
 };
 inline constexpr BulkFrames noBulk{0, 0}, oneFrame{1, 1}, manyFrames{1, limits::frames - 1};
 
-// Check messages before anything of them is copied. Each throws BadMessage with the reason
-// (checks.cpp). They need not check the length of texts, which Text does.
-void check(const wire::Hello& m, const Frames& frames);
-void check(const wire::Ready& m, const Frames& frames);
-void check(const wire::Result& m, const Frames& frames);
-void check(const wire::Welcome& m, const Frames& frames);
-void check(const wire::Scene& m, const Frames& frames);
-void check(const wire::Piece& m, const Frames& frames);
-void check(const wire::Jobs& m, const Frames& frames);
-// Accepts any numbers: those that receive the message compare them with what they know.
-template <class Table> void unchecked(const Table&, const Frames&) {}
+// The checks of a message; checkBody() runs the one that the row of its kind names. A check throws
+// BadMessage with the reason. Texts need no check of their length, because Text cuts them.
 
-template <class M, Sender from, BulkFrames frames,
-          void (*function)(const typename M::TableType&, const Frames&)>
-struct MessageKind {
+// Accepts any numbers: those that receive the message compare them with what they know.
+struct Unchecked {
+  static void check(const auto&, const Frames&) {}
+};
+
+// Stands for a function of checks.cpp, which needs no declaration here.
+struct ByFunction {};
+
+// A text as a template argument.
+template <size_t size> struct Literal {
+  char text[size];
+  consteval Literal(const char (&from)[size]) { std::copy_n(from, size, text); }
+};
+
+// Accepts a message if the number that `field` returns lies in a range. NaN lies in none.
+template <auto field, int64_t least, int64_t most, Literal why> struct Within {
+  static void check(const auto& m, const Frames&) {
+    const auto value = double((m.*field)());
+    demand(value >= double(least) && value <= double(most), why.text);
+  }
+};
+
+template <class M, Sender from, BulkFrames frames, class C> struct MessageKind {
   using Message = M;
   using Table = typename M::TableType;
+  using Check = C;
   static constexpr wire::Any any = wire::AnyTraits<Table>::enum_value; // has its name, too
   static constexpr Sender sender = from;
   static constexpr BulkFrames bulk = frames;
-  static constexpr auto check = function;
 };
 
 // The table, in the order of the union in messages.fbs.
 // clang-format off
 using Kinds = std::tuple<
     //          message           sent by         bulk frames check
-    MessageKind<message::Hello,   Sender::worker, noBulk,     check>,
-    MessageKind<message::Need,    Sender::worker, noBulk,     unchecked>,
-    MessageKind<message::Ready,   Sender::worker, noBulk,     check>,
-    MessageKind<message::Failed,  Sender::worker, noBulk,     unchecked>,
-    MessageKind<message::Result,  Sender::worker, manyFrames, check>,
-    MessageKind<message::Log,     Sender::worker, noBulk,     unchecked>,
-    MessageKind<message::Welcome, Sender::master, noBulk,     check>,
-    MessageKind<message::Scene,   Sender::master, manyFrames, check>,
-    MessageKind<message::Piece,   Sender::master, oneFrame,   check>,
-    MessageKind<message::Prepare, Sender::master, noBulk,     unchecked>,
-    MessageKind<message::Jobs,    Sender::master, noBulk,     check>,
-    MessageKind<message::Drop,    Sender::master, noBulk,     unchecked>,
-    MessageKind<message::Beat,    Sender::both,   noBulk,     unchecked>,
-    MessageKind<message::Bye,     Sender::both,   noBulk,     unchecked>>;
+    MessageKind<message::Hello,   Sender::worker, noBulk,     Within<
+        &wire::Hello::threads, 1, 65536, "an impossible number of threads">>,
+    MessageKind<message::Need,    Sender::worker, noBulk,     Unchecked>,
+    MessageKind<message::Ready,   Sender::worker, noBulk,     ByFunction>,
+    MessageKind<message::Failed,  Sender::worker, noBulk,     Unchecked>,
+    MessageKind<message::Result,  Sender::worker, manyFrames, ByFunction>,
+    MessageKind<message::Log,     Sender::worker, noBulk,     Unchecked>,
+    MessageKind<message::Welcome, Sender::master, noBulk,     ByFunction>,
+    MessageKind<message::Scene,   Sender::master, manyFrames, ByFunction>,
+    MessageKind<message::Piece,   Sender::master, oneFrame,   ByFunction>,
+    MessageKind<message::Prepare, Sender::master, noBulk,     Unchecked>,
+    MessageKind<message::Jobs,    Sender::master, noBulk,     ByFunction>,
+    MessageKind<message::Drop,    Sender::master, noBulk,     Unchecked>,
+    MessageKind<message::Beat,    Sender::both,   noBulk,     Unchecked>,
+    MessageKind<message::Bye,     Sender::both,   noBulk,     Unchecked>>;
 // clang-format on
 
 // Calls f with each row of the table.
@@ -141,6 +154,10 @@ constexpr bool kindsAreThoseOfTheSchema() {
   return same && row == size_t(wire::Any::MAX);
 }
 static_assert(kindsAreThoseOfTheSchema());
+
+// Checks the body of a message before anything of it is copied. Throws BadMessage with the reason.
+// Unknown kinds pass.
+void checkBody(const wire::Header& header, const Frames& frames);
 
 namespace message {
 

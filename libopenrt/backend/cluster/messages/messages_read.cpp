@@ -120,13 +120,11 @@ void readBody(const wire::Header& header, Frames& frames, message::Body& body) {
   const wire::Any any = header.any_type();
   demand(any != wire::Any::NONE, "an empty message");
   body.emplace<message::Unknown>();
+  checkBody(header, frames);
   forEachKind([&](auto kind) {
     using Kind = decltype(kind);
     if (any != kind.any) return;
-    const auto* table = header.any_as<typename Kind::Table>();
-    demand(table != nullptr, "the message has no content");
-    kind.check(*table, frames);
-    read(*table, frames, body.emplace<typename Kind::Message>());
+    read(*header.any_as<typename Kind::Table>(), frames, body.emplace<typename Kind::Message>());
   });
 }
 
