@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "libpicture/files/atomic_file.h"
+#include "libpicture/transport.h"
 #include "nearest.h"
 #include "options/names.h"
 #include "outputs.h"
@@ -394,7 +395,7 @@ class Pictures {
     if (options_.render.timeLimit > 0) return "--time-limit has ended it";
     const std::string taken = fmt::format(
         "its pixels have taken at most {:.0f} of the {} samples allowed, ", largest, most);
-    if (result.stats.transport == RT_TRANSPORT_LIGHT)
+    if (picture::transportInfo(result.stats.transport).tracesLamps)
       return taken + "and paths from lamps, whose number --error does not change; --spp N without "
                      "--error takes N of both a pixel";
     return taken + "which were enough in the pilots that decide it, and this picture has met more "

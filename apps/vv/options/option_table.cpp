@@ -81,6 +81,27 @@ void setTransport(Options& o, const std::string& value) {
   o.render.transport = *transport;
 }
 
+// Returns the argument of --transport, "auto|direct|...".
+const char* transportValues() {
+  static const std::string values =
+      fmt::format("{}", fmt::join(picture::qualityChoices(RT_TRANSPORT), "|"));
+  return values.c_str();
+}
+
+// Returns the help text of --transport, made of what the library says of each transport.
+const char* transportText() {
+  static const std::string text = [] {
+    std::string all = fmt::format(
+        "How light is followed: {} (default: {}; --explain and --stats say which and "
+        "why)",
+        picture::transportName(RT_TRANSPORT_AUTO), picture::transportInfo(RT_TRANSPORT_AUTO).text);
+    for (RTenum i = RT_TRANSPORT_AUTO + 1; const char* does = picture::transportInfo(i).text; ++i)
+      all += fmt::format(", {} ({})", picture::transportName(i), does);
+    return all + ".";
+  }();
+  return text.c_str();
+}
+
 void setChannels(Options& o, const std::string& value) {
   uint32_t channels = 0;
   std::string known;
@@ -285,11 +306,7 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
     {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
      [](Options& o, const std::string& v) { o.render.depth = readWholeQuality(RT_MAX_DEPTH, v); }},
-    {"--transport", "auto|direct|whitted|path|light", "Quality",
-     "How light is followed: auto (default: what the shaders of the world ask for; --explain and "
-     "--stats say which and why), direct (lights alone), whitted (and mirrors and glass), path "
-     "(and light between surfaces), light (and what lamps send through mirrors and lenses).",
-     setTransport},
+    {"--transport", transportValues(), "Quality", transportText(), setTransport},
     {"--energy-cut", "E", "Quality",
      "whitted: branches of reflection and refraction that carry less than this share of a camera "
      "ray end, 0 to 1 (default 1/4096).",

@@ -8,38 +8,23 @@ namespace vv {
 
 namespace {
 
-std::string followedBy(RTenum transport, const picture::RenderSettings& settings) {
-  const char* shadows = settings.shadows ? "with shadows" : "without shadows";
-  switch (transport) {
-  case RT_TRANSPORT_DIRECT:
-    return fmt::format("light straight from lamps and emitters, {}: exact at each place", shadows);
-  case RT_TRANSPORT_WHITTED:
-    return fmt::format("light straight from lamps and emitters, {}, with its reflections and "
-                       "refractions as far as {} surfaces and the energy cut: exact at each place",
-                       shadows, settings.depth);
-  case RT_TRANSPORT_PATH:
-    return fmt::format("all light on ways of at most {} surfaces that paths from the camera can "
-                       "find: an unbiased estimate",
-                       settings.depth);
-  case RT_TRANSPORT_LIGHT:
-    return fmt::format("all light on ways of at most {} surfaces, what lamps send through mirrors "
-                       "and lenses included: an unbiased estimate",
-                       settings.depth);
-  case RT_TRANSPORT_AUTO: return "the engine has not said how light was followed";
-  default: return "what the transport plug-in claims";
-  }
+std::string followedBy(const RTtransportInfo& transport, const picture::RenderSettings& settings) {
+  if (!transport.claim) return "what the transport plug-in claims";
+  return fmt::format(fmt::runtime(transport.claim), fmt::arg("depth", settings.depth),
+                     fmt::arg("shadows", settings.shadows ? "with shadows" : "without shadows"));
 }
 
 } // namespace
 
 std::string transportClaim(const RTstats& stats, const picture::RenderSettings& settings) {
-  std::string claim = followedBy(stats.transport, settings);
+  const RTtransportInfo transport = picture::transportInfo(stats.transport);
+  std::string claim = followedBy(transport, settings);
   const auto left = picture::omittedLights(stats.transport, stats.transportLeavesOut);
   if (!left.empty()) {
     claim += "; left out:";
     for (size_t i = 0; i < left.size(); ++i)
       claim += fmt::format("{} {}", i ? "," : "", left[i].text);
-  } else if (stats.transport >= RT_TRANSPORT_DIRECT && stats.transport <= RT_TRANSPORT_LIGHT) {
+  } else if (transport.claim && stats.transport != RT_TRANSPORT_AUTO) {
     claim += "; no other light is left out";
   }
   constexpr double negligible = .001; // errors are relative to colour + .03
