@@ -35,6 +35,12 @@ const char* transportName(RTenum transport) {
   return transport < names().size() ? names()[transport].c_str() : "plug-in";
 }
 
+RTtransportInfo transportInfo(RTenum transport) {
+  RTtransportInfo info{};
+  info.size = sizeof info;
+  return rtGetTransportInfo(transport, &info) ? info : RTtransportInfo{};
+}
+
 std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves) {
   static constexpr std::pair<uint32_t, OmittedLight> table[] = {
       {RT_LEAVES_IMAGES, {"mirror_images", "reflections in mirrors and the view through glass"}},
@@ -47,7 +53,7 @@ std::vector<OmittedLight> omittedLights(RTenum transport, uint32_t leaves) {
   std::vector<OmittedLight> list;
   for (const auto& [bit, left] : table)
     if (leaves & bit) list.push_back(left);
-  if (transport == RT_TRANSPORT_LIGHT && (leaves & RT_LEAVES_CAUSTICS))
+  if (transportInfo(transport).tracesLamps && (leaves & RT_LEAVES_CAUSTICS))
     list.back().text = "light from point and directional lamps through mirrors or glass, where it "
                        "is itself seen through them";
   return list;

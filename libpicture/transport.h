@@ -1,4 +1,4 @@
-// transport.h: Converts transports to and from their names. [any thread]
+// transport.h: Converts transports to and from their names, and describes them. [any thread]
 #pragma once
 
 #include <optional>
@@ -15,6 +15,9 @@ std::string transportNames(); // returns "auto, direct, whitted, path or light"
 std::optional<int> transportNamed(std::string_view name); // returns the RT_TRANSPORT_* value
 // "path" for RT_TRANSPORT_PATH and so on; "plug-in" for others
 const char* transportName(RTenum transport);
+
+// Returns what the library knows about RT_TRANSPORT_*. For other numbers every member is 0.
+RTtransportInfo transportInfo(RTenum transport);
 
 // A kind of light that a transport omits in a scene.
 struct OmittedLight {

@@ -11,6 +11,7 @@
 
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
+#include "libpicture/transport.h"
 #include "nearest.h"
 #include "options/names.h"
 #include "outputs.h"
@@ -397,7 +398,7 @@ class Pictures {
       return "the time limit ended the rendering; --time-limit allows more time";
     const std::string taken =
         fmt::format("its pixels took at most {:.0f} of the {} samples allowed, ", largest, most);
-    if (result.stats.transport == RT_TRANSPORT_LIGHT)
+    if (picture::transportInfo(result.stats.transport).tracesLamps)
       return taken + "and --error does not change the number of paths from lamps; --spp N without "
                      "--error takes N of both per pixel";
     return taken + "which was enough in the pilot samples that decide it, but the picture is "

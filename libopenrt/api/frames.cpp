@@ -8,6 +8,7 @@
 #include "api/guard.h"
 #include "scene/channels.h"
 #include "scene/quality.h"
+#include "scene/transports.h"
 
 using namespace openrt;
 
@@ -112,6 +113,16 @@ int pick(Context& c, double x, double y, RThit* hit) {
   return std::isfinite(found.t) ? 1 : 0;
 }
 
+// Copies a description into the caller's structure. Returns 1, or 0 if that is null or its size is
+// not set.
+template <class Info> int copyInfo(const Info& known, Info* info) {
+  if (!info || info->size < sizeof(size_t)) return 0;
+  const size_t size = info->size; // an older program's structure ends earlier
+  std::memcpy(info, &known, std::min(size, sizeof(known)));
+  info->size = size;
+  return 1;
+}
+
 void requireNoDefinition(Context& c) {
   c.requireOutsideDefinition(); // no commit while an object is only partly defined
 }
@@ -132,17 +143,21 @@ void rtQualityf(RTenum name, double value) {
 
 int rtGetQualityInfo(int number, RTqualityInfo* info) {
   const auto settings = qualitySettings();
-  if (!info || info->size < sizeof(size_t) || number < 0 || size_t(number) >= settings.size())
-    return 0;
-  const size_t size = info->size; // an older program's structure ends earlier
-  std::memcpy(info, &settings[size_t(number)].info, std::min(size, sizeof(*info)));
-  info->size = size;
-  return 1;
+  if (number < 0 || size_t(number) >= settings.size()) return 0;
+  return copyInfo(settings[size_t(number)].info, info);
 }
 
 int rtIsQualityAllowed(RTenum quality, double value) {
   const QualitySetting* setting = findQuality(quality);
   return setting && setting->allows(value) ? 1 : 0;
+}
+
+int rtGetTransportInfo(RTenum transport, RTtransportInfo* info) {
+  if (!isTransport(transport)) return 0;
+  const TransportTraits& row = transports[transport];
+  const RTtransportInfo known{sizeof known, row.transport,   row.name,        row.text,
+                              row.claim,    row.tracesPaths, row.tracesLamps, row.omits};
+  return copyInfo(known, info);
 }
 
 void rtSwapBuffers(void) {

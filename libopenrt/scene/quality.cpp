@@ -38,7 +38,7 @@ constexpr QualitySetting table[] = {
      get<&Frame::shadows>,
      set<&Frame::shadows>},
     {{size, RT_TRANSPORT, "transport", 0, RT_TRANSPORT_AUTO, std::size(transports) - 1,
-      RT_TRANSPORT_AUTO, 0, transportChoices, "light transport algorithm"},
+      RT_TRANSPORT_AUTO, 0, transportChoices.data(), "light transport algorithm"},
      get<&Frame::transport>,
      set<&Frame::transport>},
     {{size, RT_REPLICATES, "replicates", 0, 1, 1024, 0, 1, nullptr,

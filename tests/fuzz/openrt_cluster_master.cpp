@@ -6,6 +6,7 @@
 #include "backend/cluster/master/master.h"
 #include "fuzz_input.h"
 #include "render/frame/result_codec.h"
+#include "scene/transports.h"
 
 namespace {
 
@@ -86,7 +87,7 @@ struct Game {
     frame.depth = 2;
     frame.channels = channels[in.below(4)];
     frame.samples = samples[in.below(4)];
-    frame.transport = uint8_t(in.below(RT_TRANSPORT_LIGHT + 1));
+    frame.transport = uint8_t(in.below(std::size(transports)));
     frame.progressive = in.flip();
     if (in.flip()) frame.targetError = 0.1f;
     add(std::move(frame));
@@ -154,7 +155,7 @@ struct Game {
     }
     case 2: {
       message::Ready ready{
-          of, {in.byte() < 250, in.flip()}, uint8_t(in.below(RT_TRANSPORT_LIGHT + 1)), {}};
+          of, {in.byte() < 250, in.flip()}, uint8_t(in.below(std::size(transports))), {}};
       ready.stats.triangles = in.below(8) == 0;
       return ready;
     }

@@ -11,6 +11,7 @@
 #include <regex>
 #include <set>
 
+#include "scene/transports.h"
 #include "unit/openrt_api_support.h"
 
 namespace {
@@ -183,6 +184,7 @@ const char* const anywhere[] = {"rtGetError",
                                 "rtGetWorkers",
                                 "rtRunningShader",
                                 "rtGetQualityInfo",
+                                "rtGetTransportInfo",
                                 "rtIsQualityAllowed"};
 
 enum State { Outside, Definition, List };
@@ -369,7 +371,7 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtQuality, RT_SAMPLES_PER_PIXEL, 0),
     WRONG(VALUE, Outside, rtQuality, RT_MAX_DEPTH, -1),
     WRONG(VALUE, Outside, rtQuality, RT_SHADOWS, 2),
-    WRONG(VALUE, Outside, rtQuality, RT_TRANSPORT, 5),
+    WRONG(VALUE, Outside, rtQuality, RT_TRANSPORT, int(std::size(transports))),
     WRONG(VALUE, Outside, rtQuality, RT_REPLICATES, 1025),
     WRONG(VALUE, Outside, rtQuality, RT_PROGRESSIVE, 2),
     WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 0),
@@ -410,10 +412,11 @@ const Wrong wrong[] = {
     WRONG(OPERATION, Outside, rtExit), // without rtInit
 };
 // Functions that fail only without a context, or never.
-const char* const infallible[] = {
-    "rtErrorCallback", "rtLogCallback",    "rtLoadName",        "rtPushMatrix", "rtLoadIdentity",
-    "rtGetError",      "rtGetCurrent",     "rtGetErrorMessage", "rtInit",       "rtRunningShader",
-    "rtFinishFrame",   "rtGetQualityInfo", "rtIsQualityAllowed"};
+const char* const infallible[] = {"rtErrorCallback",    "rtLogCallback",     "rtLoadName",
+                                  "rtPushMatrix",       "rtLoadIdentity",    "rtGetError",
+                                  "rtGetCurrent",       "rtGetErrorMessage", "rtInit",
+                                  "rtRunningShader",    "rtFinishFrame",     "rtGetQualityInfo",
+                                  "rtIsQualityAllowed", "rtGetTransportInfo"};
 
 class EveryCall : public ApiTest {
  protected:

@@ -1,6 +1,7 @@
 // openrt_api_frames.cpp: frame settings, the sequence of frames, reading pixels, statistics and
 // queries; the order of edits.
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <set>
 #include <string>
@@ -93,6 +94,40 @@ TEST_F(Frames, TheTableOfQualitySettingsIsWhatIsAccepted) {
   EXPECT_EQ(count, RT_TILE_SIZE);
   EXPECT_EQ(names.size(), size_t(count));
   EXPECT_EQ(settings.size(), size_t(count));
+}
+
+TEST_F(Frames, TheTableOfTransportsIsWhatIsAccepted) {
+  RTtransportInfo info{};
+  EXPECT_EQ(rtGetTransportInfo(0, &info), 0) << "its size is not set";
+  info.size = sizeof info;
+  EXPECT_EQ(rtGetTransportInfo(0, nullptr), 0);
+  std::string choices;
+  RTenum count = 0;
+  for (; rtGetTransportInfo(count, &info); count++) {
+    SCOPED_TRACE(info.name);
+    EXPECT_EQ(info.size, sizeof info);
+    EXPECT_EQ(info.transport, count);
+    choices += (count ? " " : "") + std::string(info.name);
+    EXPECT_STRNE(info.text, "");
+    std::string claim = info.claim;
+    for (const std::string known : {"{depth}", "{shadows}"})
+      if (const size_t at = claim.find(known); at != claim.npos) claim.erase(at, known.size());
+    EXPECT_EQ(claim.find_first_of("{}"), claim.npos) << "an unknown placeholder, or one twice";
+    EXPECT_NE(claim, "");
+    EXPECT_LE(info.tracesLamps, info.tracesPaths);
+    EXPECT_EQ(rtIsQualityAllowed(RT_TRANSPORT, count), 1);
+  }
+  EXPECT_EQ(rtIsQualityAllowed(RT_TRANSPORT, count), 0);
+  RTqualityInfo quality{};
+  quality.size = sizeof quality;
+  for (int i = 0; rtGetQualityInfo(i, &quality) && quality.quality != RT_TRANSPORT; i++) {}
+  EXPECT_EQ(choices, quality.choices);
+  // A structure of an older program ends earlier.
+  info = {};
+  info.size = offsetof(RTtransportInfo, name);
+  EXPECT_EQ(rtGetTransportInfo(RT_TRANSPORT_PATH, &info), 1);
+  EXPECT_EQ(info.transport, RTenum(RT_TRANSPORT_PATH));
+  EXPECT_EQ(info.name, nullptr);
 }
 
 TEST(FramesWithoutBuffer, AFrameNeedsASize) {

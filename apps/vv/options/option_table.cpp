@@ -82,6 +82,26 @@ void setTransport(Options& o, const std::string& value) {
   o.render.transport = *transport;
 }
 
+// Returns the argument of --transport, "auto|direct|...".
+const char* transportValues() {
+  static const std::string values =
+      fmt::format("{}", fmt::join(picture::qualityChoices(RT_TRANSPORT), "|"));
+  return values.c_str();
+}
+
+// Returns the help text of --transport, made of what the library says of each transport.
+const char* transportText() {
+  static const std::string text = [] {
+    std::string all = fmt::format(
+        "Light transport algorithm. {} (default) {}; --explain and --stats say which and why.",
+        picture::transportName(RT_TRANSPORT_AUTO), picture::transportInfo(RT_TRANSPORT_AUTO).text);
+    for (RTenum i = RT_TRANSPORT_AUTO + 1; const char* does = picture::transportInfo(i).text; ++i)
+      all += fmt::format(" {}: {}.", picture::transportName(i), does);
+    return all;
+  }();
+  return text.c_str();
+}
+
 void setChannels(Options& o, const std::string& value) {
   uint32_t channels = 0;
   std::string known;
@@ -298,11 +318,7 @@ const OptionInfo table[] = {
      "Maximum number of surfaces that a path may pass through or bounce off, 0 to 10000 (default "
      "25).",
      [](Options& o, const std::string& v) { o.render.depth = readWholeQuality(RT_MAX_DEPTH, v); }},
-    {"--transport", "auto|direct|whitted|path|light", "Quality",
-     "Light transport algorithm. auto (default) chooses by the shaders of the world; --explain and "
-     "--stats say which and why. direct: only direct light. whitted: also mirrors and glass. path: "
-     "also light between surfaces. light: also light from lamps through mirrors and lenses.",
-     setTransport},
+    {"--transport", transportValues(), "Quality", transportText(), setTransport},
     {"--energy-cut", "E", "Quality",
      "With whitted, end branches of reflection and refraction that carry less than this share of "
      "the camera ray, 0 to 1 (default 1/4096).",

@@ -16,6 +16,7 @@
 
 #include "render/lights/light_sources.h"
 #include "render/path/transport.h"
+#include "scene/transports.h"
 
 namespace openrt {
 namespace {
@@ -71,7 +72,7 @@ void LocalBackend::prepare() {
     warnedOfNearLamp_ = !warning.empty();
   }
   next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
-  if (choice.transport == RT_TRANSPORT_LIGHT && next->camera.shader.shaderClass &&
+  if (tracesLamps(choice.transport) && next->camera.shader.shaderClass &&
       next->camera.shader.shaderClass->project) {
     auto sources =
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);

@@ -113,6 +113,25 @@ RT_API int rtGetQualityInfo(int number, RTqualityInfo* info);
  * an unknown setting. Works without a context. [any-thread] */
 RT_API int rtIsQualityAllowed(RTenum quality, double value);
 
+/* A light transport. The library owns the texts, which are constants for people. */
+typedef struct RTtransportInfo {
+  size_t size;      /* Set it to sizeof(RTtransportInfo) before the call. */
+  RTenum transport; /* RT_TRANSPORT_AUTO ... */
+  const char* name; /* also for command lines: "auto", "direct" ... */
+  const char* text; /* the light that it follows; "and ..." adds to the transport before */
+  /* The light that its pictures have, and how exactly. {depth} stands for the value of
+   * RT_MAX_DEPTH, {shadows} for "with shadows" or "without shadows". */
+  const char* claim;
+  int tracesPaths; /* 1 if it follows light between surfaces, with random decisions; else 0 */
+  int tracesLamps; /* 1 if it also traces paths that start at lamps; else 0 */
+  uint32_t omits;  /* RT_LEAVES_* bits: kinds of light that it does not follow everywhere.
+                      RTstats.transportLeavesOut tells which of these a scene has. */
+} RTtransportInfo;
+/* Writes what is known about a transport (RT_TRANSPORT_*; the numbers are 0, 1 ... without a gap).
+ * Returns 1, or 0 if there is no such transport, or if info is NULL or info->size is not set. Works
+ * without a context. [any-thread] */
+RT_API int rtGetTransportInfo(RTenum transport, RTtransportInfo* info);
+
 /* Sets size (1 .. 65536 pixels each way, at most 2^28 in all) and channels of the frames that
  * follow. [context-thread] */
 RT_API void rtFrameBuffer(int width, int height, uint32_t channels);

@@ -10,7 +10,6 @@
 #include "render/path/paths.h"
 #include "render/path/sampler.h"
 #include "render/surface/surfaces.h"
-#include "scene/transports.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -313,13 +312,24 @@ void TileRenderer::attenuate(const Points& points, const Paths& paths, const uin
 void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range,
                               const uint32_t* order) {
   ArenaScope scope(arena_);
-  const uint32_t n = range.end - range.begin, size = padded(n);
+  const uint32_t n = range.end - range.begin;
   const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
-  const Bucket& bucket = scene_.buckets[range.bucket];
-  // Path tracing uses the lobes of a class that has both `shade` and `surface`.
-  if (bucket.shaderClass->surface &&
-      (!bucket.shaderClass->shade || tracesPaths(scene_.frame.transport)))
-    return scatterRange(paths, points, bucket, order);
+  const Shading shading = traitsOf(scene_.frame.transport).shading;
+  (this->*shadings[size_t(shading)])(paths, points, scene_.buckets[range.bucket], order);
+}
+
+void TileRenderer::shadeByLobes(Paths& paths, const Points& points, const Bucket& bucket,
+                                const uint32_t* order) {
+  if (bucket.shaderClass->surface)
+    scatterRange(paths, points, bucket, order);
+  else
+    shadeByShade(paths, points, bucket, order);
+}
+
+void TileRenderer::shadeByShade(Paths& paths, const Points& points, const Bucket& bucket,
+                                const uint32_t* order) {
+  if (!bucket.shaderClass->shade) return scatterRange(paths, points, bucket, order);
+  const uint32_t size = padded(points.hits.count);
   RtsShading shaded;
   for (int k = 0; k < 3; k++) {
     shaded.radiance[k] = arena_.takeZero<float>(size);

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "render/path/ray_queue.h"
 #include "render/surface/batch.h"
 #include "render/surface/lobes.h"
+#include "scene/transports.h"
 
 namespace openrt {
 
@@ -62,6 +64,15 @@ class TileRenderer {
   void addEnvironment(Paths& paths, const uint32_t* missed, uint32_t n);
   void shadeRange(Paths& paths, const RayHits& hits, const BucketRange& range,
                   const uint32_t* order);
+  // Shade the hits of a bucket, each as the value of Shading with its name says. A transport that
+  // shades in a way of its own has a function here, in a file of its own.
+  void shadeByShade(Paths& paths, const Points& points, const Bucket& bucket,
+                    const uint32_t* order);
+  void shadeByLobes(Paths& paths, const Points& points, const Bucket& bucket,
+                    const uint32_t* order);
+  static constexpr decltype(&TileRenderer::shadeByShade) shadings[] = {&TileRenderer::shadeByShade,
+                                                                       &TileRenderer::shadeByLobes};
+  static_assert(std::size(shadings) == size_t(Shading::count));
   void addShading(const Points& points, const RtsShading& shaded, const uint32_t* order,
                   Paths& paths, const float* fog[4]);
   void storeFirstHit(const Points& points, uint32_t i, uint32_t path, float* const albedo[3],

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "render/render_scene.h"
+#include "scene/transports.h"
 
 namespace openrt {
 namespace {
@@ -42,24 +43,23 @@ constexpr Choice choices[] = {
     {RT_TRANSPORT_AUTO, 0, 0, RT_TRANSPORT_DIRECT, "no surface needs more than direct light"},
 };
 
-// Light that a transport leaves out of a scene, whether the user or the engine chose the transport.
+// Which scenes have a kind of light that a transport may omit. Transports that omit it
+// (TransportTraits::omits) leave it out of these scenes, whether the user or the engine chose the
+// transport.
 struct Omission {
-  uint32_t transports; // 1 << RT_TRANSPORT_*
-  uint32_t all, any;
   uint32_t leaves; // RT_LEAVES_*
+  uint32_t all, any;
 };
-constexpr uint32_t direct = 1u << RT_TRANSPORT_DIRECT, whitted = 1u << RT_TRANSPORT_WHITTED,
-                   path = 1u << RT_TRANSPORT_PATH, lightPaths = 1u << RT_TRANSPORT_LIGHT;
 constexpr Omission omissions[] = {
-    {direct, hasMirrors, 0, RT_LEAVES_IMAGES},
-    {direct | whitted, hasScattering, light, RT_LEAVES_BETWEEN},
-    {direct | whitted, hasShading, light, RT_LEAVES_BETWEEN},
-    {direct | whitted, hasScattering, hasEmitters | hasGlow, RT_LEAVES_EMITTERS},
-    {direct | whitted, hasShading, hasEmitters, RT_LEAVES_EMITTERS},
-    {direct | whitted, hasScattering, hasSky, RT_LEAVES_SKY},
-    {direct | whitted, hasShading, hasSkyLight, RT_LEAVES_SKY},
-    {path | lightPaths, hasMirrors | hasLamps | hasScattering, 0, RT_LEAVES_CAUSTICS},
-    {path | lightPaths, hasMirrors | hasLamps | hasShading, 0, RT_LEAVES_CAUSTICS},
+    {RT_LEAVES_IMAGES, hasMirrors, 0},
+    {RT_LEAVES_BETWEEN, hasScattering, light},
+    {RT_LEAVES_BETWEEN, hasShading, light},
+    {RT_LEAVES_EMITTERS, hasScattering, hasEmitters | hasGlow},
+    {RT_LEAVES_EMITTERS, hasShading, hasEmitters},
+    {RT_LEAVES_SKY, hasScattering, hasSky},
+    {RT_LEAVES_SKY, hasShading, hasSkyLight},
+    {RT_LEAVES_CAUSTICS, hasMirrors | hasLamps | hasScattering, 0},
+    {RT_LEAVES_CAUSTICS, hasMirrors | hasLamps | hasShading, 0},
 };
 
 bool holds(uint32_t bits, uint32_t all, uint32_t any) {
@@ -157,11 +157,12 @@ TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before) {
       choice.reason += reasonOf(row, contents);
     }
   }
+  const TransportTraits& traits = traitsOf(choice.transport);
   for (const Omission& row : omissions)
-    if ((row.transports & (1u << choice.transport)) && holds(contents.bits, row.all, row.any))
+    if ((row.leaves & traits.omits) && holds(contents.bits, row.all, row.any))
       choice.leavesOut |= row.leaves;
   if (choice.leavesOut & RT_LEAVES_CAUSTICS) {
-    const bool followed = choice.transport == RT_TRANSPORT_LIGHT && (contents.bits & hasProjection);
+    const bool followed = traits.tracesLamps && (contents.bits & hasProjection);
     for (const LightSlot& lamp : scene.lights)
       choice.unreached += !followed || !lamp.shader.shaderClass->extent;
   }

@@ -238,11 +238,11 @@ void TileRenderer::spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& 
   const uint32_t lane = batch.order[i];
   const RayState ray = paths.state[lane];
   const bool path = tracesPaths(scene_.frame.transport),
-             direct = scene_.frame.transport == RT_TRANSPORT_DIRECT;
+             images = followsImages(scene_.frame.transport);
   BsdfSamples bsdfSamples(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr,
                           ray.channel);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    if (direct && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
+    if (!images && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
     bsdfSamples.add(l, batch.lobes[l], sampling.samples[l]);
     if (sampling.samples[l]) markRandom(ray.path);
   }
