@@ -1,18 +1,13 @@
-// transport.h: Converts transports to and from their names. [any thread]
+// transport.h: Names transports and the light that they omit. [any thread]
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "openrt/openrt.h"
 
 namespace picture {
 
-std::string transportNames(); // "auto, direct, whitted, path or light"
-
-std::optional<int> transportNamed(std::string_view name); // RT_TRANSPORT_*
 // "path" for RT_TRANSPORT_PATH and so on; "plug-in" for others
 const char* transportName(RTenum transport);
 

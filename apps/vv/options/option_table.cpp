@@ -1,5 +1,6 @@
 // option_table.cpp: Defines every option of vv: names, argument, help text and effect. The options
-// of the group Cluster are in cluster_options.cpp.
+// of the group Cluster are in cluster_options.cpp, those of quality settings in
+// quality_options.cpp.
 #include "options.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/transport.h"
 #include "names.h"
 #include "nearest.h"
 
@@ -72,13 +72,6 @@ void setCompat(Options& o, const std::string& value) {
     else
       throw UsageError(fmt::format("scripts or textures was expected, not \"{}\"", name));
   }
-}
-
-void setTransport(Options& o, const std::string& value) {
-  const std::optional<int> transport = picture::transportNamed(value);
-  if (!transport)
-    throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::transportNames(), value));
-  o.render.transport = *transport;
 }
 
 void setChannels(Options& o, const std::string& value) {
@@ -245,7 +238,8 @@ const OptionInfo table[] = {
      "off.",
      [](Options& o, const std::string&) {
        setCompat(o, "scripts,textures");
-       o.render.linear = o.render.shadows = false;
+       o.render.linear = false;
+       o.render.quality.set(RT_SHADOWS, 0);
      }},
     {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
      "Give a shape, the shapes of an appearance or all below a group another surface shader: "
@@ -270,38 +264,6 @@ const OptionInfo table[] = {
          o.render.environmentIntensity = readNumber(std::string_view(v).substr(colon + 1), 0, 1e9);
        notEmpty(o.render.environment, "a file name");
      }},
-    {"--spp", "N", "Quality",
-     "Samples per pixel, 1 to 65536 (default 16; in the window 256, one after the other).",
-     [](Options& o, const std::string& v) {
-       o.samples = readWholeQuality(RT_SAMPLES_PER_PIXEL, v);
-     }},
-    {"--error", "E|E%", "Quality",
-     "Take as many samples in each part of the picture as it needs for a mean relative half-width "
-     "E of the 95 % interval, at most --spp (here by default 4096).",
-     [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
-    {"--time-limit", "SECONDS", "Quality",
-     "Take samples in rounds over the whole picture for about this time, at most --spp (here by "
-     "default 65536). Such a picture depends on the speed of the machine.",
-     [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
-    {"--depth", "N", "Quality", "Surfaces a path may pass or bounce at, 0 to 10000 (default 25).",
-     [](Options& o, const std::string& v) { o.render.depth = readWholeQuality(RT_MAX_DEPTH, v); }},
-    {"--transport", "auto|direct|whitted|path|light", "Quality",
-     "How light is followed: auto (default: what the shaders of the world ask for; --explain and "
-     "--stats say which and why), direct (lights alone), whitted (and mirrors and glass), path "
-     "(and light between surfaces), light (and what lamps send through mirrors and lenses).",
-     setTransport},
-    {"--energy-cut", "E", "Quality",
-     "whitted: branches of reflection and refraction that carry less than this share of a camera "
-     "ray end, 0 to 1 (default 1/4096).",
-     [](Options& o, const std::string& v) { o.render.energyCut = v == "0" ? 0 : readShare(v); }},
-    {"--clamp", "RADIANCE", "Quality",
-     "No sample is brighter than this. It takes away fireflies, and light: the statistics say how "
-     "much (default: no limit).",
-     [](Options& o, const std::string& v) { o.render.clamp = readQuality(RT_CLAMP, v); }},
-    {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
-     [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
-    {"--seed", "N", "Quality", "Another set of sample positions (default 0).",
-     [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
     {"--threads", "N", "Quality",
      "Render threads; 0 (default): as many as the process may use. The picture does not depend on "
      "it.",
@@ -414,10 +376,13 @@ const OptionInfo table[] = {
 std::span<const OptionInfo> optionTable() {
   static const std::vector<OptionInfo> all = [] {
     std::vector<OptionInfo> rows(std::begin(table), std::end(table));
-    const auto place = std::find_if(rows.begin(), rows.end(), [](const OptionInfo& o) {
-      return std::string_view(o.group) == "Inspect";
-    });
-    rows.insert(place, clusterOptions().begin(), clusterOptions().end());
+    const auto insertBefore = [&](std::string_view group, std::span<const OptionInfo> more) {
+      const auto place = std::find_if(rows.begin(), rows.end(),
+                                      [&](const OptionInfo& o) { return o.group == group; });
+      rows.insert(place, more.begin(), more.end());
+    };
+    insertBefore("Quality", qualityOptions());
+    insertBefore("Inspect", clusterOptions());
     return rows;
   }();
   return all;

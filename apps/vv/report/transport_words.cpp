@@ -9,22 +9,23 @@ namespace vv {
 namespace {
 
 std::string followedBy(RTenum transport, const picture::RenderSettings& settings) {
-  const char* shadows = settings.shadows ? "with shadows" : "without shadows";
+  const int depth = settings.quality.whole(RT_MAX_DEPTH);
+  const char* shadows = settings.quality.whole(RT_SHADOWS) ? "with shadows" : "without shadows";
   switch (transport) {
   case RT_TRANSPORT_DIRECT:
     return fmt::format("light straight from lamps and emitters, {}: exact at each place", shadows);
   case RT_TRANSPORT_WHITTED:
     return fmt::format("light straight from lamps and emitters, {}, with its reflections and "
                        "refractions as far as {} surfaces and the energy cut: exact at each place",
-                       shadows, settings.depth);
+                       shadows, depth);
   case RT_TRANSPORT_PATH:
     return fmt::format("all light on ways of at most {} surfaces that paths from the camera can "
                        "find: an unbiased estimate",
-                       settings.depth);
+                       depth);
   case RT_TRANSPORT_LIGHT:
     return fmt::format("all light on ways of at most {} surfaces, what lamps send through mirrors "
                        "and lenses included: an unbiased estimate",
-                       settings.depth);
+                       depth);
   case RT_TRANSPORT_AUTO: return "the engine has not said how light was followed";
   default: return "what the transport plug-in claims";
   }
@@ -48,8 +49,8 @@ std::string transportClaim(const RTstats& stats, const picture::RenderSettings& 
                          "emitter few have met the brightest one: on average a pixel may lack "
                          "radiance of up to {:.2g}, which more samples tell",
                          stats.errorUnmet);
-  if (settings.clamp > 0)
-    claim += fmt::format("; samples are cut at {}, which takes light away", settings.clamp);
+  if (const double clamp = settings.quality[RT_CLAMP]; clamp > 0)
+    claim += fmt::format("; samples are cut at {}, which takes light away", clamp);
   return claim;
 }
 
