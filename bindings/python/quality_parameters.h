@@ -14,9 +14,9 @@
 
 namespace py = pybind11;
 
-// A row of parameterList() (parameters.h). pybind11 needs Type at compile time: bool for off and on,
-// std::string for other settings whose values have names, else a number. Numbers are not checked
-// here.
+// A row of parameterList() (parameters.h). pybind11 needs Type at compile time: bool for off and
+// on, std::string for other settings whose values have names, else a number. Numbers are not
+// checked here.
 template <class Type> struct QualityParameter {
   using Value = Type;
   RTenum quality;

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <condition_variable>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "objects.h"
