@@ -15,6 +15,7 @@
 #include "libpicture/background.h"
 #include "libpicture/camera.h"
 #include "libpicture/files/picture.h"
+#include "libpicture/quality.h"
 #include "openrt/openrt.h"
 #include "xvrml/browser.h"
 #include "xvrml/mapper.h"
@@ -25,17 +26,12 @@ class Cluster;
 
 struct RenderSettings {
   int width = 800, height = 600;
-  int samples = 16;
-  int depth = 25;
-  bool shadows = true;
-  int transport = RT_TRANSPORT_AUTO;
+  int samples = 16;         // RT_SAMPLES_PER_PIXEL
   double error = 0;         // RT_TARGET_ERROR; 0: none
   double timeLimit = 0;     // time limit in seconds (RT_TIME_LIMIT); 0: none
-  double energyCut = -1;    // RT_ENERGY_CUT; below 0: the engine's default
-  double clamp = 0;         // RT_CLAMP; 0: none
   bool progressive = false; // RT_PROGRESSIVE
-  int seed = 0;
-  int threads = 0; // 0: as many threads as the process may use
+  QualityValues quality;    // the other quality settings; its values of the four above are ignored
+  int threads = 0;          // 0: as many threads as the process may use
   bool linear = true;
   bool multiplyTextures = false; // value of xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;

@@ -214,16 +214,12 @@ void Stage::useEnvironment() {
 
 void Stage::setUpFrame() {
   rtFrameBuffer(settings.width, settings.height, settings.channels);
-  rtQuality(RT_SAMPLES_PER_PIXEL, settings.samples);
-  rtQuality(RT_MAX_DEPTH, settings.depth);
-  rtQuality(RT_SEED, settings.seed);
-  rtQuality(RT_SHADOWS, settings.shadows ? 1 : 0);
-  rtQuality(RT_TRANSPORT, settings.transport);
-  rtQuality(RT_PROGRESSIVE, settings.progressive ? 1 : 0);
-  rtQualityf(RT_TARGET_ERROR, settings.error);
-  rtQualityf(RT_TIME_LIMIT, settings.timeLimit);
-  rtQualityf(RT_ENERGY_CUT, settings.energyCut >= 0 ? settings.energyCut : 1.0 / 4096);
-  rtQualityf(RT_CLAMP, settings.clamp);
+  QualityValues quality = settings.quality;
+  quality.set(RT_SAMPLES_PER_PIXEL, settings.samples);
+  quality.set(RT_TARGET_ERROR, settings.error);
+  quality.set(RT_TIME_LIMIT, settings.timeLimit);
+  quality.set(RT_PROGRESSIVE, settings.progressive ? 1 : 0);
+  applyQuality(quality);
   throwOnError("frame");
 }
 

@@ -1,10 +1,6 @@
 #include "libpicture/transport.h"
 
-#include <algorithm>
-#include <span>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "libpicture/quality.h"
 
@@ -19,17 +15,6 @@ const std::vector<std::string>& names() {
 }
 
 } // namespace
-
-std::string transportNames() {
-  const std::span<const std::string> all(names());
-  return fmt::format("{} or {}", fmt::join(all.first(all.size() - 1), ", "), all.back());
-}
-
-std::optional<int> transportNamed(std::string_view name) {
-  const auto found = std::find(names().begin(), names().end(), name);
-  if (found == names().end()) return std::nullopt;
-  return int(found - names().begin());
-}
 
 const char* transportName(RTenum transport) {
   return transport < names().size() ? names()[transport].c_str() : "plug-in";

@@ -1,18 +1,13 @@
-// transport.h: Converts transports to and from their names, and describes them. [any thread]
+// transport.h: Names and describes transports, and the light that they omit. [any thread]
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "openrt/openrt.h"
 
 namespace picture {
 
-std::string transportNames(); // returns "auto, direct, whitted, path or light"
-
-std::optional<int> transportNamed(std::string_view name); // returns the RT_TRANSPORT_* value
 // "path" for RT_TRANSPORT_PATH and so on; "plug-in" for others
 const char* transportName(RTenum transport);
 

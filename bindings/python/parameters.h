@@ -13,6 +13,14 @@ template <class Struct, class Type, bool isRequired> struct Parameter {
   using Value = Type;
   const char* name;
   Type Struct::*member;
+
+  auto annotation(const Struct& defaults) const {
+    if constexpr (isRequired)
+      return py::arg(name);
+    else
+      return py::arg(name) = defaults.*member;
+  }
+  void store(Struct& given, Type&& value) const { given.*member = std::move(value); }
 };
 
 template <class Struct, class Type>
@@ -25,24 +33,15 @@ Parameter<Struct, Type, true> requiredParameter(const char* name, Type Struct::*
   return {name, member};
 }
 
-// Lists parameters in the order of the signature.
+// Lists parameters in the order of the signature. A row has a type Value and the functions
+// annotation and store, as Parameter does; quality_parameters.h has another kind of row.
 template <class... Rows> std::tuple<Rows...> parameterList(Rows... rows) { return {rows...}; }
 
 namespace detail {
 
-template <class Struct, class Type>
-py::arg_v annotation(const Parameter<Struct, Type, false>& row, const Struct& defaults) {
-  return py::arg(row.name) = defaults.*row.member;
-}
-
-template <class Struct, class Type>
-py::arg annotation(const Parameter<Struct, Type, true>& row, const Struct&) {
-  return py::arg(row.name);
-}
-
 template <class Struct, class... Rows>
 void assign(Struct& given, const std::tuple<Rows...>& rows, typename Rows::Value&... values) {
-  std::apply([&](const Rows&... row) { ((given.*row.member = std::move(values)), ...); }, rows);
+  std::apply([&](const Rows&... row) { (row.store(given, std::move(values)), ...); }, rows);
 }
 
 // Calls use(annotations...).
@@ -55,9 +54,9 @@ void annotate(const std::tuple<Positional...>& positional, const std::tuple<Name
         std::apply(
             [&](const Named&... n) {
               if constexpr (sizeof...(Named) > 0)
-                use(annotation(p, defaults)..., py::kw_only(), annotation(n, defaults)...);
+                use(p.annotation(defaults)..., py::kw_only(), n.annotation(defaults)...);
               else
-                use(annotation(p, defaults)...);
+                use(p.annotation(defaults)...);
             },
             named);
       },

@@ -9,6 +9,7 @@
 #include "numbers.h"
 #include "parameters.h"
 #include "picture_object.h"
+#include "quality_parameters.h"
 #include "render_request.h"
 
 using namespace xvrml;
@@ -202,18 +203,18 @@ void defineRender(py::object worldClass) {
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
   defineMethod(
       world, "render", render,
-      parameterList(parameter("size", &A::size), parameter("spp", &A::spp),
-                    parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
-                    parameter("fit", &A::fit), parameter("fov", &A::fov),
-                    parameter("seed", &A::seed), parameter("threads", &A::threads),
-                    parameter("shadows", &A::shadows), parameter("colour", &A::colour),
-                    parameter("headlight", &A::headlight), parameter("depth", &A::depth),
-                    parameter("channels", &A::channels), parameter("transport", &A::transport),
-                    parameter("error", &A::error), parameter("time_limit", &A::timeLimit),
-                    parameter("clamp", &A::clamp), parameter("cluster", &A::cluster),
-                    parameter("progress", &A::progress),
-                    parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
-                    parameter("background", &A::background)),
+      parameterList(
+          parameter("size", &A::size), parameter("spp", &A::spp),
+          parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
+          parameter("fit", &A::fit), parameter("fov", &A::fov),
+          qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
+          qualityParameter<bool>(RT_SHADOWS), parameter("colour", &A::colour),
+          parameter("headlight", &A::headlight), qualityParameter<long long>(RT_MAX_DEPTH),
+          parameter("channels", &A::channels), qualityParameter<std::string>(RT_TRANSPORT),
+          qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
+          qualityParameter<double>(RT_CLAMP), parameter("cluster", &A::cluster),
+          parameter("progress", &A::progress), parameter("multiply_textures", &A::multiplyTextures),
+          parameter("up", &A::up), parameter("background", &A::background)),
       parameterList(),
       "Renders the world as it is now; of one that runs, the scene is kept from one picture to the "
       "next. Options as those of the program vv. spp: samples a pixel, 16; with an error at most "

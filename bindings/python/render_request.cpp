@@ -7,7 +7,6 @@
 #include <pybind11/stl.h>
 
 #include "libpicture/quality.h"
-#include "libpicture/transport.h"
 #include "numbers.h"
 #include "picture_object.h"
 
@@ -188,30 +187,28 @@ void setSize(const char* name, const Given& given, RenderRequest& request) {
     throw py::value_error("size: at most 2^28 pixels expected");
 }
 
-// Sets a whole number that has the range of a quality setting.
-template <auto argument, RTenum quality, auto member>
-void setWhole(const char* name, const Given& given, RenderRequest& request) {
-  request.settings.*member = inRange(name, quality, given.*argument);
-}
-
-// Sets a number that has the range of a quality setting.
-template <auto argument, RTenum quality, auto member>
-void setNumber(const char* name, const Given& given, RenderRequest& request) {
-  const double value = given.*argument;
-  if (!rtIsQualityAllowed(quality, value))
-    throw py::value_error(fmt::format("{}: {} expected", name, picture::qualityRange(quality)));
-  request.settings.*member = value;
-}
-
 // Sets True or False, which need no check.
 template <auto argument, auto member>
 void setFlag(const char*, const Given& given, RenderRequest& request) {
   request.settings.*member = given.*argument;
 }
 
-// The C API takes negative seeds, too; Python and vv count them from 0 on.
-void setSeed(const char* name, const Given& given, RenderRequest& request) {
-  request.settings.seed = inRange(name, given.seed, 0, 2147483647);
+// Sets all quality settings except the number of samples.
+void setQuality(const char*, const Given& given, RenderRequest& request) {
+  for (const RTqualityInfo& info : picture::qualityTable()) {
+    const double value = given.quality[info.quality];
+    // the C API takes negative seeds, too; Python and vv count them from 0 on
+    const bool isSeed = info.quality == RT_SEED;
+    if (rtIsQualityAllowed(info.quality, value) && !(isSeed && value < 0)) continue;
+    if (info.isReal)
+      throw py::value_error(
+          fmt::format("{}: {} expected", info.name, picture::qualityRange(info.quality)));
+    throw py::value_error(fmt::format("{}: {:.10g} to {:.10g} expected, not {:.0f}", info.name,
+                                      isSeed ? 0 : info.minimum, info.maximum, value));
+  }
+  request.settings.quality = given.quality;
+  request.settings.error = given.quality[RT_TARGET_ERROR];
+  request.settings.timeLimit = given.quality[RT_TIME_LIMIT];
 }
 
 void setThreads(const char* name, const Given& given, RenderRequest& request) {
@@ -226,14 +223,6 @@ void setColour(const char*, const Given& given, RenderRequest& request) {
 
 void setHeadlight(const char*, const Given& given, RenderRequest& request) {
   request.settings.headlight = headlightOf(given.headlight);
-}
-
-void setTransport(const char*, const Given& given, RenderRequest& request) {
-  const std::optional<int> transport = picture::transportNamed(given.transport);
-  if (!transport)
-    throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames(),
-                                      given.transport));
-  request.settings.transport = *transport;
 }
 
 void setSamples(const char* name, const Given& given, RenderRequest& request) {
@@ -295,17 +284,11 @@ struct Rule {
 // The order is that of the checks: a row uses what the rows above have set.
 constexpr Rule rules[] = {
     {"size", setSize},
-    {"seed", setSeed},
     {"threads", setThreads},
-    {"depth", setWhole<&Given::depth, RT_MAX_DEPTH, &Settings::depth>},
-    {"shadows", setFlag<&Given::shadows, &Settings::shadows>},
+    {"quality settings", setQuality},
     {"multiply_textures", setFlag<&Given::multiplyTextures, &Settings::multiplyTextures>},
     {"colour", setColour},
     {"headlight", setHeadlight},
-    {"transport", setTransport},
-    {"error", setNumber<&Given::error, RT_TARGET_ERROR, &Settings::error>},
-    {"time_limit", setNumber<&Given::timeLimit, RT_TIME_LIMIT, &Settings::timeLimit>},
-    {"clamp", setNumber<&Given::clamp, RT_CLAMP, &Settings::clamp>},
     {"spp", setSamples},
     {"channels", setChannels},
     {"viewpoint", checkViewpoint},

@@ -11,7 +11,7 @@
 
 namespace py = pybind11;
 
-// The arguments, in the order of Python's signature. The values are the defaults.
+// The arguments; render.cpp has Python's signature. The values are the defaults.
 struct RenderArguments {
   py::object size = py::make_tuple(800, 600);
   std::optional<long long> spp;
@@ -19,22 +19,16 @@ struct RenderArguments {
   py::object camera = py::none();
   bool fit = false;
   std::optional<double> fov;
-  long long seed = 0;
   long long threads = 0;
-  bool shadows = true;
   std::string colour = "linear";
   py::object headlight = py::str("auto");
-  long long depth = 25;
   py::object channels = py::none();
-  std::string transport = "auto";
-  double error = 0;
-  double timeLimit = 0;
-  double clamp = 0;
   py::object cluster = py::none();
   py::object progress = py::none();
   bool multiplyTextures = false;
   std::optional<std::string> up;
   py::object background = py::none();
+  picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)
 };
 
 // The picture that the arguments ask for, except viewpoint, cluster and progress.

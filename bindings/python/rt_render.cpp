@@ -3,13 +3,12 @@
 #include <chrono>
 #include <condition_variable>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "libpicture/transport.h"
 #include "objects.h"
 #include "parameters.h"
 #include "picture_object.h"
+#include "quality_parameters.h"
 #include "rt_objects.h"
 
 namespace {
@@ -40,52 +39,40 @@ void renderWatched(RtContext& context, const picture::ProgressCallback& watch) {
   thread.join();
 }
 
-// The arguments of Context.render(), in the order of Python's signature. The values are the
-// defaults.
+// The arguments of Context.render(). The values are the defaults.
 struct FrameArguments {
   std::pair<int, int> size{800, 600};
   std::optional<int> spp;
-  double error = 0;
-  double timeLimit = 0;
-  int depth = 25;
-  int seed = 0;
-  std::string transport = "auto";
-  bool shadows = true;
   py::object channels = py::none();
   py::object progress = py::none();
+  picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)
 };
 
 // Returns the bits of the channels; without a request rgba and depth, and with an error its
 // channels.
 uint32_t frameChannels(const FrameArguments& given) {
   if (!given.channels.is_none()) return RT_RGBA | channelsOf(given.channels);
-  return RT_RGBA | RT_DEPTH | (given.error > 0 ? RT_ERROR | RT_TRUST : 0);
+  return RT_RGBA | RT_DEPTH | (given.quality[RT_TARGET_ERROR] > 0 ? RT_ERROR | RT_TRUST : 0);
 }
 
 // Sets the size and the quality of the next frame of the current context.
-void setUpFrame(const FrameArguments& given, int transport, uint32_t channels) {
+void setUpFrame(const FrameArguments& given, uint32_t channels) {
   rtFrameBuffer(given.size.first, given.size.second, channels);
-  const int most = given.timeLimit > 0 ? 65536 : given.error > 0 ? 4096 : 16;
-  rtQuality(RT_SAMPLES_PER_PIXEL, given.spp.value_or(most));
-  rtQualityf(RT_TARGET_ERROR, given.error);
-  rtQualityf(RT_TIME_LIMIT, given.timeLimit);
-  rtQuality(RT_MAX_DEPTH, given.depth);
-  rtQuality(RT_SEED, given.seed);
-  rtQuality(RT_TRANSPORT, transport);
-  rtQuality(RT_SHADOWS, given.shadows);
+  picture::QualityValues quality = given.quality;
+  const int most = quality[RT_TIME_LIMIT] > 0     ? 65536
+                   : quality[RT_TARGET_ERROR] > 0 ? 4096
+                                                  : quality.whole(RT_SAMPLES_PER_PIXEL);
+  quality.set(RT_SAMPLES_PER_PIXEL, given.spp.value_or(most));
+  picture::applyQuality(quality);
 }
 
 py::object render(const RtContextPtr& self, const FrameArguments& given) {
-  const std::optional<int> transport = picture::transportNamed(given.transport);
-  if (!transport)
-    throw py::value_error(fmt::format("transport: {} expected, not '{}'", picture::transportNames(),
-                                      given.transport));
   const uint32_t bits = frameChannels(given);
   const py::object bar = progressOf(given.progress);
   auto made = std::make_unique<PictureObject>();
   picture::Picture& picture = made->picture;
   const CurrentContext use(self);
-  setUpFrame(given, *transport, bits);
+  setUpFrame(given, bits);
   use.check();
   const auto read = [&] {
     picture.width = given.size.first;
@@ -146,12 +133,13 @@ py::object render(const RtContextPtr& self, const FrameArguments& given) {
 
 void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
   using A = FrameArguments;
-  defineMethod(context, "render", render,
-               parameterList(parameter("size", &A::size), parameter("spp", &A::spp)),
-               parameterList(parameter("error", &A::error), parameter("time_limit", &A::timeLimit),
-                             parameter("depth", &A::depth), parameter("seed", &A::seed),
-                             parameter("transport", &A::transport),
-                             parameter("shadows", &A::shadows), parameter("channels", &A::channels),
-                             parameter("progress", &A::progress)),
-               "A picture of the scene, as World.render makes one of a world.");
+  defineMethod(
+      context, "render", render,
+      parameterList(parameter("size", &A::size), parameter("spp", &A::spp)),
+      parameterList(qualityParameter<double>(RT_TARGET_ERROR),
+                    qualityParameter<double>(RT_TIME_LIMIT), qualityParameter<int>(RT_MAX_DEPTH),
+                    qualityParameter<int>(RT_SEED), qualityParameter<std::string>(RT_TRANSPORT),
+                    qualityParameter<bool>(RT_SHADOWS), parameter("channels", &A::channels),
+                    parameter("progress", &A::progress)),
+      "A picture of the scene, as World.render makes one of a world.");
 }

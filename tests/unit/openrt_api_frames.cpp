@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "scene/quality.h"
 #include "unit/openrt_api_support.h"
 
 namespace {
@@ -91,9 +92,22 @@ TEST_F(Frames, TheTableOfQualitySettingsIsWhatIsAccepted) {
   }
   EXPECT_EQ(rtIsQualityAllowed(0, 0), 0);
   EXPECT_EQ(rtIsQualityAllowed(99, 1), 0);
-  EXPECT_EQ(count, RT_TILE_SIZE);
   EXPECT_EQ(names.size(), size_t(count));
   EXPECT_EQ(settings.size(), size_t(count));
+  EXPECT_EQ(*settings.begin(), RTenum(RT_SAMPLES_PER_PIXEL));
+  EXPECT_EQ(*settings.rbegin(), RTenum(count)) << "the numbers have gaps";
+}
+
+// A recording or message that lacks a field means the default of edits.fbs.
+TEST(QualityTable, DefaultsAreThoseOfTheSchema) {
+  const edit::FrameSettingsT missing;
+  for (const QualitySetting& setting : qualitySettings()) {
+    if (!setting.get) continue; // not part of a frame
+    const RTenum quality = setting.info.quality;
+    // deliberate differences: no recording lacks these fields, which are as old as recordings
+    const bool differs = quality == RT_SAMPLES_PER_PIXEL || quality == RT_MAX_DEPTH;
+    EXPECT_EQ(setting.get(missing), differs ? 0 : setting.info.defaultValue) << setting.info.name;
+  }
 }
 
 TEST_F(Frames, TheTableOfTransportsIsWhatIsAccepted) {

@@ -1,5 +1,6 @@
 // option_table.cpp: Defines every option of vv: names, argument, help text and effect. The options
-// of the group Cluster are in cluster_options.cpp.
+// of the group Cluster are in cluster_options.cpp, those of quality settings in
+// quality_options.cpp.
 #include "options.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "libpicture/transport.h"
 #include "names.h"
 #include "nearest.h"
 
@@ -73,33 +73,6 @@ void setCompat(Options& o, const std::string& value) {
     else
       throw UsageError(fmt::format("scripts or textures was expected, not \"{}\"", name));
   }
-}
-
-void setTransport(Options& o, const std::string& value) {
-  const std::optional<int> transport = picture::transportNamed(value);
-  if (!transport)
-    throw UsageError(fmt::format("{} was expected, not \"{}\"", picture::transportNames(), value));
-  o.render.transport = *transport;
-}
-
-// Returns the argument of --transport, "auto|direct|...".
-const char* transportValues() {
-  static const std::string values =
-      fmt::format("{}", fmt::join(picture::qualityChoices(RT_TRANSPORT), "|"));
-  return values.c_str();
-}
-
-// Returns the help text of --transport, made of what the library says of each transport.
-const char* transportText() {
-  static const std::string text = [] {
-    std::string all = fmt::format(
-        "Light transport algorithm. {} (default) {}; --explain and --stats say which and why.",
-        picture::transportName(RT_TRANSPORT_AUTO), picture::transportInfo(RT_TRANSPORT_AUTO).text);
-    for (RTenum i = RT_TRANSPORT_AUTO + 1; const char* does = picture::transportInfo(i).text; ++i)
-      all += fmt::format(" {}: {}.", picture::transportName(i), does);
-    return all;
-  }();
-  return text.c_str();
 }
 
 void setChannels(Options& o, const std::string& value) {
@@ -274,7 +247,8 @@ const OptionInfo table[] = {
      "--colour vrml97 --shadows off.",
      [](Options& o, const std::string&) {
        setCompat(o, "scripts,textures");
-       o.render.linear = o.render.shadows = false;
+       o.render.linear = false;
+       o.render.quality.set(RT_SHADOWS, 0);
      }},
     {"--shader", "DEF=CLASS[:PARAM=VALUE...]", "Change",
      "Replace the surface shader of a shape, of all shapes with an appearance, or of everything "
@@ -301,36 +275,6 @@ const OptionInfo table[] = {
          o.render.environmentIntensity = readNumber(std::string_view(v).substr(colon + 1), 0, 1e9);
        notEmpty(o.render.environment, "a file name");
      }},
-    {"--spp", "N", "Quality",
-     "Samples per pixel, 1 to 65536 (default 16; in the window 256, added one after the other).",
-     [](Options& o, const std::string& v) {
-       o.samples = readWholeQuality(RT_SAMPLES_PER_PIXEL, v);
-     }},
-    {"--error", "E|E%", "Quality",
-     "Sample each part of the picture until the average error bar is E of the brightness (for "
-     "example 2%), with at most --spp samples per pixel (default here 4096).",
-     [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
-    {"--time-limit", "SECONDS", "Quality",
-     "Sample the whole picture in rounds for about this time, with at most --spp samples per pixel "
-     "(default here 65536). Such a picture depends on the speed of the machine.",
-     [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
-    {"--depth", "N", "Quality",
-     "Maximum number of surfaces that a path may pass through or bounce off, 0 to 10000 (default "
-     "25).",
-     [](Options& o, const std::string& v) { o.render.depth = readWholeQuality(RT_MAX_DEPTH, v); }},
-    {"--transport", transportValues(), "Quality", transportText(), setTransport},
-    {"--energy-cut", "E", "Quality",
-     "With whitted, end branches of reflection and refraction that carry less than this share of "
-     "the camera ray, 0 to 1 (default 1/4096).",
-     [](Options& o, const std::string& v) { o.render.energyCut = v == "0" ? 0 : readShare(v); }},
-    {"--clamp", "RADIANCE", "Quality",
-     "Limit the radiance of each sample. This removes fireflies, but also light; --stats says how "
-     "much (default: no limit).",
-     [](Options& o, const std::string& v) { o.render.clamp = readQuality(RT_CLAMP, v); }},
-    {"--shadows", "on|off", "Quality", "Whether lights cast shadows (default on).",
-     [](Options& o, const std::string& v) { o.render.shadows = readSwitch(v); }},
-    {"--seed", "N", "Quality", "Choose another set of sample positions (default 0).",
-     [](Options& o, const std::string& v) { o.render.seed = int(readInteger(v, 0, 2147483647)); }},
     {"--threads", "N", "Quality",
      "Number of render threads; 0 (default) is as many as the process may use. The picture does "
      "not depend on it.",
@@ -445,10 +389,13 @@ const OptionInfo table[] = {
 std::span<const OptionInfo> optionTable() {
   static const std::vector<OptionInfo> all = [] {
     std::vector<OptionInfo> rows(std::begin(table), std::end(table));
-    const auto place = std::find_if(rows.begin(), rows.end(), [](const OptionInfo& o) {
-      return std::string_view(o.group) == "Inspect";
-    });
-    rows.insert(place, clusterOptions().begin(), clusterOptions().end());
+    const auto insertBefore = [&](std::string_view group, std::span<const OptionInfo> more) {
+      const auto place = std::find_if(rows.begin(), rows.end(),
+                                      [&](const OptionInfo& o) { return o.group == group; });
+      rows.insert(place, more.begin(), more.end());
+    };
+    insertBefore("Quality", qualityOptions());
+    insertBefore("Inspect", clusterOptions());
     return rows;
   }();
   return all;

@@ -33,7 +33,10 @@ std::string longName(const OptionInfo& option) {
 
 void apply(const OptionInfo& option, Options& options, const std::string& value) {
   try {
-    option.apply(options, value);
+    if (option.apply)
+      option.apply(options, value);
+    else
+      options.render.quality.set(option.quality, readQuality(option.quality, value));
   } catch (const UsageError& error) { throw UsageError(longName(option) + ": " + error.what()); }
 }
 

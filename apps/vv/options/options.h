@@ -90,7 +90,8 @@ struct Options {
 };
 
 // A row of the table. `argument` is empty for a switch, and in brackets if it is optional; a
-// missing optional argument gives the value "". `apply` throws UsageError.
+// missing optional argument gives the value "". `apply` throws UsageError; if it is null, the value
+// is that of a quality setting.
 struct OptionInfo {
   const char* names; // "-o,--output"
   const char* argument;
@@ -98,8 +99,10 @@ struct OptionInfo {
   std::string text;
   void (*apply)(Options& options, const std::string& value);
   bool repeatable = false;
+  RTenum quality = 0; // RT_*; only used without `apply`
 };
 std::span<const OptionInfo> optionTable();
+std::span<const OptionInfo> qualityOptions(); // the rows of quality settings, group Quality
 std::span<const OptionInfo> clusterOptions(); // the rows of the group Cluster
 
 // Throws UsageError with one line that names the option and says what was expected.

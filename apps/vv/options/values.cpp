@@ -55,13 +55,25 @@ double readNumber(std::string_view text, double minimum, double maximum) {
   return value;
 }
 
-int readWholeQuality(RTenum quality, std::string_view text) {
+double readQuality(RTenum quality, std::string_view text) {
+  if (picture::isSwitch(quality)) return readSwitch(text) ? 1 : 0;
   const RTqualityInfo info = picture::qualityInfo(quality);
-  return int(readInteger(text, static_cast<long long>(info.minimum),
-                         static_cast<long long>(info.maximum)));
+  if (info.choices) {
+    if (const std::optional<int> value = picture::qualityNamed(quality, text)) return *value;
+    throw UsageError(
+        fmt::format("{} was expected, not \"{}\"", picture::qualityChoiceList(quality), text));
+  }
+  double value = 0;
+  long long count = 0;
+  const bool read = info.isReal ? whole(text, value) : whole(text, count);
+  if (!info.isReal) value = double(count);
+  if (!read || !rtIsQualityAllowed(quality, value))
+    throw UsageError(
+        fmt::format("{} was expected, not \"{}\"", picture::qualityRange(quality), text));
+  return value;
 }
 
-double readQuality(RTenum quality, std::string_view text) {
+double readQualityInside(RTenum quality, std::string_view text) {
   const RTqualityInfo info = picture::qualityInfo(quality);
   return readNumber(text, info.minimum, info.maximum);
 }

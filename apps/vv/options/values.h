@@ -44,10 +44,11 @@ struct FrameRange {
 long long readInteger(std::string_view text, long long minimum, long long maximum);
 // both limits are exclusive
 double readNumber(std::string_view text, double minimum, double maximum);
-// Read the value of a quality setting (RT_*) in the range that the library gives it: a whole
-// number; a number, with both limits excluded.
-int readWholeQuality(RTenum quality, std::string_view text);
+// Reads a value that the library allows for a quality setting (RT_*): a name, if values have names;
+// else a number.
 double readQuality(RTenum quality, std::string_view text);
+// The same for a real number, with both limits of the range excluded.
+double readQualityInside(RTenum quality, std::string_view text);
 double readSeconds(std::string_view text); // seconds from 0 to a million
 double readShare(std::string_view text);   // above 0 up to 1, or a percentage
 // Parses a number of bytes or items, with the optional suffixes k, M, G (powers of 1024).

@@ -58,6 +58,7 @@ picture::RenderResult Audit::render(const picture::View& view, const std::string
 
 bool Audit::run(const picture::View& view) {
   const int width = options_.render.width, height = options_.render.height;
+  const int seed = options_.render.quality.whole(RT_SEED);
   picture::Reference reference;
   if (!options_.compare.empty()) { // read it before the rendering work
     const picture::Picture other = readReference(options_.compare, width, height);
@@ -69,7 +70,7 @@ bool Audit::run(const picture::View& view) {
   std::vector<picture::Shot> shots;
   for (int i = 0; i < options_.audit; i++) {
     renderer_.change([&](picture::RenderSettings& s) {
-      s.seed = options_.render.seed + i;
+      s.quality.set(RT_SEED, seed + i);
       s.channels = options_.render.channels | RT_ERROR | RT_TRUST | RT_SAMPLES | RT_VARIANCE;
     });
     picture::RenderResult result =
@@ -86,7 +87,7 @@ bool Audit::run(const picture::View& view) {
   if (reference.colours.empty()) {
     const int most = int(std::min(65536.0, referenceWorth * samples_));
     renderer_.change([&](picture::RenderSettings& s) {
-      s.seed = (options_.render.seed + referenceSeed) & 0x7fffffff;
+      s.quality.set(RT_SEED, (seed + referenceSeed) & 0x7fffffff);
       s.samples = most;
       s.error = 0;
       s.channels = RT_RGBA;

@@ -10,8 +10,10 @@ namespace {
 
 std::string followedBy(const RTtransportInfo& transport, const picture::RenderSettings& settings) {
   if (!transport.claim) return "defined by the transport plug-in";
-  return fmt::format(fmt::runtime(transport.claim), fmt::arg("depth", settings.depth),
-                     fmt::arg("shadows", settings.shadows ? "with shadows" : "without shadows"));
+  const char* shadows = settings.quality.whole(RT_SHADOWS) ? "with shadows" : "without shadows";
+  return fmt::format(fmt::runtime(transport.claim),
+                     fmt::arg("depth", settings.quality.whole(RT_MAX_DEPTH)),
+                     fmt::arg("shadows", shadows));
 }
 
 } // namespace
@@ -33,8 +35,8 @@ std::string transportClaim(const RTstats& stats, const picture::RenderSettings& 
         "; too few paths through mirrors or glass have hit the brightest emitter: on average a "
         "pixel may lack radiance of up to {:.2g}, which more samples would show",
         stats.errorUnmet);
-  if (settings.clamp > 0)
-    claim += fmt::format("; samples are clamped to {}, which removes light", settings.clamp);
+  if (const double clamp = settings.quality[RT_CLAMP]; clamp > 0)
+    claim += fmt::format("; samples are clamped to {}, which removes light", clamp);
   return claim;
 }
 
