@@ -198,38 +198,39 @@ void navigate(const BrowserPtr& self, const NavigateArguments& given) {
 void defineBrowser(py::module_& module) {
   py::class_<BrowserObject, WorldObject, BrowserPtr> browser(
       module, "Browser",
-      "A world that runs: tick(time) moves its clock, assigning a node's field sends an event. It "
-      "has no clock of its own.");
+      "A world that runs. tick(time) sets its clock; no clock runs in the background. Assigning to "
+      "a field of a node sends an event.");
   using B = BrowserArguments;
-  defineConstructor(
-      browser, makeBrowser, parameterList(requiredParameter("source", &B::source)),
-      parameterList(parameter("start", &B::start), parameter("limits", &B::limits),
-                    parameter("allow_absolute", &B::allowAbsolute),
-                    parameter("script_path", &B::scriptPath), parameter("trust", &B::trust),
-                    parameter("epoch", &B::epoch),
-                    parameter("direct_output_always", &B::directOutputAlways)),
-      "source: as of load(). The world comes alive at time `start`, in seconds after `epoch`, "
-      "which is in seconds since 1970: nodes and Scripts see epoch + time. "
-      "direct_output_always: Scripts without directOutput TRUE may change nodes, as in "
-      "browsers of 1997.");
+  defineConstructor(browser, makeBrowser, parameterList(requiredParameter("source", &B::source)),
+                    parameterList(parameter("start", &B::start), parameter("limits", &B::limits),
+                                  parameter("allow_absolute", &B::allowAbsolute),
+                                  parameter("script_path", &B::scriptPath),
+                                  parameter("trust", &B::trust), parameter("epoch", &B::epoch),
+                                  parameter("direct_output_always", &B::directOutputAlways)),
+                    "source: a file name, bytes or a file object, as for load(). start: the time "
+                    "at which the world begins to run, in seconds after epoch. epoch: time 0 in "
+                    "seconds since 1970; nodes and Scripts see epoch + time. trust: Scripts may do "
+                    "whatever the user may do. direct_output_always: Scripts without directOutput "
+                    "TRUE may also change nodes, as in browsers of 1997.");
   using N = NavigateArguments;
   defineMethod(browser, "navigate", navigate, parameterList(requiredParameter("dt", &N::dt)),
                parameterList(parameter("ahead", &N::ahead), parameter("right", &N::right),
                              parameter("up", &N::up), parameter("turn", &N::turn),
                              parameter("tilt", &N::tilt), parameter("roll", &N::roll)),
-               "Moves the viewer for dt seconds; numbers from -1 to 1.");
+               "Moves the viewer for dt seconds. The other arguments are speeds from -1 to 1.");
   browser
       .def_property_readonly(
           "now", [](const BrowserPtr& self) { return self->running->now(); },
-          "Time in seconds after `epoch`.")
+          "The current time, in seconds after epoch.")
       .def_property_readonly(
           "generation", [](const BrowserPtr& self) { return self->running->generation(); },
-          "Grows with every world that takes the place of the former.")
+          "A number that increases each time the world is replaced by another one.")
       .def("tick", tick, py::arg("time"),
-           "Time has come to `time`: sensors send, routes carry, until nothing is left to do.")
-      .def("node", node, py::arg("name"),
-           "The node that a DEF name of the file means; None if there is none.")
-      .def("create_node", createNode, py::arg("type"), "A new node; keywords are its fields.")
+           "Advances the clock to `time` and delivers all events: sensors send, routes forward, "
+           "Scripts run.")
+      .def("node", node, py::arg("name"), "Returns the node with a DEF name of the file, or None.")
+      .def("create_node", createNode, py::arg("type"),
+           "Creates a node of a type. Keyword arguments are its fields.")
       .def(
           "add_root",
           [](const BrowserPtr& self, const NodeObject& added) {
@@ -245,14 +246,16 @@ void defineBrowser(py::module_& module) {
           },
           py::arg("node"))
       .def("create_vrml_from_string", createFromString, py::arg("text"),
-           "Nodes of a VRML text, which needs no header. Raises ParseError if nothing of it can be "
-           "used.")
+           "Returns the nodes of a VRML text, which needs no header. Raises ParseError if no part "
+           "of it can be used.")
       .def("load_url", loadUrl, py::arg("urls"),
-           "Another world instead of this one; if none can be read all stays as it is.")
-      .def("replace_world", replaceWorld, py::arg("nodes"), "These nodes instead of all others.")
-      .def_property_readonly(
-          "bound", bound,
-          "The bound viewpoint, background, fog and navigation_info; None: there is none.")
+           "Replaces the world by the first of these files that can be read. If none can be read, "
+           "the world stays.")
+      .def("replace_world", replaceWorld, py::arg("nodes"),
+           "Replaces all nodes of the world by these.")
+      .def_property_readonly("bound", bound,
+                             "The bound nodes as a dict of viewpoint, background, fog and "
+                             "navigation_info; None for each that has no bound node.")
       .def(
           "bind_viewpoint",
           [](const BrowserPtr& self, const std::string& name) {
@@ -261,13 +264,15 @@ void defineBrowser(py::module_& module) {
             self->change([&] { done = self->running->bindViewpoint(name); });
             return done;
           },
-          py::arg("name"), "By DEF name or description; False if there is none.")
+          py::arg("name"),
+          "Binds the Viewpoint with this DEF name or description. Returns False if there is none.")
       .def("camera", camera, py::arg("aspect") = 4.0 / 3,
-           "Where the viewer is: camera to world, 4x4 for column vectors.")
+           "Returns the viewer's camera-to-world matrix, 4x4 for column vectors.")
       .def(
           "set_transition",
           [](const BrowserPtr& self, double seconds) { self->running->setTransition(seconds); },
-          py::arg("seconds"), "World seconds that a jump to another viewpoint takes; 0: none.")
+          py::arg("seconds"),
+          "Sets how many world seconds a move to another viewpoint takes; 0: the viewer jumps.")
       .def(
           "pointer",
           [](const BrowserPtr& self, double x, double y, bool button, double aspect) {
@@ -278,7 +283,7 @@ void defineBrowser(py::module_& module) {
             });
           },
           py::arg("x"), py::arg("y"), py::arg("button") = false, py::arg("aspect") = 4.0 / 3,
-          "The pointer is at (x, y) of the picture, from -1 at the left and bottom to 1 at the "
+          "Moves the pointer to (x, y) of the picture, from -1 at the left and bottom to 1 at the "
           "right and top.")
       .def(
           "pointer_ray",
@@ -288,14 +293,14 @@ void defineBrowser(py::module_& module) {
                 [&] { self->running->pointerRay(origin.data(), direction.data(), button); });
           },
           py::arg("origin"), py::arg("direction"), py::arg("button") = false,
-          "The pointer as a ray in the world.")
+          "Moves the pointer, given as a ray in the world.")
       .def(
           "pointer_leave",
           [](const BrowserPtr& self) {
             const auto lock = self->lock();
             self->change([&] { self->running->pointerLeave(); });
           },
-          "The pointer is outside of the picture.")
+          "Moves the pointer out of the picture.")
       .def_property_readonly("sensors_at_pointer",
                              [](const BrowserPtr& self) {
                                py::list list;
@@ -304,8 +309,8 @@ void defineBrowser(py::module_& module) {
                                return py::tuple(list);
                              })
       .def("pick", pick, py::arg("origin"), py::arg("direction"), py::arg("both_sides") = false,
-           "The nearest thing along a ray, as a dict with distance, point, normal, tex_coord and "
-           "path; None if there is none.")
+           "Returns the nearest hit of a ray as a dict of distance, point, normal, tex_coord and "
+           "path (the nodes from the root to the Shape), or None.")
       .def(
           "key",
           [](const BrowserPtr& self, const std::string& name, bool pressed) {
@@ -320,7 +325,7 @@ void defineBrowser(py::module_& module) {
           [](const BrowserPtr& self, const std::string& name) {
             self->running->setNavigation(navigationOf(name));
           },
-          "The way of moving: none, walk, fly or examine.")
+          "The navigation mode: 'none', 'walk', 'fly' or 'examine'.")
       .def("load_inlines",
            [](const BrowserPtr& self) {
              const auto lock = self->lock();

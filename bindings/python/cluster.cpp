@@ -172,7 +172,7 @@ std::shared_ptr<picture::Cluster> clusterFor(const py::object& given, const Worl
 
 void defineCluster(py::module_& module) {
   clusterError = PyErr_NewExceptionWithDoc(
-      "xvrml.ClusterError", "Workers are missing; or an address or a key is of no use.",
+      "xvrml.ClusterError", "Raised if workers are missing, or an address or a key is unusable.",
       module.attr("RenderError").ptr(), nullptr);
   if (!clusterError) throw py::error_already_set();
   module.add_object("ClusterError", clusterError);
@@ -190,7 +190,7 @@ void defineCluster(py::module_& module) {
               .ptr();
 
   py::class_<RTworker> worker(module, "Worker",
-                              "What one machine of a cluster has done since it joined.");
+                              "Statistics of one machine of a cluster since it joined.");
   picture::forEachWorkerFact([&](const picture::WorkerFact& fact, auto get) {
     worker.def_property_readonly(
         fact.attribute,
@@ -207,7 +207,8 @@ void defineCluster(py::module_& module) {
   py::class_<ClusterObject, ClusterPtr> cluster(
       module, "Cluster",
       "Machines that render together: `with Cluster([\"a:7447\", \"b\"], key=\"cluster.key\")`. "
-      "The pictures of renders inside have the same bytes as without (docs/cluster.md).");
+      "Renders inside the with block use them. Pictures have the same bytes as without a cluster "
+      "(docs/cluster.md).");
   using A = ClusterArguments;
   defineConstructor(
       cluster, make, parameterList(parameter("workers", &A::workers)),
@@ -216,17 +217,18 @@ void defineCluster(py::module_& module) {
                     parameter("local_threads", &A::localThreads), parameter("split", &A::split),
                     parameter("require", &A::require), parameter("tolerant", &A::tolerant),
                     parameter("shader_path", &A::shaderPath)),
-      "workers: addresses of openrt-worker --listen, or '@FILE'; listen: where workers call "
-      "in. Begins to call and returns at once. require: renders raise ClusterError while "
-      "fewer workers are there for 10 seconds.");
+      "Starts connecting and returns at once. workers: addresses of workers that run with "
+      "--listen, or '@FILE'. listen: the address to which workers that run with --connect connect. "
+      "require: renders raise ClusterError if fewer workers are connected for 10 seconds.");
   cluster.def("__enter__", enter)
       .def("__exit__", leave)
-      .def("close", closeCluster, "Says goodbye to the workers; the end of the with block does it.")
-      .def_property_readonly(
-          "workers", workers,
-          "A Worker for each machine that has joined, those that left and this one too.")
+      .def("close", closeCluster,
+           "Disconnects from the workers. The end of the with block calls it.")
+      .def_property_readonly("workers", workers,
+                             "A Worker for each machine that has joined, including machines that "
+                             "have left and this one.")
       .def("wait", waitFor, py::arg("count") = 1, py::arg("timeout") = 10.0,
-           "Waits until so many workers are there; raises TimeoutError if they are not in time. A "
-           "render needs no wait: workers may join in its middle.")
+           "Waits until `count` workers have joined. Raises TimeoutError after `timeout` seconds. "
+           "Renders work without waiting, because workers may join while a picture is rendered.")
       .def("__repr__", text);
 }

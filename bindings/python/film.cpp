@@ -96,14 +96,14 @@ class FilmObject {
 
 void defineFilm(py::module_& module) {
   py::class_<FilmObject>(module, "Film",
-                         "A film file made of pictures: Film('turn.mp4', fps=25), then add() for "
-                         "each picture and close(), or as a context manager. The suffix (mp4, "
-                         "webm, gif) says the format. Nothing is written before close().")
+                         "A film file: Film('turn.mp4', fps=25), then add() for each picture, then "
+                         "close(). It is also a context manager. The suffix (mp4, webm, gif) "
+                         "selects the format. close() writes the file.")
       .def(py::init<const py::object&, double>(), py::arg("path"), py::arg("fps") = 25.0)
-      .def(
-          "add", &FilmObject::add, py::arg("picture"),
-          "Appends a Picture, or an array of uint8 of shape (height, width, 3). All have one size.")
-      .def("close", &FilmObject::close, "Writes the file. A film without a picture is not written.")
+      .def("add", &FilmObject::add, py::arg("picture"),
+           "Appends a Picture, or an array of uint8 of shape (height, width, 3). All must have the "
+           "same size.")
+      .def("close", &FilmObject::close, "Writes the file, if the film has a picture.")
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__", &FilmObject::exit)
       .def("__repr__", [](const FilmObject& self) { return toText("<Film " + self.path() + ">"); });

@@ -144,9 +144,10 @@ std::unique_ptr<World> loadSource(const py::object& source, const py::object& li
 PYBIND11_MODULE(_xvrml, module) {
   watchInterpreter();
   reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base)->tp_new = newObject;
-  parseError = PyErr_NewExceptionWithDoc(
-      "xvrml.ParseError", "Nothing of a world can be used; file, line and column say where.",
-      PyExc_ValueError, nullptr);
+  parseError = PyErr_NewExceptionWithDoc("xvrml.ParseError",
+                                         "Raised if no part of a world can be used. The attributes "
+                                         "file, line and column are the place of the error.",
+                                         PyExc_ValueError, nullptr);
   if (!parseError) throw py::error_already_set();
   module.add_object("ParseError", parseError);
   py::register_exception_translator([](std::exception_ptr failure) {
@@ -179,9 +180,9 @@ PYBIND11_MODULE(_xvrml, module) {
       fmt::format("{}.{}.{}", OPENRT_VERSION_MAJOR, OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH);
   module.def("load_node_plugins", loadPlugins, py::arg("path") = py::none(),
              "Loads the node plug-ins of these folders (separated by colons), of $XVRML_NODE_PATH "
-             "and of the installation. Returns a line for each that is refused.");
+             "and of the installation. Returns a message for each refused plug-in.");
   module.def("load", load, py::arg("source"), py::kw_only(), py::arg("limits") = py::none(),
              py::arg("allow_absolute") = false,
              "Loads a world from a file name, bytes or a file object. Raises ParseError or "
-             "OSError; problems of single nodes are in World.warnings.");
+             "OSError. World.warnings has the problems of single nodes.");
 }

@@ -208,23 +208,25 @@ py::object asNode(const WorldPtr& world, const NodeRef& node) {
 }
 
 void defineNode(py::module_& module) {
-  py::class_<NodeObject> all(module, "Node",
-                             "A node. Its fields are attributes: numbers of lists are read-only "
-                             "arrays of what the field holds now; assigning changes the node.");
+  py::class_<NodeObject> all(
+      module, "Node",
+      "A node. Its fields are attributes, and assigning to an attribute changes the node. Lists of "
+      "numbers are read-only arrays: snapshots of the current value.");
   nodeClass = reinterpret_cast<PyTypeObject*>(all.ptr());
   module.def("_node_classes", nodeClasses);
   all.def("__init__", makeLoose, py::detail::is_new_style_constructor())
       .def_property_readonly(
           "node_type", [](const NodeObject& self) { return toText(self.node->type().name); },
           "The name of the node's type, e.g. 'Transform'.")
-      .def_property_readonly(
-          "type",
-          unlessField(
-              "type",
-              [](const NodeObject& self) { return py::object(toText(self.node->type().name)); }),
-          "node_type, but for nodes with a field of this name (NavigationInfo): that field.")
+      .def_property_readonly("type",
+                             unlessField("type",
+                                         [](const NodeObject& self) {
+                                           return py::object(toText(self.node->type().name));
+                                         }),
+                             "The name of the node's type, like node_type. For nodes with a field "
+                             "called type (NavigationInfo), the value of that field.")
       .def_property_readonly("fields", unlessField("fields", fieldTypes),
-                             "The fields and their types, as a dict.")
+                             "A dict of the names and types of the fields.")
       .def_property_readonly("def_name",
                              unlessField("def_name",
                                          [](const NodeObject& self) {

@@ -188,21 +188,21 @@ PictureObject unpickled(const py::tuple& state) {
 void definePicture(py::module_& module) {
   py::class_<PictureObject>(
       module, "Picture",
-      "A rendered picture. picture['z'] is a channel, picture[...] indexes the colours.")
+      "A rendered picture. picture['z'] is a channel; any other index applies to the colours.")
       .def_property_readonly(
           "array", rgba,
           "Red, green, blue, alpha: float32 of shape (height, width, 4), first row at the top.")
       .def_property_readonly(
           "error", errorBars,
           "Half-widths of the 95 % intervals of red, green, blue: float32 of shape (height, width, "
-          "3). Only in pictures that were made with an error or this channel.")
-      .def_property_readonly("camera", camera,
-                             "The Pinhole that it was made with; None for cameras that are none "
-                             "(orthographic ones, ORTViewpoints).")
+          "3). Only pictures rendered with error= or this channel have it.")
+      .def_property_readonly(
+          "camera", camera,
+          "The camera as a Pinhole; None for other cameras (orthographic ones, ORTViewpoints).")
       .def_readonly("time", &PictureObject::time,
-                    "Seconds since the world was loaded: the moment that it shows.")
+                    "The world time of the picture, in seconds since the world was loaded.")
       .def_property_readonly("display", display,
-                             "What a screen shows: uint8 of shape (height, width, 3).")
+                             "The colours for a screen: uint8 of shape (height, width, 3).")
       .def_property_readonly("shape",
                              [](const PictureObject& self) {
                                return py::make_tuple(self.picture.height, self.picture.width, 4);
@@ -210,20 +210,22 @@ void definePicture(py::module_& module) {
       .def_property_readonly("channels", channels, "Names of the channels.")
       .def_property_readonly(
           "nodes", nodes,
-          "The Shape for each number of channel 'id': picture.nodes[picture['id'][row, column]]; "
-          "None for 0. Empty in pictures without this channel, and in copies and pickled ones: "
-          "nodes belong to the world.")
-      .def_property_readonly("names", names,
-                             "A name for each number of channel 'id': the Shape's DEF name, else "
-                             "that of the nearest group above it, else 'Shape'; '' for 0.")
-      .def_readonly("stats", &PictureObject::stats, "Counts and seconds of this render.")
+          "The Shape for each number of the channel 'id': picture.nodes[picture['id'][row, "
+          "column]]; None for 0. Empty in pictures without this channel and in copied or pickled "
+          "pictures, because nodes belong to the world.")
+      .def_property_readonly(
+          "names", names,
+          "A name for each number of the channel 'id': the Shape's DEF name, otherwise that of the "
+          "nearest group above it, otherwise 'Shape'; '' for 0.")
+      .def_readonly("stats", &PictureObject::stats,
+                    "Statistics of the render: counts, seconds and errors.")
       .def_property_readonly(
           "colour",
           [](const PictureObject& self) { return self.picture.linear ? "linear" : "vrml97"; })
       .def("__getitem__", item)
       .def("__array__", asArray, py::arg("dtype") = py::none(), py::arg("copy") = py::none())
       .def("save", save, py::arg("path"),
-           ("Writes a file; the suffix (" + picture::formatSuffixes() + ") says the format.")
+           ("Writes a file; the suffix (" + picture::formatSuffixes() + ") selects the format.")
                .c_str())
       .def("_repr_png_",
            [](const PictureObject& self) { return py::bytes(picture::encodePng(self.picture)); })

@@ -216,12 +216,13 @@ void defineRender(py::object worldClass) {
           parameter("progress", &A::progress), parameter("multiply_textures", &A::multiplyTextures),
           parameter("up", &A::up), parameter("background", &A::background)),
       parameterList(),
-      "Renders the world as it is now; of one that runs, the scene is kept from one picture to the "
-      "next. Options as those of the program vv. spp: samples a pixel, 16; with an error at most "
-      "so many, 4096; with a time limit 65536. channels: rgba and z, and with an error also error "
-      "and trust. progress: True for a bar, or a function that is called with the fraction done. "
-      "Ctrl-C raises KeyboardInterrupt; its attribute image is what was finished. camera: a "
-      "Pinhole, a 4x4 matrix from camera to world (looking along -z, +y up), or (position, target) "
-      "or (position, target, up); with fit only its direction counts. up: the axis that is up "
-      "('z', '-y' ...) in a world without Viewpoint. background: 'none', a colour or a file.");
+      "Renders the world in its current state. While a world runs, the scene is kept between "
+      "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
+      "with error the maximum (default 4096), with time_limit too (default 65536). channels: "
+      "default rgba and z, with error also error and trust. camera: a Pinhole, a 4x4 matrix from "
+      "camera to world (looking along -z, +y up), (position, target) or (position, target, up). "
+      "fit: keeps only the direction of the camera and shows everything. up: the axis that points "
+      "up ('z', '-y' ...) in a world without a Viewpoint. background: 'none', a colour or a file. "
+      "progress: True for a bar, or a function that is called with the fraction done. Ctrl-C "
+      "raises KeyboardInterrupt, whose attribute image is the picture so far.");
 }

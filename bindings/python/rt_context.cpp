@@ -110,12 +110,12 @@ std::array<double, 16> rtMatrix(const py::object& rows, const std::string& name)
 
 void defineRt(py::module_& parent) {
   py::module_ module = parent.def_submodule("rt", "OpenRT contexts; use xvrml.rt.");
-  rtError = PyErr_NewExceptionWithDoc("xvrml.rt.Error", "A call that OpenRT refused.",
+  rtError = PyErr_NewExceptionWithDoc("xvrml.rt.Error", "Raised if OpenRT refuses a call.",
                                       PyExc_RuntimeError, nullptr);
   if (!rtError) throw py::error_already_set();
   module.add_object("Error", rtError);
   py::class_<RtContext, RtContextPtr> context(module, "Context",
-                                              "An OpenRT context: one scene and what renders it.");
+                                              "An OpenRT context: a scene and its renderer.");
   context
       .def(py::init([](int threads, const std::string& config) {
              if (threads < 0 || threads > 1024)
@@ -124,10 +124,12 @@ void defineRt(py::module_& parent) {
                                                 config);
            }),
            py::arg("threads") = 0, py::kw_only(), py::arg("config") = "",
-           "threads: 0: as many as the process may use. config: as of rtNewContext.")
+           "threads: number of render threads; 0: all that the process may use. config: a "
+           "configuration text, as for rtNewContext in C.")
       .def(
           "close", [](RtContext& self) { self.close(); },
-          "Ends it and everything in it. Ends by itself with its last variable.")
+          "Deletes the context and everything in it. This also happens when the last reference to "
+          "it is gone.")
       .def_property_readonly("closed", [](const RtContext& self) { return !self.handle; })
       .def("__enter__", [](const RtContextPtr& self) { return self; })
       .def("__exit__", [](RtContext& self, const py::args&) { self.close(); });

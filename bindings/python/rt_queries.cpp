@@ -244,22 +244,22 @@ void defineRtQueries(py::class_<RtContext, RtContextPtr>& context) {
   context
       .def("cast_rays", castRays, py::arg("rays"), py::kw_only(), py::arg("tnear") = 0.0f,
            py::arg("tfar") = infinity,
-           "Nearest hits of rays (..., 6): origin and direction. A dict of arrays: t_hit "
-           "(infinite: nothing), geometry_ids (Instance.user_data), primitive_ids, primitive_uvs, "
-           "primitive_normals, instance_ids, names.")
+           "Returns the nearest hits of rays (..., 6): origin and direction. The result is a dict "
+           "of arrays: t_hit (infinite for a miss), geometry_ids (Instance.user_data), "
+           "primitive_ids, primitive_uvs, primitive_normals, instance_ids, names.")
       .def("test_occlusions", testOcclusions, py::arg("rays"), py::kw_only(),
            py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
-           "Whether anything lies between tnear and tfar: bool of shape (...).")
+           "Returns whether each ray hits anything between tnear and tfar: bool of shape (...).")
       .def("count_intersections", countIntersections, py::arg("rays"), py::kw_only(),
            py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
-           "How many surfaces each ray passes: int32 of shape (...).")
+           "Returns the number of surfaces on each ray: int32 of shape (...).")
       .def("list_intersections", listIntersections, py::arg("rays"), py::kw_only(),
            py::arg("tnear") = 0.0f, py::arg("tfar") = infinity,
-           "All surfaces that the rays pass, nearest first: as cast_rays, of shape (n,), with "
-           "ray_ids and ray_splits: those of ray i are ray_splits[i] to ray_splits[i + 1].")
+           "Returns all hits of the rays, nearest first: the arrays of cast_rays, of shape (n,), "
+           "and ray_ids and ray_splits. The hits of ray i are ray_splits[i] to ray_splits[i + 1].")
       .def("compute_closest_points", closestPoints, py::arg("query_points"), py::kw_only(),
            py::arg("radius") = infinity,
-           "The nearest surface point of each of the points (..., 3), not farther than radius: "
-           "points (NaN: none), distances, geometry_ids, primitive_ids, primitive_uvs, "
-           "primitive_normals, instance_ids, names.");
+           "Returns the surface points nearest to points (..., 3), as a dict of points, distances, "
+           "geometry_ids, primitive_ids, primitive_uvs, primitive_normals, instance_ids and names. "
+           "radius: maximum distance; the point is NaN if no surface is that near.");
 }

@@ -141,5 +141,5 @@ void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
                     qualityParameter<int>(RT_SEED), qualityParameter<std::string>(RT_TRANSPORT),
                     qualityParameter<bool>(RT_SHADOWS), parameter("channels", &A::channels),
                     parameter("progress", &A::progress)),
-      "A picture of the scene, as World.render makes one of a world.");
+      "Renders the scene. Returns a Picture, like World.render.");
 }

@@ -422,13 +422,13 @@ void defineRtScene(py::module_& module) {
   using namespace pybind11::literals;
   const py::object none = py::none();
   const auto unread = [](const RtHandle&) -> py::object {
-    throw py::attribute_error("it can be assigned, not read");
+    throw py::attribute_error("this attribute can only be assigned");
   };
   py::class_<RtHandle>(module, "_Thing")
       .def_readonly("id", &RtHandle::id, "The number in the C API.");
-  py::class_<RtObject, RtHandle>(module, "Object", "Geometry that instances place.")
-      .def("delete", call(rtDeleteObject), "Instances of it vanish with it.");
-  py::class_<RtInstance, RtHandle>(module, "Instance", "An object where it stands.")
+  py::class_<RtObject, RtHandle>(module, "Object", "Geometry. Instances place it in the scene.")
+      .def("delete", call(rtDeleteObject), "Deletes the object and its instances.");
+  py::class_<RtInstance, RtHandle>(module, "Instance", "An object placed in the scene.")
       .def("delete", call(rtDeleteInstance))
       .def_property(
           "matrix", unread,
@@ -438,7 +438,7 @@ void defineRtScene(py::module_& module) {
             rtInstanceMatrix(self.id, m.data());
             use.check();
           },
-          "Assign a 4x4 matrix for column vectors.")
+          "The placement, a 4x4 matrix for column vectors. Can only be assigned.")
       .def_property("visible", unread,
                     [](const RtInstance& self, bool visible) {
                       const CurrentContext use(self.context);
@@ -453,7 +453,8 @@ void defineRtScene(py::module_& module) {
             rtInstanceShader(self.id, given ? given->id : 0);
             use.check();
           },
-          "For everything in it instead of its own; None: its own.")
+          "The shader for all parts of the instance; None: each part's own shader. Can only be "
+          "assigned.")
       .def_property(
           "user_data", unread,
           [](const RtInstance& self, uint64_t data) {
@@ -461,7 +462,7 @@ void defineRtScene(py::module_& module) {
             rtInstanceUserData(self.id, data);
             use.check();
           },
-          "A number that queries report.");
+          "A number that queries return as geometry_ids. Can only be assigned.");
   py::class_<RtTexture, RtHandle>(module, "Texture").def("delete", call(rtDeleteTexture));
   py::class_<RtLight, RtHandle>(module, "Light")
       .def("delete", call(rtRemoveLight))
@@ -474,8 +475,9 @@ void defineRtScene(py::module_& module) {
   py::class_<RtShader, RtHandle>(module, "Shader",
                                  "A shader; shader['reflectance'] = 0.5 sets a parameter.")
       .def("__setitem__", setParameter, "name"_a, "value"_a)
-      .def_property_readonly("parameters", parameters, "Names of the parameters: (type, text).")
-      .def_readonly("name", &RtShader::name, "Its class.")
+      .def_property_readonly("parameters", parameters,
+                             "A dict from each parameter's name to its (type, description).")
+      .def_readonly("name", &RtShader::name, "The name of the shader's class.")
       .def("delete", call(rtDeleteShader));
   py::object type = module.attr("Context");
   auto context = py::reinterpret_borrow<py::class_<RtContext, RtContextPtr>>(type);
@@ -486,44 +488,46 @@ void defineRtScene(py::module_& module) {
       parameterList(parameter("normals", &M::normals), parameter("texcoords", &M::texcoords),
                     parameter("colors", &M::colors), parameter("shader", &M::shader),
                     parameter("name", &M::name), parameter("cull", &M::cull)),
-      "An object of triangles: vertices (n, 3) in float32 or float64, faces (m, 3); without "
-      "faces every three vertices are one. normals, texcoords and colors by vertex. cull: "
-      "back faces are not there.");
+      "Creates an object of triangles. vertices: (n, 3) in float32 or float64. faces: (m, 3); "
+      "without faces, every three vertices are a triangle. normals, texcoords, colors: one per "
+      "vertex. cull: rays do not hit back faces.");
   context
       .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none, "name"_a = 0,
-           "An exact sphere about the origin.")
-      .def("group", group, "parts"_a, "An object of others: pairs of an object and its matrix.")
+           "Creates an object that is an exact sphere around the origin.")
+      .def("group", group, "parts"_a,
+           "Creates an object from other objects. parts: pairs of an object and its matrix.")
       .def("instance", instance, "object"_a, "matrix"_a = none, py::kw_only(), "shader"_a = none,
            "name"_a = 0, "user_data"_a = 0, "dynamic"_a = false,
-           "Places an object in the scene. dynamic: it will move.")
+           "Places an object in the scene. dynamic: the instance will move often.")
       .def("shader", shader, "name"_a, "library"_a = none,
-           "A shader of a class of the stock shaders, or of a plug-in library; keywords are its "
-           "parameters.")
+           "Creates a shader. name: a class of the stock shaders, or of the plug-in library. "
+           "Keyword arguments are its parameters.")
       .def("texture", texture, "pixels"_a, py::kw_only(), "srgb"_a = false, "wrap"_a = "repeat",
-           "filter"_a = "linear", "A texture of bytes or floats, first row at the top.")
+           "filter"_a = "linear", "Creates a texture from bytes or floats, first row at the top.")
       .def("light", light, "shader"_a, "matrix"_a = none, py::kw_only(), "scope"_a = none,
-           "Turns a light shader on. scope: an instance that alone it shines on.")
+           "Adds a light to the scene. scope: the only instance that it illuminates.")
       .def("camera", camera, "eye"_a, "at"_a, "up"_a = std::array<double, 3>{0, 1, 0},
            "fov"_a = 45.0, py::kw_only(), "height"_a = none,
-           "The camera looks from eye to at; fov: vertical angle in degrees. height: orthographic, "
-           "so high.")
+           "Sets a camera that looks from eye to at. fov: vertical angle of view in degrees. "
+           "height: makes the camera orthographic, with a view of this height.")
       .def(
           "camera_shader",
           [](const RtContextPtr& self, const py::object& s, const py::object& m) {
             role(self, s, m, rtUseCamera);
           },
-          "shader"_a, "matrix"_a = none, "A camera of a shader instead.")
+          "shader"_a, "matrix"_a = none, "Sets a camera shader. None removes the camera.")
       .def(
           "environment",
           [](const RtContextPtr& self, const py::object& s, const py::object& m) {
             role(self, s, m, rtUseEnvironment);
           },
-          "shader"_a, "matrix"_a = none, "What rays see that hit nothing; None: nothing.")
+          "shader"_a, "matrix"_a = none,
+          "Sets the shader for rays that hit nothing; None removes it.")
       .def(
           "default_shader",
           [](const RtContextPtr& self, const py::object& s) {
             role(self, s, py::none(), rtDefaultShader);
           },
-          "shader"_a, "The surface of geometry that has none.");
+          "shader"_a, "Sets the shader for geometry that has none.");
   module.def("_kept_triangles", keptTriangles);
 }

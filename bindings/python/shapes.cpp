@@ -109,49 +109,52 @@ py::list meshes(const WorldPtr& self, int spheres, const py::object& view) {
 } // namespace
 
 void defineShapes(py::module_& module) {
-  py::class_<MeshObject>(
-      module, "Mesh",
-      "What a Shape looks like where it stands: arrays that share the mesh's memory, read-only.")
+  py::class_<MeshObject>(module, "Mesh",
+                         "The geometry of a Shape, and its place in the world. The arrays are "
+                         "read-only and share the memory of the renderer's mesh.")
       .def_property_readonly(
           "node",
           [](const MeshObject& self) { return asNode(self.shape.world(), self.shape.node); },
           "The Shape.")
       .def_property_readonly("kind", kindOf, "'triangles', 'lines', 'points' or 'sphere'.")
-      .def_property_readonly("matrix", matrixOf,
-                             "Its coordinates to the world's, 4x4 for column vectors.")
+      .def_property_readonly(
+          "matrix", matrixOf,
+          "The matrix from the mesh's coordinates to the world's, 4x4 for column vectors.")
       .def_property_readonly(
           "vertices",
           [](const MeshObject& self) { return view<float>(self, self.arrays->points, 3); },
-          "Points in its own coordinates: float32 of shape (n, 3).")
-      .def_property_readonly("world_vertices", placed,
-                             "Points in world coordinates: float64 of shape (n, 3), made anew.")
+          "The points in the mesh's own coordinates: float32 of shape (n, 3).")
+      .def_property_readonly(
+          "world_vertices", placed,
+          "The points in world coordinates: a new array of float64 of shape (n, 3).")
       .def_property_readonly(
           "faces", faces,
           "Vertices of each triangle (m, 3), line segment (m, 2) or point (m,): uint32.")
       .def_property_readonly(
           "normals",
           [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->normals, 3); },
-          "By vertex, float32 of shape (n, 3); None: each face has its own.")
+          "One normal per vertex, float32 of shape (n, 3); None: the faces are flat.")
       .def_property_readonly(
           "texcoords",
           [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->texCoords, 2); },
-          "By vertex, float32 of shape (n, 2), or None.")
+          "One texture coordinate per vertex, float32 of shape (n, 2), or None.")
       .def_property_readonly(
           "colors",
           [](const MeshObject& self) { return viewOrNone<float>(self, self.arrays->colors, 3); },
-          "By vertex, float32 of shape (n, 3), or None.")
+          "One colour per vertex, float32 of shape (n, 3), or None.")
       .def_property_readonly(
-          "radius", [](const MeshObject& self) { return self.arrays->radius; }, "Of a sphere.")
+          "radius", [](const MeshObject& self) { return self.arrays->radius; },
+          "The radius, if kind is 'sphere'.")
       .def_property_readonly(
           "solid", [](const MeshObject& self) { return self.arrays->solid; },
-          "Back faces are not drawn.")
+          "True if back faces are not drawn.")
       .def_property_readonly(
           "ccw", [](const MeshObject& self) { return self.arrays->ccw; },
-          "Faces run counter-clockwise.");
+          "True if the vertices of a face are in counter-clockwise order, seen from its front.");
   py::object world = module.attr("World");
   py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(world).def(
       "meshes", meshes, py::kw_only(), py::arg("spheres") = 32, py::arg("view") = py::none(),
-      "Everything that is drawn, as a list of Mesh. spheres: how many parts from pole to pole a "
-      "Sphere is cut into; 0: it stays one. view: camera to world, for levels of detail and "
-      "billboards.");
+      "Returns everything that is drawn, as a list of Mesh. spheres: number of segments of a "
+      "Sphere from pole to pole; 0 keeps Spheres exact (kind 'sphere'). view: camera-to-world "
+      "matrix, for levels of detail and billboards.");
 }

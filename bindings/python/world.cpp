@@ -233,7 +233,8 @@ py::array matrixOf(const ViewpointInfo& v) {
 } // namespace
 
 void defineWorld(py::module_& module) {
-  py::class_<Diagnostic>(module, "Diagnostic", "A problem of a world, with its place.")
+  py::class_<Diagnostic>(module, "Diagnostic",
+                         "A problem found in a world, with its file, line and column.")
       .def_property_readonly("severity",
                              [](const Diagnostic& d) { return severityName(d.severity); })
       .def_property_readonly("file", [](const Diagnostic& d) { return toText(d.file); })
@@ -251,40 +252,41 @@ void defineWorld(py::module_& module) {
       .def_property_readonly("description",
                              [](const ViewpointInfo& v) { return toText(v.description); })
       .def_property_readonly("matrix", matrixOf,
-                             "Its pose: camera to world, 4x4 for column vectors, looking along -z "
-                             "with +y up, as render(camera=...) takes it.")
+                             "The pose: camera to world, 4x4 for column vectors, looking along -z "
+                             "with +y up. render(camera=...) accepts it.")
       .def("__repr__", [](const ViewpointInfo& v) {
         return toText("<Viewpoint " + (v.name.empty() ? v.description : v.name) + ">");
       });
   py::class_<WorldObject, WorldPtr> world(
       module, "World",
-      "A world; World() is an empty one. world['NAME'] is the node that DEF NAME names. It stands "
-      "still until its time or its events are asked for.",
+      "A world. World() is an empty one. world['NAME'] is the node with the DEF name NAME. The "
+      "world is static until its time or its events are used.",
       py::dynamic_attr());
   world.def(py::init(&emptyWorld))
       .def_property_readonly(
           "path", [](const WorldPtr& self) { return toText(self->graph().path); },
-          "The file that it comes from.")
+          "The file that the world was loaded from.")
       .def_property_readonly("warnings", warnings,
-                             "Every problem found so far, in order: errors too.")
-      .def_property_readonly("names", names, "DEF names of the file.")
-      .def_property_readonly("roots", roots, "Nodes of the file's top level.")
-      .def_property_readonly("viewpoints", viewpoints, "Viewpoints in the order of the file.")
+                             "All problems found so far, errors included, in order.")
+      .def_property_readonly("names", names, "The DEF names of the file.")
+      .def_property_readonly("roots", roots, "The nodes at the top level of the file.")
+      .def_property_readonly("viewpoints", viewpoints, "The viewpoints in the order of the file.")
       .def_property("time", now, setTime,
-                    "Seconds since the world was loaded. Assigning lets time pass: sensors send, "
-                    "routes carry, Scripts run, until nothing is left to do. It does not go back.")
+                    "Seconds since the world was loaded. Assigning a later time advances the clock "
+                    "and delivers all events: sensors send, routes forward, Scripts run. An "
+                    "earlier time raises ValueError.")
       .def_property_readonly(
           "epoch",
           [](const WorldPtr& self) {
             return self->browser() ? self->browser()->epoch() : worldEpoch;
           },
-          "Time 0 in the world's own time, seconds since 1970: assign epoch + time to a startTime "
-          "to start something now.")
+          "The world's own clock at time 0, in seconds since 1970. Assign epoch + time to a "
+          "startTime to start something now.")
       .def("__getitem__",
            [](const WorldPtr& self, const py::object& name) {
              if (!py::isinstance<py::str>(name))
                throw py::type_error(
-                   "a world is asked by the DEF name of a node, which is a string");
+                   "the index of a world is the DEF name of a node, which is a str");
              return getNode(self, fromText(name));
            })
       .def("__contains__",
@@ -298,13 +300,12 @@ void defineWorld(py::module_& module) {
       .def("__setattr__", setAttribute)
       .def("add", add, py::arg("node"), py::arg("name") = py::none(),
            py::return_value_policy::reference,
-           "Puts a node into the world, at the top level, under a DEF name if one is given. "
-           "Returns the node.")
-      .def("remove", removeNode, py::arg("node"), "Takes a node from the top level.")
-      .def("listen", listen, py::arg("node"), py::arg("event"), py::arg("callback"),
-           "Calls callback(value, time) whenever an eventOut or exposedField has sent: after the "
-           "events that belong together, on the thread that made them happen. Returns a number for "
-           "unlisten.")
+           "Adds a node to the top level of the world. name: its DEF name. Returns the node.")
+      .def("remove", removeNode, py::arg("node"), "Removes a node from the top level.")
+      .def(
+          "listen", listen, py::arg("node"), py::arg("event"), py::arg("callback"),
+          "Calls callback(value, time) whenever an eventOut or exposedField has sent: after all "
+          "events of the cascade, on the thread that caused them. Returns a number for unlisten().")
       .def(
           "unlisten",
           [](const WorldPtr& self, const NodeObject& node, uint64_t number) {
@@ -317,15 +318,15 @@ void defineWorld(py::module_& module) {
              const NodeObject& to,
              const std::string& in) { return route(self, from, out, to, in, true); },
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
-          "Adds a route; one that exists stays one.")
+          "Adds a route, unless it exists.")
       .def(
           "delete_route",
           [](const WorldPtr& self, const NodeObject& from, const std::string& out,
              const NodeObject& to,
              const std::string& in) { return route(self, from, out, to, in, false); },
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
-          "False if there was no such route.")
-      .def("to_vrml", toVrml, "The world as VRML97 text.")
+          "Removes a route. Returns False if it did not exist.")
+      .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
       .def("save", save, py::arg("path"), "Writes the world as a VRML97 file.")
       .def("__repr__",
            [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });

@@ -1,4 +1,4 @@
-# What KiCad's materials are made of: sed -i -f materials.sed shapes3D/*.wrl
+# Gives KiCad's materials shaders: sed -i -f materials.sed shapes3D/*.wrl
 # Models name their Materials (PIN-01, MET-ALUMINUM ...); each keeps its colours for other browsers.
 /ORTShader/b
 s/appearance Appearance {[[:space:]]*material DEF PIN-02/appearance ORTAppearance { shader ORTShader { name "Metal" file "metal" options "color n .143 .375 1.442 color k 3.983 2.386 1.603 1f roughness .2" } material DEF PIN-02/

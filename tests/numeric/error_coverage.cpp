@@ -82,9 +82,9 @@ TEST_F(ErrorBars, WhatOnlySomePathsMeetIsTrustedWhereEnoughDo) { // lamps are no
   rtMakeCurrent(before);
 }
 
-// Of scenes that may set limits, some of a kind that once was wrong: light that few paths meet
-// (said too little), a lens before black and a wedge that splits the colours (too much). `make
-// audit` has all of them and many seeds.
+// Renders some of the scenes whose errors were once estimated wrongly: too low for light that few
+// paths hit, too high for a lens in front of black and for a wedge that splits the colours. `make
+// audit` renders all scenes with many seeds.
 TEST_F(ErrorBars, PicturesAreOffByWhatIsSaid) {
   for (const char* name : {"caustic", "focus", "dispersion", "leaves"}) {
     RTcontext before = rtGetCurrent(), other = rtNewContext(nullptr);

@@ -59,7 +59,7 @@ TEST_F(MapBudget, Lights) {
   expectRefused("lights from here on are left out");
 }
 
-// What the allocator has given out.
+// Returns the number of bytes that are allocated.
 uint64_t heap() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
 
 // The API keeps no values of a light's parameters once more for geometry, which has none of lights.

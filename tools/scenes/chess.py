@@ -234,7 +234,7 @@ def chess():
                   (-2.1, .72, 2.0), .6, "DEF Close Viewpoint", 'description "Among the pieces" '),
         'ORTBackground { shader ORTShader { name "EnvironmentMap" file "environmentmap" '
         'options [ "texture texture studio.png", "1f intensity .8", "1f rotation 2.4" ] } }',
-        "# What the pieces and squares look like: a material for the colours, a shader for what is done with them.",
+        "# The look of the pieces and squares: a Material holds the colours, and a shader uses them.",
         "Switch { choice [",
         look(
             "White",
