@@ -34,9 +34,9 @@ class Option:
         return [p for p in parts if re.fullmatch(r"[a-z][a-z0-9]*", p)] if len(parts) > 1 else []
 
     def members(self):
-        """For a LIST: returns the words that it may contain, between commas: "... out of a, b, c
-        ..."."""
-        found = re.search(r"out of ((?:[a-z]+, )+[a-z]+)",
+        """For a LIST: returns the words that it may contain, between commas: "... separated by
+        commas: a, b, c ..."."""
+        found = re.search(r"separated by commas: ((?:[a-z]+, )+[a-z]+)",
                           self.text) if self.argument == "LIST" else None
         return found.group(1).split(", ") if found else []
 

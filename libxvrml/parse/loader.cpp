@@ -196,9 +196,14 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
       return nullptr;
     }
   }
+  // Without a name, the first PROTO of the file is meant; EXTERNPROTOs do not count (4.9.3). A file
+  // with nothing else may still pass on a prototype.
+  ProtoPtr external;
   for (const ProtoPtr& proto : library->scope.prototypes) {
-    if (name.empty() || proto->type->name == name) return proto;
+    if (name.empty() ? !proto->isExtern : proto->type->name == name) return proto;
+    if (name.empty() && !external) external = proto;
   }
+  if (external) return external;
   reason = name.empty() ? fmt::format("'{}' declares no prototype", path)
                         : fmt::format("'{}' declares no prototype '{}'", path, name);
   return nullptr;

@@ -40,7 +40,7 @@ TEST(Keys, neverOverAFile) {
   const Folder folder;
   makeKeyFile(folder / "key");
   const std::string before = contents(folder / "key");
-  EXPECT_NE(thrown([&] { makeKeyFile(folder / "key"); }).find("there already"), std::string::npos);
+  EXPECT_NE(thrown([&] { makeKeyFile(folder / "key"); }).find("exists already"), std::string::npos);
   EXPECT_EQ(contents(folder / "key"), before);
   EXPECT_NE(thrown([&] { makeKeyFile(folder / "no/such/folder"); }), "");
 }

@@ -432,8 +432,8 @@ TEST_P(ClusterMaster, NobodyWorksWithOtherVersionsOfShaders) {
   master->commit(2, commit, true, now);
   FakeWorker& after = join();
   for (int i = 0; i < 300; i++) step();
-  EXPECT_NE(before.refused.find("anew"), std::string::npos);
-  EXPECT_NE(after.refused.find("anew"), std::string::npos);
+  EXPECT_NE(before.refused.find("reloaded"), std::string::npos);
+  EXPECT_NE(after.refused.find("reloaded"), std::string::npos);
   EXPECT_EQ(master->totals().workers, 0u);
 }
 

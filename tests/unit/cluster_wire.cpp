@@ -339,7 +339,7 @@ TEST(Wire, threeMessagesThatAreNoneCloseThePeer) {
     bare.send(hello());
     EXPECT_NE(wires.next(door, Kind::message).peer, 0u); // two bad messages are tolerated
     bare.send(junk);
-    EXPECT_NE(wires.next(door, Kind::left).text.find("three messages"), std::string::npos);
+    EXPECT_NE(wires.next(door, Kind::left).text.find("three invalid messages"), std::string::npos);
     bare.send(hello());
     for (int i = 0; i < 20; i++) wires.serve();
     EXPECT_FALSE(wires.has(door, Kind::message));
@@ -351,7 +351,7 @@ TEST(Wire, whoOnlySpeaksJunkNeverJoins) {
   const Wire& door = wires.add(listening());
   RawPeer bare(door);
   for (int i = 0; i < 3; i++) bare.send({someBytes(50)});
-  EXPECT_NE(wires.next(door, Kind::refused).text.find("three messages"), std::string::npos);
+  EXPECT_NE(wires.next(door, Kind::refused).text.find("three invalid messages"), std::string::npos);
   EXPECT_FALSE(wires.has(door, Kind::joined));
 }
 
