@@ -231,7 +231,7 @@ def test_junk_ends_the_connection_and_the_next_master_is_served(worker):
     for junk in (b"", b"junk", bytes(1000)):
         master.send_frames([junk])
     _, bye = master.receive("Bye")
-    assert "three messages" in bye.text(0)
+    assert "three invalid messages" in bye.text(0)
     Master(worker.address).welcome()
 
 

@@ -254,7 +254,7 @@ def test_transport_in_the_statistics(wall, name):
 def test_a_clamp_is_part_of_the_claim(wall):
     done = wall("wall.wrl", "-o", "x.pfm", "--stats", "-", "--shader", "*=Diffuse:emission=12.5",
                 "--clamp", "2", *SMALL)
-    assert "cut at 2" in json.loads(done.text)["transport"]["claim"]
+    assert "clamped to 2" in json.loads(done.text)["transport"]["claim"]
 
 
 def test_what_the_engine_says_is_heard(vv):
