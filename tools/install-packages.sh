@@ -7,7 +7,7 @@ set -euo pipefail
 
 build=(
   g++ make cmake ninja-build ccache pkg-config git ca-certificates
-  libembree-dev libtbb-dev                                      # ray kernels, threads
+  libembree-dev libtbb-dev libhwy-dev                           # ray kernels, threads, vectors
   libimath-dev libopenexr-dev libpng-dev libjpeg-dev libgif-dev # small maths, pictures
   zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
   libflatbuffers-dev flatbuffers-compiler # scene edits

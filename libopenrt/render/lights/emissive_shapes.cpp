@@ -225,6 +225,19 @@ EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.record
   std::vector<LightBounds> bounds;
   for (uint32_t id = 0; id < scene.records.size(); id++) add(scene, id, bounds);
   tree_.build(bounds);
+  for (const Shape& shape : shapes_) {
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 3; k++) corners_[c][k].push_back(shape.corner[c][k]);
+    sides_.push_back(shape.sides | (shape.sphere ? ShapeArrays::sphere : 0));
+  }
+}
+
+ShapeArrays EmissiveShapes::arrays() const {
+  ShapeArrays arrays;
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < 3; k++) arrays.corner[c][k] = corners_[c][k].data();
+  arrays.sides = sides_.data();
+  return arrays;
 }
 
 void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<LightBounds>& bounds) {

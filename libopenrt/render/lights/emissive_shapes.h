@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "render/lights/light_samples.h"
 #include "render/lights/light_tree.h"
 
 namespace openrt {
@@ -34,6 +35,8 @@ class EmissiveShapes {
   double brightest() const { return brightest_; }
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
   const LightTree& tree() const { return tree_; }
+  // Returns the shapes as structure of arrays, for vector code.
+  ShapeArrays arrays() const;
   // A point sampled on a shape. u, v: barycentric coordinates on a triangle. area: 1 / pdf by area,
   // which is the area of a triangle, and for an ellipsoid also corrects the uneven distribution of
   // points.
@@ -58,6 +61,8 @@ class EmissiveShapes {
   std::vector<Shape> shapes_;     // all primitives of a record are consecutive
   std::vector<uint32_t> firstOf_; // index of a record's first shape, by record
   LightTree tree_;
+  std::vector<float> corners_[3][3]; // as Shape::corner, by shape
+  std::vector<uint32_t> sides_;      // ShapeArrays::sides
   double brightest_ = 0;
 };
 

@@ -46,16 +46,27 @@ TileRenderer::LightSamples TileRenderer::chooseLightSamples(const RtsBatch& batc
   float *pick[2], *place[2];
   draw(sampling.random, Draw::emitter, 0, pick);
   draw(sampling.random, Draw::place, 0, place);
+  const uint32_t size = padded(hits.count);
+  auto* wanted = arena_.takeZero<uint8_t>(size);
+  for (uint32_t l = 0; l < batch.lobeCount; l++)
+    for (uint32_t i = 0; sampling.selectionProbability[l] && i < hits.count; i++)
+      wanted[i] |= sampling.selectionProbability[l][i] > 0;
+  auto* twoSided = arena_.takeZero<uint32_t>(size);
+  for (uint32_t i = 0; i < hits.count; i++) twoSided[i] = transmitsAt(batch, i);
+  const LightPoints lightPoints{hits.count,
+                                {hits.position[0], hits.position[1], hits.position[2]},
+                                {hits.geometric[0], hits.geometric[1], hits.geometric[2]},
+                                points.error,
+                                twoSided,
+                                pick[0],
+                                place[0],
+                                place[1]};
+  auto* all = arena_.take<LightSample>(hits.count);
+  scene_.emitters.choose(lightPoints, pick[1], arena_, all);
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
-    bool wanted = false;
-    for (uint32_t l = 0; l < batch.lobeCount; l++)
-      wanted |= sampling.selectionProbability[l] && sampling.selectionProbability[l][i] > 0;
-    if (!wanted) continue;
-    const LightSampleContext from = lightSampleContext(points, i, transmitsAt(batch, i));
-    const LightSample lightSample = scene_.emitters.choose(
-        from, double(pick[0][i]) + double(pick[1][i]) * 0x1p-24, place[0][i], place[1][i]);
-    if (!(lightSample.pdf > 0)) continue;
+    const LightSample& lightSample = all[i];
+    if (!wanted[i] || !(lightSample.pdf > 0)) continue;
     float origin[3];
     liftPoint(points, i, lightSample.direction, origin);
     for (int k = 0; k < 3; k++) {

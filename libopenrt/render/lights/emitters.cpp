@@ -6,6 +6,7 @@
 
 #include "render/lights/spherical.h"
 #include "render/render_scene.h"
+#include "render/surface/points.h"
 #include "render/surface/scatter.h"
 #include "scene/transports.h"
 
@@ -81,42 +82,129 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
   return seen.pdf(direction);
 }
 
-LightSample Emitters::choose(const LightSampleContext& from, double pick, float u, float v) const {
+LightSample Emitters::chooseSky(float u, float v) const {
   LightSample lightSample;
-  if (pick < double(skyProbability_)) {
-    float local[3];
-    lightSample.distance = std::numeric_limits<float>::infinity();
-    lightSample.pdf = skyProbability_ * sky_->sample(u, v, local);
-    if (!(lightSample.pdf > 0)) return {};
-    lightSample.pdf /= skyJacobian(local);
-    const auto& m = scene_->environment.fromLocal.r;
-    double towards[3], square = 0;
-    for (int k = 0; k < 3; k++) {
-      towards[k] =
-          double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
-      square += towards[k] * towards[k];
-    }
-    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k] / std::sqrt(square));
-  } else {
-    const float* normal = sideOf(from);
-    const double left = (pick - double(skyProbability_)) / (1 - double(skyProbability_));
-    const LightTree::Choice choice =
-        shapes_->tree().choose(from.position, normal, std::min(left, 1 - 0x1p-53));
-    if (!(choice.probability > 0)) return {};
-    const EmissiveShapes::Shape& shape = (*shapes_)[choice.light];
-    lightSample.record = shape.record;
-    lightSample.primitive = shape.primitive;
-    double towards[3], distance = 0;
-    const double alone = sampleShape(shape, from, u, v, towards, distance, lightSample.nearEdge);
-    lightSample.pdf = float((1 - double(skyProbability_)) * double(choice.probability) * alone);
-    lightSample.distance = float(distance);
-    for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k]);
+  float local[3];
+  lightSample.distance = std::numeric_limits<float>::infinity();
+  lightSample.pdf = skyProbability_ * sky_->sample(u, v, local);
+  if (!(lightSample.pdf > 0)) return {};
+  lightSample.pdf /= skyJacobian(local);
+  const auto& m = scene_->environment.fromLocal.r;
+  double towards[3], square = 0;
+  for (int k = 0; k < 3; k++) {
+    towards[k] =
+        double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
+    square += towards[k] * towards[k];
   }
-  const float* normal = sideOf(from);
-  if (!(lightSample.pdf > 0) || !std::isfinite(lightSample.pdf) ||
-      (normal && !(dot3(lightSample.direction, normal) > 0)))
-    return {};
+  for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k] / std::sqrt(square));
   return lightSample;
+}
+
+// Samples a direction towards a shape that was selected with the given probability.
+LightSample Emitters::sampleChosen(const LightSampleContext& from, uint32_t number,
+                                   double probability, float u, float v) const {
+  const EmissiveShapes::Shape& shape = (*shapes_)[number];
+  LightSample lightSample;
+  lightSample.record = shape.record;
+  lightSample.primitive = shape.primitive;
+  double towards[3], distance = 0;
+  const double alone = sampleShape(shape, from, u, v, towards, distance, lightSample.nearEdge);
+  if (!(alone > 0)) return {};
+  lightSample.pdf = float((1 - double(skyProbability_)) * probability * alone);
+  lightSample.distance = float(distance);
+  for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k]);
+  return lightSample;
+}
+
+namespace {
+
+// Returns the sample if it is valid and its light counts, else none.
+LightSample checked(const LightSample& lightSample, const float* normal) {
+  const bool valid = lightSample.pdf > 0 && std::isfinite(lightSample.pdf) &&
+                     (!normal || dot3(lightSample.direction, normal) > 0);
+  return valid ? lightSample : LightSample{};
+}
+
+} // namespace
+
+LightSample Emitters::choose(const LightSampleContext& from, double pick, float u, float v) const {
+  const float* normal = sideOf(from);
+  const double sky = skyProbability_;
+  if (pick < sky) return checked(chooseSky(u, v), normal);
+  const double left = std::min((pick - sky) / (1 - sky), 1 - 0x1p-53);
+  const LightTree::Choice choice = shapes_->tree().choose(from.position, normal, left);
+  if (!(choice.probability > 0)) return {};
+  return checked(sampleChosen(from, choice.light, choice.probability, u, v), normal);
+}
+
+void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena,
+                      LightSample* out) const {
+  ArenaScope scope(arena);
+  const uint32_t size = padded(points.count);
+  const auto contextOf = [&](uint32_t i) {
+    LightSampleContext from;
+    float p[3], n[3];
+    for (int k = 0; k < 3; k++) {
+      p[k] = points.position[k][i];
+      n[k] = points.normal[k][i];
+    }
+    if (!points.twoSided[i]) std::copy_n(n, 3, from.normal);
+    offsetPoint(p, n, points.error[i], from.position);
+    return from;
+  };
+  const float sky = skyProbability_;
+  if (sky >= 1) {
+    for (uint32_t i = 0; i < points.count; i++)
+      out[i] = checked(chooseSky(points.u[i], points.v[i]), sideOf(contextOf(i)));
+    return;
+  }
+  const auto floats = [&] { return arena.take<float>(size); };
+  float* pick = floats();
+  for (uint32_t i = 0; i < size; i++)
+    pick[i] = std::clamp((points.pick[i] - sky) / (1 - sky), 0.0f, 1 - 0x1p-24f);
+  LightPoints left = points;
+  left.pick = pick;
+  const ChosenLights chosen{arena.take<uint32_t>(size), floats()};
+  if (const LightNode* node = shapes_->tree().onlyNode()) {
+    chooseFromNode(*node, left, chosen);
+  } else {
+    for (uint32_t i = 0; i < size; i++) {
+      const uint32_t from = std::min(i, points.count - 1);
+      const LightSampleContext context = contextOf(from);
+      const double all = double(points.pick[from]) + double(fine[from]) * 0x1p-24;
+      const double rest = std::clamp((all - double(sky)) / (1 - double(sky)), 0.0, 1 - 0x1p-53);
+      const LightTree::Choice choice =
+          shapes_->tree().choose(context.position, sideOf(context), rest);
+      chosen.shape[i] = choice.light;
+      chosen.probability[i] = choice.probability;
+    }
+  }
+  const SampledLights sampled{
+      {floats(), floats(), floats()}, floats(), floats(), arena.take<uint32_t>(size)};
+  sampleShapes(shapes_->arrays(), left, chosen, sampled);
+  for (uint32_t i = 0; i < points.count; i++) {
+    if (points.pick[i] < sky) {
+      out[i] = checked(chooseSky(points.u[i], points.v[i]), sideOf(contextOf(i)));
+      continue;
+    }
+    out[i] = {};
+    if (!(chosen.probability[i] > 0)) continue;
+    if (sampled.exact[i]) {
+      const LightSampleContext from = contextOf(i);
+      out[i] = checked(
+          sampleChosen(from, chosen.shape[i], chosen.probability[i], points.u[i], points.v[i]),
+          sideOf(from));
+      continue;
+    }
+    if (!(sampled.pdf[i] > 0)) continue;
+    const EmissiveShapes::Shape& shape = (*shapes_)[chosen.shape[i]];
+    out[i].record = shape.record;
+    out[i].primitive = shape.primitive;
+    out[i].pdf = (1 - sky) * chosen.probability[i] * sampled.pdf[i];
+    out[i].distance = sampled.distance[i];
+    for (int k = 0; k < 3; k++) out[i].direction[k] = sampled.direction[k][i];
+    if (!std::isfinite(out[i].pdf)) out[i].pdf = 0;
+  }
 }
 
 // Near an edge the ray may hit a neighbouring primitive of the same surface at the same distance;

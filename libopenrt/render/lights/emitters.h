@@ -47,6 +47,8 @@ class Emitters {
   // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point
   // on it. With many emitters all digits of pick matter.
   LightSample choose(const LightSampleContext& from, double pick, float u, float v) const;
+  // Does the same for many points at once. fine: low digits of the random numbers `pick`, by point.
+  void choose(const LightPoints& points, const float* fine, Arena& arena, LightSample* out) const;
   // Returns whether the hit of the sample's ray is the emitter that was sampled.
   bool isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
                     float distance) const;
@@ -66,6 +68,9 @@ class Emitters {
   const SkySampler* sky() const { return sky_.get(); }
 
  private:
+  LightSample chooseSky(float u, float v) const;
+  LightSample sampleChosen(const LightSampleContext& from, uint32_t number, double probability,
+                           float u, float v) const;
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
                      double v, double direction[3], double& distance, bool& nearEdge) const;
   float skyJacobian(const float local[3]) const;

@@ -219,8 +219,6 @@ std::vector<BinaryNode> buildBinaryTree(std::span<const LightBounds> lights,
   return binaryNodes;
 }
 
-constexpr float slack = 1e-5f; // tolerance of cosines, so that bounds hold despite rounding
-
 } // namespace
 
 // Collapses the binary tree: the strongest binary nodes are replaced by their children until a node
@@ -300,68 +298,10 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
   node.used[i] = 1;
 }
 
-struct LightTree::Query {
-  float place[3], normal[3];
-  // added to the cosine at the receiver; 2 if the side of the receiver does not matter
-  float facing;
-  // cut: cosine at the receiver below which nothing arrives. least: smallest cosine that is used
-  // above that.
-  float cut, least;
-  Query(const float from[3], const float* side, Side meaning) {
-    for (int k = 0; k < 3; k++) {
-      place[k] = from[k];
-      normal[k] = side ? side[k] : 0;
-    }
-    facing = side ? 0 : 2;
-    cut = meaning == Side::only ? -slack : -2;
-    least = meaning == Side::only ? slack : 0.1f;
-  }
-};
-
-// Computes the importance of each child: a bound of its irradiance at a point that faces the light,
-// except for the clamped distance near the box. One loop without calls or branches, so that it
-// vectorises.
-void LightTree::importances(const Node& node, const Query& q, float* __restrict out) {
-  const auto larger = [](float a, float b) { return a > b ? a : b; };
-  for (uint32_t i = 0; i < width; i++) {
-    const float x = q.place[0] - node.centre[0][i], y = q.place[1] - node.centre[1][i],
-                z = q.place[2] - node.centre[2][i];
-    const float square = x * x + y * y + z * z, radius2 = node.radius2[i];
-    const bool within = square <= radius2 * (1 + 1e-5f);
-    const float inverse = 1 / std::sqrt(within ? 1.0f : square);
-    // The cone about the box as seen from the point.
-    const float cosBox = std::sqrt(larger(1 - radius2 * inverse * inverse, 0)) - slack;
-    const float sinBox = std::sqrt(larger(1 - cosBox * cosBox, 0));
-    // The direction from the box to the point that is nearest to the cone of normals.
-    const float along = (x * node.axis[0][i] + y * node.axis[1][i] + z * node.axis[2][i]) * inverse;
-    const float axial = larger(along, -along * node.both[i] - (1 - node.both[i]) * 2);
-    const float across = std::sqrt(larger(1 - axial * axial, 0));
-    const float cosine = node.cosine[i], sine = node.sine[i];
-    const float cosLess = axial * cosine + across * sine, sinLess = across * cosine - axial * sine;
-    const float cosX = axial > cosine ? 1.0f : cosLess, sinX = axial > cosine ? 0.0f : sinLess;
-    const float leavesBeside = cosX * cosBox + sinX * sinBox;
-    const float leaves = ((cosX > cosBox) | within) ? 1.0f : leavesBeside,
-                atLeast = larger(leaves, slack);
-    const float leaving = leaves < node.beyond[i] - slack ? 0.0f : atLeast;
-    // The arriving direction that is nearest to the receiver's normal.
-    const float facing = q.facing - (x * q.normal[0] + y * q.normal[1] + z * q.normal[2]) * inverse;
-    const float aside = std::sqrt(larger(1 - facing * facing, 0));
-    const float arrivesBeside = facing * cosBox + aside * sinBox;
-    const float arrives = ((facing > cosBox) | within) ? 1.0f : arrivesBeside,
-                enough = larger(arrives, q.least);
-    const float arriving = arrives < q.cut ? 0.0f : enough;
-    const float falling = node.intensity[i] / larger(larger(square, radius2), 1e-37f);
-    const float sum = larger(falling + node.irradiance[i], 1e-30f),
-                strength = sum < 1e30f ? sum : 1e30f;
-    const float used = node.used[i], lit = square <= node.reach2[i] ? used : 0.0f;
-    out[i] = lit * leaving * arriving * strength;
-  }
-}
-
 LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick,
                                     Side side) const {
   if (nodes_.empty()) return {};
-  const Query query(place, normal, side);
+  const LightReceiver query(place, normal, side);
   double probability = 1;
   for (uint32_t at = 0;;) {
     const Node& node = nodes_[at];
@@ -384,7 +324,7 @@ LightTree::Choice LightTree::choose(const float place[3], const float* normal, d
 
 float LightTree::probability(const float place[3], const float* normal, uint32_t light) const {
   if (nodes_.empty() || places_[light].node == none) return 0;
-  const Query query(place, normal, Side::only);
+  const LightReceiver query(place, normal, Side::only);
   double probability = 1;
   Place at = places_[light];
   for (;;) {

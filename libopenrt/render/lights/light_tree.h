@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "render/lights/light_node.h"
+
 namespace openrt {
 
 // Bounds of one light or a group of lights. They must be conservative: a light with selection
@@ -35,9 +37,7 @@ class LightTree {
     float probability = 0; // 0: no light reaches the point
   };
 
-  // Meaning of the normal: light counts only from the side that it points to (`only`), or mostly
-  // from that side (`likely`).
-  enum class Side : uint8_t { only, likely };
+  using Side = ReceiverSide;
 
   void build(std::span<const LightBounds> lights);
   bool empty() const { return nodes_.empty(); }
@@ -47,26 +47,15 @@ class LightTree {
                 Side side = Side::only) const;
   float probability(const float place[3], const float* normal, uint32_t light) const;
   uint32_t depth() const { return depth_; }
+  // Returns the only node of a tree with at most eight lights; null for others.
+  const LightNode* onlyNode() const { return nodes_.size() == 1 ? nodes_.data() : nullptr; }
 
  private:
-  static constexpr uint32_t width = 8;
-  // Up to eight children side by side for vector lanes, with everything precomputed that does not
-  // depend on the shading point.
-  struct Node {
-    // radius2: squared radius of the box's bounding sphere. reach2: squared radius of influence
-    // from the centre.
-    float centre[3][width], radius2[width], reach2[width];
-    float axis[3][width], cosine[width], sine[width], beyond[width], both[width];
-    float intensity[width], irradiance[width], used[width];
-    uint32_t child[width]; // index of a node, or of a light if `leaf`
-    bool leaf[width];
-    uint32_t parent, slot; // parent: none for the root
-  };
+  using Node = LightNode;
+  static constexpr uint32_t width = LightNode::width;
   struct Place { // node and child slot of a light
     uint32_t node, slot;
   };
-  struct Query;
-  static void importances(const Node& node, const Query& query, float* __restrict out);
   void fill(uint32_t node, uint32_t slot, const LightBounds& bounds);
   std::vector<Node> nodes_;
   std::vector<Place> places_; // by light; node ~0: the light emits nothing

@@ -1,5 +1,6 @@
-// points.cpp: computes the position of hits with its error bound, normals, texture coordinates and
-// colour. Error bounds follow pbrt's running error analysis: gamma(n) = n e / (1 - n e), e = 2^-24.
+// points.cpp: sorts hits into buckets and turns them into shading points: gathers what the records
+// say about each hit, block by block, for the vector code in point_block.cpp. Spheres, lines and
+// points are computed here, hit by hit.
 #include "render/surface/points.h"
 
 #include <algorithm>
@@ -7,19 +8,11 @@
 #include <cstring>
 
 #include "render/huge_spheres.h"
+#include "render/surface/point_block.h"
 #include "shading/parameters.h"
 
 namespace openrt {
 namespace {
-
-constexpr float gammaOf(int n) { return n * 0x1p-24f / (1 - n * 0x1p-24f); }
-
-struct PointArrays { // output arrays, filled lane by lane
-  float *position[3], *direction[3], *geometric[3], *normal[3], *uv[2], *color[4], *distance,
-      *segment, *error;
-  uint32_t *flags, *record;
-  const void** params;
-};
 
 void apply(const float m[3][3], const float v[3], float out[3]) {
   for (int i = 0; i < 3; i++) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
@@ -49,55 +42,51 @@ bool normalize(float v[3]) {
   return true;
 }
 
-template <int N>
-void mix(const float* values, const uint32_t i[3], const float w[3], float out[N]) {
-  for (int k = 0; k < N; k++)
-    out[k] =
-        w[0] * values[N * i[0] + k] + w[1] * values[N * i[1] + k] + w[2] * values[N * i[2] + k];
-}
-
-struct Local { // intermediate data of one hit
-  float p[3], bound[3], ng[3], ns[3], uv[2] = {0, 0}, color[4] = {1, 1, 1, 1};
-  uint32_t flags = 0;
-  bool smooth = false;
-};
-
-void triangle(const Record& r, const RayHits& hits, uint32_t lane, Local& h) {
+// Writes what a record says about the triangle that was hit into lane `to` of a block.
+void gatherTriangle(const Record& r, const RayHits& hits, uint32_t lane, PointBlock& block,
+                    uint32_t to) {
   const uint32_t* corner = r.indices + 3 * size_t(hits.primitive[lane]);
-  const uint32_t i[3] = {corner[0], corner[1], corner[2]};
-  const float u = hits.u[lane], v = hits.v[lane];
-  const float w[3] = {1 - u - v, u, v};
-  const float *a = r.vertices + 3 * size_t(i[0]), *b = r.vertices + 3 * size_t(i[1]),
-              *c = r.vertices + 3 * size_t(i[2]);
-  float p[3], e[3];
-  for (int k = 0; k < 3; k++) {
-    const float x = w[0] * a[k], y = w[1] * b[k], z = w[2] * c[k];
-    p[k] = x + y + z;
-    e[k] = gammaOf(7) * (std::fabs(x) + std::fabs(y) + std::fabs(z));
+  uint32_t own = 0;
+  block.u[to] = hits.u[lane];
+  block.v[to] = hits.v[lane];
+  block.scale[to] = r.scale;
+  for (int c = 0; c < 3; c++) {
+    const float* at = r.vertices + 3 * size_t(corner[c]);
+    for (int k = 0; k < 3; k++) block.corner[c][k][to] = at[k];
   }
-  const float kernel[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
   if (r.instanced) {
-    applyBound(r.toRender, p, e, h.p, h.bound);
-    apply(r.kernelNormal, kernel, h.ng);
-  } else {
-    for (int k = 0; k < 3; k++) {
-      h.p[k] = p[k] * r.scale;
-      h.bound[k] = e[k] * r.scale;
-      h.ng[k] = kernel[k];
+    own |= pointInstanced;
+    for (int i = 0; i < 3; i++) {
+      for (int k = 0; k < 4; k++) block.toRender[i][k][to] = r.toRender.r[i][k];
+      for (int k = 0; k < 3; k++) block.kernelNormal[i][k][to] = r.kernelNormal[i][k];
     }
   }
   if (r.normals) {
-    float n[3];
-    mix<3>(r.normals, i, w, n);
-    apply(r.normalMatrix, n, h.ns);
-    h.smooth = true;
+    own |= pointNormals;
+    for (int c = 0; c < 3; c++) {
+      const float* n = r.normals + 3 * size_t(corner[c]);
+      for (int k = 0; k < 3; k++) block.cornerNormal[c][k][to] = n[k];
+      for (int k = 0; k < 3; k++) block.normalMatrix[c][k][to] = r.normalMatrix[c][k];
+    }
   }
-  if (r.texCoords) mix<2>(r.texCoords, i, w, h.uv), h.flags |= RTS_HIT_TEXCOORD;
-  if (r.colors) mix<4>(r.colors, i, w, h.color), h.flags |= RTS_HIT_COLOR;
+  if (r.texCoords) {
+    own |= pointTexCoords;
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 2; k++)
+        block.cornerTexCoord[c][k][to] = r.texCoords[2 * size_t(corner[c]) + k];
+  }
+  if (r.colors) {
+    own |= pointColors;
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 4; k++) block.cornerColor[c][k][to] = r.colors[4 * size_t(corner[c]) + k];
+  }
+  block.own[to] = own;
+  block.attributes |= own;
 }
 
-void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane, Local& h) {
-  float p[3], bound[3], l[3], none[3] = {0, 0, 0}, ignored[3];
+void computeSphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
+                   PointBlock& block, uint32_t to) {
+  float p[3], bound[3], l[3], none[3] = {0, 0, 0}, ignored[3], normal[3];
   for (int k = 0; k < 3; k++) {
     const float step = hits.t[lane] * rays.dir[k][lane];
     p[k] = rays.org[k][lane] + step;
@@ -112,39 +101,78 @@ void sphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lan
   const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
   // t is exact to its last bit, so near the ray's origin the position is known far better than to
   // the rounding error of the radius.
-  if (intersectedInDouble(r))
-    for (int k = 0; k < 3; k++) {
-      h.p[k] = p[k];
-      h.bound[k] = bound[k];
-    }
-  else
-    applyBound(r.toRender, l, e, h.p, h.bound);
-  apply(r.normalMatrix, l, h.ng);
+  if (!intersectedInDouble(r)) applyBound(r.toRender, l, e, p, bound);
+  apply(r.normalMatrix, l, normal);
+  for (int k = 0; k < 3; k++) {
+    block.position[k][to] = p[k];
+    block.bound[k][to] = bound[k];
+    block.ng[k][to] = normal[k];
+  }
   // Clause 6.43: s runs counter-clockwise seen from above, starting at the back; t from bottom to
   // top.
   const float turn = std::atan2(-l[0], -l[2]) * float(0.5 / M_PI);
-  h.uv[0] = turn < 0 ? turn + 1 : turn;
-  h.uv[1] = 0.5f + std::asin(std::clamp(l[1], -1.0f, 1.0f)) * float(1 / M_PI);
-  h.flags |= RTS_HIT_TEXCOORD;
+  block.uv[0][to] = turn < 0 ? turn + 1 : turn;
+  block.uv[1][to] = 0.5f + std::asin(std::clamp(l[1], -1.0f, 1.0f)) * float(1 / M_PI);
+  for (auto& color : block.color) color[to] = 1;
+  block.flags[to] = RTS_HIT_TEXCOORD;
+  block.smooth[to] = 0;
 }
 
-void thin(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane, Local& h) {
+void computeThin(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
+                 PointBlock& block, uint32_t to) {
   for (int k = 0; k < 3; k++) {
     const float step = hits.t[lane] * rays.dir[k][lane];
-    h.p[k] = rays.org[k][lane] + step;
-    h.bound[k] = gammaOf(8) * (std::fabs(rays.org[k][lane]) + std::fabs(step));
-    h.ng[k] = -rays.dir[k][lane];
+    block.position[k][to] = rays.org[k][lane] + step;
+    block.bound[k][to] = gammaOf(8) * (std::fabs(rays.org[k][lane]) + std::fabs(step));
+    block.ng[k][to] = -rays.dir[k][lane];
   }
-  h.flags |= RTS_HIT_LINE;
+  for (auto& coordinate : block.uv) coordinate[to] = 0;
+  for (auto& color : block.color) color[to] = 1;
+  block.flags[to] = RTS_HIT_LINE;
+  block.smooth[to] = 0;
   if (!r.colors) return;
   const bool line = r.primitive == edit::Primitive::Lines;
   const uint32_t* i = r.indices + size_t(hits.primitive[lane]) * (line ? 2 : 1);
   const float u = line ? std::clamp(hits.u[lane], 0.0f, 1.0f) : 0;
   for (int k = 0; k < 4; k++) {
     const float first = r.colors[4 * size_t(i[0]) + k];
-    h.color[k] = line ? (1 - u) * first + u * r.colors[4 * size_t(i[1]) + k] : first;
+    block.color[k][to] = line ? (1 - u) * first + u * r.colors[4 * size_t(i[1]) + k] : first;
   }
-  h.flags |= RTS_HIT_COLOR;
+  block.flags[to] |= RTS_HIT_COLOR;
+}
+
+// Computes up to 16 hits, whose lanes are given, into the elements of `out` from i on.
+void computeBlock(const RenderScene& scene, const Rays& rays, const RayHits& hits,
+                  const uint32_t (&hitLanes)[lanes], const PointArrays& out, uint32_t i) {
+  PointBlock block;
+  block.attributes = 0;
+  uint32_t others = 0; // hits that are not triangles, as bits
+  for (uint32_t to = 0; to < lanes; to++) {
+    const uint32_t lane = hitLanes[to];
+    const Record& r = scene.records[hits.record[lane]];
+    for (int k = 0; k < 3; k++) {
+      block.direction[k][to] = rays.dir[k][lane];
+      block.ng[k][to] = hits.ng[k][lane];
+    }
+    block.flipped[to] = r.flip ? ~0u : 0;
+    if (r.primitive == edit::Primitive::Triangles) {
+      gatherTriangle(r, hits, lane, block, to);
+      continue;
+    }
+    others |= 1u << to;
+    for (auto& corner : block.corner)
+      for (auto& component : corner) component[to] = 0;
+    block.u[to] = block.v[to] = block.scale[to] = 0;
+    block.own[to] = 0;
+  }
+  if (others != (1u << lanes) - 1) interpolateTriangles(block);
+  for (; others; others &= others - 1) {
+    const uint32_t to = uint32_t(std::countr_zero(others)), lane = hitLanes[to];
+    const Record& r = scene.records[hits.record[lane]];
+    (r.primitive == edit::Primitive::Sphere ? computeSphere : computeThin)(r, rays, hits, lane,
+                                                                           block, to);
+  }
+  finishPoints(block, out, i);
 }
 
 // Makes a private copy of the shader's parameters with the geometry's own values interpolated at
@@ -182,38 +210,6 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
     std::memcpy(block + param.offset, mixed, n * sizeof(float));
   }
   return block;
-}
-
-void store(const Record& r, const Rays& rays, uint32_t lane, Local& h, const PointArrays& out,
-           uint32_t to) {
-  const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
-  if (!normalize(h.ng))
-    for (int k = 0; k < 3; k++) h.ng[k] = -d[k];
-  const float towards = h.ng[0] * d[0] + h.ng[1] * d[1] + h.ng[2] * d[2];
-  const bool thinHit = h.flags & RTS_HIT_LINE;
-  const bool away = towards > 0; // the kernel's normal points away from the ray's origin
-  if (!thinHit && away != r.flip) h.flags |= RTS_HIT_BACK;
-  const float sign = away ? -1.0f : 1.0f;
-  if (h.smooth && !normalize(h.ns)) h.smooth = false;
-  // A vertex normal given by the geometry is flipped only together with its face, if that is seen
-  // from the back (two-sided lighting). It is not flipped because it points away from the ray.
-  const float smoothSign = (h.flags & RTS_HIT_BACK) ? -1.0f : 1.0f;
-  float error = 0;
-  for (int k = 0; k < 3; k++) {
-    out.position[k][to] = h.p[k];
-    out.direction[k][to] = d[k];
-    out.geometric[k][to] = sign * h.ng[k];
-    out.normal[k][to] = h.smooth ? smoothSign * h.ns[k] : sign * h.ng[k];
-    out.color[k][to] = h.color[k];
-    error += std::fabs(h.ng[k]) * h.bound[k];
-  }
-  out.color[3][to] = h.color[3];
-  out.uv[0][to] = h.uv[0];
-  out.uv[1][to] = h.uv[1];
-  // The bound along the normal is 0 for a face in a coordinate plane through the origin, but rays
-  // must still be offset.
-  out.error[to] = std::max(error, 0x1p-6f * std::max({h.bound[0], h.bound[1], h.bound[2]}));
-  out.flags[to] = h.flags;
 }
 
 } // namespace
@@ -255,21 +251,18 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   out.flags = arena.take<uint32_t>(size);
   out.record = arena.take<uint32_t>(size);
   out.params = arena.take<const void*>(size);
-  for (uint32_t i = 0; i < size; i++) { // the padding repeats the last hit
-    const uint32_t lane = order[std::min(i, n - 1)];
-    const Record& r = scene.records[hits.record[lane]];
-    Local h;
-    switch (r.primitive) {
-    case edit::Primitive::Triangles: triangle(r, hits, lane, h); break;
-    case edit::Primitive::Sphere: sphere(r, rays, hits, lane, h); break;
-    default: thin(r, rays, hits, lane, h);
+  for (uint32_t first = 0; first < size; first += lanes) {
+    uint32_t hitLanes[lanes];
+    for (uint32_t to = 0; to < lanes; to++) { // the padding repeats the last hit
+      const uint32_t i = first + to, lane = hitLanes[to] = order[std::min(i, n - 1)];
+      const Record& r = scene.records[hits.record[lane]];
+      out.distance[i] = travelled[lane] + hits.t[lane];
+      out.segment[i] = hits.t[lane];
+      out.record[i] = hits.record[lane];
+      out.params[i] = r.parameterCount ? ownParameters(scene, r, hits, lane, arena)
+                                       : (*scene.shaders)[r.shader].params;
     }
-    store(r, rays, lane, h, out, i);
-    out.distance[i] = travelled[lane] + hits.t[lane];
-    out.segment[i] = hits.t[lane];
-    out.record[i] = hits.record[lane];
-    out.params[i] = r.parameterCount ? ownParameters(scene, r, hits, lane, arena)
-                                     : (*scene.shaders)[r.shader].params;
+    computeBlock(scene, rays, hits, hitLanes, out, first);
   }
   Points points;
   RtsHits& to = points.hits;

@@ -179,7 +179,7 @@ TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* 
 }
 
 void TileRenderer::draw(const Random& random, Draw what, uint32_t pairOffset, float* square[2]) {
-  for (int k = 0; k < 2; k++) square[k] = arena_.take<float>(random.count);
+  for (int k = 0; k < 2; k++) square[k] = arena_.takeZero<float>(padded(random.count));
   samplePairs(random.count, random.key, random.pair,
               uint32_t(what) - uint32_t(Draw::direction) + pairOffset, random.index, square[0],
               square[1]);

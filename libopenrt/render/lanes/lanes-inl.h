@@ -1,0 +1,96 @@
+// lanes-inl.h: vector lanes: `Lanes` holds as many floats as the instruction set computes at once,
+// `Bits` as many 32-bit integers. Arrays of the renderer are padded to 16 elements (arena.h), which
+// every width divides, so loops over them have no remainder. Included by files that Highway
+// compiles once for each instruction set (https://google.github.io/highway).
+//
+// All instruction sets give the same numbers: the operations are correctly rounded, products and
+// sums are not fused, and there is no sum across lanes.
+
+#if defined(OPENRT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef OPENRT_LANES_INL_H
+#undef OPENRT_LANES_INL_H
+#else
+#define OPENRT_LANES_INL_H
+#endif
+
+#include <cstdint>
+#include <limits>
+
+#include <hwy/highway.h>
+
+#include "render/arena.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace openrt {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using LanesTag = hn::CappedTag<float, 16>;
+using BitsTag = hn::CappedTag<uint32_t, 16>;
+using Lanes = hn::Vec<LanesTag>;
+using Bits = hn::Vec<BitsTag>;
+using Mask = hn::Mask<LanesTag>;
+inline uint32_t width() { return uint32_t(hn::Lanes(LanesTag())); }
+
+inline Lanes lanesOf(float value) { return hn::Set(LanesTag(), value); }
+inline Bits bitsOf(uint32_t value) { return hn::Set(BitsTag(), value); }
+inline Lanes load(const float* from) { return hn::LoadU(LanesTag(), from); }
+inline Bits load(const uint32_t* from) { return hn::LoadU(BitsTag(), from); }
+inline void store(Lanes v, float* to) { hn::StoreU(v, LanesTag(), to); }
+inline void store(Bits v, uint32_t* to) { hn::StoreU(v, BitsTag(), to); }
+
+// These work with vectors of any width.
+template <class M, class V> inline V select(M condition, V a, V b) {
+  return hn::IfThenElse(condition, a, b);
+}
+template <class V> inline V constant(float value) { return hn::Set(hn::DFromV<V>(), value); }
+template <class V> inline V sqrt(V v) { return hn::Sqrt(v); }
+template <class V> inline V abs(V v) { return hn::Abs(v); }
+// Like std::max and std::min, also with NaN: the result is `a` unless the comparison holds.
+template <class V> inline V max(V a, V b) { return hn::IfThenElse(a < b, b, a); }
+template <class V> inline V min(V a, V b) { return hn::IfThenElse(b < a, b, a); }
+inline Mask isFinite(Lanes v) { return hn::Abs(v) <= lanesOf(std::numeric_limits<float>::max()); }
+inline Bits bitsOfFloat(Lanes v) { return hn::BitCast(BitsTag(), v); }
+inline Lanes floatOfBits(Bits v) { return hn::BitCast(LanesTag(), v); }
+// Returns `bits` where the condition holds, else 0.
+inline Bits bitsWhere(Mask condition, uint32_t bits) {
+  return hn::IfThenElseZero(hn::RebindMask(BitsTag(), condition), bitsOf(bits));
+}
+
+#include "render/lanes/vec3-inl.h"
+
+using LaneVec = Vec3<Lanes>;
+inline LaneVec vectorOf(const float v[3]) { return {lanesOf(v[0]), lanesOf(v[1]), lanesOf(v[2])}; }
+// Load and store the elements from i on of three arrays.
+inline LaneVec load(const float* const from[3], size_t i) {
+  return {load(from[0] + i), load(from[1] + i), load(from[2] + i)};
+}
+inline void store(const LaneVec& v, float* const to[3], size_t i) {
+  store(v.x, to[0] + i);
+  store(v.y, to[1] + i);
+  store(v.z, to[2] + i);
+}
+
+// The same for three consecutive arrays of 16 elements.
+inline LaneVec load(const float (*from)[lanes], size_t i) {
+  return {load(from[0] + i), load(from[1] + i), load(from[2] + i)};
+}
+inline void store(const LaneVec& v, float (*to)[lanes], size_t i) {
+  store(v.x, to[0] + i);
+  store(v.y, to[1] + i);
+  store(v.z, to[2] + i);
+}
+inline Rows<Lanes> load(const float (*from)[3][lanes], size_t i) {
+  return {load(from[0], i), load(from[1], i), load(from[2], i)};
+}
+// Returns where the array is not 0.
+inline Mask loadMask(const uint32_t* from) {
+  return hn::RebindMask(LanesTag(), hn::Ne(load(from), bitsOf(0)));
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace openrt
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,46 @@
+// light_samples.h: samples emitters for many shading points at once, with vector lanes. It does
+// what Emitters::choose() does for one point; rare cases that need double precision are left to
+// that. [render]
+#pragma once
+
+#include <cstdint>
+
+namespace openrt {
+
+struct LightNode;
+
+// Triangles and spheres that emit, as structure of arrays by the number of the shape.
+struct ShapeArrays {
+  const float* corner[3][3]; // [corner][axis], render space
+  const uint32_t* sides;     // EmissiveShapes::Shape::sides; ShapeArrays::sphere for spheres
+  static constexpr uint32_t sphere = 4;
+};
+
+// The points that light is sampled for. Arrays are padded to 16 elements.
+struct LightPoints {
+  uint32_t count;
+  const float *position[3], *normal[3]; // on the side that the light counts from; unit
+  const float* error;                   // error bound of the position along the normal
+  const uint32_t* twoSided;             // not 0: light counts from both sides
+  const float *pick, *u, *v;            // random numbers in [0, 1)
+};
+
+struct ChosenLights { // by point; arrays are padded
+  uint32_t* shape;    // number of the shape; ~0: none
+  float* probability; // selection probability of the shape
+};
+
+// A direction towards a shape, sampled for each point that has one.
+struct SampledLights {
+  float *direction[3], *distance;
+  float* pdf;      // solid-angle pdf for the selected shape; 0: no sample
+  uint32_t* exact; // not 0: the sample is left to double precision
+};
+
+// Selects a shape for each point from those of a tree with one node. `pick` selects it.
+void chooseFromNode(const LightNode& node, const LightPoints& points, const ChosenLights& out);
+// Samples a direction towards the chosen shapes.
+void sampleShapes(const ShapeArrays& shapes, const LightPoints& points, const ChosenLights& chosen,
+                  const SampledLights& out);
+
+} // namespace openrt
