@@ -84,6 +84,24 @@ inline void store(const LaneVec& v, float (*to)[lanes], size_t i) {
 inline Rows<Lanes> load(const float (*from)[3][lanes], size_t i) {
   return {load(from[0], i), load(from[1], i), load(from[2], i)};
 }
+
+// Indices into arrays.
+using Indices = hn::Vec<hn::RebindToSigned<LanesTag>>;
+// Loads the indices from i on of an array of n. Lanes beyond its end repeat its last index.
+inline Indices indicesFrom(const uint32_t* index, uint32_t i, uint32_t n) {
+  const hn::RebindToSigned<LanesTag> tag;
+  if (i + width() <= n) return hn::BitCast(tag, load(index + i));
+  uint32_t last[lanes];
+  for (uint32_t k = 0; k < width(); k++) last[k] = index[i + k < n ? i + k : n - 1];
+  return hn::BitCast(tag, load(last));
+}
+inline Lanes gather(const float* from, Indices index) {
+  return hn::GatherIndex(LanesTag(), from, index);
+}
+inline LaneVec gather(const float* const from[3], Indices index) {
+  return {gather(from[0], index), gather(from[1], index), gather(from[2], index)};
+}
+
 // Returns where the array is not 0.
 inline Mask loadMask(const uint32_t* from) {
   return hn::RebindMask(LanesTag(), hn::Ne(load(from), bitsOf(0)));

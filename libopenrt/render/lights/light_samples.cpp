@@ -82,12 +82,6 @@ void chooseAt(const LightNode& node, const LightPoints& points, uint32_t i,
   store(select(any, chosen / select(any, sum, one), zero), out.probability + i);
 }
 
-LaneVec gather(const float* const from[3], hn::Vec<hn::RebindToSigned<LanesTag>> index) {
-  const LanesTag tag;
-  return {hn::GatherIndex(tag, from[0], index), hn::GatherIndex(tag, from[1], index),
-          hn::GatherIndex(tag, from[2], index)};
-}
-
 Lanes squareOf(const LaneVec& v) { return dot(v, v); }
 
 // A triangle at a large distance compared to its size is sampled uniformly by area.

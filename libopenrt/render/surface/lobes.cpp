@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "render/surface/batch.h"
+#include "render/surface/lambert.h"
 #include "render/surface/scatter.h"
 #include "shading/running.h"
 
@@ -54,29 +55,6 @@ struct LobeValue {
 // A direction sampled from a lobe, with value / pdf. pdf 0: no direction was sampled.
 struct SampledDirection {
   float direction[3] = {}, quotient = 0, pdf = 0;
-};
-
-// Lambert
-// -------------------------------------------------------------------------------------------------
-
-class LambertLobe { // A diffuse lobe at one hit.
- public:
-  LambertLobe(const RtsLobe& lobe, const RtsHits&, uint32_t hit)
-      : normal_{lobe.normal[0][hit], lobe.normal[1][hit], lobe.normal[2][hit]} {}
-  LobeValue evaluate(const float w[3]) const {
-    const float pdf = std::max(dot3(normal_, w), 0.0f) * float(M_1_PI);
-    return {pdf, pdf};
-  }
-  SampledDirection sample(float u1, float u2) const {
-    SampledDirection out;
-    sampleCosineHemisphere(normal_, u1, u2, out.direction);
-    out.quotient = 1;
-    out.pdf = std::max(dot3(out.direction, normal_), 0.0f) * float(M_1_PI);
-    return out;
-  }
-
- private:
-  float normal_[3];
 };
 
 // Microfacets
@@ -273,7 +251,7 @@ template <class Lobe> constexpr RtsLobeFunctions functionsOf(uint32_t transmits)
   return {sizeof(RtsLobeFunctions), transmits, evaluateEach<Lobe>, sampleEach<Lobe>};
 }
 
-constexpr RtsLobeFunctions diffuse = functionsOf<LambertLobe>(0);
+constexpr RtsLobeFunctions diffuse = {sizeof(RtsLobeFunctions), 0, evaluateLambert, sampleLambert};
 constexpr RtsLobeFunctions glossy = functionsOf<MicrofacetLobe<Glossy>>(0);
 constexpr RtsLobeFunctions boundary = functionsOf<MicrofacetLobe<Boundary>>(1);
 

@@ -1,5 +1,4 @@
-// scatter.h: geometry of scattering: reflection, refraction, Fresnel's equations, cosine-weighted
-// directions. Pure functions.
+// scatter.h: geometry of scattering: reflection, refraction, Fresnel's equations. Pure functions.
 #pragma once
 
 #include <algorithm>
@@ -49,33 +48,6 @@ inline void refractAt(const float d[3], const float n[3], double eta, double cos
   // The direction is normalised again, so that errors do not grow over a long chain of refractions.
   const double s = length > 0 ? 1 / std::sqrt(length) : 0;
   for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
-}
-
-// Return sine and cosine of an angle between -pi/4 and pi/4 by their power series, exact to a unit
-// in the last place.
-inline float sineSmall(float x) {
-  const float s = x * x;
-  return x * (1 + s * (-1.0f / 6 + s * (1.0f / 120 + s * (-1.0f / 5040 + s * (1.0f / 362880)))));
-}
-inline float cosineSmall(float x) {
-  const float s = x * x;
-  return 1 + s * (-0.5f +
-                  s * (1.0f / 24 + s * (-1.0f / 720 + s * (1.0f / 40320 + s * (-1.0f / 3628800)))));
-}
-
-// Samples a direction about n with pdf cosine / pi: the concentric disc mapping of P. Shirley, K.
-// Chiu (1997), lifted to the hemisphere.
-inline void sampleCosineHemisphere(const float n[3], float u, float v, float out[3]) {
-  const float a = 2 * u - 1, b = 2 * v - 1;
-  const bool wide = std::fabs(a) > std::fabs(b); // within an eighth of a turn of the x axis
-  const float r = wide ? a : b, other = wide ? b : a,
-              angle = float(M_PI / 4) * (r != 0 ? other / r : 0.0f);
-  const float along = r * cosineSmall(angle), across = r * sineSmall(angle);
-  const float x = wide ? along : across, y = wide ? across : along,
-              z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
-  float s[3], t[3];
-  basisOf(n, s, t);
-  for (int k = 0; k < 3; k++) out[k] = x * s[k] + y * t[k] + z * n[k];
 }
 
 } // namespace openrt

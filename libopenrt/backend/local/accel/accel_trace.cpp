@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "backend/local/accel/accel.h"
+#include "backend/local/accel/packet_lanes.h"
 #include "backend/local/exact.h"
 
 namespace openrt {
@@ -46,39 +47,18 @@ void refineGrazingHit(const Record& r, const Rays& rays, float far, RayHits& hit
   }
 }
 
-// Fills a packet with the rays from number `first` on and returns how many were rejected. Rejected
-// and absent rays get harmless values. ends: tfar of these rays.
+// Fills a packet with the rays from number `first` on and returns how many were rejected.
 template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* ends, uint32_t first,
                                                float scale, uint32_t mask, int* valid, Ray& to) {
-  const float limit = 1e18f / scale;
-  uint32_t refused = 0;
-  for (uint32_t i = 0; i < W; i++) {
-    const uint32_t lane = first + i;
-    const float ox = rays.org[0][lane], oy = rays.org[1][lane], oz = rays.org[2][lane];
-    const float dx = rays.dir[0][lane], dy = rays.dir[1][lane], dz = rays.dir[2][lane];
-    const float near = rays.tnear[lane], far = ends[i];
-    const float ax = std::fabs(ox), ay = std::fabs(oy), az = std::fabs(oz),
-                d = std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
-    // Comparisons with NaN are false, so NaN is rejected.
-    const bool good = (ax <= limit) & (ay <= limit) & (az <= limit) & (d > 0) & (d <= 1e18f) &
-                      (near >= 0) & (near <= far) & (near < std::numeric_limits<float>::infinity());
-    const bool present = lane < rays.count;
-    refused += present & !good;
-    valid[i] = (present & good) ? -1 : 0;
-    to.org_x[i] = good ? ox * scale : 0;
-    to.org_y[i] = good ? oy * scale : 0;
-    to.org_z[i] = good ? oz * scale : 0;
-    to.dir_x[i] = good ? dx : 0;
-    to.dir_y[i] = good ? dy : 0;
-    to.dir_z[i] = good ? dz : 1;
-    to.tnear[i] = good ? near * scale : 0;
-    to.tfar[i] = good ? far * scale : 0;
-    to.time[i] = 0;
-    to.mask[i] = mask;
-    to.id[i] = lane;
-    to.flags[i] = 0;
-  }
-  return refused;
+  return loadPacket(rays, ends, first, W, scale, mask, valid,
+                    {{to.org_x, to.org_y, to.org_z},
+                     {to.dir_x, to.dir_y, to.dir_z},
+                     to.tnear,
+                     to.tfar,
+                     to.mask,
+                     to.id,
+                     to.flags,
+                     to.time});
 }
 
 } // namespace
@@ -151,14 +131,32 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
       packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     Query query(options);
     Packet::intersect(level.scene->scene, valid, packet, query);
+    if (first) {
+      const PacketMet met = storePacket({packet.ray.tfar,
+                                         packet.hit.u,
+                                         packet.hit.v,
+                                         {packet.hit.Ng_x, packet.hit.Ng_y, packet.hit.Ng_z},
+                                         packet.hit.geomID},
+                                        rays, valid, begin, W, unscale, hits);
+      for (uint32_t i = 0; i < n; i++) {
+        const uint32_t lane = begin + i;
+        if (!(met.hit >> i & 1)) {
+          hits.record[lane] = noHit;
+          continue;
+        }
+        const PrimitiveId found =
+            find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
+        hits.record[lane] = found.record;
+        hits.primitive[lane] = found.primitive;
+        const Record& record = records[found.record];
+        if (record.instanced || met.grazing >> i & 1)
+          refineGrazingHit(record, rays, rays.tfar[lane], hits, lane);
+      }
+      continue;
+    }
     for (uint32_t i = 0; i < n; i++) {
       const uint32_t lane = begin + i;
-      if (!valid[i] || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
-        if (!first) continue;
-        hits.record[lane] = noHit;
-        hits.t[lane] = std::numeric_limits<float>::infinity();
-        continue;
-      }
+      if (!valid[i] || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
       const PrimitiveId found =
           find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
       hits.record[lane] = found.record;
@@ -169,7 +167,7 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
       hits.ng[0][lane] = packet.hit.Ng_x[i];
       hits.ng[1][lane] = packet.hit.Ng_y[i];
       hits.ng[2][lane] = packet.hit.Ng_z[i];
-      refineGrazingHit(records[found.record], rays, first ? rays.tfar[lane] : ends[i], hits, lane);
+      refineGrazingHit(records[found.record], rays, ends[i], hits, lane);
     }
   }
   if (refused) rejectedRays += refused;
