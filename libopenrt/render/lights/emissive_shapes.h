@@ -25,6 +25,9 @@ class EmissiveShapes {
     float corner[3][3]; // triangle in render space, in the order of the kernel's normal
     bool swapped;       // corners 1 and 2 are the record's 2 and 1
     float power;        // approximately proportional to the flux
+    // Every point of a side emits the same radiance in all directions (RTS_UNIFORM_EMISSION).
+    bool uniform = false;
+    float radiance[2][3] = {}; // mean emitted radiance of the sides, in the order of `sides`
   };
 
   explicit EmissiveShapes(const RenderScene& scene);
@@ -43,7 +46,8 @@ class EmissiveShapes {
   };
   // Samples a point of a shape. u, v: uniform in the unit square.
   Place place(const RenderScene& scene, uint32_t number, float u, float v) const;
-  // Evaluates the radiance that a point emits in a direction.
+  // Evaluates the radiance that a point emits in a direction. The shader is not called if the shape
+  // emits uniformly.
   void radiance(const RenderScene& scene, uint32_t number, const Place& place,
                 const float towards[3], Arena& arena, float out[3]) const;
   // Returns the number of a primitive's shape, or `none` if its record is not emissive.
@@ -61,7 +65,10 @@ class EmissiveShapes {
   double brightest_ = 0;
 };
 
+// Writes a unit normal in render space as the kernel would return it for a triangle of the record.
+void kernelNormal(const struct Record& record, const float normal[3], float out[3]);
+
 // Writes the corners of a record's triangle in render space.
-void cornersOf(const struct Record& record, uint32_t primitive, float out[3][3]);
+void cornersOf(const Record& record, uint32_t primitive, float out[3][3]);
 
 } // namespace openrt

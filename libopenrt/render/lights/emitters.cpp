@@ -67,8 +67,7 @@ float Emitters::skyJacobian(const float local[3]) const {
 // Samples a direction to a point on the shape. Returns its pdf as if the shape were the only one;
 // 0: no sample.
 double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from,
-                             double u, double v, double direction[3], double& distance,
-                             bool& nearEdge) const {
+                             double u, double v, double direction[3], double& distance) const {
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
     const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
@@ -77,7 +76,6 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
   }
   const SphericalTriangle seen(shape.corner, from.position);
   if (!(shape.sides & (seen.front() ? 1 : 2)) || !seen.sample(u, v, direction, distance)) return 0;
-  nearEdge = seen.isNearEdge(direction, distance);
   return seen.pdf(direction);
 }
 
@@ -104,10 +102,9 @@ LightSample Emitters::choose(const LightSampleContext& from, double pick, float 
         shapes_->tree().choose(from.position, normal, std::min(left, 1 - 0x1p-53));
     if (!(choice.probability > 0)) return {};
     const EmissiveShapes::Shape& shape = (*shapes_)[choice.light];
-    lightSample.record = shape.record;
-    lightSample.primitive = shape.primitive;
+    lightSample.shape = choice.light;
     double towards[3], distance = 0;
-    const double alone = sampleShape(shape, from, u, v, towards, distance, lightSample.nearEdge);
+    const double alone = sampleShape(shape, from, u, v, towards, distance);
     lightSample.pdf = float((1 - double(skyProbability_)) * double(choice.probability) * alone);
     lightSample.distance = float(distance);
     for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k]);
@@ -117,16 +114,6 @@ LightSample Emitters::choose(const LightSampleContext& from, double pick, float 
       (normal && !(dot3(lightSample.direction, normal) > 0)))
     return {};
   return lightSample;
-}
-
-// Near an edge the ray may hit a neighbouring primitive of the same surface at the same distance;
-// that hit counts as well.
-bool Emitters::isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
-                            float distance) const {
-  if (lightSample.record != record) return false;
-  return primitive == lightSample.primitive ||
-         (lightSample.nearEdge &&
-          std::fabs(distance - lightSample.distance) <= 0x1p-10f * lightSample.distance);
 }
 
 float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,

@@ -25,12 +25,10 @@ struct LightSampleContext {
 
 // A sampled direction towards an emitter.
 struct LightSample {
-  uint32_t record = noHit, primitive = 0; // record: noHit if the sky was sampled
-  float direction[3];                     // unit, render space
-  float distance = 0;                     // infinite if the sky was sampled
+  uint32_t shape = EmissiveShapes::none; // number of the shape; none: the sky was sampled
+  float direction[3];                    // unit, render space
+  float distance = 0;                    // to the sampled point; infinite for the sky
   float pdf = 0; // solid-angle pdf including the selection of the emitter; 0: no sample
-  // The ray passes so near to an edge of the primitive that it may hit the neighbour.
-  bool nearEdge = false;
 };
 
 class Emitters {
@@ -47,9 +45,6 @@ class Emitters {
   // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point
   // on it. With many emitters all digits of pick matter.
   LightSample choose(const LightSampleContext& from, double pick, float u, float v) const;
-  // Returns whether the hit of the sample's ray is the emitter that was sampled.
-  bool isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
-                    float distance) const;
   // Returns the solid-angle pdf of choose() for a surface hit along a direction; 0 if choose()
   // cannot sample it.
   float pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
@@ -67,7 +62,7 @@ class Emitters {
 
  private:
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
-                     double v, double direction[3], double& distance, bool& nearEdge) const;
+                     double v, double direction[3], double& distance) const;
   float skyJacobian(const float local[3]) const;
   const RenderScene* scene_ = nullptr;
   std::shared_ptr<const SkySampler> sky_;
