@@ -28,6 +28,8 @@ class EmissiveShapes {
     // Every point of a side emits the same radiance in all directions (RTS_UNIFORM_EMISSION).
     bool uniform = false;
     float radiance[2][3] = {}; // mean emitted radiance of the sides, in the order of `sides`
+    // Another surface may lie in the same place: the shape counts only where rays report it.
+    bool coincident = false;
   };
 
   explicit EmissiveShapes(const RenderScene& scene);
@@ -59,8 +61,9 @@ class EmissiveShapes {
 
  private:
   void add(const RenderScene& scene, uint32_t record, std::vector<LightBounds>& bounds);
-  std::vector<Shape> shapes_;     // all primitives of a record are consecutive
-  std::vector<uint32_t> firstOf_; // index of a record's first shape, by record
+  void markCoincident(const RenderScene& scene); // coincident_shapes.cpp
+  std::vector<Shape> shapes_;                    // all primitives of a record are consecutive
+  std::vector<uint32_t> firstOf_;                // index of a record's first shape, by record
   LightTree tree_;
   double brightest_ = 0;
 };

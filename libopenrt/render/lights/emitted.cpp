@@ -112,6 +112,32 @@ void TileRenderer::weightLightSamples(const RtsBatch& batch, const Sampling& sam
   rays.count = left;
 }
 
+// Blocks the rays to shapes that share their place with another surface, if it is the other one
+// that the kernel reports.
+void TileRenderer::blockCoincident(const Rays& rays, const LightSample* lightSamples,
+                                   uint8_t* blocked) {
+  ArenaScope scope(arena_);
+  auto* lanes = arena_.take<uint32_t>(rays.count);
+  uint32_t n = 0;
+  for (uint32_t r = 0; r < rays.count; r++) {
+    const uint32_t shape = lightSamples[r].shape;
+    if (!blocked[r] && shape != EmissiveShapes::none &&
+        (*scene_.emitters.shapes())[shape].coincident)
+      lanes[n++] = r;
+  }
+  if (n == 0) return;
+  const Rays again = copyRays(rays, lanes, n, arena_);
+  for (uint32_t i = 0; i < n; i++) again.tfar[i] = lightSamples[lanes[i]].distance * (1 + 0x1p-10f);
+  RayHits found;
+  found.allocate(arena_, n);
+  scene_.kernel->intersect(again, maskAll, Coherence::incoherent, found);
+  skipCulledBacks(scene_, arena_, counters_, again, found);
+  for (uint32_t i = 0; i < n; i++)
+    blocked[lanes[i]] = found.record[i] == noHit ||
+                        scene_.emitters.shapes()->find(found.record[i], found.primitive[i]) !=
+                            lightSamples[lanes[i]].shape;
+}
+
 // Evaluates the emission at the sampled points of some rays by their shaders. Calls add(ray,
 // light).
 template <class Add>
@@ -163,6 +189,7 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& samplin
   counters_.shadow += n;
   auto* blocked = arena_.take<uint8_t>(n);
   findBlocked(scene_, arena_, rays, blocked);
+  blockCoincident(rays, samples.sample, blocked);
 
   const auto add = [&](uint32_t ray, const float light[3]) {
     const uint32_t i = samples.hit[ray];

@@ -4,10 +4,8 @@
 #include <cmath>
 
 namespace openrt {
-namespace {
 
-// Copies the rays of the given lanes.
-Rays raysOf(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& arena) {
+Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& arena) {
   Rays out;
   out.allocate(arena, n);
   for (uint32_t i = 0; i < n; i++) {
@@ -22,8 +20,6 @@ Rays raysOf(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& arena
   return out;
 }
 
-} // namespace
-
 void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
                      const Rays& rays, RayHits& hits) {
   ArenaScope scope(arena);
@@ -32,7 +28,7 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
   for (uint32_t i = 0; i < rays.count; i++)
     if (hits.record[i] != noHit && isCulledHit(scene, rays, hits, i)) lanes[n++] = i;
   if (n == 0) return;
-  const Rays again = raysOf(rays, lanes, n, arena);
+  const Rays again = copyRays(rays, lanes, n, arena);
   RayHits found;
   found.allocate(arena, n);
   counters.secondary += n;
@@ -58,7 +54,7 @@ void findBlocked(const RenderScene& scene, Arena& arena, const Rays& rays, uint8
     if (blocked[i]) lanes[n++] = i;
   if (n == 0) return;
   auto* byFront = arena.take<uint8_t>(n);
-  scene.kernel->occludedByFronts(raysOf(rays, lanes, n, arena), maskAll, byFront);
+  scene.kernel->occludedByFronts(copyRays(rays, lanes, n, arena), maskAll, byFront);
   for (uint32_t i = 0; i < n; i++) blocked[lanes[i]] = byFront[i];
 }
 

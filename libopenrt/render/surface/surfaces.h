@@ -7,6 +7,9 @@
 
 namespace openrt {
 
+// Copies the rays of the given lanes.
+Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& arena);
+
 // Retraces the rays whose nearest hit is a culled back face with such faces ignored. The rays are
 // traced again from their origins, because a front and a back face in the same place must not hide
 // each other.
