@@ -126,5 +126,17 @@ TEST_F(ShadowedLamps, AFaceAndItsReverseAreOneLamp) {
   expectQ("reverse", lit(), squareLamp, 2e-3);
 }
 
+TEST_F(ShadowedLamps, AHiddenLampGivesNoLight) {
+  floor();
+  const RTid placed = lamp(rectangle(.5, 1));
+  expectQ("shown", lit(), squareLamp, 1e-3);
+  for (int i = 0; i < 2; i++) { // the first change moves the lamp to a structure of its own
+    rtInstanceVisible(placed, 0);
+    EXPECT_EQ(lit(), 0);
+    rtInstanceVisible(placed, 1);
+    expectQ("shown again", lit(), squareLamp, 1e-3);
+  }
+}
+
 } // namespace
 } // namespace numeric

@@ -236,7 +236,7 @@ EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.record
   std::vector<LightBounds> bounds;
   for (uint32_t id = 0; id < scene.records.size(); id++) add(scene, id, bounds);
   tree_.build(bounds);
-  markCoincident(scene);
+  markUncertain(scene);
 }
 
 void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<LightBounds>& bounds) {

@@ -28,8 +28,9 @@ class EmissiveShapes {
     // Every point of a side emits the same radiance in all directions (RTS_UNIFORM_EMISSION).
     bool uniform = false;
     float radiance[2][3] = {}; // mean emitted radiance of the sides, in the order of `sides`
-    // Another surface may lie in the same place: the shape counts only where rays report it.
-    bool coincident = false;
+    // The shape may be hidden, or have another surface in the same place: it counts only where rays
+    // report it.
+    bool uncertain = false;
   };
 
   explicit EmissiveShapes(const RenderScene& scene);
@@ -61,9 +62,9 @@ class EmissiveShapes {
 
  private:
   void add(const RenderScene& scene, uint32_t record, std::vector<LightBounds>& bounds);
-  void markCoincident(const RenderScene& scene); // coincident_shapes.cpp
-  std::vector<Shape> shapes_;                    // all primitives of a record are consecutive
-  std::vector<uint32_t> firstOf_;                // index of a record's first shape, by record
+  void markUncertain(const RenderScene& scene); // uncertain_shapes.cpp
+  std::vector<Shape> shapes_;                   // all primitives of a record are consecutive
+  std::vector<uint32_t> firstOf_;               // index of a record's first shape, by record
   LightTree tree_;
   double brightest_ = 0;
 };

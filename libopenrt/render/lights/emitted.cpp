@@ -112,17 +112,17 @@ void TileRenderer::weightLightSamples(const RtsBatch& batch, const Sampling& sam
   rays.count = left;
 }
 
-// Blocks the rays to shapes that share their place with another surface, if it is the other one
-// that the kernel reports.
-void TileRenderer::blockCoincident(const Rays& rays, const LightSample* lightSamples,
-                                   uint8_t* blocked) {
+// Blocks the rays to shapes that may be hidden, or share their place with another surface, unless
+// the sampled shape is the one that the kernel reports.
+void TileRenderer::blockUncertain(const Rays& rays, const LightSample* lightSamples,
+                                  uint8_t* blocked) {
   ArenaScope scope(arena_);
   auto* lanes = arena_.take<uint32_t>(rays.count);
   uint32_t n = 0;
   for (uint32_t r = 0; r < rays.count; r++) {
     const uint32_t shape = lightSamples[r].shape;
     if (!blocked[r] && shape != EmissiveShapes::none &&
-        (*scene_.emitters.shapes())[shape].coincident)
+        (*scene_.emitters.shapes())[shape].uncertain)
       lanes[n++] = r;
   }
   if (n == 0) return;
@@ -189,7 +189,7 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& samplin
   counters_.shadow += n;
   auto* blocked = arena_.take<uint8_t>(n);
   findBlocked(scene_, arena_, rays, blocked);
-  blockCoincident(rays, samples.sample, blocked);
+  blockUncertain(rays, samples.sample, blocked);
 
   const auto add = [&](uint32_t ray, const float light[3]) {
     const uint32_t i = samples.hit[ray];

@@ -135,7 +135,7 @@ class TileRenderer {
   struct LightSamples; // the light samples of a batch
   LightSamples chooseLightSamples(const RtsBatch& batch, const Sampling& sampling);
   void weightLightSamples(const RtsBatch& batch, const Sampling& sampling, LightSamples& samples);
-  void blockCoincident(const Rays& rays, const LightSample* lightSamples, uint8_t* blocked);
+  void blockUncertain(const Rays& rays, const LightSample* lightSamples, uint8_t* blocked);
   template <class Add> void shadeSampledPoints(const Rays& rays, const LightSample* lightSamples,
                                                const uint32_t* lanes, uint32_t n, const Add& add);
   void sampleEmitters(const RtsBatch& batch, const Sampling& sampling, const Crossing* crossing,

@@ -1,6 +1,7 @@
-// coincident_shapes.cpp: finds emissive shapes that have another surface in the same place, for
-// example a face that a world contains twice. A ray reports one of these surfaces, so only that one
-// may count as a light. Short rays through each shape find them. Between frames.
+// uncertain_shapes.cpp: finds emissive shapes that rays may not report: shapes that are hidden, and
+// those that have another surface in the same place, for example a face that a world contains
+// twice. They count as lights only where rays report them. Short rays through each shape find them.
+// Between frames.
 #include <algorithm>
 #include <cmath>
 
@@ -47,21 +48,26 @@ struct Probes {
 
 } // namespace
 
-void EmissiveShapes::markCoincident(const RenderScene& scene) {
+void EmissiveShapes::markUncertain(const RenderScene& scene) {
   // Points of the unit square that place() maps into the inside of a triangle or around a sphere.
   static constexpr float at[4][2] = {{0.45f, 0.5f}, {0.2f, 0.3f}, {0.8f, 0.15f}, {0.8f, 0.85f}};
   const uint32_t places = shapes_.size() > manyShapes ? 1 : 4;
   Arena arena;
   Probes probes(arena);
-  // By record, because the probes may miss the other shapes of a record that has one.
-  std::vector<uint8_t> coincident(scene.records.size(), 0);
+  // By record: whether it shares a place with another one. All its shapes count then, because the
+  // probes may miss some.
+  std::vector<uint8_t> uncertain(scene.records.size(), 0);
   const auto trace = [&] {
     scene.kernel->intersectFronts(probes.rays, maskAll, probes.hits);
     for (uint32_t i = 0; i < probes.rays.count; i++) {
-      const Shape& own = shapes_[probes.shape[i]];
+      Shape& own = shapes_[probes.shape[i]];
       const uint32_t record = probes.hits.record[i], primitive = probes.hits.primitive[i];
-      if (record == noHit || (record == own.record && primitive == own.primitive)) continue;
-      coincident[own.record] = coincident[record] = 1;
+      if (record == own.record && primitive == own.primitive) continue;
+      own.uncertain = true;
+      if (record == noHit) continue;
+      if (const uint32_t other = find(record, primitive); other != none)
+        shapes_[other].uncertain = true;
+      if (record != own.record) uncertain[own.record] = uncertain[record] = 1;
     }
     probes.rays.count = 0;
   };
@@ -74,7 +80,7 @@ void EmissiveShapes::markCoincident(const RenderScene& scene) {
     }
   }
   if (probes.rays.count) trace();
-  for (Shape& s : shapes_) s.coincident = coincident[s.record];
+  for (Shape& s : shapes_) s.uncertain |= uncertain[s.record] != 0;
 }
 
 } // namespace openrt
