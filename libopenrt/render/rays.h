@@ -73,6 +73,11 @@ class Intersector {
   // Sets blocked[i] to 1 if anything lies within the interval of ray i, else to 0.
   virtual void occluded(const Rays& rays, uint32_t mask, Coherence coherence,
                         uint8_t* blocked) const = 0;
+  // Returns whether anything in the scene has culled back faces.
+  virtual bool cullsBacks() const = 0;
+  // Like occluded(), as if culled back faces did not exist. It is slower, so it is called only for
+  // rays that occluded() finds blocked.
+  virtual void occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const = 0;
 };
 
 } // namespace openrt

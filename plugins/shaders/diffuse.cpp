@@ -11,6 +11,7 @@ struct Diffuse : rts::Surface<Diffuse> {
   rts::Param<rts::Texture> texture{"texture", "multiplies reflectance"};
 
   bool emits() const { return rts::largest(emission) > 0; }
+  bool emitsUniformly() const { return true; }
   uint32_t needs() const { return rts::largest(reflectance) > 0 ? 0 : RTS_NO_SCATTER; }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     const rts::Vec4 texel = hit.sample(texture, hit.uv);

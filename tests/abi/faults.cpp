@@ -155,6 +155,15 @@ TEST_F(Diagnosed, ScatteringThatTraitsExclude) {
             1u);
 }
 
+TEST_F(Diagnosed, EmissionThatVariesAgainstTheTraits) {
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  square("UnevenLamp");
+  picture(2);
+  EXPECT_EQ(log.count("shader UnevenLamp of faulty has emission that varies, but its traits have "
+                      "RTS_UNIFORM_EMISSION"),
+            1u);
+}
+
 TEST_F(Diagnosed, EmissionAndTransparencyThatAreNotAnnounced) {
   square("SilentLamp");
   rtTranslated(0, 0, 1);

@@ -51,6 +51,16 @@ struct Everything : rts::Surface<Everything> {
   }
 };
 
+struct Glowing : rts::Surface<Glowing> {
+  rts::Param<float> emission{"emission", 1, "radiance"};
+  rts::Param<int32_t> even{"even", 1, "emits the same everywhere"};
+  bool emits() const { return emission > 0; }
+  bool emitsUniformly() const { return even != 0; }
+  void surface(const rts::Hit&, rts::Closures& out) const {
+    out.emission({emission, emission, emission});
+  }
+};
+
 // Returns the facts about a hit as radiance.
 struct Asking : rts::Surface<Asking> {
   static constexpr uint32_t needs = RTS_GLOBAL;
@@ -217,6 +227,18 @@ TEST(ShaderHelper12, PrepareReleaseMediaTraitsAndFrequencies) {
   EXPECT_EQ(c.frequency[2], RTS_PER_SHADER);
   EXPECT_EQ(c.params[0].maximum, 1);
   EXPECT_EQ(classOf<Asking>().traits(&host, nullptr), unsigned(RTS_GLOBAL | RTS_UNLIT));
+}
+
+TEST(ShaderHelper12, TraitsOfEmission) {
+  const RtsClass& c = classOf<Glowing>();
+  FakeHost host;
+  ParamBlock p(c);
+  EXPECT_EQ(c.traits(&host, p.get()), unsigned(RTS_SPECULAR | RTS_EMISSIVE | RTS_UNIFORM_EMISSION));
+  p.setInt("even", 0);
+  EXPECT_EQ(c.traits(&host, p.get()), unsigned(RTS_SPECULAR | RTS_EMISSIVE));
+  p.setInt("even", 1);
+  p.set("emission", {0});
+  EXPECT_EQ(c.traits(&host, p.get()), unsigned(RTS_SPECULAR));
 }
 
 struct Told {

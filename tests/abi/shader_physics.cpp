@@ -391,7 +391,7 @@ TEST(Vrml97Lobes, EmissionAndOpacity) {
   EXPECT_FLOAT_EQ(lobes[1].weight().r, .25f);
   const RtsClass& c = surface.shaderClass();
   EXPECT_EQ(c.traits(&surface.host(), surface.params()),
-            unsigned(RTS_GLOBAL | RTS_TRANSPARENT | RTS_EMISSIVE));
+            unsigned(RTS_GLOBAL | RTS_TRANSPARENT | RTS_EMISSIVE | RTS_UNIFORM_EMISSION));
   EXPECT_EQ(c.shade, nullptr);
 }
 

@@ -257,6 +257,24 @@ TEST(Vrml97Surface, EveryRowOfTheTextureTables) { // V9
   }
 }
 
+// The alpha of a texture and the colours of vertices change what a surface emits.
+TEST(Vrml97Surface, TraitsOfEmission) {
+  FakeHost host;
+  host.textures = {{3, {.5f, .5f, .5f, 1}}};
+  ParamBlock p(surface());
+  EXPECT_EQ(surface().traits(&host, p.get()) & (RTS_EMISSIVE | RTS_UNIFORM_EMISSION), 0u);
+  p.set("emissiveColor", {.1f, 0, 0});
+  EXPECT_EQ(surface().traits(&host, p.get()) & (RTS_EMISSIVE | RTS_UNIFORM_EMISSION),
+            unsigned(RTS_EMISSIVE | RTS_UNIFORM_EMISSION));
+  p.setInt("texture", 1);
+  EXPECT_EQ(surface().traits(&host, p.get()) & (RTS_EMISSIVE | RTS_UNIFORM_EMISSION),
+            unsigned(RTS_EMISSIVE));
+  p.setInt("texture", 0);
+  p.setInt("lit", 0);
+  EXPECT_EQ(surface().traits(&host, p.get()) & (RTS_EMISSIVE | RTS_UNIFORM_EMISSION),
+            unsigned(RTS_EMISSIVE));
+}
+
 TEST(Vrml97Surface, LinesShowTheirColourInAnyLight) {
   ParamBlock p(surface()), bare(surface());
   p.set("emissiveColor", {.1f, .2f, .3f});

@@ -4,7 +4,6 @@
 // Called by render threads.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "backend/local/accel/embree_parts.h"
 #include "backend/local/user_geometry.h"
@@ -82,8 +81,9 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
     double t[2];
     if (a->valid[i] != -1) continue;
     const Lane lane(a->ray, a->N, i);
-    if (sphere.intersectRay(lane, t) && (lane.reaches(t[0]) || lane.reaches(t[1])))
-      RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
+    if (!sphere.intersectRay(lane, t)) continue;
+    for (const double at : t)
+      if (lane.reaches(at) && storeOcclusion(a, i, at, sphere.normalAt(lane, at))) break;
   }
 }
 

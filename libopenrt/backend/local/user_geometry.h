@@ -2,6 +2,8 @@
 // Called by render threads.
 #pragma once
 
+#include <limits>
+
 #include "backend/local/accel/embree.h"
 #include "scene/matrix.h"
 
@@ -18,11 +20,38 @@ struct Lane {
   bool reaches(double t) const { return float(t) >= near && float(t) <= far; }
 };
 
-// Stores a hit of lane i, unless the filter of the query rejects it. The filter gets the hit as a
-// packet of one ray. Returns whether the hit was stored.
-inline bool storeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u,
-                     double v, const Vec3d& normal) {
-  RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+// Returns whether the filter of the query, if any, accepts a hit of lane i at distance t. The
+// filter gets the hit as a packet of one ray. Arguments: those of an intersection or of an
+// occlusion callback.
+template <class Arguments>
+bool passesFilter(const Arguments* a, RTCRayN* rays, unsigned i, double t, const RTCHit& hit) {
+  const auto* context = static_cast<const QueryContext*>(a->context);
+  if (!context->queryFilter) return true;
+  RTCRay ray{};
+  ray.org_x = RTCRayN_org_x(rays, a->N, i);
+  ray.org_y = RTCRayN_org_y(rays, a->N, i);
+  ray.org_z = RTCRayN_org_z(rays, a->N, i);
+  ray.dir_x = RTCRayN_dir_x(rays, a->N, i);
+  ray.dir_y = RTCRayN_dir_y(rays, a->N, i);
+  ray.dir_z = RTCRayN_dir_z(rays, a->N, i);
+  ray.tnear = RTCRayN_tnear(rays, a->N, i);
+  ray.tfar = float(t);
+  ray.mask = RTCRayN_mask(rays, a->N, i);
+  ray.id = RTCRayN_id(rays, a->N, i);
+  RTCHit seen = hit;
+  int valid = -1;
+  const RTCFilterFunctionNArguments one{&valid,
+                                        a->geometryUserPtr,
+                                        a->context,
+                                        reinterpret_cast<RTCRayN*>(&ray),
+                                        reinterpret_cast<RTCHitN*>(&seen),
+                                        1};
+  context->queryFilter(&one);
+  return valid == -1;
+}
+
+template <class Arguments>
+RTCHit hitOf(const Arguments* a, double u, double v, const Vec3d& normal) {
   RTCHit hit{};
   hit.Ng_x = float(normal.x);
   hit.Ng_y = float(normal.y);
@@ -32,29 +61,25 @@ inline bool storeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double
   hit.primID = a->primID;
   hit.geomID = a->geomID;
   hit.instID[0] = a->context->instID[0];
-  if (const auto* context = static_cast<const QueryContext*>(a->context); context->queryFilter) {
-    RTCRay ray{};
-    ray.org_x = RTCRayN_org_x(rays, a->N, i);
-    ray.org_y = RTCRayN_org_y(rays, a->N, i);
-    ray.org_z = RTCRayN_org_z(rays, a->N, i);
-    ray.dir_x = RTCRayN_dir_x(rays, a->N, i);
-    ray.dir_y = RTCRayN_dir_y(rays, a->N, i);
-    ray.dir_z = RTCRayN_dir_z(rays, a->N, i);
-    ray.tnear = RTCRayN_tnear(rays, a->N, i);
-    ray.tfar = float(t);
-    ray.mask = RTCRayN_mask(rays, a->N, i);
-    ray.id = RTCRayN_id(rays, a->N, i);
-    RTCHit seen = hit;
-    int valid = -1;
-    const RTCFilterFunctionNArguments one{&valid,
-                                          a->geometryUserPtr,
-                                          a->context,
-                                          reinterpret_cast<RTCRayN*>(&ray),
-                                          reinterpret_cast<RTCHitN*>(&seen),
-                                          1};
-    context->queryFilter(&one);
-    if (valid != -1) return false;
-  }
+  return hit;
+}
+
+// Marks lane i as occluded by a hit, unless the filter of the query rejects it. Returns whether the
+// lane was marked.
+inline bool storeOcclusion(const RTCOccludedFunctionNArguments* a, unsigned i, double t,
+                           const Vec3d& normal) {
+  if (!passesFilter(a, a->ray, i, t, hitOf(a, 0, 0, normal))) return false;
+  RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
+  return true;
+}
+
+// Stores a hit of lane i, unless the filter of the query rejects it. Returns whether the hit was
+// stored.
+inline bool storeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double t, double u,
+                     double v, const Vec3d& normal) {
+  RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+  const RTCHit hit = hitOf(a, u, v, normal);
+  if (!passesFilter(a, rays, i, t, hit)) return false;
   RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
   RTCRayN_tfar(rays, a->N, i) = float(t);
   RTCHitN_Ng_x(hits, a->N, i) = hit.Ng_x;

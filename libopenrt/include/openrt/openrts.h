@@ -275,7 +275,11 @@ enum {
   RTS_GLOBAL = 64,   /* surface: needs indirect light, so path tracing is chosen */
   /* Hosts that do not know the following bits ignore them. */
   RTS_NO_SCATTER = 128, /* surface: only REFLECTION, DIELECTRIC and TRANSPARENT lobes */
-  RTS_BACKDROP = 256    /* environment: does not light surfaces that are shaded by `shade` */
+  RTS_BACKDROP = 256,   /* environment: does not light surfaces that are shaded by `shade` */
+  /* surface with RTS_EMISSIVE: each side emits the same radiance at all its points and in all
+   * directions: it depends on the parameters only. The host then calls `surface` once for the light
+   * samples of a shape. Has no effect on geometry with parameter values of its own. */
+  RTS_UNIFORM_EMISSION = 512
 };
 
 /* Since 1.2: how often a parameter's value may change. Functions always find the value for a hit in

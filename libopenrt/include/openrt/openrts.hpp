@@ -13,7 +13,8 @@
 //
 // A class derives from one of the templates below and defines these functions. Except for `prepare`
 // and `release`, they are const. None may throw. They are called on many threads at once [render];
-// `emits`, `medium`, `needs`, `extent` and `prepare` are called on the committing thread.
+// `emits`, `emitsUniformly`, `medium`, `needs`, `extent` and `prepare` are called on the committing
+// thread.
 //
 //   Surface<T>
 //     void surface(const Hit&, Closures&) const      adds the BSDF's lobes and emission
@@ -28,6 +29,8 @@
 //     bool emits() const                             optional: emission may be above 0; without it
 //                                                    no light samples are taken on the surface, and
 //                                                    path tracing finds its light only by chance
+//     bool emitsUniformly() const                    optional, with `emits`: a side emits the same
+//                                                    radiance at all points, in all directions
 //     Medium medium() const                          optional: the interior of the body
 //     static constexpr uint32_t needs = RTS_GLOSSY;  optional, also as a const function:
 //                                                    RTS_SPECULAR, RTS_GLOSSY, RTS_GLOBAL,

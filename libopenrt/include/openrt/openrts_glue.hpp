@@ -27,6 +27,7 @@ RTS_DETECT(HasTransmit, std::declval<const T&>().transmit(std::declval<const Hit
 RTS_DETECT(HasSurface,
            std::declval<const T&>().surface(std::declval<const Hit&>(), std::declval<Closures&>()));
 RTS_DETECT(HasEmits, std::declval<const T&>().emits());
+RTS_DETECT(HasEmitsUniformly, std::declval<const T&>().emitsUniformly());
 RTS_DETECT(HasMedium, std::declval<const T&>().medium());
 RTS_DETECT(HasNeeds, T::needs);
 RTS_DETECT(ComputesNeeds, std::declval<const T&>().needs());
@@ -300,6 +301,8 @@ template <class T> uint32_t surfaceTraits(const void* params) {
   const T* shader = static_cast<const T*>(params);
   (void)shader;
   if constexpr (HasEmits<T>::value) t |= shader->emits() ? uint32_t(RTS_EMISSIVE) : 0u;
+  if constexpr (HasEmitsUniformly<T>::value)
+    t |= (t & RTS_EMISSIVE) && shader->emitsUniformly() ? uint32_t(RTS_UNIFORM_EMISSION) : 0u;
   if constexpr (ComputesNeeds<T>::value)
     t |= shader->needs();
   else if constexpr (HasNeeds<T>::value)

@@ -81,10 +81,26 @@ RtsSurface evaluateEmission(const RenderScene& scene, uint32_t record, const Pro
 }
 
 // The radiance that a point or a side emits. The luminance decides how often it is sampled; the sum
-// of the colours bounds the light that is missing if no path has found it.
+// of the colours bounds the light that is missing if no path has found it. radiance: 0 where a
+// colour is not finite.
 struct Brightness {
-  double luminance = 0, sum = 0;
+  double luminance = 0, sum = 0, radiance[3] = {};
+  void add(const Brightness& other, double weight) {
+    luminance += weight * other.luminance;
+    sum += weight * other.sum;
+    for (int k = 0; k < 3; k++) radiance[k] += weight * other.radiance[k];
+  }
 };
+
+// Returns whether the emission of a record is known to be the same at all points of a side and in
+// all directions. Traits do not cover parameter values of geometries.
+bool emitsUniformly(const RenderScene& scene, const Record& r) {
+  return ((*scene.shaders)[r.shader].traits & RTS_UNIFORM_EMISSION) && r.parameterCount == 0;
+}
+
+void storeRadiance(const Brightness& from, float out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = float(from.radiance[k]);
+}
 
 // Computes the emitted radiance of the probed points.
 void emittedBrightness(const RenderScene& scene, uint32_t record, const ProbeRays& probes,
@@ -93,23 +109,13 @@ void emittedBrightness(const RenderScene& scene, uint32_t record, const ProbeRay
   for (uint32_t i = 0; i < probes.count; i++) {
     const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
     const double sum = double(c[0]) + double(c[1]) + double(c[2]);
-    out[i] = {luminance(c), std::isfinite(sum) && sum > 0 ? std::min(sum, 1e30) : 0};
+    out[i] = {luminance(c), std::isfinite(sum) && sum > 0 ? std::min(sum, 1e30) : 0, {}};
+    for (int k = 0; k < 3; k++) out[i].radiance[k] = std::isfinite(c[k]) ? double(c[k]) : 0;
   }
 }
 
-// Writes a normal as the kernel would return it. For an instance that is the normal in the
-// instance's frame, mapped by the transpose of toRender: the inverse of kernelNormal's map except
-// for the length.
-void kernelNormal(const Record& r, const float normal[3], float out[3]) {
-  for (int k = 0; k < 3; k++) out[k] = normal[k];
-  if (!r.instanced) return;
-  for (int k = 0; k < 3; k++)
-    out[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] +
-             r.toRender.r[2][k] * normal[2];
-}
-
-// Computes the mean emission of one side of triangles: from four points where colours or textures
-// may vary, else from one.
+// Computes the mean emission of one side of triangles: from four points where parameters, colours
+// or textures may vary, else from one.
 void triangleEmission(const RenderScene& scene, uint32_t record,
                       std::span<const EmissiveShapes::Shape> shapes, bool otherSide, Arena& arena,
                       Brightness* out) {
@@ -117,7 +123,8 @@ void triangleEmission(const RenderScene& scene, uint32_t record,
   static constexpr float at[4][2] = {
       {1.0f / 3, 1.0f / 3}, {1.0f / 6, 1.0f / 6}, {2.0f / 3, 1.0f / 6}, {1.0f / 6, 2.0f / 3}};
   const bool mirrored = mirrors(r);
-  const uint32_t places = r.texCoords || r.colors || r.parameterCount ? 4 : 1;
+  const bool varies = !emitsUniformly(scene, r) && (r.texCoords || r.colors || r.parameterCount);
+  const uint32_t places = varies ? 4 : 1;
   ArenaScope scope(arena);
   ProbeRays probes(arena, uint32_t(shapes.size()) * places);
   for (const EmissiveShapes::Shape& s : shapes) {
@@ -142,10 +149,7 @@ void triangleEmission(const RenderScene& scene, uint32_t record,
   }
   auto* each = arena.take<Brightness>(probes.count);
   emittedBrightness(scene, record, probes, arena, each);
-  for (uint32_t i = 0; i < probes.count; i++) {
-    out[i / places].luminance += each[i].luminance / places;
-    out[i / places].sum += each[i].sum / places;
-  }
+  for (uint32_t i = 0; i < probes.count; i++) out[i / places].add(each[i], 1.0 / places);
 }
 
 // Computes the mean emission of the outside of a sphere from the six ends of its axes.
@@ -171,10 +175,7 @@ Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& aren
     }
   Brightness each[6], mean;
   emittedBrightness(scene, record, probes, arena, each);
-  for (const Brightness& x : each) {
-    mean.luminance += x.luminance / 6;
-    mean.sum += x.sum / 6;
-  }
+  for (const Brightness& x : each) mean.add(x, 1.0 / 6);
   return mean;
 }
 
@@ -211,6 +212,16 @@ LightBounds sphereBounds(const Record& r, double outside) {
 
 } // namespace
 
+// For an instance that is the normal in the instance's frame, mapped by the transpose of toRender:
+// the inverse of the map Record::kernelNormal except for the length.
+void kernelNormal(const Record& r, const float normal[3], float out[3]) {
+  for (int k = 0; k < 3; k++) out[k] = normal[k];
+  if (!r.instanced) return;
+  for (int k = 0; k < 3; k++)
+    out[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] +
+             r.toRender.r[2][k] * normal[2];
+}
+
 void cornersOf(const Record& r, uint32_t primitive, float out[3][3]) {
   for (int c = 0; c < 3; c++) {
     const float* v = r.vertices + 3 * size_t(r.indices[3 * size_t(primitive) + c]);
@@ -228,8 +239,10 @@ EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.record
   for (const Shape& shape : shapes_) {
     for (int c = 0; c < 3; c++)
       for (int k = 0; k < 3; k++) corners_[c][k].push_back(shape.corner[c][k]);
-    sides_.push_back(shape.sides | (shape.sphere ? ShapeArrays::sphere : 0));
+    sides_.push_back(shape.sides | (shape.sphere ? ShapeArrays::sphere : 0) |
+                     (scene.records[shape.record].instanced ? ShapeArrays::instanced : 0));
   }
+  markUncertain(scene);
 }
 
 ShapeArrays EmissiveShapes::arrays() const {
@@ -252,14 +265,16 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     firstOf_[id] = uint32_t(shapes_.size());
     brightest_ = std::max(brightest_, emission.sum);
     bounds.push_back(sphereBounds(r, outside));
-    shapes_.push_back(
-        {id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
+    Shape& s = shapes_.emplace_back(
+        Shape{id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
+    s.uniform = emitsUniformly(scene, r);
+    storeRadiance(emission, s.radiance[0]);
     return;
   }
   if (r.primitive != edit::Primitive::Triangles || !r.vertices) return;
   firstOf_[id] = uint32_t(shapes_.size());
   std::vector<Brightness> front, back;
-  const bool mirrored = mirrors(r);
+  const bool mirrored = mirrors(r), uniform = emitsUniformly(scene, r);
   for (uint32_t first = 0; first < r.primitives; first += batchSize) {
     const uint32_t n = std::min(batchSize, r.primitives - first);
     const size_t begin = shapes_.size();
@@ -283,6 +298,9 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
       if (bounds.back().intensity > 0)
         s.sides = uint8_t((ahead > 0 ? 1 : 0) | (behind > 0 ? 2 : 0));
       s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);
+      s.uniform = uniform;
+      storeRadiance(front[i], s.radiance[0]);
+      storeRadiance(back[i], s.radiance[1]);
     }
   }
 }
@@ -322,6 +340,12 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
 void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const Place& place,
                               const float towards[3], Arena& arena, float out[3]) const {
   const Shape& s = shapes_[number];
+  if (s.uniform) {
+    float along = 0;
+    for (int k = 0; k < 3; k++) along += place.normal[k] * towards[k];
+    for (int k = 0; k < 3; k++) out[k] = std::max(s.radiance[along > 0 ? 0 : 1][k], 0.0f);
+    return;
+  }
   ArenaScope scope(arena);
   ProbeRays probes(arena, 1);
   float kernel[3];

@@ -26,6 +26,12 @@ class EmissiveShapes {
     float corner[3][3]; // triangle in render space, in the order of the kernel's normal
     bool swapped;       // corners 1 and 2 are the record's 2 and 1
     float power;        // approximately proportional to the flux
+    // Every point of a side emits the same radiance in all directions (RTS_UNIFORM_EMISSION).
+    bool uniform = false;
+    float radiance[2][3] = {}; // mean emitted radiance of the sides, in the order of `sides`
+    // The shape may be hidden, or have another surface in the same place: it counts only where rays
+    // report it.
+    bool uncertain = false;
   };
 
   explicit EmissiveShapes(const RenderScene& scene);
@@ -46,7 +52,8 @@ class EmissiveShapes {
   };
   // Samples a point of a shape. u, v: uniform in the unit square.
   Place place(const RenderScene& scene, uint32_t number, float u, float v) const;
-  // Evaluates the radiance that a point emits in a direction.
+  // Evaluates the radiance that a point emits in a direction. The shader is not called if the shape
+  // emits uniformly.
   void radiance(const RenderScene& scene, uint32_t number, const Place& place,
                 const float towards[3], Arena& arena, float out[3]) const;
   // Returns the number of a primitive's shape, or `none` if its record is not emissive.
@@ -58,15 +65,19 @@ class EmissiveShapes {
 
  private:
   void add(const RenderScene& scene, uint32_t record, std::vector<LightBounds>& bounds);
-  std::vector<Shape> shapes_;     // all primitives of a record are consecutive
-  std::vector<uint32_t> firstOf_; // index of a record's first shape, by record
+  void markUncertain(const RenderScene& scene); // uncertain_shapes.cpp
+  std::vector<Shape> shapes_;                   // all primitives of a record are consecutive
+  std::vector<uint32_t> firstOf_;               // index of a record's first shape, by record
   LightTree tree_;
   std::vector<float> corners_[3][3]; // as Shape::corner, by shape
   std::vector<uint32_t> sides_;      // ShapeArrays::sides
   double brightest_ = 0;
 };
 
+// Writes a unit normal in render space as the kernel would return it for a triangle of the record.
+void kernelNormal(const struct Record& record, const float normal[3], float out[3]);
+
 // Writes the corners of a record's triangle in render space.
-void cornersOf(const struct Record& record, uint32_t primitive, float out[3][3]);
+void cornersOf(const Record& record, uint32_t primitive, float out[3][3]);
 
 } // namespace openrt

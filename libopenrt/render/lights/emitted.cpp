@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/sampled_points.h"
 #include "render/path/paths.h"
 #include "render/surface/scatter.h"
 #include "render/surface/surfaces.h"
@@ -74,7 +75,10 @@ TileRenderer::LightSamples TileRenderer::chooseLightSamples(const RtsBatch& batc
       rays.dir[k][n] = lightSample.direction[k];
     }
     rays.tnear[n] = 0;
-    rays.tfar[n] = lightSample.distance * (1 + 0x1p-10f);
+    rays.tfar[n] = lightSample.end >= 0
+                       ? lightSample.end
+                       : shadowRayEnd(scene_, lightSample,
+                                      lightSampleContext(points, i, false).position, origin);
     out.hit[n] = i;
     out.sample[n++] = lightSample;
   }
@@ -122,13 +126,74 @@ void TileRenderer::weightLightSamples(const RtsBatch& batch, const Sampling& sam
   rays.count = left;
 }
 
+// Blocks the rays to shapes that may be hidden, or share their place with another surface, unless
+// the sampled shape is the one that the kernel reports.
+void TileRenderer::blockUncertain(const Rays& rays, const LightSample* lightSamples,
+                                  uint8_t* blocked) {
+  ArenaScope scope(arena_);
+  auto* lanes = arena_.take<uint32_t>(rays.count);
+  uint32_t n = 0;
+  for (uint32_t r = 0; r < rays.count; r++) {
+    const uint32_t shape = lightSamples[r].shape;
+    if (!blocked[r] && shape != EmissiveShapes::none &&
+        (*scene_.emitters.shapes())[shape].uncertain)
+      lanes[n++] = r;
+  }
+  if (n == 0) return;
+  const Rays again = copyRays(rays, lanes, n, arena_);
+  for (uint32_t i = 0; i < n; i++) again.tfar[i] = lightSamples[lanes[i]].distance * (1 + 0x1p-10f);
+  RayHits found;
+  found.allocate(arena_, n);
+  scene_.kernel->intersect(again, maskAll, Coherence::incoherent, found);
+  skipCulledBacks(scene_, arena_, counters_, again, found);
+  for (uint32_t i = 0; i < n; i++)
+    blocked[lanes[i]] = found.record[i] == noHit ||
+                        scene_.emitters.shapes()->find(found.record[i], found.primitive[i]) !=
+                            lightSamples[lanes[i]].shape;
+}
+
+// Evaluates the emission at the sampled points of some rays by their shaders. Calls add(ray,
+// light).
+template <class Add>
+void TileRenderer::shadeSampledPoints(const Rays& rays, const LightSample* lightSamples,
+                                      const uint32_t* lanes, uint32_t n, const Add& add) {
+  ArenaScope scope(arena_);
+  RayHits seen;
+  seen.allocate(arena_, rays.count);
+  for (uint32_t i = 0; i < n; i++)
+    writeSampledHit(scene_, lightSamples[lanes[i]], rays, lanes[i], seen);
+  const auto* travelled = arena_.takeZero<float>(padded(rays.count));
+  auto* sorted = arena_.take<uint32_t>(n);
+  for (const BucketRange& range : sortByBucket(scene_, seen, lanes, n, sorted, arena_)) {
+    const RtsClass& shaderClass = *scene_.buckets[range.bucket].shaderClass;
+    const uint32_t m = range.end - range.begin;
+    const Points points =
+        makePoints(scene_, rays, seen, sorted + range.begin, m, travelled, arena_);
+    RtsSurface surface{};
+    for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(m));
+    RtsBatch inner = makeBatch();
+    // A null tracer turns off random decisions of the shader, because the emission must be the one
+    // that the sampling tables were built from.
+    inner.tracer = nullptr;
+    inner.points = &points;
+    {
+      const RunningShader running(shaderClass);
+      shaderClass.surface(&scene_.host, &inner, &points.hits, &surface);
+    }
+    for (uint32_t i = 0; i < m; i++) {
+      const float light[3] = {surface.emission[0][i], surface.emission[1][i],
+                              surface.emission[2][i]};
+      add(sorted[range.begin + i], light);
+    }
+  }
+}
+
 // Adds to `radiance` the light of one light sample at each hit. crossing: by hit; null if no
 // boundary of a medium is hit.
 void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& sampling,
                                   const Crossing* crossing, float* const radiance[3]) {
   ArenaScope scope(arena_);
   const RtsHits& hits = batch.points->hits;
-  const Emitters& emitters = scene_.emitters;
   LightSamples samples = chooseLightSamples(batch, sampling);
   weightLightSamples(batch, sampling, samples);
   const Rays& rays = samples.rays;
@@ -136,10 +201,9 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& samplin
   const uint32_t n = rays.count;
   if (n == 0) return;
   counters_.shadow += n;
-  RayHits found;
-  found.allocate(arena_, n);
-  scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
-  skipCulledBacks(scene_, arena_, counters_, rays, found);
+  auto* blocked = arena_.take<uint8_t>(n);
+  findBlocked(scene_, arena_, rays, blocked);
+  blockUncertain(rays, samples.sample, blocked);
 
   const auto add = [&](uint32_t ray, const float light[3]) {
     const uint32_t i = samples.hit[ray];
@@ -149,56 +213,35 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& samplin
       for (int k = 0; k < 3; k++) towards += hits.geometric[k][i] * rays.dir[k][ray];
       const MediaStack& media =
           towards < 0 && crossing ? crossing[i].behind : batch.states[batch.order[i]].media;
-      absorb(mediumOf(media, scene_.shaders->media()), std::min(found.t[ray], 1e30f),
+      absorb(mediumOf(media, scene_.shaders->media()), std::min(lightSamples[ray].distance, 1e30f),
              scene_.shaders->media(), left);
     }
     for (int k = 0; k < 3; k++)
       if (std::isfinite(left[k])) radiance[k][i] += samples.response[k][ray] * left[k];
   };
-  auto* lanes = arena_.take<uint32_t>(n);
-  auto* sorted = arena_.take<uint32_t>(n);
-  uint32_t skies = 0, lit = 0;
-  for (uint32_t r = 0; r < n; r++)
-    if (lightSamples[r].record == noHit && found.record[r] == noHit) lanes[skies++] = r;
+  auto *toSky = arena_.take<uint32_t>(n), *toShade = arena_.take<uint32_t>(n);
+  uint32_t skies = 0, shaded = 0;
+  for (uint32_t r = 0; r < n; r++) {
+    if (blocked[r]) continue;
+    if (lightSamples[r].shape == EmissiveShapes::none) {
+      toSky[skies++] = r;
+      continue;
+    }
+    const EmissiveShapes::Shape& shape = (*scene_.emitters.shapes())[lightSamples[r].shape];
+    if (const float* light = uniformRadiance(shape, lightSamples[r].direction))
+      add(r, light);
+    else
+      toShade[shaded++] = r;
+  }
   if (skies) {
     float *local[3], *rgba[4];
-    evaluateSky(rays, lanes, skies, local, rgba);
+    evaluateSky(rays, toSky, skies, local, rgba);
     for (uint32_t i = 0; i < skies; i++) {
       const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
-      add(lanes[i], light);
+      add(toSky[i], light);
     }
   }
-  for (uint32_t r = 0; r < n; r++)
-    if (found.record[r] != noHit &&
-        emitters.isSampledHit(lightSamples[r], found.record[r], found.primitive[r], found.t[r]))
-      lanes[lit++] = r;
-  if (lit == 0) return;
-  auto* travelled = arena_.takeZero<float>(padded(n));
-  std::vector<uint32_t> counts;
-  std::vector<BucketRange> ranges;
-  sortByBucket(scene_, found, lanes, lit, sorted, counts, ranges);
-  for (const BucketRange& range : ranges) {
-    const RtsClass& shaderClass = *scene_.buckets[range.bucket].shaderClass;
-    if (!shaderClass.surface) continue;
-    const uint32_t m = range.end - range.begin;
-    const Points seen = makePoints(scene_, rays, found, sorted + range.begin, m, travelled, arena_);
-    RtsSurface surface{};
-    for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(m));
-    RtsBatch inner = makeBatch();
-    // A null tracer turns off random decisions of the shader, because the emission must be the one
-    // that the sampling tables were built from.
-    inner.tracer = nullptr;
-    inner.points = &seen;
-    {
-      const RunningShader running(shaderClass);
-      shaderClass.surface(&scene_.host, &inner, &seen.hits, &surface);
-    }
-    for (uint32_t i = 0; i < m; i++) {
-      const float light[3] = {surface.emission[0][i], surface.emission[1][i],
-                              surface.emission[2][i]};
-      add(sorted[range.begin + i], light);
-    }
-  }
+  if (shaded) shadeSampledPoints(rays, lightSamples, toShade, shaded, add);
 }
 
 } // namespace openrt

@@ -68,8 +68,7 @@ float Emitters::skyJacobian(const float local[3]) const {
 // Samples a direction to a point on the shape. Returns its pdf as if the shape were the only one;
 // 0: no sample.
 double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from,
-                             double u, double v, double direction[3], double& distance,
-                             bool& nearEdge) const {
+                             double u, double v, double direction[3], double& distance) const {
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
     const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
@@ -78,7 +77,6 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
   }
   const SphericalTriangle seen(shape.corner, from.position);
   if (!(shape.sides & (seen.front() ? 1 : 2)) || !seen.sample(u, v, direction, distance)) return 0;
-  nearEdge = seen.isNearEdge(direction, distance);
   return seen.pdf(direction);
 }
 
@@ -105,10 +103,9 @@ LightSample Emitters::sampleChosen(const LightSampleContext& from, uint32_t numb
                                    double probability, float u, float v) const {
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
   LightSample lightSample;
-  lightSample.record = shape.record;
-  lightSample.primitive = shape.primitive;
+  lightSample.shape = number;
   double towards[3], distance = 0;
-  const double alone = sampleShape(shape, from, u, v, towards, distance, lightSample.nearEdge);
+  const double alone = sampleShape(shape, from, u, v, towards, distance);
   if (!(alone > 0)) return {};
   lightSample.pdf = float((1 - double(skyProbability_)) * probability * alone);
   lightSample.distance = float(distance);
@@ -180,7 +177,7 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
     }
   }
   const SampledLights sampled{
-      {floats(), floats(), floats()}, floats(), floats(), arena.take<uint32_t>(size)};
+      {floats(), floats(), floats()}, floats(), floats(), floats(), arena.take<uint32_t>(size)};
   sampleShapes(shapes_->arrays(), left, chosen, sampled);
   for (uint32_t i = 0; i < points.count; i++) {
     if (points.pick[i] < sky) {
@@ -197,24 +194,13 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
       continue;
     }
     if (!(sampled.pdf[i] > 0)) continue;
-    const EmissiveShapes::Shape& shape = (*shapes_)[chosen.shape[i]];
-    out[i].record = shape.record;
-    out[i].primitive = shape.primitive;
+    out[i].shape = chosen.shape[i];
     out[i].pdf = (1 - sky) * chosen.probability[i] * sampled.pdf[i];
     out[i].distance = sampled.distance[i];
+    if (!points.twoSided[i]) out[i].end = sampled.end[i];
     for (int k = 0; k < 3; k++) out[i].direction[k] = sampled.direction[k][i];
     if (!std::isfinite(out[i].pdf)) out[i].pdf = 0;
   }
-}
-
-// Near an edge the ray may hit a neighbouring primitive of the same surface at the same distance;
-// that hit counts as well.
-bool Emitters::isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
-                            float distance) const {
-  if (lightSample.record != record) return false;
-  return primitive == lightSample.primitive ||
-         (lightSample.nearEdge &&
-          std::fabs(distance - lightSample.distance) <= 0x1p-10f * lightSample.distance);
 }
 
 float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,

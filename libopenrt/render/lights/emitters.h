@@ -25,12 +25,12 @@ struct LightSampleContext {
 
 // A sampled direction towards an emitter.
 struct LightSample {
-  uint32_t record = noHit, primitive = 0; // record: noHit if the sky was sampled
-  float direction[3];                     // unit, render space
-  float distance = 0;                     // infinite if the sky was sampled
+  uint32_t shape = EmissiveShapes::none; // number of the shape; none: the sky was sampled
+  float direction[3];                    // unit, render space
+  float distance = 0;                    // to the sampled point; infinite for the sky
   float pdf = 0; // solid-angle pdf including the selection of the emitter; 0: no sample
-  // The ray passes so near to an edge of the primitive that it may hit the neighbour.
-  bool nearEdge = false;
+  // Where the shadow ray ends, just before the sampled point; -1: shadowRayEnd() has to tell.
+  float end = -1;
 };
 
 class Emitters {
@@ -49,9 +49,6 @@ class Emitters {
   LightSample choose(const LightSampleContext& from, double pick, float u, float v) const;
   // Does the same for many points at once. fine: low digits of the random numbers `pick`, by point.
   void choose(const LightPoints& points, const float* fine, Arena& arena, LightSample* out) const;
-  // Returns whether the hit of the sample's ray is the emitter that was sampled.
-  bool isSampledHit(const LightSample& lightSample, uint32_t record, uint32_t primitive,
-                    float distance) const;
   // Returns the solid-angle pdf of choose() for a surface hit along a direction; 0 if choose()
   // cannot sample it.
   float pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
@@ -72,7 +69,7 @@ class Emitters {
   LightSample sampleChosen(const LightSampleContext& from, uint32_t number, double probability,
                            float u, float v) const;
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
-                     double v, double direction[3], double& distance, bool& nearEdge) const;
+                     double v, double direction[3], double& distance) const;
   float skyJacobian(const float local[3]) const;
   const RenderScene* scene_ = nullptr;
   std::shared_ptr<const SkySampler> sky_;

@@ -174,6 +174,13 @@ void sampleAt(const ShapeArrays& shapes, const LightPoints& points, uint32_t i,
                              hn::And(isFinite(distance), isFinite(pdf)));
   store(direction, out.direction, i);
   store(distance, out.distance + i);
+  // The bounds of shadowRayEnd() (sampled_points.cpp).
+  const Lanes cosine = abs(dot(normal, direction)) / sqrt(area2);
+  const Lanes error = lanesOf(24 * 0x1p-24f) * sqrt(farthest) / cosine +
+                      lanesOf(8 * 0x1p-24f) * distance,
+              most = distance * lanesOf(0x1p-10f);
+  const Lanes end = distance - select(error < most, error, most);
+  store(select(has(ShapeArrays::instanced), lanesOf(-1), end), out.end + i);
   store(select(valid, pdf, zero), out.pdf + i);
   store(bitsWhere(hn::And(any, hn::Or(sphere, hn::Not(plain))), 1), out.exact + i);
 }

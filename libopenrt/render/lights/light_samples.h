@@ -12,8 +12,9 @@ struct LightNode;
 // Triangles and spheres that emit, as structure of arrays by the number of the shape.
 struct ShapeArrays {
   const float* corner[3][3]; // [corner][axis], render space
-  const uint32_t* sides;     // EmissiveShapes::Shape::sides; ShapeArrays::sphere for spheres
-  static constexpr uint32_t sphere = 4;
+  // EmissiveShapes::Shape::sides, and one of the following values.
+  const uint32_t* sides;
+  static constexpr uint32_t sphere = 4, instanced = 8;
 };
 
 // The points that light is sampled for. Arrays are padded to 16 elements.
@@ -33,6 +34,8 @@ struct ChosenLights { // by point; arrays are padded
 // A direction towards a shape, sampled for each point that has one.
 struct SampledLights {
   float *direction[3], *distance;
+  // Where a shadow ray from the point ends, so that the shape does not block it; -1 for instances.
+  float* end;
   float* pdf;      // solid-angle pdf for the selected shape; 0: no sample
   uint32_t* exact; // not 0: the sample is left to double precision
 };

@@ -84,10 +84,7 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
   if (n == 0) return;
   auto* order = arena.take<uint32_t>(n);
   auto* travelled = arena.takeZero<float>(s.rays.count);
-  std::vector<uint32_t> counts;
-  std::vector<BucketRange> ranges;
-  sortByBucket(scene, found, met, n, order, counts, ranges);
-  for (const BucketRange& range : ranges) {
+  for (const BucketRange& range : sortByBucket(scene, found, met, n, order, arena)) {
     const uint32_t m = range.end - range.begin;
     const Points points =
         makePoints(scene, s.rays, found, order + range.begin, m, travelled, arena);

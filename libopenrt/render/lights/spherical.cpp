@@ -119,29 +119,6 @@ double SphericalTriangle::pdf(const double direction[3]) const {
                       : 0; // squared distance over the projected area
 }
 
-// Compares barycentric coordinates with the rounding of a float direction and of the kernel's
-// corners, as far as these move the intersection with the plane.
-bool SphericalTriangle::isNearEdge(const double direction[3], double distance) const {
-  constexpr double rounding = 0x1p-20;
-  const double along = dot(normal_, direction), square = dot(normal_, normal_);
-  double place[3];
-  for (int k = 0; k < 3; k++) place[k] = direction[k] * distance;
-  for (int c = 0; c < 3; c++) {
-    const double *from = corner_[(c + 1) % 3], *to = corner_[(c + 2) % 3];
-    double edge[3], fromCorner[3], turn[3];
-    for (int k = 0; k < 3; k++) {
-      edge[k] = to[k] - from[k];
-      fromCorner[k] = place[k] - from[k];
-    }
-    cross(edge, fromCorner, turn);
-    // dot(turn, normal) / |normal| is the distance from the edge times its length. An angular error
-    // of the ray moves the intersection more at grazing angles.
-    const double inside = std::fabs(dot(turn, normal_)) * std::fabs(along);
-    if (inside <= rounding * distance * std::sqrt(dot(edge, edge)) * square) return true;
-  }
-  return false;
-}
-
 SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4],
                                        const float eye[3]) {
   for (int i = 0; i < 3; i++) {

@@ -27,8 +27,6 @@ class SphericalTriangle {
   double pdf(const double direction[3]) const;
   // Returns whether the eye is on the side from which the corners turn counter-clockwise.
   bool front() const { return height_ < 0; }
-  // Returns whether a ray along the direction, rounded to float, may pass an edge.
-  bool isNearEdge(const double direction[3], double distance) const;
 
  private:
   void computeSolidAngle();

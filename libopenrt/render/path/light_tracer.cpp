@@ -118,9 +118,7 @@ void LightTracer::traceWave(uint32_t n) {
     departures_[states_[i].path].pathLength += double(hits.t[i]);
     met[hitCount++] = i;
   }
-  std::vector<BucketRange> ranges;
-  sortByBucket(scene_, hits, met, hitCount, order, counts_, ranges);
-  for (const BucketRange& range : ranges) {
+  for (const BucketRange& range : sortByBucket(scene_, hits, met, hitCount, order, arena_)) {
     ArenaScope inner(arena_);
     const uint32_t* lanes = order + range.begin;
     const Points points =

@@ -67,7 +67,6 @@ class LightTracer {
   std::vector<LightSources::LightRay> lightRays_;
   std::vector<Departure> departures_; // by path index
   std::vector<float> picture_;
-  std::vector<uint32_t> counts_;
   RayQueue queue_, next_;
   Rays rays_;
   RayState* states_ = nullptr;

@@ -139,6 +139,7 @@ void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
 }
 
 void TileRenderer::traceWave(Paths& paths) {
+  ArenaScope scope(arena_);
   const Coherence coherence = level_ == 0 ? Coherence::coherent : Coherence::incoherent;
   scene_.kernel->intersect(paths.rays, maskAll, coherence, paths.hits);
   skipCulledBacks(scene_, arena_, counters_, paths.rays, paths.hits);
@@ -147,12 +148,9 @@ void TileRenderer::traceWave(Paths& paths) {
   for (uint32_t i = 0; i < paths.rays.count; i++)
     (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[hitCount++]) = i;
   addEnvironment(paths, paths.missed, misses);
-  sortByBucket(scene_, paths.hits, paths.met, hitCount, paths.order, counts_, ranges_);
-  std::vector<BucketRange> ranges;
-  ranges.swap(ranges_); // shaders may trace rays, which uses ranges_ again
-  for (const BucketRange& range : ranges)
+  for (const BucketRange& range :
+       sortByBucket(scene_, paths.hits, paths.met, hitCount, paths.order, arena_))
     shadeRange(paths, paths.hits, range, paths.order + range.begin);
-  ranges.swap(ranges_);
 }
 
 RtsBatch TileRenderer::makeBatch() {

@@ -135,6 +135,9 @@ class TileRenderer {
   struct LightSamples; // the light samples of a batch
   LightSamples chooseLightSamples(const RtsBatch& batch, const Sampling& sampling);
   void weightLightSamples(const RtsBatch& batch, const Sampling& sampling, LightSamples& samples);
+  void blockUncertain(const Rays& rays, const LightSample* lightSamples, uint8_t* blocked);
+  template <class Add> void shadeSampledPoints(const Rays& rays, const LightSample* lightSamples,
+                                               const uint32_t* lanes, uint32_t n, const Add& add);
   void sampleEmitters(const RtsBatch& batch, const Sampling& sampling, const Crossing* crossing,
                       float* const radiance[3]);
   void attenuate(const Points& points, const Paths& paths, const uint32_t* order, float* fog[4]);
@@ -151,8 +154,7 @@ class TileRenderer {
   Ledger ledger_;
   Tile tile_;
   // pixels_: y * width + x, in blocks of 4x4; places_: index in the tile, row by row.
-  std::vector<uint32_t> counts_, pixels_, places_;
-  std::vector<BucketRange> ranges_;
+  std::vector<uint32_t> pixels_, places_;
   std::span<PixelSums> sums_;
   Replicates replicates_;
   uint32_t leaf_ = 0; // first sample of the current leaf

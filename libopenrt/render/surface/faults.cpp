@@ -29,6 +29,9 @@ const char* textOf(Fault fault) {
   case Fault::undeclaredScattering:
     return "has lobes that scatter, but its traits have RTS_NO_SCATTER: the automatic transport "
            "may leave out light";
+  case Fault::varyingEmission:
+    return "has emission that varies, but its traits have RTS_UNIFORM_EMISSION: light samples take "
+           "the same radiance everywhere";
   }
   return "";
 }
@@ -72,7 +75,26 @@ template <class Above> void excludeTrait(const RtsClass& c, RtsBatch& batch, uin
   if (hits) batch.counters->faults.add(c, fault, hits);
 }
 
+// Counts the hits whose emission differs from that of the hit before on the same side of the same
+// geometry, although the class's traits say that it is uniform.
+void demandUniformEmission(const RtsClass& c, RtsBatch& batch, const RtsSurface& out) {
+  const Points& points = *batch.points;
+  uint64_t hits = 0;
+  for (uint32_t i = 1; i < points.hits.count; i++) {
+    if (!(traitsAt(batch, i) & RTS_UNIFORM_EMISSION) || points.record[i] != points.record[i - 1] ||
+        ((points.hits.flags[i] ^ points.hits.flags[i - 1]) & RTS_HIT_BACK) ||
+        batch.scene->records[points.record[i]].parameterCount)
+      continue;
+    bool varies = false;
+    for (const auto* e : out.emission)
+      varies |= std::fabs(e[i] - e[i - 1]) > 1e-3f * std::fabs(e[i]);
+    hits += varies;
+  }
+  if (hits) batch.counters->faults.add(c, Fault::varyingEmission, hits);
+}
+
 void diagnose(const RtsClass& c, RtsBatch& batch, const RtsSurface& out) {
+  demandUniformEmission(c, batch, out);
   demandTrait(c, batch, RTS_EMISSIVE, Fault::undeclaredEmission,
               [&](uint32_t i) { return anyAbove(out.emission, i); });
   for (uint32_t l = 0; l < batch.lobeCount; l++) {

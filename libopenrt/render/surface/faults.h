@@ -17,7 +17,8 @@ enum class Fault : uint8_t {
   undeclaredGlossy,
   undeclaredEmission,
   undeclaredTransparency,
-  undeclaredScattering
+  undeclaredScattering,
+  varyingEmission // the last one
 };
 
 class ShaderFaults { // Fault counts of one thread, or of a frame.

@@ -214,26 +214,29 @@ const void* ownParameters(const RenderScene& scene, const Record& r, const RayHi
 
 } // namespace
 
-void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t* rayLanes,
-                  uint32_t n, uint32_t* order, std::vector<uint32_t>& counts,
-                  std::vector<BucketRange>& ranges) {
-  ranges.clear();
-  if (scene.buckets.size() == 1) {
+std::span<const BucketRange> sortByBucket(const RenderScene& scene, const RayHits& hits,
+                                          const uint32_t* rayLanes, uint32_t n, uint32_t* order,
+                                          Arena& arena) {
+  if (n == 0) return {};
+  const uint32_t buckets = uint32_t(scene.buckets.size());
+  auto* ranges = arena.take<BucketRange>(std::min(n, buckets));
+  if (buckets == 1) {
     std::copy(rayLanes, rayLanes + n, order);
-    if (n) ranges.push_back({0, 0, n});
-    return;
+    ranges[0] = {0, 0, n};
+    return {ranges, 1};
   }
-  counts.assign(scene.buckets.size(), 0);
+  auto* counts = arena.takeZero<uint32_t>(buckets);
   for (uint32_t i = 0; i < n; i++) counts[scene.records[hits.record[rayLanes[i]]].bucket]++;
-  uint32_t begin = 0;
-  for (uint32_t b = 0; b < counts.size(); b++) {
-    if (counts[b]) ranges.push_back({b, begin, begin + counts[b]});
+  uint32_t begin = 0, used = 0;
+  for (uint32_t b = 0; b < buckets; b++) {
+    if (counts[b]) ranges[used++] = {b, begin, begin + counts[b]};
     const uint32_t c = counts[b];
     counts[b] = begin;
     begin += c;
   }
   for (uint32_t i = 0; i < n; i++)
     order[counts[scene.records[hits.record[rayLanes[i]]].bucket]++] = rayLanes[i];
+  return {ranges, used};
 }
 
 Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hits,

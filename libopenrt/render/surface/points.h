@@ -3,7 +3,7 @@
 #pragma once
 
 #include <bit>
-#include <vector>
+#include <span>
 
 #include "render/render_scene.h"
 
@@ -23,10 +23,10 @@ struct Points {
 };
 
 // Sorts n ray lanes by the bucket of the record each has hit (stable counting sort). `order` gets
-// the lanes, `ranges` the buckets' ranges. `counts` is working storage kept between calls.
-void sortByBucket(const RenderScene& scene, const RayHits& hits, const uint32_t* rayLanes,
-                  uint32_t n, uint32_t* order, std::vector<uint32_t>& counts,
-                  std::vector<BucketRange>& ranges);
+// the lanes. Returns the ranges of the buckets that are not empty; they lie in the arena.
+std::span<const BucketRange> sortByBucket(const RenderScene& scene, const RayHits& hits,
+                                          const uint32_t* rayLanes, uint32_t n, uint32_t* order,
+                                          Arena& arena);
 
 // Computes the shading points of n hits. travelled: path length up to the ray's origin, by ray
 // lane.

@@ -5,6 +5,21 @@
 
 namespace openrt {
 
+Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& arena) {
+  Rays out;
+  out.allocate(arena, n);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t lane = rayLanes[i];
+    for (int k = 0; k < 3; k++) {
+      out.org[k][i] = rays.org[k][lane];
+      out.dir[k][i] = rays.dir[k][lane];
+    }
+    out.tnear[i] = rays.tnear[lane];
+    out.tfar[i] = rays.tfar[lane];
+  }
+  return out;
+}
+
 void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
                      const Rays& rays, RayHits& hits) {
   ArenaScope scope(arena);
@@ -13,19 +28,9 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
   for (uint32_t i = 0; i < rays.count; i++)
     if (hits.record[i] != noHit && isCulledHit(scene, rays, hits, i)) lanes[n++] = i;
   if (n == 0) return;
-  Rays again;
-  again.allocate(arena, n);
+  const Rays again = copyRays(rays, lanes, n, arena);
   RayHits found;
   found.allocate(arena, n);
-  for (uint32_t i = 0; i < n; i++) {
-    const uint32_t lane = lanes[i];
-    for (int k = 0; k < 3; k++) {
-      again.org[k][i] = rays.org[k][lane];
-      again.dir[k][i] = rays.dir[k][lane];
-    }
-    again.tnear[i] = rays.tnear[lane];
-    again.tfar[i] = rays.tfar[lane];
-  }
   counters.secondary += n;
   scene.kernel->intersectFronts(again, maskAll, found);
   for (uint32_t i = 0; i < n; i++) {
@@ -37,6 +42,20 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
     hits.record[lane] = found.record[i];
     hits.primitive[lane] = found.primitive[i];
   }
+}
+
+void findBlocked(const RenderScene& scene, Arena& arena, const Rays& rays, uint8_t* blocked) {
+  scene.kernel->occluded(rays, maskAll, Coherence::incoherent, blocked);
+  if (!scene.kernel->cullsBacks()) return;
+  ArenaScope scope(arena);
+  auto* lanes = arena.take<uint32_t>(rays.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < rays.count; i++)
+    if (blocked[i]) lanes[n++] = i;
+  if (n == 0) return;
+  auto* byFront = arena.take<uint8_t>(n);
+  scene.kernel->occludedByFronts(copyRays(rays, lanes, n, arena), maskAll, byFront);
+  for (uint32_t i = 0; i < n; i++) blocked[lanes[i]] = byFront[i];
 }
 
 namespace {

@@ -7,11 +7,17 @@
 
 namespace openrt {
 
+// Copies the rays of the given lanes.
+Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& arena);
+
 // Retraces the rays whose nearest hit is a culled back face with such faces ignored. The rays are
 // traced again from their origins, because a front and a back face in the same place must not hide
 // each other.
 void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
                      const Rays& rays, RayHits& hits);
+// Sets blocked[i] to 1 if anything but a culled back face lies within the interval of ray i, else
+// to 0. Transparent surfaces, lines and points block as well.
+void findBlocked(const RenderScene& scene, Arena& arena, const Rays& rays, uint8_t* blocked);
 
 // Boundaries of media at the hits of a batch.
 struct Boundaries {

@@ -66,7 +66,10 @@ uint32_t scatterTraits(const SurfaceParams& p) {
   const auto any = [](const float c[3]) { return c[0] > 0.0f || c[1] > 0.0f || c[2] > 0.0f; };
   return (p.lit ? 0u : uint32_t(RTS_NO_SCATTER)) |
          (p.lit && any(p.specularColor) ? uint32_t(RTS_GLOSSY) : 0u) |
-         (!p.lit || any(p.emissiveColor) ? uint32_t(RTS_EMISSIVE) : 0u);
+         (!p.lit || any(p.emissiveColor) ? uint32_t(RTS_EMISSIVE) : 0u) |
+         // Colours of vertices do not change the emission of lit surfaces, but the alpha of a
+         // texture does.
+         (p.lit && any(p.emissiveColor) && !p.texture ? uint32_t(RTS_UNIFORM_EMISSION) : 0u);
 }
 
 void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {

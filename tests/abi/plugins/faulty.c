@@ -53,6 +53,18 @@ static void emission(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, 
   for (uint32_t i = 0; i < hits->count; i++) out->emission[0][i] = 1;
 }
 
+static uint32_t emitsUniformly(const RtsHost* host, const void* params) {
+  (void)host;
+  (void)params;
+  return RTS_EMISSIVE | RTS_UNIFORM_EMISSION;
+}
+static void uneven(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
+  (void)host;
+  (void)batch;
+  for (uint32_t i = 0; i < hits->count; i++)
+    out->emission[0][i] = hits->position[0][i] < 0 ? 1.0f : 2.0f;
+}
+
 static void veil(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {
   RtsLobe* const lobe = host->lobe(batch, RTS_LOBE_TRANSPARENT);
   (void)out;
@@ -119,12 +131,14 @@ static const RtsClass hangs = {SURFACE, .name = "Hang", .shade = hang};
 static const RtsClass nans = {SURFACE, .name = "Nan", .shade = notANumber};
 static const RtsClass nanLobes = {SURFACE, .name = "NanLobe", .surface = nanLobe};
 static const RtsClass lamps = {SURFACE, .name = "SilentLamp", .surface = emission};
+static const RtsClass unevens = {SURFACE, .name = "UnevenLamp", .traits = emitsUniformly,
+                                 .surface = uneven};
 static const RtsClass veils = {SURFACE, .name = "SilentVeil", .surface = veil};
 static const RtsClass glosses = {SURFACE, .name = "SilentGloss", .surface = gloss};
 static const RtsClass scatters = {SURFACE, .name = "SilentScatter", .traits = nothingScatters,
                                   .surface = scatter};
 static const RtsClass badLobes = {SURFACE, .name = "BadLobe", .surface = badLobe};
 static const RtsClass* const classes[] = {&crashes, &hangs,   &nans,     &nanLobes, &lamps,
-                                          &veils,   &glosses, &badLobes, &scatters};
+                                          &veils,   &glosses, &badLobes, &scatters, &unevens};
 RTS_EXPORT const RtsPlugin rtsPlugin = {RTS_MAGIC, RTS_ABI_MAJOR, RTS_ABI_MINOR, sizeof(RtsPlugin),
-                                        9,         classes};
+                                        10,        classes};

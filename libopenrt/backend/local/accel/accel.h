@@ -25,6 +25,7 @@ class Accel final : public Intersector {
   std::vector<Record> records;
   std::vector<Bucket> buckets;
   bool hasTransparent = false;
+  bool culls = false; // whether any visible record has culled back faces
   mutable std::atomic<uint64_t> rejectedRays{0};
 
   void intersect(const Rays& rays, uint32_t mask, Coherence coherence,
@@ -32,6 +33,8 @@ class Accel final : public Intersector {
   void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const override;
   void occluded(const Rays& rays, uint32_t mask, Coherence coherence,
                 uint8_t* blocked) const override;
+  bool cullsBacks() const override { return culls; }
+  void occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const override;
   void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const override;
   void bounds(float low[3], float high[3]) const override;
 
@@ -63,7 +66,8 @@ class Accel final : public Intersector {
                                                 const QueryOptions& options, bool first,
                                                 RayHits& hits) const;
   template <class Packet> void occludedPackets(const Level& level, const Rays& rays, uint32_t mask,
-                                               bool coherent, bool first, uint8_t* blocked) const;
+                                               const QueryOptions& options, bool first,
+                                               uint8_t* blocked) const;
   void intersectLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
                       bool first, RayHits& hits) const;
   void occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
@@ -94,7 +98,7 @@ class Accel final : public Intersector {
 
   struct PlacedCluster {
     uint32_t firstRecord = 0, firstSlot = 0;
-    bool shown = false, instances = false, transparent = false;
+    bool shown = false, instances = false, transparent = false, culls = false;
     uint32_t rejected = 0; // visible items whose matrix is unusable
   };
   std::shared_ptr<EmbreeDevice> device_;

@@ -205,7 +205,7 @@ void AccelBuilder::placeThin(uint32_t c) {
 // Rebuilds the top level if it changed, and updates the masks of its contents.
 void AccelBuilder::finish() {
   Accel& a = *accel_;
-  a.hasTransparent = false;
+  a.hasTransparent = a.culls = false;
   uint32_t masks = 0;
   bool instances = false;
   for (uint32_t c = 0; c < a.placed_.size(); c++) {
@@ -213,6 +213,7 @@ void AccelBuilder::finish() {
     if (!placed.shown) continue;
     const PartInfo& part = survey.parts()[input_->flat.clusters[c].part];
     a.hasTransparent |= placed.transparent;
+    a.culls |= placed.culls;
     if (placed.instances) {
       instances = true;
       masks |= maskOpaque | maskTransparent;

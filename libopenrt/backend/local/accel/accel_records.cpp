@@ -97,7 +97,7 @@ void AccelBuilder::writeRecords(uint32_t c) {
   const Matrix4d partToRender = worldToRender_ * cluster.world;
   const std::shared_ptr<const Blas> blas =
       root ? accel_->static_ : partBlas(cluster.part, overrideMask(cluster.path.shader));
-  placed.transparent = false;
+  placed.transparent = placed.culls = false;
   placed.rejected = 0;
   for (uint32_t i = 0; i < part.items.size(); i++) {
     const Item& item = part.items[i];
@@ -139,6 +139,7 @@ void AccelBuilder::writeRecords(uint32_t c) {
         r.fromRender = Affine::from(inverse(unit));
       }
       placed.transparent |= (input_->shaders[r.shader].traits & RTS_TRANSPARENT) != 0;
+      placed.culls |= r.cull;
       accel_->records[placed.firstRecord + entry] = r;
     }
   }

@@ -16,14 +16,18 @@ struct Packet16 {
   using RayHit = RTCRayHit16;
   using Ray = RTCRay16;
   static void intersect(RTCScene s, const int* v, RayHit& r, Query& q) { intersect16(s, v, r, q); }
-  static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded16(s, v, r, c); }
+  static void occluded(RTCScene s, const int* v, Ray& r, OcclusionQuery& q) {
+    occluded16(s, v, r, q);
+  }
 };
 struct Packet8 {
   static constexpr uint32_t width = 8;
   using RayHit = RTCRayHit8;
   using Ray = RTCRay8;
   static void intersect(RTCScene s, const int* v, RayHit& r, Query& q) { intersect8(s, v, r, q); }
-  static void occluded(RTCScene s, const int* v, Ray& r, bool c) { occluded8(s, v, r, c); }
+  static void occluded(RTCScene s, const int* v, Ray& r, OcclusionQuery& q) {
+    occluded8(s, v, r, q);
+  }
 };
 
 // Recomputes a hit at a grazing angle in double precision.
@@ -174,8 +178,8 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
 }
 
 template <class Packet> void Accel::occludedPackets(const Level& level, const Rays& rays,
-                                                    uint32_t mask, bool coherent, bool first,
-                                                    uint8_t* blocked) const {
+                                                    uint32_t mask, const QueryOptions& options,
+                                                    bool first, uint8_t* blocked) const {
   constexpr uint32_t W = Packet::width;
   alignas(64) int valid[W];
   alignas(64) typename Packet::Ray packet;
@@ -187,7 +191,8 @@ template <class Packet> void Accel::occludedPackets(const Level& level, const Ra
       refused += bad;
     else
       for (uint32_t i = 0; i < n; i++) valid[i] = blocked[begin + i] ? 0 : valid[i];
-    Packet::occluded(level.scene->scene, valid, packet, coherent);
+    OcclusionQuery query(options);
+    Packet::occluded(level.scene->scene, valid, packet, query);
     for (uint32_t i = 0; i < n; i++) {
       const bool met = valid[i] && packet.tfar[i] < 0; // Embree writes -infinity
       blocked[begin + i] = first ? met : blocked[begin + i] | met;
@@ -207,9 +212,9 @@ void Accel::intersectLevel(const Level& level, const Rays& rays, uint32_t mask, 
 void Accel::occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
                           bool first, uint8_t* blocked) const {
   if (device_->hasNativePackets16 && !level.instances)
-    occludedPackets<Packet16>(level, rays, mask, coherent, first, blocked);
+    occludedPackets<Packet16>(level, rays, mask, {coherent}, first, blocked);
   else
-    occludedPackets<Packet8>(level, rays, mask, coherent && !level.instances, first, blocked);
+    occludedPackets<Packet8>(level, rays, mask, {coherent && !level.instances}, first, blocked);
 }
 
 void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
@@ -244,6 +249,16 @@ void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8
   const bool first = staticLevel_.masks || !top;
   if (first) occludedLevel(staticLevel_, rays, mask, coherent, true, blocked);
   if (top) occludedLevel(topLevel_, rays, mask, coherent, !first, blocked);
+}
+
+void Accel::occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const {
+  bool first = true;
+  for (const Level* level : {&staticLevel_, &topLevel_}) {
+    if (level == &topLevel_ && !(level->masks & mask)) continue;
+    const FilterContext filtered{this, level};
+    occludedPackets<Packet8>(*level, rays, mask, {false, rejectBacks, &filtered}, first, blocked);
+    first = false;
+  }
 }
 
 void Accel::bounds(float low[3], float high[3]) const {

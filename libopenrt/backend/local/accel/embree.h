@@ -20,8 +20,8 @@
 
 namespace openrt {
 
-// Options of an intersection query. `filter` is called for every candidate hit, with `user` in its
-// context.
+// Options of an intersection or occlusion query. `filter` is called for every candidate hit, with
+// `user` in its context.
 struct QueryOptions {
   bool coherent = false;
   RTCFilterFunctionN filter = nullptr;
@@ -50,25 +50,32 @@ struct Query {
         (options.filter ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : 0));
   }
 };
-inline RTCOccludedArguments occludedArguments(bool coherent) {
-  RTCOccludedArguments a;
-  rtcInitOccludedArguments(&a);
-  a.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-  return a;
-}
+struct OcclusionQuery {
+  QueryContext context;
+  RTCOccludedArguments arguments;
+  explicit OcclusionQuery(const QueryOptions& options) {
+    rtcInitRayQueryContext(&context);
+    context.user = options.user;
+    context.queryFilter = options.filter;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context;
+    arguments.filter = options.filter;
+    arguments.flags = RTCRayQueryFlags(
+        (options.coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT) |
+        (options.filter ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : 0));
+  }
+};
 inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, Query& query) {
   rtcIntersect16(valid, scene, &rays, &query.arguments);
 }
 inline void intersect8(RTCScene scene, const int* valid, RTCRayHit8& rays, Query& query) {
   rtcIntersect8(valid, scene, &rays, &query.arguments);
 }
-inline void occluded16(RTCScene scene, const int* valid, RTCRay16& rays, bool coherent) {
-  auto a = occludedArguments(coherent);
-  rtcOccluded16(valid, scene, &rays, &a);
+inline void occluded16(RTCScene scene, const int* valid, RTCRay16& rays, OcclusionQuery& query) {
+  rtcOccluded16(valid, scene, &rays, &query.arguments);
 }
-inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, bool coherent) {
-  auto a = occludedArguments(coherent);
-  rtcOccluded8(valid, scene, &rays, &a);
+inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, OcclusionQuery& query) {
+  rtcOccluded8(valid, scene, &rays, &query.arguments);
 }
 #else
 inline const RTCSceneFlags sceneFlags =
@@ -94,12 +101,11 @@ inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, Que
 inline void intersect8(RTCScene scene, const int* valid, RTCRayHit8& rays, Query& query) {
   rtcIntersect8(valid, scene, &query.context, &rays);
 }
-inline void occluded16(RTCScene scene, const int* valid, RTCRay16& rays, bool coherent) {
-  Query query({coherent});
+using OcclusionQuery = Query;
+inline void occluded16(RTCScene scene, const int* valid, RTCRay16& rays, OcclusionQuery& query) {
   rtcOccluded16(valid, scene, &query.context, &rays);
 }
-inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, bool coherent) {
-  Query query({coherent});
+inline void occluded8(RTCScene scene, const int* valid, RTCRay8& rays, OcclusionQuery& query) {
   rtcOccluded8(valid, scene, &query.context, &rays);
 }
 #endif
