@@ -14,6 +14,19 @@ HWY_BEFORE_NAMESPACE();
 namespace openrt {
 namespace HWY_NAMESPACE {
 
+// Moves points off their surfaces: offsetPoint() of render/surface/points.h.
+inline LaneVec offsetPoint(const LaneVec& p, const LaneVec& n, Lanes error) {
+  const auto along = [](Lanes place, Lanes step) {
+    const Lanes zero = lanesOf(0), moved = place + step;
+    const Bits bits = bitsOfFloat(moved), one = bitsOf(1);
+    const Mask outward = hn::Not(hn::Xor(step > zero, moved > zero));
+    const Lanes next =
+        select(outward, floatOfBits(hn::Add(bits, one)), floatOfBits(hn::Sub(bits, one)));
+    return select(step != zero, select(moved != zero, next, step), moved);
+  };
+  return {along(p.x, n.x * error), along(p.y, n.y * error), along(p.z, n.z * error)};
+}
+
 // Completes unit vectors to right-handed orthonormal frames s, t, n: basisOf() of render/frame.h.
 inline void basisOf(const LaneVec& n, LaneVec& s, LaneVec& t) {
   const auto vector = [](float x, float y, float z) {

@@ -212,7 +212,7 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& samplin
       float towards = 0;
       for (int k = 0; k < 3; k++) towards += hits.geometric[k][i] * rays.dir[k][ray];
       const MediaStack& media =
-          towards < 0 && crossing ? crossing[i].behind : batch.states[batch.order[i]].media;
+          towards < 0 && crossing ? crossing[i].behind : batch.states->media[batch.order[i]];
       absorb(mediumOf(media, scene_.shaders->media()), std::min(lightSamples[ray].distance, 1e30f),
              scene_.shaders->media(), left);
     }

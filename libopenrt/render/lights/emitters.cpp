@@ -49,7 +49,16 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
                            m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
   const bool sky = sky_->usable() && determinant_ > 0 && std::isfinite(determinant_);
-  skyProbability_ = shapes_->empty() ? (sky ? 1.0f : -1.0f) : sky ? 0.5f : 0.0f;
+  skyIrradiance_ = sky ? float(std::clamp(sky_->irradiance(), 1e-30, 1e30)) : 0;
+}
+
+float Emitters::skyShare(const LightSampleContext& from) const {
+  if (!hasShapes() || !hasSky()) return hasSky() ? 1 : 0;
+  float each[LightNode::width], sum = 0;
+  importances(shapes_->tree().root(),
+              LightReceiver(from.position, sideOf(from), ReceiverSide::only), each);
+  for (const float importance : each) sum += importance;
+  return skyShareOf(skyIrradiance_, sum);
 }
 
 // Jacobian of directions: solid angle in render space over that in the environment's space. A
@@ -80,11 +89,12 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
   return seen.pdf(direction);
 }
 
-LightSample Emitters::chooseSky(float u, float v) const {
+// share: selection probability of the sky.
+LightSample Emitters::chooseSky(double share, float u, float v) const {
   LightSample lightSample;
   float local[3];
   lightSample.distance = std::numeric_limits<float>::infinity();
-  lightSample.pdf = skyProbability_ * sky_->sample(u, v, local);
+  lightSample.pdf = float(share * sky_->sample(u, v, local));
   if (!(lightSample.pdf > 0)) return {};
   lightSample.pdf /= skyJacobian(local);
   const auto& m = scene_->environment.fromLocal.r;
@@ -98,7 +108,8 @@ LightSample Emitters::chooseSky(float u, float v) const {
   return lightSample;
 }
 
-// Samples a direction towards a shape that was selected with the given probability.
+// Samples a direction towards a shape that was selected with the given probability, among
+// everything that emits.
 LightSample Emitters::sampleChosen(const LightSampleContext& from, uint32_t number,
                                    double probability, float u, float v) const {
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
@@ -107,7 +118,7 @@ LightSample Emitters::sampleChosen(const LightSampleContext& from, uint32_t numb
   double towards[3], distance = 0;
   const double alone = sampleShape(shape, from, u, v, towards, distance);
   if (!(alone > 0)) return {};
-  lightSample.pdf = float((1 - double(skyProbability_)) * probability * alone);
+  lightSample.pdf = float(probability * alone);
   lightSample.distance = float(distance);
   for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k]);
   return lightSample;
@@ -126,12 +137,13 @@ LightSample checked(const LightSample& lightSample, const float* normal) {
 
 LightSample Emitters::choose(const LightSampleContext& from, double pick, float u, float v) const {
   const float* normal = sideOf(from);
-  const double sky = skyProbability_;
-  if (pick < sky) return checked(chooseSky(u, v), normal);
+  if (!any()) return {};
+  const double sky = skyShare(from);
+  if (pick < sky) return checked(chooseSky(sky, u, v), normal);
   const double left = std::min((pick - sky) / (1 - sky), 1 - 0x1p-53);
   const LightTree::Choice choice = shapes_->tree().choose(from.position, normal, left);
   if (!(choice.probability > 0)) return {};
-  return checked(sampleChosen(from, choice.light, choice.probability, u, v), normal);
+  return checked(sampleChosen(from, choice.light, (1 - sky) * choice.probability, u, v), normal);
 }
 
 void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena,
@@ -149,27 +161,21 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
     offsetPoint(p, n, points.error[i], from.position);
     return from;
   };
-  const float sky = skyProbability_;
-  if (sky >= 1) {
+  if (!hasShapes()) {
     for (uint32_t i = 0; i < points.count; i++)
-      out[i] = checked(chooseSky(points.u[i], points.v[i]), sideOf(contextOf(i)));
+      out[i] = checked(chooseSky(1, points.u[i], points.v[i]), sideOf(contextOf(i)));
     return;
   }
   const auto floats = [&] { return arena.take<float>(size); };
-  float* pick = floats();
-  for (uint32_t i = 0; i < size; i++)
-    pick[i] = std::clamp((points.pick[i] - sky) / (1 - sky), 0.0f, 1 - 0x1p-24f);
-  LightPoints left = points;
-  left.pick = pick;
-  const ChosenLights chosen{arena.take<uint32_t>(size), floats()};
-  if (const LightNode* node = shapes_->tree().onlyNode()) {
-    chooseFromNode(*node, left, chosen);
-  } else {
+  const ChosenLights chosen{floats(), arena.take<uint32_t>(size), floats()};
+  chooseFromRoot(shapes_->tree().root(), points, skyIrradiance_, chosen);
+  if (!shapes_->tree().hasOneNode()) {
     for (uint32_t i = 0; i < size; i++) {
       const uint32_t from = std::min(i, points.count - 1);
       const LightSampleContext context = contextOf(from);
       const double all = double(points.pick[from]) + double(fine[from]) * 0x1p-24;
-      const double rest = std::clamp((all - double(sky)) / (1 - double(sky)), 0.0, 1 - 0x1p-53);
+      const double share = chosen.skyShare[from];
+      const double rest = share < 1 ? std::clamp((all - share) / (1 - share), 0.0, 1 - 0x1p-53) : 0;
       const LightTree::Choice choice =
           shapes_->tree().choose(context.position, sideOf(context), rest);
       chosen.shape[i] = choice.light;
@@ -178,19 +184,21 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
   }
   const SampledLights sampled{
       {floats(), floats(), floats()}, floats(), floats(), floats(), arena.take<uint32_t>(size)};
-  sampleShapes(shapes_->arrays(), left, chosen, sampled);
+  sampleShapes(shapes_->arrays(), points, chosen, sampled);
   for (uint32_t i = 0; i < points.count; i++) {
+    const float sky = chosen.skyShare[i];
     if (points.pick[i] < sky) {
-      out[i] = checked(chooseSky(points.u[i], points.v[i]), sideOf(contextOf(i)));
+      out[i] = checked(chooseSky(sky, points.u[i], points.v[i]), sideOf(contextOf(i)));
       continue;
     }
     out[i] = {};
     if (!(chosen.probability[i] > 0)) continue;
     if (sampled.exact[i]) {
       const LightSampleContext from = contextOf(i);
-      out[i] = checked(
-          sampleChosen(from, chosen.shape[i], chosen.probability[i], points.u[i], points.v[i]),
-          sideOf(from));
+      out[i] =
+          checked(sampleChosen(from, chosen.shape[i], (1 - double(sky)) * chosen.probability[i],
+                               points.u[i], points.v[i]),
+                  sideOf(from));
       continue;
     }
     if (!(sampled.pdf[i] > 0)) continue;
@@ -205,7 +213,7 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
 
 float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
                     const float direction[3], float) const {
-  if (!any() || skyProbability_ >= 1) return 0;
+  if (!hasShapes()) return 0;
   const uint32_t number = shapes_->find(record, primitive);
   if (number == EmissiveShapes::none) return 0;
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
@@ -222,15 +230,15 @@ float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t pr
     if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.pdf(towards);
   }
   if (!(alone > 0)) return 0;
-  return float((1 - double(skyProbability_)) *
+  return float((1 - double(skyShare(from))) *
                double(shapes_->tree().probability(from.position, normal, number)) * alone);
 }
 
-float Emitters::skyPdf(const LightSampleContext&, const float local[3]) const {
-  return skyProbability_ > 0 ? skyProbability_ * sky_->pdf(local) / skyJacobian(local) : 0.0f;
+float Emitters::skyPdf(const LightSampleContext& from, const float local[3]) const {
+  return hasSky() ? skyShare(from) * sky_->pdf(local) / skyJacobian(local) : 0.0f;
 }
 
-double Emitters::brightestSky() const { return skyProbability_ > 0 ? sky_->brightest() : 0; }
+double Emitters::brightestSky() const { return hasSky() ? sky_->brightest() : 0; }
 double Emitters::brightest() const {
   return any() ? std::max(brightestSky(), shapes_->brightest()) : 0;
 }

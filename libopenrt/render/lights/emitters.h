@@ -39,7 +39,7 @@ class Emitters {
   // before: the last snapshot, or null. samePlaces: its records and their transforms equal those of
   // this scene.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
-  bool any() const { return skyProbability_ >= 0; }
+  bool any() const { return hasSky() || hasShapes(); }
   // Return the largest mean radiance, summed over the colours. brightestSky(): of the cells of the
   // sky. brightest(): of these and of the sides of shapes.
   double brightestSky() const;
@@ -65,7 +65,11 @@ class Emitters {
   const SkySampler* sky() const { return sky_.get(); }
 
  private:
-  LightSample chooseSky(float u, float v) const;
+  bool hasSky() const { return skyIrradiance_ > 0; }
+  bool hasShapes() const { return shapes_ && !shapes_->empty(); }
+  // Returns the selection probability of the sky.
+  float skyShare(const LightSampleContext& from) const;
+  LightSample chooseSky(double share, float u, float v) const;
   LightSample sampleChosen(const LightSampleContext& from, uint32_t number, double probability,
                            float u, float v) const;
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
@@ -74,7 +78,7 @@ class Emitters {
   const RenderScene* scene_ = nullptr;
   std::shared_ptr<const SkySampler> sky_;
   std::shared_ptr<const EmissiveShapes> shapes_;
-  float skyProbability_ = -1; // selection probability of the sky; -1: nothing emits
+  float skyIrradiance_ = 0; // SkySampler::irradiance(); 0: the sky is not sampled
   // Absolute determinant of the map from render space into the environment's space.
   float determinant_ = 1;
 };

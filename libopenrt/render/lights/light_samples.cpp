@@ -7,6 +7,7 @@
 #define HWY_TARGET_INCLUDE "render/lights/light_samples.cpp"
 #include <hwy/foreach_target.h>
 
+#include "render/lanes/directions-inl.h"
 #include "render/lanes/math-inl.h"
 #include "render/lights/light_importance-inl.h"
 
@@ -14,19 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace openrt {
 namespace HWY_NAMESPACE {
 namespace {
-
-// Moves a point off its surface: offsetPoint() of render/surface/points.h.
-LaneVec offset(const LaneVec& p, const LaneVec& n, Lanes error) {
-  const auto along = [](Lanes place, Lanes step) {
-    const Lanes zero = lanesOf(0), moved = place + step;
-    const Bits bits = bitsOfFloat(moved), one = bitsOf(1);
-    const Mask outward = hn::Not(hn::Xor(step > zero, moved > zero));
-    const Lanes next =
-        select(outward, floatOfBits(hn::Add(bits, one)), floatOfBits(hn::Sub(bits, one)));
-    return select(step != zero, select(moved != zero, next, step), moved);
-  };
-  return {along(p.x, n.x * error), along(p.y, n.y * error), along(p.z, n.z * error)};
-}
 
 struct Receivers {          // the points of some lanes
   LaneVec position, normal; // normal: 0 if light counts from both sides
@@ -36,11 +24,11 @@ struct Receivers {          // the points of some lanes
 Receivers loadReceivers(const LightPoints& points, uint32_t i) {
   const LaneVec normal = load(points.normal, i), zero = {lanesOf(0), lanesOf(0), lanesOf(0)};
   const Mask twoSided = loadMask(points.twoSided + i);
-  return {offset(load(points.position, i), normal, load(points.error + i)),
+  return {offsetPoint(load(points.position, i), normal, load(points.error + i)),
           select(twoSided, zero, normal), twoSided};
 }
 
-void chooseAt(const LightNode& node, const LightPoints& points, uint32_t i,
+void chooseAt(const LightNode& node, const LightPoints& points, float skyIrradiance, uint32_t i,
               const ChosenLights& out) {
   const Receivers from = loadReceivers(points, i);
   const Lanes zero = lanesOf(0), one = lanesOf(1);
@@ -66,7 +54,16 @@ void chooseAt(const LightNode& node, const LightPoints& points, uint32_t i,
   }
   // The first child whose part of the sum holds the random number; the last one that is possible if
   // rounding leaves none.
-  Lanes left = load(points.pick + i) * sum, chosen = zero;
+  const Mask any = sum > zero;
+  const Lanes sky = lanesOf(skyIrradiance), least = lanesOf(0.0625f), most = lanesOf(0.9375f);
+  const Lanes mixed = min(max(sky / select(any, sky + sum, one), least), most);
+  const Lanes alone = lanesOf(skyIrradiance > 0 ? 1 : 0);
+  const Lanes share = skyIrradiance > 0 ? select(any, mixed, alone) : zero;
+  store(share, out.skyShare + i);
+  const Lanes others = one - share, pick = load(points.pick + i) - share;
+  const Lanes rest =
+      min(max(pick / select(others > zero, others, one), zero), lanesOf(1 - 0x1p-24f));
+  Lanes left = rest * sum, chosen = zero;
   Bits shape = bitsOf(~0u);
   Mask found = sum < zero; // false everywhere
   for (uint32_t c = 0; c < count; c++) {
@@ -77,7 +74,6 @@ void chooseAt(const LightNode& node, const LightPoints& points, uint32_t i,
     found = hn::Or(found, hn::And(take, left < each[c]));
     left = left - each[c];
   }
-  const Mask any = sum > zero;
   store(shape, out.shape + i);
   store(select(any, chosen / select(any, sum, one), zero), out.probability + i);
 }
@@ -187,8 +183,10 @@ void sampleAt(const ShapeArrays& shapes, const LightPoints& points, uint32_t i,
 
 } // namespace
 
-void chooseFromNode(const LightNode& node, const LightPoints& points, const ChosenLights& out) {
-  for (uint32_t i = 0; i < points.count; i += width()) chooseAt(node, points, i, out);
+void chooseFromRoot(const LightNode& root, const LightPoints& points, float skyIrradiance,
+                    const ChosenLights& out) {
+  for (uint32_t i = 0; i < points.count; i += width())
+    chooseAt(root, points, skyIrradiance, i, out);
 }
 
 void sampleShapes(const ShapeArrays& shapes, const LightPoints& points, const ChosenLights& chosen,
@@ -202,10 +200,11 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace openrt {
-HWY_EXPORT(chooseFromNode);
+HWY_EXPORT(chooseFromRoot);
 HWY_EXPORT(sampleShapes);
-void chooseFromNode(const LightNode& node, const LightPoints& points, const ChosenLights& out) {
-  HWY_DYNAMIC_DISPATCH(chooseFromNode)(node, points, out);
+void chooseFromRoot(const LightNode& root, const LightPoints& points, float skyIrradiance,
+                    const ChosenLights& out) {
+  HWY_DYNAMIC_DISPATCH(chooseFromRoot)(root, points, skyIrradiance, out);
 }
 void sampleShapes(const ShapeArrays& shapes, const LightPoints& points, const ChosenLights& chosen,
                   const SampledLights& out) {

@@ -27,9 +27,20 @@ struct LightPoints {
 };
 
 struct ChosenLights { // by point; arrays are padded
+  float* skyShare;    // selection probability of the sky
   uint32_t* shape;    // number of the shape; ~0: none
-  float* probability; // selection probability of the shape
+  float* probability; // selection probability of the shape, if the sky is not selected
 };
+
+// Returns the selection probability of the sky for a point. skyIrradiance: mean irradiance by the
+// sky, 0 if there is none. shapes: sum of the importances of the shapes, which bounds theirs. Both
+// keep a share, because a part of either may be hidden.
+inline float skyShareOf(float skyIrradiance, float shapes) {
+  if (!(shapes > 0)) return skyIrradiance > 0 ? 1 : 0;
+  if (!(skyIrradiance > 0)) return 0;
+  const float share = skyIrradiance / (skyIrradiance + shapes);
+  return share < 0.0625f ? 0.0625f : share > 0.9375f ? 0.9375f : share;
+}
 
 // A direction towards a shape, sampled for each point that has one.
 struct SampledLights {
@@ -40,8 +51,10 @@ struct SampledLights {
   uint32_t* exact; // not 0: the sample is left to double precision
 };
 
-// Selects a shape for each point from those of a tree with one node. `pick` selects it.
-void chooseFromNode(const LightNode& node, const LightPoints& points, const ChosenLights& out);
+// Computes the share of the sky for each point. If the root of the tree is its only node, a shape
+// is selected as well; `pick` selects first between sky and shapes, then the shape.
+void chooseFromRoot(const LightNode& root, const LightPoints& points, float skyIrradiance,
+                    const ChosenLights& out);
 // Samples a direction towards the chosen shapes.
 void sampleShapes(const ShapeArrays& shapes, const LightPoints& points, const ChosenLights& chosen,
                   const SampledLights& out);

@@ -47,8 +47,10 @@ class LightTree {
                 Side side = Side::only) const;
   float probability(const float place[3], const float* normal, uint32_t light) const;
   uint32_t depth() const { return depth_; }
-  // Returns the only node of a tree with at most eight lights; null for others.
-  const LightNode* onlyNode() const { return nodes_.size() == 1 ? nodes_.data() : nullptr; }
+  // Returns the root, which must exist.
+  const LightNode& root() const { return nodes_.front(); }
+  // Returns whether the root is the only node: the tree has at most eight lights.
+  bool hasOneNode() const { return nodes_.size() == 1; }
 
  private:
   using Node = LightNode;

@@ -18,6 +18,9 @@ class SkySampler {
   // Tabulates the scene's environment. usable() is false if there is none or it is black.
   explicit SkySampler(const RenderScene& scene);
   bool usable() const { return total_ > 0; }
+  // Returns the irradiance (as luminance) by the whole sky, averaged over the orientations of a
+  // surface.
+  double irradiance() const { return total_ / 4; }
   // Returns the largest mean radiance of a cell, summed over the colours.
   double brightest() const { return brightest_; }
   // Returns whether the scene's environment emits light in any of 2048 directions. The environment

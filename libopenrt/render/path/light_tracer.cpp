@@ -56,7 +56,6 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
   first_ = firstPath;
   level_ = 0;
   rays_.allocate(arena_, n);
-  states_ = arena_.take<RayState>(padded(n));
   lightRays_.clear();
   departures_.assign(n, {});
   queue_.clear();
@@ -69,34 +68,29 @@ void LightTracer::begin(uint32_t firstPath, uint32_t n) {
     lightRays_.push_back(sources_.sampleRay(scene_, pick[0] + pick[1] * 0x1p-24, where, towards));
     const LightSources::LightRay& start = lightRays_.back();
     if (!(start.weight > 0) || !std::isfinite(start.weight)) continue;
-    QueuedRay& ray = queue_.emplace_back();
-    std::copy_n(start.origin, 3, ray.origin);
-    std::copy_n(start.direction, 3, ray.direction);
-    ray.state = state;
+    queue_.push(start.origin, start.direction, state);
   }
   // The surface that the camera sees counts as one more level.
   while (!queue_.empty() && level_ < scene_.frame.depth) {
     next_.clear();
-    load(uint32_t(queue_.size()));
+    load();
     counters_.secondary += queue_.size();
     traceWave(uint32_t(queue_.size()));
-    queue_.swap(next_);
+    std::swap(queue_, next_);
     level_++;
   }
 }
 
-void LightTracer::load(uint32_t n) {
-  rays_.count = n;
-  for (uint32_t i = 0; i < padded(n); i++) {
-    const QueuedRay& ray = queue_[std::min(i, n - 1)];
-    for (int k = 0; k < 3; k++) {
-      rays_.org[k][i] = ray.origin[k];
-      rays_.dir[k][i] = ray.direction[k];
-    }
-    rays_.tnear[i] = 0;
-    rays_.tfar[i] = std::numeric_limits<float>::infinity();
-    states_[i] = ray.state;
+// Makes the rays of the queue those of the current wave.
+void LightTracer::load() {
+  rays_.count = uint32_t(queue_.size());
+  for (int k = 0; k < 3; k++) {
+    rays_.org[k] = queue_.origin()[k];
+    rays_.dir[k] = queue_.direction()[k];
   }
+  std::fill_n(rays_.tnear, rays_.count, 0.0f);
+  std::fill_n(rays_.tfar, rays_.count, std::numeric_limits<float>::infinity());
+  states_ = queue_.states();
 }
 
 void LightTracer::traceWave(uint32_t n) {
@@ -112,10 +106,10 @@ void LightTracer::traceWave(uint32_t n) {
   for (uint32_t i = 0; i < n; i++) {
     if (hits.record[i] == noHit) continue;
     const uint32_t traits = (*scene_.shaders)[scene_.records[hits.record[i]].shader].traits;
-    if (states_[i].pathClass == PathClass::undeflected &&
+    if (states_.flagsOf(i).pathClass() == PathClass::undeflected &&
         !(traits & (RTS_SPECULAR | RTS_TRANSPARENT)))
       continue;
-    departures_[states_[i].path].pathLength += double(hits.t[i]);
+    departures_[states_.path[i]].pathLength += double(hits.t[i]);
     met[hitCount++] = i;
   }
   for (const BucketRange& range : sortByBucket(scene_, hits, met, hitCount, order, arena_)) {
@@ -240,7 +234,7 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
   RtsSurface surface{};
   for (auto& e : surface.emission) e = arena_.takeZero<float>(padded(n));
   RtsBatch batch = makeBatch(points);
-  batch.states = states_;
+  batch.states = &states_;
   batch.order = order;
   {
     const RunningShader running(shaderClass);
@@ -255,9 +249,11 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
   auto* connected = arena_.take<uint32_t>(n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
-    if (const RayState& state = states_[order[i]]; state.pathClass != PathClass::undeflected) {
+    if (const uint32_t lane = order[i];
+        states_.flagsOf(lane).pathClass() != PathClass::undeflected) {
+      const uint32_t path = states_.path[lane];
       connected[count++] = i;
-      if (scatters && !departures_[state.path].attenuationKnown) attenuate(points, state.path);
+      if (scatters && !departures_[path].attenuationKnown) attenuate(points, path);
     }
   if (count && scatters) connect(batch, connected, count);
   const LobeSamples* samples[RTS_MAX_LOBES] = {};
@@ -278,10 +274,9 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
     samples[l] = made;
   }
   for (uint32_t i = 0; i < n; i++) {
-    RayState& state = states_[order[i]];
     // This boundary has no effect on light.
     if (boundaries.crossing && !boundaries.crossing[i].visible) {
-      RayState passed = state;
+      RayState passed = states_[order[i]];
       passed.media = boundaries.crossing[i].behind;
       const float d[3] = {hits.direction[0][i], hits.direction[1][i], hits.direction[2][i]};
       push(points, i, passed, d);
@@ -296,10 +291,10 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
 void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[],
                            const Boundaries& boundaries) {
   const Points& points = *batch.points;
-  RayState state = states_[batch.order[i]];
-  const bool first = state.pathClass == PathClass::undeflected;
+  RayState state = (*batch.states)[batch.order[i]];
+  const bool first = state.flags.pathClass() == PathClass::undeflected;
   BsdfSamples bsdfSamples(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr,
-                          state.channel, true);
+                          state.flags.channel(), true);
   for (uint32_t l = 0; l < batch.lobeCount; l++)
     if (!first || !nonSpecularFunctions(batch.lobes[l]))
       bsdfSamples.add(l, batch.lobes[l], first ? nullptr : samples[l]);
@@ -327,13 +322,13 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples*
                                                                 points.hits, i, sample.direction)
                                             : 1.0f;
   for (int k = 0; k < 3; k++) state.throughput[k] *= float(sample.weight[k] * correction / kept);
-  state.channel = sample.channel;
+  state.flags.setChannel(sample.channel);
   float towards = 0;
   for (int k = 0; k < 3; k++) towards += points.hits.geometric[k][i] * sample.direction[k];
   if (towards < 0 && boundaries.crossing) state.media = boundaries.crossing[i].behind;
   if (first && sample.deflected) {
     if (!applyEmission(points, i, state)) return;
-    state.pathClass = PathClass::specularFirst;
+    state.flags.setClass(PathClass::specularFirst);
   }
   push(points, i, state, sample.direction);
 }
@@ -341,10 +336,9 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples*
 void LightTracer::push(const Points& points, uint32_t i, const RayState& state,
                        const float dir[3]) {
   if (!(largest(state.throughput) > 0) || !std::isfinite(largest(state.throughput))) return;
-  QueuedRay& ray = next_.emplace_back();
-  liftPoint(points, i, dir, ray.origin);
-  std::copy_n(dir, 3, ray.direction);
-  ray.state = state;
+  float origin[3];
+  liftPoint(points, i, dir, origin);
+  next_.push(origin, dir, state);
 }
 
 // Connects the hits with the camera and adds their light to the picture.
@@ -441,7 +435,7 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
   for (uint32_t i = 0; i < n; i++) {
     const float x = seen.xy[0][i], y = seen.xy[1][i];
     if (!(seen.weight[i] > 0) || !(x >= 0 && y >= 0 && x < extent[0] && y < extent[1])) continue;
-    const RayState& state = states_[batch.order[hitNumbers[i]]];
+    const RayState state = states_[batch.order[hitNumbers[i]]];
     const float* attenuation = departures_[state.path].attenuation;
     float* pixel = &picture_[3 * (size_t(y) * width_ + size_t(x))];
     for (int k = 0; k < 3; k++) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "render/lights/light_sources.h"
-#include "render/path/ray_queue.h"
+#include "render/path/path_states.h"
 #include "render/path/sampler.h"
 #include "render/surface/lobes.h"
 #include "render/surface/surfaces.h"
@@ -30,7 +30,7 @@ class LightTracer {
 
  private:
   void begin(uint32_t first, uint32_t n);
-  void load(uint32_t n);
+  void load();
   void traceWave(uint32_t n);
   RtsBatch makeBatch(const Points& points);
   void transmitRays(const Points& points, const uint32_t* order, const RtsClass& shaderClass);
@@ -69,7 +69,7 @@ class LightTracer {
   std::vector<float> picture_;
   RayQueue queue_, next_;
   Rays rays_;
-  RayState* states_ = nullptr;
+  PathStates states_{};
 };
 
 } // namespace openrt

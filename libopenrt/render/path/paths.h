@@ -9,8 +9,7 @@ namespace openrt {
 
 struct TileRenderer::Paths {
   Rays rays;          // rays of the current wave
-  RayState* state;    // indexed by ray lane
-  float* travelled;   // copy of state[lane].travelled, in the layout that makePoints reads
+  PathStates states;  // indexed by ray lane
   float* radiance[3]; // this and the following arrays are indexed by path
   float* alpha;
   uint8_t* first; // 1 until the first surface of the path has been shaded

@@ -64,8 +64,7 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
 // that describe the first surface.
 void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
   const uint32_t size = padded(n);
-  paths.state = arena_.take<RayState>(size);
-  paths.travelled = arena_.takeZero<float>(size);
+  paths.states.allocate(arena_, n);
   const auto optional = [&](uint32_t channel) {
     return film && has(channel) ? arena_.takeZero<float>(size) : nullptr;
   };
@@ -95,7 +94,7 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   allocate(paths, n, true);
   random_ = arena_.takeZero<uint8_t>(padded(n));
   makeCameraRays(paths, firstSample);
-  for (uint32_t i = 0; i < n; i++) paths.state[i] = RayState{.path = i};
+  for (uint32_t i = 0; i < n; i++) paths.states.set(i, RayState{.path = i});
   level_ = 0;
   if (scene_.transport.shaderClass) {
     runTransportShader(paths);
@@ -111,7 +110,7 @@ void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
 void TileRenderer::follow(Paths& paths, uint32_t n) {
   traceWave(paths);
   for (level_++; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
-    queue_.swap(next_);
+    std::swap(queue_, next_);
     next_.clear();
     counters_.secondary += queue_.size();
     for (size_t begin = 0; begin < queue_.size() && !stopped(); begin += n) {
@@ -119,23 +118,20 @@ void TileRenderer::follow(Paths& paths, uint32_t n) {
       traceWave(paths);
     }
   }
-  for (const QueuedRay& ray : next_) ledger_.cutByDepth += sumOf(ray.state.throughput);
+  for (size_t i = 0; i < next_.size(); i++)
+    for (int k = 0; k < 3; k++) ledger_.cutByDepth += double(next_.states().throughput[k][i]);
   next_.clear();
 }
 
 void TileRenderer::loadRays(Paths& paths, size_t begin, uint32_t n) {
   paths.rays.count = n;
-  for (uint32_t i = 0; i < padded(n); i++) {
-    const QueuedRay& ray = queue_[begin + std::min(i, n - 1)];
-    for (int k = 0; k < 3; k++) {
-      paths.rays.org[k][i] = ray.origin[k];
-      paths.rays.dir[k][i] = ray.direction[k];
-    }
-    paths.rays.tnear[i] = 0;
-    paths.rays.tfar[i] = std::numeric_limits<float>::infinity();
-    paths.state[i] = ray.state;
-    paths.travelled[i] = ray.state.travelled;
+  for (int k = 0; k < 3; k++) {
+    paths.rays.org[k] = queue_.origin()[k] + begin;
+    paths.rays.dir[k] = queue_.direction()[k] + begin;
   }
+  std::fill_n(paths.rays.tnear, n, 0.0f);
+  std::fill_n(paths.rays.tfar, n, std::numeric_limits<float>::infinity());
+  paths.states = queue_.statesFrom(begin);
 }
 
 void TileRenderer::traceWave(Paths& paths) {
@@ -143,7 +139,7 @@ void TileRenderer::traceWave(Paths& paths) {
   const Coherence coherence = level_ == 0 ? Coherence::coherent : Coherence::incoherent;
   scene_.kernel->intersect(paths.rays, maskAll, coherence, paths.hits);
   skipCulledBacks(scene_, arena_, counters_, paths.rays, paths.hits);
-  absorbAlongRays(scene_, paths.rays, paths.hits, paths.state);
+  absorbAlongRays(scene_, paths.rays, paths.hits, paths.states);
   uint32_t misses = 0, hitCount = 0;
   for (uint32_t i = 0; i < paths.rays.count; i++)
     (paths.hits.record[i] == noHit ? paths.missed[misses++] : paths.met[hitCount++]) = i;
@@ -165,7 +161,7 @@ RtsBatch TileRenderer::makeBatch() {
 RtsBatch TileRenderer::makeBatch(const Paths& paths, const Points& points, const uint32_t* order) {
   RtsBatch batch = makeBatch();
   batch.points = &points;
-  batch.states = paths.state;
+  batch.states = &paths.states;
   batch.order = order;
   return batch;
 }
@@ -257,24 +253,26 @@ void TileRenderer::addEnvironment(Paths& paths, const uint32_t* missed, uint32_t
   float *direction[3], *rgba[4];
   evaluateSky(paths.rays, missed, n, direction, rgba);
   for (uint32_t i = 0; i < n; i++) {
-    const RayState& ray = paths.state[missed[i]];
+    const uint32_t lane = missed[i], path = paths.states.path[lane];
+    const float pdf = paths.states.pdf[lane];
+    const PathFlags flags = paths.states.flagsOf(lane);
     float weight = 0, misWeight = 1;
     // Light sampling of the sky could also have chosen this direction, so BSDF sampling has this
     // MIS weight.
-    if (ray.pdf > 0 && scene_.emitters.any()) {
+    if (pdf > 0 && scene_.emitters.any()) {
       const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
-      misWeight = ray.pdf / (ray.pdf + scene_.emitters.skyPdf(ray.previous, d));
+      misWeight = pdf / (pdf + scene_.emitters.skyPdf(paths.states.previousOf(lane), d));
     }
-    if (ray.specularSinceDiffuse) {
+    if (flags.specularSinceDiffuse()) {
       const float light[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
-      unsampledLightOf(ray).meet(light, brightestFor(ray));
+      unsampledLightOf(flags).meet(light, brightestFor(flags));
     }
     for (int k = 0; k < 3; k++) {
-      if (std::isfinite(rgba[k][i]))
-        paths.radiance[k][ray.path] += ray.throughput[k] * misWeight * rgba[k][i];
-      weight += ray.throughput[k];
+      const float throughput = paths.states.throughput[k][lane];
+      if (std::isfinite(rgba[k][i])) paths.radiance[k][path] += throughput * misWeight * rgba[k][i];
+      weight += throughput;
     }
-    if (!ray.deflected) paths.alpha[ray.path] += weight / 3 * rgba[3][i];
+    if (!flags.deflected()) paths.alpha[path] += weight / 3 * rgba[3][i];
   }
 }
 
@@ -291,7 +289,7 @@ void TileRenderer::attenuate(const Points& points, const Paths& paths, const uin
   const Affine& m = scene_.environment.toLocal;
   const RtsHits& h = points.hits;
   for (uint32_t i = 0; i < size; i++) {
-    const bool deflected = paths.state[order[std::min(i, n - 1)]].deflected;
+    const bool deflected = paths.states.flagsOf(order[std::min(i, n - 1)]).deflected();
     float toHit[3];
     for (int j = 0; j < 3; j++)
       toHit[j] = deflected ? h.direction[j][i] * h.distance[i] : h.position[j][i] - scene_.eye[j];
@@ -311,7 +309,8 @@ void TileRenderer::shadeRange(Paths& paths, const RayHits& hits, const BucketRan
                               const uint32_t* order) {
   ArenaScope scope(arena_);
   const uint32_t n = range.end - range.begin;
-  const Points points = makePoints(scene_, paths.rays, hits, order, n, paths.travelled, arena_);
+  const Points points =
+      makePoints(scene_, paths.rays, hits, order, n, paths.states.travelled, arena_);
   const Shading shading = traitsOf(scene_.frame.transport).shading;
   (this->*shadings[size_t(shading)])(paths, points, scene_.buckets[range.bucket], order);
 }
@@ -352,7 +351,7 @@ void TileRenderer::shadeByShade(Paths& paths, const Points& points, const Bucket
 void TileRenderer::addShading(const Points& points, const RtsShading& shaded, const uint32_t* order,
                               Paths& paths, const float* fog[4]) {
   for (uint32_t i = 0; i < points.hits.count; i++) {
-    const RayState& ray = paths.state[order[i]];
+    const RayState ray = paths.states[order[i]];
     float transmission[3], covered = 0, through = 0;
     for (int k = 0; k < 3; k++) {
       const float t = shaded.transmission[k][i];
@@ -364,7 +363,7 @@ void TileRenderer::addShading(const Points& points, const RtsShading& shaded, co
       covered += ray.throughput[k] * (1 - transmission[k]);
       through += ray.throughput[k] * transmission[k];
     }
-    if (!ray.deflected) paths.alpha[ray.path] += covered / 3;
+    if (!ray.flags.deflected()) paths.alpha[ray.path] += covered / 3;
     if (paths.first[ray.path]) storeFirstHit(points, i, ray.path, shaded.albedo, paths);
     if (through <= 1e-6f) {
       ledger_.cutByEnergy += double(through);
@@ -374,7 +373,7 @@ void TileRenderer::addShading(const Points& points, const RtsShading& shaded, co
                     .deflected = false,
                     .split = false,
                     .twoSided = false,
-                    .channel = ray.channel,
+                    .channel = ray.flags.channel(),
                     .branch = ray.branch,
                     .media = ray.media};
     for (int k = 0; k < 3; k++) {
@@ -405,32 +404,31 @@ void TileRenderer::storeFirstHit(const Points& points, uint32_t i, uint32_t path
 void TileRenderer::push(const Points& points, uint32_t i, uint32_t lane, const NextRay& nextRay,
                         Paths& paths) {
   const RtsHits& h = points.hits;
-  const RayState& from = paths.state[lane];
-  QueuedRay& ray = next_.emplace_back();
-  liftPoint(points, i, nextRay.direction, ray.origin);
-  ray.state = from;
-  for (int k = 0; k < 3; k++) {
-    ray.direction[k] = nextRay.direction[k];
-    ray.state.throughput[k] = from.throughput[k] * nextRay.weight[k];
-  }
-  ray.state.travelled = h.distance[i];
-  ray.state.pdf = nextRay.pdf;
-  if (nextRay.pdf > 0) ray.state.previous = lightSampleContext(points, i, nextRay.twoSided);
+  RayState ray = paths.states[lane];
+  float origin[3];
+  liftPoint(points, i, nextRay.direction, origin);
+  for (int k = 0; k < 3; k++) ray.throughput[k] *= nextRay.weight[k];
+  ray.travelled = h.distance[i];
+  ray.pdf = nextRay.pdf;
+  const bool specular = !(nextRay.pdf > 0);
+  if (!specular) ray.previous = lightSampleContext(points, i, nextRay.twoSided);
   if (nextRay.deflected) {
-    if (from.pathClass == PathClass::undeflected)
-      ray.state.pathClass = nextRay.pdf > 0 ? PathClass::diffuse : PathClass::specularFirst;
-    else if (from.pathClass != PathClass::specularFirst)
-      ray.state.pathClass = nextRay.pdf > 0 ? PathClass::diffuse : PathClass::caustic;
-    ray.state.scattered |= nextRay.pdf > 0 ? 1 : 0;
-    ray.state.specularSinceDiffuse = ray.state.scattered && !(nextRay.pdf > 0) ? 1 : 0;
-    if (ray.state.specularSinceDiffuse)
-      unsampledLightOf(ray.state).send(ray.state.throughput, brightestFor(ray.state));
+    const PathClass before = ray.flags.pathClass();
+    if (before == PathClass::undeflected)
+      ray.flags.setClass(specular ? PathClass::specularFirst : PathClass::diffuse);
+    else if (before != PathClass::specularFirst)
+      ray.flags.setClass(specular ? PathClass::caustic : PathClass::diffuse);
+    if (!specular) ray.flags.set(PathFlags::scatteredBit, true);
+    ray.flags.set(PathFlags::specularSinceDiffuseBit, ray.flags.scattered() && specular);
+    if (ray.flags.specularSinceDiffuse())
+      unsampledLightOf(ray.flags).send(ray.throughput, brightestFor(ray.flags));
+    ray.flags.set(PathFlags::deflectedBit, true);
   }
-  ray.state.deflected |= nextRay.deflected ? 1 : 0;
-  ray.state.branch = nextRay.branch;
-  ray.state.channel = nextRay.channel;
-  ray.state.media = nextRay.media;
-  if (nextRay.split && ray.state.splits < 255) ray.state.splits++;
+  ray.branch = nextRay.branch;
+  ray.flags.setChannel(nextRay.channel);
+  ray.media = nextRay.media;
+  if (nextRay.split) ray.flags.addSplit();
+  next_.push(origin, nextRay.direction, ray);
 }
 
 void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_t samples) {

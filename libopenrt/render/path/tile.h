@@ -12,7 +12,7 @@
 #include "render/film/ledger.h"
 #include "render/film/sums.h"
 #include "render/frame/tiles.h"
-#include "render/path/ray_queue.h"
+#include "render/path/path_states.h"
 #include "render/surface/batch.h"
 #include "render/surface/lobes.h"
 #include "scene/transports.h"
@@ -92,8 +92,8 @@ class TileRenderer {
   enum class Draw : uint32_t { direction, choice, emitter, place, count };
   // Returns the sampler's pair of dimensions for a random decision at the current surface of a
   // path. Pair 0 is the position in the pixel.
-  uint32_t pairOf(const RayState& ray, Draw draw) const {
-    return 1 + uint32_t(Draw::count) * level_ + uint32_t(draw) + ray.branch;
+  uint32_t pairOf(uint32_t branch, Draw draw) const {
+    return 1 + uint32_t(Draw::count) * level_ + uint32_t(draw) + branch;
   }
   void sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const;
   // Sampler state for the hits of a batch. draw() returns one point of the unit square per hit.
@@ -113,23 +113,25 @@ class TileRenderer {
   };
   const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const Random& random);
   Sampling sampleLobes(const RtsBatch& batch, const Paths& paths, bool emitters);
+  void continueAtOneLobe(const RtsBatch& batch, const Sampling& sampling, Paths& paths);
   void passThroughBoundary(const Points& points, uint32_t i, uint32_t lane,
                            const Crossing& crossing, Paths& paths);
   void spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& sampling,
                  const Boundaries& boundaries, Paths& paths);
   // Returns whether the ray's hits on area lights are left to light tracing, so that only the sky
   // counts.
-  bool canOnlyReachSky(const RayState& ray) const {
-    return scene_.lightSources && ray.pathClass == PathClass::caustic;
+  bool canOnlyReachSky(PathFlags path) const {
+    return scene_.lightSources && path.pathClass() == PathClass::caustic;
   }
-  UnsampledLight& unsampledLightOf(const RayState& ray) {
-    return canOnlyReachSky(ray) ? ledger_.unsampledSky : ledger_.unsampled;
+  UnsampledLight& unsampledLightOf(PathFlags path) {
+    return canOnlyReachSky(path) ? ledger_.unsampledSky : ledger_.unsampled;
   }
-  double brightestFor(const RayState& ray) const {
-    return canOnlyReachSky(ray) ? brightestSky_ : brightest_;
+  double brightestFor(PathFlags path) const {
+    return canOnlyReachSky(path) ? brightestSky_ : brightest_;
   }
   void push(const Points& points, uint32_t i, uint32_t lane, const NextRay& nextRay, Paths& paths);
-  float emissionMisWeight(const RayState& ray, const Points& points, uint32_t i) const;
+  float emissionMisWeight(const PathStates& states, uint32_t lane, const Points& points,
+                          uint32_t i) const;
   // emitted.cpp: light sampling of emissive surfaces and of the sky.
   LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool twoSided) const;
   struct LightSamples; // the light samples of a batch

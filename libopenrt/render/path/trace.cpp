@@ -55,10 +55,11 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
 
 void TileRenderer::randomPoints(const RtsBatch& batch, uint32_t pair, float* const square[2]) {
   for (uint32_t i = 0; i < pointsOf(batch); i++) {
-    const RayState* ray = batch.order ? &batch.states[batch.order[i]] : nullptr;
-    const uint32_t key = hash(shaderPairs + pair, ray ? pairOf(*ray, Draw::direction) : 0);
-    sampleAt(ray ? ray->path : i, key, square[0][i], square[1][i]);
-    if (!centred_ || ray) markRandom(ray ? ray->path : i);
+    const uint32_t lane = batch.order ? batch.order[i] : i;
+    const uint32_t path = batch.order ? batch.states->path[lane] : i;
+    const uint32_t place = batch.order ? pairOf(batch.states->branch[lane], Draw::direction) : 0;
+    sampleAt(path, hash(shaderPairs + pair, place), square[0][i], square[1][i]);
+    if (!centred_ || batch.order) markRandom(path);
   }
 }
 
@@ -81,20 +82,20 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   auto* root = arena_.take<uint32_t>(n);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t hit = request.hit[to[i]];
-    const RayState parent = batch.order ? batch.states[batch.order[hit]] : RayState{.path = hit};
+    const RayState parent = batch.order ? (*batch.states)[batch.order[hit]] : RayState{.path = hit};
     root[i] = root_ ? root_[parent.path] : parent.path;
-    RayState& state = paths.state[i] = RayState{.path = i};
+    RayState state{.path = i};
     state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
     state.media = parent.media;
-    state.channel = parent.channel;
-    if (batch.points) paths.travelled[i] = state.travelled = batch.points->hits.distance[hit];
+    state.flags.setChannel(parent.flags.channel());
+    if (batch.points) state.travelled = batch.points->hits.distance[hit];
+    paths.states.set(i, state);
   }
-  for (uint32_t i = n; i < padded(n); i++) paths.state[i] = paths.state[n - 1];
   const uint32_t* const outerRoot = root_;
   const uint32_t outerLevel = level_;
   RayQueue outerQueue, outerNext;
-  outerQueue.swap(queue_);
-  outerNext.swap(next_);
+  std::swap(outerQueue, queue_);
+  std::swap(outerNext, next_);
   root_ = root;
   nesting_++;
   level_ += batch.points ? 1 : 0;
@@ -103,8 +104,8 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   nesting_--;
   root_ = outerRoot;
   level_ = outerLevel;
-  outerQueue.swap(queue_);
-  outerNext.swap(next_);
+  std::swap(outerQueue, queue_);
+  std::swap(outerNext, next_);
   for (uint32_t i = 0; i < n; i++) {
     for (int k = 0; k < 3; k++)
       if (rgba[k]) rgba[k][to[i]] = paths.radiance[k][i];

@@ -2,7 +2,7 @@
 // [render]
 #pragma once
 
-#include "render/path/ray_queue.h"
+#include "render/path/path_states.h"
 #include "render/surface/faults.h"
 #include "render/surface/points.h"
 
@@ -37,9 +37,9 @@ struct RtsBatch {
   // The renderer. Null if shaders are called outside of a frame: nothing is traced then, and random
   // points are (0.5, 0.5).
   openrt::TileRenderer* tracer = nullptr;
-  const openrt::RayState* states = nullptr; // ray states of the wave, by lane
-  const uint32_t* order = nullptr;          // lanes of the hits; null: camera rays, in order
-  uint32_t rays = 0;                        // number of camera rays
+  const openrt::PathStates* states = nullptr; // ray states of the wave, by lane
+  const uint32_t* order = nullptr;            // lanes of the hits; null: camera rays, in order
+  uint32_t rays = 0;                          // number of camera rays
   uint32_t lanes = 0; // number of lanes of a batch that has neither hits nor camera rays
   // By hit: number of rays it has traced; allocated with the first request.
   uint32_t* requests = nullptr;

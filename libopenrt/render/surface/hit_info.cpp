@@ -128,7 +128,7 @@ void pathsOf(const RtsBatch& batch, uint32_t level, uint32_t* depth, float* cons
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     if (depth) depth[i] = level;
     for (int k = 0; throughput && k < 3; k++)
-      throughput[k][i] = batch.order ? batch.states[batch.order[i]].throughput[k] : 1.0f;
+      throughput[k][i] = batch.order ? batch.states->throughput[k][batch.order[i]] : 1.0f;
   }
 }
 

@@ -16,6 +16,7 @@
 #include "render/path/paths.h"
 #include "render/path/sampler.h"
 #include "render/surface/bsdf_samples.h"
+#include "render/surface/continue_paths.h"
 #include "render/surface/surfaces.h"
 #include "scene/transports.h"
 #include "shading/running.h"
@@ -24,6 +25,11 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t rouletteFrom = 3;
+
+// Returns whether the lobe has one sample at each hit, whose expected weight is the lobe's weight.
+bool hasOneSample(const RtsLobe& lobe) {
+  return lobe.kind == RTS_LOBE_DIFFUSE || lobe.kind == RTS_LOBE_CUSTOM;
+}
 
 } // namespace
 
@@ -89,32 +95,37 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
   }
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   Boundaries boundaries{nullptr, nullptr};
-  if (bucket.shaderClass->medium) crossBoundaries(batch, paths.state, boundaries);
+  if (bucket.shaderClass->medium) crossBoundaries(batch, paths.states, boundaries);
   for (uint32_t i = 0; i < hits.count; i++) {
     const float share = boundaries.crossing && !boundaries.crossing[i].visible
                             ? 0
-                            : emissionMisWeight(paths.state[order[i]], points, i);
+                            : emissionMisWeight(paths.states, order[i], points, i);
     for (int k = 0; k < 3; k++) radiance[k][i] *= share;
-    if (const RayState& ray = paths.state[order[i]]; share > 0 && ray.specularSinceDiffuse) {
+    if (const PathFlags flags = paths.states.flagsOf(order[i]);
+        share > 0 && flags.specularSinceDiffuse()) {
       const float light[3] = {radiance[0][i], radiance[1][i], radiance[2][i]};
-      unsampledLightOf(ray).meet(light, brightestFor(ray));
+      unsampledLightOf(flags).meet(light, brightestFor(flags));
     }
   }
   addLights(batch, hits, radiance);
   const bool path = tracesPaths(scene_.frame.transport);
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
   const Sampling sampling = path ? sampleLobes(batch, paths, emitters) : Sampling{};
-  for (uint32_t i = 0; i < hits.count; i++) {
-    if (boundaries.crossing && !boundaries.crossing[i].visible)
-      passThroughBoundary(points, i, order[i], boundaries.crossing[i], paths);
-    else
-      spawnRays(batch, i, sampling, boundaries, paths);
+  if (path && !boundaries.crossing && batch.lobeCount == 1 && hasOneSample(batch.lobes[0])) {
+    continueAtOneLobe(batch, sampling, paths);
+  } else {
+    for (uint32_t i = 0; i < hits.count; i++) {
+      if (boundaries.crossing && !boundaries.crossing[i].visible)
+        passThroughBoundary(points, i, order[i], boundaries.crossing[i], paths);
+      else
+        spawnRays(batch, i, sampling, boundaries, paths);
+    }
   }
   if (emitters) sampleEmitters(batch, sampling, boundaries.crossing, radiance);
   float* fog[4];
   attenuate(points, paths, order, fog);
   for (uint32_t i = 0; i < hits.count; i++) {
-    const RayState& ray = paths.state[order[i]];
+    const uint32_t lane = order[i], path = paths.states.path[lane];
     // clear: weight of straight transmission. seen: weight of all specular lobes, which also show
     // mirror images and refractions.
     float clear[3] = {0, 0, 0}, seen[3] = {0, 0, 0}, covered = 0;
@@ -134,28 +145,30 @@ void TileRenderer::scatterRange(Paths& paths, const Points& points, const Bucket
       // airlight of the path up to here, so that part is left out.
       if (fog[3])
         light = fog[3][i] * light + (1 - fog[3][i]) * fog[k][i] * (1 - std::min(seen[k], 1.0f));
-      paths.radiance[k][ray.path] += ray.throughput[k] * light;
-      covered += ray.throughput[k] * (1 - std::min(clear[k], 1.0f));
+      const float throughput = paths.states.throughput[k][lane];
+      paths.radiance[k][path] += throughput * light;
+      covered += throughput * (1 - std::min(clear[k], 1.0f));
     }
-    if (!ray.deflected) paths.alpha[ray.path] += covered / 3;
-    if (paths.first[ray.path] && !unseen) storeFirstHit(points, i, ray.path, surface.albedo, paths);
+    if (!paths.states.flagsOf(lane).deflected()) paths.alpha[path] += covered / 3;
+    if (paths.first[path] && !unseen) storeFirstHit(points, i, path, surface.albedo, paths);
   }
 }
 
 // Returns the MIS weight of emission found by BSDF sampling; light sampling or light tracing
 // contributes the rest.
-float TileRenderer::emissionMisWeight(const RayState& ray, const Points& points, uint32_t i) const {
-  const uint32_t lane = points.order[i], record = points.rayHits->record[lane],
-                 primitive = points.rayHits->primitive[lane];
+float TileRenderer::emissionMisWeight(const PathStates& states, uint32_t lane, const Points& points,
+                                      uint32_t i) const {
+  const uint32_t record = points.rayHits->record[lane], primitive = points.rayHits->primitive[lane];
   const RtsHits& h = points.hits;
   const float direction[3] = {h.direction[0][i], h.direction[1][i], h.direction[2][i]};
-  if (scene_.lightSources && ray.pathClass == PathClass::caustic &&
+  if (canOnlyReachSky(states.flagsOf(lane)) &&
       scene_.emitters.startsLightPaths(record, primitive, direction))
     return 0;
-  if (!(ray.pdf > 0)) return 1;
+  const float pdf = states.pdf[lane];
+  if (!(pdf > 0)) return 1;
   const float lightPdf =
-      scene_.emitters.pdf(ray.previous, record, primitive, direction, h.segment[i]);
-  return std::isfinite(lightPdf) ? ray.pdf / (ray.pdf + lightPdf) : 0.0f;
+      scene_.emitters.pdf(states.previousOf(lane), record, primitive, direction, h.segment[i]);
+  return std::isfinite(lightPdf) ? pdf / (pdf + lightPdf) : 0.0f;
 }
 
 void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
@@ -168,12 +181,11 @@ void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) co
 TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* order, uint32_t n) {
   Random random{n, arena_.take<uint32_t>(n), arena_.take<uint32_t>(n), arena_.take<uint32_t>(n)};
   for (uint32_t i = 0; i < n; i++) {
-    const RayState& ray = paths.state[order[i]];
-    const uint32_t path = root_ ? root_[ray.path] : ray.path,
-                   sample = firstSample_ + path % samples_;
+    const uint32_t own = paths.states.path[order[i]];
+    const uint32_t path = root_ ? root_[own] : own, sample = firstSample_ + path % samples_;
     random.key[i] = hash(pixels_[path / samples_], replicates_.seedOf(sample));
     random.index[i] = replicates_.indexOf(sample);
-    random.pair[i] = pairOf(ray, Draw::direction);
+    random.pair[i] = pairOf(paths.states.branch[order[i]], Draw::direction);
   }
   return random;
 }
@@ -213,16 +225,33 @@ TileRenderer::Sampling TileRenderer::sampleLobes(const RtsBatch& batch, const Pa
   return sampling;
 }
 
+// Spawns the rays that continue paths at surfaces with one non-specular lobe.
+void TileRenderer::continueAtOneLobe(const RtsBatch& batch, const Sampling& sampling,
+                                     Paths& paths) {
+  ArenaScope scope(arena_);
+  const uint32_t n = batch.points->hits.count;
+  for (uint32_t i = 0; i < n; i++) markRandom(paths.states.path[batch.order[i]]);
+  const Continuation from{.points = batch.points,
+                          .states = &paths.states,
+                          .order = batch.order,
+                          .lobe = &batch.lobes[0],
+                          .transmits = nonSpecularFunctions(batch.lobes[0])->transmits != 0,
+                          .samples = sampling.samples[0],
+                          .survival = level_ >= rouletteFrom ? sampling.choices[1] : nullptr,
+                          .selectionProbability = sampling.selectionProbability[0]};
+  continuePaths(from, arena_.take<uint32_t>(padded(n) + lanes), next_);
+}
+
 // Spawns a ray straight through a boundary that has no effect on light.
 void TileRenderer::passThroughBoundary(const Points& points, uint32_t i, uint32_t lane,
                                        const Crossing& crossing, Paths& paths) {
-  const RayState& ray = paths.state[lane];
+  const RayState ray = paths.states[lane];
   NextRay nextRay{.weight = {1, 1, 1},
                   .pdf = 0,
                   .deflected = false,
                   .split = false,
                   .twoSided = false,
-                  .channel = ray.channel,
+                  .channel = ray.flags.channel(),
                   .branch = ray.branch};
   for (int k = 0; k < 3; k++) nextRay.direction[k] = points.hits.direction[k][i];
   nextRay.media = crossing.behind;
@@ -236,11 +265,11 @@ void TileRenderer::spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& 
                              const Boundaries& boundaries, Paths& paths) {
   const Points& points = *batch.points;
   const uint32_t lane = batch.order[i];
-  const RayState ray = paths.state[lane];
+  const RayState ray = paths.states[lane];
   const bool path = tracesPaths(scene_.frame.transport),
              images = followsImages(scene_.frame.transport);
   BsdfSamples bsdfSamples(points.hits, i, boundaries.eta ? boundaries.eta[i] : nullptr,
-                          ray.channel);
+                          ray.flags.channel());
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (!images && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
     bsdfSamples.add(l, batch.lobes[l], sampling.samples[l]);
@@ -255,7 +284,7 @@ void TileRenderer::spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& 
     sum += carried[w] = largest(left);
   }
   if (!(sum > 0)) return;
-  const bool all = !path || bsdfSamples.count == 1 || ray.splits == 0;
+  const bool all = !path || bsdfSamples.count == 1 || ray.flags.splits() == 0;
   for (uint32_t w = 0; w < bsdfSamples.count; w++)
     if (float* probability = sampling.selectionProbability[bsdfSamples.list[w].lobe])
       probability[i] = all ? 1 : carried[w] / sum;

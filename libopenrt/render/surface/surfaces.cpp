@@ -114,7 +114,21 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
 
 } // namespace
 
-void crossBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
+namespace {
+
+// Attenuates the throughput of a ray by the absorption along `length` in a medium.
+void absorbAt(uint16_t medium, float length, std::span<const RtsMedium> media,
+              const PathStates& states, uint32_t lane) {
+  if (!medium) return;
+  float throughput[3];
+  for (int k = 0; k < 3; k++) throughput[k] = states.throughput[k][lane];
+  absorb(medium, length, media, throughput);
+  for (int k = 0; k < 3; k++) states.throughput[k][lane] = throughput[k];
+}
+
+} // namespace
+
+void crossBoundaries(RtsBatch& batch, const PathStates& states, Boundaries& out) {
   const RenderScene& scene = *batch.scene;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
@@ -123,33 +137,33 @@ void crossBoundaries(RtsBatch& batch, RayState* states, Boundaries& out) {
   out.eta = batch.arena->take<float[3]>(hits.count);
   for (uint32_t i = 0; i < hits.count; i++) {
     const uint16_t medium = mediumAt(scene, points.record[i]);
-    const RayState& ray = states[batch.order[i]];
-    Crossing& c = out.crossing[i] = {ray.media, 0, 0, true, false};
-    if (medium) c = cross(ray.media, medium, hits.flags[i] & RTS_HIT_BACK, media);
+    const MediaStack& stack = states.media[batch.order[i]];
+    Crossing& c = out.crossing[i] = {stack, 0, 0, true, false};
+    if (medium) c = cross(stack, medium, hits.flags[i] & RTS_HIT_BACK, media);
   }
   if (media.size() > 1) crossSharedFaces(batch, out.crossing);
   for (uint32_t i = 0; i < hits.count; i++) {
-    RayState& ray = states[batch.order[i]];
+    const uint32_t lane = batch.order[i];
+    const uint8_t channel = states.flagsOf(lane).channel();
     const Crossing& c = out.crossing[i];
-    if (c.unknown) absorb(c.from, hits.segment[i], media, ray.throughput);
+    if (c.unknown) absorbAt(c.from, hits.segment[i], media, states, lane);
     for (int k = 0; k < 3; k++) out.eta[i][k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       if (!c.visible)
         for (auto* weight : batch.lobes[l].weight) weight[i] = 0;
       if (batch.lobes[l].kind == RTS_LOBE_ROUGH_DIELECTRIC)
-        batch.lobes[l].parameter[0][i] = out.eta[i][ray.channel ? ray.channel - 1 : 1];
+        batch.lobes[l].parameter[0][i] = out.eta[i][channel ? channel - 1 : 1];
     }
   }
 }
 
 void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& hits,
-                     RayState* states) {
+                     const PathStates& states) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   if (media.empty()) return;
   // Light from infinity is fully absorbed in an absorbing medium.
   for (uint32_t i = 0; i < rays.count; i++)
-    absorb(mediumOf(states[i].media, media), std::min(hits.t[i], 1e30f), media,
-           states[i].throughput);
+    absorbAt(mediumOf(states.media[i], media), std::min(hits.t[i], 1e30f), media, states, i);
 }
 
 } // namespace openrt

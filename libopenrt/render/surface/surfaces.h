@@ -26,10 +26,10 @@ struct Boundaries {
 };
 // Computes the media on both sides of each hit. Called for a batch whose class has a medium, after
 // its `surface`. Sets all weights to 0 at boundaries inside a medium of higher priority.
-void crossBoundaries(RtsBatch& batch, RayState* states, Boundaries& out);
+void crossBoundaries(RtsBatch& batch, const PathStates& states, Boundaries& out);
 
 // Attenuates the rays' throughput by the absorption of the media between origin and hit.
 void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& hits,
-                     RayState* states);
+                     const PathStates& states);
 
 } // namespace openrt

@@ -1,0 +1,165 @@
+// path_states.h: rays with what they carry for their paths, as structure of arrays, and the queue
+// of rays for the next wave. A path may spawn several rays. [render]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "render/arena.h"
+#include "render/lights/emitters.h"
+#include "render/rays.h"
+#include "render/surface/media.h"
+
+namespace openrt {
+
+// Class of a path so far. Light tracing takes over the `caustic` camera paths that end on a light
+// source; path tracing must leave those out.
+enum class PathClass : uint8_t {
+  undeflected, // no scattering event yet: the ray still follows the camera ray
+  diffuse,     // the first and the last scattering events were non-specular
+  caustic,     // as `diffuse`, followed only by specular events since the last non-specular one
+  // The first event was specular. For a path from a light source: this is a path that light tracing
+  // follows.
+  specularFirst
+};
+
+// Facts of a path in one number, for vector lanes.
+struct PathFlags {
+  uint32_t bits = 0;
+  static constexpr uint32_t classBits = 3;
+  // The path has a non-specular vertex.
+  static constexpr uint32_t scatteredBit = 4;
+  // The path has a non-specular vertex and only specular ones since: light sampling cannot find an
+  // emitter that the ray hits (UnsampledLight, ledger.h).
+  static constexpr uint32_t specularSinceDiffuseBit = 8;
+  // A surface has changed the direction: the pixel's alpha is final.
+  static constexpr uint32_t deflectedBit = 16;
+  static constexpr uint32_t channelShift = 8, splitsShift = 16, mostSplits = 255;
+
+  PathClass pathClass() const { return PathClass(bits & classBits); }
+  bool scattered() const { return bits & scatteredBit; }
+  bool specularSinceDiffuse() const { return bits & specularSinceDiffuseBit; }
+  bool deflected() const { return bits & deflectedBit; }
+  // 1 + index of the only colour that the ray carries (dispersion); 0: all colours
+  uint8_t channel() const { return uint8_t(bits >> channelShift & 255); }
+  // number of times the path has split into several rays
+  uint32_t splits() const { return bits >> splitsShift; }
+
+  void setClass(PathClass to) { bits = (bits & ~classBits) | uint32_t(to); }
+  void set(uint32_t bit, bool on) { bits = on ? bits | bit : bits & ~bit; }
+  void setChannel(uint8_t to) {
+    bits = (bits & ~(255u << channelShift)) | uint32_t(to) << channelShift;
+  }
+  void addSplit() {
+    if (splits() < mostSplits) bits += 1u << splitsShift;
+  }
+};
+
+// State that one ray carries for its path.
+struct RayState {
+  float throughput[3] = {1, 1, 1};
+  float travelled = 0; // path length up to the ray's origin
+  uint32_t path = 0;   // index of the path (sample) in the tile
+  // Distinguishes the random numbers of the path's branches; 0: the branch of the camera ray.
+  uint32_t branch = 0;
+  // Solid-angle pdf with which BSDF sampling chose the direction; 0: specular or camera ray.
+  float pdf = 0;
+  // The previous path vertex, where `pdf` was sampled; needed for the light pdf in MIS.
+  LightSampleContext previous;
+  MediaStack media = {}; // the media that contain the ray
+  PathFlags flags;
+};
+
+// The states of many rays: the fields of RayState, as arrays.
+struct PathStates {
+  float* throughput[3];
+  float* travelled;
+  uint32_t *path, *branch;
+  float* pdf;
+  float *previousPosition[3], *previousNormal[3];
+  MediaStack* media;
+  uint32_t* flags;
+
+  void allocate(Arena& arena, uint32_t capacity) {
+    const uint32_t n = padded(capacity);
+    forEachArray(
+        [&](auto*& array) { array = arena.take<std::remove_reference_t<decltype(*array)>>(n); });
+  }
+  RayState operator[](size_t i) const {
+    return {{throughput[0][i], throughput[1][i], throughput[2][i]},
+            travelled[i],
+            path[i],
+            branch[i],
+            pdf[i],
+            {{previousPosition[0][i], previousPosition[1][i], previousPosition[2][i]},
+             {previousNormal[0][i], previousNormal[1][i], previousNormal[2][i]}},
+            media[i],
+            {flags[i]}};
+  }
+  void set(size_t i, const RayState& state) const {
+    for (int k = 0; k < 3; k++) {
+      throughput[k][i] = state.throughput[k];
+      previousPosition[k][i] = state.previous.position[k];
+      previousNormal[k][i] = state.previous.normal[k];
+    }
+    travelled[i] = state.travelled;
+    path[i] = state.path;
+    branch[i] = state.branch;
+    pdf[i] = state.pdf;
+    media[i] = state.media;
+    flags[i] = state.flags.bits;
+  }
+  PathFlags flagsOf(size_t i) const { return {flags[i]}; }
+  LightSampleContext previousOf(size_t i) const {
+    return {{previousPosition[0][i], previousPosition[1][i], previousPosition[2][i]},
+            {previousNormal[0][i], previousNormal[1][i], previousNormal[2][i]}};
+  }
+  // Calls f with a reference to each pointer.
+  template <class F> void forEachArray(const F& f) {
+    for (auto* group : {throughput, previousPosition, previousNormal})
+      for (int k = 0; k < 3; k++) f(group[k]);
+    f(travelled);
+    f(path);
+    f(branch);
+    f(pdf);
+    f(media);
+    f(flags);
+  }
+};
+
+// Rays that wait for the next wave. The tile renderer keeps its queues from tile to tile to reuse
+// their memory.
+class RayQueue {
+ public:
+  bool empty() const { return size_ == 0; }
+  size_t size() const { return size_; }
+  void clear() { size_ = 0; }
+  void push(const float origin[3], const float direction[3], const RayState& state) {
+    reserve(1);
+    for (int k = 0; k < 3; k++) {
+      origin_[k][size_] = origin[k];
+      direction_[k][size_] = direction[k];
+    }
+    states_.set(size_++, state);
+  }
+  // Makes room for `count` more rays and for the 16 elements after them, which vector lanes may
+  // overwrite. add() says how many of them were written.
+  void reserve(size_t count);
+  void add(size_t count) { size_ += count; }
+  // The arrays; valid until the next reserve() or push().
+  float* const* origin() const { return origin_; }
+  float* const* direction() const { return direction_; }
+  const PathStates& states() const { return states_; }
+  // Returns the arrays from ray `begin` on.
+  PathStates statesFrom(size_t begin) const;
+
+ private:
+  size_t size_ = 0, capacity_ = 0;
+  std::unique_ptr<std::byte[]> memory_;
+  float *origin_[3] = {}, *direction_[3] = {};
+  PathStates states_{};
+};
+
+} // namespace openrt
