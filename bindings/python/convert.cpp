@@ -268,6 +268,9 @@ NodeRef nodeOf(const py::handle& object, const Target& target) {
   return given.node;
 }
 
+// Returns whether NULL keeps its place in the lists of the node (docs/decisions/0015).
+bool mayHoldNull(const Node& node) { return node.type().index < 0 || node.type().is("selecting"); }
+
 py::sequence sequenceOf(const py::handle& object, const Target& target) {
   if (py::isinstance<py::str>(object) || !PySequence_Check(object.ptr())) target.wrongType(object);
   return py::reinterpret_borrow<py::sequence>(object);
@@ -411,7 +414,8 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
       to->joined = from;
     }
   } else if (!py::isinstance<py::str>(object) && PySequence_Check(object.ptr())) {
-    for (const py::handle one : py::reinterpret_borrow<py::sequence>(object))
+    // The sequence may make each item when it is asked: a py::object keeps the item alive.
+    for (const py::object one : py::reinterpret_borrow<py::sequence>(object))
       if (py::isinstance<NodeObject>(one)) joinWorlds(owner, one);
   }
 }
@@ -455,13 +459,15 @@ Value fromPython(const py::handle& object, const FieldInfo& field, const NodeObj
   case FieldType::MFInt32: return integerList(object, target);
   case FieldType::MFNode: {
     MFNode list;
-    for (const py::handle one : sequenceOf(object, target)) list.push_back(nodeOf(one, target));
+    const bool keeps = mayHoldNull(*owner.node);
+    for (const py::object one : sequenceOf(object, target)) // may be made anew
+      list.push_back(keeps && one.is_none() ? NodeRef() : nodeOf(one, target));
     return list;
   }
   case FieldType::MFRotation: return rows<Rotation>(object, target);
   case FieldType::MFString: {
     MFString list;
-    for (const py::handle one : sequenceOf(object, target)) list.push_back(text(one, target));
+    for (const py::object one : sequenceOf(object, target)) list.push_back(text(one, target));
     return list;
   }
   case FieldType::MFTime: return numberList<double>(object, target);

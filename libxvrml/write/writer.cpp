@@ -2,6 +2,7 @@
 // Prototype declarations are written, the bodies of instances are not. A pure function of the
 // world. [the thread that owns the world]
 #include <span>
+#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -17,6 +18,10 @@
 
 namespace xvrml {
 namespace {
+
+// Nodes nested deeper are refused: the writer is recursive, and no parser reads such a file (its
+// own limit is Parser::maximumNesting).
+constexpr size_t deepestNode = 2500;
 
 using Connections = std::unordered_map<const Node*, std::vector<const IsConnection*>>;
 
@@ -152,12 +157,17 @@ class Writer {
       return;
     }
     if (name) text += "DEF " + *name + " ";
+    if (++depth_ > deepestNode)
+      throw std::length_error(fmt::format("the world cannot be written: nodes are nested more than "
+                                          "{} deep, and no program could read the file",
+                                          deepestNode));
     text += node->type().name + " {";
     const size_t before = text.size();
     indent_ += 2;
     for (const FieldInfo& field : node->type().fields) fieldOf(*node, field, names, connections);
     otherConnections(*node, connections);
     indent_ -= 2;
+    --depth_;
     if (text.size() > before) line();
     text += text.size() > before ? "}" : " }";
   }
@@ -290,6 +300,7 @@ class Writer {
   }
 
   size_t indent_ = 0;
+  size_t depth_ = 0; // number of nodes around the one that is being written
 };
 
 } // namespace

@@ -157,7 +157,8 @@ std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::st
 const Scope* inlineScope(const Node& inlineNode);
 
 // Returns the world as VRML97 text that parses to an equal graph. Each number is the shortest that
-// reads back equal.
+// reads back equal. Throws std::length_error if nodes are nested deeper than any file may nest them
+// (2500).
 std::string writeWorld(const World& world);
 
 // Returns true if both scopes hold equal graphs: the same nodes, fields, DEF/USE structure,
