@@ -154,7 +154,7 @@ ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
   }
   std::string reasons;
   for (const std::string& url : declaration.urls) {
-    if (ProtoPtr known = builtinPrototype(url, *declaration.type)) {
+    if (ProtoPtr known = builtinPrototype(url, declaration)) {
       checkInterface(declaration, *known);
       return declaration.resolved = known;
     }

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "graph/url.h"
 #include "parse/source.h"
-#include "parse/url.h"
 
 namespace xvrml {
 namespace {

@@ -227,7 +227,8 @@ class Writer {
   static bool hasOwnValue(Node& node, const FieldInfo& field) {
     const Value* standard = &field.defaultValue;
     if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
-      if (instance->isGiven(field)) return true;
+      // A default of the prototype's file that a program has assigned again stays a default.
+      if (instance->isGiven(field) && instance->hasOwnUrlBase(field)) return true;
       if (holdsNodes(field)) return false;
       if (const ProtoPtr& resolved = instance->declaration->resolved) {
         const FieldInfo* declared = resolved->type->find(field.name);
