@@ -269,16 +269,27 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
 
 namespace {
 
-// The deleter of a file's name. It stores the file's comments, so that they live as long as the
-// name, which all nodes of the file share.
+// The deleter of a file's name. It stores the file's comments and its depth, so that they live as
+// long as the name, which all nodes of the file share.
 struct NameDeleter {
   std::string comments;
+  uint64_t depth = 0;
   void operator()(const std::string* name) const { delete name; }
 };
 
 } // namespace
 
-std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name) const {
+std::shared_ptr<const std::string> fileName(const std::string& name, uint64_t depth) {
+  return {new std::string(name), NameDeleter{{}, depth}};
+}
+
+uint64_t fileDepth(const std::shared_ptr<const std::string>& file) {
+  const NameDeleter* known = std::get_deleter<NameDeleter>(file);
+  return known ? known->depth : 0;
+}
+
+std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name,
+                                                            uint64_t depth) const {
   constexpr size_t most = 4096;
   std::string comments;
   std::string_view rest = text_;
@@ -290,7 +301,7 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
       comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
   }
-  return {new std::string(name), NameDeleter{std::move(comments)}};
+  return {new std::string(name), NameDeleter{std::move(comments), depth}};
 }
 
 std::string_view openingComments(const World& world) {
