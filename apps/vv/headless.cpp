@@ -57,7 +57,7 @@ class Headless {
     const xvrml::World& world = browser_->world();
     protectFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) return exitProblems;
-    if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
+    if (!options_.write.empty()) writeText(options_.write, written(world));
     if (options_.check) return check();
     if (options_.job()) inspect(options_.job()->job);
     int code = exitDone;
@@ -75,6 +75,12 @@ class Headless {
   }
 
  private:
+  // Returns the text for --write. Relative URLs of a text for standard output stay as they are.
+  std::string written(const xvrml::World& world) const {
+    return options_.write == "-" ? xvrml::writeWorld(world)
+                                 : xvrml::writeWorld(world, options_.write);
+  }
+
   picture::RenderSettings withoutPicture() const {
     picture::RenderSettings settings = options_.render;
     settings.backend = "null";

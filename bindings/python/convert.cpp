@@ -80,13 +80,26 @@ struct Target {
     const bool low = r.minimumOpen ? number <= minimum : number < minimum;
     const bool high = r.maximumOpen ? number >= maximum : number > maximum;
     if ((low || high) && number != r.also)
-      wrongValue(fmt::format("from {} to {}{}, not {}", r.minimum, r.maximum,
-                             r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "", v));
+      wrongValue(fmt::format("from {} to {}{}{}, not {}", r.minimum, r.maximum,
+                             r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "",
+                             std::isnan(r.also) ? "" : fmt::format(" or {}", r.also), v));
   }
 };
 
 std::string shapeText(const py::array& array) {
   return "not of shape " + std::string(py::str(array.attr("shape")));
+}
+
+// Raises the error for an array of Python objects: ValueError if they are numbers that no type of
+// numpy can hold, otherwise TypeError.
+[[noreturn]] void refuseObjects(const py::array& array, const py::handle& object,
+                                const Target& target) {
+  bool large = false;
+  try {
+    array.attr("astype")("float64");
+  } catch (const py::error_already_set& error) { large = error.matches(PyExc_OverflowError); }
+  if (large) target.wrongValue("not a number beyond 1e308");
+  target.wrongType(object);
 }
 
 // Converts any array-like of numbers. Text, objects and complex numbers raise TypeError.
@@ -102,7 +115,7 @@ py::array numbersOf(const py::handle& object, const Target& target, const char* 
   }
   const char kind = std::string(py::str(array.dtype().attr("kind")))[0];
   if (array.size() > 0 && !std::strchr(kinds, kind)) {
-    if (kind == 'O') target.wrongType(object);
+    if (kind == 'O') refuseObjects(array, object, target);
     throw py::type_error(
         fmt::format("{}, not an array of {}", target.text(), std::string(py::str(array.dtype()))));
   }
@@ -170,6 +183,12 @@ std::vector<int32_t> integerList(const py::handle& object, const Target& target)
   py::array any = numbersOf(object, target, "iu");
   if (any.size() == 0) return {};
   if (any.ndim() != 1) target.wrongValue(shapeText(any));
+  if (any.dtype().kind() == 'u') { // 64 bits without a sign do not fit into the array below
+    const Dense<uint64_t> large(any);
+    for (size_t i = 0; i < size_t(large.size()); ++i)
+      if (large.data()[i] > uint64_t(std::numeric_limits<int32_t>::max()))
+        target.wrongValue(fmt::format("not {}", large.data()[i]));
+  }
   Dense<int64_t> array(any);
   std::vector<int32_t> list(size_t(array.size()));
   for (size_t i = 0; i < list.size(); ++i) list[i] = wholeNumber(array.data()[i], target);
@@ -194,7 +213,9 @@ double number(const py::handle& object, const Target& target) {
     target.wrongType(object);
   const double v = PyFloat_AsDouble(object.ptr());
   if (v == -1 && PyErr_Occurred()) {
+    const bool large = PyErr_ExceptionMatches(PyExc_OverflowError);
     PyErr_Clear();
+    if (large) target.wrongValue("not a number beyond 1e308");
     target.wrongType(object);
   }
   return v;

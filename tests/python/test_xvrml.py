@@ -271,6 +271,22 @@ def test_ranges():
         w["M"].diffuseColor = (2, 0, 0)
     with pytest.raises(ValueError):
         w["S"].radius = 0
+    group = xvrml.Group(bboxSize=(-1, -1, -1))
+    with pytest.raises(ValueError, match=r"from 0 to inf.* or -1, not -2"):
+        group.bboxSize = (-2, -2, -2)
+
+
+def test_numbers_of_more_than_64_bits():
+    for whole in (2**64 - 1, 2**64 - 2**31 + 3, 2**31):
+        with pytest.raises(ValueError, match=f"not {whole}"):
+            xvrml.IndexedFaceSet(coordIndex=np.array([whole], "u8"))
+    assert list(xvrml.IndexedFaceSet(coordIndex=np.array([2**31 - 1], "u8")).coordIndex)
+    for field, value in (("translation", (10**400, 0, 0)), ("scaleOrientation", (10**400, 0, 0,
+                                                                                 0))):
+        with pytest.raises(ValueError, match="not a number beyond 1e308"):
+            xvrml.Transform(**{field: value})
+    with pytest.raises(ValueError, match="not a number beyond 1e308"):
+        xvrml.Material(transparency=10**400)
 
 
 def test_axes_of_rotations_are_normalised():

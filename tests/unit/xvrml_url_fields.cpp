@@ -206,6 +206,22 @@ TEST_F(UrlsThroughIs, StringsThatAreTextStayAsTheyAre) {
   }
 }
 
+TEST_F(UrlsThroughIs, AWorldWrittenIntoAnotherFolderNamesTheSameFiles) {
+  load(pinned, usesPinned +
+                   "Pinned { } Anchor { url [ \"mine.png\" \"http://a.org/x\" \"#V\" ] }\n"
+                   "PROTO Own [ field MFString u \"own.png\" ] { Anchor { url IS u } } Own { }\n");
+  const std::string text = writeWorld(*world, folder.path("out/far/w.wrl"));
+  EXPECT_EQ(writeWorld(*world, folder.path("worlds/other.wrl")), writeWorld(*world));
+  world = loadWorld(folder.write("out/far/w.wrl", text));
+  EXPECT_EQ(messages(*world), "");
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  EXPECT_EQ(file(drawn(1), "url"), "lib/own.png");
+  EXPECT_EQ(file(drawn(2), "url"), "worlds/mine.png");
+  EXPECT_EQ(field<MFString>(drawn(2), "url").at(1), "http://a.org/x");
+  EXPECT_EQ(field<MFString>(drawn(2), "url").at(2), "#V");
+  EXPECT_EQ(file(drawn(3), "url"), "worlds/own.png");
+}
+
 TEST_F(UrlsThroughIs, AssigningAFieldToItselfChangesNothing) {
   load(pinned, usesPinned + "Pinned { }\n");
   for (const NodeRef& root : world->scope.roots)

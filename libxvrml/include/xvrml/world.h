@@ -186,6 +186,9 @@ const Scope* inlineScope(const Node& inlineNode);
 // reads back equal. Throws std::length_error if nodes are nested deeper than any file may nest them
 // (2500).
 std::string writeWorld(const World& world);
+// Does the same for a text that will be stored in the file `path`: relative URLs lead from there to
+// the same files as before. URLs of nodes that are in no file stay as they are.
+std::string writeWorld(const World& world, const std::string& path);
 
 // Returns true if both scopes hold equal graphs: the same nodes, fields, DEF/USE structure,
 // prototypes and routes. Writes the first difference to `difference`, if it is not null.
