@@ -341,7 +341,9 @@ void defineWorld(py::module_& module) {
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
           "Removes a route. Returns False if it did not exist.")
       .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
-      .def("save", save, py::arg("path"), "Writes the world as a VRML97 file.")
+      .def("save", save, py::arg("path"),
+           "Writes the world as a VRML97 file. Relative urls of nodes that were read from a file "
+           "lead to the same files as before.")
       .def("__repr__",
            [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });
   defineRender(world);
