@@ -90,3 +90,18 @@ def test_parameters_and_stubs_are_those_of_the_table(owner, module):
         assert typed[name] == kind, name
     for name in WITHOUT[owner.__name__]:
         assert name not in names, f"{name} is named as missing, but is there"
+
+
+@pytest.mark.parametrize("option, values", [
+    ("--clamp", ("0", "1", "3.4e38")),
+    ("--time-limit", ("0", "1000000")),
+    ("--error", ("0", "0%", "1", "100%")),
+    ("--energy-cut", ("0", "0.0", "0%", "1", "100%")),
+])
+def test_vv_accepts_the_whole_range_of_the_table(vv, option, values):
+    for value in values:
+        done = vv("box.wrl", "-o", "x.png", "--size", "4x4", "--spp", "1", option, value)
+        assert done.returncode == 0, done.talk
+    for value in ("-1", "nan", "inf", "1e39"):
+        done = vv("box.wrl", "-o", "x.png", "--size", "4x4", "--spp", "1", option, value)
+        assert done.returncode == 2 and "a number from 0 to " in done.talk, done.talk
