@@ -31,6 +31,11 @@ std::string qualityRange(RTenum quality) {
                      info.minimum, info.maximum);
 }
 
+std::string qualityFault(const RTqualityInfo& info, std::string_view name, double value) {
+  return fmt::format("{}: {:.10g} to {:.10g}{} expected, not {:.10g}", name, info.minimum,
+                     info.maximum, info.zeroIsAuto ? ", or 0," : "", value);
+}
+
 std::vector<std::string> qualityChoices(RTenum quality) {
   const RTqualityInfo info = qualityInfo(quality);
   std::istringstream words(info.choices ? info.choices : "");

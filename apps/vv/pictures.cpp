@@ -87,6 +87,15 @@ std::vector<Job> chooseJobs(const Options& options,
   return jobs;
 }
 
+// Writes a file of -o. Errors name the option.
+void writeOutput(const std::string& path, const std::string& bytes) {
+  try {
+    picture::writeFile(path, bytes);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("-o: {}", error.what()));
+  }
+}
+
 class Pictures {
  public:
   Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
@@ -282,7 +291,7 @@ class Pictures {
     if (!finished) return stopped("vv: interrupted before the audit was finished");
     writeOut(audit.text());
     for (const Output& output : options_.outputs)
-      picture::writeFile(pathFor(output.path, job.name), output.format->encode(audit.picture()));
+      writeOutput(pathFor(output.path, job.name), output.format->encode(audit.picture()));
     return audit.good() ? exitDone : exitProblems;
   }
 
@@ -305,7 +314,7 @@ class Pictures {
       }
       const std::string path = pathFor(output.path, job.name);
       protectFilesOf(browser_.world(), path);
-      picture::writeFile(path, bytes);
+      writeOutput(path, bytes);
     }
   }
 
@@ -408,7 +417,7 @@ class Pictures {
   void finishSequence() {
     for (auto& [path, film] : films_) {
       protectFilesOf(browser_.world(), path);
-      picture::writeFile(path, film->finish());
+      writeOutput(path, film->finish());
     }
     films_.clear();
     if (!options_.stats.empty() && options_.isSequence())

@@ -49,6 +49,19 @@ TEST_F(Frames, BadSettingsAreErrorsAndChangeNothing) {
   EXPECT_TRUE(commit().edits.edits.empty());
 }
 
+TEST_F(Frames, AWrongSettingIsNamedWithItsRangeAndValue) {
+  const auto message = [] {
+    EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
+    return std::string(rtGetErrorMessage());
+  };
+  rtQuality(RT_MAX_DEPTH, 10001);
+  EXPECT_EQ(message(), "rtQuality: depth: 0 to 10000 expected, not 10001");
+  rtQuality(RT_TILE_SIZE, 3);
+  EXPECT_EQ(message(), "rtQuality: tile: 4 to 128, or 0, expected, not 3");
+  rtQualityf(RT_TARGET_ERROR, 1.5);
+  EXPECT_EQ(message(), "rtQualityf: error: 0 to 1 expected, not 1.5");
+}
+
 TEST_F(Frames, TheTableOfQualitySettingsIsWhatIsAccepted) {
   const auto set = [](const RTqualityInfo& info, double value) {
     if (info.isReal)

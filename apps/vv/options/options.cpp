@@ -202,17 +202,21 @@ const JobInfo* Options::job() const {
   return nullptr;
 }
 
+// Returns whether a word is a whole number, perhaps a negative one, which the option then refuses.
+bool isWholeNumber(std::string_view word) {
+  if (word.starts_with('-')) word.remove_prefix(1);
+  return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
+}
+
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
-// its argument only if it begins with a digit.
+// its argument only if it is a whole number.
 std::vector<std::string> withOptionalArguments(int argc, char** argv) {
   std::vector<std::string> out;
   for (int i = 1; i < argc; ++i) {
     out.emplace_back(argv[i]);
     for (const OptionInfo& option : optionTable()) {
       if (option.argument[0] != '[' || out.back() != longName(option)) continue;
-      const bool given =
-          i + 1 < argc && argv[i + 1][0] >= '0' && argv[i + 1][0] <= '9' &&
-          std::string_view(argv[i + 1]).find_first_not_of("0123456789") == std::string_view::npos;
+      const bool given = i + 1 < argc && isWholeNumber(argv[i + 1]);
       out.back() += std::string("=") + (given ? argv[++i] : "-");
       break;
     }
