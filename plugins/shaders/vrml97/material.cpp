@@ -18,7 +18,7 @@ const RtsParam surfaceParams[] = {
      {0.8f, 0.8f, 0.8f},
      0.0f,
      0.0f,
-     "share of the light that is scattered evenly"},
+     "diffuse reflectance"},
     {"emissiveColor",
      RTS_COLOR,
      offsetof(SurfaceParams, emissiveColor),
