@@ -215,8 +215,9 @@ def test_bad_pictures_of_radiance(vv, name, content):
     if content is not None:
         vv.write(name, content)
     done = vv("box.wrl", "-o", "x.png", "--environment", name, *SMALL)
-    assert done.returncode == 1 and name in done.talk and len(
-        done.talk.splitlines()) == 1, done.talk
+    assert done.returncode == 3 and len(done.talk.splitlines()) == 1, done.talk
+    assert done.talk.startswith(f"vv: error: --environment: cannot read {name}: "), done.talk
+    assert done.talk.count(name) == 1, done.talk
 
 
 def test_list_shaders(vv):
