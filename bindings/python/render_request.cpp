@@ -201,8 +201,8 @@ void setQuality(const char*, const Given& given, RenderRequest& request) {
     const bool isSeed = info.quality == RT_SEED;
     if (rtIsQualityAllowed(info.quality, value) && !(isSeed && value < 0)) continue;
     if (info.isReal)
-      throw py::value_error(
-          fmt::format("{}: {} expected", info.name, picture::qualityRange(info.quality)));
+      throw py::value_error(fmt::format("{}: {} expected, not {:.10g}", info.name,
+                                        picture::qualityRange(info.quality), value));
     throw py::value_error(fmt::format("{}: {:.10g} to {:.10g} expected, not {:.0f}", info.name,
                                       isSeed ? 0 : info.minimum, info.maximum, value));
   }

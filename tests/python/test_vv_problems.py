@@ -28,7 +28,7 @@ def test_faces_that_nobody_can_see_are_told_to_authors_only(vv):
         "coordIndex [ 0 1 2 -1 0 1 3 -1 ] } }")
     assert "area" not in vv("flat.wrl", "-o", "x.png", *SMALL).talk
     done = vv("flat.wrl", "--check", "--strict")
-    assert done.returncode == 0 and "note: IndexedFaceSet: 1 dropped for having no area (first at index 0)" in done.talk
+    assert done.returncode == 0 and "note: IndexedFaceSet: 1 face left out: no area (first at index 0)" in done.talk
     assert "no area" in vv("flat.wrl", "-v", "-o", "x.png", *SMALL).talk
 
 
