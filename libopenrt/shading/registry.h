@@ -17,7 +17,7 @@ namespace openrt {
 
 class ShaderRegistry {
  public:
-  // folders: in search order.
+  // Creates a registry that searches `folders` in this order.
   explicit ShaderRegistry(std::vector<std::string> folders);
   ~ShaderRegistry();
   ShaderRegistry(const ShaderRegistry&) = delete;

@@ -1,4 +1,4 @@
-// IndexedFaceSet without attributes: faces of every shape, and faces that are wrong.
+// Tests IndexedFaceSet without attributes: faces of every shape, and faces that are wrong.
 #include "geometry/bounds.h"
 #include "unit/mesh_checks.h"
 
