@@ -27,6 +27,7 @@ RTqualityInfo qualityInfo(RTenum quality) {
 
 std::string qualityRange(RTenum quality) {
   const RTqualityInfo info = qualityInfo(quality);
+  if (info.maximum > 1e30) return fmt::format("a number of at least {:.10g}", info.minimum);
   return fmt::format("a {}number from {:.10g} to {:.10g}", info.isReal ? "" : "whole ",
                      info.minimum, info.maximum);
 }

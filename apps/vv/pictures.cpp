@@ -104,8 +104,9 @@ class Pictures {
 
   int make() {
     picture::RenderSettings settings = options_.render;
-    // With this channel, RTstats contains the error.
-    if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE;
+    // With RT_VARIANCE, RTstats contains the error; spp_mean needs the samples.
+    if (!options_.stats.empty() && !options_.isSequence())
+      settings.channels |= RT_VARIANCE | RT_SAMPLES;
     if (settings.error > 0) settings.channels |= RT_SAMPLES; // whyMissed() needs the samples
     warnOfAlpha();
     settings.progressive = !options_.isSequence() && picture::isWorthProgressive(settings);
@@ -136,6 +137,10 @@ class Pictures {
       if (const int code = finishOldest(); code != exitDone) return code;
     finishSequence();
     endRecording();
+    if (options_.cluster.used() && !anyWorker_ && !options_.audit && !options_.quiet)
+      sayWarning(moments_ * views_ == 1
+                     ? "no worker answered; this machine made the picture alone"
+                     : "no worker answered; this machine made the pictures alone");
     return exitDone;
   }
 
@@ -273,8 +278,13 @@ class Pictures {
     if (progress_) progress_->clear();
     reportClusterMessages();
     problems_.tell(browser_.world());
-    if (options_.strict && Problems::any(browser_.world()))
+    anyWorker_ |= std::any_of(result.workers.begin(), result.workers.end(),
+                              [](const RTworker& worker) { return !picture::isHere(worker); });
+    if (options_.strict && Problems::any(browser_.world())) {
+      sayError(fmt::format("{} is drawn, because of --strict",
+                           done_ > 1 ? "no further picture" : "nothing"));
       return result.missing ? exitMissing : exitProblems;
+    }
     finish(flight.job, flight.moment, result);
     return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
   }
@@ -442,6 +452,7 @@ class Pictures {
   size_t moments_ = 1, views_ = 1, done_ = 0; // moments; pictures per moment; finished pictures
   bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
+  bool anyWorker_ = false;                                      // a worker has been connected
   std::map<std::string, std::unique_ptr<picture::Film>> films_; // indexed by path
   SequenceStats frames_;
 };

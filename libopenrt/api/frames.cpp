@@ -1,5 +1,5 @@
-// frames.cpp: API functions for the frame buffer, quality settings, frames, statistics and ray
-// queries. Runs on the application's thread.
+// frames.cpp: Implements the API functions for the frame buffer, quality settings, frames,
+// statistics and ray queries. Runs on the application's thread.
 #include <bit>
 #include <cmath>
 #include <cstring>

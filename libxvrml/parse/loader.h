@@ -23,7 +23,7 @@ class Loader {
   void loadDeferredInline(InlineNode& node, const std::vector<std::string>& enclosing);
 
  private:
-  // A file that Inlines load. `content` is null while the file is being read.
+  // Holds a file that Inlines load; `content` is null while it is read.
   struct InlinedFile {
     std::shared_ptr<const Scope> content;
     uint64_t bytes = 0;    // estimated size in memory

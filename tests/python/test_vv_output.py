@@ -214,7 +214,13 @@ def test_statistics(vv):
     assert stats["scene"]["path"] == "box.wrl" and stats["scene"]["shapes"] == 1 and stats["scene"][
         "warnings"] == 0
     assert stats["scene"]["triangles"] == 12
-    assert stats["image"] == {"width": 40, "height": 30, "spp": 4, "channels": ["rgba"]}
+    assert stats["image"] == {
+        "width": 40,
+        "height": 30,
+        "spp": 4,
+        "spp_mean": 4,
+        "channels": ["rgba"]
+    }
     assert stats["rays"]["camera"] == 40 * 30 * 4
     assert stats["machine"]["threads"] == 2 and "Embree" in stats["machine"]["embree"]
     assert 0 < stats["time"]["render"] < stats["time"]["total"] < 60

@@ -1,5 +1,5 @@
-// cluster_messages.cpp: every message survives encoding and decoding. Messages that are truncated,
-// altered, too large or inconsistent are refused.
+// cluster_messages.cpp: Tests that every message survives encoding and decoding. Messages that are
+// truncated, altered, too large or inconsistent are refused.
 #include <cmath>
 #include <cstdio>
 #include <cstring>

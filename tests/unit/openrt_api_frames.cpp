@@ -1,5 +1,5 @@
-// openrt_api_frames.cpp: frame settings, the sequence of frames, reading pixels, statistics and
-// queries; the order of edits.
+// openrt_api_frames.cpp: Tests frame settings, the sequence of frames, reading pixels, statistics
+// and queries; the order of edits.
 #include <cmath>
 #include <cstddef>
 #include <cstring>

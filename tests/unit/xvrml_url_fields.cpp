@@ -1,5 +1,5 @@
-// xvrml_url_fields.cpp: which fields hold URLs. Relative URLs count from the file that they stand
-// in, also when prototypes of other folders hand them on (ISO/IEC 14772-1 4.5.3).
+// xvrml_url_fields.cpp: Tests which fields hold URLs. Relative URLs count from the file that they
+// stand in, also when prototypes of other folders hand them on (ISO/IEC 14772-1 4.5.3).
 #include <cstddef>
 #include <set>
 

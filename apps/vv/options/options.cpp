@@ -31,13 +31,19 @@ std::string longName(const OptionInfo& option) {
       names.substr(names.find("--"), names.find(',', names.find("--")) - names.find("--")));
 }
 
+// Returns the name that all messages use: -o, -D, --size.
+std::string shownName(const OptionInfo& option) {
+  const std::string_view names = option.names;
+  return std::string(names.substr(0, names.find(',')));
+}
+
 void apply(const OptionInfo& option, Options& options, const std::string& value) {
   try {
     if (option.apply)
       option.apply(options, value);
     else
       options.render.quality.set(option.quality, readQuality(option.quality, value));
-  } catch (const UsageError& error) { throw UsageError(longName(option) + ": " + error.what()); }
+  } catch (const UsageError& error) { throw UsageError(shownName(option) + ": " + error.what()); }
 }
 
 std::vector<std::string> allNames() {
@@ -321,12 +327,18 @@ std::string helpText() {
                                     : "\n" + std::string(indent, ' ');
     out += wrapped(option.text, indent, width - indent) + "\n";
   }
-  return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or "
-               "unusable, 4 problems found by --check or\n"
-               "--strict, 5 a plug-in or a texture is missing under --strict, 6 too few workers "
-               "under --require-workers, 75 try again,\n"
-               "130 interrupted (what was finished is saved; a second interrupt ends at once; "
-               "SIGUSR1 saves and goes on).\n";
+  return out + "\nExit codes\n"
+               "  0    done\n"
+               "  1    the picture could not be made or written\n"
+               "  2    the command line is wrong\n"
+               "  3    unusable input: the world, or another file that the command line names, "
+               "cannot be read\n"
+               "  4    --check, --strict or --audit found problems\n"
+               "  5    under --strict: a plug-in or a texture is missing\n"
+               "  6    fewer workers than --require-workers asks for\n"
+               "  75   out of memory or another resource, try again\n"
+               "  130  interrupted; what was finished is saved. A second interrupt ends at once. "
+               "SIGUSR1 saves and goes on\n";
 }
 
 } // namespace vv

@@ -50,8 +50,10 @@ long long readInteger(std::string_view text, long long minimum, long long maximu
 double readNumber(std::string_view text, double minimum, double maximum) {
   double value = 0;
   if (!whole(text, value) || !(value > minimum && value < maximum))
-    throw UsageError(
-        fmt::format("a number between {} and {} was expected, not \"{}\"", minimum, maximum, text));
+    throw UsageError(maximum > 1e30
+                         ? fmt::format("a number above {} was expected, not \"{}\"", minimum, text)
+                         : fmt::format("a number between {} and {} was expected, not \"{}\"",
+                                       minimum, maximum, text));
   return value;
 }
 

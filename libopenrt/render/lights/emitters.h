@@ -27,7 +27,7 @@ struct LightSampleContext {
 struct LightSample {
   uint32_t record = noHit, primitive = 0; // record: noHit if the sky was sampled
   float direction[3];                     // unit, render space
-  float distance = 0;                     // infinite if the sky was sampled
+  float distance = 0;                     // distance to the sampled point; infinite for the sky
   float pdf = 0; // solid-angle pdf including the selection of the emitter; 0: no sample
   // The ray passes so near to an edge of the primitive that it may hit the neighbour.
   bool nearEdge = false;
