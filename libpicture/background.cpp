@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "libpicture/files/picture.h"
 #include "libpicture/files/radiance.h"
 #include "xvrml/image.h"
 
@@ -115,14 +116,11 @@ void BackgroundLayer::read(const std::string& file, bool linear) {
   xvrml::Image read;
   try {
     read = xvrml::loadImage(file);
-  } catch (const std::runtime_error& error) {
-    const std::string why = error.what();
-    throw std::runtime_error(why.find(file) == why.npos ? file + ": " + why : why);
-  }
+  } catch (const std::runtime_error& error) { throw InputError(file, error.what()); }
   width_ = read.width;
   height_ = read.height;
   const size_t components = size_t(read.components), w = size_t(width_), h = size_t(height_);
-  if (w == 0 || h == 0) throw std::runtime_error(file + ": the picture has no pixels");
+  if (w == 0 || h == 0) throw InputError(file, "the picture has no pixels");
   rgb_.resize(w * h * 3);
   for (size_t y = 0; y < h; ++y)
     for (size_t x = 0; x < w; ++x) {

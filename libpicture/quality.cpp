@@ -27,8 +27,14 @@ RTqualityInfo qualityInfo(RTenum quality) {
 
 std::string qualityRange(RTenum quality) {
   const RTqualityInfo info = qualityInfo(quality);
+  if (info.maximum > 1e30) return fmt::format("a number of at least {:.10g}", info.minimum);
   return fmt::format("a {}number from {:.10g} to {:.10g}", info.isReal ? "" : "whole ",
                      info.minimum, info.maximum);
+}
+
+std::string qualityFault(const RTqualityInfo& info, std::string_view name, double value) {
+  return fmt::format("{}: {:.10g} to {:.10g}{} expected, not {:.10g}", name, info.minimum,
+                     info.maximum, info.zeroIsAuto ? ", or 0," : "", value);
 }
 
 std::vector<std::string> qualityChoices(RTenum quality) {

@@ -19,6 +19,10 @@ RTqualityInfo qualityInfo(RTenum quality);
 // Returns "a whole number from 1 to 65536" or "a number from 0 to 1", for messages.
 std::string qualityRange(RTenum quality);
 
+// Returns "depth: 0 to 10000 expected, not -1", as the messages of rtQuality and rtQualityf. name:
+// the setting's name for the user.
+std::string qualityFault(const RTqualityInfo& info, std::string_view name, double value);
+
 // Returns the names of a setting's values, for example "auto", "direct" and so on for RT_TRANSPORT.
 std::vector<std::string> qualityChoices(RTenum quality);
 // Returns "auto, direct, whitted, path or light", for messages.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "inputs.h"
 #include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
 #include "outputs.h"
@@ -53,11 +54,17 @@ class Headless {
       return exitDone;
     }
     checkOutputs(options_);
+    checkInputs(options_);
     browser_ = startWorld(readWorld(options_.input, options_.load), options_, problems_);
     const xvrml::World& world = browser_->world();
     protectFilesOf(world, options_);
-    if (options_.strict && Problems::any(world)) return exitProblems;
-    if (!options_.write.empty()) writeText(options_.write, xvrml::writeWorld(world));
+    if (options_.strict && Problems::any(world)) {
+      if (!options_.check)
+        sayError(fmt::format("nothing is {}, because of --strict",
+                             options_.makesPictures() ? "drawn" : "done"));
+      return exitProblems;
+    }
+    if (!options_.write.empty()) writeText(options_.write, written(world));
     if (options_.check) return check();
     if (options_.job()) inspect(options_.job()->job);
     int code = exitDone;
@@ -69,12 +76,20 @@ class Headless {
     return code;
   }
 
+  const Options& options() const { return options_; }
+
   // Returns the files that the world was made of; empty if it could not be loaded.
   std::vector<std::string> files() const {
     return browser_ ? usedFiles(browser_->world()) : std::vector<std::string>{};
   }
 
  private:
+  // Returns the text for --write. Relative URLs of a text for standard output stay as they are.
+  std::string written(const xvrml::World& world) const {
+    return options_.write == "-" ? xvrml::writeWorld(world)
+                                 : xvrml::writeWorld(world, options_.write);
+  }
+
   picture::RenderSettings withoutPicture() const {
     picture::RenderSettings settings = options_.render;
     settings.backend = "null";
@@ -97,7 +112,8 @@ class Headless {
     const xvrml::World& world = browser_->world();
     const xvrml::Diagnostics& d = world.diagnostics;
     if (!options_.quiet)
-      say(fmt::format("vv: {}: {} errors, {} warnings", world.path, d.errors(), d.warnings()));
+      say(fmt::format("vv: {}: {}, {}", world.path, counted(d.errors(), "error"),
+                      counted(d.warnings(), "warning")));
     return Problems::any(world) ? exitProblems : exitDone;
   }
 
@@ -144,6 +160,10 @@ int runOnce(Headless& job) {
   } catch (const xvrml::LoadError& error) {
     say(error.diagnostic.text());
     return exitInput;
+  } catch (const picture::InputError& error) {
+    const Failure failure = failureOf(error, job.options());
+    sayError(failure.text);
+    return failure.code;
   } catch (const picture::RenderError& error) {
     sayError(error.what());
     return exitCodeOf(error);

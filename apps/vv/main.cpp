@@ -5,6 +5,7 @@
 
 #include "enough_stack.h"
 #include "headless.h"
+#include "inputs.h"
 #include "options/options.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
@@ -36,8 +37,12 @@ int run(int argc, char** argv) {
     vv::writeOut(vv::listKeys());
     return vv::exitDone;
   }
+  vv::warnOfFolders(options);
   vv::joinCluster(options);
-  if (options.opensWindow()) return vv::runWindow(options, {argv + 1, argv + argc});
+  if (options.opensWindow()) {
+    vv::checkInputs(options);
+    return vv::runWindow(options, {argv + 1, argv + argc});
+  }
   return vv::runHeadless(options, quoted(argc, argv));
 }
 

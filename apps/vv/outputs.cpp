@@ -9,6 +9,7 @@
 
 #include "libpicture/files/atomic_file.h"
 #include "options/names.h"
+#include "report/messages.h"
 #include "timeline.h"
 #include "watched.h"
 
@@ -72,9 +73,20 @@ void refuseKept(const Options& options) {
       throw Failure{exitRender, fmt::format("{}: {}", output.option, why)};
 }
 
+// Warns if --channels asks for more than colours and no output file keeps them.
+void warnOfLostChannels(const Options& options) {
+  if (options.quiet || options.outputs.empty() || !(options.render.channels & ~uint32_t(RT_RGBA)))
+    return;
+  for (const Output& output : options.outputs)
+    if (output.format && output.format->encode == picture::encodeExr) return;
+  sayWarning(fmt::format("--channels: only EXR files keep channels besides rgba, {} does not",
+                         options.outputs[0].path));
+}
+
 } // namespace
 
 void checkOutputs(const Options& options) {
+  warnOfLostChannels(options);
   for (const Output& output : options.outputs) {
     if (output.path == "-" && ::isatty(STDOUT_FILENO))
       throw Failure{exitUsage,

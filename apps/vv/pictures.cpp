@@ -87,6 +87,15 @@ std::vector<Job> chooseJobs(const Options& options,
   return jobs;
 }
 
+// Writes a file of -o. Errors name the option.
+void writeOutput(const std::string& path, const std::string& bytes) {
+  try {
+    picture::writeFile(path, bytes);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("-o: {}", error.what()));
+  }
+}
+
 class Pictures {
  public:
   Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
@@ -95,8 +104,9 @@ class Pictures {
 
   int make() {
     picture::RenderSettings settings = options_.render;
-    // With this channel, RTstats contains the error.
-    if (!options_.stats.empty() && !options_.isSequence()) settings.channels |= RT_VARIANCE;
+    // With RT_VARIANCE, RTstats contains the error; spp_mean needs the samples.
+    if (!options_.stats.empty() && !options_.isSequence())
+      settings.channels |= RT_VARIANCE | RT_SAMPLES;
     if (settings.error > 0) settings.channels |= RT_SAMPLES; // whyMissed() needs the samples
     warnOfAlpha();
     settings.progressive = !options_.isSequence() && picture::isWorthProgressive(settings);
@@ -127,6 +137,10 @@ class Pictures {
       if (const int code = finishOldest(); code != exitDone) return code;
     finishSequence();
     endRecording();
+    if (options_.cluster.used() && !anyWorker_ && !options_.audit && !options_.quiet)
+      sayWarning(moments_ * views_ == 1
+                     ? "no worker answered; this machine made the picture alone"
+                     : "no worker answered; this machine made the pictures alone");
     return exitDone;
   }
 
@@ -264,8 +278,13 @@ class Pictures {
     if (progress_) progress_->clear();
     reportClusterMessages();
     problems_.tell(browser_.world());
-    if (options_.strict && Problems::any(browser_.world()))
+    anyWorker_ |= std::any_of(result.workers.begin(), result.workers.end(),
+                              [](const RTworker& worker) { return !picture::isHere(worker); });
+    if (options_.strict && Problems::any(browser_.world())) {
+      sayError(fmt::format("{} is drawn, because of --strict",
+                           done_ > 1 ? "no further picture" : "nothing"));
       return result.missing ? exitMissing : exitProblems;
+    }
     finish(flight.job, flight.moment, result);
     return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
   }
@@ -282,7 +301,7 @@ class Pictures {
     if (!finished) return stopped("vv: interrupted before the audit was finished");
     writeOut(audit.text());
     for (const Output& output : options_.outputs)
-      picture::writeFile(pathFor(output.path, job.name), output.format->encode(audit.picture()));
+      writeOutput(pathFor(output.path, job.name), output.format->encode(audit.picture()));
     return audit.good() ? exitDone : exitProblems;
   }
 
@@ -305,7 +324,7 @@ class Pictures {
       }
       const std::string path = pathFor(output.path, job.name);
       protectFilesOf(browser_.world(), path);
-      picture::writeFile(path, bytes);
+      writeOutput(path, bytes);
     }
   }
 
@@ -408,7 +427,7 @@ class Pictures {
   void finishSequence() {
     for (auto& [path, film] : films_) {
       protectFilesOf(browser_.world(), path);
-      picture::writeFile(path, film->finish());
+      writeOutput(path, film->finish());
     }
     films_.clear();
     if (!options_.stats.empty() && options_.isSequence())
@@ -433,6 +452,7 @@ class Pictures {
   size_t moments_ = 1, views_ = 1, done_ = 0; // moments; pictures per moment; finished pictures
   bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
+  bool anyWorker_ = false;                                      // a worker has been connected
   std::map<std::string, std::unique_ptr<picture::Film>> films_; // indexed by path
   SequenceStats frames_;
 };

@@ -17,10 +17,11 @@ namespace vv {
 std::vector<std::string> usedFiles(const xvrml::World& world) {
   std::set<std::string> files{world.path};
   forEachNode(world, [&](const xvrml::Node& node) {
-    const std::string base = node.source.file ? *node.source.file : world.path;
-    files.insert(base);
+    files.insert(node.source.file ? *node.source.file : world.path);
     for (const xvrml::FieldInfo& field : node.type().fields) {
       if (!holdsUrls(node, field)) continue;
+      const auto& file = urlBase(node, field);
+      const std::string base = file ? *file : world.path;
       for (const std::string& url : *static_cast<const xvrml::MFString*>(node.storage(field)))
         if (auto resolved = xvrml::resolveUrl(url, base, world.options); resolved.error.empty())
           files.insert(resolved.path);

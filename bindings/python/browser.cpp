@@ -1,5 +1,5 @@
-// browser.cpp: Implements the Python class Browser, a World that runs. Time, events, the pointer
-// and the viewer are arguments; listeners' callbacks run on the calling thread. [GIL held; released
+// browser.cpp: Implements the Python class Browser, a World that runs. The caller passes times,
+// events and pointer positions. Listeners' callbacks run on the calling thread. [GIL held; released
 // while the world runs]
 #include <array>
 #include <cmath>

@@ -227,7 +227,7 @@ void defineCluster(py::module_& module) {
       .def_property_readonly("workers", workers,
                              "A Worker for each machine that has joined, including machines that "
                              "have left and this one.")
-      .def("wait", waitFor, py::arg("count") = 1, py::arg("timeout") = 10.0,
+      .def("wait", waitFor, py::arg("count").noconvert() = 1, py::arg("timeout") = 10.0,
            "Waits until `count` workers have joined. Raises TimeoutError after `timeout` seconds. "
            "Renders work without waiting, because workers may join while a picture is rendered.")
       .def("__repr__", text);

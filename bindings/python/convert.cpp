@@ -80,13 +80,26 @@ struct Target {
     const bool low = r.minimumOpen ? number <= minimum : number < minimum;
     const bool high = r.maximumOpen ? number >= maximum : number > maximum;
     if ((low || high) && number != r.also)
-      wrongValue(fmt::format("from {} to {}{}, not {}", r.minimum, r.maximum,
-                             r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "", v));
+      wrongValue(fmt::format("from {} to {}{}{}, not {}", r.minimum, r.maximum,
+                             r.minimumOpen || r.maximumOpen ? " (bounds excluded)" : "",
+                             std::isnan(r.also) ? "" : fmt::format(" or {}", r.also), v));
   }
 };
 
 std::string shapeText(const py::array& array) {
   return "not of shape " + std::string(py::str(array.attr("shape")));
+}
+
+// Raises the error for an array of Python objects: ValueError if they are numbers that no type of
+// numpy can hold, otherwise TypeError.
+[[noreturn]] void refuseObjects(const py::array& array, const py::handle& object,
+                                const Target& target) {
+  bool large = false;
+  try {
+    array.attr("astype")("float64");
+  } catch (const py::error_already_set& error) { large = error.matches(PyExc_OverflowError); }
+  if (large) target.wrongValue("not a number beyond 1e308");
+  target.wrongType(object);
 }
 
 // Converts any array-like of numbers. Text, objects and complex numbers raise TypeError.
@@ -102,7 +115,7 @@ py::array numbersOf(const py::handle& object, const Target& target, const char* 
   }
   const char kind = std::string(py::str(array.dtype().attr("kind")))[0];
   if (array.size() > 0 && !std::strchr(kinds, kind)) {
-    if (kind == 'O') target.wrongType(object);
+    if (kind == 'O') refuseObjects(array, object, target);
     throw py::type_error(
         fmt::format("{}, not an array of {}", target.text(), std::string(py::str(array.dtype()))));
   }
@@ -170,6 +183,12 @@ std::vector<int32_t> integerList(const py::handle& object, const Target& target)
   py::array any = numbersOf(object, target, "iu");
   if (any.size() == 0) return {};
   if (any.ndim() != 1) target.wrongValue(shapeText(any));
+  if (any.dtype().kind() == 'u') { // 64 bits without a sign do not fit into the array below
+    const Dense<uint64_t> large(any);
+    for (size_t i = 0; i < size_t(large.size()); ++i)
+      if (large.data()[i] > uint64_t(std::numeric_limits<int32_t>::max()))
+        target.wrongValue(fmt::format("not {}", large.data()[i]));
+  }
   Dense<int64_t> array(any);
   std::vector<int32_t> list(size_t(array.size()));
   for (size_t i = 0; i < list.size(); ++i) list[i] = wholeNumber(array.data()[i], target);
@@ -194,7 +213,9 @@ double number(const py::handle& object, const Target& target) {
     target.wrongType(object);
   const double v = PyFloat_AsDouble(object.ptr());
   if (v == -1 && PyErr_Occurred()) {
+    const bool large = PyErr_ExceptionMatches(PyExc_OverflowError);
     PyErr_Clear();
+    if (large) target.wrongValue("not a number beyond 1e308");
     target.wrongType(object);
   }
   return v;
@@ -267,6 +288,9 @@ NodeRef nodeOf(const py::handle& object, const Target& target) {
   given.isUnowned = false;
   return given.node;
 }
+
+// Returns whether NULL keeps its place in the lists of the node (docs/decisions/0015).
+bool mayHoldNull(const Node& node) { return node.type().index < 0 || node.type().is("selecting"); }
 
 py::sequence sequenceOf(const py::handle& object, const Target& target) {
   if (py::isinstance<py::str>(object) || !PySequence_Check(object.ptr())) target.wrongType(object);
@@ -411,7 +435,8 @@ void joinWorlds(const NodeObject& owner, const py::handle& object) {
       to->joined = from;
     }
   } else if (!py::isinstance<py::str>(object) && PySequence_Check(object.ptr())) {
-    for (const py::handle one : py::reinterpret_borrow<py::sequence>(object))
+    // The sequence may make each item when it is asked: a py::object keeps the item alive.
+    for (const py::object one : py::reinterpret_borrow<py::sequence>(object))
       if (py::isinstance<NodeObject>(one)) joinWorlds(owner, one);
   }
 }
@@ -455,13 +480,15 @@ Value fromPython(const py::handle& object, const FieldInfo& field, const NodeObj
   case FieldType::MFInt32: return integerList(object, target);
   case FieldType::MFNode: {
     MFNode list;
-    for (const py::handle one : sequenceOf(object, target)) list.push_back(nodeOf(one, target));
+    const bool keeps = mayHoldNull(*owner.node);
+    for (const py::object one : sequenceOf(object, target)) // may be made anew
+      list.push_back(keeps && one.is_none() ? NodeRef() : nodeOf(one, target));
     return list;
   }
   case FieldType::MFRotation: return rows<Rotation>(object, target);
   case FieldType::MFString: {
     MFString list;
-    for (const py::handle one : sequenceOf(object, target)) list.push_back(text(one, target));
+    for (const py::object one : sequenceOf(object, target)) list.push_back(text(one, target));
     return list;
   }
   case FieldType::MFTime: return numberList<double>(object, target);

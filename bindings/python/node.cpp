@@ -74,7 +74,13 @@ void setStaticField(WorldObject& world, const NodeRef& node, const FieldInfo& fi
 }
 
 // Sets a field. In a running world, exposedFields and eventIns receive an event.
-void setAttribute(const NodeObject& self, const std::string& name, const py::handle& object) {
+void setAttribute(const NodeObject& self, const std::string& name, const py::handle& given) {
+  // A sequence that makes its nodes when they are asked is asked once.
+  const bool lazy = PySequence_Check(given.ptr()) && !PyUnicode_Check(given.ptr()) &&
+                    !PyTuple_Check(given.ptr()) && !PyList_Check(given.ptr());
+  const FieldInfo* declared = findValue(*self.node, name);
+  py::object object = py::reinterpret_borrow<py::object>(given);
+  if (lazy && declared && declared->type == FieldType::MFNode) object = py::tuple(object);
   const WorldPtr world = self.world();
   Browser* browser = world->browser();
   const FieldInfo* field = findValue(*self.node, name);

@@ -2,12 +2,32 @@
 // member, and its default is the member's value in a new struct. [GIL held]
 #pragma once
 
+#include <optional>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include <pybind11/pybind11.h>
 
 namespace py = pybind11;
+
+namespace detail {
+
+template <class T> inline constexpr bool isWhole =
+    std::is_integral_v<T> && !std::is_same_v<T, bool>;
+template <class T> inline constexpr bool isWhole<std::optional<T>> = isWhole<T>;
+template <class A, class B> inline constexpr bool isWhole<std::pair<A, B>> =
+    isWhole<A>&& isWhole<B>;
+
+} // namespace detail
+
+// Returns the annotation of a parameter. Whole numbers take only values that Python accepts as an
+// index: pybind11 would truncate the fractions of NumPy.
+template <class Type> py::arg namedArgument(const char* name) {
+  py::arg made(name);
+  if constexpr (detail::isWhole<Type>) made.noconvert();
+  return made;
+}
 
 template <class Struct, class Type, bool isRequired> struct Parameter {
   using Value = Type;
@@ -16,9 +36,9 @@ template <class Struct, class Type, bool isRequired> struct Parameter {
 
   auto annotation(const Struct& defaults) const {
     if constexpr (isRequired)
-      return py::arg(name);
+      return namedArgument<Type>(name);
     else
-      return py::arg(name) = defaults.*member;
+      return namedArgument<Type>(name) = defaults.*member;
   }
   void store(Struct& given, Type&& value) const { given.*member = std::move(value); }
 };

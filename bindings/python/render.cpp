@@ -208,7 +208,7 @@ void defineRender(py::object worldClass) {
           parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
           parameter("fit", &A::fit), parameter("fov", &A::fov),
           qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
-          qualityParameter<bool>(RT_SHADOWS), parameter("colour", &A::colour),
+          qualityParameter<Switch>(RT_SHADOWS), parameter("colour", &A::colour),
           parameter("headlight", &A::headlight), qualityParameter<long long>(RT_MAX_DEPTH),
           parameter("channels", &A::channels), qualityParameter<std::string>(RT_TRANSPORT),
           qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
@@ -218,7 +218,8 @@ void defineRender(py::object worldClass) {
       parameterList(),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
-      "with error the maximum (default 4096), with time_limit too (default 65536). channels: "
+      "with error the maximum (default 4096), with time_limit too (default 65536). seed: 0 to "
+      "2147483647, as in vv. channels: "
       "default rgba and z, with error also error and trust. camera: a Pinhole, a 4x4 matrix from "
       "camera to world (looking along -z, +y up), (position, target) or (position, target, up). "
       "fit: keeps only the direction of the camera and shows everything. up: the axis that points "

@@ -9,19 +9,11 @@
 #include "libpicture/quality.h"
 #include "numbers.h"
 #include "picture_object.h"
+#include "quality_parameters.h"
 
 using namespace xvrml;
 
 namespace {
-
-// Checks a value against the range that the library gives a quality setting (RT_*).
-int inRange(const char* name, RTenum quality, long long value) {
-  const RTqualityInfo info = picture::qualityInfo(quality);
-  if (!rtIsQualityAllowed(quality, double(value)))
-    throw py::value_error(fmt::format("{}: {:.10g} to {:.10g} expected, not {}", name, info.minimum,
-                                      info.maximum, value));
-  return int(value);
-}
 
 int inRange(const char* name, long long value, long long minimum, long long maximum) {
   if (value < minimum || value > maximum)
@@ -32,10 +24,12 @@ int inRange(const char* name, long long value, long long minimum, long long maxi
 
 // Returns width and height, any whole numbers.
 std::pair<long long, long long> sizeOf(const py::object& size) {
-  try {
-    const auto sides = size.cast<std::vector<long long>>();
-    if (sides.size() == 2) return {sides[0], sides[1]};
-  } catch (const py::cast_error&) {}
+  // without conversion: it would truncate the fractions of NumPy
+  py::detail::make_caster<std::vector<long long>> sides;
+  if (sides.load(size, false)) {
+    const auto& found = py::detail::cast_op<const std::vector<long long>&>(sides);
+    if (found.size() == 2) return {found[0], found[1]};
+  }
   const std::string text = "size: (width, height) expected, whole numbers from 1 to 65536, not " +
                            std::string(py::repr(size));
   if (py::isinstance<py::str>(size) || !PySequence_Check(size.ptr())) throw py::type_error(text);
@@ -195,17 +189,8 @@ void setFlag(const char*, const Given& given, RenderRequest& request) {
 
 // Sets all quality settings except the number of samples.
 void setQuality(const char*, const Given& given, RenderRequest& request) {
-  for (const RTqualityInfo& info : picture::qualityTable()) {
-    const double value = given.quality[info.quality];
-    // the C API takes negative seeds, too; Python and vv count them from 0 on
-    const bool isSeed = info.quality == RT_SEED;
-    if (rtIsQualityAllowed(info.quality, value) && !(isSeed && value < 0)) continue;
-    if (info.isReal)
-      throw py::value_error(
-          fmt::format("{}: {} expected", info.name, picture::qualityRange(info.quality)));
-    throw py::value_error(fmt::format("{}: {:.10g} to {:.10g} expected, not {:.0f}", info.name,
-                                      isSeed ? 0 : info.minimum, info.maximum, value));
-  }
+  for (const RTqualityInfo& info : picture::qualityTable())
+    checkQuality(info.quality, info.name, given.quality[info.quality]);
   request.settings.quality = given.quality;
   request.settings.error = given.quality[RT_TARGET_ERROR];
   request.settings.timeLimit = given.quality[RT_TIME_LIMIT];
@@ -230,7 +215,9 @@ void setSamples(const char* name, const Given& given, RenderRequest& request) {
   const long long most = settings.timeLimit > 0 ? 65536
                          : settings.error > 0   ? 4096
                                                 : settings.samples;
-  settings.samples = inRange(name, RT_SAMPLES_PER_PIXEL, given.spp.value_or(most));
+  const long long samples = given.spp.value_or(most);
+  checkQuality(RT_SAMPLES_PER_PIXEL, name, double(samples));
+  settings.samples = int(samples);
 }
 
 void setChannels(const char*, const Given& given, RenderRequest& request) {

@@ -42,7 +42,7 @@ void renderWatched(RtContext& context, const picture::ProgressCallback& watch) {
 // The arguments of Context.render(). The values are the defaults.
 struct FrameArguments {
   std::pair<int, int> size{800, 600};
-  std::optional<int> spp;
+  std::optional<long long> spp;
   py::object channels = py::none();
   py::object progress = py::none();
   picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)
@@ -55,24 +55,28 @@ uint32_t frameChannels(const FrameArguments& given) {
   return RT_RGBA | RT_DEPTH | (given.quality[RT_TARGET_ERROR] > 0 ? RT_ERROR | RT_TRUST : 0);
 }
 
-// Sets the size and the quality of the next frame of the current context.
-void setUpFrame(const FrameArguments& given, uint32_t channels) {
-  rtFrameBuffer(given.size.first, given.size.second, channels);
+// Returns the quality settings. Raises ValueError for a value that the library does not allow.
+picture::QualityValues qualityOf(const FrameArguments& given) {
   picture::QualityValues quality = given.quality;
   const int most = quality[RT_TIME_LIMIT] > 0     ? 65536
                    : quality[RT_TARGET_ERROR] > 0 ? 4096
                                                   : quality.whole(RT_SAMPLES_PER_PIXEL);
-  quality.set(RT_SAMPLES_PER_PIXEL, given.spp.value_or(most));
-  picture::applyQuality(quality);
+  quality.set(RT_SAMPLES_PER_PIXEL, double(given.spp.value_or(most)));
+  for (const RTqualityInfo& info : picture::qualityTable())
+    checkQuality(info.quality, info.quality == RT_SAMPLES_PER_PIXEL ? "spp" : info.name,
+                 quality[info.quality]);
+  return quality;
 }
 
 py::object render(const RtContextPtr& self, const FrameArguments& given) {
   const uint32_t bits = frameChannels(given);
+  const picture::QualityValues quality = qualityOf(given);
   const py::object bar = progressOf(given.progress);
   auto made = std::make_unique<PictureObject>();
   picture::Picture& picture = made->picture;
   const CurrentContext use(self);
-  setUpFrame(given, bits);
+  rtFrameBuffer(given.size.first, given.size.second, bits);
+  picture::applyQuality(quality);
   use.check();
   const auto read = [&] {
     picture.width = given.size.first;
@@ -136,10 +140,10 @@ void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
   defineMethod(
       context, "render", render,
       parameterList(parameter("size", &A::size), parameter("spp", &A::spp)),
-      parameterList(qualityParameter<double>(RT_TARGET_ERROR),
-                    qualityParameter<double>(RT_TIME_LIMIT), qualityParameter<int>(RT_MAX_DEPTH),
-                    qualityParameter<int>(RT_SEED), qualityParameter<std::string>(RT_TRANSPORT),
-                    qualityParameter<bool>(RT_SHADOWS), parameter("channels", &A::channels),
-                    parameter("progress", &A::progress)),
-      "Renders the scene. Returns a Picture, like World.render.");
+      parameterList(
+          qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
+          qualityParameter<long long>(RT_MAX_DEPTH), qualityParameter<long long>(RT_SEED),
+          qualityParameter<std::string>(RT_TRANSPORT), qualityParameter<Switch>(RT_SHADOWS),
+          parameter("channels", &A::channels), parameter("progress", &A::progress)),
+      "Renders the scene. Returns a Picture, like World.render. seed: 0 to 2147483647.");
 }

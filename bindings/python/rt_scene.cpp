@@ -248,10 +248,13 @@ void setParameter(const RtShader& self, const std::string& name, const py::objec
   };
   try {
     switch (info.type) {
-    case RT_PARAM_INT:
-      rtParameter1i(handle,
-                    py::isinstance<py::bool_>(value) ? int(value.cast<bool>()) : value.cast<int>());
+    case RT_PARAM_INT: {
+      py::detail::make_caster<int> number;
+      // without conversion: it would truncate the fractions of NumPy
+      if (!number.load(value, false)) throw py::cast_error();
+      rtParameter1i(handle, py::detail::cast_op<int>(number));
       break;
+    }
     case RT_PARAM_FLOAT: rtParameter1f(handle, value.cast<float>()); break;
     case RT_PARAM_VEC2: {
       const auto v = numbers(2);
@@ -492,12 +495,14 @@ void defineRtScene(py::module_& module) {
       "without faces, every three vertices are a triangle. normals, texcoords, colors: one per "
       "vertex. cull: rays do not hit back faces.");
   context
-      .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none, "name"_a = 0,
+      .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none,
+           py::arg("name").noconvert() = 0,
            "Creates an object that is an exact sphere around the origin.")
       .def("group", group, "parts"_a,
            "Creates an object from other objects. parts: pairs of an object and its matrix.")
       .def("instance", instance, "object"_a, "matrix"_a = none, py::kw_only(), "shader"_a = none,
-           "name"_a = 0, "user_data"_a = 0, "dynamic"_a = false,
+           py::arg("name").noconvert() = 0, py::arg("user_data").noconvert() = 0,
+           "dynamic"_a = false,
            "Places an object in the scene. dynamic: the instance will move often.")
       .def("shader", shader, "name"_a, "library"_a = none,
            "Creates a shader. name: a class of the stock shaders, or of the plug-in library. "

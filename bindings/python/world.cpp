@@ -85,7 +85,7 @@ void save(const WorldPtr& self, const py::object& file) {
   {
     const ReleaseGil release;
     try {
-      picture::writeFile(path, writeWorld(world));
+      picture::writeFile(path, writeWorld(world, path));
     } catch (const std::runtime_error& error) { failure = error.what(); }
   }
   raiseOsError(failure);
@@ -163,8 +163,16 @@ bool route(const WorldPtr& self, const NodeObject& from, const std::string& out,
 // Names a node, or renames it, as DEF does in a file.
 void setName(const WorldPtr& self, const NodeObject& node, const std::string& name) {
   auto& names = self->graph().scope.names;
-  const bool good = !name.empty() && name.find_first_of(" \t\r\n,\"'#.[]\\{}") == name.npos &&
-                    std::string_view("+-0123456789").find(name[0]) == std::string_view::npos;
+  constexpr std::string_view keywords[] = {"DEF",     "EXTERNPROTO", "FALSE", "IS",          "NULL",
+                                           "PROTO",   "ROUTE",       "TO",    "TRUE",        "USE",
+                                           "eventIn", "eventOut",    "field", "exposedField"};
+  const auto cannotBeIn = [](unsigned char c) { // Annex A.3
+    return c <= ' ' || c == 0x7f ||
+           std::string_view(",\"'#.[]\\{}").find(char(c)) != std::string_view::npos;
+  };
+  const bool good = !name.empty() && std::ranges::none_of(name, cannotBeIn) &&
+                    std::string_view("+-0123456789").find(name[0]) == std::string_view::npos &&
+                    std::ranges::find(keywords, name) == std::end(keywords);
   if (!good) throw py::value_error(fmt::format("name: '{}' cannot be a DEF name", name));
   if (const auto found = names.find(name); found != names.end() && found->second != node.node)
     throw py::value_error(fmt::format("name: the world has a node called {}", name));
@@ -181,6 +189,12 @@ const NodeObject& add(const WorldPtr& self, const NodeObject& added,
   self->graph(); // raises ValueError for loose nodes
   if (!from->loose() && !sameWorld(from, self))
     throw py::value_error("the node is in another world");
+  const Node* drawn = renderedNode(added.node.get());
+  if (drawn && !drawn->type().is("child") && !added.node->type().is("child"))
+    throw py::value_error(
+        fmt::format("add(): node: {} cannot stand at the root of a world: a child "
+                    "node expected (4.6.5)",
+                    added.node->type().name));
   const auto lock = self->lock();
   if (name) setName(self, added, *name);
   if (from->loose()) from->joined = self;
@@ -327,7 +341,9 @@ void defineWorld(py::module_& module) {
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
           "Removes a route. Returns False if it did not exist.")
       .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
-      .def("save", save, py::arg("path"), "Writes the world as a VRML97 file.")
+      .def("save", save, py::arg("path"),
+           "Writes the world as a VRML97 file. Relative urls of nodes that were read from a file "
+           "lead to the same files as before.")
       .def("__repr__",
            [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });
   defineRender(world);

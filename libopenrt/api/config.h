@@ -1,5 +1,5 @@
-// config.h: the options of a context, parsed from the text passed to rtNewContext. Called on the
-// application's thread.
+// config.h: Holds the options of a context, parsed from the text passed to rtNewContext. Called on
+// the application's thread.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// context.h: the state of one RTcontext: scene, bound state, backend and frames. Used on the
+// context.h: Holds the state of one RTcontext: scene, bound state, backend and frames. Used on the
 // application's thread. Only rtCancel, rtProgress, rtSnapshot and rtGetWorkers use the backend from
 // any thread, under backendMutex_; the log sink is called by render threads.
 #pragma once

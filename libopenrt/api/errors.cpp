@@ -1,4 +1,4 @@
-// errors.cpp: the sticky error, and the translation of exceptions into error codes. Runs on the
+// errors.cpp: Keeps the sticky error and translates exceptions into error codes. Runs on the
 // application's thread.
 #include "api/errors.h"
 

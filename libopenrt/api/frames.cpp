@@ -1,5 +1,5 @@
-// frames.cpp: API functions for the frame buffer, quality settings, frames, statistics and ray
-// queries. Runs on the application's thread.
+// frames.cpp: Implements the API functions for the frame buffer, quality settings, frames,
+// statistics and ray queries. Runs on the application's thread.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -39,7 +39,7 @@ void setQuality(Context& c, RTenum name, double value, bool real) {
   const QualitySetting* setting = findQuality(name);
   if (!setting || (setting->info.isReal != 0) != real)
     fail(RT_INVALID_ENUM, "unknown quality " + std::to_string(name));
-  require(setting->allows(value), RT_INVALID_VALUE, "out of range");
+  if (!setting->allows(value)) fail(RT_INVALID_VALUE, qualityFault(setting->info, value));
   if (name == RT_FRAMES_IN_FLIGHT) { // affects how frames are started, not their content
     c.framesInFlight = static_cast<uint32_t>(value);
     return;

@@ -1,5 +1,6 @@
-// life.cpp: API functions for contexts and errors (rtNewContext, rtMakeCurrent, rtInit, rtGetError
-// and related ones), and the table of live contexts, which validates handles on any thread.
+// life.cpp: Implements the API functions for contexts and errors (rtNewContext, rtMakeCurrent,
+// rtInit, rtGetError and related ones), and the table of live contexts, which validates handles on
+// any thread.
 #include <cstring>
 #include <mutex>
 #include <new>

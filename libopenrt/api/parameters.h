@@ -1,5 +1,5 @@
-// parameters.h: shader parameters in API calls: checks handles and types, and sets values per
-// triangle and per vertex. Called on the application's thread.
+// parameters.h: Handles shader parameters in API calls: checks handles and types, and sets values
+// per triangle and per vertex. Called on the application's thread.
 #pragma once
 
 #include <initializer_list>

@@ -1,5 +1,5 @@
-// queries.cpp: the API functions rtCountHits, rtListHits and rtClosestPoints. They check the
-// arguments and call the backend. Runs on the application's thread.
+// queries.cpp: Implements the API functions rtCountHits, rtListHits and rtClosestPoints. They check
+// the arguments and call the backend. Runs on the application's thread.
 #include "api/guard.h"
 #include "backend/surface_queries.h"
 

@@ -1,5 +1,5 @@
-// roles.cpp: API functions that give a shader a role: light, camera, environment, transport or
-// default surface. Runs on the application's thread.
+// roles.cpp: Implements the API functions that give a shader a role: light, camera, environment,
+// transport or default surface. Runs on the application's thread.
 #include <cmath>
 
 #include "api/geometry/transform.h"

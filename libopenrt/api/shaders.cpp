@@ -1,6 +1,6 @@
-// shaders.cpp: API functions for shader classes, shaders and per-shader parameters, checked against
-// the parameter tables of the classes. Per-triangle and per-vertex parameters are in
-// geometry_parameters.cpp. Runs on the application's thread.
+// shaders.cpp: Implements the API functions for shader classes, shaders and per-shader parameters,
+// checked against the parameter tables of the classes. Per-triangle and per-vertex parameters are
+// in geometry_parameters.cpp. Runs on the application's thread.
 #include <cfloat>
 #include <cstring>
 #include <initializer_list>

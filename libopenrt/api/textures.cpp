@@ -1,4 +1,4 @@
-// textures.cpp: API functions for textures. Runs on the application's thread.
+// textures.cpp: Implements the API functions for textures. Runs on the application's thread.
 #include <cmath>
 #include <cstring>
 

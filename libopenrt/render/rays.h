@@ -1,6 +1,6 @@
-// rays.h: batches of rays and hits, the interface between the wavefront (render/) and the
-// intersector (backend/local). Structures of arrays in render space: the world's axes and units,
-// origin at the camera.
+// rays.h: Defines batches of rays and hits, which the wavefront (render/) exchanges with the
+// intersector (backend/local). They are structures of arrays in render space: the world's axes and
+// units, origin at the camera.
 #pragma once
 
 #include <cstdint>

@@ -2,6 +2,7 @@
 
 #include <cfloat>
 #include <climits>
+#include <cstdio>
 #include <type_traits>
 
 #include "scene/transports.h"
@@ -75,6 +76,13 @@ constexpr QualitySetting table[] = {
 };
 
 } // namespace
+
+std::string qualityFault(const RTqualityInfo& info, double value) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s: %.10g to %.10g%s expected, not %.10g", info.name,
+                info.minimum, info.maximum, info.zeroIsAuto ? ", or 0," : "", value);
+  return text;
+}
 
 std::span<const QualitySetting> qualitySettings() { return table; }
 

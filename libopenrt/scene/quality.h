@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <span>
+#include <string>
 
 #include "edits_generated.h"
 #include "openrt/frame.h"
@@ -24,6 +25,9 @@ struct QualitySetting {
     return (value >= info.minimum && value <= info.maximum) || (info.zeroIsAuto && value == 0);
   }
 };
+
+// Returns "depth: 0 to 10000 expected, not -1".
+std::string qualityFault(const RTqualityInfo& info, double value);
 
 std::span<const QualitySetting> qualitySettings();
 // Returns null for an unknown setting.

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
+#include "folder_files.h"
+#include "nearest.h"
 #include "plugin_files.h"
 #include "shading/library.h"
 
@@ -104,6 +107,30 @@ const RtsClass* ShaderRegistry::loaded(std::string_view name, std::string_view b
   return nullptr;
 }
 
+// Only the names of files are compared, and the nearest library is loaded for the spelling of its
+// class.
+std::string ShaderRegistry::nearestClass(std::string_view name, const Library* stock) const {
+  std::vector<std::string> known;
+  if (stock)
+    for (const auto& c : stock->classes) known.emplace_back(c->name);
+  if (const std::string* near = nearest::find(name, known, nearest::written(name))) return *near;
+  try {
+    known.clear();
+    for (const std::string& folder : folders_)
+      if (plugin_files::trusted(folder))
+        for (const std::string& file : filesOfFolder(folder, ".so"))
+          known.push_back(plugin_files::bareName(std::filesystem::path(file).filename().string(),
+                                                 "shader library"));
+    const std::string typed = lowerCase(name);
+    const std::string* near = nearest::find(typed, known, nearest::written(typed));
+    const Library* library = near ? load(*near) : nullptr;
+    if (library)
+      for (const auto& c : library->classes)
+        if (lowerCase(c->name) == *near) return std::string(c->name);
+  } catch (const std::runtime_error&) {} // a library that cannot be loaded is not suggested
+  return {};
+}
+
 const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view library,
                                      const Library*& from) const {
   if (!library.empty()) {
@@ -127,9 +154,11 @@ const RtsClass& ShaderRegistry::find(std::string_view name, std::string_view lib
   const Library* stock = from = load("vrml97");
   if (stock)
     if (const RtsClass* shaderClass = stock->find(name)) return *shaderClass;
-  throw std::runtime_error("no stock shader class \"" + std::string(name) + "\"" +
+  const std::string near = nearestClass(name, stock);
+  throw std::runtime_error("there is no shader class \"" + std::string(name) + "\"" +
+                           (near.empty() ? "" : "; did you mean " + near + "?") +
                            (stock ? "" : " (the stock library vrml97 is missing)") +
-                           "; looked in: " + searched());
+                           (near.empty() ? "; looked in: " + searched() : ""));
 }
 
 std::vector<std::string> shaderFolders(std::string_view configured) {

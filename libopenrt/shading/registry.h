@@ -17,7 +17,7 @@ namespace openrt {
 
 class ShaderRegistry {
  public:
-  // folders: in search order.
+  // Creates a registry that searches `folders` in this order.
   explicit ShaderRegistry(std::vector<std::string> folders);
   ~ShaderRegistry();
   ShaderRegistry(const ShaderRegistry&) = delete;
@@ -51,6 +51,8 @@ class ShaderRegistry {
   struct Library;
   const Library* load(const std::string& bareName) const; // returns null if it is in no folder
   const RtsClass& find(std::string_view name, std::string_view library, const Library*& from) const;
+  // Returns the class that a mistyped name probably means; "" if none is near.
+  std::string nearestClass(std::string_view name, const Library* stock) const;
   std::string searched() const;                          // returns the folders, for messages
   std::string fileOf(const std::string& bareName) const; // returns "" if it is in no folder
   std::vector<std::string> folders_;

@@ -165,6 +165,15 @@ int writeScene(const Options& options, RecordingReader& reader, const ShaderRegi
   return Done;
 }
 
+// Returns whether the file name has the suffix of the only format that is written, in any case.
+// Devices and names without a suffix are accepted.
+bool isNamedAsPfm(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return suffix.empty() || suffix == ".pfm";
+}
+
 int run(const Options& options) {
   for (const std::string& written : {options.output, options.exported}) {
     std::error_code none; // if one of them does not exist, they differ
@@ -172,6 +181,9 @@ int run(const Options& options) {
       return reportError(Usage,
                          written + ": this is the recording that is read; choose another name");
   }
+  if (!isNamedAsPfm(options.output))
+    return reportError(Usage, "--output: a file name with the suffix pfm was expected, not \"" +
+                                  options.output + "\"; only PFM files are written");
   const ShaderRegistry shaders(shaderFolders(options.shaderPath));
   std::unique_ptr<RecordingReader> reader;
   try {

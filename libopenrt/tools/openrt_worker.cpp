@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
 
@@ -17,6 +18,7 @@
 #include "backend/cluster/net/keys.h"
 #include "backend/cluster/worker/serve.h"
 #include "enough_stack.h"
+#include "nearest.h"
 #include "openrt/openrt.h"
 #include "output_written.h"
 #include "printable.h"
@@ -62,6 +64,16 @@ int reportError(ExitCode code, const std::string& message) {
   return code;
 }
 
+std::string unknownArgument(const CLI::App& app, const std::string& argument) {
+  if (!argument.starts_with('-')) return "\"" + argument + "\" was not expected";
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  const std::string near = nearest::word(argument.substr(0, argument.find('=')), names);
+  return "there is no option " + argument +
+         (near.empty() ? "; openrt-worker --help lists them" : "; did you mean " + near + "?");
+}
+
 std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   Options o;
   CLI::App app("Renders parts of pictures for masters on other machines.", "openrt-worker");
@@ -93,11 +105,17 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
                                         std::to_string(OPENRT_VERSION_MAJOR) + "." +
                                         std::to_string(OPENRT_VERSION_MINOR) + "." +
                                         std::to_string(OPENRT_VERSION_PATCH));
+  app.allow_extras(); // an unknown option gets a message with a suggestion
   try {
     app.parse(argc, argv);
+    if (const std::vector<std::string> unknown = app.remaining(); !unknown.empty()) {
+      exitCode = reportError(Usage, unknownArgument(app, unknown[0]));
+      return std::nullopt;
+    }
     if (!o.allow.empty() && o.key.empty()) throw CLI::ValidationError("--allow", "needs --key");
   } catch (const CLI::ParseError& e) {
-    exitCode = app.exit(e, std::cout, std::cerr) == 0 ? Done : Usage;
+    exitCode =
+        e.get_exit_code() == 0 ? app.exit(e, std::cout, std::cerr) : reportError(Usage, e.what());
     return std::nullopt;
   }
   if (o.connect.empty() && o.listen.empty()) o.listen = defaultAddress;

@@ -2,6 +2,9 @@
 // any. The user names these files on the command line; a file named by a world is never read here.
 // [any thread]
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <new>
 #include <stdexcept>
 
 #include <ImathBox.h>
@@ -10,6 +13,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "libpicture/files/picture.h"
 #include "openrt/openrt.h"
@@ -43,7 +47,18 @@ void readRows(Imf::InputFile& file, const Imath::Box2i& window,
 
 } // namespace
 
+InputError::InputError(const std::string& file, std::string_view why)
+    : runtime_error([&] {
+        // the beginning of OpenEXR's messages
+        const std::string opening = fmt::format("Cannot read image file \"{}\". ", file);
+        for (const std::string& start : {opening, file + ": "})
+          if (why.starts_with(start)) why.remove_prefix(start.size());
+        return fmt::format("cannot read {}: {}", file, why);
+      }()),
+      path(file) {}
+
 Picture readExr(const std::string& path) {
+  if (::access(path.c_str(), R_OK) != 0) throw InputError(path, std::strerror(errno));
   try {
     Imf::InputFile file(path.c_str());
     const Imath::Box2i window = file.header().dataWindow();
@@ -72,8 +87,8 @@ Picture readExr(const std::string& path) {
       readRows(file, window, channels, y, rows, picture);
     }
     return picture;
-  } catch (const std::exception& error) {
-    throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+  } catch (const std::bad_alloc&) { throw; } catch (const std::exception& error) {
+    throw InputError(path, error.what());
   }
 }
 

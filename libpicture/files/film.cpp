@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -9,7 +10,9 @@ namespace picture {
 
 FilmKind filmOf(std::string_view path) {
   const size_t dot = path.rfind('.');
-  const std::string_view suffix = dot == path.npos ? "" : path.substr(dot + 1);
+  std::string suffix(dot == path.npos ? "" : path.substr(dot + 1));
+  for (char& c : suffix)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
   if (suffix == "mp4") return FilmKind::mp4;
   if (suffix == "webm") return FilmKind::webm;
   return suffix == "gif" ? FilmKind::gif : FilmKind::none;

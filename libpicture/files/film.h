@@ -15,7 +15,7 @@ namespace picture {
 enum class FilmKind { none, mp4, webm, gif };
 inline constexpr std::string_view filmSuffixes = "mp4, webm, gif";
 
-// Returns the kind of film for a file name's suffix; none for every other suffix.
+// Returns the kind of film for a file name's suffix in any case; none for every other suffix.
 FilmKind filmOf(std::string_view path);
 
 // Returns why this build cannot encode such a film, as a clause that says what to do instead; "" if

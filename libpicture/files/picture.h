@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,8 +41,14 @@ std::vector<uint8_t> displayBytes(const Picture& picture);
 // Also returns alpha; the colours are not premultiplied.
 std::vector<uint8_t> displayBytesAlpha(const Picture& picture);
 
-// Reads rgba of an OpenEXR file, and error and trust if it has them. Throws std::runtime_error that
-// names the file.
+// A file that the user named cannot be read. The text is "cannot read PATH: WHY".
+struct InputError : std::runtime_error {
+  // Removes the path from the start of `why`, so that the text names the file once.
+  InputError(const std::string& file, std::string_view why);
+  std::string path;
+};
+
+// Reads rgba of an OpenEXR file, and error and trust if it has them. Throws InputError.
 Picture readExr(const std::string& path);
 
 } // namespace picture

@@ -1,5 +1,6 @@
 #include "libpicture/files/radiance.h"
 
+#include <new>
 #include <stdexcept>
 
 #include "libpicture/files/picture.h"
@@ -32,9 +33,9 @@ xvrml::RadianceImage readOpenExr(const std::string& path) {
 xvrml::RadianceImage readRadiance(const std::string& path) {
   try {
     return path.ends_with(".exr") ? readOpenExr(path) : xvrml::readRadiance(path);
-  } catch (const std::bad_alloc&) { throw; } catch (const std::exception& error) {
-    throw std::runtime_error(path + ": " + error.what());
-  }
+  } catch (const std::bad_alloc&) { throw; } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) { throw InputError(path, error.what()); }
 }
 
 } // namespace picture

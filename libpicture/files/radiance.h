@@ -8,7 +8,7 @@
 namespace picture {
 
 // Reads the formats that worlds may name, and every OpenEXR file that OpenEXR's library can read;
-// the file is the user's own, so it is trusted. Throws std::runtime_error.
+// the file is the user's own, so it is trusted. Throws InputError (picture.h).
 xvrml::RadianceImage readRadiance(const std::string& path);
 
 } // namespace picture

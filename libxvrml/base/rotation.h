@@ -23,7 +23,7 @@ inline double axisLength(const Rotation& r) {
 inline bool normalizeAxis(Rotation& r) {
   const double length = axisLength(r);
   if (!(length > 0) || !std::isfinite(length) || std::abs(length - 1) <= 1e-3) return false;
-  // A very short axis keeps its angle: the file means the direction.
+  // Even a very short axis gives a direction, so the angle is kept.
   r.x = float(double(r.x) / length);
   r.y = float(double(r.y) / length);
   r.z = float(double(r.z) / length);

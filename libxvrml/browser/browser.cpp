@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "browser/state.h"
+#include "graph/crossing.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
 
@@ -50,6 +51,7 @@ NodeRef Browser::node(std::string_view name) const {
 // Stores a field. For a prototype instance it also stores the connected fields in the body, and
 // posts an event to connected exposedFields.
 static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value value) {
+  assignUrlBase(node, field, value);
   if (!engine.store(node, field, std::move(value))) return false;
   std::vector<std::pair<ProtoInstance*, const FieldInfo*>> open;
   const auto add = [&](Node& one, const FieldInfo& its) {
@@ -64,10 +66,19 @@ static bool storeField(Engine& engine, Node& node, const FieldInfo& field, Value
       if (connection.interfaceName != from->name || !to || !holdsValue(*to) ||
           to->type != from->type)
         continue;
-      if (to->access == Access::exposedField)
-        engine.post(*connection.node, *to, instance->get(*from));
-      else if (engine.store(*connection.node, *to, instance->get(*from)))
-        add(*connection.node, *to);
+      Value passed = instance->get(*from);
+      const auto& base = urlBase(*instance, *from);
+      if (to->access == Access::exposedField) {
+        engine.adopt(*connection.node);
+        engine.postIntoBody(*instance, *from, connection.node, *to, std::move(passed), base);
+        continue;
+      }
+      if (auto* urls = std::get_if<MFString>(&passed)) {
+        passUrls({*instance, *from, *connection.node, *to, base}, *urls);
+        if (auto* inner = dynamic_cast<ProtoInstance*>(connection.node.get()))
+          inner->setUrlBase(*to, base);
+      }
+      if (engine.store(*connection.node, *to, std::move(passed))) add(*connection.node, *to);
     }
   }
   return true;

@@ -50,7 +50,8 @@ LoadedUrl loadFirst(const LoadCall& call, World& caller, const BudgetPtr& budget
     std::string reason = resolved.error;
     if (reason.empty()) {
       try {
-        return {budget ? loadWorldInto(budget, resolved.path, caller.options)
+        return {budget ? loadWorldInto(budget, resolved.path, caller.options,
+                                       fileDepth(call.where.file) + 1)
                        : loadWorld(resolved.path, caller.options),
                 resolved.fragment};
       } catch (const LoadError& error) { reason = error.diagnostic.text(); }
@@ -152,11 +153,18 @@ void Browser::setDescription(std::string text) { impl_->description = std::move(
 std::string Browser::description() const { return impl_->description; }
 
 MFNode Browser::createVrmlFromString(std::string_view text) {
+  return createVrmlFromString(text, "");
+}
+
+MFNode Browser::createVrmlFromString(std::string_view text, const std::string& base) {
+  constexpr std::string_view suffix = " (createVrmlFromString)";
+  std::string name = base.empty() ? impl_->world->path : base;
+  if (!name.ends_with(suffix)) name += suffix;
   LoadOptions options = impl_->world->options;
   uint64_t& most = options.limits.expandedNodes;
   most -= std::min<uint64_t>(most, impl_->engine->nodes());
-  const auto loaded = loadFragment(text, impl_->world->path + " (createVrmlFromString)", options,
-                                   TemporaryCharge(*impl_->world).budget());
+  const auto loaded = loadFragment(text, name, options, TemporaryCharge(*impl_->world).budget(),
+                                   fileDepth(impl_->callerPosition().file) + 1);
   MFNode nodes = impl_->adopt(*loaded);
   impl_->settle();
   return nodes;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/rotation.h"
+#include "graph/crossing.h"
 #include "graph/field_access.h"
 
 namespace xvrml {
@@ -104,7 +105,7 @@ void Engine::settle() {
       Event event = std::move(queue_.front());
       queue_.pop_front();
       if (event.isArriving)
-        deliver(*event.node, *event.field, event.value);
+        deliver(*event.node, *event.field, event.value, event.urlBase);
       else
         followLinks(event);
     }
@@ -113,6 +114,14 @@ void Engine::settle() {
   renewExpansions();
   sweep();
   if (scripts) scripts->finish();
+}
+
+// Returns the value of a node in the body as the instance sends it: URLs are adapted.
+static Value returned(const Node& node, const FieldInfo& out, const Link& link,
+                      const Value& value) {
+  const auto* urls = std::get_if<MFString>(&value);
+  if (!urls) return value;
+  return returnUrls(node, out, *link.instance, *link.in, *urls).urls;
 }
 
 // Follows the links of an eventOut. Routes added or deleted meanwhile are not followed.
@@ -124,7 +133,7 @@ void Engine::followLinks(Event& event) {
     if (link.out != event.field || !link.isOutgoing() || !link.isConnected()) continue;
     const NodeRef keep(link.instance);
     if (link.instance) // a field's change has already reached the instance through mirror()
-      sendFromInstance(*link.instance, *link.in, event.value,
+      sendFromInstance(*link.instance, *link.in, returned(node, *event.field, link, event.value),
                        event.field->access == Access::eventOut);
     else
       deliver(*link.to, *link.in, event.value);
@@ -138,11 +147,11 @@ void Engine::followLinks(Event& event) {
     part(node).out(*event.field).last = std::move(event.value);
 }
 
-void Engine::deliver(Node& node, const FieldInfo& in, const Value& value) {
+void Engine::deliver(Node& node, const FieldInfo& in, const Value& value, const FileName& urlBase) {
   ++delivered_;
   if (node.type().index >= 0) return deliverToStatic(node, in, value);
   if (auto* instance = dynamic_cast<ProtoInstance*>(&node))
-    return deliverToInstance(*instance, in, value);
+    return deliverToInstance(*instance, in, value, urlBase);
   auto& script = static_cast<ScriptNode&>(node);
   if (in.access == Access::exposedField && store(node, in, value)) send(node, in, value);
   if (scripts) scripts->receive(script, in, value);
@@ -166,16 +175,37 @@ void Engine::deliverToStatic(Node& node, const FieldInfo& in, const Value& value
 
 // Forwards an event into the body. An exposedField stores its value itself, unless an exposedField
 // in the body IS it.
-void Engine::deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value) {
+void Engine::deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value,
+                               FileName urlBase) {
   bool kept = false;
+  if (in.type == FieldType::MFString) {
+    if (urlBase && holdsValue(in))
+      instance.setUrlBase(in, urlBase);
+    else if (!urlBase)
+      assignUrlBase(instance, in, value);
+    if (!urlBase) urlBase = xvrml::urlBase(instance, in);
+    // The instance keeps the strings as they are. The node in the body gets, and sends back, URLs
+    // relative to its own file.
+    if (holdsUrls(instance, in)) {
+      instance.set(in, value);
+      instance.give(in);
+    }
+  }
   for (const Link& link : part(instance).links) {
     if (link.kind != Link::Kind::intoBody || link.out != &in || !link.to) continue;
     for (const Link& back : part(*link.to).links) // this one will send the value back
       kept |= back.instance == &instance && back.in == &in && back.out == link.in &&
               link.in->access == Access::exposedField;
-    queue_.push_back({link.to, link.in, value, true});
+    postIntoBody(instance, in, link.to, *link.in, value, urlBase);
   }
   if (!kept && in.access == Access::exposedField) sendFromInstance(instance, in, value, true);
+}
+
+void Engine::postIntoBody(const ProtoInstance& instance, const FieldInfo& from, const NodeRef& to,
+                          const FieldInfo& in, Value value, const FileName& urlBase) {
+  if (auto* urls = std::get_if<MFString>(&value))
+    passUrls({instance, from, *to, in, urlBase}, *urls);
+  queue_.push_back({to, &in, std::move(value), true, urlBase});
 }
 
 // Sends an event out of the body: the instance's eventOut or exposedField sends what the node in

@@ -88,6 +88,11 @@ class Engine : public Events {
   // Sends one event from outside as a cascade of its own at the present time. Returns false if the
   // node has no such eventIn or the type does not match.
   bool dispatch(Node& to, std::string_view in, Value value);
+  // Posts an event of the instance to a node in its body (IS). urlBase: the file that URLs in the
+  // value count from.
+  void postIntoBody(const ProtoInstance& instance, const FieldInfo& from, const NodeRef& to,
+                    const FieldInfo& in, Value value,
+                    const std::shared_ptr<const std::string>& urlBase);
   // Advances the time: runs the tick() functions and their cascade, then the look() functions and
   // theirs.
   void tick(double time);
@@ -114,6 +119,9 @@ class Engine : public Events {
     const FieldInfo* field;
     Value value;
     bool isArriving; // true: arrives at an eventIn of node; false: is sent by an eventOut of node
+    // Arrives at a prototype instance: the file that URLs in the value count from, if it is another
+    // than the instance's own.
+    std::shared_ptr<const std::string> urlBase = nullptr;
   };
   struct AdoptedNodes; // nodes and scopes that an adoption collects
   Live& makeLive(Node& node);
@@ -132,8 +140,11 @@ class Engine : public Events {
   bool wouldCreateCycle(Node& parent, const Value& value);
   void addLink(Node& from, Link link);
   void followLinks(Event& event);
-  void deliver(Node& node, const FieldInfo& in, const Value& value);
-  void deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value);
+  using FileName = std::shared_ptr<const std::string>;
+  void deliver(Node& node, const FieldInfo& in, const Value& value,
+               const FileName& urlBase = nullptr);
+  void deliverToInstance(ProtoInstance& instance, const FieldInfo& in, const Value& value,
+                         FileName urlBase);
   void deliverToStatic(Node& node, const FieldInfo& in, const Value& value);
   void sendFromInstance(ProtoInstance& instance, const FieldInfo& out, const Value& value,
                         bool keeps);

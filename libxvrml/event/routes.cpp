@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "event/engine.h"
+#include "graph/crossing.h"
 #include "graph/expansion.h"
 #include "graph/field_access.h"
 #include "xvrml/walk.h"
@@ -126,10 +127,20 @@ void Engine::mirror(Node& first, const FieldInfo& stored) {
     for (const Link& link : liveOf(*node)->part->links) {
       if (!link.instance || link.out != field || !holdsValue(*link.in)) continue;
       Value value = node->get(*field);
-      if (link.instance->get(*link.in) == value) continue;
-      link.instance->set(*link.in, std::move(value));
-      link.instance->give(*link.in);
-      open.emplace_back(link.instance, link.in);
+      bool kept = false;
+      if (auto* urls = std::get_if<MFString>(&value)) {
+        ReturnedUrls adapted = returnUrls(*node, *field, *link.instance, *link.in, *urls);
+        *urls = std::move(adapted.urls);
+        kept = adapted.kept;
+        if (!kept) link.instance->setUrlBase(*link.in, nullptr);
+      } else if (link.instance->get(*link.in) == value) {
+        continue;
+      }
+      if (!kept) {
+        link.instance->set(*link.in, std::move(value));
+        link.instance->give(*link.in);
+      }
+      open.emplace_back(link.instance, link.in); // an enclosing instance may hold other strings
     }
   }
 }

@@ -6,12 +6,12 @@
 namespace xvrml {
 
 static constexpr const char* faultTexts[] = {
-    "dropped for too few different vertices",
-    "dropped for an index without a point",
-    "dropped for coordinates that are not finite",
-    "dropped for having no area",
-    "dropped as too large and tangled to be cut into triangles",
-    "dropped beyond ",
+    "left out: too few different vertices",
+    "", // report() names the index
+    "left out: coordinates that are not finite",
+    "left out: no area",
+    "left out: too large and tangled to be cut into triangles",
+    "left out beyond ",
     "without a colour, drawn white",
     "without a usable normal, drawn with the face's own",
     "without texture coordinates",
@@ -34,14 +34,23 @@ bool Faults::invisible() const {
 
 void Faults::report(const Node& node, Diagnostics* diagnostics, std::string_view limit) const {
   if (!diagnostics || !any()) return;
+  const std::string_view type = node.type().name;
+  const char* noun = type == "IndexedLineSet" ? "line" : type == "PointSet" ? "point" : "face";
   std::string text;
   auto append = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   for (size_t i = 0; i < entries_.size(); i++) {
     const Entry& entry = entries_[i];
     if (!entry.count) continue;
     const std::string_view which = i == size_t(Fault::overLimit) ? limit : "";
-    append(
-        fmt::format("{} {}{} (first at index {})", entry.count, faultTexts[i], which, entry.first));
+    // Faults after the limit are counted in faces or vertices, which the text does not tell apart.
+    const std::string counted =
+        i > size_t(Fault::overLimit)
+            ? fmt::format("{}", entry.count)
+            : fmt::format("{} {}{}", entry.count, noun, entry.count == 1 ? "" : "s");
+    append(i == size_t(Fault::indexRange)
+               ? fmt::format("{} left out: coordIndex[{}] has no point", counted, entry.first)
+               : fmt::format("{} {}{} (first at index {})", counted, faultTexts[i], which,
+                             entry.first));
   }
   for (const std::string& note : notes_) append(note);
   Diagnostic d;

@@ -1,13 +1,12 @@
 // crossing.cpp: adapts urls, ranges and child nodes when a value passes into a prototype's body.
 #include "graph/crossing.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "graph/field_access.h"
 #include "graph/node_kinds.h"
 #include "graph/range.h"
+#include "graph/url.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
@@ -18,22 +17,6 @@ namespace {
 bool passesUrls(const IsAssignment& c) {
   return holdsUrls(c.node, c.to) ||
          (dynamic_cast<const ScriptNode*>(&c.node) && holdsUrls(c.instance, c.from));
-}
-
-// Converts relative URLs written in the instance's file for a node that is in another file (4.5.3).
-void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
-  namespace fs = std::filesystem;
-  const fs::path fromFolder = fs::path(from).lexically_normal().parent_path();
-  const fs::path toFolder = fs::path(to).lexically_normal().parent_path();
-  if (fromFolder == toFolder) return;
-  const fs::path step = fromFolder.lexically_relative(toFolder);
-  if (step.empty() || step == ".") return;
-  for (std::string& url : urls) {
-    const size_t colon = url.find(':');
-    const bool relative = !url.empty() && url[0] != '/' && url[0] != '#' &&
-                          (colon == url.npos || url.find('/') < colon);
-    if (relative) url = (step / url).string();
-  }
 }
 
 // Returns whether `target` is a descendant of `top`, without the fields of Scripts and prototype
@@ -74,14 +57,41 @@ bool acceptsNode(const IsAssignment& c, const NodeRef& child, Diagnostics& diagn
 
 } // namespace
 
+void passUrls(const IsAssignment& c, MFString& urls) {
+  if (dynamic_cast<const ProtoInstance*>(&c.node) || !passesUrls(c)) return;
+  if (c.base && c.node.source.file) rebaseUrls(urls, *c.base, *c.node.source.file);
+}
+
+ReturnedUrls returnUrls(const Node& node, const FieldInfo& out, const ProtoInstance& instance,
+                        const FieldInfo& to, const MFString& urls) {
+  const bool areUrls = holdsUrls(node, out);
+  const auto& base = urlBase(node, out);
+  if (holdsValue(to)) {
+    const auto& own = std::get<MFString>(instance.values[to.offset]);
+    MFString passed = own;
+    const auto& from = urlBase(instance, to);
+    if (areUrls && from && base) rebaseUrls(passed, *from, *base);
+    if (passed == urls) return {own, true};
+  }
+  ReturnedUrls result{urls, false};
+  if (areUrls && base && instance.source.file)
+    rebaseUrls(result.urls, *base, *instance.source.file);
+  return result;
+}
+
+void assignUrlBase(Node& node, const FieldInfo& field, const Value& value) {
+  auto* instance = dynamic_cast<ProtoInstance*>(&node);
+  if (!instance || field.type != FieldType::MFString || !holdsValue(field)) return;
+  if (instance->values[field.offset] != value) instance->setUrlBase(field, nullptr);
+}
+
 void assignThroughIs(const IsAssignment& c, const Value& value, Diagnostics& diagnostics) {
   visitStorage(c.to.type, c.node.storage(c.to), [&](auto& target) {
     using T = std::remove_reference_t<decltype(target)>;
     target = std::get<T>(value);
     if constexpr (std::is_same_v<T, MFString>) {
-      const bool foreign = c.given && c.instance.source.file && c.node.source.file;
-      if (foreign && passesUrls(c))
-        rebaseUrls(target, *c.instance.source.file, *c.node.source.file);
+      passUrls(c, target);
+      if (auto* inner = dynamic_cast<ProtoInstance*>(&c.node)) inner->setUrlBase(c.to, c.base);
     } else if constexpr (std::is_same_v<T, NodeRef>) {
       if (!acceptsNode(c, target, diagnostics)) target = {};
     } else if constexpr (std::is_same_v<T, MFNode>) {

@@ -208,6 +208,7 @@ NodeRef Expander::copyNode(Node& original) {
     auto* made = new ProtoInstance(instance->typePtr, instance->declaration);
     copy = NodeRef(made);
     made->given = instance->given;
+    made->urlBases = instance->urlBases;
   } else if (auto* script = dynamic_cast<ScriptNode*>(&original)) {
     auto* made = new ScriptNode(script->typePtr);
     copy = NodeRef(made);
@@ -305,8 +306,10 @@ void Expander::completeFields(ProtoInstance& instance, const ProtoDeclaration& d
   for (const FieldInfo& field : instance.type().fields) {
     if (!holdsValue(field) || instance.isGiven(field)) continue;
     const FieldInfo* declared = fieldOf(*definition.type, field.name);
-    if (declared && declared->type == field.type && holdsValue(*declared))
+    if (declared && declared->type == field.type && holdsValue(*declared)) {
       instance.values[field.offset] = copyDefault(*declared, inlines);
+      if (field.type == FieldType::MFString) instance.setUrlBase(field, definition.source.file);
+    }
   }
 }
 
@@ -375,7 +378,7 @@ void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration&
     if (!to || !holdsValue(*to)) continue;
     const FieldInfo* from = fieldOf(instance.type(), connection.interfaceName);
     if (from && holdsValue(*from) && from->type == to->type) {
-      connect(instance, *from, instance.values[from->offset], connection, instance.isGiven(*from));
+      connect(instance, *from, instance.values[from->offset], connection, urlBase(instance, *from));
       continue;
     }
     const FieldInfo* declared = fieldOf(*definition.type, connection.interfaceName);
@@ -385,7 +388,7 @@ void Expander::applyConnections(ProtoInstance& instance, const ProtoDeclaration&
     auto found = undeclared.find(declared->name);
     if (found == undeclared.end())
       found = undeclared.emplace(declared->name, copyDefault(*declared, inlines)).first;
-    connect(instance, *declared, found->second, connection, false);
+    connect(instance, *declared, found->second, connection, definition.source.file);
   }
 }
 
@@ -420,7 +423,8 @@ void Expander::addCyclic(const NodeRef& node) {
 }
 
 void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value,
-                       const IsConnection& connection, bool given) {
+                       const IsConnection& connection,
+                       const std::shared_ptr<const std::string>& base) {
   Node& node = *connection.node;
   const FieldInfo& to = *fieldOf(node.type(), connection.field);
   if (auto* inner = dynamic_cast<ProtoInstance*>(&node)) inner->give(to);
@@ -436,7 +440,7 @@ void Expander::connect(const ProtoInstance& instance, const FieldInfo& from, con
                                            state_.budget.name(), instance.type().name, from.name));
     return;
   }
-  const IsAssignment assignment{instance, from, node, to, given, !state_.selfContaining.empty()};
+  const IsAssignment assignment{instance, from, node, to, base, !state_.selfContaining.empty()};
   assignThroughIs(assignment, value, state_.diagnostics);
 }
 

@@ -55,7 +55,7 @@ class Expander {
   void applyConnections(ProtoInstance& instance, const ProtoDeclaration& definition,
                         std::vector<NodeRef>& inlines);
   void connect(const ProtoInstance& instance, const FieldInfo& from, const Value& value,
-               const IsConnection& connection, bool given);
+               const IsConnection& connection, const std::shared_ptr<const std::string>& base);
   void findUrlFields(ProtoDeclaration& declaration);
 
   LoadState& state_;

@@ -55,7 +55,7 @@ struct TypeSpec {
   int number = -1;                // typeIndex of a node; set by readNumbers() or numberInOrder()
 };
 
-// A .node file.
+// Holds the contents of one .node file.
 struct Component {
   std::string name; // the file's name without folder and extension
   std::string title;

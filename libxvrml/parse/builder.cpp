@@ -13,6 +13,7 @@
 #include "graph/node_kinds.h"
 #include "graph/range.h"
 #include "nearest.h"
+#include "parse/x3d.h"
 
 namespace xvrml {
 
@@ -68,7 +69,8 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
       lexer_.warn(type.at(), fmt::format("this node is left out, because prototype {} was left out",
                                          describe(type)));
     } else {
-      lexer_.error(type.at(), fmt::format("{} is not a known node type{}", describe(type),
+      lexer_.error(type.at(), fmt::format("{} is not a known node type{}{}", describe(type),
+                                          isX3dNode(type.text) ? " (it is X3D's)" : "",
                                           nearest::suggestion(type.text, nodeTypes())));
     }
     return false;
@@ -262,8 +264,11 @@ FieldTarget Builder::openField(const Token& name) {
   Node& node = *frame.node;
   const FieldInfo* field = node.type().find(name.text);
   if (!field) {
-    lexer_.error(name.at(), fmt::format("{} has no field {}{}", node.type().name, describe(name),
-                                        nearest::suggestion(name.text, node.type().fields)));
+    const std::string near = nearest::suggestion(name.text, node.type().fields);
+    const char* dialect = isX3dField(node.type().name, name.text) ? " (it is X3D's)" : "";
+    lexer_.error(name.at(),
+                 fmt::format("{} has no field {}{}{}{}he field is ignored", node.type().name,
+                             describe(name), dialect, near, near.empty() ? "; t" : " T"));
     return {};
   }
   if (!holdsValue(*field)) {

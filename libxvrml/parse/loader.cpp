@@ -34,8 +34,8 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 
 } // namespace
 
-Loader::Loader(World& world, const LoadOptions& options)
-    : world_(world),
+Loader::Loader(World& world, const LoadOptions& options, uint64_t depth)
+    : world_(world), depth_(depth),
       budget_(budgetOf(world)), state_{world, options, world.diagnostics, *budget_, {}},
       expander_(state_,
                 [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
@@ -43,7 +43,7 @@ Loader::Loader(World& world, const LoadOptions& options)
 void Loader::load(const Source& source, const std::string& name, bool header) {
   const auto start = std::chrono::steady_clock::now();
   ParsedFile file;
-  const auto sharedName = source.nameWithComments(name);
+  const auto sharedName = source.nameWithComments(name, depth_);
   if (header) source.checkHeader(sharedName, state_.diagnostics);
   state_.anyRoots = !header;
   parse(source, sharedName, file);
@@ -51,7 +51,7 @@ void Loader::load(const Source& source, const std::string& name, bool header) {
   world_.times.parse = secondsSince(start);
   const std::string key = canonical(name);
   inlined_[key].reading = true;
-  complete(file, 0);
+  complete(file, depth_);
   world_.scope = std::move(file.scope);
   if (composed_) checkSize(world_.scope);
   world_.times.load = secondsSince(start) - world_.times.parse;
@@ -59,7 +59,7 @@ void Loader::load(const Source& source, const std::string& name, bool header) {
 
 void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>& enclosing) {
   for (const std::string& file : enclosing) inlined_[canonical(file)].reading = true;
-  loadInline(node, enclosing.size());
+  loadInline(node, std::max<uint64_t>(enclosing.size(), fileDepth(node.source.file) + 1));
 }
 
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
@@ -120,7 +120,7 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
   }
   try {
     const Source source = Source::open(path, limits, budget_);
-    const auto name = std::make_shared<const std::string>(path);
+    const auto name = fileName(path, depth);
     source.checkHeader(name, state_.diagnostics);
     const uint64_t before = budget_->used(), routes = state_.routes, scripts = state_.scripts;
     known.reading = true;
@@ -154,7 +154,7 @@ ProtoPtr Loader::resolveExtern(ProtoDeclaration& declaration) {
   }
   std::string reasons;
   for (const std::string& url : declaration.urls) {
-    if (ProtoPtr known = builtinPrototype(url, *declaration.type)) {
+    if (ProtoPtr known = builtinPrototype(url, declaration)) {
       checkInterface(declaration, *known);
       return declaration.resolved = known;
     }
@@ -186,7 +186,7 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
   if (!library) {
     try {
       const Source source = Source::open(path, state_.options.limits, budget_);
-      const auto sharedName = std::make_shared<const std::string>(path);
+      const auto sharedName = fileName(path, depth_);
       source.checkHeader(sharedName, state_.diagnostics);
       library = std::make_unique<ParsedFile>();
       parse(source, sharedName, *library);
@@ -307,7 +307,17 @@ constexpr size_t deepestStack = size_t(6) << 20;
 template <class MakeSource>
 std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
                                 MakeSource makeSource, bool header = true,
-                                const BudgetPtr& budget = nullptr) {
+                                const BudgetPtr& budget = nullptr, uint64_t depth = 0) {
+  // One level more than Inlines have: an Inline of the text reports the limit by itself.
+  if (depth > 0 && depth - 1 > options.limits.inlineDepth)
+    throw LoadError{{Severity::error,
+                     name,
+                     0,
+                     0,
+                     fmt::format("Scripts in files of Scripts deeper than limit inlineDepth={}",
+                                 options.limits.inlineDepth),
+                     {},
+                     0}};
   try {
     auto world = std::make_unique<World>();
     world->path = name;
@@ -315,7 +325,7 @@ std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& opti
     if (budget) setBudget(*world, budget);
     const Source source = makeSource(budgetOf(*world));
     return onStackOf(deepestStack, [&] {
-      Loader(*world, world->options).load(source, name, header);
+      Loader(*world, world->options, depth).load(source, name, header);
       return std::move(world);
     });
   } catch (const std::bad_alloc&) {
@@ -339,18 +349,19 @@ std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::st
 }
 
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,
-                                     const LoadOptions& options) {
+                                     const LoadOptions& options, uint64_t depth) {
   return loadFrom(
       path, options, [&](const BudgetPtr& its) { return Source::open(path, options.limits, its); },
-      true, budget);
+      true, budget, depth);
 }
 
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
-                                    const LoadOptions& options, const BudgetPtr& budget) {
+                                    const LoadOptions& options, const BudgetPtr& budget,
+                                    uint64_t depth) {
   return loadFrom(
       name, options,
       [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); },
-      false, budget);
+      false, budget, depth);
 }
 
 } // namespace xvrml

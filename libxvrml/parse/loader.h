@@ -13,7 +13,8 @@ struct InlineNode;
 
 class Loader {
  public:
-  Loader(World& world, const LoadOptions& options);
+  // depth: number of files around the world's own file (fileDepth()).
+  Loader(World& world, const LoadOptions& options, uint64_t depth = 0);
   // Loads the world's own file. Throws LoadError if nothing of it can be used.
   void load(const Source& source, const std::string& name, bool header = true);
   // Loads the content of an Inline of a world that has already been loaded. enclosing: the files
@@ -22,7 +23,7 @@ class Loader {
   void loadDeferredInline(InlineNode& node, const std::vector<std::string>& enclosing);
 
  private:
-  // A file that Inlines load. `content` is null while the file is being read.
+  // Holds a file that Inlines load; `content` is null while it is read.
   struct InlinedFile {
     std::shared_ptr<const Scope> content;
     uint64_t bytes = 0;    // estimated size in memory
@@ -42,6 +43,7 @@ class Loader {
   void checkSize(Scope& scope);
 
   World& world_;
+  const uint64_t depth_;
   // Limit for the bytes of Inline files that are read again because each place needs nodes of its
   // own. Copies within copies count at every level, so that files that double at each level soon
   // reach the limit. Further places share their nodes.
@@ -61,10 +63,13 @@ class Loader {
 
 // Loads a text that needs no header (Browser::createVrmlFromString). name: for messages; relative
 // URLs are relative to its folder. budget: the budget of the world that the text becomes part of.
+// depth: number of files around the text. Throws LoadError if it is more than one above limit
+// inlineDepth.
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
-                                    const LoadOptions& options, const BudgetPtr& budget);
+                                    const LoadOptions& options, const BudgetPtr& budget,
+                                    uint64_t depth);
 // Does the same as loadWorld() for a world that becomes part of another one.
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,
-                                     const LoadOptions& options);
+                                     const LoadOptions& options, uint64_t depth);
 
 } // namespace xvrml

@@ -29,7 +29,9 @@ void loadAgain(World& world, InlineNode& node) {
 
 bool setField(World& world, Node& node, std::string_view name, Value value) {
   const FieldInfo* field = node.type().find(name);
-  if (!field || !node.set(*field, std::move(value))) return false;
+  if (!field || value.index() != size_t(field->type)) return false;
+  assignUrlBase(node, *field, value);
+  if (!node.set(*field, std::move(value))) return false;
   std::vector<std::pair<Node*, const FieldInfo*>> open{{&node, field}};
   while (!open.empty()) {
     const auto [one, from] = open.back();
@@ -45,8 +47,8 @@ bool setField(World& world, Node& node, std::string_view name, Value value) {
           to->type != from->type)
         continue;
       if (isMultiple(to->type)) leaveToViews(*connection.node, *to);
-      assignThroughIs({*instance, *from, *connection.node, *to, true, true}, instance->get(*from),
-                      world.diagnostics);
+      assignThroughIs({*instance, *from, *connection.node, *to, urlBase(*instance, *from), true},
+                      instance->get(*from), world.diagnostics);
       // The expansion is made again on demand.
       if (NodeRef* standsFor = connection.node->expansion()) *standsFor = {};
       open.emplace_back(connection.node.get(), to);

@@ -28,7 +28,7 @@ namespace {
 // Refuses a file of a known format other than VRML97.
 [[noreturn]] void refuseOther(const std::string& name, std::string_view bytes) {
   const OtherFormat& format = *otherFormat(bytes);
-  refuse(name, fmt::format("is {}, not a VRML97 world: {}", format.name, format.remedy));
+  refuse(name, fmt::format("this file is {}, not a VRML97 world: {}", format.name, format.remedy));
 }
 
 struct Descriptor {
@@ -46,10 +46,10 @@ void readAll(int descriptor, const std::string& name, const Limits& limits, Text
     if (!room) refuse(name, "its text " + bytes.overLimitText());
     const ssize_t got = ::read(descriptor, room, step);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) refuse(name, fmt::format("cannot be read: {}", std::strerror(errno)));
+    if (got < 0) refuse(name, fmt::format("this file cannot be read: {}", std::strerror(errno)));
     bytes.keep(had + static_cast<size_t>(got));
     if (bytes.text().size() > limits.fileBytes)
-      refuse(name, fmt::format("longer than limit fileBytes={}", limits.fileBytes));
+      refuse(name, fmt::format("this file is longer than limit fileBytes={}", limits.fileBytes));
     if (got == 0) return bytes.fit();
   }
 }
@@ -94,7 +94,7 @@ void inflateAll(std::string_view packed, const std::string& name, const Limits& 
       const uint64_t value = most == limits.inflateBytes ? limits.inflateBytes
                              : most == limits.fileBytes  ? limits.fileBytes
                                                          : limits.inflateRatio;
-      refuse(name, fmt::format("unpacks to more than limit {}={} allows", limit, value));
+      refuse(name, fmt::format("this file unpacks to more than limit {}={} allows", limit, value));
     }
     if (status != Z_OK && status != Z_STREAM_END) {
       damage = status == Z_BUF_ERROR
@@ -164,16 +164,17 @@ Source Source::open(const std::string& path, const Limits& limits, const BudgetP
     source.text_ = source.buffer_.text();
   } else {
     Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-    if (file.number < 0) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    if (file.number < 0)
+      refuse(path, fmt::format("this file cannot be opened: {}", std::strerror(errno)));
     struct stat status {};
     if (fstat(file.number, &status) != 0)
-      refuse(path, fmt::format("cannot be read: {}", std::strerror(errno)));
-    if (S_ISDIR(status.st_mode)) refuse(path, "is a folder, not a world");
-    if (!S_ISREG(status.st_mode)) refuse(path, "is not a regular file");
+      refuse(path, fmt::format("this file cannot be read: {}", std::strerror(errno)));
+    if (S_ISDIR(status.st_mode)) refuse(path, "this is a folder, not a world");
+    if (!S_ISREG(status.st_mode)) refuse(path, "this is not a regular file");
     const auto size = static_cast<uint64_t>(status.st_size);
     if (size > limits.fileBytes)
-      refuse(path,
-             fmt::format("has {} bytes: more than limit fileBytes={}", size, limits.fileBytes));
+      refuse(path, fmt::format("this file has {} bytes: more than limit fileBytes={}", size,
+                               limits.fileBytes));
     if (size > 0) {
       void* mapping = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number, 0);
       if (mapping != MAP_FAILED) {
@@ -194,7 +195,7 @@ Source Source::open(const std::string& path, const Limits& limits, const BudgetP
 Source Source::fromMemory(std::string_view bytes, const std::string& name, const Limits& limits,
                           const BudgetPtr& budget) {
   if (bytes.size() > limits.fileBytes)
-    refuse(name, fmt::format("has {} bytes: more than limit fileBytes={}", bytes.size(),
+    refuse(name, fmt::format("this file has {} bytes: more than limit fileBytes={}", bytes.size(),
                              limits.fileBytes));
   Source source(budget);
   source.text_ = bytes;
@@ -242,17 +243,19 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
     const bool comment = current.starts_with('#');
     if (comment && current.find("VRML") != current.npos) {
       if (current.find("V1.0") != current.npos) {
-        refuse(*file,
-               "is a VRML 1.0 file; this browser reads VRML97 (#VRML V2.0 utf8). Convert it, for "
-               "example with vrml1tovrml2",
-               1);
+        refuse(
+            *file,
+            "this file is VRML 1.0; only VRML97 (#VRML V2.0 utf8) can be read. Convert it first, "
+            "for example with vrml1tovrml2",
+            1);
       }
       if (current.find("2.0") != current.npos) {
         return warn(
             fmt::format("the file does not begin with exactly '{}'; read as VRML97 anyway", exact));
       }
       refuse(*file,
-             fmt::format("is not VRML97: expected '{}', found '{}'", exact, current.substr(0, 60)),
+             fmt::format("this file is not VRML97: expected '{}', found '{}'", exact,
+                         current.substr(0, 60)),
              1);
     }
     if (comment && (current.starts_with("#X3D") || current.starts_with("#Inventor")))
@@ -263,22 +266,34 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
   if (otherFormat(text_)) refuseOther(*file, text_);
   if (looksLikeVrml(text_))
     return warn(fmt::format("the header '{}' is missing; read as VRML97 anyway", exact));
-  if (text_.empty()) refuse(*file, fmt::format("is empty: expected '{}'", exact));
-  refuse(*file, fmt::format("is not a VRML97 world: expected it to begin with '{}'", exact), 1);
+  if (text_.empty()) refuse(*file, fmt::format("this file is empty: expected '{}'", exact));
+  refuse(*file,
+         fmt::format("this file is not a VRML97 world: expected it to begin with '{}'", exact), 1);
 }
 
 namespace {
 
-// The deleter of a file's name. It stores the file's comments, so that they live as long as the
-// name, which all nodes of the file share.
+// The deleter of a file's name. It stores the file's comments and its depth, so that they live as
+// long as the name, which all nodes of the file share.
 struct NameDeleter {
   std::string comments;
+  uint64_t depth = 0;
   void operator()(const std::string* name) const { delete name; }
 };
 
 } // namespace
 
-std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name) const {
+std::shared_ptr<const std::string> fileName(const std::string& name, uint64_t depth) {
+  return {new std::string(name), NameDeleter{{}, depth}};
+}
+
+uint64_t fileDepth(const std::shared_ptr<const std::string>& file) {
+  const NameDeleter* known = std::get_deleter<NameDeleter>(file);
+  return known ? known->depth : 0;
+}
+
+std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name,
+                                                            uint64_t depth) const {
   constexpr size_t most = 4096;
   std::string comments;
   std::string_view rest = text_;
@@ -290,7 +305,7 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
       comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
   }
-  return {new std::string(name), NameDeleter{std::move(comments)}};
+  return {new std::string(name), NameDeleter{std::move(comments), depth}};
 }
 
 std::string_view openingComments(const World& world) {

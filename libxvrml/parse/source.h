@@ -38,6 +38,12 @@ class TextBuffer {
   Share share_; // reservation of the buffer's capacity
 };
 
+// Returns the name of a file for the positions of its nodes. depth: number of files around it:
+// those of Inlines, and those whose Scripts have created or loaded it.
+std::shared_ptr<const std::string> fileName(const std::string& name, uint64_t depth);
+// Returns that depth; 0 for other names and for null.
+uint64_t fileDepth(const std::shared_ptr<const std::string>& file);
+
 class Source {
  public:
   // Opens a file; "-" is standard input. budget: the world's budget, for the text that the source
@@ -53,7 +59,9 @@ class Source {
 
   // Returns the file name for the positions of its nodes. openingComments() finds the comments at
   // the top of the file through it.
-  std::shared_ptr<const std::string> nameWithComments(const std::string& name) const;
+  // depth: see fileName().
+  std::shared_ptr<const std::string> nameWithComments(const std::string& name,
+                                                      uint64_t depth) const;
 
   // Returns the text after a byte-order mark.
   std::string_view text() const { return text_; }

@@ -2,11 +2,12 @@
 #include "parse/urn.h"
 
 #include "graph/inline_node.h"
-#include "parse/url.h"
+#include "graph/url.h"
 
 namespace xvrml {
 
-ProtoPtr builtinPrototype(std::string_view url, const NodeType& wanted) {
+ProtoPtr builtinPrototype(std::string_view url, const ProtoDeclaration& declaration) {
+  const NodeType& wanted = *declaration.type;
   const size_t first = std::min(url.find_first_not_of(" \t\r\n"), url.size());
   url = url.substr(first, url.find_last_not_of(" \t\r\n") + 1 - first);
   if (urlScheme(url) != "urn") return nullptr;
@@ -18,7 +19,10 @@ ProtoPtr builtinPrototype(std::string_view url, const NodeType& wanted) {
   interface->index = -1;
   interface->create = nullptr;
   auto proto = std::make_shared<ProtoDeclaration>();
+  proto->source = declaration.source;
+  proto->baseUrl = declaration.baseUrl;
   const NodeRef node = makeStaticNode(*type);
+  node->source = declaration.source;
   for (FieldInfo field : type->fields) {
     const FieldInfo* declared = wanted.find(field.name);
     if (declared && declared->type == field.type && field.access == Access::exposedField)

@@ -10,7 +10,8 @@ namespace xvrml {
 
 // Returns the prototype for "urn:anything:NAME", where NAME is a node type of this browser; null if
 // the URL names none. The prototype's body is one such node, and its interface has all its fields.
-// An exposedField has the access that the EXTERNPROTO declares.
-ProtoPtr builtinPrototype(std::string_view url, const NodeType& wanted);
+// An exposedField has the access that the EXTERNPROTO declares. The node is in the file of the
+// EXTERNPROTO.
+ProtoPtr builtinPrototype(std::string_view url, const ProtoDeclaration& declaration);
 
 } // namespace xvrml

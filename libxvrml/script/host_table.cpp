@@ -77,8 +77,10 @@ struct HostTable {
     for (uint32_t i = 0; i < count; ++i) out.push_back(text(host, from[i]));
     return out;
   }
+  // Returns the file that contains the Script's program (4.5.3).
   static std::string baseOf(const Script& script) {
-    return script.node->source.file ? *script.node->source.file : std::string();
+    const auto& file = script.start.file ? script.start.file : script.node->source.file;
+    return file ? *file : std::string();
   }
 
   // --- Own fields and events ---
@@ -291,8 +293,8 @@ struct HostTable {
   static XsResult createVrmlFromString(Host table, XsNode self, XsString vrml, XsValue* out) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       try {
-        *out =
-            script.lent.lend(host.browser_.createVrmlFromString(text(host, vrml)), script.handles);
+        *out = script.lent.lend(
+            host.browser_.createVrmlFromString(text(host, vrml), baseOf(script)), script.handles);
         return XS_OK;
       } catch (const LoadError& error) {
         return refuse(script, XS_FAILED, error.diagnostic.text());

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "graph/url.h"
 #include "parse/source.h"
-#include "parse/url.h"
 
 namespace xvrml {
 namespace {
@@ -38,6 +38,10 @@ void append(std::string& reasons, std::string_view reason) {
 } // namespace
 
 bool ProgramFinder::usable(const XsEngine* engine, const std::string& protocol) {
+  if (!engine && (protocol == ".class" || protocol == "java:")) {
+    missing_.emplace_back(protocol, "Java Scripts are not supported; they do nothing");
+    return false;
+  }
   if (!engine) {
     std::string found;
     for (const XsEngine* one : engines_.all())

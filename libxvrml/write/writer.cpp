@@ -2,6 +2,7 @@
 // Prototype declarations are written, the bodies of instances are not. A pure function of the
 // world. [the thread that owns the world]
 #include <span>
+#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -12,11 +13,17 @@
 #include "enough_stack.h"
 #include "graph/expander.h"
 #include "graph/field_access.h"
+#include "graph/url.h"
 #include "write/value_writer.h"
+#include "xvrml/comments.h"
 #include "xvrml/walk.h"
 
 namespace xvrml {
 namespace {
+
+// Nodes nested deeper are refused: the writer is recursive, and no parser reads such a file (its
+// own limit is Parser::maximumNesting).
+constexpr size_t deepestNode = 2500;
 
 using Connections = std::unordered_map<const Node*, std::vector<const IsConnection*>>;
 
@@ -80,7 +87,11 @@ class Names {
 
 class Writer {
  public:
-  std::string text = "#VRML V2.0 utf8\n";
+  // target: the file that will hold the text; empty: relative URLs stay as they are
+  Writer(const World& world, std::string target)
+      : text(heading(world)), target_(std::move(target)) {}
+
+  std::string text;
 
   void scope(const Scope& scope, const Connections* connections) {
     const std::vector<Node*> roots = rootsOf(scope);
@@ -108,6 +119,31 @@ class Writer {
   }
 
  private:
+  // Returns the header and the comments at the top of the file. They name the program that wrote
+  // it, which can decide the up axis.
+  static std::string heading(const World& world) {
+    constexpr std::string_view header = "VRML V2.0 utf8";
+    std::string_view comments = openingComments(world);
+    std::string text = '#' + std::string(header);
+    if (comments.starts_with("VRML")) {
+      const std::string_view first = comments.substr(0, comments.find('\n'));
+      if (first.starts_with(header)) text += first.substr(header.size());
+      comments.remove_prefix(std::min(first.size() + 1, comments.size()));
+    }
+    for (text += '\n'; !comments.empty();) {
+      const std::string_view one = comments.substr(0, comments.find('\n'));
+      text += fmt::format("#{}\n", one);
+      comments.remove_prefix(std::min(one.size() + 1, comments.size()));
+    }
+    std::erase(text, '\r');
+    return text;
+  }
+
+  void writeUrls(MFString urls, const std::string& base) {
+    rebaseUrls(urls, base, target_);
+    writeValue(text, FieldType::MFString, &urls, indent_);
+  }
+
   void line() {
     text += '\n';
     text.append(indent_, ' ');
@@ -152,12 +188,17 @@ class Writer {
       return;
     }
     if (name) text += "DEF " + *name + " ";
+    if (++depth_ > deepestNode)
+      throw std::length_error(fmt::format("the world cannot be written: nodes are nested more than "
+                                          "{} deep, and no program could read the file",
+                                          deepestNode));
     text += node->type().name + " {";
     const size_t before = text.size();
     indent_ += 2;
     for (const FieldInfo& field : node->type().fields) fieldOf(*node, field, names, connections);
     otherConnections(*node, connections);
     indent_ -= 2;
+    --depth_;
     if (text.size() > before) line();
     text += text.size() > before ? "}" : " }";
   }
@@ -179,7 +220,11 @@ class Writer {
           normalizeAxes(field.type, &copy);
           fieldValue(&copy, field.type, names, connections);
         });
-      else if (value)
+      else if (const auto& base = urlBase(node, field);
+               value && base && !target_.empty() && holdsUrls(node, field)) {
+        text += ' ';
+        writeUrls(*static_cast<const MFString*>(node.storage(field)), *base);
+      } else if (value)
         fieldValue(node.storage(field), field.type, names, connections);
     }
     for (size_t i = 0; i < own.size(); ++i) {
@@ -217,7 +262,8 @@ class Writer {
   static bool hasOwnValue(Node& node, const FieldInfo& field) {
     const Value* standard = &field.defaultValue;
     if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
-      if (instance->isGiven(field)) return true;
+      // A default of the prototype's file that a program has assigned again stays a default.
+      if (instance->isGiven(field) && instance->hasOwnUrlBase(field)) return true;
       if (holdsNodes(field)) return false;
       if (const ProtoPtr& resolved = instance->declaration->resolved) {
         const FieldInfo* declared = resolved->type->find(field.name);
@@ -260,6 +306,11 @@ class Writer {
       text +=
           fmt::format("{} {} {}", accessName(field.access), fieldTypeName(field.type), field.name);
       if (declaration.isExtern || !holdsValue(field)) continue;
+      if (!target_.empty() && declaration.holdsUrls(field)) {
+        text += ' ';
+        writeUrls(std::get<MFString>(field.defaultValue), declaration.baseUrl);
+        continue;
+      }
       Value value = field.defaultValue; // nodes are shared, not copied
       std::vector<Node*> roots;
       if (auto* single = std::get_if<NodeRef>(&value)) roots.push_back(single->get());
@@ -275,7 +326,10 @@ class Writer {
     text += ']';
     if (declaration.isExtern) {
       text += ' ';
-      writeValue(text, FieldType::MFString, &declaration.urls, indent_);
+      if (target_.empty())
+        writeValue(text, FieldType::MFString, &declaration.urls, indent_);
+      else
+        writeUrls(declaration.urls, declaration.baseUrl);
       return;
     }
     Connections connections;
@@ -289,15 +343,19 @@ class Writer {
     text += '}';
   }
 
+  const std::string target_;
   size_t indent_ = 0;
+  size_t depth_ = 0; // number of nodes around the one that is being written
 };
 
 } // namespace
 
-std::string writeWorld(const World& world) {
+std::string writeWorld(const World& world) { return writeWorld(world, ""); }
+
+std::string writeWorld(const World& world, const std::string& path) {
   constexpr size_t deepestStack = size_t(6) << 20; // bytes; a level uses about 1 kB
   return onStackOf(deepestStack, [&] {
-    Writer writer;
+    Writer writer(world, path);
     writer.scope(world.scope, nullptr);
     writer.text += '\n';
     return std::move(writer.text);

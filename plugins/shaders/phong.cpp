@@ -8,8 +8,7 @@ struct Phong : rts::Surface<Phong> {
   static constexpr const char* text =
       "even scattering and a Blinn-Phong highlight; reciprocal, keeps energy";
   rts::Param<rts::Color> diffuseColor{
-      "diffuseColor", {0.6f, 0.6f, 0.6f}, "fraction of light scattered evenly, 0..1", 0, 1,
-      rts::PerVertex};
+      "diffuseColor", {0.6f, 0.6f, 0.6f}, "diffuse reflectance", 0, 1, rts::PerVertex};
   rts::Param<rts::Color> specularColor{
       "specularColor",
       {0.3f, 0.3f, 0.3f},

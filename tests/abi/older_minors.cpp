@@ -35,7 +35,7 @@ TEST_F(SmallScene, AMirrorOfAbi11IsFollowed) {
   rtEndObject();
   rtInstantiateObject(object);
   rtTranslated(0, 0, 20);
-  shader("Example", "minor_0"); // emissive, behind the camera
+  shader("Example", "minor_0"); // an emissive shader for the square behind the camera
   const RTid lamp = rtBeginObject(0);
   rtBegin(RT_QUADS);
   squareVertices();

@@ -166,7 +166,7 @@ TEST(Registry, StockClassesComeFromTheirOwnLibraryOrVrml97) {
   const ShaderRegistry registry({plugins + "/stock", plugins});
   EXPECT_EQ(registry.find("PerspectiveCamera", "").kind, RTS_CAMERA);
   EXPECT_EQ(registry.find("Everything", "").kind, RTS_SURFACE); // the library `everything`
-  EXPECT_NE(refusal(registry, "NoSuchClass", "").find("no stock shader class \"NoSuchClass\""),
+  EXPECT_NE(refusal(registry, "NoSuchClass", "").find("there is no shader class \"NoSuchClass\""),
             std::string::npos);
   const ShaderRegistry without({plugins});
   EXPECT_NE(refusal(without, "PerspectiveCamera", "").find("vrml97 is missing"), std::string::npos);

@@ -1,6 +1,6 @@
-// openrt_edits.cpp: the cost of an edit, measured as rtRender of a one-pixel picture after it. The
+// openrt_edits.cpp: Measures the cost of an edit as rtRender of a one-pixel picture after it. The
 // scene has a number of dynamic objects next to a static terrain of 20,000 triangles. Counters show
-// the builds per step. Also the memory of a forest of instances.
+// the builds per step. Also measures the memory of a forest of instances.
 #include <cmath>
 #include <cstdio>
 #include <vector>

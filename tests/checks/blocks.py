@@ -115,7 +115,7 @@ def small(command):
     if not re.search(r"(^|[\s;|&])vv .*-o ", command) or re.search(r"--(compare|audit)\b", command):
         return command
     size = re.search(r"--size (\d+)x(\d+)", command)
-    if size and int(size.group(1)) * int(size.group(2)) <= 160 * 120:
+    if size and int(size.group(1)) * int(size.group(2)) < 160 * 120:
         return command
     command = re.sub(r" --size \S+", "", command)
     more = " --size 36x24"

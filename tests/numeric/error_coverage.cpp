@@ -102,9 +102,8 @@ TEST_F(ErrorBars, PicturesAreOffByWhatIsSaid) {
   }
 }
 
-// The light of a lamp of a ten-thousandth that comes through a ball of glass is there, and next to
-// no path meets it: no sample tells of it. That it may be missing is said, also where the eye sees
-// the floor through glass.
+// A tiny lamp behind a glass ball lights the floor, but almost no path hits it. The error bars must
+// say that this light may be missing, also where the camera sees the floor through glass.
 TEST_F(ErrorBars, WhatIsMetByChanceAndWasNotMetIsInTheInterval) {
   const RTid white = audit::paint(.7f, .7f, .7f), glass = audit::shaderOf("Glass");
   const auto picture = [](RTenum transport) {

@@ -211,9 +211,12 @@ def test_add_and_names(world):
         world.roots).count(box) == 1
     with pytest.raises(ValueError, match="Lamp"):
         world.add(xvrml.Group(), name="Lamp")
-    for name in ("", "1st", "a b", "x.y"):
+    for name in ("", "1st", "a b", "x.y", "a\x07", "a\0", "a\x7f", "IS", "NULL", "exposedField"):
         with pytest.raises(ValueError, match="DEF"):
             world.add(xvrml.Group(), name=name)
+    with pytest.raises(ValueError, match="Material cannot stand at the root"):
+        world.add(xvrml.Material(), name="Paint")
+    assert "Paint" not in world.names
     with pytest.raises(AttributeError, match="did you mean time"):
         world.tme = 5
 

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 xvrml = pytest.importorskip("xvrml")
-pytest.importorskip("numpy")
+np = pytest.importorskip("numpy")
 from xvrml import rt  # noqa: E402
 from xvrml._arguments import _signature  # noqa: E402
 
@@ -90,3 +90,74 @@ def test_parameters_and_stubs_are_those_of_the_table(owner, module):
         assert typed[name] == kind, name
     for name in WITHOUT[owner.__name__]:
         assert name not in names, f"{name} is named as missing, but is there"
+
+
+@pytest.fixture
+def doors(box):
+    """Returns the functions that render small pictures with settings: of a World and of a
+    Context."""
+    world, context = xvrml.load(box), rt.Context(threads=1)
+    context.camera(eye=(0, 0, 5), at=(0, 0, 0))
+    return [
+        lambda **given: world.render(**{
+            "size": (4, 4),
+            "spp": 1,
+            **given
+        }), lambda **given: context.render(**{
+            "size": (4, 4),
+            "spp": 1,
+            **given
+        })
+    ]
+
+
+@pytest.mark.parametrize("setting, value, expected", [
+    ("spp", 0, "spp: 1 to 65536 expected, not 0"),
+    ("spp", 2**31, "spp: 1 to 65536 expected, not 2147483648"),
+    ("depth", 2**31, "depth: 0 to 10000 expected, not 2147483648"),
+    ("seed", -1, "seed: 0 to 2147483647 expected, not -1"),
+    ("seed", 2**31, "seed: 0 to 2147483647 expected, not 2147483648"),
+    ("error", 1.5, "error: 0 to 1 expected, not 1.5"),
+    ("time_limit", float("nan"), "time_limit: 0 to 1000000 expected, not nan"),
+])
+def test_python_names_setting_range_and_value(doors, setting, value, expected):
+    for render in doors:
+        with pytest.raises(ValueError) as wrong:
+            render(**{setting: value})
+        assert str(wrong.value) == expected
+
+
+def test_fractions_of_numpy_are_no_whole_numbers(doors):
+    for render in doors:
+        for value in (1.7, np.float16(1.5), np.float32(1.7), np.float64(1.7), np.array(2.9)):
+            for setting in ("spp", "depth", "seed"):
+                with pytest.raises(TypeError, match=f"{setting}: a whole number"):
+                    render(**{setting: value})
+            with pytest.raises((TypeError, ValueError), match="size|whole"):
+                render(size=(value, 4))
+        for value in (2, np.int64(2), np.uint8(2), np.array(2)):
+            render(spp=value, depth=value, seed=value, size=(value, 4))
+
+
+def test_shadows_are_true_or_false(doors):
+    for render in doors:
+        for value in (float("nan"), 1j, None, 2**64, 2, 1.0, "on"):
+            with pytest.raises(TypeError, match="shadows: True or False expected"):
+                render(shadows=value)
+        for value in (True, False, 0, 1, np.True_, np.int64(0)):
+            render(shadows=value)
+
+
+@pytest.mark.parametrize("option, values", [
+    ("--clamp", ("0", "1", "3.4e38")),
+    ("--time-limit", ("0", "1000000")),
+    ("--error", ("0", "0%", "1", "100%")),
+    ("--energy-cut", ("0", "0.0", "0%", "1", "100%")),
+])
+def test_vv_accepts_the_whole_range_of_the_table(vv, option, values):
+    for value in values:
+        done = vv("box.wrl", "-o", "x.png", "--size", "4x4", "--spp", "1", option, value)
+        assert done.returncode == 0, done.talk
+    for value in ("-1", "nan", "inf", "1e39"):
+        done = vv("box.wrl", "-o", "x.png", "--size", "4x4", "--spp", "1", option, value)
+        assert done.returncode == 2 and "a number from 0 to " in done.talk, done.talk

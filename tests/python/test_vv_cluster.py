@@ -143,10 +143,10 @@ def test_a_key_that_others_may_read(room):
     new_key(room.folder / "open.key")
     (room.folder / "open.key").chmod(0o644)
     done = room("box.wrl", *SMALL, "-o", "x.png", "--workers", "127.0.0.1:1", "--key", "open.key")
-    assert done.returncode == 2 and "open.key" in done.talk and "chmod" in done.talk, done.talk
+    assert done.returncode == 3 and "open.key" in done.talk and "chmod" in done.talk, done.talk
     done = room("box.wrl", *SMALL, "-o", "x.png", "--workers", "127.0.0.1:1", "--key",
                 "missing.key")
-    assert done.returncode == 2 and "missing.key" in done.talk and os.strerror(
+    assert done.returncode == 3 and "missing.key" in done.talk and os.strerror(
         2) in done.talk, done.talk
     assert not (room.folder / "x.png").exists()
 
@@ -285,6 +285,13 @@ def test_usage(vv, arguments, text):
     assert len(done.talk.splitlines()) == 1
 
 
+def test_it_says_that_no_worker_answered(vv):
+    needs_worker()
+    done = vv("box.wrl", *SMALL, "-o", "x.png", "--workers", "127.0.0.1:9")
+    assert done.returncode == 0, done.talk
+    assert "vv: warning: no worker answered; this machine made the picture alone" in done.talk
+
+
 def test_workers_are_for_pictures(vv):
     done = vv("box.wrl", "--check", "--workers", "127.0.0.1")
     assert done.returncode == 2 and "need -o or the window" in done.talk
@@ -296,18 +303,18 @@ def test_a_hosts_file_with_errors(vv, content, line):
     needs_worker()
     vv.write("hosts.txt", content)
     done = vv("box.wrl", *SMALL, "-o", "x.png", "--workers", "@hosts.txt")
-    assert done.returncode == 2 and f"hosts.txt:{line}" in done.talk, done.talk
+    assert done.returncode == 3 and f"hosts.txt:{line}" in done.talk, done.talk
     assert len(done.talk.splitlines()) == 1
 
 
 def test_a_hosts_file_that_is_no_use(vv):
     needs_worker()
     done = vv("box.wrl", *SMALL, "-o", "x.png", "--workers", "@missing.txt")
-    assert done.returncode == 2 and "missing.txt" in done.talk and os.strerror(
+    assert done.returncode == 3 and "missing.txt" in done.talk and os.strerror(
         2) in done.talk, done.talk
     vv.write("empty.txt", "# nobody\n")
     done = vv("box.wrl", *SMALL, "-o", "x.png", "--workers", "@empty.txt")
-    assert done.returncode == 2 and "empty.txt" in done.talk, done.talk
+    assert done.returncode == 3 and "empty.txt" in done.talk, done.talk
 
 
 # The window -------------------------------------------------------------------------------------

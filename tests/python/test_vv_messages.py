@@ -51,6 +51,7 @@ from conftest import HEADER, SMALL
     (["box.wrl", "--stats", "s.json"], "-o"),
     (["box.wrl", "-o", "x.png", "--json"], "--json"),
     (["box.wrl", "-q", "-v", "-o", "x.png"], "--quiet"),
+    (["box.wrl", "-o", "x.tiff"], "-o: a file name"),
 ])
 def test_usage(vv, arguments, word):
     done = vv(*arguments)
@@ -80,6 +81,13 @@ def test_files_of_other_formats_are_named(vv, content, name):
     (vv.folder / "other.wrl").write_bytes(content)
     done = vv("other.wrl", "-o", "x.png", *SMALL)
     assert done.returncode == 3 and name in done.talk and "not a VRML97 world" in done.talk, done.talk
+
+
+def test_folders_that_do_not_exist(vv):
+    for option in ("--shader-path", "--node-path", "--script-path"):
+        done = vv("box.wrl", "-o", "x.png", option, "/nix", *SMALL)
+        assert done.returncode == 0
+        assert done.talk == f"vv: warning: {option}: there is no folder /nix\n"
 
 
 def test_help_and_version(vv):

@@ -214,7 +214,13 @@ def test_statistics(vv):
     assert stats["scene"]["path"] == "box.wrl" and stats["scene"]["shapes"] == 1 and stats["scene"][
         "warnings"] == 0
     assert stats["scene"]["triangles"] == 12
-    assert stats["image"] == {"width": 40, "height": 30, "spp": 4, "channels": ["rgba"]}
+    assert stats["image"] == {
+        "width": 40,
+        "height": 30,
+        "spp": 4,
+        "spp_mean": 4,
+        "channels": ["rgba"]
+    }
     assert stats["rays"]["camera"] == 40 * 30 * 4
     assert stats["machine"]["threads"] == 2 and "Embree" in stats["machine"]["embree"]
     assert 0 < stats["time"]["render"] < stats["time"]["total"] < 60
@@ -299,3 +305,26 @@ def test_progress_lines(vv):
     _, talk = running.communicate(timeout=30)
     assert b" %" in talk and b"\x1b" not in talk and b"\r" not in talk
     assert find_vv().exists()
+
+
+def test_a_film_suffix_may_have_capitals(vv):
+    done = vv("box.wrl", "--frames", "0-1", "-o", "a.GIF", "--size", "8x8", "--spp", "1")
+    assert done.returncode == 0, done.talk
+    assert (vv.folder / "a.GIF").read_bytes().startswith(b"GIF89a")
+
+
+def test_lost_channels_are_told(vv):
+    for name, told in (("a.ppm", True), ("a.jpg", True), ("a.png", True), ("a.pfm", True), ("a.exr",
+                                                                                            False)):
+        done = vv("box.wrl", "-o", name, "--channels", "z", "--size", "8x8", "--spp", "1")
+        assert done.returncode == 0 and ("only EXR files keep channels" in done.talk) == told, name
+
+
+def test_a_failed_write_names_the_option(vv):
+    done = vv("box.wrl", "-o", "png:/dev/full", "--size", "8x8", "--spp", "1")
+    assert done.returncode == 1 and "error: -o: cannot write /dev/full" in done.talk, done.talk
+
+
+def test_a_negative_number_of_workers_is_named(vv):
+    done = vv("box.wrl", "-o", "a.ppm", "--workers", "localhost", "--require-workers", "-1")
+    assert done.returncode == 2 and "--require-workers: a whole number" in done.talk, done.talk

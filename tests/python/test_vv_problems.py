@@ -28,7 +28,7 @@ def test_faces_that_nobody_can_see_are_told_to_authors_only(vv):
         "coordIndex [ 0 1 2 -1 0 1 3 -1 ] } }")
     assert "area" not in vv("flat.wrl", "-o", "x.png", *SMALL).talk
     done = vv("flat.wrl", "--check", "--strict")
-    assert done.returncode == 0 and "note: IndexedFaceSet: 1 dropped for having no area (first at index 0)" in done.talk
+    assert done.returncode == 0 and "note: IndexedFaceSet: 1 face left out: no area (first at index 0)" in done.talk
     assert "no area" in vv("flat.wrl", "-v", "-o", "x.png", *SMALL).talk
 
 
@@ -37,9 +37,11 @@ def test_last_line_after_errors(vv):
     done = vv("wrong.wrl", "-o", "x.png", *SMALL)
     assert done.returncode == 0
     last = done.talk.strip().splitlines()[-1]
-    assert last == "vv: 2 errors: parts of the world are missing (wrong.wrl:2, wrong.wrl:4); --strict refuses such a world"
-    assert "are missing" not in vv("box.wrl", "-o", "x.png", *SMALL).talk
-    assert vv("wrong.wrl", "--strict", "-o", "x.png", *SMALL).returncode == 4
+    assert last == "vv: 2 errors (wrong.wrl:2, wrong.wrl:4): the picture may lack parts of the world; --strict refuses such a world"
+    assert "may lack" not in vv("box.wrl", "-o", "x.png", *SMALL).talk
+    strict = vv("wrong.wrl", "--strict", "-o", "x.png", *SMALL)
+    assert strict.returncode == 4
+    assert strict.talk.endswith("vv: error: nothing is drawn, because of --strict\n")
 
 
 def test_hints_for_pictures_that_show_nothing(vv):
@@ -56,7 +58,9 @@ def test_hints_for_pictures_that_show_nothing(vv):
               *SMALL).talk == "vv: nothing is in view from here: --fit shows all of the world\n"
     assert vv("away.wrl", "-o", "x.png", "--fit", *SMALL).talk == ""
     vv.write("empty.wrl", HEADER)
-    assert "no shapes" in vv("empty.wrl", "-o", "x.png", *SMALL).talk
+    assert vv(
+        "empty.wrl", "-o", "x.png", *SMALL
+    ).talk == "vv: warning: empty.wrl: no shape to draw; the picture shows only the background\n"
     assert vv("away.wrl", "-q", "-o", "x.png", *SMALL).talk == ""
 
 

@@ -51,7 +51,8 @@ def test_it_can_be_written(wall):
     ("Wall", "DEF=CLASS"),
     ("Wal=Glass", "did you mean Wall?"),
     ("Wall=", "shader class was expected"),
-    ("Wall=Nothing", "Nothing"),
+    ("Wall=Nothing", "error: --shader Nothing: there is no shader class \"Nothing\"; looked in"),
+    ("Wall=Glas", "there is no shader class \"Glas\"; did you mean Glass? vv --list-shaders"),
     ("Wall=PerspectiveCamera", "PerspectiveCamera is a shader for a camera"),
     ("Wall=Glass:indx=1", "did you mean index?"),
     ("Wall=Glass:index", "PARAM=VALUE"),
@@ -215,8 +216,9 @@ def test_bad_pictures_of_radiance(vv, name, content):
     if content is not None:
         vv.write(name, content)
     done = vv("box.wrl", "-o", "x.png", "--environment", name, *SMALL)
-    assert done.returncode == 1 and name in done.talk and len(
-        done.talk.splitlines()) == 1, done.talk
+    assert done.returncode == 3 and len(done.talk.splitlines()) == 1, done.talk
+    assert done.talk.startswith(f"vv: error: --environment: cannot read {name}: "), done.talk
+    assert done.talk.count(name) == 1, done.talk
 
 
 def test_list_shaders(vv):

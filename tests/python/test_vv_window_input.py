@@ -85,7 +85,7 @@ def test_what_cannot_be_recorded_is_told(window):
 def test_a_script_that_is_wrong_names_its_line(vv, line, word):
     vv.write("in.txt", "# first\n" + line + "\n")
     done = vv("box.wrl", "--input", "in.txt", "-o", "x.png")
-    assert done.returncode == 2 and re.search(r"in\.txt:[23]: ",
+    assert done.returncode == 3 and re.search(r"in\.txt:[23]: ",
                                               done.talk) and word in done.talk, done.talk
     assert vv("box.wrl", "--input", "absent.txt", "-o", "x.png").returncode == 3
 

@@ -1,5 +1,6 @@
 """Tests the Python package: worlds, nodes through the field tables, pictures."""
 import ast
+import collections.abc
 import io
 import os
 import pathlib
@@ -232,7 +233,7 @@ WRONG = [
     ("ints", [2**31], ValueError),
     ("ints", [[1]], ValueError),
     ("ints", np.uint64([2**63]), ValueError),
-    ("nodes", [None], TypeError),
+    ("nodes", [1], TypeError),
     ("nodes", 5, TypeError),
     ("nodes", "ab", TypeError),
     ("strings", "word", TypeError),
@@ -270,6 +271,22 @@ def test_ranges():
         w["M"].diffuseColor = (2, 0, 0)
     with pytest.raises(ValueError):
         w["S"].radius = 0
+    group = xvrml.Group(bboxSize=(-1, -1, -1))
+    with pytest.raises(ValueError, match=r"from 0 to inf.* or -1, not -2"):
+        group.bboxSize = (-2, -2, -2)
+
+
+def test_numbers_of_more_than_64_bits():
+    for whole in (2**64 - 1, 2**64 - 2**31 + 3, 2**31):
+        with pytest.raises(ValueError, match=f"not {whole}"):
+            xvrml.IndexedFaceSet(coordIndex=np.array([whole], "u8"))
+    assert list(xvrml.IndexedFaceSet(coordIndex=np.array([2**31 - 1], "u8")).coordIndex)
+    for field, value in (("translation", (10**400, 0, 0)), ("scaleOrientation", (10**400, 0, 0,
+                                                                                 0))):
+        with pytest.raises(ValueError, match="not a number beyond 1e308"):
+            xvrml.Transform(**{field: value})
+    with pytest.raises(ValueError, match="not a number beyond 1e308"):
+        xvrml.Material(transparency=10**400)
 
 
 def test_axes_of_rotations_are_normalised():
@@ -309,6 +326,47 @@ def test_nodes_as_values():
         shapes["S"].geometry = shapes["M"]
     shapes["S"].geometry = None
     shapes["S"].geometry = shapes["B"]
+
+
+def test_null_keeps_its_place_where_it_has_one():
+    w = world("DEF S Switch { choice [ NULL Group { } ] } DEF L LOD { level [ NULL Group { } ] } "
+              "DEF R Script { field MFNode m [ NULL Group { } ] } DEF G Group { }")
+    for name, field in (("S", "choice"), ("L", "level"), ("R", "m")):
+        before = getattr(w[name], field)
+        assert before[0] is None and len(before) == 2
+        setattr(w[name], field, before)
+        assert getattr(w[name], field) == before
+    n = world()["All"]
+    n.nodes = [None]
+    assert n.nodes == (None,)
+    with pytest.raises(TypeError, match="a sequence of Nodes expected"):
+        w["G"].children = [None]
+
+
+class Made(collections.abc.Sequence):
+    """A sequence that makes each item when it is asked for it, and does not keep it."""
+
+    def __init__(self, make, length):
+        self.make, self.length, self.made = make, length, 0
+
+    def __len__(self):
+        return self.length
+
+    def __getitem__(self, i):
+        if i >= self.length:
+            raise IndexError
+        self.made += 1
+        return self.make(i)
+
+
+def test_items_that_exist_only_while_they_are_read():
+    lines = [f"line {i} of a text that does not fit into a short string" for i in range(50)]
+    assert xvrml.Text(string=Made(lambda i: "".join(lines[i]), 50)).string == tuple(lines)
+    assert xvrml.Text(string=np.array(lines)).string == tuple(lines)
+    nodes = Made(lambda i: xvrml.Transform(translation=(i, 0, 0)), 500)
+    children = xvrml.Group(children=nodes).children
+    assert [n.translation[0] for n in children] == list(range(500))
+    assert nodes.made == 500
 
 
 def test_arrays_are_read_only():
@@ -365,6 +423,16 @@ def test_writing(tmp_path):
     assert again["All"].aVec3f == (7, 8, 9) and again.to_vrml() == w.to_vrml()
     with pytest.raises(OSError):
         w.save(tmp_path / "no/such/folder.wrl")
+
+
+def test_worlds_too_deep_to_write():
+    node = xvrml.Group()
+    for _ in range(20000):
+        node = xvrml.Group(children=[node])
+    w = xvrml.World()
+    w.add(node)
+    with pytest.raises(ValueError, match="nested more than 2500 deep"):
+        w.to_vrml()
 
 
 # The package ------------------------------------------------------------------------------------

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Long runs whose memory must not grow (`make soak`). One run is a window under Xvfb with random
-mouse motion, clicks and keys, while Scripts create and remove nodes and the world's file is
-rewritten. The other is a master whose workers are killed and restarted. Both run at once,
-independently. Fails if one of them ends by itself or makes a wrong frame, or if its memory or
-number of descriptors grows.
+"""Runs a window and a cluster for long times and fails if their memory grows (`make soak`).
+
+One run is a window under Xvfb with random mouse motion, clicks and keys, while Scripts create and
+remove nodes and the world's file is rewritten. The other is a master whose workers are killed and
+restarted. Both run at once, independently. It fails if one of them ends by itself or makes a wrong
+frame, or if its memory or number of descriptors grows.
 
 soak.py [--minutes N] [--window] [--cluster] [--out FOLDER]
     default: both, for 60 minutes, into build/soak"""

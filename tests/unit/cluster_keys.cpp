@@ -1,4 +1,5 @@
-// cluster_keys.cpp: key files: who may read them, which are refused, and that no key is ever lost.
+// cluster_keys.cpp: Tests key files: who may read them, which are refused, and that no key is ever
+// lost.
 #include <fstream>
 
 #include <sys/stat.h>

@@ -1,5 +1,5 @@
-// cluster_messages.cpp: every message survives encoding and decoding. Messages that are truncated,
-// altered, too large or inconsistent are refused.
+// cluster_messages.cpp: Tests that every message survives encoding and decoding. Messages that are
+// truncated, altered, too large or inconsistent are refused.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -120,6 +120,29 @@ TEST(Messages, anyByteMayBeWrong) {
           problem(std::move(changed)); // must neither crash nor allocate much
         }
   }
+}
+
+// The array of jobs is moved to the end of the header, by four bytes too far.
+TEST(Messages, unalignedArraysAreRefused) {
+  Frames frames = of(oneOfEach()[10]);
+  std::vector<std::byte>& header = frames[0];
+  ASSERT_EQ(problem(Frames(frames)), "");
+  const auto* jobs = wire::GetHeader(header.data())->any_as_Jobs()->jobs();
+  const size_t from = size_t(reinterpret_cast<const std::byte*>(jobs) - header.data());
+  const std::vector<std::byte> copy(header.begin() + ptrdiff_t(from),
+                                    header.begin() +
+                                        ptrdiff_t(from + 4 + jobs->size() * sizeof(wire::Job)));
+  const size_t to = (header.size() + 7) / 8 * 8;
+  header.resize(to);
+  header.insert(header.end(), copy.begin(), copy.end());
+  for (size_t at = 0; at < from; at += 4) { // the field holds the distance to the array
+    uint32_t distance;
+    std::memcpy(&distance, header.data() + at, sizeof distance);
+    if (at + distance != from) continue;
+    distance = uint32_t(to - at);
+    std::memcpy(header.data() + at, &distance, sizeof distance);
+  }
+  EXPECT_NE(problem(std::move(frames)).find("not aligned"), std::string::npos);
 }
 
 TEST(Messages, tooManyOrTooFewFrames) {

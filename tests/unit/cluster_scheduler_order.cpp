@@ -1,4 +1,4 @@
-// cluster_scheduler_order.cpp: how the scheduler uses measured costs: the order of tiles, the
+// cluster_scheduler_order.cpp: Tests how the scheduler uses measured costs: the order of tiles, the
 // length of jobs, and the number of queued jobs.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
-// cluster_scheduler_random.cpp: random event sequences. Each sample of each frame is merged exactly
-// once, every frame ends, no worker has more jobs than allowed, and no lease is left over.
-// rapidcheck generates the events as a list of numbers and shrinks it when a rule breaks.
+// cluster_scheduler_random.cpp: Tests the scheduler with random event sequences. Each sample of
+// each frame is merged exactly once, every frame ends, no worker has more jobs than allowed, and no
+// lease is left over. rapidcheck generates the events as a list of numbers and shrinks it when a
+// rule breaks.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 

@@ -1,5 +1,6 @@
-// cluster_wire.cpp: the wire: who is admitted and who is refused, oversized messages, heartbeats,
-// lost connections. Real sockets on loopback; the tests wait for events instead of times.
+// cluster_wire.cpp: Tests the wire: who is admitted and who is refused, oversized messages,
+// heartbeats, lost connections. Real sockets on loopback; the tests wait for events instead of
+// times.
 #include <thread>
 
 #include <netinet/in.h>

@@ -1,5 +1,5 @@
-// cluster_worker.cpp: a worker's session. The test plays the master; the executor only records its
-// calls.
+// cluster_worker.cpp: Tests a worker's session. The test plays the master; the executor only
+// records its calls.
 #include "backend/cluster/net/greeting.h"
 #include "backend/cluster/worker/worker.h"
 

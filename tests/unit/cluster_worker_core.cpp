@@ -1,5 +1,5 @@
-// cluster_worker_core.cpp: the executor of a worker: the order in which commits, jobs and queries
-// take effect, how it reports failures, and that its pictures equal the local backend's.
+// cluster_worker_core.cpp: Tests the executor of a worker: the order in which commits, jobs and
+// queries take effect, how it reports failures, and that its pictures equal the local backend's.
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
@@ -144,7 +144,7 @@ TEST_F(WorkerCoreTest, ItsPicturesAreThoseOfTheLocalBackend) {
   // After forget(), the first scene again.
   core.scene(3, all[0], true, false);
   core.prepare(3);
-  core.prepare(3); // calling it once is enough
+  core.prepare(3); // a second call must change nothing
   core.ask([](Backend&) {});
   EXPECT_EQ(sink.all().back().epoch, 3u);
   EXPECT_EQ(picture(core, 3, lease), expected(all, 1));

@@ -1,4 +1,4 @@
-// mapper_budget.cpp: what the mapper draws from the budget of a world, and the messages about
+// mapper_budget.cpp: Tests what the mapper draws from the budget of a world, and the messages about
 // shapes that would vanish in silence.
 #include <malloc.h>
 

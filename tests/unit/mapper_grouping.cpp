@@ -1,5 +1,5 @@
-// mapper_grouping.cpp: which shapes become objects of their own and why: reachable by events, used
-// often, identical, or requested by the author.
+// mapper_grouping.cpp: Tests which shapes become objects of their own and why: reachable by events,
+// used often, identical, or requested by the author.
 #include "mapper/graph/cost.h"
 #include "unit/mapper_fixture.h"
 

@@ -1,4 +1,4 @@
-// mapper_shaders.cpp: shader plug-ins used by a world: ORTAppearance with texture, ORTLight,
+// mapper_shaders.cpp: Tests shader plug-ins used by a world: ORTAppearance with texture, ORTLight,
 // ORTViewpoint, ORTBackground, and the effect of changing them. Pictures of one ray show which
 // shader was called.
 #include <array>

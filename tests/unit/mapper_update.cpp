@@ -1,5 +1,5 @@
-// mapper_update.cpp: the cost of each kind of change, counted in calls and never in time. Each test
-// states what the change touches; everything else must stay.
+// mapper_update.cpp: Tests the cost of each kind of change, counted in calls and never in time.
+// Each test states what the change touches; everything else must stay.
 #include <cmath>
 
 #include "unit/mapper_fixture.h"

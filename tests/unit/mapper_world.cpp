@@ -1,4 +1,4 @@
-// mapper_world.cpp: how the mapper maps worlds, seen through its results and the engine:
+// mapper_world.cpp: Tests how the mapper maps worlds, seen through its results and the engine:
 // viewpoints, bounds, names, sharing, levels of detail.
 #include <algorithm>
 #include <cmath>

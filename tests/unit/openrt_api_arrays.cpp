@@ -1,5 +1,5 @@
-// openrt_api_arrays.cpp: rtDrawArrays and rtDrawElements: layouts, types, and which values are
-// checked and copied.
+// openrt_api_arrays.cpp: Tests rtDrawArrays and rtDrawElements: layouts, types, and which values
+// are checked and copied.
 #include <cmath>
 #include <cstring>
 #include <limits>

@@ -1,5 +1,5 @@
-// openrt_api_frames.cpp: frame settings, the sequence of frames, reading pixels, statistics and
-// queries; the order of edits.
+// openrt_api_frames.cpp: Tests frame settings, the sequence of frames, reading pixels, statistics
+// and queries; the order of edits.
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -47,6 +47,19 @@ TEST_F(Frames, BadSettingsAreErrorsAndChangeNothing) {
   EXPECT_FAILS(RT_INVALID_VALUE, rtQuality(RT_SHADOWS, 2));
   EXPECT_FAILS(RT_INVALID_ENUM, rtQuality(99, 1));
   EXPECT_TRUE(commit().edits.edits.empty());
+}
+
+TEST_F(Frames, AWrongSettingIsNamedWithItsRangeAndValue) {
+  const auto message = [] {
+    EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE));
+    return std::string(rtGetErrorMessage());
+  };
+  rtQuality(RT_MAX_DEPTH, 10001);
+  EXPECT_EQ(message(), "rtQuality: depth: 0 to 10000 expected, not 10001");
+  rtQuality(RT_TILE_SIZE, 3);
+  EXPECT_EQ(message(), "rtQuality: tile: 4 to 128, or 0, expected, not 3");
+  rtQualityf(RT_TARGET_ERROR, 1.5);
+  EXPECT_EQ(message(), "rtQualityf: error: 0 to 1 expected, not 1.5");
 }
 
 TEST_F(Frames, TheTableOfQualitySettingsIsWhatIsAccepted) {

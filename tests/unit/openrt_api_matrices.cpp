@@ -1,4 +1,4 @@
-// openrt_api_matrices.cpp: the matrix stack against closed forms, and its errors.
+// openrt_api_matrices.cpp: Tests the matrix stack against closed forms, and its errors.
 #include <cmath>
 #include <limits>
 

@@ -1,5 +1,5 @@
-// openrt_api_primitives.cpp: rtBegin and rtEnd: modes, latched attributes, merging, positions in
-// double, degenerate and bad input.
+// openrt_api_primitives.cpp: Tests rtBegin and rtEnd: modes, latched attributes, merging, positions
+// in double, degenerate and bad input.
 #include <cmath>
 #include <limits>
 

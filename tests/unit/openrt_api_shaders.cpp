@@ -1,5 +1,5 @@
-// openrt_api_shaders.cpp: shader classes, parameters, roles and textures, with the plug-ins of
-// tests/abi.
+// openrt_api_shaders.cpp: Tests shader classes, parameters, roles and textures, with the plug-ins
+// of tests/abi.
 #include <cfloat>
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// openrt_clusters.cpp: cutting a scene at its dynamic parts into parts, sockets and clusters, and
-// the changes that each commit reports.
+// openrt_clusters.cpp: Tests cutting a scene at its dynamic parts into parts, sockets and clusters,
+// and the changes that each commit reports.
 #include <gtest/gtest.h>
 
 #include "scene/flatten.h"

@@ -1,4 +1,5 @@
-// openrt_ies.cpp: reading IES files of measured luminaires, their symmetries, and invalid texts.
+// openrt_ies.cpp: Tests reading IES files of measured luminaires, their symmetries, and invalid
+// texts.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,5 +1,6 @@
-// openrt_light_tree.cpp: light selection. The selection probabilities sum to 1, match the sampling,
-// are roughly proportional to the light that arrives, and are never 0 where light arrives.
+// openrt_light_tree.cpp: Tests light selection. The selection probabilities sum to 1, match the
+// sampling, are roughly proportional to the light that arrives, and are never 0 where light
+// arrives.
 #include <gtest/gtest.h>
 
 #include <cmath>

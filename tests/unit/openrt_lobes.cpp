@@ -1,4 +1,5 @@
-// openrt_lobes.cpp: the engine's scattering lobes: samples, values and pdfs must be consistent.
+// openrt_lobes.cpp: Tests the engine's scattering lobes: samples, values and pdfs must be
+// consistent.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// openrt_pilots.cpp: the number of samples per tile, from synthetic pilots.
+// openrt_pilots.cpp: Tests the number of samples per tile, from synthetic pilots.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,5 +1,5 @@
-// openrt_result_codec.cpp: encoding of job results. Decoding returns exactly what was encoded and
-// refuses anything else.
+// openrt_result_codec.cpp: Tests the encoding of job results. Decoding returns exactly what was
+// encoded and refuses anything else.
 #include <cstring>
 #include <limits>
 #include <random>

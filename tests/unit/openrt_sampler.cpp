@@ -1,4 +1,4 @@
-// openrt_sampler.cpp: the (0,2) property itself. A wrong scramble looks right but loses the
+// openrt_sampler.cpp: Tests the (0,2) property itself. A wrong scramble looks right but loses the
 // advantage.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// openrt_spherical.cpp: sampling of directions towards triangles and ellipsoids: solid angles
-// against closed forms, uniformity (chi-square), pdfs that integrate to one, hard cases.
+// openrt_spherical.cpp: Tests the sampling of directions towards triangles and ellipsoids: solid
+// angles against closed forms, uniformity (chi-square), pdfs that integrate to one, hard cases.
 #include <gtest/gtest.h>
 
 #include <cmath>

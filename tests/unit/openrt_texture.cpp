@@ -1,4 +1,4 @@
-// openrt_texture.cpp: texture lookups against values worked out by hand.
+// openrt_texture.cpp: Tests texture lookups against values worked out by hand.
 #include "shading/texture.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// picture_display.cpp: display bytes follow the curve of IEC 61966-2-1, whichever way they are
-// computed.
+// picture_display.cpp: Tests that display bytes follow the curve of IEC 61966-2-1, whichever way
+// they are computed.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -1,5 +1,5 @@
-// picture_formats.cpp: the table of file formats agrees with what its encoders do. A new row is
-// tested without a change here.
+// picture_formats.cpp: Tests that the table of file formats agrees with what its encoders do. A new
+// row is tested without a change here.
 #include <gtest/gtest.h>
 
 #include <cmath>

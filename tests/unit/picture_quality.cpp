@@ -29,6 +29,21 @@ TEST(Quality, NamesOfValuesAreThoseOfTheLibrary) {
   EXPECT_FALSE(isSwitch(RT_SEED));
 }
 
+TEST(Quality, FaultsReadAsThoseOfTheLibrary) {
+  const RTcontext context = rtNewContext("backend=null");
+  for (const RTqualityInfo& info : qualityTable()) {
+    if (info.quality == RT_SEED) continue;
+    const std::string function = info.isReal ? "rtQualityf" : "rtQuality";
+    if (info.isReal)
+      rtQualityf(info.quality, -1);
+    else
+      rtQuality(info.quality, -1);
+    EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_VALUE)) << info.name;
+    EXPECT_EQ(rtGetErrorMessage(), function + ": " + qualityFault(info, info.name, -1));
+  }
+  rtDeleteContext(context);
+}
+
 TEST(Quality, AllValuesAreAppliedButThoseOfTheContext) {
   const RTcontext context = rtNewContext("backend=null");
   QualityValues values;

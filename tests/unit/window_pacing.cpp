@@ -1,4 +1,4 @@
-// window_pacing.cpp: frame pacing. The frame rate holds during motion, picture sizes do not
+// window_pacing.cpp: Tests frame pacing. The frame rate holds during motion, picture sizes do not
 // flicker, and a still view is rendered at full quality.
 #include <gtest/gtest.h>
 

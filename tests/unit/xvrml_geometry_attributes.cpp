@@ -1,5 +1,5 @@
-// xvrml_geometry_attributes.cpp: IndexedFaceSet's colours, normals and texture coordinates, for
-// every combination of the flags and index lists of clause 6.23.
+// xvrml_geometry_attributes.cpp: Tests IndexedFaceSet's colours, normals and texture coordinates,
+// for every combination of the flags and index lists of clause 6.23.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {

@@ -1,6 +1,6 @@
-// xvrml_geometry_collinear.cpp: concave faces with collinear corners. Every corner is a vertex of
-// the triangles on all its sides, with its own colour, normal and texture coordinate. No edge runs
-// past a vertex (a T-junction).
+// xvrml_geometry_collinear.cpp: Tests concave faces with collinear corners. Every corner is a
+// vertex of the triangles on all its sides, with its own colour, normal and texture coordinate. No
+// edge runs past a vertex (a T-junction).
 #include <random>
 
 #include "unit/mesh_checks.h"

@@ -1,4 +1,4 @@
-// xvrml_geometry_crease.cpp: creaseAngle (clause 4.6.3.5): which edges are smooth, and that
+// xvrml_geometry_crease.cpp: Tests creaseAngle (clause 4.6.3.5): which edges are smooth, and that
 // generated normals are finite unit vectors on the front side.
 #include "unit/mesh_checks.h"
 

@@ -1,5 +1,5 @@
-// xvrml_geometry_extrusion.cpp: Extrusion (clause 6.18): frames, caps, scale, orientation, closed
-// and degenerate spines, against closed forms.
+// xvrml_geometry_extrusion.cpp: Tests Extrusion (clause 6.18): frames, caps, scale, orientation,
+// closed and degenerate spines, against closed forms.
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {

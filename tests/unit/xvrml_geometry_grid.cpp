@@ -1,4 +1,4 @@
-// xvrml_geometry_grid.cpp: ElevationGrid (clause 6.17).
+// xvrml_geometry_grid.cpp: Tests ElevationGrid (clause 6.17).
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {

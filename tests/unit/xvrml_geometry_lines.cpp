@@ -1,4 +1,4 @@
-// xvrml_geometry_lines.cpp: IndexedLineSet and PointSet (clauses 6.24, 6.36).
+// xvrml_geometry_lines.cpp: Tests IndexedLineSet and PointSet (clauses 6.24, 6.36).
 #include "unit/mesh_checks.h"
 
 namespace xvrml::test {

@@ -1,5 +1,5 @@
-// xvrml_geometry_primitives.cpp: Box, Cone, Cylinder and Sphere against their closed forms (ISO/IEC
-// 14772-1 clauses 6.7, 6.11, 6.14, 6.43).
+// xvrml_geometry_primitives.cpp: Tests Box, Cone, Cylinder and Sphere against their closed forms
+// (ISO/IEC 14772-1 clauses 6.7, 6.11, 6.14, 6.43).
 #include "geometry/bounds.h"
 #include "unit/mesh_checks.h"
 

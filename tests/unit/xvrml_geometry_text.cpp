@@ -1,4 +1,4 @@
-// xvrml_geometry_text.cpp: Text and FontStyle (clauses 6.22, 6.47): extents, justification,
+// xvrml_geometry_text.cpp: Tests Text and FontStyle (clauses 6.22, 6.47): extents, justification,
 // stretching, directions, families, hostile strings.
 #include <algorithm>
 

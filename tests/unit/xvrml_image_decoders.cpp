@@ -1,5 +1,5 @@
-// xvrml_image_decoders.cpp: PNG, JPEG and GIF against pictures made here. Damaged, truncated and
-// oversized files end in an exception that says so.
+// xvrml_image_decoders.cpp: Tests the decoders of PNG, JPEG and GIF against pictures made here.
+// Damaged, truncated and oversized files end in an exception that says so.
 #include <gtest/gtest.h>
 #include <png.h>
 

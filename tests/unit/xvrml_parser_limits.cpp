@@ -39,6 +39,26 @@ TEST(ParserLimits, NestingRaisedAsFarAsTheStackBears) {
   EXPECT_TRUE(says(*parse(nested(Parser::maximumNesting + 1), options), "the most there can be"));
 }
 
+// Programs can nest nodes deeper than files can.
+TEST(ParserLimits, WorldsNestedTooDeepAreNotWritten) {
+  const auto nest = [](size_t depth) {
+    auto world = std::make_unique<World>();
+    const NodeType& group = *findNodeType("Group");
+    NodeRef node(group.create(group));
+    for (size_t i = 1; i < depth; ++i) {
+      auto* outer = static_cast<nodes::Group*>(group.create(group));
+      const NodeRef kept(outer);
+      outer->children = {node};
+      node = kept;
+    }
+    world->scope.roots = {node};
+    return world;
+  };
+  EXPECT_FALSE(writeWorld(*nest(Parser::maximumNesting)).empty());
+  EXPECT_THROW(writeWorld(*nest(Parser::maximumNesting + 1)), std::length_error);
+  EXPECT_THROW(writeWorld(*nest(100'000)), std::length_error);
+}
+
 TEST(ParserLimits, AMillionBraces) {
   for (const char* opening : {"Group { children ", "Group { children [ ", "Bax { ", "{ ", "[ ",
                               "PROTO P [ ] { ", "PROTO P [ field SFNode n Group { children "}) {

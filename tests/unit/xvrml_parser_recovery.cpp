@@ -1,4 +1,4 @@
-// xvrml_parser_recovery.cpp: an error in a world costs only the node that contains it.
+// xvrml_parser_recovery.cpp: Tests that an error in a world costs only the node that contains it.
 #include <algorithm>
 
 #include "unit/xvrml_parser_support.h"

@@ -91,6 +91,16 @@ TEST(ParserSource, NodesKnowWhereTheyStand) {
   EXPECT_EQ(shape.source.column, 11u);
 }
 
+// The comments at the top can decide which axis is up.
+TEST(ParserSource, CommentsAtTheTopAreWrittenAgain) {
+  const std::string top = "#VRML V2.0 utf8 KiCad\n# second line\n";
+  const auto world = loadWorldFromMemory(top + "Group { } # not this one\n", "test.wrl");
+  const std::string text = writeWorld(*world);
+  EXPECT_TRUE(text.starts_with(top)) << text;
+  EXPECT_EQ(text.find("not this one"), text.npos);
+  EXPECT_EQ(writeWorld(*loadWorldFromMemory(text, "again.wrl")), text);
+}
+
 TEST(ParserUrl, RelativeToTheFileThatHoldsThem) {
   const Folder folder;
   folder.write("a/b/c d.png", "x");

@@ -1,8 +1,9 @@
-// xvrml_url_fields.cpp: which fields hold URLs. Relative URLs count from the file that they stand
-// in, also when prototypes of other folders hand them on (ISO/IEC 14772-1 4.5.3).
+// xvrml_url_fields.cpp: Tests which fields hold URLs. Relative URLs count from the file that they
+// stand in, also when prototypes of other folders hand them on (ISO/IEC 14772-1 4.5.3).
 #include <cstddef>
 #include <set>
 
+#include "graph/url.h"
 #include "unit/xvrml_parser_support.h"
 #include "xvrml/node_table.h"
 #include "xvrml/set_field.h"
@@ -126,8 +127,110 @@ TEST_F(UrlsThroughIs, PrototypesOfBuiltinNodesHaveTheFieldsOfTheNode) {
   load("EXTERNPROTO Link [ exposedField MFString url ] \"urn:web3d:vrml97:node:Anchor\"\n"
        "PROTO P [ field MFString picture [ ] ] { Link { url IS picture } }\n",
        "EXTERNPROTO P [ field MFString picture ] \"../lib/p.wrl#P\"\nP { picture \"a.png\" }\n");
-  const auto& instance = dynamic_cast<const ProtoInstance&>(*world->scope.roots.at(0));
-  EXPECT_EQ(file(*instance.body.roots.at(0), "url"), "worlds/a.png");
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/a.png");
+}
+
+// Their nodes are in the file of the EXTERNPROTO.
+TEST_F(UrlsThroughIs, UrlsOfBuiltinNodesCountFromTheFileOfTheInstance) {
+  load("EXTERNPROTO Link [ exposedField MFString url ] \"urn:web3d:vrml97:node:Anchor\"\n"
+       "PROTO P [ ] { Link { url \"own.png\" } }\n",
+       "EXTERNPROTO Link [ exposedField MFString url ] \"urn:web3d:vrml97:node:Anchor\"\n"
+       "EXTERNPROTO P [ ] \"../lib/p.wrl#P\"\nLink { url \"mine.png\" } P { }\n");
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  EXPECT_EQ(file(drawn(1), "url"), "lib/own.png");
+}
+
+const std::string usesPinned = "EXTERNPROTO Pinned [ field MFString picture ] \"../lib/p.wrl\"\n"
+                               "Pinned { picture \"mine.png\" }\n";
+
+// One of the two files has no folder in its path, or only one of the paths is absolute.
+TEST_F(UrlsThroughIs, RelativeAndAbsolutePathsOfFilesCanBeCompared) {
+  folder.write("lib/p.wrl", header + pinned);
+  folder.write("worlds/w.wrl", header + usesPinned);
+  const auto former = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path("worlds"));
+  for (const std::string name : {"w.wrl", "./w.wrl", "../worlds/w.wrl"}) {
+    world = loadWorld(name);
+    EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png") << name;
+  }
+  world = loadWorldFromMemory(header + usesPinned, "-");
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  MFString urls{"mine.png"};
+  rebaseUrls(urls, "w.wrl", folder.path("lib/p.wrl"));
+  EXPECT_EQ(urls, MFString{"../worlds/mine.png"});
+  std::filesystem::current_path(former);
+}
+
+TEST_F(UrlsThroughIs, NamesOfFoldersAreNoPartsOfAUrl) {
+  for (const std::string name : {"a#b", "p%41q", "q?v=1", "x:y", " blank "}) {
+    folder.write("lib/p.wrl", header + pinned);
+    folder.write(name + "/mine.png", "picture");
+    world = loadWorld(folder.write(name + "/w.wrl", header + usesPinned));
+    EXPECT_EQ(file(drawn(0), "url"), name + "/mine.png");
+  }
+}
+
+TEST_F(UrlsThroughIs, BlanksAndQueriesMayStandInTheUrl) {
+  folder.write("worlds/mine.png", "picture");
+  const std::string declared = "EXTERNPROTO Pinned [ field MFString picture ] \"../lib/p.wrl\"\n";
+  load(pinned,
+       declared + "Pinned { picture \" mine.png \" } Pinned { picture \"mine.png?a:b\" }\n");
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  EXPECT_EQ(file(drawn(1), "url"), "worlds/mine.png");
+}
+
+// The folder lib/ is a link to deep/er/real/; ".." leads out of the real folder.
+TEST_F(UrlsThroughIs, LinkedFoldersAreFollowed) {
+  folder.write("deep/er/real/p.wrl", header + pinned);
+  folder.write("worlds/mine.png", "picture");
+  std::filesystem::create_directory_symlink(folder.path("deep/er/real"), folder.path("lib"));
+  world = loadWorld(folder.write("worlds/w.wrl", header + usesPinned));
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  EXPECT_TRUE(std::filesystem::exists(
+      resolveUrl(field<MFString>(drawn(0), "url").at(0), *drawn(0).source.file, {}).path));
+}
+
+// A field is a URL for one node and a text for another one, behind two prototypes.
+TEST_F(UrlsThroughIs, StringsThatAreTextStayAsTheyAre) {
+  folder.write("deep/q.wrl", header + "EXTERNPROTO P [ field MFString s ] \"../lib/p.wrl\"\n"
+                                      "PROTO Q [ field MFString s \"q\" ] { P { s IS s } }\n");
+  load("PROTO P [ field MFString s \"p\" ] { Group { children [ Anchor { url IS s }\n"
+       "  Shape { geometry Text { string IS s } } ] } }\n",
+       "EXTERNPROTO Q [ field MFString s ] \"../deep/q.wrl\"\nQ { s \"Hello\" } Q { }\n");
+  for (const auto& [root, text, place] :
+       {std::tuple(0, "Hello", "worlds/Hello"), std::tuple(1, "q", "deep/q")}) {
+    const auto& group = dynamic_cast<const nodes::Group&>(drawn(size_t(root)));
+    const auto& shape = dynamic_cast<const nodes::Shape&>(*group.children.at(1));
+    EXPECT_EQ(nodeCast<nodes::Text>(shape.geometry)->string, MFString{text});
+    EXPECT_EQ(file(*group.children.at(0), "url"), place);
+  }
+}
+
+TEST_F(UrlsThroughIs, AWorldWrittenIntoAnotherFolderNamesTheSameFiles) {
+  load(pinned, usesPinned +
+                   "Pinned { } Anchor { url [ \"mine.png\" \"http://a.org/x\" \"#V\" ] }\n"
+                   "PROTO Own [ field MFString u \"own.png\" ] { Anchor { url IS u } } Own { }\n");
+  const std::string text = writeWorld(*world, folder.path("out/far/w.wrl"));
+  EXPECT_EQ(writeWorld(*world, folder.path("worlds/other.wrl")), writeWorld(*world));
+  world = loadWorld(folder.write("out/far/w.wrl", text));
+  EXPECT_EQ(messages(*world), "");
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  EXPECT_EQ(file(drawn(1), "url"), "lib/own.png");
+  EXPECT_EQ(file(drawn(2), "url"), "worlds/mine.png");
+  EXPECT_EQ(field<MFString>(drawn(2), "url").at(1), "http://a.org/x");
+  EXPECT_EQ(field<MFString>(drawn(2), "url").at(2), "#V");
+  EXPECT_EQ(file(drawn(3), "url"), "worlds/own.png");
+}
+
+TEST_F(UrlsThroughIs, AssigningAFieldToItselfChangesNothing) {
+  load(pinned, usesPinned + "Pinned { }\n");
+  for (const NodeRef& root : world->scope.roots)
+    ASSERT_TRUE(setField(*world, *root, "picture", field<MFString>(*root, "picture")));
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  EXPECT_EQ(file(drawn(1), "url"), "lib/own.png");
+  world = loadWorldFromMemory(writeWorld(*world), folder.path("worlds/again.wrl"));
+  EXPECT_EQ(file(drawn(0), "url"), "worlds/mine.png");
+  EXPECT_EQ(file(drawn(1), "url"), "lib/own.png");
 }
 
 #pragma GCC diagnostic ignored "-Winvalid-offsetof" // one base, not virtual

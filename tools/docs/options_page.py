@@ -21,7 +21,7 @@ def vv_page(vv):
     text = help_of(vv).split("\n")
     first = next(i for i, line in enumerate(text) if re.fullmatch(r"[A-Z]\w+", line))
     lines += ["   " + line if line else "" for line in text[1:first]]
-    tail = next(i for i, line in enumerate(text) if line.startswith("Exit codes:"))
+    tail = next(i for i, line in enumerate(text) if line == "Exit codes")
     option, said = None, []
 
     def flush():
@@ -46,8 +46,10 @@ def vv_page(vv):
             said.append(line.strip())
     flush()
     lines += ["Exit codes", "----------", ""]
-    codes = " ".join(line.strip() for line in text[tail:])[len("Exit codes:"):]
-    lines += [escape(codes.strip()), ""]
+    for line in text[tail + 1:]:
+        if code := re.match(r"  (\d+)\s+(.*)", line):
+            lines += [f"* {code.group(1)}: {escape(code.group(2))}"]
+    lines += [""]
     return "\n".join(lines)
 
 

@@ -51,6 +51,8 @@ Definition readOne(const std::string& text, const World& world) {
   std::string problem;
   const std::string_view written = std::string_view(text).substr(equals + 1);
   std::optional<Value> value = parseValue(one.field->type, written, problem, world.options.limits);
+  if (!value && one.field->type == FieldType::SFNode)
+    fail(text, "-D sets a node field only to NULL");
   if (!value)
     fail(text, fmt::format("a value of type {} was expected: {}", fieldTypeName(one.field->type),
                            problem));

@@ -9,10 +9,11 @@ namespace vv {
 
 // Identifies one of the run's pictures.
 struct PictureName {
-  std::string viewpoint;          // empty: the run has one viewpoint
-  std::optional<long long> frame; // nothing: the run is not a sequence
+  std::string viewpoint;          // viewpoint's name; empty if the run has only one
+  std::optional<long long> frame; // frame's number; empty if the run is not a sequence
 
-  std::string text() const; // for people: "front, frame 12"
+  // Returns the name for messages, such as "front, frame 12".
+  std::string text() const;
 };
 
 // Throws UsageError if the braces of a {frame...} are wrong.

@@ -310,7 +310,11 @@ const OptionInfo table[] = {
     {"--json", "", "Inspect", "Print --info, --explain and the lists as JSON.",
      [](Options& o, const std::string&) { o.json = true; }},
     {"--stats", "FILE", "Inspect",
-     "Write statistics as JSON, one file for a whole sequence; - is standard output.",
+     "Write statistics as JSON, one file for a whole sequence; - is standard output. image.spp is "
+     "the "
+     "maximum number of samples per pixel, image.spp_mean the mean number taken; error.half_width "
+     "is "
+     "what --error is compared with (docs/error-bars.md).",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");
        o.stats = v;

@@ -31,13 +31,19 @@ std::string longName(const OptionInfo& option) {
       names.substr(names.find("--"), names.find(',', names.find("--")) - names.find("--")));
 }
 
+// Returns the name that all messages use: -o, -D, --size.
+std::string shownName(const OptionInfo& option) {
+  const std::string_view names = option.names;
+  return std::string(names.substr(0, names.find(',')));
+}
+
 void apply(const OptionInfo& option, Options& options, const std::string& value) {
   try {
     if (option.apply)
       option.apply(options, value);
     else
       options.render.quality.set(option.quality, readQuality(option.quality, value));
-  } catch (const UsageError& error) { throw UsageError(longName(option) + ": " + error.what()); }
+  } catch (const UsageError& error) { throw UsageError(shownName(option) + ": " + error.what()); }
 }
 
 std::vector<std::string> allNames() {
@@ -202,17 +208,21 @@ const JobInfo* Options::job() const {
   return nullptr;
 }
 
+// Returns whether a word is a whole number, perhaps a negative one, which the option then refuses.
+bool isWholeNumber(std::string_view word) {
+  if (word.starts_with('-')) word.remove_prefix(1);
+  return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
+}
+
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
-// its argument only if it begins with a digit.
+// its argument only if it is a whole number.
 std::vector<std::string> withOptionalArguments(int argc, char** argv) {
   std::vector<std::string> out;
   for (int i = 1; i < argc; ++i) {
     out.emplace_back(argv[i]);
     for (const OptionInfo& option : optionTable()) {
       if (option.argument[0] != '[' || out.back() != longName(option)) continue;
-      const bool given =
-          i + 1 < argc && argv[i + 1][0] >= '0' && argv[i + 1][0] <= '9' &&
-          std::string_view(argv[i + 1]).find_first_not_of("0123456789") == std::string_view::npos;
+      const bool given = i + 1 < argc && isWholeNumber(argv[i + 1]);
       out.back() += std::string("=") + (given ? argv[++i] : "-");
       break;
     }
@@ -317,12 +327,18 @@ std::string helpText() {
                                     : "\n" + std::string(indent, ' ');
     out += wrapped(option.text, indent, width - indent) + "\n";
   }
-  return out + "\nExit codes: 0 done, 1 the picture failed, 2 usage, 3 the world is missing or "
-               "unusable, 4 problems found by --check or\n"
-               "--strict, 5 a plug-in or a texture is missing under --strict, 6 too few workers "
-               "under --require-workers, 75 try again,\n"
-               "130 interrupted (what was finished is saved; a second interrupt ends at once; "
-               "SIGUSR1 saves and goes on).\n";
+  return out + "\nExit codes\n"
+               "  0    done\n"
+               "  1    the picture could not be made or written\n"
+               "  2    the command line is wrong\n"
+               "  3    unusable input: the world, or another file that the command line names, "
+               "cannot be read\n"
+               "  4    --check, --strict or --audit found problems\n"
+               "  5    under --strict: a plug-in or a texture is missing\n"
+               "  6    fewer workers than --require-workers asks for\n"
+               "  75   out of memory or another resource, try again\n"
+               "  130  interrupted; what was finished is saved. A second interrupt ends at once. "
+               "SIGUSR1 saves and goes on\n";
 }
 
 } // namespace vv

@@ -37,13 +37,11 @@ const Wording wordings[] = {
     {RT_TARGET_ERROR, nullptr, "E|E%",
      "Sample each part of the picture until the average error bar is E of the brightness (for "
      "example 2%), with at most --spp samples per pixel (default here 4096).",
-     [](Options& o, const std::string& v) { o.render.error = readShare(v); }},
+     [](Options& o, const std::string& v) { o.render.error = readShare(RT_TARGET_ERROR, v); }},
     {RT_TIME_LIMIT, nullptr, "SECONDS",
      "Sample the whole picture in rounds for about this time, with at most --spp samples per pixel "
      "(default here 65536). Such a picture depends on the speed of the machine.",
-     [](Options& o, const std::string& v) {
-       o.render.timeLimit = readQualityInside(RT_TIME_LIMIT, v);
-     }},
+     [](Options& o, const std::string& v) { o.render.timeLimit = readQuality(RT_TIME_LIMIT, v); }},
     {RT_MAX_DEPTH, nullptr, nullptr,
      "Maximum number of surfaces that a path may pass through or bounce off, 0 to 10000 (default "
      "25)."},
@@ -52,14 +50,11 @@ const Wording wordings[] = {
      "With whitted, end branches of reflection and refraction that carry less than this share of "
      "the camera ray, 0 to 1 (default 1/4096).",
      [](Options& o, const std::string& v) {
-       o.render.quality.set(RT_ENERGY_CUT, v == "0" ? 0 : readShare(v));
+       o.render.quality.set(RT_ENERGY_CUT, readShare(RT_ENERGY_CUT, v));
      }},
     {RT_CLAMP, nullptr, "RADIANCE",
      "Limit the radiance of each sample. This removes fireflies, but also light; --stats says how "
-     "much (default: no limit).",
-     [](Options& o, const std::string& v) {
-       o.render.quality.set(RT_CLAMP, readQualityInside(RT_CLAMP, v));
-     }},
+     "much (default: no limit)."},
     {RT_SHADOWS},
     {RT_SEED, nullptr, nullptr, "Choose another set of sample positions (default 0).",
      [](Options& o, const std::string& v) {

@@ -128,6 +128,13 @@ std::string optionOf(const RTparameterInfo& info, const std::string& value) {
   return option;
 }
 
+// Returns the message of the last error without the name of the C function in front.
+std::string lastMessage() {
+  const std::string message = (rtGetError(), rtGetErrorMessage());
+  const size_t colon = message.find(": ");
+  return message.starts_with("rt") && colon != message.npos ? message.substr(colon + 2) : message;
+}
+
 // A context that draws nothing.
 struct Lookup {
   RTcontext context;
@@ -135,7 +142,7 @@ struct Lookup {
     const std::string config =
         "backend=null" + (shaderPath.empty() ? "" : " shaderpath=\"" + shaderPath + "\"");
     context = rtNewContext(config.c_str());
-    if (!context) throw UsageError((rtGetError(), rtGetErrorMessage()));
+    if (!context) throw UsageError(lastMessage());
   }
   ~Lookup() { rtDeleteContext(context); }
   Lookup(const Lookup&) = delete;
@@ -147,9 +154,11 @@ std::vector<std::string> optionsOf(const Written& written, RTenum role,
   const Lookup lookup(shaderPath);
   const RTid shaderClass = rtNewShaderClass(
       written.name.c_str(), written.library.empty() ? nullptr : written.library.c_str());
-  if (shaderClass == 0)
-    throw UsageError(std::string((rtGetError(), rtGetErrorMessage())) +
-                     "; vv --list-shaders lists them");
+  if (shaderClass == 0) {
+    const std::string why = lastMessage();
+    throw UsageError(why + (why.ends_with('?') ? "" : ";") +
+                     " vv --list-shaders lists the classes");
+  }
   RTenum found = 0;
   int count = 0;
   rtGetShaderClass(shaderClass, &found, &count);

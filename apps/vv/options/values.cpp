@@ -50,8 +50,10 @@ long long readInteger(std::string_view text, long long minimum, long long maximu
 double readNumber(std::string_view text, double minimum, double maximum) {
   double value = 0;
   if (!whole(text, value) || !(value > minimum && value < maximum))
-    throw UsageError(
-        fmt::format("a number between {} and {} was expected, not \"{}\"", minimum, maximum, text));
+    throw UsageError(maximum > 1e30
+                         ? fmt::format("a number above {} was expected, not \"{}\"", minimum, text)
+                         : fmt::format("a number between {} and {} was expected, not \"{}\"",
+                                       minimum, maximum, text));
   return value;
 }
 
@@ -73,11 +75,6 @@ double readQuality(RTenum quality, std::string_view text) {
   return value;
 }
 
-double readQualityInside(RTenum quality, std::string_view text) {
-  const RTqualityInfo info = picture::qualityInfo(quality);
-  return readNumber(text, info.minimum, info.maximum);
-}
-
 double readSeconds(std::string_view text) {
   double value = 0;
   if (!whole(text, value) || !(value >= 0 && value <= 1e6))
@@ -85,14 +82,16 @@ double readSeconds(std::string_view text) {
   return value;
 }
 
-double readShare(std::string_view text) {
+double readShare(RTenum quality, std::string_view text) {
   const bool percent = text.ends_with('%');
   double value = 0;
-  if (!whole(text.substr(0, text.size() - (percent ? 1 : 0)), value) ||
-      !(value > 0 && value <= (percent ? 100 : 1)))
-    throw UsageError(
-        fmt::format("a number above 0 up to 1, or up to 100%, was expected, not \"{}\"", text));
-  return percent ? value / 100 : value;
+  const bool read = whole(text.substr(0, text.size() - (percent ? 1 : 0)), value);
+  if (percent) value /= 100;
+  if (!read || !rtIsQualityAllowed(quality, value))
+    throw UsageError(fmt::format("{}, or up to {:.10g}%, was expected, not \"{}\"",
+                                 picture::qualityRange(quality),
+                                 100 * picture::qualityInfo(quality).maximum, text));
+  return value;
 }
 
 FrameRange readFrames(std::string_view text) {

@@ -18,7 +18,7 @@ enum ExitCode {
   exitDone = 0,
   exitRender = 1,    // the picture could not be made or written
   exitUsage = 2,     // the command line is wrong
-  exitInput = 3,     // the world is missing or unusable
+  exitInput = 3,     // the world or another input file is missing or unusable
   exitProblems = 4,  // --check or --strict found problems
   exitMissing = 5,   // under --strict: a plug-in or a texture is missing
   exitNoWorkers = 6, // there are fewer workers than --require-workers asks for
@@ -47,10 +47,9 @@ double readNumber(std::string_view text, double minimum, double maximum);
 // Reads a value that the library allows for a quality setting (RT_*): a name, if values have names;
 // else a number.
 double readQuality(RTenum quality, std::string_view text);
-// The same for a real number, with both limits of the range excluded.
-double readQualityInside(RTenum quality, std::string_view text);
+// The same for a real number, which may be a percentage.
+double readShare(RTenum quality, std::string_view text);
 double readSeconds(std::string_view text); // seconds from 0 to a million
-double readShare(std::string_view text);   // above 0 up to 1, or a percentage
 // Parses a number of bytes or items, with the optional suffixes k, M, G (powers of 1024).
 uint64_t readCount(std::string_view text);
 bool readSwitch(std::string_view text); // on, off

@@ -37,6 +37,11 @@ std::vector<double> coloursOf(const picture::Picture& picture) {
 
 } // namespace
 
+void checkReference(const Options& options) {
+  if (!options.compare.empty())
+    readReference(options.compare, options.render.width, options.render.height);
+}
+
 std::string compareText(const picture::Picture& made, const std::string& path) {
   const picture::Picture reference = readReference(path, made.width, made.height);
   const picture::Difference d =

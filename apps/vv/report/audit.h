@@ -15,6 +15,9 @@ namespace vv {
 // size.
 std::string compareText(const picture::Picture& made, const std::string& path);
 
+// Throws Failure if the picture of --compare cannot be read or has another size.
+void checkReference(const Options& options);
+
 class Audit {
  public:
   Audit(const Options& options, picture::Renderer& renderer)

@@ -64,7 +64,15 @@ void joinCluster(Options& options) {
   picture::RenderSettings context = options.render;
   try {
     options.render.cluster = std::make_shared<picture::Cluster>(options.cluster, context);
-  } catch (const picture::RenderError& error) { throw Failure{exitUsage, error.what()}; }
+  } catch (const picture::RenderError& error) {
+    const std::string why = error.what();
+    const picture::ClusterSettings& c = options.cluster;
+    const std::string hosts = c.workers.starts_with('@') ? c.workers.substr(1) : "";
+    bool isFile = false; // the message is about a file, not about the command line
+    for (const std::string& file : {c.key, c.allow, hosts})
+      isFile |= !file.empty() && why.find(file) != why.npos;
+    throw Failure{isFile ? exitInput : exitUsage, why};
+  }
 }
 
 int exitCodeOf(const picture::RenderError& error) {

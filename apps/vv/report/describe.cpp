@@ -85,6 +85,10 @@ std::string valueText(const Value& value) {
   return std::visit([](const auto& v) { return text(v); }, value);
 }
 
+std::string counted(uint64_t count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string oneLine(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\t' || c == '\r') c = ' ';

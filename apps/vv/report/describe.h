@@ -1,6 +1,7 @@
 // describe.h: Describes values and worlds in words, using only the field tables. [any thread]
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
@@ -13,6 +14,8 @@ namespace vv {
 std::string version();
 // Returns a value as VRML97 text.
 std::string valueText(const xvrml::Value& value);
+// Returns a number with its noun: "1 error", "2 errors".
+std::string counted(uint64_t count, const char* noun);
 // Replaces line breaks and tabs.
 std::string oneLine(std::string text);
 

@@ -57,9 +57,13 @@ bool showsNothing(const picture::Picture& picture) {
 std::string hintFor(const Options& options, const picture::View& view,
                     const picture::RenderResult& result, picture::Renderer& renderer) {
   const xvrml::Bounds bounds = renderer.bounds();
-  if (bounds.empty) return "there is nothing to see: the world has no shapes that could be drawn";
+  const auto empty = [&](const char* why) {
+    return fmt::format("warning: {}: {}; the picture shows only the background", options.input,
+                       why);
+  };
+  if (bounds.empty) return empty("no shape to draw");
   if (std::equal(bounds.minimum, bounds.minimum + 3, bounds.maximum))
-    return "there is nothing to see: all shapes are scaled down to a point";
+    return empty("all shapes are scaled down to a point");
   if (!anythingInView(probe(options, view, renderer, options.render.headlight))) {
     const size_t viewpoints = renderer.viewpoints().size();
     return fmt::format(

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "describe.h"
 #include "messages.h"
 
 namespace vv {
@@ -121,9 +122,9 @@ void Problems::reportEnd(const xvrml::World& world) const {
   }
   const std::string where =
       fmt::format("{}{}", fmt::join(places, ", "), more ? " and further lines" : "");
-  say(fmt::format("vv: {} error{}: parts of the world are missing{}; --strict refuses such a world",
-                  errors, errors == 1 ? "" : "s",
-                  places.empty() ? "" : fmt::format(" ({})", where)));
+  say(fmt::format(
+      "vv: {}{}: the picture may lack parts of the world; --strict refuses such a world",
+      counted(errors, "error"), places.empty() ? "" : fmt::format(" ({})", where)));
 }
 
 } // namespace vv

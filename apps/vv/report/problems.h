@@ -17,7 +17,7 @@ class Problems {
   // and also the notes.
   void tell(const xvrml::World& world);
   // Reports, at the end of a successful run, how many messages repeated earlier ones. If there were
-  // errors, the last line says what is left out, and which option would reject the world.
+  // errors, the last line says how many and where, and which option would reject the world.
   void reportEnd(const xvrml::World& world) const;
   static bool any(const xvrml::World& world) {
     return world.diagnostics.errors() + world.diagnostics.warnings() > 0;

@@ -128,10 +128,20 @@ Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
 
 namespace {
 
+// Returns the number of samples taken per pixel, averaged over the picture; null if the picture has
+// no channel of samples.
+Json meanSamples(const picture::RenderResult& result) {
+  const auto plane = result.picture.planes.find(RT_SAMPLES);
+  if (plane == result.picture.planes.end() || plane->second.empty()) return nullptr;
+  double sum = 0;
+  for (const float n : plane->second) sum += double(n);
+  return sum / double(plane->second.size());
+}
+
 // Returns the statistics common to a picture and a sequence; the numbers are those of the last
 // picture.
 Json sceneStats(const Options& options, const std::string& commandLine, const RunningWorld& running,
-                const picture::RenderResult& result) {
+                const picture::RenderResult& result, const Json& samples) {
   const xvrml::World& world = running.world;
   const RTstats& s = result.stats;
   const picture::RenderSettings& r = options.render;
@@ -157,6 +167,7 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
   json["image"] = {{"width", r.width},
                    {"height", r.height},
                    {"spp", r.samples},
+                   {"spp_mean", samples},
                    {"channels", channelNames(r.channels)}};
   return json;
 }
@@ -191,7 +202,7 @@ std::string statsJson(const Options& options, const std::string& commandLine,
                       const RunTimes& times) {
   const RTstats& s = result.stats;
   const xvrml::World& world = running.world;
-  Json json = sceneStats(options, commandLine, running, result);
+  Json json = sceneStats(options, commandLine, running, result, meanSamples(result));
   // A picture has a single pass.
   json["time"] = {{"parse", world.times.parse},
                   {"graph", world.times.load},
@@ -209,6 +220,7 @@ std::string statsJson(const Options& options, const std::string& commandLine,
 struct SequenceStats::Impl {
   Json frames = Json::array();
   picture::RenderResult last{}; // the last result, without the pixels
+  Json samples;                 // mean number of samples of the last picture
   double map = 0, build = 0, render = 0, write = 0, first = 0, tracing = 0;
   uint64_t camera = 0, shadow = 0, secondary = 0;
 };
@@ -237,6 +249,7 @@ void SequenceStats::add(const PictureName& name, double worldTime,
   sum.camera += s.cameraRays;
   sum.shadow += s.shadowRays;
   sum.secondary += s.secondaryRays;
+  sum.samples = meanSamples(result);
   sum.last.map = result.map;
   sum.last.stats = s;
   sum.last.workers = result.workers;
@@ -247,7 +260,7 @@ std::string SequenceStats::json(const Options& options, const std::string& comma
                                 const RunningWorld& running, double totalSeconds) const {
   const Impl& sum = *impl_;
   const xvrml::World& world = running.world;
-  Json json = sceneStats(options, commandLine, running, sum.last);
+  Json json = sceneStats(options, commandLine, running, sum.last, sum.samples);
   json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load}, {"map", sum.map},
                   {"build", sum.build},         {"first_pass", sum.first},   {"render", sum.render},
                   {"write", sum.write},         {"total", totalSeconds}};
@@ -453,8 +466,8 @@ std::string describeWorld(const xvrml::World& world,
                         count.second ? fmt::format(", {} in prototypes", count.second) : "",
                         xvrml::hasScriptEngine(protocol, scriptPath) ? "an engine is installed"
                                                                      : "no engine is installed");
-  text += fmt::format("problems    {} errors, {} warnings\n", world.diagnostics.errors(),
-                      world.diagnostics.warnings());
+  text += fmt::format("problems    {}, {}\n", counted(world.diagnostics.errors(), "error"),
+                      counted(world.diagnostics.warnings(), "warning"));
   for (const auto& [type, count] : counts.types) text += fmt::format("  {:>8}  {}\n", count, type);
   return text;
 }

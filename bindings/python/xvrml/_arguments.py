@@ -97,7 +97,8 @@ def _fits(value, kind):
             return False
         return True
     if kind == "bool":
-        return isinstance(value, bool)
+        return type(value).__name__ in ("bool", "bool_") or (isinstance(value, int) and
+                                                             value in (0, 1))
     if kind in ("str", "dict", "bytes"):
         return isinstance(value, {"str": str, "dict": dict, "bytes": bytes}[kind])
     name = kind.split(".")[-1]

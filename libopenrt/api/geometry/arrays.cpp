@@ -1,5 +1,5 @@
-// arrays.cpp: rtVertexPointer and the other array pointers, rtDrawArrays and rtDrawElements. Runs
-// on the application's thread.
+// arrays.cpp: Implements rtVertexPointer and the other array pointers, rtDrawArrays and
+// rtDrawElements. Runs on the application's thread.
 #include <limits>
 
 #include "api/guard.h"

@@ -1,4 +1,4 @@
-// geometry_parameters.cpp: shader parameters per triangle and per vertex, set between rtBegin and
+// geometry_parameters.cpp: Sets shader parameters per triangle and per vertex, between rtBegin and
 // rtEnd or from arrays. Runs on the application's thread.
 #include "api/parameters.h"
 

@@ -1,5 +1,5 @@
-// immediate.cpp: rtBegin, rtEnd and the API functions that set the current attributes and state.
-// Runs on the application's thread.
+// immediate.cpp: Implements rtBegin, rtEnd and the API functions that set the current attributes
+// and state. Runs on the application's thread.
 #include <cmath>
 
 #include "api/guard.h"

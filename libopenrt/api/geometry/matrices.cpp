@@ -1,5 +1,5 @@
-// matrices.cpp: API functions for the current matrix, rtPushMatrix to rtLookAt. Runs on the
-// application's thread.
+// matrices.cpp: Implements the API functions for the current matrix, rtPushMatrix to rtLookAt. Runs
+// on the application's thread.
 #include "api/geometry/transform.h"
 #include "api/guard.h"
 

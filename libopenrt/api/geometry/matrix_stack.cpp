@@ -1,4 +1,4 @@
-// matrix_stack.cpp: the matrix stack and its limits. Runs on the application's thread.
+// matrix_stack.cpp: Implements the matrix stack and its limits. Runs on the application's thread.
 #include "api/geometry/matrix_stack.h"
 
 namespace openrt {

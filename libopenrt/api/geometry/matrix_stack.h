@@ -1,5 +1,5 @@
-// matrix_stack.h: the stack of the current matrix. The definition of an object uses a stack of its
-// own. Used on the application's thread.
+// matrix_stack.h: Holds the stack of the current matrix. The definition of an object uses a stack
+// of its own. Used on the application's thread.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// objects.cpp: API functions that define objects and place instances. Runs on the application's
-// thread.
+// objects.cpp: Implements the API functions that define objects and place instances. Runs on the
+// application's thread.
 #include "api/geometry/transform.h"
 #include "api/guard.h"
 

@@ -1,4 +1,4 @@
-// transform.cpp: translation, scale, rotation and view matrices in double precision. Pure
+// transform.cpp: Computes translation, scale, rotation and view matrices in double precision. Pure
 // functions.
 #include "api/geometry/transform.h"
 
@@ -19,9 +19,11 @@ struct SineCosine {
 
 // Exact at multiples of 90 degrees, so that four quarter turns give the identity.
 SineCosine sineCosineOfDegrees(double degrees) {
-  const double reduced = std::remainder(degrees, 360.0); // -180 .. 180, exact
+  // angle reduced to -180..180 without rounding error
+  const double reduced = std::remainder(degrees, 360.0);
   const double quarters = std::round(reduced / 90.0);
-  const double rest = (reduced - 90.0 * quarters) * (std::numbers::pi / 180.0); // -45 .. 45 degrees
+  // rest of -45 .. 45 degrees, in radians
+  const double rest = (reduced - 90.0 * quarters) * (std::numbers::pi / 180.0);
   const double s = std::sin(rest), c = std::cos(rest);
   switch ((static_cast<int>(quarters) + 4) % 4) {
   case 0: return {s, c};

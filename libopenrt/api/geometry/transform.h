@@ -1,5 +1,5 @@
-// transform.h: elementary matrices of the API, in double precision. Pure functions; they throw
-// ApiError for invalid arguments.
+// transform.h: Computes elementary matrices of the API, in double precision. Pure functions; they
+// throw ApiError for invalid arguments.
 #pragma once
 
 #include "scene/matrix.h"

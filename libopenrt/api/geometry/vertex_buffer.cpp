@@ -1,4 +1,4 @@
-// vertex_buffer.cpp: growth and layout changes of the vertex buffer. Every function allocates its
+// vertex_buffer.cpp: Grows the vertex buffer and changes its layout. Every function allocates its
 // memory before it changes anything.
 #include "api/geometry/vertex_buffer.h"
 

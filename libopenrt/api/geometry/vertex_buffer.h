@@ -1,5 +1,6 @@
-// vertex_buffer.h: the vertices between rtBegin and rtEnd. All attributes have the same capacity,
-// so appending a vertex takes one comparison and a few stores. Used on the application's thread.
+// vertex_buffer.h: Holds the vertices between rtBegin and rtEnd. All attributes have the same
+// capacity, so appending a vertex takes one comparison and a few stores. Used on the application's
+// thread.
 #pragma once
 
 #include <algorithm>

@@ -41,7 +41,8 @@ double intersectPlane(const RelativeTriangle& triangle, const Vec3d& direction);
 bool isHitInSinglePrecision(const RelativeTriangle& triangle, const Vec3d& direction, float near,
                             float far);
 
-// Transforms a geometric normal of an instanced record from the kernel's frame to render space.
+// Transforms a geometric normal of an instanced record from the space of its Embree scene to render
+// space (the world's axes, origin at the camera).
 inline void normalToRender(const Record& r, const float kernel[3], float out[3]) {
   for (int i = 0; i < 3; i++)
     out[i] = r.kernelNormal[i][0] * kernel[0] + r.kernelNormal[i][1] * kernel[1] +

@@ -1,5 +1,5 @@
-// queries.cpp: ray, hit and closest-point queries of LocalBackend, in blocks distributed over its
-// threads. Called on the application's thread.
+// queries.cpp: Answers ray, hit and closest-point queries of LocalBackend, in blocks distributed
+// over its threads. Called on the application's thread.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

@@ -1,5 +1,5 @@
-// sums.cpp: merging of sums. Moments are moved to another reference point by the binomial theorem,
-// (x + c)^m.
+// sums.cpp: Merges sums. Moments are moved to another reference point by the binomial theorem, (x +
+// c)^m.
 #include "render/film/sums.h"
 
 #include <algorithm>

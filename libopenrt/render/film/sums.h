@@ -16,9 +16,9 @@ namespace openrt {
 
 // Tells which sums the channels of a frame need; the other fields of PixelSums are undefined.
 struct RequiredSums {
-  bool spread = false;  // needs first, delta, delta2
-  bool surface = false; // needs normal, albedo
-  bool error = false;   // needs all sums
+  bool spread = false;  // true if first, delta and delta2 are needed
+  bool surface = false; // true if normal and albedo are needed
+  bool error = false;   // true if all sums are needed
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 

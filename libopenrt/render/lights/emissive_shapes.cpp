@@ -47,7 +47,8 @@ struct ProbeRays {
     hits.allocate(arena, capacity);
     order = arena.take<uint32_t>(padded(capacity));
   }
-  // towards: unit direction from the point to the ray's origin.
+  // Adds a probe ray at `place`. `towards` is the unit direction from the point to the ray's
+  // origin.
   void add(const float place[3], const float towards[3]) {
     for (int k = 0; k < 3; k++) {
       rays.org[k][count] = place[k] + towards[k];

@@ -126,7 +126,8 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const Rt
     // The light's own batch: the host's functions write a value for each of its hits, not for each
     // hit of the surface.
     RtsBatch own = batch;
-    own.points = nullptr;
+    own.subset = order + begin;
+    own.subsetSize = m;
     own.requests = nullptr;
     own.rays = m;
     if (batch.order) {

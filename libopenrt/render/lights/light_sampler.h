@@ -20,7 +20,7 @@ class LightSampler {
   // in sets of at most this many lights, every light is evaluated
   static constexpr uint32_t few = 16;
 
-  // set: indices into RenderScene::lights.
+  // Builds a sampler for the lights in `set` (indices into RenderScene::lights).
   LightSampler(const RenderScene& scene, const std::vector<uint32_t>& set);
   const std::vector<uint32_t>& always() const { return always_; }
   bool chooses() const { return !tree_.empty(); }

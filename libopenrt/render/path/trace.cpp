@@ -19,9 +19,7 @@ constexpr uint32_t maxNesting = 64;
 constexpr uint32_t shaderPairs = 0x73686164;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-uint32_t pointsOf(const RtsBatch& batch) {
-  return batch.points ? batch.points->hits.count : batch.rays;
-}
+uint32_t pointsOf(const RtsBatch& batch) { return batch.points ? batch.hitCount() : batch.rays; }
 
 // Makes the rays of a request whose point belongs to the batch. Writes the index in the request of
 // each ray to `to`.
@@ -37,7 +35,7 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
     if (request.origin[0]) {
       for (int k = 0; k < 3; k++) origin[k] = request.origin[k][i];
     } else {
-      liftPoint(*batch.points, hit, d, origin);
+      liftPoint(*batch.points, batch.pointOf(hit), d, origin);
     }
     for (int k = 0; k < 3; k++) {
       rays.org[k][n] = origin[k];
@@ -88,7 +86,7 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
     state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
     state.media = parent.media;
     state.flags.setChannel(parent.flags.channel());
-    if (batch.points) state.travelled = batch.points->hits.distance[hit];
+    if (batch.points) state.travelled = batch.points->hits.distance[batch.pointOf(hit)];
     paths.states.set(i, state);
   }
   const uint32_t* const outerRoot = root_;

@@ -21,8 +21,8 @@ enum Contents : uint32_t {
   hasShading = 1u << 2,
   hasMirrors = 1u << 3,  // mirrors and smooth boundaries
   hasEmitters = 1u << 4, // lobe-only surfaces that emit
-  // Emissive surfaces whose class has `shade`. Their emission lights lobe-only surfaces. For other
-  // surfaces with `shade` it is only the colour in which they appear.
+  // The scene has emissive surfaces whose class has `shade`. They light only surfaces that use
+  // lobes. For other surfaces the emission is only the colour in which they appear.
   hasGlow = 1u << 5,
   hasSky = 1u << 6,         // an environment that is not black
   hasSkyLight = 1u << 7,    // an environment that is meant as light and not as a backdrop

@@ -22,6 +22,10 @@ struct RtsBatch {
   openrt::Arena* arena = nullptr;
   openrt::RayCounters* counters = nullptr;
   const openrt::Points* points = nullptr;
+  // Batch of a sampled light: indices into `points` of the hits that have sampled the light. Null:
+  // the batch has all points.
+  const uint32_t* subset = nullptr;
+  uint32_t subsetSize = 0;
   uint32_t lightSet = 0;
   // The light that is being evaluated (illuminate). The host allocates these arrays with the first
   // light.
@@ -47,6 +51,9 @@ struct RtsBatch {
   RtsLobe lobes[RTS_MAX_LOBES];
   uint32_t lobeCount = 0;
 
+  // Return the number of hits, and the index into `points` of hit i. For batches with hits.
+  uint32_t hitCount() const { return subset ? subsetSize : points->hits.count; }
+  uint32_t pointOf(uint32_t i) const { return subset ? subset[i] : i; }
   // Returns the number of lanes that the host functions write where the batch has no hits.
   uint32_t lanesWithoutHits() const { return rays ? rays : lanes; }
 };

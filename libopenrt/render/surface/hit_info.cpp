@@ -19,7 +19,10 @@ void fillNumbers(const RtsBatch& batch, uint32_t* array, uint32_t value) {
 }
 
 const Record& recordAt(const RtsBatch& batch, uint32_t i) {
-  return batch.scene->records[batch.points->record[i]];
+  return batch.scene->records[batch.points->record[batch.pointOf(i)]];
+}
+uint32_t primitiveAt(const RtsBatch& batch, uint32_t i) {
+  return batch.points->rayHits->primitive[batch.points->order[batch.pointOf(i)]];
 }
 
 void applyLinear(const Affine& m, const double v[3], float* const out[3], uint32_t i) {
@@ -31,7 +34,7 @@ void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
                          float* const alongT[3]) {
   const Record& r = recordAt(batch, i);
   if (!r.texCoords) return;
-  const uint32_t primitive = batch.points->rayHits->primitive[batch.points->order[i]];
+  const uint32_t primitive = primitiveAt(batch, i);
   float p[3][3];
   cornersOf(r, primitive, p);
   const uint32_t* corner = r.indices + 3 * size_t(primitive);
@@ -52,11 +55,12 @@ void triangleDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[
 void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3],
                        float* const alongT[3]) {
   const Record& r = recordAt(batch, i);
+  const uint32_t point = batch.pointOf(i);
   double l[3], length = 0;
   for (int k = 0; k < 3; k++) {
     l[k] = r.fromRender.r[k][3];
     for (int j = 0; j < 3; j++)
-      l[k] += double(r.fromRender.r[k][j]) * batch.points->hits.position[j][i];
+      l[k] += double(r.fromRender.r[k][j]) * batch.points->hits.position[j][point];
     length += l[k] * l[k];
   }
   length = std::sqrt(length);
@@ -78,17 +82,18 @@ void localOf(const RtsBatch& batch, float* const position[3], float* const norma
     return;
   }
   const RtsHits& hits = batch.points->hits;
-  for (uint32_t i = 0; i < hits.count; i++) {
+  for (uint32_t i = 0; i < batch.hitCount(); i++) {
     const Affine& m = recordAt(batch, i).toObject;
-    const float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
+    const uint32_t at = batch.pointOf(i);
+    const float p[3] = {hits.position[0][at], hits.position[1][at], hits.position[2][at]};
     if (position)
       for (int k = 0; k < 3; k++)
         position[k][i] = m.r[k][0] * p[0] + m.r[k][1] * p[1] + m.r[k][2] * p[2] + m.r[k][3];
     if (!normal) continue;
     const Affine back = inverseOf(m); // normals are transformed by the transpose of the inverse
     for (int k = 0; k < 3; k++)
-      normal[k][i] = back.r[0][k] * hits.geometric[0][i] + back.r[1][k] * hits.geometric[1][i] +
-                     back.r[2][k] * hits.geometric[2][i];
+      normal[k][i] = back.r[0][k] * hits.geometric[0][at] + back.r[1][k] * hits.geometric[1][at] +
+                     back.r[2][k] * hits.geometric[2][at];
   }
 }
 
@@ -98,7 +103,7 @@ void derivativesOf(const RtsBatch& batch, float* const alongS[3], float* const a
     fillVectors(batch, alongT, 0);
     return;
   }
-  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
+  for (uint32_t i = 0; i < batch.hitCount(); i++) {
     for (int k = 0; k < 3; k++) alongS[k][i] = alongT[k][i] = 0;
     const edit::Primitive primitive = recordAt(batch, i).primitive;
     if (primitive == edit::Primitive::Triangles) triangleDerivatives(batch, i, alongS, alongT);
@@ -111,11 +116,11 @@ void idsOf(const RtsBatch& batch, uint32_t* name, uint32_t* instance, uint32_t* 
     for (uint32_t* array : {name, instance, primitive}) fillNumbers(batch, array, 0);
     return;
   }
-  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
+  for (uint32_t i = 0; i < batch.hitCount(); i++) {
     const Record& r = recordAt(batch, i);
     if (name) name[i] = r.name;
     if (instance) instance[i] = r.instance;
-    if (primitive) primitive[i] = batch.points->rayHits->primitive[batch.points->order[i]];
+    if (primitive) primitive[i] = primitiveAt(batch, i);
   }
 }
 
@@ -125,7 +130,7 @@ void pathsOf(const RtsBatch& batch, uint32_t level, uint32_t* depth, float* cons
     fillVectors(batch, throughput, 1);
     return;
   }
-  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
+  for (uint32_t i = 0; i < batch.hitCount(); i++) {
     if (depth) depth[i] = level;
     for (int k = 0; throughput && k < 3; k++)
       throughput[k][i] = batch.order ? batch.states->throughput[k][batch.order[i]] : 1.0f;

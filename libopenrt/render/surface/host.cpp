@@ -78,7 +78,7 @@ RtsLobe* customLobe(RtsBatch* batch, const RtsLobeFunctions* functions, uint32_t
 void random(RtsBatch* batch, uint32_t pair, float* const square[2]) {
   if (batch->tracer && (batch->points || batch->rays))
     return batch->tracer->randomPoints(*batch, pair, square);
-  const uint32_t n = batch->points ? batch->points->hits.count : batch->lanesWithoutHits();
+  const uint32_t n = batch->points ? batch->hitCount() : batch->lanesWithoutHits();
   for (int k = 0; k < 2; k++) std::fill_n(square[k], n, 0.5f);
 }
 
@@ -112,10 +112,8 @@ void path(RtsBatch* batch, uint32_t* depth, float* const throughput[3]) {
   pathsOf(*batch, batch->tracer ? batch->tracer->level() : 0, depth, throughput);
 }
 void error(RtsBatch* batch, float* out) {
-  if (batch->points)
-    std::copy_n(batch->points->error, batch->points->hits.count, out);
-  else
-    std::fill_n(out, batch->lanesWithoutHits(), 0.0f);
+  if (!batch->points) return void(std::fill_n(out, batch->lanesWithoutHits(), 0.0f));
+  for (uint32_t i = 0; i < batch->hitCount(); i++) out[i] = batch->points->error[batch->pointOf(i)];
 }
 
 void log(const RtsHost* host, int level, const char* text) {

@@ -36,8 +36,9 @@ struct NodePluginRow {
 // ASCII "XVNP".
 inline constexpr uint32_t nodePluginMagic = 0x58564e50;
 // A host accepts plug-ins of its own major version and a minor version that is not greater than its
-// own.
-inline constexpr uint32_t nodePluginMajor = 1, nodePluginMinor = 0;
+// own. Minor 1 has the word `urls` (FieldRow::holdsUrls). In older plug-ins an MFString called
+// `url` or `...Url` holds URLs.
+inline constexpr uint32_t nodePluginMajor = 1, nodePluginMinor = 1;
 
 // The C++ library that determines the layout of values, and the sizes of the types that both sides
 // share.

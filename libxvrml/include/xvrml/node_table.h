@@ -15,7 +15,7 @@ struct FieldRow {
   FieldType type;
   Access access;
   Change change;
-  bool holdsUrls; // stands in a byte that was padding, so earlier plug-ins have false here
+  bool holdsUrls; // stands in a byte that was padding; plug-ins before minor 1 have false here
   uint32_t offset;
   FieldRange range;
   const char* nodeTypes;

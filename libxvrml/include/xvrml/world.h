@@ -84,13 +84,39 @@ class ProtoInstance : public DynamicNode {
     if (given.size() <= field.offset) given.resize(field.offset + 1);
     given[field.offset] = true;
   }
+
+  // Indexed by FieldInfo::offset: the file that the relative URLs of an MFString count from; null:
+  // the instance's own file. Other files are those of an enclosing prototype's instance, which
+  // passed the value on, and of the prototype, whose default it is. May be shorter than the field
+  // list.
+  std::vector<std::shared_ptr<const std::string>> urlBases;
+
+  bool hasOwnUrlBase(const FieldInfo& field) const {
+    return field.offset >= urlBases.size() || !urlBases[field.offset];
+  }
+  // base: null or the instance's own file: the instance's own file
+  void setUrlBase(const FieldInfo& field, std::shared_ptr<const std::string> base) {
+    if (base && source.file && *base == *source.file) base = nullptr;
+    if (!base && urlBases.size() <= field.offset) return;
+    if (urlBases.size() <= field.offset) urlBases.resize(field.offset + 1);
+    urlBases[field.offset] = std::move(base);
+  }
 };
 
-// Returns whether the strings of the node's field are URLs, relative to the node's file. Those of a
-// prototype instance are known once it has been expanded.
+// Returns whether the strings of the node's field are URLs, relative to the file urlBase(). Those
+// of a prototype instance are known once it has been expanded.
 inline bool holdsUrls(const Node& node, const FieldInfo& field) {
   const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
   return instance ? instance->declaration->holdsUrls(field) : field.holdsUrls;
+}
+
+// Returns the file that relative URLs in a field of the node count from; null if the node is in no
+// file.
+inline const std::shared_ptr<const std::string>& urlBase(const Node& node, const FieldInfo& field) {
+  const auto* instance = dynamic_cast<const ProtoInstance*>(&node);
+  return !instance || !holdsValue(field) || instance->hasOwnUrlBase(field)
+             ? node.source.file
+             : instance->urlBases[field.offset];
 }
 
 // A Script node: fields url, directOutput and mustEvaluate, and those that it declares.
@@ -157,8 +183,12 @@ std::unique_ptr<World> loadWorldFromMemory(std::string_view bytes, const std::st
 const Scope* inlineScope(const Node& inlineNode);
 
 // Returns the world as VRML97 text that parses to an equal graph. Each number is the shortest that
-// reads back equal.
+// reads back equal. Throws std::length_error if nodes are nested deeper than any file may nest them
+// (2500).
 std::string writeWorld(const World& world);
+// Does the same for a text that will be stored in the file `path`: relative URLs lead from there to
+// the same files as before. URLs of nodes that are in no file stay as they are.
+std::string writeWorld(const World& world, const std::string& path);
 
 // Returns true if both scopes hold equal graphs: the same nodes, fields, DEF/USE structure,
 // prototypes and routes. Writes the first difference to `difference`, if it is not null.

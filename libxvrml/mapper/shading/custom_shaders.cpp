@@ -73,6 +73,7 @@ void CustomShaders::setOption(const ShaderOption& option, ShaderEntry& made, RTe
     std::string text, why = resolved.error;
     if (why.empty())
       why = readText(resolved.path, std::min(longest, world_.options.limits.fileBytes), text);
+    made.unreadable |= !why.empty();
     if (!why.empty())
       return world_.diagnostics.error(node.source, "ORTShader: option " + option.name + ": " + why);
     if (take(made, copiesOfOption * text.size())) rtParameterString(handle, text.c_str());
@@ -108,6 +109,7 @@ RTid CustomShaders::shaderFor(nodes::ORTShader& node, RTenum role, const Node* u
 void CustomShaders::make(ShaderEntry& made, RTenum role, const Preset& preset) {
   const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
   made.shader = 0;
+  made.unreadable = false;
   made.name = node.name;
   made.file = node.file;
   made.options.clear();
@@ -131,6 +133,11 @@ void CustomShaders::make(ShaderEntry& made, RTenum role, const Preset& preset) {
     made.options.push_back(option.name);
     setOption(option, made, role);
     report(world_.diagnostics, node.source, "ORTShader " + node.name + ", option " + option.name);
+  }
+  // A light without its profile is dark. Leave it out, so that it does not complain as well.
+  if (made.unreadable && role == RT_LIGHT) {
+    replaced_.push_back(made.shader);
+    made.shader = 0;
   }
 }
 

@@ -49,6 +49,7 @@ class CustomShaders {
     std::vector<std::string> options; // names of the parameters that have been set from options
     uint64_t bytes = 0;               // taken from the world's budget for the options
     bool stale = false;
+    bool unreadable = false; // the file of an option could not be read
   };
   void make(ShaderEntry& made, RTenum role, const Preset& preset);
   void refresh(ShaderEntry& made, RTenum role, const Preset& preset);

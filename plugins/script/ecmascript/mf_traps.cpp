@@ -49,7 +49,8 @@ duk_ret_t get(duk_context* ctx) { // arguments: target, key, receiver
   return 1;
 }
 
-duk_ret_t set(duk_context* ctx) { // arguments: target, key, value, receiver
+// Handles an assignment. Arguments: target, key, value, receiver.
+duk_ret_t set(duk_context* ctx) {
   Interpreter& self = Interpreter::of(ctx);
   step(self);
   const char* name = typeName(mfData(ctx, 0)->type);

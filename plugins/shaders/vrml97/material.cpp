@@ -1,4 +1,4 @@
-// material.cpp: parameters, textures and colours of VRML97 surfaces, by lane (material.h). The
+// material.cpp: Computes parameters, textures and colours of VRML97 surfaces for each lane. The
 // alpha of the geometry's colours is not used, as the standard has none. [render]
 #include "vrml97/material.h"
 
@@ -18,7 +18,7 @@ const RtsParam surfaceParams[] = {
      {0.8f, 0.8f, 0.8f},
      0.0f,
      0.0f,
-     "share of the light that is scattered evenly"},
+     "diffuse reflectance"},
     {"emissiveColor",
      RTS_COLOR,
      offsetof(SurfaceParams, emissiveColor),

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "conformance/events/scripted.h"
 #include "conformance/events/viewing.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {
@@ -123,6 +125,50 @@ TEST(Inlines, NoneIsReadIntoItself) {
   EXPECT_EQ(browser.world().diagnostics.errors(), 1u);
   browser.set(*browser.node("I"), "url", MFString{"a.wrl"});
   EXPECT_EQ(inlineScope(*browser.node("I")), nullptr);
+}
+
+// 4.5.3: such URLs are relative to the file that contains the program.
+TEST(CreatedNodes, UrlsCountFromTheFileOfTheProgram) {
+  const Folder f;
+  std::filesystem::create_directories(f.path / "lib");
+  std::ofstream(f.path / "lib/s.test") << "initialize: create out Anchor { url \"a.png\" }\n";
+  const std::string route = " eventOut MFNode out } ROUTE S.out TO G.addChildren";
+  f.file("lib/in.wrl",
+         "DEF G Group {} DEF S Script { url \"test:initialize: create out Anchor { url "
+         "\\\"a.png\\\" }\"" +
+             route);
+  Browser browser(
+      loadWorld(f.file("a.wrl", "DEF I Inline { url \"lib/in.wrl\" } DEF G Group {} DEF "
+                                "S Script { url \"lib/s.test\"" +
+                                    route)),
+      scriptOptions());
+  const auto folderOf = [](const Node& group) {
+    const auto& children = dynamic_cast<const nodes::Group&>(group).children;
+    if (children.size() != 1) return std::string("no node");
+    const std::string path = resolveUrl("a.png", *children[0]->source.file, {}).path;
+    return std::filesystem::path(path).parent_path().filename().string();
+  };
+  EXPECT_EQ(folderOf(*browser.node("G")), "lib");
+  const Scope* content = inlineScope(*browser.node("I"));
+  ASSERT_NE(content, nullptr);
+  EXPECT_EQ(folderOf(*content->names.at("G")), "lib");
+}
+
+// A file that a Script creates out of itself ends at the depth of Inlines.
+TEST(CreatedNodes, FilesWithinFilesEndAtTheLimit) {
+  const Folder f;
+  LoadOptions options;
+  for (const uint64_t most : {4, 5, 32}) {
+    options.limits.inlineDepth = most;
+    const std::string path =
+        f.file("a.wrl", "DEF G Group {} DEF S Script { eventOut MFNode out url \"test:initialize: "
+                        "create out Inline { url \\\"a.wrl\\\" }\" } ROUTE S.out TO G.addChildren");
+    Browser browser(loadWorld(path, options), scriptOptions());
+    const auto& list = browser.world().diagnostics.list();
+    ASSERT_EQ(list.size(), 1u) << most;
+    EXPECT_NE(list[0].message.find(fmt::format("limit inlineDepth={}", most)), std::string::npos)
+        << list[0].message;
+  }
 }
 
 // Other files that are loaded into a running world.

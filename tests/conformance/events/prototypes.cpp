@@ -1,5 +1,12 @@
 // prototypes.cpp: prototypes of a running world: clauses 4.8 and 4.9.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
 #include "conformance/events/scripted.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {
@@ -25,6 +32,73 @@ TEST(Prototypes, FiveDeepWithRoutes) {
   EXPECT_EQ(translationOf(r.node("I")), "1 2 3");
   EXPECT_EQ(r.get("B", "translation"), "1 2 3");
   EXPECT_EQ(r.get("J", "at"), "9 0 0"); // it has a copy of its own
+}
+
+// Events bring URLs into bodies as values of the file do: relative to the file of the instance
+// (4.5.3). The body is in another folder; P is an instance within an instance.
+class UrlEvents : public testing::Test {
+ protected:
+  UrlEvents()
+      : folder(std::filesystem::temp_directory_path() /
+               fmt::format("xvrml_url_events_{}_{}", ::getpid(),
+                           testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    write("lib/p.wrl",
+          "PROTO P [ exposedField MFString u \"p.png\" eventIn MFString in ] { Anchor { "
+          "url IS u set_url IS in } }");
+    write("deep/q.wrl", "EXTERNPROTO P [ exposedField MFString u eventIn MFString in ] "
+                        "\"../lib/p.wrl\" PROTO Q [ exposedField MFString u \"q.png\" eventIn "
+                        "MFString in ] { P { u IS u in IS in } }");
+    browser.emplace(loadWorld(write("worlds/w.wrl",
+                                    "EXTERNPROTO Q [ exposedField MFString u eventIn MFString in ] "
+                                    "\"../deep/q.wrl\" DEF A Q { u \"a.png\" } DEF B Q { }")));
+  }
+  ~UrlEvents() override { std::filesystem::remove_all(folder); }
+  std::string write(const std::string& name, const std::string& vrml) const {
+    std::filesystem::create_directories((folder / name).parent_path());
+    std::ofstream(folder / name) << "#VRML V2.0 utf8\n" << vrml;
+    return folder / name;
+  }
+  Node& node(const char* name) { return *browser->world().scope.names.at(name); }
+  MFString u(const char* name) { return std::get<MFString>(browser->get(node(name), "u")); }
+  // Returns the file that the Anchor of the instance leads to, relative to the test's folder.
+  std::string file(const char* name) {
+    const auto& last = dynamic_cast<const nodes::Anchor&>(anchor(name));
+    const std::string path = resolveUrl(last.url.at(0), *last.source.file, {}).path;
+    return std::filesystem::relative(path, folder).string();
+  }
+  Node& anchor(const char* name) { return *renderedNode(&node(name)); }
+
+  const std::filesystem::path folder;
+  std::optional<Browser> browser;
+};
+
+TEST_F(UrlEvents, CountFromTheFileOfTheInstance) {
+  EXPECT_EQ(file("A"), "worlds/a.png");
+  EXPECT_EQ(file("B"), "deep/q.png");
+  browser->set(node("A"), "u", MFString{"b.png"});
+  EXPECT_EQ(file("A"), "worlds/b.png");
+  EXPECT_EQ(u("A"), MFString{"b.png"});
+  browser->set(node("B"), "in", MFString{"c.png"});
+  EXPECT_EQ(file("B"), "worlds/c.png");
+}
+
+TEST_F(UrlEvents, AValueThatAFieldHasAlreadyChangesNothing) {
+  for (const char* name : {"A", "B"}) {
+    const std::string before = file(name);
+    const MFString value = u(name);
+    browser->set(node(name), "u", value);
+    EXPECT_EQ(file(name), before);
+    EXPECT_EQ(u(name), value);
+  }
+}
+
+TEST_F(UrlEvents, LeaveTheBodyRelativeToTheFileOfTheInstance) {
+  browser->set(anchor("A"), "url", MFString{"in_body.png"});
+  EXPECT_EQ(file("A"), "lib/in_body.png");
+  const std::string path = resolveUrl(u("A").at(0), *node("A").source.file, {}).path;
+  EXPECT_EQ(std::filesystem::relative(path, folder).string(), "lib/in_body.png");
+  browser->set(node("A"), "u", u("A"));
+  EXPECT_EQ(file("A"), "lib/in_body.png");
 }
 
 TEST(Prototypes, OneInterfaceReachesAllItIsConnectedTo) {

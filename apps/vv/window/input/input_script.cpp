@@ -147,7 +147,9 @@ InputScript readInputScript(const std::string& path) {
   std::ostringstream text;
   if (!file || !(text << file.rdbuf()))
     throw Failure{exitInput, fmt::format("--input: cannot read {}", path)};
-  return parseInputScript(text.str(), path);
+  try {
+    return parseInputScript(text.str(), path);
+  } catch (const UsageError& error) { throw Failure{exitInput, error.what()}; }
 }
 
 std::string inputLine(double time, const InputEvent& event) {

@@ -33,8 +33,9 @@ struct InputScript {
   double end = 0; // time of the last line
 };
 
-// Throws UsageError with the file's name and the line.
+// Throws Failure with exitInput; its text has the file's name and the line.
 InputScript readInputScript(const std::string& path);
+// Throws UsageError with `name` and the line.
 InputScript parseInputScript(std::string_view text, const std::string& name);
 
 // Returns a line of a script, with its line feed.

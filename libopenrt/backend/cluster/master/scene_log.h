@@ -1,5 +1,5 @@
-// scene_log.h: the commits that workers may still need, and the scene at the oldest of them. A
-// worker that joins in the middle of a frame gets the scene of that frame. One thread.
+// scene_log.h: Keeps the commits that workers may still need, and the scene at the oldest of them.
+// A worker that joins in the middle of a frame gets the scene of that frame. One thread.
 #pragma once
 
 #include <deque>

@@ -1,4 +1,4 @@
-// arrays.cpp: content hashes and compression of arrays (messages.h). [any]
+// arrays.cpp: Computes content hashes of arrays and compresses them (messages.h). [any]
 #include <cstdio>
 
 #include <xxhash.h>

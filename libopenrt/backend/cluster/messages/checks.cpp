@@ -33,6 +33,7 @@ void check(const wire::Scene& m, const Frames& frames) {
   demand(m.epoch() != 0 && m.epoch() <= limits::epochs,
          "a scene has no number, or too large a one");
   demand(bytesOf(frames) - frames[0].size() <= limits::editBytes, "too many edits");
+  demandAligned(m.arrays());
   if (m.arrays()) {
     uint64_t sum = 0;
     for (const wire::ArrayName* name : *m.arrays()) {
@@ -60,6 +61,7 @@ void check(const wire::Piece& m, const Frames& frames) {
 
 void check(const wire::Jobs& m, const Frames&) {
   if (!m.jobs()) return;
+  demandAligned(m.jobs());
   demand(m.jobs()->size() <= limits::jobs, "too many jobs");
   for (const wire::Job* job : *m.jobs()) {
     demand(job->kind() <= uint8_t(Job::Kind::light), "an unknown kind of job");

@@ -92,6 +92,18 @@ struct Unchecked {
   static void check(const auto&, const Frames&) {}
 };
 
+// Throws if an array of structs does not lie at a multiple of their alignment, at which they are
+// read. The verifier of flatbuffers checks only the array's length.
+template <class T> void demandAligned(const flatbuffers::Vector<const T*>* array) {
+  demand(!array || reinterpret_cast<uintptr_t>(array->Data()) % alignof(T) == 0,
+         "an array is not aligned");
+}
+
+// Accepts a message if the array of structs that `field` returns is aligned.
+template <auto field> struct Aligned {
+  static void check(const auto& m, const Frames&) { demandAligned((m.*field)()); }
+};
+
 // Stands for a function of checks.cpp, which needs no declaration here.
 struct ByFunction {};
 
@@ -124,7 +136,7 @@ using Kinds = std::tuple<
     //          message           sent by         bulk frames check
     MessageKind<message::Hello,   Sender::worker, noBulk,     Within<
         &wire::Hello::threads, 1, 65536, "an impossible number of threads">>,
-    MessageKind<message::Need,    Sender::worker, noBulk,     Unchecked>,
+    MessageKind<message::Need,    Sender::worker, noBulk,     Aligned<&wire::Need::arrays>>,
     MessageKind<message::Ready,   Sender::worker, noBulk,     ByFunction>,
     MessageKind<message::Failed,  Sender::worker, noBulk,     Unchecked>,
     MessageKind<message::Result,  Sender::worker, manyFrames, ByFunction>,

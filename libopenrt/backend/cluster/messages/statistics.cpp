@@ -32,7 +32,7 @@ template <size_t n> Text textOf(const char (&text)[n]) {
 void take(const wire::Statistic& from, double& value) { value = from.value(); }
 template <std::unsigned_integral T> void take(const wire::Statistic& from, T& count) {
   constexpr T most = std::numeric_limits<T>::max();
-  demand(from.value() >= 0, "a count is not a whole number"); // rejects NaN too
+  demand(from.value() >= 0, "a statistic is not a count: it is negative or NaN"); // rejects NaN too
   count = from.value() >= double(most) ? most : T(from.value());
 }
 template <size_t n> void take(const wire::Statistic& from, char (&text)[n]) {

@@ -1,5 +1,5 @@
-// greeting.h: the handshake: compares what a master and a worker must have in common so that they
-// render identical bytes. [any]
+// greeting.h: Implements the handshake: compares what a master and a worker must have in common so
+// that they render identical bytes. [any]
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
-// array_cache.h: a worker's arrays by content hash, and arrays that arrive piece by piece. Arrays
-// used by the scene are never dropped; of the others, the least recently used are dropped first.
-// One thread.
+// array_cache.h: Keeps a worker's arrays by content hash, and arrays that arrive piece by piece.
+// Arrays used by the scene are never dropped; of the others, the least recently used are dropped
+// first. One thread.
 #pragma once
 
 #include <list>

@@ -39,7 +39,7 @@ struct WorkerOptions {
   std::function<void(int level, const std::string& text)> log;
 };
 
-// Functions of the Wire.
+// Lets a Worker send, close connections, report bad messages and set the heartbeat.
 struct WorkerLink {
   std::function<void(Peer, Frames&&)> send;
   std::function<void(Peer, const std::string& why)> close;

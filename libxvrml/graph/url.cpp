@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "parse/url.h"
+#include "graph/url.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -32,6 +32,35 @@ bool percentDecode(std::string_view text, std::string& out) {
   return true;
 }
 
+// Returns the real path of the folder that holds the file. Two such paths can be compared.
+std::filesystem::path realFolder(const std::string& file) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(file).parent_path();
+  std::error_code error;
+  const fs::path absolute = fs::absolute(folder.empty() ? fs::path(".") : folder, error);
+  if (error) return folder.lexically_normal();
+  fs::path real = fs::weakly_canonical(absolute, error);
+  return error ? absolute.lexically_normal() : real;
+}
+
+// Encodes a path so that it can be the beginning of a relative URL.
+std::string percentEncode(const std::string& path) {
+  std::string url;
+  for (const char c : path) {
+    const bool plain = static_cast<unsigned char>(c) > ' ' &&
+                       std::string_view("%#?:\\").find(c) == std::string_view::npos;
+    url += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return url;
+}
+
+constexpr std::string_view blanks = " \t\r\n";
+
+std::string_view trimmed(std::string_view url) {
+  const size_t first = std::min(url.find_first_not_of(blanks), url.size());
+  return url.substr(first, url.find_last_not_of(blanks) + 1 - first);
+}
+
 bool exists(const std::string& path) {
   std::error_code error;
   return std::filesystem::is_regular_file(path, error);
@@ -51,15 +80,27 @@ std::string urlScheme(std::string_view url) {
   return name;
 }
 
+void rebaseUrls(MFString& urls, const std::string& from, const std::string& to) {
+  if (from.substr(0, from.rfind('/') + 1) == to.substr(0, to.rfind('/') + 1)) return;
+  std::string step; // from one folder to the other; made when the first URL needs it
+  for (std::string& url : urls) {
+    const std::string_view bare = trimmed(url);
+    if (bare.empty() || std::string_view("/\\#").find(bare[0]) != std::string_view::npos ||
+        !urlScheme(bare).empty())
+      continue;
+    if (step.empty()) step = percentEncode(realFolder(from).lexically_relative(realFolder(to)));
+    if (step.empty() || step == ".") return;
+    url = step + '/' + std::string(bare);
+  }
+}
+
 ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
                        const LoadOptions& options) {
   const auto refuse = [&](std::string_view why) {
     return ResolvedUrl{{}, {}, fmt::format("'{}': {}", url.substr(0, 100), why)};
   };
-  constexpr std::string_view blanks = " \t\r\n";
-  const size_t first = url.find_first_not_of(blanks);
-  if (first == url.npos) return refuse("the URL is empty");
-  url = url.substr(first, url.find_last_not_of(blanks) + 1 - first);
+  url = trimmed(url);
+  if (url.empty()) return refuse("the URL is empty");
 
   std::string kind = urlScheme(url);
   bool absolute = false;
@@ -106,11 +147,15 @@ ResolvedUrl resolveUrl(std::string_view url, std::string_view baseFile,
   if (result.path == "-") result.path = "./-"; // a file of that name, not standard input
   if (exists(result.path)) return result;
   // The file name itself may contain %20 or a backslash, or the URL may have a query.
-  if (exists(folder + literal))
-    result.path = folder + literal;
-  else if (const size_t query = decoded.find('?');
-           query != decoded.npos && exists(folder + decoded.substr(0, query))) {
-    result.path = folder + decoded.substr(0, query);
+  std::string before, folderOfUrl;
+  percentDecode(path.substr(0, path.find('?')), before);
+  std::replace(before.begin(), before.end(), '\\', '/');
+  const size_t name = path.rfind('/') + 1; // 0 if there is no '/'
+  percentDecode(path.substr(0, name), folderOfUrl);
+  for (const std::string& other : {literal, folderOfUrl + literal.substr(name), before}) {
+    if (!exists(folder + other)) continue;
+    result.path = folder + other;
+    break;
   }
   return result;
 }
