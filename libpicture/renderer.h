@@ -110,6 +110,9 @@ class Renderer {
   void prepare(const View& view);
   // Describes the objects that the world is rendered as. Call it after prepare() or render().
   std::vector<xvrml::ExplainedObject> explain();
+  // Returns the stage of a call that is under way, for the progress callback: "mapping",
+  // "building"; "" while a frame is rendered or nothing is done.
+  std::string stage() const;
   // Copies the finished part of the frame in flight; called by the progress callback. Returns false
   // if no frame is in flight.
   bool snapshot(Picture& picture);
