@@ -64,9 +64,9 @@ namespace {
 
 constexpr uint64_t bytesOfShader = bytesOfSurface - bytesOfSharedSurface;
 
-// Up to this number of surfaces a named appearance has a shader of its own, because somebody may
-// want to change it, and the first change of a shared one rewrites its shapes.
-constexpr size_t namedHaveTheirOwn = 256;
+// Up to this number of appearances each has a shader of its own, so that its first change is a
+// change of parameters. The first change of a shared shader rewrites the shapes of one appearance.
+constexpr size_t smallWorld = 256;
 
 // Returns the bytes of all values that decide how a surface looks.
 std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) {
@@ -88,18 +88,17 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) 
 
 } // namespace
 
-// Returns whether the appearance may share the shader of an equal one: no events reach it.
+// Returns whether the appearance may share the shader of an equal one: the world has many
+// appearances, and no events reach this one.
 bool Surfaces::mayShare(const Entry& entry) const {
   Node* node = entry.appearance.get();
-  if (!node) return false; // shapes without appearance share an entry already
+  if (!node || surfaces_.size() <= smallWorld) return false;
   const Parts parts = partsOf(node);
   if (parts.shader) return false;
   for (const Node* part :
        {static_cast<const Node*>(node), static_cast<const Node*>(parts.material),
         static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.textureTransform)})
-    if (part && ((part->live && reachOf(*part) != 0) ||
-                 (!part->defName.empty() && surfaces_.size() <= namedHaveTheirOwn)))
-      return false;
+    if (part && part->live && reachOf(*part) != 0) return false;
   return true;
 }
 

@@ -1,6 +1,6 @@
-// appearance.h: appearance nodes as surface shaders, made on first use. Appearances with equal
-// values share a shader as long as no event reaches them; the first change gives an appearance a
-// shader of its own. [the mapper's thread]
+// appearance.h: appearance nodes as surface shaders, made on first use. In a world with many
+// appearances, equal ones share a shader as long as no event reaches them; the first change gives
+// an appearance a shader of its own. [the mapper's thread]
 #pragma once
 
 #include <string>
