@@ -54,7 +54,7 @@ struct Renderer::Impl {
   std::condition_variable changed;
   std::function<void()> task;
   std::exception_ptr failure;
-  bool ending = false;
+  bool ending = false, leaving = false;
   std::string wrong; // error when the context was closed; empty: none
   std::atomic<bool> cancelled{false};
   std::atomic<const char*> doing{""}; // Renderer::stage
@@ -83,7 +83,7 @@ struct Renderer::Impl {
       changed.notify_all();
     }
     lock.unlock();
-    wrong = stage.close();
+    wrong = stage.close(leaving);
   }
 
   // Runs `work` on the render thread and calls the progress callback meanwhile.
@@ -196,6 +196,11 @@ void Renderer::begin() {
 }
 
 Renderer::~Renderer() { end(); }
+
+void Renderer::leave() {
+  impl_->leaving = true;
+  end();
+}
 
 void Renderer::close() {
   end();

@@ -20,11 +20,16 @@ constexpr bool sanitized = true;
 constexpr bool sanitized = false;
 #endif
 
+bool freesAll = false;
+
 } // namespace
 
 bool leavesMemory(const Options& options, const xvrml::Browser& browser) {
-  return !sanitized && !options.watch && !options.render.cluster && browser.scripts().scripts == 0;
+  return !sanitized && !freesAll && !options.watch && !options.render.cluster &&
+         browser.scripts().scripts == 0;
 }
+
+void freeAllMemory() { freesAll = true; }
 
 void leave(std::shared_ptr<void> object) {
   static auto& left = *new std::vector<std::shared_ptr<void>>; // never destroyed

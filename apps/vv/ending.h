@@ -10,13 +10,18 @@
 
 namespace vv {
 
-// Returns whether the world and the renderer may be left to the operating system when the job is
-// done. Everything that has an end outside the process is ended as usual:
-// * processes of Scripts, and whatever else script engines hold;
-// * machines of a cluster;
-// * a world that is followed by another one (--watch).
+// Returns whether the nodes of the world, and what the renderer knows about its shapes, may be left
+// to the operating system when the job is done. Everything that may have an end outside the process
+// is ended as usual:
+// * a world with Scripts, because they have processes and engines;
+// * a world with node plug-ins, whose nodes may hold anything;
+// * a world that is followed by another one (--watch);
+// * machines of a cluster, recordings, and shaders with their plug-ins.
 // Builds with sanitizers free everything, so that they find leaks.
 bool leavesMemory(const Options& options, const xvrml::Browser& browser);
+
+// From now on leavesMemory() returns false, because a node plug-in is loaded.
+void freeAllMemory();
 
 // Gives up an object without destroying it. Its memory stays reachable until the process ends.
 void leave(std::shared_ptr<void> object);

@@ -185,7 +185,9 @@ int runWatching(const Options& options, const std::string& commandLine) {
 } // namespace
 
 int runHeadless(const Options& options, const std::string& commandLine) {
+  const size_t builtIn = xvrml::nodeTypes().size();
   for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
+  if (xvrml::nodeTypes().size() > builtIn) freeAllMemory();
   if (options.watch) return runWatching(options, commandLine);
   auto job = std::make_shared<Headless>(options, commandLine);
   const int code = runOnce(*job);

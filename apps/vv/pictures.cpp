@@ -95,6 +95,11 @@ class Pictures {
       : options_(options), commandLine_(commandLine), browser_(browser), problems_(problems),
         startSeconds_(startSeconds) {}
 
+  // Ends the renderer without freeing the shapes.
+  void leave() {
+    if (renderer_) renderer_->leave();
+  }
+
   int make() {
     picture::RenderSettings settings = options_.render;
     // With this channel, RTstats contains the error.
@@ -468,9 +473,9 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
 
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
                  Problems& problems, double startSeconds) {
-  auto pictures = std::make_shared<Pictures>(options, commandLine, browser, problems, startSeconds);
-  const int code = pictures->make();
-  if (leavesMemory(options, browser)) leave(std::move(pictures));
+  Pictures pictures(options, commandLine, browser, problems, startSeconds);
+  const int code = pictures.make();
+  if (leavesMemory(options, browser)) pictures.leave();
   return code;
 }
 
