@@ -54,9 +54,10 @@ struct Renderer::Impl {
   std::condition_variable changed;
   std::function<void()> task;
   std::exception_ptr failure;
-  bool ending = false;
+  bool ending = false, leaving = false;
   std::string wrong; // error when the context was closed; empty: none
   std::atomic<bool> cancelled{false};
+  std::atomic<const char*> doing{""}; // Renderer::stage
   std::thread thread;
 
   // Used by the calling thread, and by the render thread while the calling thread waits.
@@ -76,12 +77,13 @@ struct Renderer::Impl {
       try {
         task();
       } catch (...) { failure = std::current_exception(); }
+      doing = "";
       lock.lock();
       task = nullptr;
       changed.notify_all();
     }
     lock.unlock();
-    wrong = stage.close();
+    wrong = stage.close(leaving);
   }
 
   // Runs `work` on the render thread and calls the progress callback meanwhile.
@@ -117,6 +119,7 @@ struct Renderer::Impl {
 
   void start(const View& view) {
     const auto begin = Clock::now();
+    doing = "mapping";
     stage.prepare(view);
     FrameInFlight flight;
     flight.result.mapSeconds = secondsSince(begin) + stage.takeMeshSeconds();
@@ -129,7 +132,9 @@ struct Renderer::Impl {
     stage.setUpFrame();
     rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
     if (inFlight.empty()) lastEnd = Clock::now();
+    doing = "building";
     rtSwapBuffers();
+    doing = "";
     throwOnError("rendering");
     inFlight.push_back(std::move(flight));
   }
@@ -192,6 +197,11 @@ void Renderer::begin() {
 
 Renderer::~Renderer() { end(); }
 
+void Renderer::leave() {
+  impl_->leaving = true;
+  end();
+}
+
 void Renderer::close() {
   end();
   if (!impl_->wrong.empty()) throw RenderError(impl_->wrong, RT_IO_ERROR);
@@ -209,6 +219,8 @@ void Renderer::end() {
 void Renderer::change(const std::function<void(RenderSettings&)>& change) {
   change(impl_->stage.settings);
 }
+
+std::string Renderer::stage() const { return impl_->doing.load(); }
 
 void Renderer::setProgressCallback(ProgressCallback watch) { impl_->watch = std::move(watch); }
 

@@ -90,6 +90,9 @@ class Renderer {
   // Ends the context, as the destructor does. Throws RenderError if the recording that the settings
   // request is incomplete. No other call may follow.
   void close();
+  // Ends the context as close() does, but gives up what is known about the shapes of the world
+  // without freeing it. For a process that ends: freeing a million shapes takes seconds.
+  void leave();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
@@ -110,6 +113,9 @@ class Renderer {
   void prepare(const View& view);
   // Describes the objects that the world is rendered as. Call it after prepare() or render().
   std::vector<xvrml::ExplainedObject> explain();
+  // Returns the stage of a call that is under way, for the progress callback: "mapping",
+  // "building"; "" while a frame is rendered or nothing is done.
+  std::string stage() const;
   // Copies the finished part of the frame in flight; called by the progress callback. Returns false
   // if no frame is in flight.
   bool snapshot(Picture& picture);

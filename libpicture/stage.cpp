@@ -108,8 +108,9 @@ void Stage::open(const std::function<bool()>& stop) {
   }
 }
 
-std::string Stage::close() {
+std::string Stage::close(bool leaveMapper) {
   if (borrowed_) rtCancel(context_); // nobody will see this frame
+  if (leaveMapper && !borrowed_) static_cast<void>(mapper_.release());
   mapper_.reset();
   if (borrowed_ && environment_) {
     rtUseEnvironment(0);

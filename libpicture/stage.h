@@ -47,8 +47,9 @@ class Stage {
   // Creates the context and the mapper; throws RenderError. While other renderers use the cluster,
   // it calls `stop` and gives up when that returns true.
   void open(const std::function<bool()>& stop = {});
-  // Ends the context. Returns why a recording is incomplete; empty if it is complete.
-  std::string close();
+  // Ends the context. Returns why a recording is incomplete; empty if it is complete. leaveMapper:
+  // gives up the mapper without destroying it; no other mapper may use the context then.
+  std::string close(bool leaveMapper = false);
   void apply(const WorldChanges& worldChanges);
   // Returns the camera of a view. The default is the viewer of a running world.
   xvrml::CameraSettings cameraOf(const View& view) const;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "ending.h"
 #include "inputs.h"
 #include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
@@ -55,7 +56,14 @@ class Headless {
     }
     checkOutputs(options_);
     checkInputs(options_);
-    browser_ = startWorld(readWorld(options_.input, options_.load), options_, problems_);
+    std::unique_ptr<xvrml::World> read;
+    {
+      const StageProgress reading("", "reading the world", options_.quiet);
+      read = readWorld(options_.input, options_.load);
+    }
+    const double before = secondsSinceStart();
+    browser_ = startWorld(std::move(read), options_, problems_);
+    const double startSeconds = secondsSinceStart() - before;
     const xvrml::World& world = browser_->world();
     protectFilesOf(world, options_);
     if (options_.strict && Problems::any(world)) {
@@ -70,13 +78,15 @@ class Headless {
     int code = exitDone;
     if (options_.makesPictures()) {
       deferInterrupt(true, interruptSeconds);
-      code = makePictures(options_, commandLine_, *browser_, problems_);
+      code = makePictures(options_, commandLine_, *browser_, problems_, startSeconds);
     }
     if (code == exitDone) problems_.reportEnd(browser_->world());
     return code;
   }
 
   const Options& options() const { return options_; }
+  // Returns whether the world may be left to the operating system when the process ends.
+  bool leavesMemory() const { return browser_ && vv::leavesMemory(options_, *browser_); }
 
   // Returns the files that the world was made of; empty if it could not be loaded.
   std::vector<std::string> files() const {
@@ -194,10 +204,14 @@ int runWatching(const Options& options, const std::string& commandLine) {
 } // namespace
 
 int runHeadless(const Options& options, const std::string& commandLine) {
+  const size_t builtIn = xvrml::nodeTypes().size();
   for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
+  if (xvrml::nodeTypes().size() > builtIn) freeAllMemory();
   if (options.watch) return runWatching(options, commandLine);
-  Headless job(options, commandLine);
-  return runOnce(job);
+  auto job = std::make_shared<Headless>(options, commandLine);
+  const int code = runOnce(*job);
+  if (job->leavesMemory()) leave(std::move(job));
+  return code;
 }
 
 } // namespace vv

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "ending.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
 #include "libpicture/transport.h"
@@ -99,8 +100,14 @@ void writeOutput(const std::string& path, const std::string& bytes) {
 class Pictures {
  public:
   Pictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
-           Problems& problems)
-      : options_(options), commandLine_(commandLine), browser_(browser), problems_(problems) {}
+           Problems& problems, double startSeconds)
+      : options_(options), commandLine_(commandLine), browser_(browser), problems_(problems),
+        startSeconds_(startSeconds) {}
+
+  // Ends the renderer without freeing the shapes.
+  void leave() {
+    if (renderer_) renderer_->leave();
+  }
 
   int make() {
     picture::RenderSettings settings = options_.render;
@@ -115,9 +122,8 @@ class Pictures {
     WorldClock clock([this](double time) { tick(time); }, options_.fps);
     if (!clock.advance(timeline[0].time))
       return stopped("vv: interrupted before the first picture");
-    if (!renderer_) renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
+    if (!renderer_) makeRenderer(settings);
     picture::Renderer& renderer = *renderer_;
-    renderer.setProgressCallback([this](float fraction) { return watch(fraction); });
     moments_ = timeline.size();
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
@@ -169,7 +175,7 @@ class Pictures {
   // Sets up the camera of a run with --input. Only the renderer knows the extent of the world,
   // which a view of the whole world needs.
   void beginScript(const picture::RenderSettings& settings) {
-    renderer_ = std::make_unique<picture::Renderer>(browser_, settings);
+    makeRenderer(settings);
     pilot_ = std::make_unique<Pilot>(browser_, 0, options_.view.fov);
     pilot_->setAspect(double(options_.render.width) / options_.render.height);
     if (pilot_->begin(options_.view, options_.viewpoint)) present();
@@ -210,9 +216,23 @@ class Pictures {
     return job;
   }
 
+  // Makes the renderer, which maps the shapes of the world.
+  void makeRenderer(const picture::RenderSettings& settings) {
+    Progress mapping("", options_.quiet);
+    renderer_ = std::make_unique<picture::Renderer>(browser_, settings, [&](float) {
+      mapping.showStage("mapping");
+      return false;
+    });
+    mapping.clear();
+    renderer_->setProgressCallback([this](float fraction) { return watch(fraction); });
+  }
+
   bool watch(float fraction) {
     reportClusterMessages();
-    if (progress_) {
+    const std::string stage = renderer_ ? renderer_->stage() : "";
+    if (progress_ && !stage.empty()) {
+      progress_->showStage(stage);
+    } else if (progress_) {
       const double all = double(moments_ * views_);
       progress_->show(float((double(done_) + double(fraction)) / std::max(1.0, all)),
                       workersText(options_.render.cluster.get()));
@@ -385,7 +405,7 @@ class Pictures {
     else
       writeText(options_.stats == "-" ? "-" : pathFor(options_.stats, job.name),
                 statsJson(options_, commandLine_, running(), result,
-                          {writeSeconds, secondsSince(start_)}));
+                          {startSeconds_, writeSeconds, secondsSinceStart()}));
   }
 
   RunningWorld running() const { return {browser_.world(), browser_.scripts()}; }
@@ -431,15 +451,15 @@ class Pictures {
     }
     films_.clear();
     if (!options_.stats.empty() && options_.isSequence())
-      writeText(options_.stats,
-                frames_.json(options_, commandLine_, running(), secondsSince(start_)));
+      writeText(options_.stats, frames_.json(options_, commandLine_, running(), startSeconds_,
+                                             secondsSinceStart()));
   }
 
   const Options& options_;
   const std::string& commandLine_;
   xvrml::Browser& browser_;
   Problems& problems_;
-  const Clock::time_point start_ = Clock::now();
+  const double startSeconds_; // how long the world took to start
   std::unique_ptr<picture::Renderer> renderer_;
   std::unique_ptr<Progress> progress_;
   std::unique_ptr<Pilot> pilot_; // drives the world with --input; null: no --input
@@ -472,8 +492,11 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
 }
 
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
-                 Problems& problems) {
-  return Pictures(options, commandLine, browser, problems).make();
+                 Problems& problems, double startSeconds) {
+  Pictures pictures(options, commandLine, browser, problems, startSeconds);
+  const int code = pictures.make();
+  if (leavesMemory(options, browser)) pictures.leave();
+  return code;
 }
 
 void writeText(const std::string& path, const std::string& text) {

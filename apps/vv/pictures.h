@@ -8,8 +8,9 @@
 namespace vv {
 
 // Returns an exit code. Throws Failure, picture::RenderError and the errors of writing files.
+// startSeconds: how long the world took to start, for the statistics.
 int makePictures(const Options& options, const std::string& commandLine, xvrml::Browser& browser,
-                 Problems& problems);
+                 Problems& problems, double startSeconds);
 
 // Returns the requested channels, without those that only the statistics need.
 picture::Picture wantedPart(const picture::Picture& made, uint32_t channels);

@@ -2,8 +2,11 @@
 // in scene_state.h. make() allocates all memory before markCommitted() marks the edits as sent, so
 // a commit that fails leaves the scene unchanged. Runs on the application's thread.
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <functional>
 #include <unordered_map>
+#include <utility>
 
 #include <xxhash.h>
 
@@ -64,6 +67,14 @@ class CommitBuilder {
   // list that several geometries share, or the corners of equal boxes.
   ArrayId addArray(const ArrayPtr& array) {
     if (!array) return 0;
+    auto& [recent, recentId] =
+        recent_[std::hash<const Array*>()(array.get()) / 64 % recent_.size()];
+    if (recent == array.get()) return recentId;
+    recent = array.get();
+    return recentId = addNewArray(array);
+  }
+
+  ArrayId addNewArray(const ArrayPtr& array) {
     const uint64_t hash = XXH3_64bits(array->data(), array->size());
     const auto [first, last] = known_.equal_range(hash);
     for (auto it = first; it != last; ++it) {
@@ -222,6 +233,8 @@ class CommitBuilder {
   SceneState& scene_;
   std::shared_ptr<Commit> commit_;
   std::unordered_multimap<uint64_t, ArrayId> known_; // arrays of this commit, by hash
+  // Arrays that were added lately, by address; geometries may share them already.
+  std::array<std::pair<const Array*, ArrayId>, 256> recent_{};
 };
 
 std::shared_ptr<const Commit> SceneState::takeCommit(bool render) {

@@ -11,11 +11,12 @@
 namespace xvrml {
 
 void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
-  if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
-    if (!instance->body.roots.empty()) out.push_back(instance->body.roots[0].get());
+  if (node.type().index < 0) {
+    if (const auto* instance = dynamic_cast<ProtoInstance*>(&node);
+        instance && !instance->body.roots.empty())
+      out.push_back(instance->body.roots[0].get());
     return;
   }
-  if (node.type().index < 0) return;
   if (node.type().expand) {
     if (Node* standsFor = expansionOf(node)) out.push_back(standsFor);
     return;
@@ -26,7 +27,7 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
 
 void holdersOf(const Node& node, std::vector<Node*>& holders) {
   if (!node.live) return;
-  const std::vector<Node*>& parents = liveOf(node)->parents;
+  const Parents& parents = liveOf(node)->parents;
   holders.insert(holders.end(), parents.begin(), parents.end());
 }
 

@@ -59,6 +59,23 @@ struct Participant {
   const Out* findOut(const FieldInfo& field) const;
 };
 
+// The parents of a node, in the order in which they were added. Most nodes have one, which takes no
+// memory of its own.
+class Parents {
+ public:
+  size_t size() const { return more_ ? more_->size() : one_ ? 1 : 0; }
+  Node* const* begin() const { return more_ ? more_->data() : &one_; }
+  Node* const* end() const { return begin() + size(); }
+  Node* operator[](size_t index) const { return begin()[index]; }
+  void push_back(Node* parent);
+  void removeLast(const Node* parent); // removes the last entry of this parent, if there is one
+  void removeAll(const Node* parent) noexcept;
+
+ private:
+  Node* one_ = nullptr; // unused if `more_` is set
+  std::unique_ptr<std::vector<Node*>> more_;
+};
+
 struct Live : LiveBase {
   Engine* engine;
   Node* node;
@@ -70,7 +87,7 @@ struct Live : LiveBase {
   uint64_t changed = 0;
   // Nodes that have it among their children, once for each time. Includes prototype instances and
   // Inlines.
-  std::vector<Node*> parents;
+  Parents parents;
   std::unique_ptr<Participant> part;
 };
 

@@ -51,7 +51,7 @@ void Engine::forget(LiveBase* base) noexcept {
     for (Node* child : children)
       if (child && child->live) engine.unlinkChild(*live->node, *child);
   } catch (const std::bad_alloc&) { // no node may keep it as a parent
-    for (Live* other : engine.lives_) std::erase(other->parents, live->node);
+    for (Live* other : engine.lives_) other->parents.removeAll(live->node);
     ++engine.structure_;
   }
   engine.ticking_.erase(live->order);
@@ -85,16 +85,37 @@ void Engine::destroyLater(std::unique_ptr<Participant> part) noexcept {
   destroying_ = false;
 }
 
+void Parents::push_back(Node* parent) {
+  if (!more_ && !one_) {
+    one_ = parent;
+    return;
+  }
+  if (!more_) more_ = std::make_unique<std::vector<Node*>>(1, one_);
+  more_->push_back(parent);
+}
+
+void Parents::removeLast(const Node* parent) {
+  if (!more_) {
+    if (one_ == parent) one_ = nullptr;
+    return;
+  }
+  const auto found = std::find(more_->rbegin(), more_->rend(), parent);
+  if (found != more_->rend()) more_->erase(std::next(found).base());
+}
+
+void Parents::removeAll(const Node* parent) noexcept {
+  if (one_ == parent) one_ = nullptr;
+  if (more_) std::erase(*more_, parent);
+}
+
 void Engine::linkChild(Node& parent, Node& child) {
   liveOf(child)->parents.push_back(&parent);
   ++structure_;
 }
 
 void Engine::unlinkChild(Node& parent, Node& child) {
-  std::vector<Node*>& parents = liveOf(child)->parents;
   ++structure_;
-  const auto found = std::find(parents.rbegin(), parents.rend(), &parent);
-  if (found != parents.rend()) parents.erase(std::next(found).base());
+  liveOf(child)->parents.removeLast(&parent);
 }
 
 // Collects a node and its descendants, without recursion.
@@ -108,7 +129,7 @@ void Engine::collect(Node& first, AdoptedNodes& adopted) {
     adopted.nodes.emplace_back(&node);
     below.clear();
     if (const Scope* content = inlineScope(node)) adopted.scopes.push_back(content);
-    if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
+    if (auto* instance = node.type().index < 0 ? dynamic_cast<ProtoInstance*>(&node) : nullptr) {
       adopted.instances.push_back(instance);
       adopted.scopes.push_back(&instance->body);
       for (size_t i = 1; i < instance->body.roots.size(); ++i)
@@ -155,7 +176,7 @@ void Engine::complete(AdoptedNodes& adopted) {
     for (const Route& route : scope->routes)
       if (route.from && route.to) addRoute(*route.from, route.fromField, *route.to, route.toField);
   for (const NodeRef& node : adopted.nodes) {
-    if (auto* script = dynamic_cast<ScriptNode*>(node.get())) {
+    if (auto* script = node->type().index < 0 ? dynamic_cast<ScriptNode*>(node.get()) : nullptr) {
       if (!scripts) continue;
       scripts->begin(*script);
       scriptsToStart_ = true;

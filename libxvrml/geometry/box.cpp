@@ -30,6 +30,9 @@ Mesh buildBox(const nodes::Box& node, const MeshOptions&, Faults& faults) {
   }
   if (!(node.size.x > 0 && node.size.y > 0 && node.size.z > 0))
     faults.note("size must be positive");
+  mesh.ownPoints.reserve(24);
+  mesh.ownTexCoords.reserve(24);
+  mesh.ownIndices.reserve(36);
   for (const Side& side : sides) {
     uint32_t first = uint32_t(mesh.ownPoints.size());
     for (auto [s, t] : {std::pair{0.f, 0.f}, {1.f, 0.f}, {1.f, 1.f}, {0.f, 1.f}}) {

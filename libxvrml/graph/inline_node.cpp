@@ -29,6 +29,7 @@ std::shared_ptr<NodeType> scriptType(const NodeType& script) {
 }
 
 const Scope* inlineScope(const Node& inlineNode) {
+  if (inlineNode.type().index != nodes::Inline::typeIndex) return nullptr;
   const auto* node = dynamic_cast<const InlineNode*>(&inlineNode);
   return node ? node->content.get() : nullptr;
 }

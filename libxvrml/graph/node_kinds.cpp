@@ -12,6 +12,7 @@ const Node* firstNode(const ProtoDeclaration* declaration) {
 }
 
 const NodeType* effectiveType(const Node& node) {
+  if (node.type().index >= 0) return &node.type();
   const Node* current = &node;
   // Follows instances of instances. Each prototype is declared before the next one uses it, which
   // bounds their number.

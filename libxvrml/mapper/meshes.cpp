@@ -123,6 +123,8 @@ void Meshes::setDynamic(int32_t mesh, bool dynamic) {
 }
 
 const Mesh& Meshes::get(int32_t mesh) {
+  // Equal meshes share the arrays of the first of their group.
+  if (const int32_t first = equal(mesh); first != mesh) return get(first);
   Entry& entry = entries_[size_t(mesh)];
   if (entry.mesh) return *entry.mesh;
   Diagnostics silent; // problems of the geometry were reported by the first build
@@ -151,7 +153,10 @@ const Mesh& Meshes::get(int32_t mesh) {
   if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
       entry.extent.primitives >= minimumComparedPrimitives)
     join(mesh);
-  return *entries_[size_t(mesh)].mesh;
+  if (equal(mesh) == mesh) return *entry.mesh;
+  quota_.give(ownBytes(*entry.mesh));
+  entry.mesh.reset();
+  return get(mesh);
 }
 
 bool Meshes::sameContent(int32_t a, int32_t b) {

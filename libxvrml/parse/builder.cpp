@@ -115,8 +115,9 @@ bool Builder::openNode(const Token& type, const Token* def) {
   Node& node = *frame.node;
   node.source = lexer_.place(type.at());
   if (!inTemplate()) {
-    if (dynamic_cast<ProtoInstance*>(&node)) file_.instances.push_back(frame.node);
-    if (dynamic_cast<InlineNode*>(&node)) file_.inlines.push_back(frame.node);
+    if (node.type().index < 0 && dynamic_cast<ProtoInstance*>(&node))
+      file_.instances.push_back(frame.node);
+    if (node.type().index == nodes::Inline::typeIndex) file_.inlines.push_back(frame.node);
   }
   if (def) {
     node.defName = def->text;
@@ -139,7 +140,9 @@ void Builder::closeNode(bool good) {
     good = false;
   }
   if (!good) return rollBack(frame.mark);
-  if (frame.expanded > 1) expanded_.emplace(frame.node.get(), frame.expanded);
+  // Only a USE asks for the count.
+  if (frame.expanded > 1 && !frame.node->defName.empty())
+    expanded_.emplace(frame.node.get(), frame.expanded);
   // A node that is good but in a wrong place keeps its names, because a later USE may put it in a
   // right one. In a prototype's body it keeps them only if none of its fields is connected to the
   // interface.
@@ -286,7 +289,8 @@ FieldTarget Builder::openField(const Token& name) {
   }
   frame.field = field;
   frame.fieldAt = name.at();
-  if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(*field);
+  if (node.type().index < 0)
+    if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(*field);
   void* storage = node.storage(*field);
   if (field->type == FieldType::SFNode) {
     *static_cast<NodeRef*>(storage) = {};

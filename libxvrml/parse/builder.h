@@ -124,7 +124,7 @@ class Builder : public ParseSink {
   std::deque<Declaration> declarations_;
   std::vector<NodeFrame> nodes_;
   std::vector<NodeTarget> nodeTargets_;
-  std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1
+  std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1 of named nodes
   const NodeType* fullInterface_ = nullptr; // the last type that declares more than the limit
 };
 

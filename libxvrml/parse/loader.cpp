@@ -238,7 +238,8 @@ void Loader::checkSize(Scope& scope) {
     // Nodes in the fields of Scripts and instances are only drawn where a body holds them.
     if (node->type().index >= 0)
       forEachChild(*node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
-    if (const auto* instance = dynamic_cast<ProtoInstance*>(node)) {
+    if (const auto* instance =
+            node->type().index < 0 ? dynamic_cast<ProtoInstance*>(node) : nullptr) {
       for (const NodeRef& root : instance->body.roots) out.push_back(root.get());
     }
     if (const Scope* content = inlineScope(*node)) {

@@ -1,6 +1,7 @@
 // mapper_memory.cpp: the gain of grouping and instancing. Renders frames of 20,000 small static
 // shapes, merged and as one object each. Compares the memory of a forest of 10,000 USEs with that
 // of the same forest written out.
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <malloc.h>
@@ -129,14 +130,32 @@ void Forest(benchmark::State& state) {
 }
 BENCHMARK(Forest)->Arg(1)->Arg(100)->Arg(10'000)->Unit(benchmark::kMillisecond)->Iterations(3);
 
-// Many separate shapes: bytes per shape, from the file's text to the picture.
+enum Written { separate, different, used };
+
+// Returns n small boxes: separate Shapes, of which many are equal; separate Shapes that all differ;
+// or one Shape that is used n times.
+std::string boxes(int n, int64_t written) {
+  std::string body;
+  for (int i = 0; i < n; ++i) {
+    const std::string green = std::to_string(written == different ? i * 1e-6 : i % 100 / 100.0);
+    const std::string size = std::to_string(written == different ? .5 + i * 1e-6 : .5);
+    body += "Transform { translation " + std::to_string(i % 300) + " " + std::to_string(i / 300) +
+            " 0 children ";
+    if (written == used && i > 0)
+      body += "USE S }\n";
+    else
+      body += std::string(written == used ? "DEF S " : "") +
+              "Shape { appearance Appearance { material Material { diffuseColor .5 " + green +
+              " .5 } } geometry Box { size " + size + " .5 .5 } } }\n";
+  }
+  return body;
+}
+
+// Many small shapes: bytes and seconds per shape, from the file's text to the picture.
 void Shapes(benchmark::State& state) {
   const int n = int(state.range(0));
-  std::string body;
-  for (int i = 0; i < n; ++i)
-    body += "Transform { translation " + std::to_string(i % 300) + " " + std::to_string(i / 300) +
-            " 0 children Shape { appearance Appearance { material Material { diffuseColor .5 " +
-            std::to_string(i % 100 / 100.0) + " .5 } } geometry Box { size .5 .5 .5 } } }\n";
+  const std::string body = boxes(n, state.range(1));
+  const auto begin = std::chrono::steady_clock::now();
   const double before = residentBytes();
   RTcontext context = rtNewContext("threads=1");
   std::unique_ptr<World> world = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "shapes.wrl");
@@ -149,7 +168,9 @@ void Shapes(benchmark::State& state) {
   rtQuality(RT_SAMPLES_PER_PIXEL, 1);
   rtRender();
   const double rendered = residentBytes();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   for (auto _ : state) rtRender();
+  state.counters["us_per_shape"] = seconds.count() * 1e6 / n;
   state.counters["world"] = (loaded - before) / n;
   state.counters["graph"] = (built - loaded) / n;
   state.counters["objects"] = (mapped - built) / n;
@@ -157,6 +178,11 @@ void Shapes(benchmark::State& state) {
   mapper.reset();
   rtDeleteContext(context);
 }
-BENCHMARK(Shapes)->Arg(100'000)->Unit(benchmark::kMillisecond)->Iterations(1);
+BENCHMARK(Shapes)
+    ->Args({100'000, separate})
+    ->Args({100'000, different})
+    ->Args({100'000, used})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
 
 } // namespace

@@ -85,7 +85,7 @@ class Lamps : public Scene {
     rtBindShader(0);
     return place(object);
   }
-  // A disc of area pi r^2. It has enough triangles that its outline does not matter.
+  // Returns a triangulated disc of area pi r^2. Its outline error is negligible.
   static std::vector<Vec> disc(double r, double z) {
     constexpr int n = 512;
     const double out = r * std::sqrt(2 * pi / n / std::sin(2 * pi / n));

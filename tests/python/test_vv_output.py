@@ -193,7 +193,7 @@ def test_statistics(vv):
         "scripts":
             "scripts started calls seconds",
         "time":
-            "parse graph map build first_pass render write total",
+            "parse graph start map build first_pass render write total",
         "rays":
             "camera shadow secondary per_second",
         "transport":
@@ -224,6 +224,8 @@ def test_statistics(vv):
     assert stats["rays"]["camera"] == 40 * 30 * 4
     assert stats["machine"]["threads"] == 2 and "Embree" in stats["machine"]["embree"]
     assert 0 < stats["time"]["render"] < stats["time"]["total"] < 60
+    stages = ("parse", "graph", "start", "map", "render", "write")
+    assert sum(stats["time"][stage] for stage in stages) <= stats["time"]["total"]
     assert stats["error"]["level"] == 0.95 and stats["error"]["mean_rel"] >= 0
     assert stats["memory"]["peak_rss"] > 1 << 20
     assert json.loads(vv("box.wrl", "-o", "x.png", "--stats", "-", *SMALL).text)["schema"] == 1

@@ -99,6 +99,28 @@ TEST_F(MapBudget, LightsThatGoOut) {
   EXPECT_LE(budgetOf(*world_)->used(), on - bytesOfLight - bytesOfLightShader);
 }
 
+// In a world with many appearances, equal ones share a shader.
+TEST_F(MapBudget, EqualAppearancesShareAShader) {
+  const auto shape = [](int green) {
+    return "Shape { appearance Appearance { material Material { diffuseColor 0 ." +
+           std::to_string(green) + " 0 } } geometry Box { } }\n";
+  };
+  const auto used = [&](const std::string& body) {
+    draw(body);
+    return budgetOf(*world_)->used();
+  };
+  const std::string many = repeat(shape(1), 300);
+  const uint64_t before = used(many + repeat("Shape { geometry Box { } }\n", 100));
+  const uint64_t equal = used(many + repeat(shape(1), 100));
+  std::string others;
+  for (int i = 0; i < 100; ++i) others += shape(200 + i);
+  const uint64_t different = used(many + others);
+  EXPECT_EQ(messages(*world_), "");
+  EXPECT_EQ(different - equal, 100 * (bytesOfSurface - bytesOfSharedSurface));
+  EXPECT_LT(before, equal);
+  EXPECT_GT(before + 100 * bytesOfSurface, equal);
+}
+
 // Each appearance with a material has a shader of its own, and with it the texts of the options.
 TEST_F(MapBudget, OptionsOfShaders) {
   const std::string text = "Shape { appearance ORTAppearance { material Material { } shader DEF S "

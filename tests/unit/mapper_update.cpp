@@ -167,6 +167,56 @@ TEST_F(MapUpdate, AMaterialThatComesAndGoes) {
   EXPECT_EQ(cost().defined, 0u);
 }
 
+// Equal appearances of a large world share a shader. The first change of one of them gives it a
+// shader of its own; the others keep their look.
+TEST_F(MapUpdate, AMaterialThatIsSharedBecomesSeparate) {
+  const auto at = [](int x, const std::string& material) {
+    return "Transform { translation " + std::to_string(x) +
+           " 0 -10 children Shape { appearance Appearance { material " + material +
+           " } geometry Box { size 40 40 1 } } }\n";
+  };
+  load("NavigationInfo { headlight FALSE }\n" + repeat(at(1000, "Material { }"), 400) +
+       at(-25, "DEF A Material { emissiveColor 1 1 1 }") +
+       at(25, "DEF B Material { emissiveColor 1 1 1 }"));
+  const auto greens = [&] { // of the two boxes
+    mapper_->update(engine_->takeChanges());
+    mapper_->map(mapper_->viewpointCamera(0));
+    rtFrameBuffer(3, 1, RT_RGBA);
+    rtRender();
+    float p[12] = {};
+    rtReadPixels(RT_RGBA, p, 12);
+    return std::pair(p[1], p[9]);
+  };
+  EXPECT_EQ(greens(), std::pair(1.f, 1.f));
+  send("A", "set_emissiveColor", Color{1, 0, 0});
+  EXPECT_EQ(greens(), std::pair(0.f, 1.f));
+  send("A", "set_emissiveColor", Color{1, .5f, 0});
+  const Cost second = cost();
+  EXPECT_EQ(second, (Cost{.parameters = second.parameters})) << "it has a shader of its own now";
+  EXPECT_GT(second.parameters, 0u);
+  const auto orange = greens();
+  EXPECT_GT(orange.first, 0);
+  EXPECT_LT(orange.first, 1);
+  EXPECT_EQ(orange.second, 1);
+  send("B", "set_emissiveColor", Color{0, 0, 1});
+  EXPECT_EQ(greens(), std::pair(orange.first, 0.f));
+}
+
+// Equal boxes share the arrays of one mesh. One that changes becomes separate.
+TEST_F(MapUpdate, ABoxThatEqualsOthersBecomesSeparate) {
+  load("Transform { translation -2 0 0 children Shape { geometry DEF A Box { } } }\n"
+       "Transform { translation 2 0 0 children Shape { geometry Box { } } }\n");
+  EXPECT_EQ(mapper_->bounds().minimum[0], -3);
+  EXPECT_EQ(mapper_->bounds().maximum[0], 3);
+  for (const float width : {4.f, 2.f, 6.f}) {
+    Node& box = node("A");
+    EXPECT_TRUE(engine_->store(box, *box.type().find("size"), Vec3f{width, 2, 2}));
+    EXPECT_EQ(frame().triangles, 24u);
+    EXPECT_EQ(mapper_->bounds().minimum[0], -2 - double(width) / 2);
+    EXPECT_EQ(mapper_->bounds().maximum[0], 3) << "the other box";
+  }
+}
+
 TEST_F(MapUpdate, OptionsOfAShaderAreParametersAlone) {
   load(rest() +
        "Shape { appearance ORTAppearance { material DEF O Material { } shader DEF S ORTShader { "

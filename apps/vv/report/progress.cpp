@@ -17,6 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+const Clock::time_point programStart = Clock::now();
+
 void writeError(const std::string& text) {
   (void)!::write(STDERR_FILENO, text.data(), text.size());
 }
@@ -54,24 +56,56 @@ void Progress::clear() {
   shown_ = false;
 }
 
+bool Progress::due() const { return !quiet_ && Clock::now() >= next_; }
+
+void Progress::print(const std::string& bar, const std::string& text) {
+  if (terminal_) {
+    writeError(fmt::format("\r{}{}{}\x1b[K", what_.empty() ? "" : what_ + " ", bar, text));
+    next_ = Clock::now() + 100ms;
+  } else {
+    say(fmt::format("vv: {}{}", what_.empty() ? "" : what_ + ": ", text));
+    next_ = Clock::now() + 5s;
+  }
+  shown_ = true;
+}
+
 void Progress::show(float fraction, const std::string& more) {
-  const auto now = Clock::now();
-  if (quiet_ || now < next_) return;
+  if (!due()) return;
   fraction = std::clamp(fraction, 0.0f, 1.0f);
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
   std::string text = fmt::format("{:3.0f} %  {}", 100 * fraction, duration(elapsed));
   if (fraction > 0.01f)
     text += fmt::format(", about {} to go", duration(elapsed / fraction * (1 - fraction)));
   if (!more.empty()) text += ", " + more;
-  if (terminal_) {
-    writeError(fmt::format("\r{}{} {}\x1b[K", what_.empty() ? "" : what_ + " ",
-                           bar(fraction, colour_), text));
-    next_ = now + 100ms;
-  } else {
-    say(fmt::format("vv: {}{}", what_.empty() ? "" : what_ + ": ", text));
-    next_ = now + 5s;
+  print(bar(fraction, colour_) + " ", text);
+}
+
+void Progress::showStage(const std::string& stage) {
+  if (!due()) return;
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  print("", fmt::format("{}  {}", stage, duration(elapsed)));
+}
+
+StageProgress::StageProgress(const std::string& what, const std::string& stage, bool quiet) {
+  if (quiet) return;
+  thread_ = std::thread([this, what, stage] {
+    Progress progress(what, false);
+    std::unique_lock lock(mutex_);
+    while (!ending_.wait_for(lock, 100ms, [this] { return ended_; })) progress.showStage(stage);
+  });
+}
+
+StageProgress::~StageProgress() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
   }
-  shown_ = true;
+  ending_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+double secondsSinceStart() {
+  return std::chrono::duration<double>(Clock::now() - programStart).count();
 }
 
 } // namespace vv

@@ -206,6 +206,7 @@ std::string statsJson(const Options& options, const std::string& commandLine,
   // A picture has a single pass.
   json["time"] = {{"parse", world.times.parse},
                   {"graph", world.times.load},
+                  {"start", times.start},
                   {"map", result.mapSeconds},
                   {"build", s.commitSeconds + s.buildSeconds},
                   {"first_pass", result.renderSeconds},
@@ -257,13 +258,16 @@ void SequenceStats::add(const PictureName& name, double worldTime,
 }
 
 std::string SequenceStats::json(const Options& options, const std::string& commandLine,
-                                const RunningWorld& running, double totalSeconds) const {
+                                const RunningWorld& running, double startSeconds,
+                                double totalSeconds) const {
   const Impl& sum = *impl_;
   const xvrml::World& world = running.world;
   Json json = sceneStats(options, commandLine, running, sum.last, sum.samples);
-  json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load}, {"map", sum.map},
-                  {"build", sum.build},         {"first_pass", sum.first},   {"render", sum.render},
-                  {"write", sum.write},         {"total", totalSeconds}};
+  json["time"] = {{"parse", world.times.parse}, {"graph", world.times.load},
+                  {"start", startSeconds},      {"map", sum.map},
+                  {"build", sum.build},         {"first_pass", sum.first},
+                  {"render", sum.render},       {"write", sum.write},
+                  {"total", totalSeconds}};
   json["rays"] = rayStats(sum.camera, sum.shadow, sum.secondary, sum.tracing);
   addMachine(json, options, sum.last);
   json["fps"] = options.fps;

@@ -13,7 +13,11 @@
 namespace vv {
 
 struct RunTimes {
-  double write = 0, total = 0; // seconds for writing the files; seconds of the whole run
+  double start = 0; // seconds for starting the world: its events and Scripts
+  double write = 0; // seconds for writing the files
+  // Seconds from the start of the program until the statistics are written, which is the end of its
+  // work.
+  double total = 0;
 };
 // The facts of a running world that the statistics contain.
 struct RunningWorld {
@@ -35,7 +39,7 @@ class SequenceStats {
   void add(const PictureName& name, double worldTime, const picture::RenderResult& result,
            double writeSeconds);
   std::string json(const Options& options, const std::string& commandLine,
-                   const RunningWorld& running, double totalSeconds) const;
+                   const RunningWorld& running, double startSeconds, double totalSeconds) const;
 
  private:
   struct Impl;

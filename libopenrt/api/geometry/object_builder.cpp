@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include <xxhash.h>
+
 #include "api/geometry/transform.h"
 
 namespace openrt {
@@ -11,6 +13,7 @@ namespace {
 
 constexpr size_t maxMergedVertices = size_t(1) << 26; // further lists start another geometry
 constexpr double maxReachInExtents = 64;
+constexpr size_t recentArrays = 1024;
 
 // Reserves room for more elements with amortised growth, so that the caller can append them without
 // an allocation.
@@ -260,9 +263,28 @@ void ObjectBuilder::draw(const DrawCall& call, const GeometryState& state) {
   if (built) {
     flush(vertices_.count());
     open_ = false;
+    shareArrays(*built);
     done_.push_back(std::move(*built));
   }
   degenerate_ += degenerate;
+}
+
+// Replaces the arrays of a geometry by recent ones with the same bytes, so that many equal parts
+// take memory once while an object is defined.
+void ObjectBuilder::shareArrays(BuiltGeometry& built) {
+  if (done_.empty()) return;
+  recent_.resize(recentArrays);
+  for (ArrayPtr* array :
+       {&built.points, &built.indices, &built.normals, &built.texCoords, &built.colors}) {
+    if (!*array) continue;
+    ArrayPtr& known = recent_[XXH3_64bits((*array)->data(), (*array)->size()) % recentArrays];
+    const bool same = known && known->size() == (*array)->size() &&
+                      std::memcmp(known->data(), (*array)->data(), known->size()) == 0;
+    if (same)
+      *array = known;
+    else
+      known = *array;
+  }
 }
 
 void ObjectBuilder::sphere(float radius, const GeometryState& state) {
@@ -279,6 +301,7 @@ void ObjectBuilder::sphere(float radius, const GeometryState& state) {
 std::vector<BuiltGeometry> ObjectBuilder::finish() {
   flush(vertices_.count());
   open_ = false;
+  recent_.clear();
   return std::move(done_);
 }
 

@@ -1,6 +1,7 @@
 // object_builder.h: builds the geometry of the object being defined from rtBegin/rtEnd lists, array
-// draw calls and spheres. Consecutive lists with the same state are merged into one geometry. Used
-// on the application's thread.
+// draw calls and spheres. Consecutive lists with the same state are merged into one geometry. Draw
+// calls with the same values, such as those of equal boxes, share their arrays. Used on the
+// application's thread.
 //
 // Vertices in double that float cannot represent are stored relative to a local origin, which
 // becomes part of the geometry's matrix. The origin is a multiple of the power of two above the
@@ -119,8 +120,11 @@ class ObjectBuilder {
   void storeRelative(const Vec3d& origin);
   void flush(size_t vertexCount);
   void addParameters(BuiltGeometry& built, size_t vertexCount) const;
+  void shareArrays(BuiltGeometry& built);
 
   std::vector<BuiltGeometry> done_;
+  // Recent arrays of draw calls, each at its hash modulo the size, which is fixed.
+  std::vector<ArrayPtr> recent_;
   // The open geometry: state, vertices and indices of the lists merged so far.
   bool open_ = false, local_ = false;
   GeometryState state_;

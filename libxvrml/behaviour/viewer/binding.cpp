@@ -103,7 +103,9 @@ void Binding::bindFirst(const Scope& scope) {
   std::array<Node*, types> first{};
   walkScope(scope, [&](Node& node) {
     if (const size_t type = typeOf(node); type != types && !first[type]) first[type] = &node;
-    return node.type().index != nodes::Inline::typeIndex;
+    // A Shape holds no bindable node.
+    return node.type().index != nodes::Inline::typeIndex &&
+           node.type().index != nodes::Shape::typeIndex;
   });
   if (stacks_[viewpointStack].empty()) viewer_.restart();
   for (size_t type = 0; type < types; ++type)

@@ -42,7 +42,9 @@ inline constexpr uint64_t bytesOfShape = 1000;
 // Each further shape of an instanced object, for each flattened instance; bytesOfInstance includes
 // the first.
 inline constexpr uint64_t bytesOfRecord = 320;
-inline constexpr uint64_t bytesOfSurface = 2500; // an appearance
+inline constexpr uint64_t bytesOfSurface = 2500; // an appearance with a shader of its own
+// The part of it that an appearance takes which shares the shader of an equal one.
+inline constexpr uint64_t bytesOfSharedSurface = 250;
 // An option of an ORTShader, without its text and numbers.
 inline constexpr uint64_t bytesOfOption = 200;
 // Copies of an option's text and numbers: in the renderer's scene and in the shader's parameters.

@@ -30,6 +30,7 @@ void Objects::updateForFrame() {
       report(world_.diagnostics, graph_.items[place.item].node->source, "Billboard");
     }
   }
+  std::vector<Step>().swap(stack_); // it has held a step for every child of the largest group
   Place& root = places_.all[0];
   if (root.instance == 0) { // this part is the world itself
     rtLoadName(0);

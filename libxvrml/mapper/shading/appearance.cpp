@@ -2,8 +2,11 @@
 // class VRML97.
 #include "mapper/shading/appearance.h"
 
+#include <cstring>
 #include <optional>
+#include <utility>
 
+#include "xvrml/change.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
@@ -57,6 +60,73 @@ void setMaterial(ShaderSetup& shader, const nodes::Material* m, bool linear) {
 }
 } // namespace
 
+namespace {
+
+constexpr uint64_t bytesOfShader = bytesOfSurface - bytesOfSharedSurface;
+
+// Up to this number of appearances each has a shader of its own, so that its first change is a
+// change of parameters. The first change of a shared shader rewrites the shapes of one appearance.
+constexpr size_t smallWorld = 256;
+
+// Returns the bytes of all values that decide how a surface looks.
+std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) {
+  std::string key;
+  const auto add = [&key](const auto& value) {
+    key.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  add(texture);
+  add(multiply);
+  if (const nodes::Material* m = parts.material) {
+    for (const Color& color : {m->diffuseColor, m->emissiveColor, m->specularColor})
+      add(convert(color, linear));
+    for (const float number : {m->ambientIntensity, m->shininess, m->transparency}) add(number);
+  }
+  if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
+    add(textureMatrix(t->center, t->rotation, t->scale, t->translation));
+  return key;
+}
+
+} // namespace
+
+// Returns whether the appearance may share the shader of an equal one: the world has many
+// appearances, and no events reach this one.
+bool Surfaces::mayShare(const Entry& entry) const {
+  Node* node = entry.appearance.get();
+  if (!node || surfaces_.size() <= smallWorld) return false;
+  const Parts parts = partsOf(node);
+  if (parts.shader) return false;
+  for (const Node* part :
+       {static_cast<const Node*>(node), static_cast<const Node*>(parts.material),
+        static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.textureTransform)})
+    if (part && part->live && reachOf(*part) != 0) return false;
+  return true;
+}
+
+// Takes memory for a surface from the budget. Returns false, with a message, if none is left.
+bool Surfaces::take(const Entry& entry, uint64_t bytes) {
+  const Node* node = entry.appearance.get();
+  return quota_.take(bytes, node ? node->source : SourcePosition());
+}
+
+// Gives the entry the shared shader of these values. Returns false if there is none yet: then the
+// entry is its first user, and the caller makes the shader.
+bool Surfaces::share(Entry& entry, const std::string& key) {
+  const auto [it, fresh] = shared_.try_emplace(key);
+  it->second.key = &it->first;
+  entry.shared = &it->second;
+  ++entry.shared->users;
+  entry.surface.shader = entry.shared->shader;
+  return !fresh;
+}
+
+// Takes the entry away from its shared shader. The last user keeps the shader as its own.
+void Surfaces::leaveShared(Entry& entry) {
+  Shared& shared = *std::exchange(entry.shared, nullptr);
+  if (--shared.users > 0) return;
+  entry.own = shared.shader;
+  shared_.erase(*shared.key);
+}
+
 Surface Surfaces::surfaceFor(Node* appearance, bool lines) {
   Node* node = renderedNode(appearance);
   const auto [it, fresh] = (lines ? lines_ : surfaces_).try_emplace(node);
@@ -64,12 +134,13 @@ Surface Surfaces::surfaceFor(Node* appearance, bool lines) {
   if (!fresh) return entry.surface;
   entry.appearance = NodeRef(node);
   entry.textured = isTextured(node);
-  entry.counted = quota_.take(bytesOfSurface, node ? node->source : SourcePosition());
-  if (!entry.counted) return entry.surface;
-  if (lines)
-    entry.own = (entry.surface = makeLines(node)).shader;
-  else
+  const uint64_t bytes = partsOf(node).shader ? bytesOfSurface : bytesOfSharedSurface;
+  if (!take(entry, bytes)) return entry.surface;
+  entry.bytes = uint32_t(bytes);
+  if (!lines)
     makeSurface(entry);
+  else if (take(entry, bytesOfShader))
+    entry.own = (entry.surface = makeLines(node)).shader;
   return entry.surface;
 }
 
@@ -140,13 +211,29 @@ void Surfaces::makeSurface(Entry& entry) {
   }
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
+  const bool first = entry.own == 0 && !entry.shared;
+  if (entry.shared || (first && mayShare(entry))) {
+    const std::string key = keyOf(parts, texture, linear_, multiplyTextures);
+    if (entry.shared && *entry.shared->key == key) {
+      entry.surface.shader = entry.shared->shader;
+      return;
+    }
+    if (entry.shared) leaveShared(entry);
+    if (first && share(entry, key)) return;
+  }
+  if (entry.own == 0 && !take(entry, bytesOfShader)) {
+    if (entry.shared) leaveShared(entry);
+    entry.surface = Surface();
+    return;
+  }
   std::optional<ShaderSetup> setup;
   if (entry.own == 0)
     setup.emplace(classes_.get("VRML97", ""));
   else
     setup.emplace(entry.own, sets_);
   ShaderSetup& shader = *setup;
-  entry.own = entry.surface.shader = shader.id();
+  entry.surface.shader = shader.id();
+  (entry.shared ? entry.shared->shader : entry.own) = shader.id();
   const nodes::Material standard(*findNodeType("Material"));
   // The custom shader is unavailable, so the surface is shaded as a default Material.
   const bool fallback = parts.shader != nullptr;
@@ -166,7 +253,7 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
   Effect effect;
   if (const auto it = surfaces_.find(&appearance); it != surfaces_.end()) {
     const RTid before = it->second.surface.shader;
-    if (it->second.counted) makeSurface(it->second);
+    if (it->second.bytes > 0) makeSurface(it->second);
     effect.other = it->second.surface.shader != before;
     const bool textured = isTextured(&appearance);
     effect.textured = textured && !it->second.textured;
@@ -182,13 +269,17 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
 }
 
 void Surfaces::clear() {
-  for (const Entries* entries : {&surfaces_, &lines_})
-    for (const auto& [node, entry] : *entries) forget(entry);
+  for (Entries* entries : {&surfaces_, &lines_})
+    for (auto& [node, entry] : *entries) forget(entry);
 }
 
-void Surfaces::forget(const Entry& entry) {
-  if (entry.counted) quota_.give(bytesOfSurface);
-  if (entry.own != 0) rtDeleteShader(entry.own);
+void Surfaces::forget(Entry& entry) {
+  quota_.give(entry.bytes);
+  if (entry.shared) leaveShared(entry);
+  if (entry.own != 0) {
+    rtDeleteShader(entry.own);
+    quota_.give(bytesOfShader);
+  }
   if (entry.appearance) custom_.forget(*entry.appearance);
 }
 

@@ -1,7 +1,9 @@
-// appearance.h: appearance nodes as surface shaders: one shader per appearance node, made on first
-// use. [the mapper's thread]
+// appearance.h: appearance nodes as surface shaders, made on first use. In a world with many
+// appearances, equal ones share a shader as long as no event reaches them; the first change gives
+// an appearance a shader of its own. [the mapper's thread]
 #pragma once
 
+#include <string>
 #include <unordered_map>
 
 #include "mapper/ration.h"
@@ -50,18 +52,30 @@ class Surfaces {
   bool multiplyTextures = false; // OpenRTMapper::setMultiplyTextures
 
  private:
+  // A shader of the class VRML97 for all appearances whose values are `key`.
+  struct Shared {
+    RTid shader = 0;
+    uint32_t users = 0;
+    const std::string* key = nullptr; // in shared_
+  };
   struct Entry {
     NodeRef appearance;
     Surface surface;
-    RTid own = 0; // own shader of the class VRML97
+    RTid own = 0;             // own shader of the class VRML97
+    Shared* shared = nullptr; // shader shared with equal appearances; then `own` is 0
+    // Taken from the budget, without a shader of the class VRML97; 0: the appearance is left out.
+    uint32_t bytes = 0;
     bool textured = false;
-    bool counted = false; // its memory is taken from the budget
   };
   using Entries = std::unordered_map<const Node*, Entry>;
   Surface makeLines(Node* appearance);
   void makeSurface(Entry& entry);
+  bool mayShare(const Entry& entry) const;
+  bool share(Entry& entry, const std::string& key);
+  void leaveShared(Entry& entry);
+  bool take(const Entry& entry, uint64_t bytes);
   RTid customSurface(Node& appearance, nodes::ORTShader& shader);
-  void forget(const Entry& entry);
+  void forget(Entry& entry);
 
   World& world_;
   bool linear_;
@@ -70,17 +84,20 @@ class Surfaces {
   CustomShaders& custom_;
   Quota quota_;
   Entries surfaces_, lines_;
+  std::unordered_map<std::string, Shared> shared_; // by the values, see keyOf()
   uint64_t sets_ = 0;
 };
 
 template <class Uses> void Surfaces::forgetUnless(const Uses& uses) {
-  const auto sweep = [&](const auto& known) {
-    if (!known.first || uses(known.first)) return false;
-    forget(known.second);
-    return true;
-  };
-  std::erase_if(surfaces_, sweep);
-  std::erase_if(lines_, sweep);
+  for (Entries* entries : {&surfaces_, &lines_})
+    for (auto it = entries->begin(); it != entries->end();) {
+      if (!it->first || uses(it->first)) {
+        ++it;
+        continue;
+      }
+      forget(it->second);
+      it = entries->erase(it);
+    }
 }
 
 } // namespace xvrml::mapper

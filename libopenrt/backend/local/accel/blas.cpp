@@ -15,6 +15,10 @@ namespace {
 // A geometry with fewer triangles shares an Embree geometry with others.
 constexpr size_t mergeBelow = 4096;
 constexpr size_t mergedVertices = 8 << 20; // a merged geometry with more vertices is closed
+// From this number of triangles on the Embree scene is compact: its leaves hold indices instead of
+// vertices. 12 million triangles take 170 MB less, and 760 MB less while they are built; rays are
+// as fast. Smaller scenes stay as they are, so that their pictures keep their bytes.
+constexpr size_t compactTriangles = 1'000'000;
 
 } // namespace
 
@@ -77,6 +81,7 @@ void BlasBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint
     part->primitiveOf = std::move(baked.kept);
     part->indices = std::move(baked.indices);
   }
+  triangles_ += kept;
   vertexOf_.push_back({entry, part.get(), 0});
   attachTriangles(*blas_, device_, std::move(part), mask, false);
 }
@@ -93,6 +98,7 @@ Part& BlasBuilder::merge(const std::vector<float>& vertices, const uint32_t* ind
   part->vertices.insert(part->vertices.end(), vertices.begin(), vertices.end());
   vertexOf_.push_back({entry, part.get(), 3 * size_t(base)});
   if (which) count = which->size();
+  triangles_ += count;
   for (size_t i = 0; i < count; i++) {
     const uint32_t t = which ? (*which)[i] : uint32_t(i);
     for (int k = 0; k < 3; k++) part->indices.push_back(base + index[3 * size_t(t) + k]);
@@ -136,6 +142,7 @@ std::shared_ptr<Blas> BlasBuilder::finish() {
   for (auto& [mask, part] : hugeSpheres_)
     if (part) attachHugeSpheres(*blas_, device_, std::move(part), mask);
   for (const VertexOf& v : vertexOf_) blas_->vertices[v.entry] = v.part->vertices.data() + v.offset;
+  if (triangles_ >= compactTriangles) setCompact(blas_->scene);
   rtcCommitScene(blas_->scene);
   return std::move(blas_);
 }

@@ -61,6 +61,7 @@ class BlasBuilder {
     size_t offset;
   };
   std::vector<VertexOf> vertexOf_;
+  size_t triangles_ = 0;
 };
 
 // Returns the map to the frame of the bounds from a frame in which they are centred and have a size

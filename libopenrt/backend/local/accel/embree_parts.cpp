@@ -55,6 +55,10 @@ RTCScene newScene(const EmbreeDevice& device) {
   return scene;
 }
 
+void setCompact(RTCScene scene) {
+  rtcSetSceneFlags(scene, RTCSceneFlags(sceneFlags | RTC_SCENE_FLAG_COMPACT));
+}
+
 void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                      uint32_t mask, bool slivers) {
   if (slivers) {

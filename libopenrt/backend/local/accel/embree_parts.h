@@ -60,6 +60,7 @@ struct PartScene {
 inline constexpr uint32_t nextSlot = ~0u; // the first id after the existing parts
 
 RTCScene newScene(const EmbreeDevice& device); // Creates an empty scene in robust mode.
+void setCompact(RTCScene scene); // makes a scene that is not yet committed take less memory
 // Attaches triangles; if `slivers`, as a user geometry that intersects in double precision.
 void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                      uint32_t mask, bool slivers);
