@@ -173,7 +173,8 @@ void setName(const WorldPtr& self, const NodeObject& node, const std::string& na
   const bool good = !name.empty() && std::ranges::none_of(name, cannotBeIn) &&
                     std::string_view("+-0123456789").find(name[0]) == std::string_view::npos &&
                     std::ranges::find(keywords, name) == std::end(keywords);
-  if (!good) throw py::value_error(fmt::format("name: '{}' cannot be a DEF name", name));
+  if (!good) throw py::value_error(
+        fmt::format("name: {} cannot be a DEF name", std::string(py::repr(py::str(name)))));
   if (const auto found = names.find(name); found != names.end() && found->second != node.node)
     throw py::value_error(fmt::format("name: the world has a node called {}", name));
   if (const auto former = names.find(node.node->defName);

@@ -21,7 +21,7 @@ TEST(NodePluginRefusals, EachNamesBothSides) {
   };
   EXPECT_EQ(refused.size(), 8u);
   EXPECT_TRUE(told("MAGIC", "has a wrong magic number"));
-  EXPECT_TRUE(told("MAJOR", "version 2.0") && told("MAJOR", "has 1.1"));
+  EXPECT_TRUE(told("MAJOR", "version 2.1") && told("MAJOR", "has 1.1"));
   EXPECT_TRUE(told("MINOR", "version 1.2") && told("MINOR", "has 1.1"));
   EXPECT_TRUE(told("SIZE", "8 bytes"));
   EXPECT_TRUE(told("ABI", "\"another library\"") && told("ABI", XVRML_CXX_ABI));

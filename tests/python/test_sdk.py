@@ -215,8 +215,8 @@ def test_add_and_names(world):
         with pytest.raises(ValueError, match="DEF"):
             world.add(xvrml.Group(), name=name)
     with pytest.raises(ValueError, match="Material cannot stand at the root"):
-        world.add(xvrml.Material(), name="Paint")
-    assert "Paint" not in world.names
+        world.add(xvrml.Material(), name="Varnish")
+    assert "Varnish" not in world.names
     with pytest.raises(AttributeError, match="did you mean time"):
         world.tme = 5
 

@@ -189,7 +189,7 @@ def test_statistics(vv):
         "scene":
             "path nodes shapes triangles unique_triangles objects instances textures lights warnings",
         "image":
-            "width height spp channels",
+            "width height spp spp_mean channels",
         "scripts":
             "scripts started calls seconds",
         "time":

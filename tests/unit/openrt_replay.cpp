@@ -258,9 +258,10 @@ TEST_F(Replay, ExitCodes) {
 TEST_F(Replay, APictureThatCannotBeWritten) {
   recordFrames(folder / "good");
   EXPECT_EQ(replay(quoted("good") + " --frame 1 -o /nonexistent/folder/x.pfm"), 1);
+  EXPECT_NE(said().find("cannot be written"), std::string::npos) << said();
   EXPECT_EQ(replay(quoted("good") + " --frame 1 -o " + quoted("x.png")), 2); // not a PFM
   EXPECT_FALSE(fs::exists(folder / "x.png"));
-  EXPECT_NE(said().find("cannot be written"), std::string::npos) << said();
+  EXPECT_NE(said().find("only PFM files are written"), std::string::npos) << said();
 }
 
 } // namespace
