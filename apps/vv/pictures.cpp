@@ -1,3 +1,5 @@
+// pictures.cpp: makes the pictures of a run: views, frames, channels and films. Longer than 500 lines
+// because one order of steps (render, check, write, report) serves all of them.
 #include "pictures.h"
 
 #include <algorithm>
