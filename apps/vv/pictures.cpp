@@ -1,5 +1,5 @@
-// pictures.cpp: makes the pictures of a run: views, frames, channels and films. Longer than 500 lines
-// because one order of steps (render, check, write, report) serves all of them.
+// pictures.cpp: makes the pictures of a run: views, frames, channels and films.
+// Longer than 500 lines because one order of steps (render, check, write, report) serves all.
 #include "pictures.h"
 
 #include <algorithm>
