@@ -65,6 +65,7 @@ struct Triangles {
   Arrays position = vectors(numbers, 5), normal = unitVectors(numbers);
   std::vector<float> error = std::vector<float>(count, 1e-6f);
   std::vector<uint32_t> twoSided = std::vector<uint32_t>(count, 1);
+  std::vector<uint8_t> wanted = std::vector<uint8_t>(count, 1);
   std::vector<float> pick = numbers.list(0, 1), u = numbers.list(0, 1), v = numbers.list(0, 1);
   std::vector<uint32_t> shape = std::vector<uint32_t>(count);
   std::vector<float> share = std::vector<float>(count), probability = std::vector<float>(count, 1);
@@ -87,7 +88,8 @@ struct Triangles {
             twoSided.data(),
             pick.data(),
             u.data(),
-            v.data()};
+            v.data(),
+            wanted.data()};
   }
   ChosenLights chosen() { return {share.data(), shape.data(), probability.data()}; }
 };

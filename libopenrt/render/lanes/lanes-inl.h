@@ -85,6 +85,28 @@ inline Rows<Lanes> load(const float (*from)[3][lanes], size_t i) {
   return {load(from[0], i), load(from[1], i), load(from[2], i)};
 }
 
+// Load and store at most `count` elements, for arrays that are not padded.
+inline Lanes loadSome(const float* from, uint32_t count) {
+  if (count >= width()) return load(from);
+  float some[lanes] = {};
+  for (uint32_t k = 0; k < count; k++) some[k] = from[k];
+  return load(some);
+}
+inline void storeSome(Lanes v, float* to, uint32_t count) {
+  if (count >= width()) return store(v, to);
+  float some[lanes];
+  store(v, some);
+  for (uint32_t k = 0; k < count; k++) to[k] = some[k];
+}
+inline LaneVec loadSome(const float* const from[3], size_t i, uint32_t count) {
+  return {loadSome(from[0] + i, count), loadSome(from[1] + i, count), loadSome(from[2] + i, count)};
+}
+inline void storeSome(const LaneVec& v, float* const to[3], size_t i, uint32_t count) {
+  storeSome(v.x, to[0] + i, count);
+  storeSome(v.y, to[1] + i, count);
+  storeSome(v.z, to[2] + i, count);
+}
+
 // Indices into arrays.
 using Indices = hn::Vec<hn::RebindToSigned<LanesTag>>;
 // Loads the indices from i on of an array of n. Lanes beyond its end repeat its last index.

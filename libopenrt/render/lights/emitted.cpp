@@ -44,14 +44,16 @@ TileRenderer::LightSamples TileRenderer::chooseLightSamples(const RtsBatch& batc
   rays.allocate(arena_, hits.count);
   out.sample = arena_.take<LightSample>(hits.count);
   out.hit = arena_.take<uint32_t>(hits.count);
-  float *pick[2], *place[2];
-  draw(sampling.random, Draw::emitter, 0, pick);
-  draw(sampling.random, Draw::place, 0, place);
   const uint32_t size = padded(hits.count);
   auto* wanted = arena_.takeZero<uint8_t>(size);
   for (uint32_t l = 0; l < batch.lobeCount; l++)
     for (uint32_t i = 0; sampling.selectionProbability[l] && i < hits.count; i++)
       wanted[i] |= sampling.selectionProbability[l][i] > 0;
+  rays.count = 0;
+  if (std::none_of(wanted, wanted + hits.count, [](uint8_t w) { return w != 0; })) return out;
+  float *pick[2], *place[2];
+  draw(sampling.random, Draw::emitter, 0, pick);
+  draw(sampling.random, Draw::place, 0, place);
   auto* twoSided = arena_.takeZero<uint32_t>(size);
   for (uint32_t i = 0; i < hits.count; i++) twoSided[i] = transmitsAt(batch, i);
   const LightPoints lightPoints{hits.count,
@@ -61,13 +63,14 @@ TileRenderer::LightSamples TileRenderer::chooseLightSamples(const RtsBatch& batc
                                 twoSided,
                                 pick[0],
                                 place[0],
-                                place[1]};
+                                place[1],
+                                wanted};
   auto* all = arena_.take<LightSample>(hits.count);
   scene_.emitters.choose(lightPoints, pick[1], arena_, all);
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
     const LightSample& lightSample = all[i];
-    if (!wanted[i] || !(lightSample.pdf > 0)) continue;
+    if (!(lightSample.pdf > 0)) continue;
     float origin[3];
     liftPoint(points, i, lightSample.direction, origin);
     for (int k = 0; k < 3; k++) {
@@ -202,7 +205,7 @@ void TileRenderer::sampleEmitters(const RtsBatch& batch, const Sampling& samplin
   if (n == 0) return;
   counters_.shadow += n;
   auto* blocked = arena_.take<uint8_t>(n);
-  findBlocked(scene_, arena_, rays, blocked);
+  findBlocked(scene_, rays, blocked);
   blockUncertain(rays, samples.sample, blocked);
 
   const auto add = [&](uint32_t ray, const float light[3]) {

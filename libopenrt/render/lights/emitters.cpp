@@ -163,18 +163,21 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
   };
   if (!hasShapes()) {
     for (uint32_t i = 0; i < points.count; i++)
-      out[i] = checked(chooseSky(1, points.u[i], points.v[i]), sideOf(contextOf(i)));
+      out[i] = points.wanted[i]
+                   ? checked(chooseSky(1, points.u[i], points.v[i]), sideOf(contextOf(i)))
+                   : LightSample{};
     return;
   }
   const auto floats = [&] { return arena.take<float>(size); };
   const ChosenLights chosen{floats(), arena.take<uint32_t>(size), floats()};
   chooseFromRoot(shapes_->tree().root(), points, skyIrradiance_, chosen);
   if (!shapes_->tree().hasOneNode()) {
-    for (uint32_t i = 0; i < size; i++) {
-      const uint32_t from = std::min(i, points.count - 1);
-      const LightSampleContext context = contextOf(from);
-      const double all = double(points.pick[from]) + double(fine[from]) * 0x1p-24;
-      const double share = chosen.skyShare[from];
+    std::fill_n(chosen.probability, size, 0.0f);
+    for (uint32_t i = 0; i < points.count; i++) {
+      if (!points.wanted[i] || points.pick[i] < chosen.skyShare[i]) continue;
+      const LightSampleContext context = contextOf(i);
+      const double all = double(points.pick[i]) + double(fine[i]) * 0x1p-24;
+      const double share = chosen.skyShare[i];
       const double rest = share < 1 ? std::clamp((all - share) / (1 - share), 0.0, 1 - 0x1p-53) : 0;
       const LightTree::Choice choice =
           shapes_->tree().choose(context.position, sideOf(context), rest);
@@ -187,6 +190,10 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
   sampleShapes(shapes_->arrays(), points, chosen, sampled);
   for (uint32_t i = 0; i < points.count; i++) {
     const float sky = chosen.skyShare[i];
+    if (!points.wanted[i]) {
+      out[i] = {};
+      continue;
+    }
     if (points.pick[i] < sky) {
       out[i] = checked(chooseSky(sky, points.u[i], points.v[i]), sideOf(contextOf(i)));
       continue;

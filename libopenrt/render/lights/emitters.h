@@ -47,7 +47,8 @@ class Emitters {
   // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point
   // on it. With many emitters all digits of pick matter.
   LightSample choose(const LightSampleContext& from, double pick, float u, float v) const;
-  // Does the same for many points at once. fine: low digits of the random numbers `pick`, by point.
+  // Does the same for many points at once; points that want no sample get none. fine: low digits of
+  // the random numbers `pick`, by point.
   void choose(const LightPoints& points, const float* fine, Arena& arena, LightSample* out) const;
   // Returns the solid-angle pdf of choose() for a surface hit along a direction; 0 if choose()
   // cannot sample it.

@@ -24,6 +24,7 @@ struct LightPoints {
   const float* error;                   // error bound of the position along the normal
   const uint32_t* twoSided;             // not 0: light counts from both sides
   const float *pick, *u, *v;            // random numbers in [0, 1)
+  const uint8_t* wanted;                // not 0: a sample is wanted
 };
 
 struct ChosenLights { // by point; arrays are padded

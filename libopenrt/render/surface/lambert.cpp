@@ -21,9 +21,9 @@ void evaluateLambert(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint
                      const float* const direction[3], float* const value[3], float* pdf) {
   for (uint32_t i = 0; i < n; i += width()) {
     const LaneVec normal = gather(lobe->normal, indicesFrom(hit, i, n));
-    const Lanes each = lambertPdf(normal, load(direction, i));
-    store({each, each, each}, value, i);
-    store(each, pdf + i);
+    const Lanes each = lambertPdf(normal, loadSome(direction, i, n - i));
+    storeSome({each, each, each}, value, i, n - i);
+    storeSome(each, pdf + i, n - i);
   }
 }
 
@@ -33,10 +33,11 @@ void sampleLambert(const RtsLobe* lobe, const RtsHits*, uint32_t n, const uint32
   const Lanes one = lanesOf(1);
   for (uint32_t i = 0; i < n; i += width()) {
     const LaneVec normal = gather(lobe->normal, indicesFrom(hit, i, n));
-    const LaneVec d = sampleCosineHemisphere(normal, load(square[0] + i), load(square[1] + i));
-    store(d, direction, i);
-    store({one, one, one}, quotient, i);
-    store(lambertPdf(normal, d), pdf + i);
+    const LaneVec d = sampleCosineHemisphere(normal, loadSome(square[0] + i, n - i),
+                                             loadSome(square[1] + i, n - i));
+    storeSome(d, direction, i, n - i);
+    storeSome({one, one, one}, quotient, i, n - i);
+    storeSome(lambertPdf(normal, d), pdf + i, n - i);
   }
 }
 

@@ -6,7 +6,7 @@
 namespace openrt {
 
 // Implement RtsLobeFunctions for diffuse lobes (Lambert's law: value = cosine / pi, and the pdf of
-// sampling is the same). The output arrays are padded to 16 elements.
+// sampling is the same).
 void evaluateLambert(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,
                      const float* const direction[3], float* const value[3], float* pdf);
 void sampleLambert(const RtsLobe* lobe, const RtsHits* hits, uint32_t n, const uint32_t* hit,

@@ -44,18 +44,11 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
   }
 }
 
-void findBlocked(const RenderScene& scene, Arena& arena, const Rays& rays, uint8_t* blocked) {
-  scene.kernel->occluded(rays, maskAll, Coherence::incoherent, blocked);
-  if (!scene.kernel->cullsBacks()) return;
-  ArenaScope scope(arena);
-  auto* lanes = arena.take<uint32_t>(rays.count);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < rays.count; i++)
-    if (blocked[i]) lanes[n++] = i;
-  if (n == 0) return;
-  auto* byFront = arena.take<uint8_t>(n);
-  scene.kernel->occludedByFronts(copyRays(rays, lanes, n, arena), maskAll, byFront);
-  for (uint32_t i = 0; i < n; i++) blocked[lanes[i]] = byFront[i];
+void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked) {
+  if (scene.kernel->cullsBacks())
+    scene.kernel->occludedByFronts(rays, maskAll, blocked);
+  else
+    scene.kernel->occluded(rays, maskAll, Coherence::incoherent, blocked);
 }
 
 namespace {

@@ -17,7 +17,7 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
                      const Rays& rays, RayHits& hits);
 // Sets blocked[i] to 1 if anything but a culled back face lies within the interval of ray i, else
 // to 0. Transparent surfaces, lines and points block as well.
-void findBlocked(const RenderScene& scene, Arena& arena, const Rays& rays, uint8_t* blocked);
+void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked);
 
 // Boundaries of media at the hits of a batch.
 struct Boundaries {
