@@ -74,11 +74,15 @@ bench: build
 	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
 	  $$b --benchmark_out=build/bench/$$(basename $$b).json --benchmark_out_format=json || exit 1; done
 
-## make bench-render  speed against error of the transports on four worlds (CSV, plots) into build/bench/render; FULL=1 for
-##                   long runs, DOCS=1 also into docs/benchmarks.md, MITSUBA_PYTHON=... a Python that has Mitsuba 3
+## make bench-render  error over CPU time of the transports on twelve worlds (CSV, curves) into build/bench/render; FULL=1 for
+##                   long runs, DOCS=1 also into docs/benchmarks.md, WORLDS=a,b,FILE.wrl, MITSUBA_PYTHON=... a Python that has
+##                   Mitsuba 3; BINARIES="OLD NEW" compares two builds of vv in turns and builds nothing
 bench-render:
+ifndef BINARIES
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders openrt-replay
-	@$(PYTHON) tools/bench_render.py --out build/bench/render $(if $(FULL),--full) $(if $(DOCS),--docs)
+endif
+	@$(PYTHON) tools/bench_render.py --out build/bench/render $(if $(FULL),--full) $(if $(DOCS),--docs) \
+	  $(if $(WORLDS),--worlds $(WORLDS)) $(if $(BINARIES),--binaries $(BINARIES))
 
 ## make audit         do the error bars hold? coverage over AUDIT_SEEDS (default 60) pictures of each scene, with 64 and 512 samples
 audit:

@@ -1,384 +1,315 @@
 #!/usr/bin/env python3
-"""Compares speed and error of our transports, and of Mitsuba 3 if it is installed, on four worlds.
+"""Measures the error of pictures over CPU time: vv's transports, and Mitsuba 3 if it is installed.
 
-bench_render.py --out FOLDER [--full] [--docs] [--again] [--vv PROGRAM] [--mitsuba PYTHON] [--scenes a,b]
+bench_render.py --out FOLDER [--worlds a,b,FILE.wrl] [--full] [--docs] [--again] [--fresh]
+                [--reference SECONDS] [--picture SECONDS] [--seeds N]
+                [--size WxH] [--threads N] [--vv PROGRAM] [--mitsuba PYTHON]
+bench_render.py --out FOLDER --binaries OLD NEW [--rounds N] [--spp N] [--worlds ...]
 
-`make bench-render` runs it. FOLDER gets render.csv (a row for each renderer, world and number of
-samples), one plot per world (SVG) and render.md. --docs writes the last two to docs/. The reference
-of a world is a long render with the transport named below, in two halves. Their difference measures
-its own noise, which is subtracted from the errors. Mitsuba's Python is $MITSUBA_PYTHON or this one.
+`make bench-render` runs it. Worlds are names from tools/rendering/worlds.py or files. FOLDER gets
+render.csv (a row for each world, renderer and number of samples), curves (SVG) and render.md;
+--docs also writes the last two to docs/. --again makes them from render.csv without measuring.
+
+The reference of a world is a long render with other seeds, in two halves; their difference measures
+its noise, which is subtracted from the errors. It is kept in FOLDER/references until the world or
+the settings change, or until --fresh. Seconds are CPU seconds of all threads, without the start-up,
+which has a column of its own.
+
+--binaries decides about a change: two builds of vv take turns with the same seeds. OLD and NEW may
+have options: --binaries "old/vv" "new/vv --depth 8". FOLDER gets binaries.csv and binaries.md.
 """
 import argparse
-import array
-import csv
+import hashlib
 import json
 import math
 import os
 import pathlib
-import subprocess
+import statistics
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import export_mitsuba  # noqa: E402
-from export_mitsuba import ROOT, read_pfm  # noqa: E402
-from plot_svg import log_plot  # noqa: E402
+from export_mitsuba import ROOT, read_pfm, write_pfm  # noqa: E402
+from rendering import renderers, report  # noqa: E402
+from rendering.errors import Measured, Reference, mean, ratio_of_means  # noqa: E402
+from rendering.worlds import WORLDS, find  # noqa: E402
 
-SIZE = (160, 120)
-SAMPLES = (2, 4, 16, 64, 256, 1024)  # a single sample would lie at the pixel's centre
-T95 = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36}  # Student's t, 95 %
-
-# World: title, our transports (the first makes the reference), whether every surface has an exact counterpart in Mitsuba
-SCENES = {
-    "cornell": ("Cornell box", ("path", "light"), True),
-    "headlight": ("Headlight", ("light", "path"), True),
-    "interior": ("Interior lit through glass", ("path", "light"), True),
-    "board": ("Circuit board under an environment", ("path",), False),
-}
+SAMPLES = tuple(2**k for k in range(1, 17))  # a single sample would lie at the pixel's centre
+HALVES = (1001, 1002)  # seeds of the reference; pictures have small ones
 
 
-class Budget:
-    """Seconds for a reference, and for a picture; slower pictures get no more samples."""
+class Bench:
+    """What all measurements share."""
 
-    def __init__(self, full):
-        self.reference, self.picture, self.seeds = (600, 60, 6) if full else (30, 3, 3)
+    def __init__(self, options):
+        self.options = options
+        self.out = pathlib.Path(options.out)
+        self.size = tuple(map(int, options.size.split("x")))
 
+    def transports(self, program, entry, file, folder):
+        """Returns a renderer for each transport of a world that the build has."""
+        made = [
+            renderers.Vv(program, file, transport, self.size, self.options.threads, folder)
+            for transport in entry.transports
+        ]
+        made = [vv for vv in made if vv.supported()]
+        if not made:
+            raise SystemExit(f"bench_render.py: {program} lacks {' and '.join(entry.transports)}")
+        return made
 
-# Pictures ---------------------------------------------------------------------------------------
+    def reference(self, world, file, by, make):
+        """Returns the reference of a world; make() renders the two halves if they are not kept."""
+        key = [file.read_text(errors="replace"), self.size, by, self.options.reference]
+        digest = hashlib.sha256(json.dumps(key).encode()).hexdigest()[:12]
+        folder = self.out / "references"
+        folder.mkdir(parents=True, exist_ok=True)
+        kept = [folder / f"{world}-{digest}-{half}.pfm" for half in (1, 2)]
+        if self.options.fresh or not all(k.exists() for k in kept):
+            for path, picture in zip(kept, make()):
+                write_pfm(path, *self.size, picture)
+        made = Reference(*(read_pfm(k)[2] for k in kept))
+        print(f"  reference by {by}: noise {math.sqrt(made.noise[0]):.2g} (RMSE), "
+              f"{made.noise[1]:.2g} (relMSE)", flush=True)  # yapf: disable
+        return made
 
+    def vv_reference(self, world, file, vv):
+        """Renders the halves with all cores, because their time is not measured."""
 
-def ours(vv, scene, folder, transport, seed, *more):
-    """Returns the floats of a picture, its seconds and the transport used; None if this build lacks
-    the transport."""
-    world = ROOT / f"examples/scenes/{scene}.wrl"
-    picture, stats = folder / "x.pfm", folder / "x.json"
-    done = subprocess.run([
-        str(a) for a in (vv, world, "-o", picture, "--size", f"{SIZE[0]}x{SIZE[1]}", "--seed", seed,
-                         "--transport", transport, "--stats", stats, "--quiet", *more)
-    ],
-                          capture_output=True,
-                          text=True)
-    if done.returncode != 0:
-        raise SystemExit(f"bench_render.py: vv failed: {done.stderr.strip()}")
-    told = json.loads(stats.read_text())
-    if told["transport"]["chosen"] != transport:
-        return None
-    return read_pfm(picture)[2], told["time"]["render"]
+        def halves():
+            seconds = vv.render(16, HALVES[0])[1]
+            spp = affordable(16, seconds, self.options.reference / 2)
+            return [vv.render(spp, seed, threads=0)[0] for seed in HALVES]
 
-
-def worker(request):
-    """Runs in Mitsuba's Python: renders on request, writes raw floats and returns the seconds of
-    each picture."""
-    import time
-
-    import mitsuba as mi
-    import numpy as np
-    mi.set_variant(request["variant"])
-    scene = mi.load_file(request["scene"])
-    height, width = SIZE[1], SIZE[0]
-
-    def render(spp, seed):
-        start = time.time()
-        image = np.array(mi.render(scene, spp=spp, seed=seed))[:, :, :3]
-        return image, time.time() - start
-
-    render(1, 12345)  # so that compilation is not measured
-    answers = []
-    for job in request["jobs"]:
-        total, seconds, passes = np.zeros((height, width, 3)), 0.0, 0
-        while passes == 0 or seconds < job.get("seconds", 0):
-            image, took = render(job["spp"], job["seed"] + 7919 * passes)
-            total, seconds, passes = total + image, seconds + took, passes + 1
-        (total / passes)[::-1].astype("<f4").tofile(job["out"])
-        answers.append(seconds)
-        print(json.dumps(seconds), flush=True)
-        if seconds > request["limit"] and not job.get("seconds"):
-            break
+        by = " ".join(["vv", *vv.options, "--transport", vv.name])
+        return self.reference(world, file, by, halves)
 
 
-class Mitsuba:
-
-    def __init__(self, python, variant):
-        self.python, self.variant = python, variant
-
-    def works(self, folder):
-        """Also renders a small picture: the just-in-time compiler may lack its library, or end the
-        process."""
-        test = (
-            "import mitsuba as mi; mi.set_variant(%r); mi.render(mi.load_dict(mi.cornell_box()), spp=1).numpy()"
-            % self.variant)
-        try:
-            return subprocess.run([self.python, "-c", test],
-                                  capture_output=True,
-                                  timeout=300,
-                                  cwd=folder).returncode == 0
-        except (OSError, subprocess.TimeoutExpired):
-            return False
-
-    def render(self, scene, jobs, limit):
-        request = json.dumps({
-            "variant": self.variant,
-            "scene": str(scene),
-            "jobs": jobs,
-            "limit": limit
-        })
-        done = subprocess.run([self.python, __file__, "--worker"],
-                              input=request,
-                              capture_output=True,
-                              text=True)
-        seconds = [float(line) for line in done.stdout.split()]
-        pictures = []
-        for job in jobs[:len(seconds)]:
-            values = array.array("f")
-            values.frombytes(pathlib.Path(job["out"]).read_bytes())
-            pictures.append(values)
-        return list(zip(pictures, seconds))
+def affordable(spp, seconds, limit):
+    """Returns the number of samples that fits into a time, from the time of fewer samples. It is a
+    power of two times these, which suits low-discrepancy points."""
+    return min(SAMPLES[-1], spp * 2**max(0, int(math.log2(limit / max(seconds, 1e-3)))))
 
 
-# Errors -----------------------------------------------------------------------------------------
-
-
-class Reference:
-    """The mean of two halves, and its uncertainty."""
-
-    def __init__(self, a, b):
-        self.values = [(x + y) / 2 for x, y in zip(a, b)]
-        n = len(self.values)
-        self.weights = [1 / (r * r + 0.01) for r in self.values]
-        squares = [(x - y)**2 / 4 for x, y in zip(a, b)]
-        self.mse = sum(squares) / n
-        self.relative = sum(s * w for s, w in zip(squares, self.weights)) / n
-        self.mean = sum(self.values) / n
-        pixels = [sum(a[i:i + 3]) - sum(b[i:i + 3]) for i in range(0, n, 3)]
-        self.mean_error = math.sqrt(sum(d * d for d in pixels)) / 2 / n
-
-    def compare(self, picture):
-        n = len(self.values)
-        mse = relative = 0.0
-        for x, r, w in zip(picture, self.values, self.weights):
-            d = (x - r)**2
-            mse += d
-            relative += d * w
-        return mse / n - self.mse, relative / n - self.relative, sum(picture) / n
-
-
-def summary(scene, renderer, spp, reference, pictures):
-    """Returns a row: means over the pictures of several seeds."""
-    # errors below the reference's own error are meaningless
-    rows = [reference.compare(values) for values, _ in pictures]
-    n = len(rows)
-    seconds = sum(s for _, s in pictures) / n
-    mse, relative = (sum(r[k] for r in rows) / n for k in (0, 1))
-    mse, relative = (mse if mse > reference.mse else math.nan), (relative if relative
-                                                                 > reference.relative else math.nan)
-    means = [r[2] for r in rows]
-    mean = sum(means) / n
-    spread = math.sqrt(sum((m - mean)**2 for m in means) /
-                       (n - 1) / n) * T95.get(n - 1, 2.0) if n > 1 else float("nan")
-    half = math.hypot(spread, 1.96 * reference.mean_error)
+def row(world, entry, renderer, spp, startup, seconds, measured):
     return {
-        "scene": scene,
+        "world": world,
+        "title": entry.title,
         "renderer": renderer,
         "spp": spp,
-        "seeds": n,
+        "startup": startup,
         "seconds": seconds,
-        "rmse": math.sqrt(mse),
-        "relmse": relative,
-        "bias": mean / reference.mean - 1,
-        "bias_interval": half / reference.mean,
-        "efficiency": relative * seconds
+        "rmse": measured.rmse,
+        "relmse": measured.relmse,
+        "relmse_interval": measured.relmse_interval,
+        "product": measured.relmse * seconds,
+        "bias": measured.bias,
+        "bias_interval": measured.bias_interval,
     }
 
 
-def measure_ours(vv, scene, folder, transport, reference, budget):
-    rows = []
+# Error over time --------------------------------------------------------------------------------
+
+
+def sweep_vv(bench, world, entry, vv, reference):
+    """Yields a row for each number of samples, until a picture is slow or too good to be judged.
+    Pictures that cost less than a quarter of the start-up are left out: what remains after the
+    subtraction is mostly the noise of the clock."""
+    startup = vv.startup()
     for spp in SAMPLES:
-        pictures = []
-        for seed in range(1, budget.seeds + 1):
-            made = ours(vv, scene, folder, transport, seed, "--spp", spp)
-            if made is None:
-                return rows
-            pictures.append(made)
-        rows.append(summary(scene, transport, spp, reference, pictures))
-        if max(s for _, s in pictures) > budget.picture:
+        pictures = [vv.render(spp, seed) for seed in range(1, bench.options.seeds + 1)]
+        seconds = mean([s for _, s in pictures]) - startup
+        if seconds < startup / 4:
+            continue
+        measured = Measured(reference, [p for p, _ in pictures])
+        yield row(world, entry, vv.name, spp, startup, seconds, measured)
+        if 2 * seconds > bench.options.picture or math.isnan(measured.relmse):
             break
-    return rows
 
 
-def measure_mitsuba(mitsuba, scene, folder, reference, budget):
-    exported = folder / "scene.xml"
-    if reference is None:  # the transport's own reference
-        halves = mitsuba.render(exported, [{
-            "spp": 64,
-            "seed": s,
-            "seconds": budget.reference / 2,
-            "out": str(folder / f"ref{s}")
-        } for s in (501, 502)], math.inf)
-        if len(halves) < 2:
-            return []
-        reference = Reference(halves[0][0], halves[1][0])
-    rows = []
+def sweep_mitsuba(bench, world, entry, mitsuba, folder, reference):
+    """Yields the rows of one variant: all seeds of one number of samples in one process."""
     for spp in SAMPLES:
-        jobs = [{
-            "spp": spp,
-            "seed": s,
-            "out": str(folder / f"m{s}")
-        } for s in range(1, budget.seeds + 1)]
-        pictures = mitsuba.render(exported, jobs, math.inf)
+        jobs = [{"spp": spp, "seed": seed} for seed in range(1, bench.options.seeds + 1)]
+        startup, pictures = mitsuba.render(folder, jobs)
         if len(pictures) < len(jobs):
             break
-        rows.append(
-            summary(scene, f"Mitsuba {mitsuba.variant.split('_')[0]}", spp, reference, pictures))
-        if max(s for _, s in pictures) > budget.picture:
+        seconds = mean([s for _, s in pictures])
+        measured = Measured(reference, [p for p, _ in pictures])
+        yield row(world, entry, mitsuba.name, spp, startup, seconds, measured)
+        if 2 * seconds > bench.options.picture or math.isnan(measured.relmse):
             break
+
+
+def mitsuba_reference(bench, world, file, mitsuba, folder):
+
+    def halves():
+        jobs = [{"spp": 64, "seed": s, "seconds": bench.options.reference / 2} for s in HALVES]
+        pictures = mitsuba.render(folder, jobs)[1]
+        if len(pictures) < len(jobs):
+            raise SystemExit(f"bench_render.py: {mitsuba.name} made no reference of {world}")
+        return [p for p, _ in pictures]
+
+    return bench.reference(world, file, mitsuba.name, halves)
+
+
+def measure(bench, name, mitsubas):
+    """Yields the rows of one world."""
+    world, entry, file = find(name, bench.out / "worlds")
+    print(entry.title, flush=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        ours = bench.transports(bench.options.vv, entry, file, folder)
+        reference = bench.vv_reference(world, file, ours[0])
+        for vv in ours:
+            yield from sweep_vv(bench, world, entry, vv, reference)
+        if not entry.mitsuba or not mitsubas:
+            return
+        renderers.export(file, folder, bench.size, bench.options.vv, bench.options.replay)
+        if entry.mitsuba == "own":
+            reference = mitsuba_reference(bench, world, file, mitsubas[0], folder)
+        for mitsuba in mitsubas:
+            yield from sweep_mitsuba(bench, world, entry, mitsuba, folder, reference)
+
+
+def measure_all(bench):
+    options = bench.options
+    mitsubas = renderers.mitsubas(options.mitsuba, options.threads or os.cpu_count(), bench.out)
+    if not mitsubas:
+        print("Mitsuba 3 is not installed here (MITSUBA_PYTHON names a Python that has it): "
+              "vv alone")  # yapf: disable
+    rows = []
+    for name in options.worlds.split(","):
+        for line in measure(bench, name, mitsubas):
+            print("  {renderer:<14} {spp:>5} spp {seconds:8.3f} s  RMSE {rmse:.4f}  relMSE "
+                  "{relmse:.5f} +- {relmse_interval:.5f}  product {product:.3g}  bias {bias:+.4f} "
+                  "+- {bias_interval:.4f}".format(**line), flush=True)  # yapf: disable
+            rows.append(line)
     return rows
 
 
-def measure(scene, options, budget, mitsubas):
-    title, transports, exact = SCENES[scene]
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        halves = None
-        for transport in transports:  # the first transport that this build has
-            probe = ours(options.vv, scene, folder, transport, 1000, "--spp", 16)
-            if probe is None:
-                continue
-            # A power of two: low-discrepancy point sets are far better than several rounds.
-            spp = 16 * 2**max(0, int(math.log2(budget.reference / 2 / max(probe[1], 1e-3))))
-            halves = [
-                ours(options.vv, scene, folder, transport, seed, "--spp", min(spp, 65536))[0]
-                for seed in (1001, 1002)
-            ]
-            break
-        reference = Reference(*halves)
-        print(
-            f"{title}: reference by {transport}, twice {spp} samples, noise {math.sqrt(reference.mse):.3g} (RMSE)",
-            flush=True)
-        rows = []
-        for transport in transports:
-            rows += measure_ours(options.vv, scene, folder, transport, reference, budget)
-        if mitsubas:
-            remarks = export_mitsuba.export(ROOT / f"examples/scenes/{scene}.wrl", folder, SIZE,
-                                            options.vv, options.replay)
-            for remark in remarks:
-                print(f"  for Mitsuba: {remark}")
-            for mitsuba in mitsubas:
-                rows += measure_mitsuba(mitsuba, scene, folder, reference if exact else None,
-                                        budget)
-        for row in rows:
-            print(
-                "  {renderer:<14} {spp:>5} spp {seconds:8.3f} s  RMSE {rmse:.4f}  relMSE {relmse:.4f}  bias {bias:+.4f} +- "
-                "{bias_interval:.4f}".format(**row),
-                flush=True)
-        return rows
+# Two binaries -----------------------------------------------------------------------------------
 
 
-# Reports ----------------------------------------------------------------------------------------
+class Side:
+    """One of the two programs: its CPU seconds, and the relMSE and the mean of its pictures."""
+
+    def __init__(self, vv):
+        self.vv, self.startup = vv, vv.startup()
+        self.seconds, self.errors, self.means = [], [], []
+
+    def render(self, spp, seed, reference):
+        picture, seconds = self.vv.render(spp, seed)
+        self.seconds.append(max(seconds - self.startup, 1e-6))
+        self.errors.append(reference.errors(picture)[1])
+        self.means.append(mean(picture))
+        return picture
 
 
-def table(rows):
-    """Returns the table by world and renderer, from the pictures with the most samples that the
-    reference can resolve."""
-    text = (
-        "| world | renderer | samples | seconds | RMSE | relMSE | relMSE x seconds | bias, 95 % |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- |\n")
-    for key in dict.fromkeys((r["scene"], r["renderer"]) for r in rows):
-        own = [r for r in rows if (r["scene"], r["renderer"]) == key]
-        own = [r for r in own if not math.isnan(r["rmse"] + r["relmse"])] or own
-        last = own[-1]
-        efficiency = sorted(r["efficiency"] for r in own[len(own) // 2:])
-        text += (
-            "| {title} | {renderer} | {spp} | {seconds:.2f} | {rmse:.4f} | {relmse:.4f} | {e:.3g} | {b:+.2f} ± {i:.2f} % |\n"
-            .format(title=SCENES[key[0]][0],
-                    e=efficiency[len(efficiency) // 2],
-                    b=100 * last["bias"],
-                    i=100 * last["bias_interval"],
-                    **last))
-    return text
+def compare_transport(bench, world, entry, programs, reference):
+    """Renders with both programs in turns, each round with another seed and the other one first.
+    Returns the row of the comparison."""
+    old, new = (Side(vv) for vv in programs)
+    spp = bench.options.spp
+    if not spp:  # about one second a picture
+        spp = affordable(4, old.vv.render(4, 0)[1] - old.startup, 1)
+    same = True
+    for seed in range(1, bench.options.rounds + 1):
+        order = (old, new) if seed % 2 else (new, old)
+        first, second = (side.render(spp, seed, reference) for side in order)
+        same = same and first == second
+    seconds_ratio = statistics.median(n / o for o, n in zip(old.seconds, new.seconds))
+    relmse_ratio, relmse_factor = ratio_of_means(new.errors, old.errors)
+    if mean(old.errors) < reference.noise[1] and not same:
+        relmse_ratio = math.nan  # the reference cannot judge these pictures
+    brightness, brightness_factor = ratio_of_means(new.means, old.means)
+    return {
+        "world": world,
+        "title": entry.title,
+        "renderer": old.vv.name,
+        "spp": spp,
+        "seconds_old": statistics.median(old.seconds),
+        "seconds_ratio": seconds_ratio,
+        "relmse_old": mean(old.errors),
+        "relmse_ratio": relmse_ratio,
+        "relmse_factor": relmse_factor,
+        "product_ratio": relmse_ratio * seconds_ratio,
+        "brightness": brightness,
+        "brightness_factor": brightness_factor,
+        "same_bytes": same,
+    }
 
 
-def plotted(row, what):
-    if what != "bias":
-        return row["seconds"], row[what]
-    least, size = 1e-5, abs(row["bias"])
-    return row["seconds"], max(size, least), max(size - row["bias_interval"],
-                                                 least), max(size + row["bias_interval"], least)
+def compare(bench, name):
+    """Yields a row for each transport of a world."""
+    world, entry, file = find(name, bench.out / "worlds")
+    print(entry.title, flush=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        programs = [
+            bench.transports(program, entry, file, folder) for program in bench.options.binaries
+        ]
+        reference = bench.vv_reference(world, file, programs[0][0])
+        for old in programs[0]:
+            for new in programs[1]:
+                if new.name == old.name:
+                    yield compare_transport(bench, world, entry, (old, new), reference)
 
 
-def report(rows, options, mitsubas):
-    out = pathlib.Path(options.out)
-    with open(out / "render.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
-    plots = []
-    for scene in dict.fromkeys(r["scene"] for r in rows):
-        for what, title in (("rmse", "RMSE"), ("relmse", "relMSE"),
-                            ("bias", "bias of the mean, and its 95 % interval")):
-            lines = {}
-            for row in rows:
-                if row["scene"] == scene and not math.isnan(row[what] + row["bias_interval"]):
-                    lines.setdefault(row["renderer"], []).append(plotted(row, what))
-            name = f"bench_render_{scene}_{what}.svg"
-            (out / name).write_text(log_plot(SCENES[scene][0], "seconds", title, lines))
-            plots.append(name)
-    text = table(rows)
-    if not mitsubas:
-        text += "\nMitsuba 3 was not there.\n"
-    (out / "render.md").write_text(text)
-    if options.docs:
-        page = ROOT / "docs/benchmarks.md"
-        begin, end = "<!-- bench-render -->\n", "<!-- /bench-render -->\n"
-        before, rest = page.read_text().split(begin)
-        # the table contains the same data
-        plots = [p for p in plots if not p.endswith("relmse.svg")]
-        images = "".join(
-            f"![{p[13:-4].replace('_', ': ')} over seconds](images/{p})\n" for p in plots)
-        page.write_text(before + begin + text + "\n" + images + end + rest.split(end)[1])
-        for plot in plots:
-            (ROOT / "docs/images" / plot).write_text((out / plot).read_text())
-    print(f"{out}: render.csv, render.md, {', '.join(plots)}")
+def compare_all(bench):
+    rows = []
+    for name in bench.options.worlds.split(","):
+        for line in compare(bench, name):
+            print("  {renderer:<8} {spp:>5} spp {seconds_old:8.3f} s  new/old: CPU "
+                  "{seconds_ratio:.3f}  relMSE {relmse_ratio:.3f}  product {product_ratio:.3f}  "
+                  "brightness {brightness:.4f}".format(**line), flush=True)  # yapf: disable
+            rows.append(line)
+    text = report.comparison(rows)
+    report.write_csv(bench.out / "binaries.csv", rows)
+    (bench.out / "binaries.md").write_text(text)
+    print(text)
 
 
-def main():
-    if sys.argv[1:] == ["--worker"]:
-        return worker(json.load(sys.stdin))
+def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", required=True)
-    parser.add_argument("--full",
-                        action="store_true",
-                        help="long references and pictures, more seeds")
+    parser.add_argument("--worlds", default=",".join(WORLDS), help="names and files, by commas")
+    parser.add_argument("--reference", type=float, help="CPU seconds of a reference (30; full 300)")
+    parser.add_argument("--picture", type=float, help="most CPU seconds of a picture (2; full 20)")
+    parser.add_argument("--seeds", type=int, help="pictures a measurement (3; full 5)")
+    parser.add_argument("--full", action="store_true", help="long references, pictures, more seeds")
     parser.add_argument("--docs", action="store_true", help="also into docs/benchmarks.md")
-    parser.add_argument("--again",
-                        action="store_true",
-                        help="measure nothing: plots and page from FOLDER/render.csv")
+    parser.add_argument("--again", action="store_true", help="measure nothing: from render.csv")
+    parser.add_argument("--fresh", action="store_true", help="render the references again")
+    parser.add_argument("--size", default="160x120")
+    parser.add_argument("--threads", type=int, default=1, help="of each renderer (default 1)")
     parser.add_argument("--vv", default=export_mitsuba.BIN / "vv")
     parser.add_argument("--replay", default=export_mitsuba.BIN / "openrt-replay")
     parser.add_argument("--mitsuba",
                         default=os.environ.get("MITSUBA_PYTHON", sys.executable),
                         help="a Python that has Mitsuba 3")
-    parser.add_argument("--scenes", default=",".join(SCENES))
+    parser.add_argument("--binaries", nargs=2, metavar=("OLD", "NEW"), help="compare two builds")
+    parser.add_argument("--rounds", type=int, default=9, help="turns of --binaries (default 9)")
+    parser.add_argument("--spp", type=int, help="samples of --binaries (default: about 1 s)")
     options = parser.parse_args()
-    pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
-    if options.again:
-        with open(pathlib.Path(options.out) / "render.csv", newline="") as file:
-            rows = [{
-                k: v if k in ("scene", "renderer") else float(v) for k, v in row.items()
-            } for row in csv.DictReader(file)]
-        rows = [{**row, "spp": int(row["spp"])} for row in rows if row["spp"] > 1]
-        return report(rows, options, any(r["renderer"].startswith("Mitsuba") for r in rows))
-    mitsubas = [
-        m for m in (Mitsuba(options.mitsuba, v) for v in ("llvm_ad_rgb", "scalar_rgb"))
-        if m.works(options.out)
-    ]
-    if not mitsubas:
-        print(
-            "Mitsuba 3 is not installed here (MITSUBA_PYTHON names a Python that has it): ours alone"
-        )
-    rows = []
-    for scene in options.scenes.split(","):
-        rows += measure(scene, options, Budget(options.full), mitsubas)
-    report(rows, options, mitsubas)
+    options.reference = options.reference or (300 if options.full else 30)
+    options.picture = options.picture or (20 if options.full else 2)
+    options.seeds = options.seeds or (5 if options.full else 3)
+    return options
+
+
+def main():
+    bench = Bench(parse())
+    bench.out.mkdir(parents=True, exist_ok=True)
+    if bench.options.binaries:
+        return compare_all(bench)
+    again = bench.options.again
+    rows = report.read_csv(bench.out / "render.csv") if again else measure_all(bench)
+    with_mitsuba = any(r["renderer"].startswith("Mitsuba") for r in rows)
+    text, names = report.write(rows, bench.out, with_mitsuba)
+    if bench.options.docs:
+        report.into_page(ROOT / "docs/benchmarks.md", text, names, bench.out)
+    print(f"{bench.out}: render.csv, render.md and {len(names)} curves")
 
 
 if __name__ == "__main__":
