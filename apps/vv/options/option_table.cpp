@@ -291,7 +291,8 @@ const OptionInfo table[] = {
     {"--isa", "auto|NAME", "Quality",
      "Instruction set of the ray kernels: avx512, avx2, avx, sse4.2, sse2, or neon on ARM. auto "
      "(default) is the best one of this machine. Two machines give the same bytes with the same "
-     "one. The workers of a cluster use it, too.",
+     "one, if their processors are of one maker (docs/accuracy.md). The workers of a cluster use "
+     "it, too.",
      setIsa},
     {"--check", "", "Inspect",
      "Read the world and report every problem, without making a picture. The exit code is 4 if "
