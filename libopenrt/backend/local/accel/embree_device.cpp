@@ -25,7 +25,8 @@ bool hasKernels(RTCDevice device, std::string_view isa) {
 //
 // The instruction set alone does not decide the bytes. By default Embree also looks at the model of
 // the processor (frequency_level): a model with 128 bit gets trees of 4 children where others get
-// 8, and then rays meet surfaces in another order. So the level is fixed, to that of most models.
+// 8, and then rays meet surfaces in another order. So the level is fixed, to Embree's default for
+// models that it does not know.
 RTCDevice newDevice(uint32_t threads, std::string_view isa) {
   std::string config = "threads=" + std::to_string(threads) + ",frequency_level=simd256";
   if (isa != "neon") config += ",isa=" + std::string(isa);
