@@ -32,6 +32,7 @@ struct RenderSettings {
   bool progressive = false; // RT_PROGRESSIVE
   QualityValues quality;    // the other quality settings; its values of the four above are ignored
   int threads = 0;          // 0: as many threads as the process may use
+  std::string isa = "auto"; // instruction set of the ray kernels (isa=NAME of rtNewContext)
   bool linear = true;
   bool multiplyTextures = false; // value of xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
@@ -57,6 +58,10 @@ struct RenderError : std::runtime_error {
       : runtime_error(text), code(engine) {}
   RTenum code; // the engine's error code, or RT_NO_ERROR
 };
+
+// Throws RenderError if this machine does not have the instruction set; the message says what was
+// expected. Otherwise rendering would fail later.
+void checkIsa(const std::string& isa);
 
 struct RenderResult {
   Picture picture;

@@ -1,8 +1,10 @@
 #include "libpicture/stage.h"
 
 #include <chrono>
+#include <mutex>
 #include <new>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,6 +50,7 @@ void throwOnError(const char* doing) {
 
 std::string contextConfiguration(const RenderSettings& settings) {
   std::string config = fmt::format(" threads={}", settings.threads);
+  if (settings.isa != "auto") addQuoted(config, "isa", settings.isa);
   if (!settings.record.empty()) addQuoted(config, "record", settings.record);
   if (!settings.shaderPath.empty()) addQuoted(config, "shaderpath", settings.shaderPath);
   return config;
@@ -57,6 +60,27 @@ RTcontext newContext(const std::string& configuration) {
   if (const RTcontext made = rtNewContext(configuration.c_str())) return made;
   const RTenum code = rtGetError();
   throw RenderError(withoutCall(rtGetErrorMessage()), code);
+}
+
+// Only a context knows what the machine has. The names that it has accepted are kept, because
+// Python checks them for each picture.
+void checkIsa(const std::string& isa) {
+  static std::mutex mutex;
+  static std::set<std::string> accepted{"auto"};
+  const std::lock_guard lock(mutex);
+  if (accepted.contains(isa)) return;
+  std::string configuration = "threads=1";
+  addQuoted(configuration, "isa", isa);
+  const RTcontext before = rtGetCurrent();
+  const RTcontext made = rtNewContext(configuration.c_str());
+  if (!made) {
+    const RTenum code = rtGetError();
+    const std::string message = withoutCall(rtGetErrorMessage()), key = "isa=" + isa + ": ";
+    throw RenderError(message.starts_with(key) ? message.substr(key.size()) : message, code);
+  }
+  rtDeleteContext(made);
+  rtMakeCurrent(before);
+  accepted.insert(isa);
 }
 
 Stage::Stage(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& s)

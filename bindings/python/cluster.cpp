@@ -12,6 +12,7 @@
 #include "cluster_object.h"
 #include "libpicture/worker_facts.h"
 #include "parameters.h"
+#include "render_request.h"
 
 namespace {
 
@@ -63,6 +64,7 @@ struct ClusterArguments {
   int require = 0;
   bool tolerant = false;
   py::object shaderPath = py::none();
+  std::string isa = "auto";
 };
 
 ClusterPtr make(const ClusterArguments& given) {
@@ -86,6 +88,7 @@ ClusterPtr make(const ClusterArguments& given) {
   if (!settings.used()) throw py::value_error("Cluster: workers or listen expected");
   picture::RenderSettings context;
   context.shaderPath = pathOf(given.shaderPath);
+  context.isa = checkedIsa(given.isa);
   auto made = std::make_shared<ClusterObject>();
   made->settings = settings;
   const ReleaseGil release;
@@ -216,10 +219,12 @@ void defineCluster(py::module_& module) {
                     parameter("allow_keys", &A::allowKeys),
                     parameter("local_threads", &A::localThreads), parameter("split", &A::split),
                     parameter("require", &A::require), parameter("tolerant", &A::tolerant),
-                    parameter("shader_path", &A::shaderPath)),
+                    parameter("shader_path", &A::shaderPath), parameter("isa", &A::isa)),
       "Starts connecting and returns at once. workers: addresses of workers that run with "
       "--listen, or '@FILE'. listen: the address to which workers that run with --connect connect. "
-      "require: renders raise ClusterError if fewer workers are connected for 10 seconds.");
+      "require: renders raise ClusterError if fewer workers are connected for 10 seconds. isa: "
+      "instruction set of the ray kernels on all machines ('avx2', ...); one that lacks it is "
+      "refused.");
   cluster.def("__enter__", enter)
       .def("__exit__", leave)
       .def("close", closeCluster,

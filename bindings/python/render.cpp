@@ -141,6 +141,8 @@ py::object render(const WorldPtr& self, const RenderArguments& given) {
   Making making{self, given, requestOf(given), progressOf(given.progress), {}};
   // Look for the cluster before taking the lock, because this may wait for another world.
   making.request.settings.cluster = clusterFor(given.cluster, self);
+  if (making.request.settings.cluster && given.isa != "auto")
+    throw py::value_error("isa: a cluster has its own: xvrml.Cluster(isa=...) sets it");
   const auto lock = self->lockDrawing();
   if (self->isRenderingHere)
     throw picture::RenderError("a picture is being made: its progress cannot make another");
@@ -203,18 +205,19 @@ void defineRender(py::object worldClass) {
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
   defineMethod(
       world, "render", render,
-      parameterList(
-          parameter("size", &A::size), parameter("spp", &A::spp),
-          parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
-          parameter("fit", &A::fit), parameter("fov", &A::fov),
-          qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
-          qualityParameter<Switch>(RT_SHADOWS), parameter("colour", &A::colour),
-          parameter("headlight", &A::headlight), qualityParameter<long long>(RT_MAX_DEPTH),
-          parameter("channels", &A::channels), qualityParameter<std::string>(RT_TRANSPORT),
-          qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
-          qualityParameter<double>(RT_CLAMP), parameter("cluster", &A::cluster),
-          parameter("progress", &A::progress), parameter("multiply_textures", &A::multiplyTextures),
-          parameter("up", &A::up), parameter("background", &A::background)),
+      parameterList(parameter("size", &A::size), parameter("spp", &A::spp),
+                    parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
+                    parameter("fit", &A::fit), parameter("fov", &A::fov),
+                    qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
+                    qualityParameter<Switch>(RT_SHADOWS), parameter("colour", &A::colour),
+                    parameter("headlight", &A::headlight),
+                    qualityParameter<long long>(RT_MAX_DEPTH), parameter("channels", &A::channels),
+                    qualityParameter<std::string>(RT_TRANSPORT),
+                    qualityParameter<double>(RT_TARGET_ERROR),
+                    qualityParameter<double>(RT_TIME_LIMIT), qualityParameter<double>(RT_CLAMP),
+                    parameter("cluster", &A::cluster), parameter("progress", &A::progress),
+                    parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
+                    parameter("background", &A::background), parameter("isa", &A::isa)),
       parameterList(),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "
@@ -224,6 +227,8 @@ void defineRender(py::object worldClass) {
       "camera to world (looking along -z, +y up), (position, target) or (position, target, up). "
       "fit: keeps only the direction of the camera and shows everything. up: the axis that points "
       "up ('z', '-y' ...) in a world without a Viewpoint. background: 'none', a colour or a file. "
+      "isa: instruction set of the ray kernels ('avx2', ...); machines give the same bytes with "
+      "the same one. "
       "progress: True for a bar, or a function that is called with the fraction done. Ctrl-C "
       "raises KeyboardInterrupt, whose attribute image is the picture so far.");
 }

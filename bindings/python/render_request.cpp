@@ -200,6 +200,10 @@ void setThreads(const char* name, const Given& given, RenderRequest& request) {
   request.settings.threads = inRange(name, given.threads, 0, 1024);
 }
 
+void setIsa(const char*, const Given& given, RenderRequest& request) {
+  request.settings.isa = checkedIsa(given.isa);
+}
+
 void setColour(const char*, const Given& given, RenderRequest& request) {
   if (given.colour != "linear" && given.colour != "vrml97")
     throw py::value_error("colour: 'linear' or 'vrml97' expected, not '" + given.colour + "'");
@@ -272,6 +276,7 @@ struct Rule {
 constexpr Rule rules[] = {
     {"size", setSize},
     {"threads", setThreads},
+    {"isa", setIsa},
     {"quality settings", setQuality},
     {"multiply_textures", setFlag<&Given::multiplyTextures, &Settings::multiplyTextures>},
     {"colour", setColour},
@@ -287,6 +292,15 @@ constexpr Rule rules[] = {
 };
 
 } // namespace
+
+std::string checkedIsa(const std::string& isa) {
+  try {
+    picture::checkIsa(isa);
+  } catch (const picture::RenderError& error) {
+    throw py::value_error("isa: " + std::string(error.what()) + ", not '" + isa + "'");
+  }
+  return isa;
+}
 
 RenderRequest requestOf(const RenderArguments& given) {
   RenderRequest request;

@@ -28,6 +28,7 @@ struct RenderArguments {
   bool multiplyTextures = false;
   std::optional<std::string> up;
   py::object background = py::none();
+  std::string isa = "auto";
   picture::QualityValues quality; // parameters that are quality settings (quality_parameters.h)
 };
 
@@ -37,6 +38,9 @@ struct RenderRequest {
   picture::View view;
   uint32_t channels = 0; // the channels of the Picture; the settings may have more
 };
+
+// Returns the instruction set. Raises ValueError if this machine does not have it.
+std::string checkedIsa(const std::string& isa);
 
 // Raises TypeError, ValueError or IndexError for the first argument that is wrong.
 RenderRequest requestOf(const RenderArguments& given);

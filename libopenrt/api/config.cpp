@@ -62,6 +62,8 @@ void ContextConfig::set(std::string_view key, std::string_view value) {
     debug = wrapped;
   } else if (key == "threads")
     threads = parseNumber(key, value, maxThreads);
+  else if (key == "isa")
+    isa = value;
   else if (key == "file")
     file = value;
   else if (key == "record")
@@ -73,7 +75,7 @@ void ContextConfig::set(std::string_view key, std::string_view value) {
   else
     fail(RT_INVALID_VALUE,
          "unknown option \"" + std::string(key) +
-             "\"; the options are backend, threads, file, record, shaderpath, and for "
+             "\"; the options are backend, threads, isa, file, record, shaderpath, and for "
              "backend=cluster workers, listen, key, allow, local, split, require, tolerant");
 }
 
@@ -117,6 +119,8 @@ void ContextConfig::check() const {
     fail(RT_INVALID_VALUE, "record=PATH needs a backend that renders");
   if (backend != BackendKind::Record && !file.empty())
     fail(RT_INVALID_VALUE, "file=PATH needs backend=record");
+  if ((backend == BackendKind::Record || backend == BackendKind::Null) && isa != automaticIsa)
+    fail(RT_INVALID_VALUE, "isa=NAME needs a backend that renders");
   if (backend != BackendKind::Cluster && !clusterKey_.empty())
     fail(RT_INVALID_VALUE, clusterKey_ + "= needs backend=cluster");
   if (backend == BackendKind::Cluster && cluster.workers.empty() && cluster.listen.empty())

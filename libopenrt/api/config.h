@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "backend/backend.h"
+#include "backend/instruction_sets.h"
 
 namespace openrt {
 
@@ -14,11 +15,12 @@ enum class BackendKind { Local, Null, Record, Cluster };
 
 struct ContextConfig {
   BackendKind backend = BackendKind::Local;
-  bool debug = false;     // backend=debug:NAME
-  uint32_t threads = 0;   // 0: as many as the process may use
-  std::string file;       // the recording of backend=record
-  std::string record;     // a recording that is written while another backend renders
-  std::string shaderPath; // colon-separated folders
+  bool debug = false;            // backend=debug:NAME
+  uint32_t threads = 0;          // 0: as many as the process may use
+  std::string isa{automaticIsa}; // instruction set of the ray kernels
+  std::string file;              // the recording of backend=record
+  std::string record;            // a recording that is written while another backend renders
+  std::string shaderPath;        // colon-separated folders
   ClusterOptions cluster;
 
   // Sets one option. Throws ApiError for an unknown key or an invalid value.

@@ -35,6 +35,7 @@ Context::~Context() { close(); }
 void Context::makeBackend(const ContextConfig& config) {
   BackendOptions options;
   options.threads = config.threads;
+  options.isa = config.isa;
   options.file = config.backend == BackendKind::Record ? config.file : config.record;
   options.shaders = registry_.get();
   options.log = LogSink::forward;

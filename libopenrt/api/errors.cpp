@@ -55,6 +55,8 @@ void recordCurrentException(ErrorState& errors, const char* function) noexcept {
     errors.record(RT_OUT_OF_MEMORY, function, "more elements than an array can hold");
   } catch (const ClusterError& e) {
     errors.record(RT_CLUSTER_ERROR, function, e.what());
+  } catch (const OptionError& e) {
+    errors.record(RT_INVALID_VALUE, function, e.what());
   } catch (const std::system_error& e) {
     errors.record(RT_IO_ERROR, function, e.what());
   } catch (const std::exception& e) {

@@ -19,8 +19,9 @@ namespace openrt {
 class ShaderRegistry;
 
 struct BackendOptions {
-  uint32_t threads = 0; // 0: as many as the process may use
-  std::string file;     // the recording to write
+  uint32_t threads = 0;     // 0: as many as the process may use
+  std::string isa = "auto"; // instruction set of the ray kernels (instruction_sets.h)
+  std::string file;         // the recording to write
   const ShaderRegistry* shaders = nullptr;
   RTlogCallback log = nullptr;
   void* logUser = nullptr;
@@ -39,6 +40,11 @@ struct ClusterOptions {
 
 // Thrown if workers are missing, or an address or a key is unusable. The message is for the user.
 class ClusterError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Thrown if this machine cannot do what an option asks for. The message is for the user.
+class OptionError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -78,7 +84,8 @@ class Backend {
   virtual void finish() {}
 };
 
-// These throw std::runtime_error with a message for the user if the backend cannot start.
+// These throw std::runtime_error with a message for the user if the backend cannot start; those
+// that render throw OptionError if the machine lacks the instruction set.
 std::unique_ptr<Backend> makeLocalBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeRecordBackend(const BackendOptions& options);
 std::unique_ptr<Backend> makeNullBackend(const BackendOptions& options);

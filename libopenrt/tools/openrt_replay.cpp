@@ -27,6 +27,7 @@ enum ExitCode { Done = 0, RenderFailed = 1, Usage = 2, InputUnusable = 3 };
 struct Options {
   std::string recording, output, exported, shaderPath;
   uint32_t threads = 0;
+  std::string isa = "auto";
   uint64_t frame = 0; // counted from 1; 0: the last frame
   bool stats = false;
 };
@@ -97,6 +98,9 @@ std::optional<Options> parseOptions(int argc, char** argv, int& exitCode) {
   app.add_option("--threads", options.threads,
                  "render threads (default: as many as the process may use)")
       ->check(CLI::Range(0, 1024));
+  app.add_option("--isa", options.isa,
+                 "instruction set of the ray kernels: avx512, avx2, avx, sse4.2, sse2, or neon on "
+                 "ARM (default: auto, the best one of this machine)");
   app.add_option("--shader-path", options.shaderPath,
                  "folders with shader libraries, separated by colons");
   app.add_option("--export", options.exported,
@@ -192,9 +196,13 @@ int run(const Options& options) {
   if (!options.exported.empty()) return writeScene(options, *reader, shaders);
   BackendOptions backendOptions;
   backendOptions.threads = options.threads;
+  backendOptions.isa = options.isa;
   backendOptions.shaders = &shaders;
   backendOptions.log = log;
-  const std::unique_ptr<Backend> backend = makeLocalBackend(backendOptions);
+  std::unique_ptr<Backend> backend;
+  try {
+    backend = makeLocalBackend(backendOptions);
+  } catch (const OptionError& e) { return reportError(Usage, e.what()); }
   Replay replay(*reader, *backend);
   bool more = true;
   try {

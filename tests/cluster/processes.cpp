@@ -74,6 +74,34 @@ TEST(ClusterProcesses, WithoutThreadsOfItsOwnTheMasterLeavesAllToTheWorkers) {
   EXPECT_GT(stats.bytesReceived, 10000u);
 }
 
+TEST(ClusterProcesses, WorkersUseTheInstructionSetOfTheMaster) {
+  const Workers helping = start(1);
+  int tried = 0;
+  for (const char* isa : {"avx512", "avx2", "avx", "sse4.2", "sse2", "neon"}) {
+    SCOPED_TRACE(isa);
+    const std::string option = std::string(" isa=") + isa;
+    const RTcontext probe = rtNewContext(option.c_str());
+    rtGetError();
+    if (!probe) continue; // not on this machine
+    rtDeleteContext(probe);
+    tried++;
+    const auto picture = [](const std::string& config, uint32_t workers) {
+      const Context context(config);
+      World world;
+      join(workers);
+      rtRender();
+      EXPECT_EQ(statistics().workers, workers);
+      return pixels({});
+    };
+    const Picture one = picture("threads=1" + option, 0);
+    EXPECT_EQ(different(picture("threads=3" + option, 0), one), 0u);
+    EXPECT_EQ(
+        different(picture("backend=cluster local=0 " + workersOption(helping) + option, 1), one),
+        0u);
+  }
+  EXPECT_GT(tried, 0);
+}
+
 // Settings for a frame that takes longer than the test waits without workers, but not much longer.
 FrameOptions longer() {
   return {.width = 120, .height = 90, .samples = 256, .channels = RT_RGBA | RT_ERROR | RT_SAMPLES};

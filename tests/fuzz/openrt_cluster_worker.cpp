@@ -43,6 +43,7 @@ struct Game final : JobExecutor {
                            [](Peer, const std::string&) {}, [](double, double) {}},
                           *this) {}
 
+  void useInstructionSet(const std::string&) override {}
   void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool, bool prepare) override {
     for (const auto& entry : commit->edits.edits)
       if (const auto* settings = entry->any.AsFrameSettings()) frame = *settings;

@@ -75,6 +75,20 @@ def test_named_in_the_call(two, room):
         room.render(cluster="127.0.0.1", **SMALL)
 
 
+def test_the_instruction_set_of_a_cluster(two, room):
+    for isa in ("sse2", "avx2", "neon"):
+        try:
+            alone = room.render(isa=isa, **SMALL)
+        except ValueError:  # not on this machine
+            with pytest.raises(ValueError, match="isa: expected auto"):
+                xvrml.Cluster(addresses(two), isa=isa)
+            continue
+        with xvrml.Cluster(addresses(two), require=2, local_threads=0, isa=isa):
+            assert same(room.render(**SMALL), alone), isa
+            with pytest.raises(ValueError, match="isa: a cluster has its own"):
+                room.render(isa=isa, **SMALL)
+
+
 def test_worlds_and_browsers_take_turns(two, room):
     """A Browser keeps the cluster's context between pictures until another world needs it."""
     browser, other = xvrml.Browser(MOVING.encode()), xvrml.load(BOX.encode())

@@ -184,6 +184,21 @@ def test_same_bytes_as_vv(box, vv):
     assert (vv.folder / "python.exr").read_bytes() == (vv.folder / "vv.exr").read_bytes()
 
 
+def test_instruction_sets(box):
+    w = xvrml.load(box)
+    size = {"size": (40, 30), "spp": 8, "transport": "path"}
+    with pytest.raises(ValueError,
+                       match="isa: expected auto, or one that this machine has: ") as no:
+        w.render(isa="mmx", **size)
+    known = str(no.value).split("has: ")[1].split(", not")[0].split(", ")
+    automatic = w.render(**size).array
+    for isa in known:
+        one = w.render(isa=isa, threads=1, **size).array
+        assert np.array_equal(one, w.render(isa=isa, threads=2, **size).array), isa
+        assert np.abs(one - automatic).mean() < 0.01, isa
+    assert np.array_equal(w.render(isa=known[0], **size).array, automatic)
+
+
 def test_save(box, tmp_path):
     p = xvrml.load(box).render(size=(16, 12), spp=1)
     for name, start in (("a.png", b"\x89PNG"), ("a.jpg", b"\xff\xd8"),

@@ -176,6 +176,22 @@ def test_interrupt_before_there_is_anything(vv):
     assert running.returncode == 130 and not (vv.folder / "x.png").exists()
 
 
+def test_instruction_sets(vv):
+    small = "--size", "40x30", "--spp", "4"
+    refused = vv("box.wrl", *small, "-o", "x.exr", "--isa", "mmx")
+    assert refused.returncode == 2 and 'not "mmx"' in refused.talk, refused.talk
+    assert "--isa: expected auto, or one that this machine has: " in refused.talk
+    assert len(refused.talk.splitlines()) == 1
+    for isa in refused.talk.split("has: ")[1].split(", not")[0].split(", "):
+        for name, threads in (("one.exr", 1), ("two.exr", 2)):
+            done = vv("box.wrl", *small, "-o", name, "--isa", isa, "--threads", threads, "--stats",
+                      "stats.json")
+            assert done.returncode == 0, done.talk
+            stats = json.loads((vv.folder / "stats.json").read_text())
+            assert stats["machine"]["isa"] == isa
+        assert (vv.folder / "one.exr").read_bytes() == (vv.folder / "two.exr").read_bytes(), isa
+
+
 # Reports ----------------------------------------------------------------------------------------
 
 

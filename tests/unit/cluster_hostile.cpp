@@ -15,6 +15,7 @@ using namespace openrt::cluster;
 namespace {
 
 struct NoMachine final : JobExecutor { // a JobExecutor that never answers
+  void useInstructionSet(const std::string&) override {}
   void scene(Epoch, std::shared_ptr<const Commit>, bool, bool) override {}
   void prepare(Epoch) override {}
   void work(Epoch, std::span<const LeasedJob>) override {}

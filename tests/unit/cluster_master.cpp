@@ -71,8 +71,8 @@ struct FakeWorker {
   Epoch epoch = 0;
   std::map<Epoch, edit::FrameSettingsT> frames;
   bool gone = false, still = false, twice = false, nonsense = false, cut = false;
-  std::string refused;
-  uint64_t arrayBytes = 0; // bytes of arrays received
+  std::string refused, isa; // isa: what the master has told it to use
+  uint64_t arrayBytes = 0;  // bytes of arrays received
 
   void say(message::Body&& body) {
     Frames frames = encode(session, std::move(body));
@@ -82,8 +82,10 @@ struct FakeWorker {
   void hear(Frames&& frames) {
     Message message;
     ASSERT_EQ(decode(std::move(frames), message), "");
-    if (const auto* welcome = std::get_if<message::Welcome>(&message.body))
+    if (const auto* welcome = std::get_if<message::Welcome>(&message.body)) {
       session = welcome->session;
+      isa = welcome->isa;
+    }
     ASSERT_EQ(message.session, session);
     if (auto* given = std::get_if<message::Scene>(&message.body)) {
       message::Need need;
@@ -176,6 +178,7 @@ class ClusterMaster : public testing::TestWithParam<int> {
   void make(uint32_t require = 0) {
     MasterOptions options;
     options.self = greeting();
+    options.self.isas = "avx2, sse2";
     options.require = require;
     options.local.log = [](int, const char* text, void* user) {
       static_cast<std::vector<std::string>*>(user)->push_back(text);
@@ -418,6 +421,26 @@ TEST_P(ClusterMaster, WhoDiffersIsRefused) {
   ASSERT_TRUE(
       runUntil([&] { return over(2) && (!liar.refused.empty() || !good.refused.empty()); }));
   EXPECT_NE((liar.refused + good.refused).find("triangle"), std::string::npos);
+}
+
+TEST_P(ClusterMaster, WorkersUseItsInstructionSetOrAreRefused) {
+  message::Hello other = greeting();
+  other.isa = "avx512";
+  other.isas = "avx512, avx2, sse2";
+  FakeWorker& better = join(other);
+  other.isa = other.isas = "sse2";
+  FakeWorker& worse = join(other);
+  FakeWorker& older = join(); // names no others than its own
+  master->commit(1, edits(1), true, now);
+  ASSERT_TRUE(runUntil([&] { return over(1); }));
+  expectSame(1);
+  EXPECT_EQ(better.isa, "avx2");
+  EXPECT_EQ(older.isa, "avx2");
+  EXPECT_EQ(better.refused + older.refused, "");
+  EXPECT_NE(worse.refused.find("instruction set: the worker has sse2, the master avx2 (isa=sse2 "
+                               "suits both)"),
+            std::string::npos)
+      << worse.refused;
 }
 
 TEST_P(ClusterMaster, NobodyWorksWithOtherVersionsOfShaders) {

@@ -37,13 +37,16 @@ std::vector<message::Body> oneOfEach() {
                                   .platform = "glibc 2.36",
                                   .threads = 16,
                                   .host = "node1",
-                                  .process = 4711});
+                                  .process = 4711,
+                                  .isas = "avx2, sse2"});
   all.emplace_back(message::Need{.epoch = 5, .arrays = {{1, 2}, {3, 4}}});
   all.emplace_back(ready);
   all.emplace_back(message::Failed{.epoch = 5, .why = "why"});
   all.emplace_back(result);
   all.emplace_back(message::Log{.level = 2, .text = "text"});
-  all.emplace_back(usualWelcome(42));
+  message::Welcome welcome = usualWelcome(42);
+  welcome.isa = "sse2";
+  all.emplace_back(welcome);
   all.emplace_back(message::Scene{5,
                                   true,
                                   true,

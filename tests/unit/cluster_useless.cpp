@@ -185,7 +185,7 @@ class UselessWorker {
     message::Hello hello = pictures().self;
     if (way_ == Misbehaviour::otherVersion) hello.library = "0.0.1";
     if (way_ == Misbehaviour::otherProtocol) hello.protocol++;
-    if (way_ == Misbehaviour::otherChip) hello.isa = "of its own";
+    if (way_ == Misbehaviour::otherChip) hello.isa = hello.isas = "of its own";
     if (way_ != Misbehaviour::mute) say(std::move(hello));
   }
   void hear(Message&& m) {

@@ -15,8 +15,10 @@ namespace {
 
 struct FakeMachine final : JobExecutor {
   std::vector<std::string> told;
+  std::string isa;
   std::shared_ptr<const Commit> commit;
   std::vector<LeasedJob> jobs;
+  void useInstructionSet(const std::string& name) override { isa = name; }
   void scene(Epoch epoch, std::shared_ptr<const Commit> c, bool whole, bool prepare) override {
     told.push_back("scene " + std::to_string(epoch) + (whole ? " whole" : "") +
                    (prepare ? " prepare" : ""));
@@ -37,7 +39,9 @@ struct Rig {
   std::vector<std::pair<Peer, std::string>> closed, badOnes;
   Worker worker;
   explicit Rig(const ShaderRegistry* shaders = nullptr, size_t cache = 1 << 20)
-      : worker({.self = {.library = "test", .threads = 2}, .shaders = shaders, .cacheBytes = cache},
+      : worker({.self = {.library = "test", .isa = "avx2", .threads = 2, .isas = "avx2, sse2"},
+                .shaders = shaders,
+                .cacheBytes = cache},
                {[this](Peer peer, Frames&& frames) {
                   decode(std::move(frames), said.emplace_back(peer, Message()).second);
                 },
@@ -129,6 +133,30 @@ void makeReady(Rig& rig, Epoch epoch = 1, Epoch machines = 1) {
 using Told = std::vector<std::string>;
 
 } // namespace
+
+TEST(ClusterWorker, UsesTheInstructionSetOfItsMaster) {
+  for (const char* wanted : {"sse2", "avx2", ""}) {
+    Rig rig;
+    rig.worker.joined(1, "somewhere", 0);
+    message::Welcome welcome = usualWelcome(7);
+    welcome.isa = wanted;
+    rig.tell(welcome);
+    EXPECT_TRUE(rig.worker.serving());
+    EXPECT_EQ(rig.machine.isa, *wanted ? wanted : "avx2") << "older masters name none";
+  }
+}
+
+TEST(ClusterWorker, RefusesAnInstructionSetThatItLacks) {
+  Rig rig;
+  rig.worker.joined(1, "somewhere", 0);
+  message::Welcome welcome = usualWelcome(7);
+  welcome.isa = "avx512";
+  rig.tell(welcome);
+  EXPECT_FALSE(rig.worker.serving());
+  ASSERT_EQ(rig.closed.size(), 1u);
+  EXPECT_EQ(rig.closed[0].second,
+            "instruction set: the master wants avx512, the worker has avx2, sse2");
+}
 
 TEST(Worker, saysHelloAndServesWhoSaysWelcome) {
   Rig rig;

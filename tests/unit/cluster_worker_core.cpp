@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "backend/cluster/worker/worker_core.h"
+#include "backend/instruction_sets.h"
 #include "unit/drawn_scene.h"
 
 namespace openrt::cluster {
@@ -194,6 +195,39 @@ TEST_F(WorkerCoreTest, QuestionsSeeWhatWasAskedBefore) {
   EXPECT_GT(hit.t, 0);
   EXPECT_THROW(core.ask([](Backend&) { throw std::runtime_error("no"); }), std::runtime_error);
   EXPECT_TRUE(sink.all().empty());
+}
+
+TEST_F(WorkerCoreTest, WholeScenesHaveTheInstructionSetThatWasSet) {
+  const Commits all = commits({.samples = 16});
+  WorkerCore core(options, sink);
+  Epoch epoch = 0;
+  Lease lease = 0;
+  RTstats stats{};
+  core.ask([&](Backend& backend) { backend.stats(stats); });
+  const std::string machine = instructionSetsFrom(stats.isa);
+  for (const std::string_view name : instructionSets) {
+    if (!listsInstructionSet(machine, std::string(name))) continue;
+    SCOPED_TRACE(name);
+    const size_t before = sink.all().size();
+    core.useInstructionSet(std::string(name));
+    core.scene(++epoch, all[0], true, true);
+    ASSERT_TRUE(sink.wait(before + 1));
+    EXPECT_EQ(sink.last.stats.isa, name);
+    options.isa = name;
+    EXPECT_EQ(picture(core, epoch, lease), expected(all, 1));
+  }
+}
+
+TEST_F(WorkerCoreTest, AnUnknownInstructionSetFailsTheScene) {
+  const Commits all = commits({.samples = 4});
+  WorkerCore core(options, sink);
+  core.useInstructionSet("mmx");
+  core.scene(1, all[0], true, true);
+  ASSERT_TRUE(sink.wait(1));
+  EXPECT_EQ(sink.all()[0].what, "failed");
+  EXPECT_NE(sink.failure.find("isa=mmx: expected auto, or one that this machine has: "),
+            std::string::npos)
+      << sink.failure;
 }
 
 TEST_F(WorkerCoreTest, FailuresAreSaid) {

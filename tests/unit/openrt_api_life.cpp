@@ -17,6 +17,8 @@ TEST(ApiConfig, ReadsPairsAndQuotes) {
   EXPECT_EQ(config.file, "a file");
   EXPECT_EQ(config.shaderPath, "/a:/b");
   EXPECT_EQ(parseConfig("record=out.ortr backend=local").record, "out.ortr");
+  EXPECT_EQ(config.isa, "auto");
+  EXPECT_EQ(parseConfig("isa=avx2").isa, "avx2");
   EXPECT_EQ(parseConfig("").backend, BackendKind::Local);
   const ContextConfig cluster =
       parseConfig("workers=a:7447,[::1]:9,@hosts.txt backend=cluster listen=127.0.0.1:0 key=k "
@@ -37,6 +39,11 @@ TEST(ApiConfig, RefusesNonsense) {
                            "threads=",
                            "threads=2x",
                            "threads=5000",
+                           "isa=",
+                           "isa=mmx",
+                           "isa=avx2,sse2",
+                           "backend=null isa=sse2",
+                           "backend=record file=a isa=sse2",
                            "nonsense=1",
                            "backend",
                            "=1",

@@ -52,6 +52,15 @@ void setHeadlight(Options& o, const std::string& value) {
     throw UsageError(fmt::format("on, off or auto was expected, not \"{}\"", value));
 }
 
+void setIsa(Options& o, const std::string& value) {
+  try {
+    picture::checkIsa(value);
+  } catch (const picture::RenderError& error) {
+    throw UsageError(fmt::format("{}, not \"{}\"", error.what(), value));
+  }
+  o.render.isa = value;
+}
+
 void setBackground(Options& o, const std::string& value) {
   try {
     o.render.background = picture::readBackground(value);
@@ -279,6 +288,12 @@ const OptionInfo table[] = {
      "Number of render threads; 0 (default) is as many as the process may use. The picture does "
      "not depend on it.",
      [](Options& o, const std::string& v) { o.render.threads = int(readInteger(v, 0, 1024)); }},
+    {"--isa", "auto|NAME", "Quality",
+     "Instruction set of the ray kernels: avx512, avx2, avx, sse4.2, sse2, or neon on ARM. auto "
+     "(default) is the best one of this machine. Two machines give the same bytes with the same "
+     "one, if their processors are of one maker (docs/accuracy.md). The workers of a cluster use "
+     "it, too.",
+     setIsa},
     {"--check", "", "Inspect",
      "Read the world and report every problem, without making a picture. The exit code is 4 if "
      "there is any problem.",

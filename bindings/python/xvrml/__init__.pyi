@@ -115,6 +115,7 @@ class Cluster:
         require: int = ...,
         tolerant: bool = ...,
         shader_path: Union[None, str, os.PathLike[str]] = ...,
+        isa: str = ...,
     ) -> None:
         ...
 
@@ -486,6 +487,7 @@ class World:
         multiply_textures: bool = ...,
         up: Optional[str] = ...,
         background: Union[None, str, "os.PathLike[str]", Sequence[float]] = ...,
+        isa: str = ...,
     ) -> Picture:
         ...
 

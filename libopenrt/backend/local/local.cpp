@@ -29,7 +29,7 @@ double now() {
 
 LocalBackend::LocalBackend(const BackendOptions& options)
     : options_(options), threads_(options.threads ? options.threads : availableThreads()),
-      device_(std::make_shared<EmbreeDevice>(threads_)), builder_(device_) {}
+      device_(std::make_shared<EmbreeDevice>(threads_, options.isa)), builder_(device_) {}
 
 LocalBackend::~LocalBackend() = default;
 
@@ -331,10 +331,7 @@ void LocalBackend::stats(RTstats& s) const {
   s.wrongHits = device_->wrongHits;
   s.bvhBytes = uint64_t(std::max<int64_t>(device_->bytes, 0));
   s.threads = threads_;
-  std::snprintf(s.isa, sizeof s.isa, "%s",
-                device_->hasNativePackets16      ? "avx512"
-                : __builtin_cpu_supports("avx2") ? "avx2"
-                                                 : "sse");
+  std::snprintf(s.isa, sizeof s.isa, "%s", device_->isa.c_str());
   std::snprintf(s.kernel, sizeof s.kernel, "Embree %s", RTC_VERSION_STRING);
 }
 

@@ -79,6 +79,12 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *                          who renders (default local). debug:NAME is the same and explains misuse
  *                          of the API to rtLogCallback.
  *   threads=N              render threads. 0 (default) means as many as the process may use.
+ *   isa=auto|avx512|avx2|avx|sse4.2|sse2|neon
+ *                          instruction set of the ray kernels. auto (default) is the best one of
+ *                          the machine. Machines give the same bytes with the same one, if their
+ *                          processors are of one maker. One that the machine lacks is an
+ *                          RT_INVALID_VALUE, whose message lists those that it has. RTstats.isa is
+ *                          the one in use.
  *   file=PATH              the recording to write (backend=record)
  *   record=PATH            a recording that is written while another backend renders. openrt-replay
  *                          makes the same bytes of it.
@@ -103,7 +109,9 @@ RT_API void rtLogCallback(RTlogCallback callback, void* user);
  *                          RT_CLUSTER_ERROR after 10 seconds. With 0 (default) this process ends
  *                          the frame alone and says so in the log.
  *   tolerant=1             accepts workers of another instruction set or version. The last bits of
- *                          pictures may then differ. */
+ *                          pictures may then differ.
+ * Workers use the instruction set of this process. One that lacks it is refused; isa=NAME chooses
+ * one that all have. */
 RT_API RTcontext rtNewContext(const char* config);
 /* Makes a context current on this thread. NULL makes none current. [any-thread] */
 RT_API void rtMakeCurrent(RTcontext context);

@@ -177,7 +177,7 @@ typedef struct RTstats {
                               since the context was made */
   uint64_t topLevelBuilds; /* times the top level above them was built or refitted */
   uint32_t threads;
-  char isa[16];
+  char isa[16];    /* instruction set of the ray kernels, for example "avx2" */
   char kernel[32]; /* for example "Embree 3.13.5" */
 
   /* The error of the picture as a whole. The error of a pixel is (errors of the colours summed) /

@@ -17,7 +17,7 @@ namespace openrt::cluster {
 
 struct MasterOptions {
   SchedulerOptions schedule;
-  bool tolerant = false;     // accepts workers with another instruction set
+  bool tolerant = false;     // accepts workers that lack the instruction set
   BackendOptions local;      // log, and shaders to name and hash what a scene needs
   uint32_t localThreads = 0; // threads of the local worker; 0: none while other workers live
   uint32_t require = 0;      // number of workers without which no job is handed out

@@ -72,9 +72,11 @@ void Master::Impl::hello(Remote& remote, message::Hello&& hello, double now) {
   peers[remote.id] = remote.peer;
   everJoined = true;
   loggedAlone = false;
+  message::Welcome welcome = usualWelcome(remote.session);
+  welcome.isa = canUse(hello, options.self.isa) ? options.self.isa : hello.isa;
   log(1, "worker " + remote.name() + " has joined: " + std::to_string(remote.facts.threads) +
-             (remote.facts.threads == 1 ? " thread, " : " threads, ") + hello.isa);
-  queueMessage(remote, usualWelcome(remote.session));
+             (remote.facts.threads == 1 ? " thread, " : " threads, ") + welcome.isa);
+  queueMessage(remote, std::move(welcome));
   scheduler.join(remote.id, remote.facts.threads, false, now);
 }
 

@@ -6,6 +6,7 @@
 #include <gnu/libc-version.h>
 #endif
 
+#include "backend/instruction_sets.h"
 #include "openrt/openrt.h"
 #include "openrt/openrts.h"
 
@@ -36,6 +37,7 @@ message::Hello identity(const RTstats& local) {
   self.api = OPENRT_VERSION_MAJOR << 16 | OPENRT_VERSION_MINOR;
   self.shaderAbi = RTS_ABI_MAJOR << 16 | RTS_ABI_MINOR;
   self.isa = local.isa;
+  self.isas = instructionSetsFrom(local.isa);
   self.kernel = local.kernel;
   self.platform = platform();
   char host[256] = "";
@@ -50,6 +52,10 @@ message::Welcome usualWelcome(uint64_t session) {
           .session = session,
           .heartbeat = float(usual.heartbeat),
           .silence = float(usual.silence)};
+}
+
+bool canUse(const message::Hello& machine, const std::string& isa) {
+  return machine.isa == isa || listsInstructionSet(machine.isas, isa);
 }
 
 std::string difference(const message::Hello& worker, const message::Hello& master, bool tolerant) {
@@ -67,7 +73,10 @@ std::string difference(const message::Hello& worker, const message::Hello& maste
   compare("version", worker.library, master.library);
   compare("interface", std::to_string(worker.api >> 16) + "." + std::to_string(worker.api & 0xffff),
           std::to_string(master.api >> 16) + "." + std::to_string(master.api & 0xffff));
-  compare("instruction set", worker.isa, master.isa);
+  if (!canUse(worker, master.isa)) {
+    compare("instruction set", worker.isa, master.isa);
+    if (canUse(master, worker.isa)) differing += " (isa=" + worker.isa + " suits both)";
+  }
   compare("ray kernel", worker.kernel, master.kernel);
   compare("system", worker.platform, master.platform);
   if (!differing.empty()) differing += " (tolerant=1 accepts it, but last bits may differ)";

@@ -20,4 +20,7 @@ message::Welcome usualWelcome(uint64_t session);
 // system's math library.
 std::string difference(const message::Hello& worker, const message::Hello& master, bool tolerant);
 
+// Returns whether a machine can use this instruction set, if it is told to.
+bool canUse(const message::Hello& machine, const std::string& isa);
+
 } // namespace openrt::cluster

@@ -109,6 +109,7 @@ struct WorkerService::Impl final : WorkerSink, JobExecutor {
   }
 
   // JobExecutor, called by the session.
+  void useInstructionSet(const std::string& isa) override { core->useInstructionSet(isa); }
   void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole, bool prepare) override {
     core->scene(epoch, std::move(commit), whole, prepare);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "backend/cluster/net/greeting.h"
 #include "backend/record/validator.h"
 #include "render/film/light_image.h"
 #include "render/frame/result_codec.h"
@@ -120,6 +121,10 @@ void Worker::welcome(const message::Welcome& m, uint64_t session) {
   if (m.protocol != protocolVersion)
     return giveUp("the master has protocol " + std::to_string(m.protocol) + ", the worker " +
                   std::to_string(protocolVersion) + ": install the same version on both");
+  if (!m.isa.empty() && !canUse(options_.self, m.isa))
+    return giveUp("instruction set: the master wants " + m.isa + ", the worker has " +
+                  options_.self.isas);
+  executor_.useInstructionSet(m.isa.empty() ? options_.self.isa : m.isa);
   session_ = m.session;
   masters_++;
   broken_ = "no scene has arrived yet";

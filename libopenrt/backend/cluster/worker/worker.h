@@ -24,6 +24,7 @@ namespace openrt::cluster {
 class JobExecutor {
  public:
   virtual ~JobExecutor() = default;
+  virtual void useInstructionSet(const std::string& isa) = 0;
   virtual void scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole,
                      bool prepare) = 0;
   virtual void prepare(Epoch epoch) = 0;

@@ -19,11 +19,12 @@ namespace openrt::cluster {
 namespace {
 
 struct Command {
-  enum class Kind : uint8_t { job, scene, prepare, question } kind = Kind::job;
+  enum class Kind : uint8_t { job, instructionSet, scene, prepare, question } kind = Kind::job;
   Epoch epoch = 0;
   LeasedJob job;
   std::shared_ptr<const Commit> commit;
   bool whole = false, prepare = false;
+  std::string isa;
   const std::function<void(Backend&)>* question = nullptr;
   bool* answered = nullptr;
   std::exception_ptr* failure = nullptr;
@@ -168,6 +169,7 @@ void WorkerCore::Impl::runCommands(const Command& command) {
   try {
     switch (command.kind) {
     case Command::Kind::job: return;
+    case Command::Kind::instructionSet: options.isa = command.isa; return;
     case Command::Kind::scene: return applyCommit(command);
     case Command::Kind::prepare:
       if (command.epoch == applied && intact && !scene) makeReady(command.epoch);
@@ -213,6 +215,13 @@ WorkerCore::WorkerCore(const BackendOptions& options, WorkerSink& sink)
 WorkerCore::~WorkerCore() = default;
 
 uint32_t WorkerCore::threads() const { return impl_->count; }
+
+void WorkerCore::useInstructionSet(const std::string& isa) {
+  Command command;
+  command.kind = Command::Kind::instructionSet;
+  command.isa = isa;
+  impl_->push(std::move(command));
+}
 
 void WorkerCore::scene(Epoch epoch, std::shared_ptr<const Commit> commit, bool whole,
                        bool prepare) {

@@ -47,6 +47,8 @@ class WorkerCore {
   WorkerCore(const BackendOptions& options, WorkerSink& sink);
   ~WorkerCore(); // stops the running jobs and waits
   uint32_t threads() const;
+  // [any] Sets the instruction set of the scenes that begin after earlier requests.
+  void useInstructionSet(const std::string& isa);
   // [any] These return at once and take effect in order. whole: drops the scene before. prepare:
   // builds the scene and calls ready(); without it, later edits may save the work. Jobs of earlier
   // epochs are finished first.

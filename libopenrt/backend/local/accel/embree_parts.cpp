@@ -1,10 +1,8 @@
-// embree_parts.cpp: creates the Embree device, and attaches geometries and instances to Embree
-// scenes. Called between frames.
+// embree_parts.cpp: attaches geometries and instances to Embree scenes. Called between frames.
 #include "backend/local/accel/blas.h"
 #include "render/rays.h"
 
-#include <stdexcept>
-#include <string>
+#include <new>
 
 namespace openrt {
 namespace {
@@ -31,22 +29,6 @@ void transform(RTCGeometry geometry, const Matrix4d& matrix) {
 }
 
 } // namespace
-
-EmbreeDevice::EmbreeDevice(uint32_t threads) {
-  const std::string config = "threads=" + std::to_string(threads);
-  device = rtcNewDevice(config.c_str());
-  if (!device)
-    throw std::runtime_error("the ray kernels (Embree) do not start: error " +
-                             std::to_string(rtcGetDeviceError(nullptr)));
-  rtcSetDeviceMemoryMonitorFunction(
-      device,
-      [](void* counter, ssize_t change, bool) {
-        *static_cast<std::atomic<int64_t>*>(counter) += change;
-        return true;
-      },
-      &bytes);
-  hasNativePackets16 = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
-}
 
 RTCScene newScene(const EmbreeDevice& device) {
   RTCScene scene = rtcNewScene(device.device);

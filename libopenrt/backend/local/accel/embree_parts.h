@@ -7,24 +7,11 @@
 #include <memory>
 #include <vector>
 
-#include "backend/local/accel/embree.h"
+#include "backend/local/accel/embree_device.h"
 #include "scene/commit.h"
 #include "scene/matrix.h"
 
 namespace openrt {
-
-struct EmbreeDevice {
-  explicit EmbreeDevice(uint32_t threads);
-  ~EmbreeDevice() { rtcReleaseDevice(device); }
-  EmbreeDevice(const EmbreeDevice&) = delete;
-  EmbreeDevice& operator=(const EmbreeDevice&) = delete;
-  RTCDevice device;
-  // Embree traces packets of 16 rays natively on this CPU
-  bool hasNativePackets16 = true;
-  std::atomic<int64_t> bytes{0}; // memory of all acceleration structures
-  // hits on slivers that single precision reports and double precision rejects
-  mutable std::atomic<uint64_t> wrongHits{0};
-};
 
 struct Blas;
 
