@@ -50,7 +50,7 @@ template <class F> void store(float* to, F f) { std::memcpy(to, &f, sizeof f); }
 
 } // namespace detail
 
-// Floats -----------------------------------------------------------------------------------------
+// Floats ------------------------------------------------------------------------------------------
 
 // Floats of neighbouring hits, one for each lane.
 struct Lanes {
@@ -59,7 +59,11 @@ struct Lanes {
 
   Lanes() : Lanes(0.0f) {}
   Lanes(float same) : v(same - detail::Vector()) {}
-  explicit Lanes(detail::Vector vector) : v(vector) {}
+  static Lanes of(detail::Vector vector) {
+    Lanes out;
+    out.v = vector;
+    return out;
+  }
   static Lanes load(const float* from) { return detail::load<Lanes>(from); }
   void store(float* to) const { detail::store(to, *this); }
   float operator[](uint32_t lane) const {
@@ -74,30 +78,34 @@ struct Lanes {
 // Truth values of neighbouring hits. Combine them by & and |.
 struct Mask {
   Mask(bool same) : v(Lanes(float(same)).v > detail::Vector()) {}
-  explicit Mask(detail::Truths truths) : v(truths) {}
-  bool operator[](uint32_t lane) const { return Lanes(v ? Lanes(1).v : Lanes(0.0f).v)[lane] != 0; }
+  static Mask of(detail::Truths truths) {
+    Mask out(false);
+    out.v = truths;
+    return out;
+  }
+  bool operator[](uint32_t lane) const { return Lanes::of(v ? Lanes(1).v : Lanes().v)[lane] != 0; }
 
   detail::Truths v;
 };
 
-inline Lanes operator+(Lanes a, Lanes b) { return Lanes(a.v + b.v); }
-inline Lanes operator-(Lanes a, Lanes b) { return Lanes(a.v - b.v); }
-inline Lanes operator*(Lanes a, Lanes b) { return Lanes(a.v * b.v); }
-inline Lanes operator/(Lanes a, Lanes b) { return Lanes(a.v / b.v); }
-inline Lanes operator-(Lanes a) { return Lanes(-a.v); }
-inline Mask operator<(Lanes a, Lanes b) { return Mask(a.v < b.v); }
-inline Mask operator>(Lanes a, Lanes b) { return Mask(a.v > b.v); }
-inline Mask operator<=(Lanes a, Lanes b) { return Mask(a.v <= b.v); }
-inline Mask operator>=(Lanes a, Lanes b) { return Mask(a.v >= b.v); }
-inline Mask operator==(Lanes a, Lanes b) { return Mask(a.v == b.v); }
-inline Mask operator!=(Lanes a, Lanes b) { return Mask(a.v != b.v); }
-inline Mask operator&(Mask a, Mask b) { return Mask(detail::Truths(a.v & b.v)); }
-inline Mask operator|(Mask a, Mask b) { return Mask(detail::Truths(a.v | b.v)); }
-inline Mask operator!(Mask a) { return Mask(detail::Truths(a.v == detail::Truths())); }
+inline Lanes operator+(Lanes a, Lanes b) { return Lanes::of(a.v + b.v); }
+inline Lanes operator-(Lanes a, Lanes b) { return Lanes::of(a.v - b.v); }
+inline Lanes operator*(Lanes a, Lanes b) { return Lanes::of(a.v * b.v); }
+inline Lanes operator/(Lanes a, Lanes b) { return Lanes::of(a.v / b.v); }
+inline Lanes operator-(Lanes a) { return Lanes::of(-a.v); }
+inline Mask operator<(Lanes a, Lanes b) { return Mask::of(a.v < b.v); }
+inline Mask operator>(Lanes a, Lanes b) { return Mask::of(a.v > b.v); }
+inline Mask operator<=(Lanes a, Lanes b) { return Mask::of(a.v <= b.v); }
+inline Mask operator>=(Lanes a, Lanes b) { return Mask::of(a.v >= b.v); }
+inline Mask operator==(Lanes a, Lanes b) { return Mask::of(a.v == b.v); }
+inline Mask operator!=(Lanes a, Lanes b) { return Mask::of(a.v != b.v); }
+inline Mask operator&(Mask a, Mask b) { return Mask::of(detail::Truths(a.v & b.v)); }
+inline Mask operator|(Mask a, Mask b) { return Mask::of(detail::Truths(a.v | b.v)); }
+inline Mask operator!(Mask a) { return Mask::of(detail::Truths(a.v == detail::Truths())); }
 
 // Returns a where the condition holds, else b. Both are computed.
 inline float select(bool condition, float a, float b) { return condition ? a : b; }
-inline Lanes select(Mask condition, Lanes a, Lanes b) { return Lanes(condition.v ? a.v : b.v); }
+inline Lanes select(Mask condition, Lanes a, Lanes b) { return Lanes::of(condition.v ? a.v : b.v); }
 
 // Return the smaller or the larger number; b where either is NaN.
 inline float smaller(float a, float b) { return a < b ? a : b; }
