@@ -10,6 +10,10 @@ function(openrt_add_shader name)
   # same hardening as the programs that load it
   target_link_options(shader_${name} PRIVATE LINKER:-z,relro,-z,now,-z,noexecstack)
   target_link_libraries(shader_${name} PRIVATE openrt::headers)
+  # No contraction into fused multiply-adds: openrts_lanes.hpp promises the same bytes for every instruction set. Without
+  # errno a square root is one instruction.
+  target_compile_options(shader_${name} PRIVATE
+                         $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off -fno-math-errno>)
   if(TARGET project_options)
     target_link_libraries(shader_${name} PRIVATE project_options)
   endif()

@@ -64,7 +64,7 @@ struct CarPaint : rts::Surface<CarPaint> {
       out.custom(flakeColor, Flake{{flakeRoughness, {aluminiumN, aluminiumK}}, index, hit.normal});
       out.albedo(flakeColor);
     } else {
-      out.custom(coat::colour(color, index), coat::CoatedDiffuse::of(index));
+      out.custom(coat::colour(*color, index), coat::CoatedDiffuse::of(index));
       out.albedo(color);
     }
   }

@@ -23,11 +23,15 @@ struct Checker : rts::Surface<Checker> {
   rts::Param<float> coating{"coating", 1, "index of refraction of a clear coating; 1: none", 1, 3};
 
   uint32_t needs() const { return coating > 1.001f ? RTS_SPECULAR | RTS_GLOSSY : 0; }
-  void surface(const rts::Hit& hit, rts::Closures& out) const {
-    const rts::Vec3 p =
+  template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
+    const rts::Vec3Of<F> p =
         pattern::positionBeneath(hit, std::fmax(size->x, std::fmax(size->y, size->z)));
-    const int32_t sum = number(p.x, size->x) + number(p.y, size->y) + number(p.z, size->z);
-    coat::add(hit, out, sum & 1 ? *odd : *even, coating);
+    const auto isOdd = [&](float x, float y, float z) {
+      return float((number(x, size->x) + number(y, size->y) + number(z, size->z)) & 1);
+    };
+    const rts::ColorOf<F> albedo =
+        rts::select(rts::eachLane(isOdd, p.x, p.y, p.z) > 0, *odd, *even);
+    coat::add(hit, out, albedo, coating);
   }
 
  private:

@@ -68,16 +68,19 @@ inline float colour(float albedo, double inner) {
   const double a = std::fmin(1.0, std::fmax(0.0, double(albedo)));
   return static_cast<float>(a * (1 - inner) / (1 - a * inner));
 }
-inline rts::Color colour(rts::Color albedo, float index) {
+template <class F> rts::ColorOf<F> colour(rts::ColorOf<F> albedo, float index) {
   const double n = index > 1.001f ? index : 1.0, inner = 1 - (1 - meanReflectance(n)) / (n * n);
-  return {colour(albedo.r, inner), colour(albedo.g, inner), colour(albedo.b, inner)};
+  const auto channel = [inner](float a) { return colour(a, inner); };
+  return {rts::eachLane(channel, albedo.r), rts::eachLane(channel, albedo.g),
+          rts::eachLane(channel, albedo.b)};
 }
 
 // Adds a diffuse base under a smooth coat with this index of refraction; up to 1: no coat.
-inline void add(const rts::Hit& hit, rts::Closures& out, rts::Color albedo, float index) {
+template <class F>
+void add(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out, rts::ColorOf<F> albedo, float index) {
   out.albedo(albedo);
   if (!(index > 1.001f)) return out.diffuse(albedo);
-  const float f = 1 - transmittance(hit.cosine(), index);
+  const F f = 1 - rts::eachLane([index](float c) { return transmittance(c, index); }, hit.cosine());
   out.reflection({f, f, f});
   out.custom(colour(albedo, index), CoatedDiffuse::of(index));
 }

@@ -13,12 +13,12 @@ struct Diffuse : rts::Surface<Diffuse> {
   bool emits() const { return rts::largest(emission) > 0; }
   bool emitsUniformly() const { return true; }
   uint32_t needs() const { return rts::largest(reflectance) > 0 ? 0 : RTS_NO_SCATTER; }
-  void surface(const rts::Hit& hit, rts::Closures& out) const {
-    const rts::Vec4 texel = hit.sample(texture, hit.uv);
-    const rts::Color albedo = *reflectance * rts::Color{texel.x, texel.y, texel.z} *
-                              rts::Color{hit.color.x, hit.color.y, hit.color.z};
+  template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
+    const rts::Vec4Of<F> texel = hit.sample(texture, hit.uv);
+    const rts::ColorOf<F> albedo = *reflectance * rts::ColorOf<F>{texel.x, texel.y, texel.z} *
+                                   rts::ColorOf<F>{hit.color.x, hit.color.y, hit.color.z};
     out.diffuse(albedo);
-    out.emission(emission);
+    out.emission(*emission);
     out.albedo(albedo);
   }
 };

@@ -37,9 +37,9 @@ struct Glass : rts::Surface<Glass> {
             absorption,
             priority};
   }
-  void surface(const rts::Hit& hit, rts::Closures& out) const {
+  template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
     // An engine that knows media uses their indices instead.
-    out.dielectric(tint, hit.back() ? float(index) : 1 / float(index));
+    out.dielectric(*tint, rts::select(hit.back(), float(index), 1 / float(index)));
     out.albedo({1, 1, 1});
   }
   // Shadow rays pass straight through, with the transmittance of normal incidence.

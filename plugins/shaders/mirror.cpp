@@ -10,9 +10,9 @@ struct Mirror : rts::Surface<Mirror> {
   rts::Param<rts::Color> reflectance{
       "reflectance", {0.9f, 0.9f, 0.9f}, "fraction reflected, 0..1", 0, 1};
 
-  void surface(const rts::Hit&, rts::Closures& out) const {
-    out.reflection(reflectance);
-    out.albedo(reflectance);
+  template <class F> void surface(const rts::HitOf<F>&, rts::ClosuresOf<F>& out) const {
+    out.reflection(*reflectance);
+    out.albedo(*reflectance);
   }
 };
 

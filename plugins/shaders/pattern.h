@@ -70,8 +70,8 @@ inline rts::Color lerp(rts::Color a, rts::Color b, float t) {
 
 // Returns the position of a hit in its object, moved a thousandth of a cell below the surface. So a
 // face in the plane between two cells always has the same cell.
-inline rts::Vec3 positionBeneath(const rts::Hit& hit, float cellSize) {
-  const rts::Hit::Local local = hit.local();
+template <class F> rts::Vec3Of<F> positionBeneath(const rts::HitOf<F>& hit, float cellSize) {
+  const rts::LocalOf<F> local = hit.local();
   return local.position - rts::normalize(local.normal) * (1e-3f * cellSize);
 }
 

@@ -20,19 +20,19 @@ struct Phong : rts::Surface<Phong> {
   rts::Param<rts::Texture> texture{"texture", "multiplies diffuseColor"};
 
   uint32_t needs() const { return rts::largest(specularColor) > 0 ? RTS_GLOSSY : 0; }
-  void surface(const rts::Hit& hit, rts::Closures& out) const {
-    const rts::Vec4 t = hit.sample(texture, hit.uv);
-    const rts::Color albedo = *diffuseColor * rts::Color{t.x, t.y, t.z} *
-                              rts::Color{hit.color.x, hit.color.y, hit.color.z};
-    const rts::Color both = albedo + *specularColor;
-    const rts::Color scale{kept(both.r), kept(both.g), kept(both.b)};
+  template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
+    const rts::Vec4Of<F> t = hit.sample(texture, hit.uv);
+    const rts::ColorOf<F> albedo = *diffuseColor * rts::ColorOf<F>{t.x, t.y, t.z} *
+                                   rts::ColorOf<F>{hit.color.x, hit.color.y, hit.color.z};
+    const rts::ColorOf<F> both = albedo + *specularColor;
+    const rts::ColorOf<F> scale{kept(both.r), kept(both.g), kept(both.b)};
     out.diffuse(scale * albedo);
     out.custom(scale * *specularColor, blinn_phong::Lobe{128 * shininess});
     out.albedo(scale * albedo);
   }
 
  private:
-  static float kept(float sum) { return sum > 1 ? 1 / sum : 1; }
+  template <class F> static F kept(F sum) { return rts::select(sum > 1, 1 / sum, 1); }
 };
 
 } // namespace

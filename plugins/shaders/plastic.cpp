@@ -111,10 +111,10 @@ struct Plastic : rts::Surface<Plastic> {
     body_.mean = static_cast<float>(mean);
     return nullptr;
   }
-  void surface(const rts::Hit& hit, rts::Closures& out) const {
-    const rts::Vec4 t = hit.sample(texture, hit.uv);
-    const rts::Color albedo =
-        *color * rts::Color{t.x, t.y, t.z} * rts::Color{hit.color.x, hit.color.y, hit.color.z};
+  template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
+    const rts::Vec4Of<F> t = hit.sample(texture, hit.uv);
+    const rts::ColorOf<F> albedo = *color * rts::ColorOf<F>{t.x, t.y, t.z} *
+                                   rts::ColorOf<F>{hit.color.x, hit.color.y, hit.color.z};
     if (!rough() || !(body_.mean > 0)) return coat::add(hit, out, albedo, index);
     out.albedo(albedo);
     out.custom({1, 1, 1}, microfacet::MicrofacetLobe<Boundary>{roughness, {index}});

@@ -21,8 +21,9 @@ struct RoughGlass : rts::Surface<RoughGlass> {
                                "where bodies overlap, the one with the highest priority counts"};
 
   rts::Medium medium() const { return {{index, index, index}, absorption, priority}; }
-  void surface(const rts::Hit& hit, rts::Closures& out) const {
-    out.roughDielectric(tint, hit.back() ? float(index) : 1 / float(index), roughness);
+  template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
+    out.roughDielectric(*tint, rts::select(hit.back(), float(index), 1 / float(index)),
+                        float(roughness));
     out.albedo({1, 1, 1});
   }
 };

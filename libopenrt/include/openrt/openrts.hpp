@@ -1,7 +1,6 @@
 // openrts.hpp: OpenRTS for C++17. A shader is a small class whose functions see one hit at a time;
 // the header adds the loops over batches, the class table and the parameter table. It needs only
-// openrts.h and the headers beside it. Where every nanosecond counts, write the batch functions of
-// openrts.h instead. Units and spaces are those of openrts.h.
+// openrts.h and the headers beside it. Units and spaces are those of openrts.h.
 //
 //   #include <openrt/openrts.hpp>
 //   struct Polished : rts::Surface<Polished> {
@@ -10,6 +9,11 @@
 //     void surface(const rts::Hit&, rts::Closures& out) const { out.reflection(reflectance); }
 //   };
 //   RTS_PLUGIN(Polished)
+//
+// A function that is a template over its numbers computes several hits at once, with vector
+// instructions (openrts_lanes.hpp). These functions may be such templates: `surface`, `shade`,
+// `reflect`, `transmit`, `illuminate`, `generate`, `miss` and `attenuate`. The types below are then
+// HitOf<F>, ClosuresOf<F>, Vec3Of<F> and so on; Hit is HitOf<float>.
 //
 // A class derives from one of the templates below and defines these functions. Except for `prepare`
 // and `release`, they are const. None may throw. They are called on many threads at once [render];
@@ -70,6 +74,7 @@
 #include <type_traits>
 
 #include "openrts.h"
+#include "openrts_lanes.hpp"
 #include "openrts_values.hpp"
 
 namespace rts {
@@ -87,9 +92,10 @@ struct Asked {
 
 // Arguments and results ---------------------------------------------------------------------------
 
-struct Ray {
-  Vec3 origin, direction; // the direction is unit
+template <class F> struct RayOf {
+  Vec3Of<F> origin, direction; // the direction is unit
 };
+using Ray = RayOf<float>;
 // The first hit of a ray.
 struct Found {
   float distance = infinity; // infinite: nothing is hit
@@ -136,16 +142,24 @@ class Tracer {
   Color occludedFrom(const Vec3* origin, Vec3 direction, float length) const;
 };
 
-// In `transmit` only position, direction, uv, color and flags are set.
-struct Hit : Tracer {
-  Vec3 position;      // render space
-  Vec3 direction;     // unit direction of the ray, towards the surface
-  Vec3 geometric;     // unit geometric normal, turned towards the ray's origin
-  Vec3 normal;        // unit shading normal, on the same side
-  Vec2 uv;            // texture coordinates, 0 if the geometry has none
-  Vec4 color;         // rgba of the geometry, 1 1 1 1 if it has none
-  float distance = 0; // path length from the camera
-  float segment = 0;  // length of the last ray of the path
+// The numbers of a hit. In `transmit` only position, direction, uv, color and flags are set.
+template <class F> struct HitNumbers {
+  Vec3Of<F> position;  // render space
+  Vec3Of<F> direction; // unit direction of the ray, towards the surface
+  Vec3Of<F> geometric; // unit geometric normal, turned towards the ray's origin
+  Vec3Of<F> normal;    // unit shading normal, on the same side
+  Vec2Of<F> uv;        // texture coordinates, 0 if the geometry has none
+  Vec4Of<F> color;     // rgba of the geometry, 1 1 1 1 if it has none
+  F distance = 0;      // path length from the camera
+  F segment = 0;       // length of the last ray of the path
+};
+
+// A position and a geometric normal (not unit) in the frame of the object.
+template <class F> struct LocalOf { Vec3Of<F> position, normal; };
+
+template <class F> struct HitOf; // F: float for one hit, Lanes for several
+using Hit = HitOf<float>;
+template <> struct HitOf<float> : Tracer, HitNumbers<float> {
   uint32_t flags = 0; // RTS_HIT_*
 
   bool back() const { return (flags & RTS_HIT_BACK) != 0; }
@@ -172,9 +186,7 @@ struct Hit : Tracer {
   }
   // Returns position and geometric normal (not unit) in the frame of the object, so that a solid
   // texture moves with the object. Older hosts: in render space.
-  struct Local {
-    Vec3 position, normal;
-  };
+  using Local = LocalOf<float>;
   Local local() const;
   // Returns the derivatives of the position with respect to the texture coordinates, in render
   // space; 0 without texture coordinates and on older hosts.
@@ -197,6 +209,27 @@ struct Hit : Tracer {
   float error() const;
 };
 
+// Neighbouring hits with the same parameters, one for each lane of Lanes. At the end of a batch the
+// spare lanes hold copies of its last hit, and their results are ignored. Only these functions of
+// Hit exist for several hits.
+template <> struct HitOf<Lanes> : HitNumbers<Lanes> {
+  Tracer first;                    // identifies the first of the hits
+  const uint32_t* flags = nullptr; // RTS_HIT_*, by lane
+
+  Mask back() const { return has(RTS_HIT_BACK); }
+  Mask line() const { return has(RTS_HIT_LINE); }
+  Lanes cosine() const { return smaller(1, larger(0, -dot(direction, normal))); }
+  Vec4Of<Lanes> sample(Texture texture, Vec2Of<Lanes> place) const;
+  LocalOf<Lanes> local() const;
+
+ private:
+  Mask has(uint32_t flag) const {
+    float at[Lanes::size];
+    for (uint32_t i = 0; i < Lanes::size; i++) at[i] = (flags[i] & flag) ? 1.0f : 0.0f;
+    return Lanes::load(at) > 0;
+  }
+};
+
 // The argument of a transport: the ray of one sample of a pixel.
 struct CameraRay : Tracer {
   Vec3 origin, direction; // render space; the direction is unit
@@ -210,28 +243,32 @@ struct CameraRay : Tracer {
 };
 
 // The result of Surface::shade.
-struct Shaded {
-  Color radiance;     // leaving towards the ray's origin, multiplied by opacity
-  Color transmission; // 0..1, fraction let through of the radiance straight behind the hit
-  Color albedo;       // surface colour for the albedo channel
+template <class F> struct ShadedOf {
+  ColorOf<F> radiance;     // leaving towards the ray's origin, multiplied by opacity
+  ColorOf<F> transmission; // 0..1, fraction let through of the radiance straight behind the hit
+  ColorOf<F> albedo;       // surface colour for the albedo channel
 };
+using Shaded = ShadedOf<float>;
 
 // Light from one light that arrives at a hit (RtsIllumination), in render space.
-struct Light {
-  Vec3 toLight;         // unit
-  Color color, ambient; // direct part, multiplied by the shadow; ambient part
+template <class F> struct LightOf {
+  Vec3Of<F> toLight;         // unit
+  ColorOf<F> color, ambient; // direct part, multiplied by the shadow; ambient part
 };
+using Light = LightOf<float>;
 
 // The result of LightSource::illuminate (RtsIllumination), in the light's local space.
-struct Illumination {
-  Vec3 toLight;         // any length
-  Color color, ambient; // direct and ambient part
+template <class F> struct IlluminationOf {
+  Vec3Of<F> toLight;         // any length
+  ColorOf<F> color, ambient; // direct and ambient part
 };
+using Illumination = IlluminationOf<float>;
 // The result of Environment::attenuate.
-struct Fog {
-  Color color;
-  float fraction = 1; // fraction (0..1) of the surface's radiance that arrives
+template <class F> struct FogOf {
+  ColorOf<F> color;
+  F fraction = 1; // fraction (0..1) of the surface's radiance that arrives
 };
+using Fog = FogOf<float>;
 // The interior of a body (RtsMedium). Where bodies overlap, the one with the highest priority
 // counts. Faces point outwards.
 struct Medium {
@@ -276,73 +313,18 @@ struct Sample {
 // the surface. A lobe must be reciprocal unless it transmits, and must conserve energy.
 template <class L> const RtsLobeFunctions* lobeFunctions();
 
-// Collects the lobes of one hit (RtsLobeKind). Lobes of the same kind add up. Weights are 0..1; all
-// weights of a hit should add up to at most 1. A hit may have RTS_MAX_LOBES lobes; further ones are
-// dropped. Valid only during the call of `surface`. [render]
-class Closures {
+namespace detail {
+// The lobes that a batch has so far. Each hit, or group of hits, takes them in the order of its
+// calls, so that hits with the same lobes share them.
+class LobeList {
  public:
-  // Adds a Lambertian lobe.
-  void diffuse(Color albedo) { add(RTS_LOBE_DIFFUSE, albedo); }
-  // Adds a perfect mirror. The reflectance includes the Fresnel factor.
-  void reflection(Color reflectance) { add(RTS_LOBE_REFLECTION, reflectance); }
-  // Adds a smooth boundary of a clear medium. eta: index of refraction on the ray's side over that
-  // on the far side.
-  void dielectric(Color tint, float eta) { add(RTS_LOBE_DIELECTRIC, tint, eta); }
-  // Lets light pass straight through.
-  void transparent(Color transmittance) { add(RTS_LOBE_TRANSPARENT, transmittance); }
-  // Adds a microfacet reflection (GGX) of width alpha, 0..1. If eta is not 0, the Fresnel
-  // reflectance of a clear medium multiplies the weight.
-  void glossy(Color reflectance, float alpha, float eta = 0) {
-    add(RTS_LOBE_GLOSSY, reflectance, alpha, eta);
-  }
-  // Adds a rough boundary of a clear medium (GGX).
-  void roughDielectric(Color tint, float eta, float alpha) {
-    add(RTS_LOBE_ROUGH_DIELECTRIC, tint, eta, alpha);
-  }
-  // Adds a custom lobe (lobeFunctions); needs a host of version 1.2.
-  template <class L> void custom(Color weight, const L& lobe);
-  // Sets the normal of the lobes that are added after it; the default is the hit's shading normal.
-  // It must be on the side of the geometric normal.
-  void normal(Vec3 unit) {
-    normal_ = unit;
-    bent_ = true;
-  }
-
-  // Adds emitted radiance towards the ray's origin.
-  void emission(Color radiance) {
-    const float c[3] = {radiance.r, radiance.g, radiance.b};
-    for (int k = 0; k < 3; k++) out_->emission[k][lane_] += c[k];
-  }
-  // Sets the surface colour for the albedo channel.
-  void albedo(Color color) {
-    const float c[3] = {color.r, color.g, color.b};
-    for (int k = 0; out_->albedo[0] && k < 3; k++) out_->albedo[k][lane_] = c[k];
-  }
-
-  Closures(const RtsHost* host, RtsBatch* batch, RtsSurface* out)
-      : host_(host), batch_(batch), out_(out) {}
-  void begin(uint32_t lane) { // starts the next hit
-    lane_ = lane;
-    bent_ = false;
+  LobeList(const RtsHost* host, RtsBatch* batch) : host_(host), batch_(batch) {}
+  void begin() { // starts the next hit
     for (uint32_t i = 0; i < count_; i++) free_[i] = true;
-  }
-
- private:
-  RtsLobe* add(RtsLobeKind kind, Color weight, float first = 0, float second = 0,
-               const RtsLobeFunctions* functions = nullptr, uint32_t floats = 0) {
-    RtsLobe* lobe = slot(kind, functions, floats);
-    if (!lobe) return nullptr;
-    const float c[3] = {weight.r, weight.g, weight.b}, n[3] = {normal_.x, normal_.y, normal_.z};
-    for (int k = 0; k < 3; k++) lobe->weight[k][lane_] = c[k];
-    for (int k = 0; bent_ && k < 3; k++) lobe->normal[k][lane_] = n[k];
-    if (functions) return lobe;
-    lobe->parameter[0][lane_] = first;
-    lobe->parameter[1][lane_] = second;
-    return lobe;
   }
   // Returns a lobe of this kind that the hit has not used yet, or null after RTS_MAX_LOBES lobes
   // and on hosts that do not know the kind.
-  RtsLobe* slot(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
+  RtsLobe* take(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
     for (uint32_t i = 0; i < count_; i++) {
       if (!free_[i] || lobes_[i]->kind != kind || functions_[i] != functions) continue;
       free_[i] = false;
@@ -361,16 +343,93 @@ class Closures {
     return made;
   }
 
+ private:
   const RtsHost* host_;
   RtsBatch* batch_;
-  RtsSurface* out_;
-  uint32_t lane_ = 0, count_ = 0;
-  Vec3 normal_;
-  bool bent_ = false;
+  uint32_t count_ = 0;
   RtsLobe* lobes_[RTS_MAX_LOBES] = {};
   const RtsLobeFunctions* functions_[RTS_MAX_LOBES] = {};
   bool free_[RTS_MAX_LOBES] = {};
 };
+} // namespace detail
+
+// Collects the lobes of one hit, or of the hits of Lanes (RtsLobeKind). Lobes of the same kind add
+// up. Weights are 0..1; all weights of a hit should add up to at most 1. A hit may have
+// RTS_MAX_LOBES lobes; further ones are dropped. Valid only during the call of `surface`. [render]
+template <class F> class ClosuresOf {
+ public:
+  using Color = ColorOf<F>;
+  // Adds a Lambertian lobe.
+  void diffuse(Color albedo) { add(RTS_LOBE_DIFFUSE, albedo); }
+  // Adds a perfect mirror. The reflectance includes the Fresnel factor.
+  void reflection(Color reflectance) { add(RTS_LOBE_REFLECTION, reflectance); }
+  // Adds a smooth boundary of a clear medium. eta: index of refraction on the ray's side over that
+  // on the far side.
+  void dielectric(Color tint, F eta) { add(RTS_LOBE_DIELECTRIC, tint, eta); }
+  // Lets light pass straight through.
+  void transparent(Color transmittance) { add(RTS_LOBE_TRANSPARENT, transmittance); }
+  // Adds a microfacet reflection (GGX) of width alpha, 0..1. If eta is not 0, the Fresnel
+  // reflectance of a clear medium multiplies the weight.
+  void glossy(Color reflectance, F alpha, F eta = 0) {
+    add(RTS_LOBE_GLOSSY, reflectance, alpha, eta);
+  }
+  // Adds a rough boundary of a clear medium (GGX).
+  void roughDielectric(Color tint, F eta, F alpha) {
+    add(RTS_LOBE_ROUGH_DIELECTRIC, tint, eta, alpha);
+  }
+  // Adds a custom lobe (lobeFunctions), the same for all lanes; needs a host of version 1.2.
+  template <class L> void custom(Color weight, const L& lobe);
+  // Sets the normal of the lobes that are added after it; the default is the hit's shading normal.
+  // It must be on the side of the geometric normal.
+  void normal(Vec3Of<F> unit) {
+    normal_ = unit;
+    bent_ = true;
+  }
+
+  // Adds emitted radiance towards the ray's origin.
+  void emission(Color radiance) {
+    const F c[3] = {radiance.r, radiance.g, radiance.b};
+    for (int k = 0; k < 3; k++) {
+      float* to = out_->emission[k] + lane_;
+      detail::store<F>(to, detail::load<F>(to) + c[k]);
+    }
+  }
+  // Sets the surface colour for the albedo channel.
+  void albedo(Color color) {
+    if (out_->albedo[0]) put(out_->albedo, color.r, color.g, color.b);
+  }
+
+  // For the hit `lane`, or the group of hits that begins there.
+  ClosuresOf(detail::LobeList& lobes, RtsSurface* out, uint32_t lane)
+      : lobes_(lobes), out_(out), lane_(lane) {
+    lobes_.begin();
+  }
+
+ private:
+  void put(float* const to[3], F x, F y, F z) {
+    detail::store<F>(to[0] + lane_, x);
+    detail::store<F>(to[1] + lane_, y);
+    detail::store<F>(to[2] + lane_, z);
+  }
+  RtsLobe* add(RtsLobeKind kind, Color weight, F first = 0, F second = 0,
+               const RtsLobeFunctions* functions = nullptr, uint32_t floats = 0) {
+    RtsLobe* lobe = lobes_.take(kind, functions, floats);
+    if (!lobe) return nullptr;
+    put(lobe->weight, weight.r, weight.g, weight.b);
+    if (bent_) put(lobe->normal, normal_.x, normal_.y, normal_.z);
+    if (functions) return lobe;
+    detail::store<F>(lobe->parameter[0] + lane_, first);
+    detail::store<F>(lobe->parameter[1] + lane_, second);
+    return lobe;
+  }
+
+  detail::LobeList& lobes_;
+  RtsSurface* out_;
+  uint32_t lane_;
+  Vec3Of<F> normal_;
+  bool bent_ = false;
+};
+using Closures = ClosuresOf<float>;
 
 template <class T> struct Surface {};
 template <class T> struct LightSource {};

@@ -135,6 +135,27 @@ inline Hit::Local Hit::local() const {
   return {{a[0][lane], a[1][lane], a[2][lane]}, {a[3][lane], a[4][lane], a[5][lane]}};
 }
 
+inline Vec4Of<Lanes> HitOf<Lanes>::sample(Texture texture, Vec2Of<Lanes> place) const {
+  if (texture.id == 0) return Vec4{1, 1, 1, 1};
+  alignas(64) float in[2][RTS_LANES], out[4][RTS_LANES];
+  for (uint32_t i = 0; i < RTS_LANES; i += Lanes::size) { // the host may read whole vectors
+    place.x.store(in[0] + i);
+    place.y.store(in[1] + i);
+  }
+  const float* const uvs[2] = {in[0], in[1]};
+  float* const rgba[4] = {out[0], out[1], out[2], out[3]};
+  first.host->sample(first.batch, texture.id, Lanes::size, uvs, rgba);
+  return {Lanes::load(out[0]), Lanes::load(out[1]), Lanes::load(out[2]), Lanes::load(out[3])};
+}
+
+inline LocalOf<Lanes> HitOf<Lanes>::local() const {
+  detail::Asked& asked = *first.asked;
+  if (!detail::askVectors(first, &RtsHost::local, asked.local)) return {position, geometric};
+  Lanes a[6];
+  for (int k = 0; k < 6; k++) a[k] = Lanes::load(asked.local[k] + first.lane);
+  return {{a[0], a[1], a[2]}, {a[3], a[4], a[5]}};
+}
+
 inline Hit::Derivatives Hit::derivatives() const {
   if (!detail::askVectors(*this, &RtsHost::derivatives, asked->derivatives)) return {};
   float* const* a = asked->derivatives;

@@ -15,18 +15,17 @@ namespace rts {
 
 // Values ------------------------------------------------------------------------------------------
 
-struct Vec2 {
-  float x = 0, y = 0;
+// F is float, or Lanes: the values of several hits (openrts_lanes.hpp).
+template <class F> struct Vec2Of { F x = 0, y = 0; };
+template <class F> struct Vec3Of { F x = 0, y = 0, z = 0; };
+template <class F> struct Vec4Of { F x = 0, y = 0, z = 0, w = 0; };
+template <class F> struct ColorOf { // linear RGB
+  F r = 0, g = 0, b = 0;
 };
-struct Vec3 {
-  float x = 0, y = 0, z = 0;
-};
-struct Vec4 {
-  float x = 0, y = 0, z = 0, w = 0;
-};
-struct Color { // linear RGB
-  float r = 0, g = 0, b = 0;
-};
+using Vec2 = Vec2Of<float>;
+using Vec3 = Vec3Of<float>;
+using Vec4 = Vec4Of<float>;
+using Color = ColorOf<float>;
 struct Matrix { // column-major
   float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
