@@ -52,8 +52,8 @@ TileRenderer::LightSamples TileRenderer::chooseLightSamples(const RtsBatch& batc
   rays.count = 0;
   if (std::none_of(wanted, wanted + hits.count, [](uint8_t w) { return w != 0; })) return out;
   float *pick[2], *place[2];
-  draw(sampling.random, Draw::emitter, 0, pick);
-  draw(sampling.random, Draw::place, 0, place);
+  sampling.random.draw(Decision::emitter, arena_, pick);
+  sampling.random.draw(Decision::place, arena_, place);
   auto* twoSided = arena_.takeZero<uint32_t>(size);
   for (uint32_t i = 0; i < hits.count; i++) twoSided[i] = transmitsAt(batch, i);
   const LightPoints lightPoints{hits.count,

@@ -13,9 +13,8 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
-// Pairs of random numbers: first those for the light source, then `perLevel` pairs for each level.
-enum Pair : uint32_t { which, place, aim, first, perLevel = 4 };
-enum Use : uint32_t { direction, choice, lens };
+// Pairs of dimensions of the sampler: those for the light source, then those of the first surface.
+enum Pair : uint32_t { which, place, aim, firstSurface };
 
 // Returns the correction for shading normals in importance transport: flux scales with the cosines
 // at the geometric normal, lobes with those at their own normal. E. Veach, 1997, 5.3.
@@ -35,10 +34,6 @@ LightTracer::LightTracer(const RenderScene& scene, const LightSources& sources)
   cameraArea_ = std::cbrt(determinant * determinant);
 }
 
-void LightTracer::sampleAt(const RayState& state, uint32_t pair, float out[2]) const {
-  PairSampler(~0u, pair + state.branch, seed_)(first_ + state.path, out[0], out[1]);
-}
-
 bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop) {
   picture_.assign(size_t(width_) * height_ * 3, 0.0f);
   seed_ = seed;
@@ -53,22 +48,24 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
 
 void LightTracer::begin(uint32_t firstPath, uint32_t n) {
   ArenaScope scope(arena_);
-  first_ = firstPath;
   level_ = 0;
   rays_.allocate(arena_, n);
   lightRays_.clear();
   departures_.assign(n, {});
   queue_.clear();
+  samples_.allocate(arena_, n);
+  for (uint32_t i = 0; i < n; i++) samples_.set(i, ~0u, seed_, firstPath + i);
+  const RandomNumbers random = randomNumbersAtStart(samples_, n, arena_);
+  float *pick[2], *where[2], *towards[2];
+  random.drawPair(Pair::which, arena_, pick);
+  random.drawPair(Pair::place, arena_, where);
+  random.drawPair(Pair::aim, arena_, towards);
   for (uint32_t i = 0; i < n; i++) {
-    const RayState state{.path = i};
-    float pick[2], where[2], towards[2];
-    sampleAt(state, Pair::which, pick);
-    sampleAt(state, Pair::place, where);
-    sampleAt(state, Pair::aim, towards);
-    lightRays_.push_back(sources_.sampleRay(scene_, pick[0] + pick[1] * 0x1p-24, where, towards));
+    const float place[2] = {where[0][i], where[1][i]}, aim[2] = {towards[0][i], towards[1][i]};
+    lightRays_.push_back(sources_.sampleRay(scene_, pick[0][i] + pick[1][i] * 0x1p-24, place, aim));
     const LightSources::LightRay& start = lightRays_.back();
     if (!(start.weight > 0) || !std::isfinite(start.weight)) continue;
-    queue_.push(start.origin, start.direction, state);
+    queue_.push(start.origin, start.direction, RayState{.path = i});
   }
   // The surface that the camera sees counts as one more level.
   while (!queue_.empty() && level_ < scene_.frame.depth) {
@@ -255,20 +252,16 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
       connected[count++] = i;
       if (scatters && !departures_[path].attenuationKnown) attenuate(points, path);
     }
-  if (count && scatters) connect(batch, connected, count);
+  const RandomNumbers random =
+      randomNumbersAt(samples_, states_, order, n, pairAtLevel(Pair::firstSurface, level_), arena_);
+  if (count && scatters) connect(batch, random, connected, count);
+  float* choices[2];
+  random.draw(Decision::choice, arena_, choices);
   const LobeSamples* samples[RTS_MAX_LOBES] = {};
   for (uint32_t l = 0; count && l < batch.lobeCount; l++) {
     if (!nonSpecularFunctions(batch.lobes[l])) continue;
-    float* square[2] = {arena_.take<float>(n), arena_.take<float>(n)};
-    for (uint32_t i = 0; i < n; i++) {
-      float uv[2];
-      sampleAt(states_[order[i]],
-               Pair::first + Pair::perLevel * level_ + Use::direction +
-                   (l ? hash(l, 0x6c6f6265u) : 0),
-               uv);
-      square[0][i] = uv[0];
-      square[1][i] = uv[1];
-    }
+    float* square[2];
+    random.draw(Decision::direction, arena_, square, pairOfLobe(l));
     auto* made = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, n, &batch);
     made->sample(batch.lobes[l], hits, n, all, square);
     samples[l] = made;
@@ -282,14 +275,14 @@ void LightTracer::scatter(const Points& points, const uint32_t* order,
       push(points, i, passed, d);
       continue;
     }
-    spawnRay(batch, i, samples, boundaries);
+    spawnRay(batch, i, samples, choices, boundaries);
   }
 }
 
 // Spawns one ray, selected in proportion to the weight it would carry. At the first surface only
 // specular reflection and refraction count.
 void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[],
-                           const Boundaries& boundaries) {
+                           const float* const choices[2], const Boundaries& boundaries) {
   const Points& points = *batch.points;
   RayState state = (*batch.states)[batch.order[i]];
   const bool first = state.flags.pathClass() == PathClass::undeflected;
@@ -302,15 +295,13 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples*
   for (uint32_t w = 0; w < bsdfSamples.count; w++)
     sum += carried[w] = largest(bsdfSamples.list[w].expectedWeight);
   if (!(sum > 0)) return;
-  float uv[2];
-  sampleAt(state, Pair::first + Pair::perLevel * level_ + Use::choice, uv);
-  const uint32_t chosen = sampleDiscrete(carried, bsdfSamples.count, uv[0] * sum);
+  const uint32_t chosen = sampleDiscrete(carried, bsdfSamples.count, choices[0][i] * sum);
   const BsdfSample& sample = bsdfSamples.list[chosen];
   if (!(carried[chosen] > 0) || sample.rejected) return;
   double kept = carried[chosen] / sum;
   if (level_ >= rouletteFrom) {
     const float stay = std::min(1.0f, sum);
-    if (uv[1] >= stay) return;
+    if (choices[1][i] >= stay) return;
     kept *= stay;
   }
   if (Departure& departure = departures_[state.path];
@@ -342,7 +333,8 @@ void LightTracer::push(const Points& points, uint32_t i, const RayState& state,
 }
 
 // Connects the hits with the camera and adds their light to the picture.
-void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uint32_t n) {
+void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random,
+                          const uint32_t* hitNumbers, uint32_t n) {
   const ShaderSlot& camera = scene_.camera.shader;
   ArenaScope scope(arena_);
   const Points& points = *batch.points;
@@ -365,12 +357,11 @@ void LightTracer::connect(const RtsBatch& batch, const uint32_t* hitNumbers, uin
     uv[k] = arena_.take<float>(size);
     seen.xy[k] = arena_.takeZero<float>(size);
   }
+  float* lens[2];
+  random.draw(Decision::lens, arena_, lens);
   for (uint32_t i = 0; i < size; i++) {
-    float at[2];
-    sampleAt(states_[batch.order[hitNumbers[std::min(i, n - 1)]]],
-             Pair::first + Pair::perLevel * level_ + Use::lens, at);
-    uv[0][i] = at[0];
-    uv[1][i] = at[1];
+    const uint32_t h = hitNumbers[std::min(i, n - 1)];
+    for (int k = 0; k < 2; k++) uv[k][i] = lens[k][h];
   }
   seen.weight = arena_.takeZero<float>(size);
   const float *place[3] = {local[0], local[1], local[2]}, *square[2] = {uv[0], uv[1]};

@@ -13,7 +13,7 @@
 
 #include "render/lights/light_sources.h"
 #include "render/path/path_states.h"
-#include "render/path/sampler.h"
+#include "render/path/random_numbers.h"
 #include "render/surface/lobes.h"
 #include "render/surface/surfaces.h"
 
@@ -39,11 +39,11 @@ class LightTracer {
   void lampFlux(const Points& points, const LightSources::LightRay& start, const float at[3],
                 float flux[3]);
   void attenuate(const Points& points, uint32_t path);
-  void connect(const RtsBatch& batch, const uint32_t* hits, uint32_t n);
+  void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
+               uint32_t n);
   void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[],
-                const Boundaries& boundaries);
+                const float* const choices[2], const Boundaries& boundaries);
   void push(const Points& points, uint32_t i, const RayState& state, const float direction[3]);
-  void sampleAt(const RayState& state, uint32_t pair, float out[2]) const;
 
   // State of a path that started at a light without extent. The attenuation is that of the unfolded
   // path, as if mirrors and smooth boundaries had not bent it, up to the first non-specular
@@ -58,7 +58,7 @@ class LightTracer {
 
   const RenderScene& scene_;
   const LightSources& sources_;
-  uint32_t width_, height_, seed_ = 0, first_ = 0, level_ = 0;
+  uint32_t width_, height_, seed_ = 0, level_ = 0;
   // scale_: contribution of one path to the picture. cameraArea_: factor from areas in
   // camera space to areas in render space.
   double scale_ = 0, cameraArea_ = 1;
@@ -70,6 +70,7 @@ class LightTracer {
   RayQueue queue_, next_;
   Rays rays_;
   PathStates states_{};
+  PathSamples samples_{};
 };
 
 } // namespace openrt

@@ -87,12 +87,11 @@ void TileRenderer::allocate(Paths& paths, uint32_t n, bool film) {
 void TileRenderer::wave(uint32_t firstSample, uint32_t samples) {
   ArenaScope scope(arena_);
   const uint32_t n = uint32_t(pixels_.size()) * samples;
-  firstSample_ = firstSample;
-  samples_ = samples;
   Paths paths;
   paths.rays.allocate(arena_, n);
   allocate(paths, n, true);
-  random_ = arena_.takeZero<uint8_t>(padded(n));
+  samples_.allocate(arena_, n);
+  samples_.random = arena_.takeZero<uint8_t>(n);
   makeCameraRays(paths, firstSample);
   for (uint32_t i = 0; i < n; i++) paths.states.set(i, RayState{.path = i});
   level_ = 0;
@@ -177,19 +176,17 @@ void TileRenderer::makeCameraRays(Paths& paths, uint32_t firstSample) {
     local.direction[k] = arena_.takeZero<float>(size);
   }
   uint32_t lane = 0;
-  for (uint32_t pixel : pixels_) {
-    PairSampler sampler(pixel, 0, replicates_.seedOf(firstSample));
-    const float x = float(pixel % width_), y = float(pixel / width_);
-    for (uint32_t sample = firstSample; sample < firstSample + samples; sample++, lane++) {
-      float dx = 0.5f, dy = 0.5f; // middle of the pixel, for `centred`
-      const uint32_t index = replicates_.indexOf(sample);
-      if (index == 0 && sample > firstSample)
-        sampler = PairSampler(pixel, 0, replicates_.seedOf(sample));
-      if (!centred_) sampler(index, dx, dy);
-      xy[0][lane] = x + dx;
-      xy[1][lane] = y + dy;
+  for (uint32_t pixel : pixels_)
+    for (uint32_t sample = firstSample; sample < firstSample + samples; sample++, lane++)
+      samples_.set(lane, pixel, replicates_.seedOf(sample), replicates_.indexOf(sample));
+  float* place[2]; // in the pixel
+  randomNumbersAtStart(samples_, n, arena_).drawPair(0, arena_, place);
+  lane = 0;
+  for (uint32_t pixel : pixels_)
+    for (uint32_t s = 0; s < samples; s++, lane++) {
+      xy[0][lane] = float(pixel % width_) + (centred_ ? 0.5f : place[0][lane]);
+      xy[1][lane] = float(pixel / width_) + (centred_ ? 0.5f : place[1][lane]);
     }
-  }
   for (; lane < size; lane++) {
     xy[0][lane] = xy[0][n - 1];
     xy[1][lane] = xy[1][n - 1];
@@ -449,7 +446,7 @@ void TileRenderer::addToPixels(const Paths& paths, uint32_t firstSample, uint32_
         sums.addColor(radiance, paths.alpha[i]);
       if (required_.error) {
         sums.addTails(radiance);
-        sums.random |= random_[i] != 0;
+        sums.random |= samples_.random[i] != 0;
         // Replicates larger than the leaf are closed where leaves are merged.
         const uint32_t next = firstSample + s + 1;
         if (replicates_.many() && replicates_.indexOf(next) == 0 &&

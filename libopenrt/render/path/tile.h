@@ -13,6 +13,7 @@
 #include "render/film/sums.h"
 #include "render/frame/tiles.h"
 #include "render/path/path_states.h"
+#include "render/path/random_numbers.h"
 #include "render/surface/batch.h"
 #include "render/surface/lobes.h"
 #include "scene/transports.h"
@@ -49,7 +50,6 @@ class TileRenderer {
   bool stopped() const { return stop_->load(std::memory_order_relaxed); }
   bool has(uint32_t channel) const { return scene_.frame.channels & channel; }
   void runTransportShader(Paths& paths);
-  void markRandom(uint32_t path);
 
   void loadRays(Paths& paths, size_t begin, uint32_t n);
   void traceWave(Paths& paths);
@@ -89,29 +89,19 @@ class TileRenderer {
     uint32_t branch;
     MediaStack media;
   };
-  enum class Draw : uint32_t { direction, choice, emitter, place, count };
-  // Returns the sampler's pair of dimensions for a random decision at the current surface of a
-  // path. Pair 0 is the position in the pixel.
-  uint32_t pairOf(uint32_t branch, Draw draw) const {
-    return 1 + uint32_t(Draw::count) * level_ + uint32_t(draw) + branch;
-  }
-  void sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const;
-  // Sampler state for the hits of a batch. draw() returns one point of the unit square per hit.
-  struct Random {
-    uint32_t count, *key, *index, *pair;
-  };
-  Random randomOf(const Paths& paths, const uint32_t* order, uint32_t n);
-  void draw(const Random& random, Draw what, uint32_t pairOffset, float* square[2]);
+  // Returns the sampler's first pair of dimensions at the current surface. Pair 0 is the position
+  // in the pixel.
+  uint32_t firstPair() const { return pairAtLevel(1, level_); }
   // Random decisions at the hits of a batch. Without path tracing every pointer is null.
   struct Sampling {
-    Random random;
+    RandomNumbers random;
     float* choices[2];                         // by hit: to select a sample, for Russian roulette
     const LobeSamples* samples[RTS_MAX_LOBES]; // by lobe; null for specular lobes
     // By lobe and hit: probability that the lobe's sample is followed. spawnRays() writes it, light
     // sampling reads it. Null if the lobe is specular or emitters are not sampled.
     float* selectionProbability[RTS_MAX_LOBES];
   };
-  const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const Random& random);
+  const LobeSamples* sampleLobe(const RtsBatch& batch, uint32_t l, const RandomNumbers& random);
   Sampling sampleLobes(const RtsBatch& batch, const Paths& paths, bool emitters);
   void continueAtOneLobe(const RtsBatch& batch, const Sampling& sampling, Paths& paths);
   void passThroughBoundary(const Points& points, uint32_t i, uint32_t lane,
@@ -161,12 +151,10 @@ class TileRenderer {
   Replicates replicates_;
   uint32_t leaf_ = 0; // first sample of the current leaf
   bool centred_ = false;
-  uint8_t* random_ = nullptr; // by sample of the wave: 1 if its path has taken a random decision
-  // Inside trace(): the sample of the wave that each nested path belongs to; else null.
-  const uint32_t* root_ = nullptr;
+  PathSamples samples_{}; // of the paths in flight; inside trace() those of the nested paths
   uint32_t nesting_ = 0;  // nesting depth of trace()
   RayQueue queue_, next_; // rays of the current wave, and of the next one
-  uint32_t level_ = 0, firstSample_ = 0, samples_ = 0; // of the current wave
+  uint32_t level_ = 0;    // depth of the current wave
 };
 
 } // namespace openrt

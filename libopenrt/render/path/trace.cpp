@@ -52,16 +52,21 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
 } // namespace
 
 void TileRenderer::randomPoints(const RtsBatch& batch, uint32_t pair, float* const square[2]) {
-  for (uint32_t i = 0; i < pointsOf(batch); i++) {
+  ArenaScope scope(arena_);
+  const uint32_t n = pointsOf(batch);
+  auto *key = arena_.take<uint32_t>(n), *index = arena_.take<uint32_t>(n),
+       *pairs = arena_.take<uint32_t>(n);
+  for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order ? batch.order[i] : i;
     const uint32_t path = batch.order ? batch.states->path[lane] : i;
-    const uint32_t place = batch.order ? pairOf(batch.states->branch[lane], Draw::direction) : 0;
-    sampleAt(path, hash(shaderPairs + pair, place), square[0][i], square[1][i]);
-    if (!centred_ || batch.order) markRandom(path);
+    const uint32_t place = batch.order ? firstPair() + batch.states->branch[lane] : 0;
+    key[i] = samples_.key[path];
+    index[i] = samples_.index[path];
+    pairs[i] = hash(shaderPairs + pair, place);
+    if (!centred_ || batch.order) samples_.markRandom(path);
   }
+  samplePairs(n, key, pairs, 0, index, square[0], square[1]);
 }
-
-void TileRenderer::markRandom(uint32_t path) { random_[root_ ? root_[path] : path] = 1; }
 
 // Traces the rays like the camera rays of a small wave, nested in the one that is being shaded.
 void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* const rgba[4]) {
@@ -77,11 +82,16 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   const uint32_t n = paths.rays.count;
   if (n == 0) return;
   allocate(paths, n, false);
-  auto* root = arena_.take<uint32_t>(n);
+  auto* parentPath = arena_.take<uint32_t>(n);
+  PathSamples samples;
+  samples.allocate(arena_, n);
+  samples.random = arena_.takeZero<uint8_t>(n);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t hit = request.hit[to[i]];
     const RayState parent = batch.order ? (*batch.states)[batch.order[hit]] : RayState{.path = hit};
-    root[i] = root_ ? root_[parent.path] : parent.path;
+    parentPath[i] = parent.path;
+    samples.key[i] = samples_.key[parent.path];
+    samples.index[i] = samples_.index[parent.path];
     RayState state{.path = i};
     state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
     state.media = parent.media;
@@ -89,22 +99,23 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
     if (batch.points) state.travelled = batch.points->hits.distance[batch.pointOf(hit)];
     paths.states.set(i, state);
   }
-  const uint32_t* const outerRoot = root_;
+  const PathSamples outerSamples = samples_;
   const uint32_t outerLevel = level_;
   RayQueue outerQueue, outerNext;
   std::swap(outerQueue, queue_);
   std::swap(outerNext, next_);
-  root_ = root;
+  samples_ = samples;
   nesting_++;
   level_ += batch.points ? 1 : 0;
   (batch.points ? counters_.secondary : counters_.camera) += n;
   follow(paths, n);
   nesting_--;
-  root_ = outerRoot;
+  samples_ = outerSamples;
   level_ = outerLevel;
   std::swap(outerQueue, queue_);
   std::swap(outerNext, next_);
   for (uint32_t i = 0; i < n; i++) {
+    if (samples.random[i]) samples_.markRandom(parentPath[i]);
     for (int k = 0; k < 3; k++)
       if (rgba[k]) rgba[k][to[i]] = paths.radiance[k][i];
     if (rgba[3]) rgba[3][to[i]] = paths.alpha[i];

@@ -171,41 +171,15 @@ float TileRenderer::emissionMisWeight(const PathStates& states, uint32_t lane, c
   return std::isfinite(lightPdf) ? pdf / (pdf + lightPdf) : 0.0f;
 }
 
-void TileRenderer::sampleAt(uint32_t path, uint32_t pair, float& u, float& v) const {
-  if (root_) path = root_[path];
-  const uint32_t sample = firstSample_ + path % samples_;
-  PairSampler(pixels_[path / samples_], pair,
-              replicates_.seedOf(sample))(replicates_.indexOf(sample), u, v);
-}
-
-TileRenderer::Random TileRenderer::randomOf(const Paths& paths, const uint32_t* order, uint32_t n) {
-  Random random{n, arena_.take<uint32_t>(n), arena_.take<uint32_t>(n), arena_.take<uint32_t>(n)};
-  for (uint32_t i = 0; i < n; i++) {
-    const uint32_t own = paths.states.path[order[i]];
-    const uint32_t path = root_ ? root_[own] : own, sample = firstSample_ + path % samples_;
-    random.key[i] = hash(pixels_[path / samples_], replicates_.seedOf(sample));
-    random.index[i] = replicates_.indexOf(sample);
-    random.pair[i] = pairOf(paths.states.branch[order[i]], Draw::direction);
-  }
-  return random;
-}
-
-void TileRenderer::draw(const Random& random, Draw what, uint32_t pairOffset, float* square[2]) {
-  for (int k = 0; k < 2; k++) square[k] = arena_.takeZero<float>(padded(random.count));
-  samplePairs(random.count, random.key, random.pair,
-              uint32_t(what) - uint32_t(Draw::direction) + pairOffset, random.index, square[0],
-              square[1]);
-}
-
 // Samples a direction for every hit from a non-specular lobe.
 const LobeSamples* TileRenderer::sampleLobe(const RtsBatch& batch, uint32_t l,
-                                            const Random& random) {
+                                            const RandomNumbers& random) {
   const RtsHits& hits = batch.points->hits;
   auto* samples = new (arena_.take<LobeSamples>(1)) LobeSamples(arena_, hits.count, &batch);
   ArenaScope scope(arena_);
   const uint32_t* all = arena_.takeNumbers(hits.count);
   float* square[2];
-  draw(random, Draw::direction, l ? hash(l, 0x6c6f6265u) : 0, square);
+  random.draw(Decision::direction, arena_, square, pairOfLobe(l));
   samples->sample(batch.lobes[l], hits, hits.count, all, square);
   return samples;
 }
@@ -215,8 +189,8 @@ TileRenderer::Sampling TileRenderer::sampleLobes(const RtsBatch& batch, const Pa
                                                  bool emitters) {
   const uint32_t n = batch.points->hits.count;
   Sampling sampling{};
-  sampling.random = randomOf(paths, batch.order, n);
-  draw(sampling.random, Draw::choice, 0, sampling.choices);
+  sampling.random = randomNumbersAt(samples_, paths.states, batch.order, n, firstPair(), arena_);
+  sampling.random.draw(Decision::choice, arena_, sampling.choices);
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (!nonSpecularFunctions(batch.lobes[l])) continue;
     sampling.samples[l] = sampleLobe(batch, l, sampling.random);
@@ -230,7 +204,7 @@ void TileRenderer::continueAtOneLobe(const RtsBatch& batch, const Sampling& samp
                                      Paths& paths) {
   ArenaScope scope(arena_);
   const uint32_t n = batch.points->hits.count;
-  for (uint32_t i = 0; i < n; i++) markRandom(paths.states.path[batch.order[i]]);
+  for (uint32_t i = 0; i < n; i++) samples_.markRandom(paths.states.path[batch.order[i]]);
   const Continuation from{.points = batch.points,
                           .states = &paths.states,
                           .order = batch.order,
@@ -273,7 +247,7 @@ void TileRenderer::spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& 
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     if (!images && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
     bsdfSamples.add(l, batch.lobes[l], sampling.samples[l]);
-    if (sampling.samples[l]) markRandom(ray.path);
+    if (sampling.samples[l]) samples_.markRandom(ray.path);
   }
   float carried[BsdfSamples::maximum], sum = 0;
   for (uint32_t w = 0; w < bsdfSamples.count; w++) {
@@ -296,7 +270,7 @@ void TileRenderer::spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& 
     float kept = probability;
     if (path && level_ >= rouletteFrom) {
       const float stay = std::min(1.0f, carried[w] / probability);
-      if (stay < 1) markRandom(ray.path);
+      if (stay < 1) samples_.markRandom(ray.path);
       if (survival >= stay) return;
       kept *= stay;
     } else if (!path && carried[w] < scene_.frame.energyCut) {
@@ -323,7 +297,7 @@ void TileRenderer::spawnRays(const RtsBatch& batch, uint32_t i, const Sampling& 
     for (uint32_t w = 0; w < bsdfSamples.count; w++) send(w, 1);
     return;
   }
-  markRandom(ray.path);
+  samples_.markRandom(ray.path);
   const uint32_t chosen = sampleDiscrete(carried, bsdfSamples.count, choice * sum);
   if (carried[chosen] > 0) send(chosen, carried[chosen] / sum);
 }
