@@ -48,7 +48,8 @@ inline uint32_t pairOfLobe(uint32_t lobe) { return lobe ? hash(lobe, 0x6c6f6265u
 // dimensions.
 struct RandomNumbers {
   uint32_t count = 0;
-  const uint32_t *key, *index, *pair; // PathSamples; the pair of Decision::direction
+  // PathSamples; the pair of Decision::direction
+  const uint32_t *key = nullptr, *index = nullptr, *pair = nullptr;
 
   // Draws a point of the unit square for each path. The arrays are padded with zeros.
   void draw(Decision what, Arena& arena, float* square[2], uint32_t offset = 0) const {

@@ -6,8 +6,7 @@
 #include <limits>
 
 #include "render/lights/shadows.h"
-#include "render/path/paths.h"
-#include "render/path/sampler.h"
+#include "render/path/tile.h"
 #include "render/surface/surfaces.h"
 #include "shading/running.h"
 
@@ -77,11 +76,13 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch));
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
-  Paths paths;
-  paths.rays = raysOf(batch, request, to);
-  const uint32_t n = paths.rays.count;
+  Wave wave;
+  wave.rays = raysOf(batch, request, to);
+  const uint32_t n = wave.rays.count;
   if (n == 0) return;
-  allocate(paths, n, false);
+  wave.states.allocate(arena_, n);
+  PixelSamples found;
+  found.allocate(arena_, n);
   auto* parentPath = arena_.take<uint32_t>(n);
   PathSamples samples;
   samples.allocate(arena_, n);
@@ -97,7 +98,7 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
     state.media = parent.media;
     state.flags.setChannel(parent.flags.channel());
     if (batch.points) state.travelled = batch.points->hits.distance[batch.pointOf(hit)];
-    paths.states.set(i, state);
+    wave.states.set(i, state);
   }
   const PathSamples outerSamples = samples_;
   const uint32_t outerLevel = level_;
@@ -108,7 +109,7 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   nesting_++;
   level_ += batch.points ? 1 : 0;
   (batch.points ? counters_.secondary : counters_.camera) += n;
-  follow(paths, n);
+  follow(wave, found);
   nesting_--;
   samples_ = outerSamples;
   level_ = outerLevel;
@@ -117,8 +118,8 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   for (uint32_t i = 0; i < n; i++) {
     if (samples.random[i]) samples_.markRandom(parentPath[i]);
     for (int k = 0; k < 3; k++)
-      if (rgba[k]) rgba[k][to[i]] = paths.radiance[k][i];
-    if (rgba[3]) rgba[3][to[i]] = paths.alpha[i];
+      if (rgba[k]) rgba[k][to[i]] = found.radiance[k][i];
+    if (rgba[3]) rgba[3][to[i]] = found.alpha[i];
   }
 }
 
@@ -164,19 +165,19 @@ void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request,
 }
 
 // Lets a transport shader compute the radiance of the camera rays.
-void TileRenderer::runTransportShader(Paths& paths) {
+void TileRenderer::runTransportShader(const Rays& rays, PixelSamples& found) {
   ArenaScope scope(arena_);
-  const uint32_t n = paths.rays.count;
+  const uint32_t n = rays.count;
   float* rgba[4];
   for (auto& a : rgba) a = arena_.takeZero<float>(padded(n));
   RtsRequest request{};
   request.count = n;
   request.hit = arena_.takeNumbers(n);
   for (int k = 0; k < 3; k++) {
-    request.origin[k] = paths.rays.org[k];
-    request.direction[k] = paths.rays.dir[k];
+    request.origin[k] = rays.org[k];
+    request.direction[k] = rays.dir[k];
   }
-  RtsBatch batch = makeBatch();
+  RtsBatch batch = makeBatch(context_);
   batch.rays = n;
   {
     const RunningShader running(*scene_.transport.shaderClass);
@@ -186,8 +187,8 @@ void TileRenderer::runTransportShader(Paths& paths) {
   sanitizeOutput(*scene_.transport.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
   for (uint32_t i = 0; i < n; i++) {
     for (int k = 0; k < 3; k++)
-      if (std::isfinite(rgba[k][i])) paths.radiance[k][i] = rgba[k][i];
-    if (std::isfinite(rgba[3][i])) paths.alpha[i] = rgba[3][i];
+      if (std::isfinite(rgba[k][i])) found.radiance[k][i] = rgba[k][i];
+    if (std::isfinite(rgba[3][i])) found.alpha[i] = rgba[3][i];
   }
 }
 

@@ -121,8 +121,11 @@ void absorbAt(uint16_t medium, float length, std::span<const RtsMedium> media,
 
 } // namespace
 
-void crossBoundaries(RtsBatch& batch, const PathStates& states, Boundaries& out) {
+Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
+  Boundaries out;
+  if (!shaderClass.medium) return out;
   const RenderScene& scene = *batch.scene;
+  const PathStates& states = *batch.states;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
   const std::span<const RtsMedium> media = scene.shaders->media();
@@ -148,6 +151,7 @@ void crossBoundaries(RtsBatch& batch, const PathStates& states, Boundaries& out)
         batch.lobes[l].parameter[0][i] = out.eta[i][channel ? channel - 1 : 1];
     }
   }
+  return out;
 }
 
 void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& hits,
