@@ -165,10 +165,7 @@ void blockUncertain(const StageContext& context, const Rays& rays, const LightSa
   if (n == 0) return;
   const Rays again = copyRays(rays, lanes, n, arena);
   for (uint32_t i = 0; i < n; i++) again.tfar[i] = lightSamples[lanes[i]].distance * (1 + 0x1p-10f);
-  RayHits found;
-  found.allocate(arena, n);
-  scene.kernel->intersect(again, maskAll, Coherence::incoherent, found);
-  skipCulledBacks(scene, arena, context.counters, again, found);
+  const RayHits found = findNearest(context, again, Coherence::incoherent);
   for (uint32_t i = 0; i < n; i++)
     blocked[lanes[i]] = found.record[i] == noHit ||
                         scene.emitters.shapes()->find(found.record[i], found.primitive[i]) !=

@@ -128,21 +128,18 @@ void TileRenderer::findHit(const RtsBatch& batch, const RtsRequest& request, Rts
   if (request.count == 0) return;
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
-  const Rays rays = raysOf(batch, request, to);
-  RayHits found;
-  found.allocate(arena_, rays.count);
-  counters_.secondary += rays.count;
-  scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
-  skipCulledBacks(scene_, arena_, counters_, rays, found);
-  auto* met = arena_.take<uint32_t>(rays.count);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < rays.count; i++)
-    if (found.record[i] != noHit) met[n++] = i;
+  Wave wave;
+  wave.rays = raysOf(batch, request, to);
+  counters_.secondary += wave.rays.count;
+  wave.hits = findNearest(context_, wave.rays, Coherence::incoherent);
+  splitByHit(arena_, wave);
+  const uint32_t n = uint32_t(wave.met.size());
   if (n == 0) return;
-  const auto* travelled = arena_.takeZero<float>(padded(rays.count));
-  const Points points = makePoints(scene_, rays, found, met, n, travelled, arena_);
+  const auto* travelled = arena_.takeZero<float>(padded(wave.rays.count));
+  const Points points =
+      makePoints(scene_, wave.rays, wave.hits, wave.met.data(), n, travelled, arena_);
   for (uint32_t i = 0; i < n; i++) {
-    const uint32_t r = to[met[i]];
+    const uint32_t r = to[wave.met[i]];
     if (out.distance) out.distance[r] = points.hits.segment[i];
     if (out.name) out.name[r] = scene_.records[points.record[i]].name;
     for (int k = 0; k < 3; k++) {

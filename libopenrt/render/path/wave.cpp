@@ -19,9 +19,7 @@ void loadWave(const RayQueue& queue, size_t begin, uint32_t n, Wave& wave) {
 }
 
 void intersectWave(const StageContext& context, Coherence coherence, Wave& wave) {
-  wave.hits.allocate(context.arena, wave.rays.count);
-  context.scene.kernel->intersect(wave.rays, maskAll, coherence, wave.hits);
-  skipCulledBacks(context.scene, context.arena, context.counters, wave.rays, wave.hits);
+  wave.hits = findNearest(context, wave.rays, coherence);
   absorbAlongRays(context.scene, wave.rays, wave.hits, wave.states);
   splitByHit(context.arena, wave);
 }

@@ -44,6 +44,14 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
   }
 }
 
+RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence) {
+  RayHits hits;
+  hits.allocate(context.arena, rays.count);
+  context.scene.kernel->intersect(rays, maskAll, coherence, hits);
+  skipCulledBacks(context.scene, context.arena, context.counters, rays, hits);
+  return hits;
+}
+
 void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked) {
   if (scene.kernel->cullsBacks())
     scene.kernel->occludedByFronts(rays, maskAll, blocked);
