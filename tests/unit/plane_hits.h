@@ -2,6 +2,7 @@
 // ray core alone. All rays come down at 45 degrees along x.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
