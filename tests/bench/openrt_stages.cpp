@@ -1,4 +1,4 @@
-// openrt_stages.cpp: nanoseconds a hit of the stages of the ray core that compute with vector lanes
+// openrt_stages.cpp: nanoseconds a hit of stages of the ray core that need no scene
 // (docs/architecture.md, "One hit, stage by stage"). Items are hits.
 #include <benchmark/benchmark.h>
 
@@ -8,9 +8,12 @@
 
 #include "render/lights/light_samples.h"
 #include "render/lights/light_tree.h"
-#include "render/path/sampler.h"
+#include "render/path/random_numbers.h"
+#include "render/path/spawn_rays.h"
 #include "render/surface/lambert.h"
 #include "render/surface/point_block.h"
+#include "render/surface/sample_lobes.h"
+#include "unit/plane_hits.h"
 
 using namespace openrt;
 
@@ -161,5 +164,66 @@ void randomNumbers(benchmark::State& state) {
   setItems(state);
 }
 BENCHMARK(randomNumbers)->Name("stage/a pair of random numbers");
+
+// The samples of the paths of `plane`, and the random numbers at its hits.
+struct PlanePaths {
+  test::PlaneHits plane{count};
+  PathSamples samples;
+  Ledger ledger;
+  UnsampledLights unsampled{plane.scene, ledger};
+  RayQueue next;
+
+  PlanePaths() {
+    samples.allocate(plane.arena, count);
+    samples.random = plane.arena.takeZero<uint8_t>(count);
+    for (uint32_t i = 0; i < count; i++) samples.set(i, i / 16, 1, i % 16);
+  }
+  RandomNumbers random() {
+    return randomNumbersAt(samples, plane.states, plane.points.order, count, pairAtLevel(1, 1),
+                           plane.arena);
+  }
+};
+
+void randomNumbersOfHits(benchmark::State& state) {
+  PlanePaths paths;
+  for (auto _ : state) {
+    ArenaScope scope(paths.plane.arena);
+    benchmark::DoNotOptimize(paths.random());
+  }
+  setItems(state);
+}
+BENCHMARK(randomNumbersOfHits)->Name("stage/sequences of the paths of hits");
+
+void lobes(benchmark::State& state) {
+  PlanePaths paths;
+  RtsBatch batch = paths.plane.batch();
+  paths.plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f);
+  const RandomNumbers random = paths.random();
+  for (auto _ : state) {
+    ArenaScope scope(paths.plane.arena);
+    LobeSampling sampling = drawChoices(batch, random);
+    sampleLobes(batch, sampling);
+  }
+  setItems(state);
+}
+BENCHMARK(lobes)->Name("stage/BSDF samples with their random numbers");
+
+// lobes: 1: one Lambert lobe, continued with vector lanes; 2: also a mirror, hit by hit.
+void nextRays(benchmark::State& state) {
+  PlanePaths paths;
+  paths.plane.scene.frame.transport = RT_TRANSPORT_PATH;
+  RtsBatch batch = paths.plane.batch();
+  paths.plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f);
+  if (state.range(0) > 1) paths.plane.add(batch, RTS_LOBE_REFLECTION, 0.25f);
+  LobeSampling sampling = drawChoices(batch, paths.random());
+  sampleLobes(batch, sampling);
+  const CameraPaths at{batch, 1, paths.samples, paths.unsampled, paths.ledger, paths.next};
+  for (auto _ : state) {
+    paths.next.clear();
+    spawnRays(at, sampling, {});
+  }
+  setItems(state);
+}
+BENCHMARK(nextRays)->Name("stage/spawned rays, lobes")->Arg(1)->Arg(2);
 
 } // namespace

@@ -11,10 +11,9 @@
 #include <atomic>
 #include <vector>
 
-#include "render/lights/light_sources.h"
-#include "render/path/path_states.h"
-#include "render/path/sampler.h"
-#include "render/surface/lobes.h"
+#include "render/path/light_departures.h"
+#include "render/path/wave.h"
+#include "render/surface/sample_lobes.h"
 #include "render/surface/surfaces.h"
 
 namespace openrt {
@@ -29,47 +28,30 @@ class LightTracer {
   RayCounters& counters() { return counters_; } // ray counts since the counters were last reset
 
  private:
-  void begin(uint32_t first, uint32_t n);
-  void load();
-  void traceWave(uint32_t n);
-  RtsBatch makeBatch(const Points& points);
-  void transmitRays(const Points& points, const uint32_t* order, const RtsClass& shaderClass);
-  void scatter(const Points& points, const uint32_t* order, const RtsClass& shaderClass);
-  bool applyEmission(const Points& points, uint32_t i, RayState& state);
-  void lampFlux(const Points& points, const LightSources::LightRay& start, const float at[3],
-                float flux[3]);
-  void attenuate(const Points& points, uint32_t path);
-  void connect(const RtsBatch& batch, const uint32_t* hits, uint32_t n);
-  void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSamples* const samples[],
+  void tracePaths(uint32_t first, uint32_t n);
+  void traceWave(Wave& wave);
+  void selectMet(Wave& wave);
+  void transmitRays(const Points& points, const PathStates& states, const RtsClass& shaderClass);
+  void scatter(const Points& points, const PathStates& states, const RtsClass& shaderClass);
+  void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
+               uint32_t n);
+  void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling& sampling,
                 const Boundaries& boundaries);
   void push(const Points& points, uint32_t i, const RayState& state, const float direction[3]);
-  void sampleAt(const RayState& state, uint32_t pair, float out[2]) const;
-
-  // State of a path that started at a light without extent. The attenuation is that of the unfolded
-  // path, as if mirrors and smooth boundaries had not bent it, up to the first non-specular
-  // surface.
-  struct Departure {
-    double pathLength = 0;     // path length from the light to the current hit
-    float flux[3] = {0, 0, 0}; // flux at the first surface; already contained in the throughput
-    float attenuation[3] = {1, 1, 1}; // flux at the current hit divided by `flux`
-    // the attenuation has been applied, or the light does not depend on distance
-    bool attenuationKnown = true;
-  };
 
   const RenderScene& scene_;
-  const LightSources& sources_;
-  uint32_t width_, height_, seed_ = 0, first_ = 0, level_ = 0;
+  uint32_t seed_ = 0;
+  uint32_t level_ = 0; // depth of the current wave
   // scale_: contribution of one path to the picture. cameraArea_: factor from areas in
   // camera space to areas in render space.
   double scale_ = 0, cameraArea_ = 1;
   Arena arena_;
   RayCounters counters_;
-  std::vector<LightSources::LightRay> lightRays_;
-  std::vector<Departure> departures_; // by path index
+  const StageContext context_{scene_, arena_, counters_};
+  LightDepartures departures_;
   std::vector<float> picture_;
-  RayQueue queue_, next_;
-  Rays rays_;
-  PathStates states_{};
+  PathSamples samples_{}; // of the paths in flight
+  RayQueue queue_, next_; // rays of the current wave, and of the next one
 };
 
 } // namespace openrt

@@ -6,8 +6,7 @@
 #include <limits>
 
 #include "render/lights/shadows.h"
-#include "render/path/paths.h"
-#include "render/path/sampler.h"
+#include "render/path/tile.h"
 #include "render/surface/surfaces.h"
 #include "shading/running.h"
 
@@ -52,16 +51,21 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
 } // namespace
 
 void TileRenderer::randomPoints(const RtsBatch& batch, uint32_t pair, float* const square[2]) {
-  for (uint32_t i = 0; i < pointsOf(batch); i++) {
+  ArenaScope scope(arena_);
+  const uint32_t n = pointsOf(batch);
+  auto *key = arena_.take<uint32_t>(n), *index = arena_.take<uint32_t>(n),
+       *pairs = arena_.take<uint32_t>(n);
+  for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order ? batch.order[i] : i;
     const uint32_t path = batch.order ? batch.states->path[lane] : i;
-    const uint32_t place = batch.order ? pairOf(batch.states->branch[lane], Draw::direction) : 0;
-    sampleAt(path, hash(shaderPairs + pair, place), square[0][i], square[1][i]);
-    if (!centred_ || batch.order) markRandom(path);
+    const uint32_t place = batch.order ? firstPair() + batch.states->branch[lane] : 0;
+    key[i] = samples_.key[path];
+    index[i] = samples_.index[path];
+    pairs[i] = hash(shaderPairs + pair, place);
+    if (!centred_ || batch.order) samples_.markRandom(path);
   }
+  samplePairs(n, key, pairs, 0, index, square[0], square[1]);
 }
-
-void TileRenderer::markRandom(uint32_t path) { random_[root_ ? root_[path] : path] = 1; }
 
 // Traces the rays like the camera rays of a small wave, nested in the one that is being shaded.
 void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* const rgba[4]) {
@@ -72,42 +76,50 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   if (!batch.requests) batch.requests = arena_.takeZero<uint32_t>(pointsOf(batch));
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
-  Paths paths;
-  paths.rays = raysOf(batch, request, to);
-  const uint32_t n = paths.rays.count;
+  Wave wave;
+  wave.rays = raysOf(batch, request, to);
+  const uint32_t n = wave.rays.count;
   if (n == 0) return;
-  allocate(paths, n, false);
-  auto* root = arena_.take<uint32_t>(n);
+  wave.states.allocate(arena_, n);
+  PixelSamples found;
+  found.allocate(arena_, n);
+  auto* parentPath = arena_.take<uint32_t>(n);
+  PathSamples samples;
+  samples.allocate(arena_, n);
+  samples.random = arena_.takeZero<uint8_t>(n);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t hit = request.hit[to[i]];
     const RayState parent = batch.order ? (*batch.states)[batch.order[hit]] : RayState{.path = hit};
-    root[i] = root_ ? root_[parent.path] : parent.path;
+    parentPath[i] = parent.path;
+    samples.key[i] = samples_.key[parent.path];
+    samples.index[i] = samples_.index[parent.path];
     RayState state{.path = i};
     state.branch = hash(parent.branch + ++batch.requests[hit], level_ + 1);
     state.media = parent.media;
     state.flags.setChannel(parent.flags.channel());
     if (batch.points) state.travelled = batch.points->hits.distance[batch.pointOf(hit)];
-    paths.states.set(i, state);
+    wave.states.set(i, state);
   }
-  const uint32_t* const outerRoot = root_;
+  const PathSamples outerSamples = samples_;
   const uint32_t outerLevel = level_;
   RayQueue outerQueue, outerNext;
   std::swap(outerQueue, queue_);
   std::swap(outerNext, next_);
-  root_ = root;
+  samples_ = samples;
   nesting_++;
   level_ += batch.points ? 1 : 0;
   (batch.points ? counters_.secondary : counters_.camera) += n;
-  follow(paths, n);
+  follow(wave, found);
   nesting_--;
-  root_ = outerRoot;
+  samples_ = outerSamples;
   level_ = outerLevel;
   std::swap(outerQueue, queue_);
   std::swap(outerNext, next_);
   for (uint32_t i = 0; i < n; i++) {
+    if (samples.random[i]) samples_.markRandom(parentPath[i]);
     for (int k = 0; k < 3; k++)
-      if (rgba[k]) rgba[k][to[i]] = paths.radiance[k][i];
-    if (rgba[3]) rgba[3][to[i]] = paths.alpha[i];
+      if (rgba[k]) rgba[k][to[i]] = found.radiance[k][i];
+    if (rgba[3]) rgba[3][to[i]] = found.alpha[i];
   }
 }
 
@@ -116,21 +128,18 @@ void TileRenderer::findHit(const RtsBatch& batch, const RtsRequest& request, Rts
   if (request.count == 0) return;
   ArenaScope scope(arena_);
   auto* to = arena_.take<uint32_t>(request.count);
-  const Rays rays = raysOf(batch, request, to);
-  RayHits found;
-  found.allocate(arena_, rays.count);
-  counters_.secondary += rays.count;
-  scene_.kernel->intersect(rays, maskAll, Coherence::incoherent, found);
-  skipCulledBacks(scene_, arena_, counters_, rays, found);
-  auto* met = arena_.take<uint32_t>(rays.count);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < rays.count; i++)
-    if (found.record[i] != noHit) met[n++] = i;
+  Wave wave;
+  wave.rays = raysOf(batch, request, to);
+  counters_.secondary += wave.rays.count;
+  wave.hits = findNearest(context_, wave.rays, Coherence::incoherent);
+  splitByHit(arena_, wave);
+  const uint32_t n = uint32_t(wave.met.size());
   if (n == 0) return;
-  const auto* travelled = arena_.takeZero<float>(padded(rays.count));
-  const Points points = makePoints(scene_, rays, found, met, n, travelled, arena_);
+  const auto* travelled = arena_.takeZero<float>(padded(wave.rays.count));
+  const Points points =
+      makePoints(scene_, wave.rays, wave.hits, wave.met.data(), n, travelled, arena_);
   for (uint32_t i = 0; i < n; i++) {
-    const uint32_t r = to[met[i]];
+    const uint32_t r = to[wave.met[i]];
     if (out.distance) out.distance[r] = points.hits.segment[i];
     if (out.name) out.name[r] = scene_.records[points.record[i]].name;
     for (int k = 0; k < 3; k++) {
@@ -153,19 +162,19 @@ void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request,
 }
 
 // Lets a transport shader compute the radiance of the camera rays.
-void TileRenderer::runTransportShader(Paths& paths) {
+void TileRenderer::runTransportShader(const Rays& rays, PixelSamples& found) {
   ArenaScope scope(arena_);
-  const uint32_t n = paths.rays.count;
+  const uint32_t n = rays.count;
   float* rgba[4];
   for (auto& a : rgba) a = arena_.takeZero<float>(padded(n));
   RtsRequest request{};
   request.count = n;
   request.hit = arena_.takeNumbers(n);
   for (int k = 0; k < 3; k++) {
-    request.origin[k] = paths.rays.org[k];
-    request.direction[k] = paths.rays.dir[k];
+    request.origin[k] = rays.org[k];
+    request.direction[k] = rays.dir[k];
   }
-  RtsBatch batch = makeBatch();
+  RtsBatch batch = makeBatch(context_);
   batch.rays = n;
   {
     const RunningShader running(*scene_.transport.shaderClass);
@@ -175,8 +184,8 @@ void TileRenderer::runTransportShader(Paths& paths) {
   sanitizeOutput(*scene_.transport.shaderClass, batch, n, {rgba[0], rgba[1], rgba[2], rgba[3]});
   for (uint32_t i = 0; i < n; i++) {
     for (int k = 0; k < 3; k++)
-      if (std::isfinite(rgba[k][i])) paths.radiance[k][i] = rgba[k][i];
-    if (std::isfinite(rgba[3][i])) paths.alpha[i] = rgba[3][i];
+      if (std::isfinite(rgba[k][i])) found.radiance[k][i] = rgba[k][i];
+    if (std::isfinite(rgba[3][i])) found.alpha[i] = rgba[3][i];
   }
 }
 

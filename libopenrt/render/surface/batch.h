@@ -15,6 +15,14 @@ struct RayCounters {
   ShaderFaults faults;
 };
 
+// What the stages of one render thread share.
+struct StageContext {
+  const RenderScene& scene;
+  Arena& arena;
+  RayCounters& counters;
+  TileRenderer* tracer = nullptr; // as in RtsBatch
+};
+
 } // namespace openrt
 
 struct RtsBatch {
@@ -57,3 +65,31 @@ struct RtsBatch {
   // Returns the number of lanes that the host functions write where the batch has no hits.
   uint32_t lanesWithoutHits() const { return rays ? rays : lanes; }
 };
+
+namespace openrt {
+
+// Returns a batch without hits.
+inline RtsBatch makeBatch(const StageContext& context) {
+  RtsBatch batch;
+  batch.scene = &context.scene;
+  batch.arena = &context.arena;
+  batch.counters = &context.counters;
+  batch.tracer = context.tracer;
+  return batch;
+}
+
+// Returns a batch of hits of the rays that have the given states.
+inline RtsBatch makeBatch(const StageContext& context, const Points& points,
+                          const PathStates& states) {
+  RtsBatch batch = makeBatch(context);
+  batch.points = &points;
+  batch.states = &states;
+  batch.order = points.order;
+  return batch;
+}
+
+inline StageContext contextOf(const RtsBatch& batch) {
+  return {*batch.scene, *batch.arena, *batch.counters, batch.tracer};
+}
+
+} // namespace openrt

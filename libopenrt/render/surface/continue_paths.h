@@ -1,6 +1,6 @@
 // continue_paths.h: continues many paths at once, with vector lanes, where a surface has one
-// non-specular lobe and is no boundary of a medium. TileRenderer::spawnRays() does the same for one
-// hit of any surface. [render]
+// non-specular lobe and is no boundary of a medium. spawnRays() (render/path/spawn_rays.h) calls
+// it, and does the same hit by hit at other surfaces. [render]
 #pragma once
 
 #include "render/path/path_states.h"

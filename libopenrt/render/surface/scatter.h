@@ -5,14 +5,9 @@
 #include <cmath>
 
 #include "render/frame.h"
+#include "render/vectors.h"
 
 namespace openrt {
-
-inline float dot3(const float a[3], const float b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-inline float largest(const float v[3]) { return std::max({v[0], v[1], v[2]}); }
 
 // Reflects a direction that points towards the surface, at a normal.
 inline void reflectAt(const float d[3], const float n[3], float out[3]) {

@@ -44,6 +44,14 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
   }
 }
 
+RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence) {
+  RayHits hits;
+  hits.allocate(context.arena, rays.count);
+  context.scene.kernel->intersect(rays, maskAll, coherence, hits);
+  skipCulledBacks(context.scene, context.arena, context.counters, rays, hits);
+  return hits;
+}
+
 void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked) {
   if (scene.kernel->cullsBacks())
     scene.kernel->occludedByFronts(rays, maskAll, blocked);
@@ -121,8 +129,11 @@ void absorbAt(uint16_t medium, float length, std::span<const RtsMedium> media,
 
 } // namespace
 
-void crossBoundaries(RtsBatch& batch, const PathStates& states, Boundaries& out) {
+Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
+  Boundaries out;
+  if (!shaderClass.medium) return out;
   const RenderScene& scene = *batch.scene;
+  const PathStates& states = *batch.states;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
   const std::span<const RtsMedium> media = scene.shaders->media();
@@ -148,6 +159,7 @@ void crossBoundaries(RtsBatch& batch, const PathStates& states, Boundaries& out)
         batch.lobes[l].parameter[0][i] = out.eta[i][channel ? channel - 1 : 1];
     }
   }
+  return out;
 }
 
 void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& hits,

@@ -4,6 +4,7 @@
 
 #include "render/surface/batch.h"
 #include "render/surface/media.h"
+#include "render/vectors.h"
 
 namespace openrt {
 
@@ -15,18 +16,32 @@ Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& are
 // each other.
 void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
                      const Rays& rays, RayHits& hits);
+// Finds the nearest hit of each ray, as if culled back faces did not exist. The hits lie in the
+// arena.
+RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence);
 // Sets blocked[i] to 1 if anything but a culled back face lies within the interval of ray i, else
 // to 0. Transparent surfaces, lines and points block as well.
 void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked);
 
-// Boundaries of media at the hits of a batch.
+// Boundaries of media at the hits of a batch, by hit. Null: there are none.
 struct Boundaries {
-  Crossing* crossing; // indexed by hit
-  float (*eta)[3];    // relative index of refraction by colour: ray's side over far side
+  Crossing* crossing = nullptr;
+  float (*eta)[3] = nullptr; // relative index of refraction by colour: ray's side over far side
+
+  // Returns false where a boundary has no effect on light, because another medium wins there.
+  bool visibleAt(uint32_t i) const { return !crossing || crossing[i].visible; }
+  const float* etaAt(uint32_t i) const { return eta ? eta[i] : nullptr; }
 };
-// Computes the media on both sides of each hit. Called for a batch whose class has a medium, after
-// its `surface`. Sets all weights to 0 at boundaries inside a medium of higher priority.
-void crossBoundaries(RtsBatch& batch, const PathStates& states, Boundaries& out);
+// Computes the media on both sides of each hit if the class has a medium. Called after its
+// `surface`. Sets all weights to 0 at boundaries inside a medium of higher priority.
+Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass);
+
+// Returns the media on the side of hit i that a direction leads to. media: on the ray's side.
+inline const MediaStack& mediaTowards(const Points& points, uint32_t i, const float direction[3],
+                                      const Boundaries& boundaries, const MediaStack& media) {
+  const bool behind = dot3(vectorAt(points.hits.geometric, i), direction) < 0;
+  return behind && boundaries.crossing ? boundaries.crossing[i].behind : media;
+}
 
 // Attenuates the rays' throughput by the absorption of the media between origin and hit.
 void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& hits,

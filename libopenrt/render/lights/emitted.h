@@ -1,0 +1,39 @@
+// emitted.h: light of emitters and of the sky at non-specular surfaces: one light sample and one
+// shadow ray per hit, combined with BSDF sampling by MIS. [render]
+#pragma once
+
+#include "render/lights/emitters.h"
+#include "render/lights/unsampled_lights.h"
+#include "render/surface/sample_lobes.h"
+#include "render/surface/surfaces.h"
+
+namespace openrt {
+
+// Returns the reference point for light sampling at a hit. twoSided: emitters behind the surface
+// count as well.
+LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool twoSided);
+
+// Multiplies the emission of the hits by the MIS weight of BSDF sampling; light sampling or light
+// tracing contributes the rest. Emission behind an invisible boundary becomes 0.
+void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, UnsampledLights& unsampled,
+                    float* const emission[3]);
+
+// Light samples at the hits of a batch, one for each hit at most.
+struct LightSamples {
+  Rays rays;           // the shadow rays; count: number of samples
+  LightSample* sample; // by ray
+  uint32_t* hit;       // by ray: index of the hit in the batch
+  float* response[3];  // by ray: BSDF times MIS weight over pdf
+};
+// Samples an emitter for each hit with a non-specular lobe.
+LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampling);
+// Computes the BSDF response of the hits to their light samples, with the MIS weight of light
+// sampling (balance heuristic). Removes the samples with response 0.
+void weightLightSamples(const RtsBatch& batch, const LobeSampling& sampling, LightSamples& samples);
+
+// Adds to `radiance` the light of one light sample at each hit: chooses the samples, weights them,
+// traces the shadow rays and evaluates the emission.
+void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
+                    const Boundaries& boundaries, float* const radiance[3]);
+
+} // namespace openrt

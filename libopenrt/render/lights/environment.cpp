@@ -1,0 +1,92 @@
+#include "render/lights/environment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/vectors.h"
+#include "shading/running.h"
+
+namespace openrt {
+
+SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const uint32_t* lanes,
+                         uint32_t n) {
+  const uint32_t size = padded(n);
+  SkyAlongRays sky;
+  for (auto& a : sky.direction) a = context.arena.take<float>(size);
+  for (auto& a : sky.rgba) a = context.arena.takeZero<float>(size);
+  const RoleSlot& environment = context.scene.environment;
+  for (uint32_t i = 0; i < size; i++) {
+    const Vector3 direction =
+        mapDirection(environment.toLocal, vectorAt(rays.dir, lanes[std::min(i, n - 1)]));
+    for (int k = 0; k < 3; k++) sky.direction[k][i] = direction[k];
+  }
+  const ShaderSlot& shader = environment.shader;
+  RtsBatch batch = makeBatch(context);
+  batch.lanes = n;
+  {
+    const RunningShader running(*shader.shaderClass);
+    shader.shaderClass->miss(&context.scene.host, &batch, shader.params, n, sky.direction,
+                             sky.rgba);
+  }
+  sanitizeOutput(*shader.shaderClass, batch, n,
+                 {sky.rgba[0], sky.rgba[1], sky.rgba[2], sky.rgba[3]});
+  return sky;
+}
+
+void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLights& unsampled,
+                    PixelSamples& found) {
+  const Emitters& emitters = context.scene.emitters;
+  const RtsClass* shaderClass = context.scene.environment.shader.shaderClass;
+  const uint32_t n = uint32_t(wave.missed.size());
+  if (n == 0 || !shaderClass || !shaderClass->miss) return;
+  ArenaScope scope(context.arena);
+  const SkyAlongRays sky = evaluateSky(context, wave.rays, wave.missed.data(), n);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t lane = wave.missed[i], path = wave.states.path[lane];
+    const float pdf = wave.states.pdf[lane];
+    const PathFlags flags = wave.states.flagsOf(lane);
+    float weight = 0, misWeight = 1;
+    // Light sampling of the sky could also have chosen this direction, so BSDF sampling has this
+    // MIS weight.
+    if (pdf > 0 && emitters.any())
+      misWeight =
+          pdf / (pdf + emitters.skyPdf(wave.states.previousOf(lane), vectorAt(sky.direction, i)));
+    unsampled.meet(flags, vectorAt(sky.rgba, i));
+    for (int k = 0; k < 3; k++) {
+      const float throughput = wave.states.throughput[k][lane], radiance = sky.rgba[k][i];
+      if (std::isfinite(radiance)) found.radiance[k][path] += throughput * misWeight * radiance;
+      weight += throughput;
+    }
+    if (!flags.deflected()) found.alpha[path] += weight / 3 * sky.rgba[3][i];
+  }
+}
+
+Fog fogAt(const StageContext& context, const Points& points, const PathStates& states) {
+  const RoleSlot& environment = context.scene.environment;
+  const ShaderSlot& shader = environment.shader;
+  Fog fog;
+  if (!shader.shaderClass || !shader.shaderClass->attenuate) return fog;
+  const RtsHits& h = points.hits;
+  const uint32_t n = h.count, size = padded(n);
+  float* fromEye[3];
+  for (auto& a : fromEye) a = context.arena.take<float>(size);
+  for (uint32_t i = 0; i < size; i++) {
+    const bool deflected = states.flagsOf(points.order[std::min(i, n - 1)]).deflected();
+    float toHit[3];
+    for (int k = 0; k < 3; k++)
+      toHit[k] =
+          deflected ? h.direction[k][i] * h.distance[i] : h.position[k][i] - context.scene.eye[k];
+    const Vector3 local = mapVector(environment.toLocal, toHit);
+    for (int k = 0; k < 3; k++) fromEye[k][i] = local[k];
+  }
+  for (auto& a : fog.airlight) a = context.arena.takeZero<float>(size);
+  fog.transmittance = context.arena.takeZero<float>(size);
+  RtsBatch batch = makeBatch(context);
+  batch.lanes = n;
+  const RunningShader running(*shader.shaderClass);
+  shader.shaderClass->attenuate(&context.scene.host, &batch, shader.params, n, fromEye,
+                                fog.airlight, fog.transmittance);
+  return fog;
+}
+
+} // namespace openrt

@@ -1,0 +1,37 @@
+// environment.h: the environment: the radiance of the sky along rays, and the fog between the eye
+// and hits. [render]
+#pragma once
+
+#include "render/lights/unsampled_lights.h"
+#include "render/path/pixel_samples.h"
+#include "render/path/wave.h"
+
+namespace openrt {
+
+// The sky along rays. Arrays are padded and lie in the arena.
+struct SkyAlongRays {
+  float *direction[3], *rgba[4]; // direction: unit, in the environment's local space
+};
+// Evaluates the environment's shader in the directions of n rays.
+SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const uint32_t* lanes,
+                         uint32_t n);
+
+// Adds the sky that the missed rays of a wave see, with the MIS weight of BSDF sampling.
+void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLights& unsampled,
+                    PixelSamples& found);
+
+struct Fog {                                         // by hit
+  float *airlight[3] = {}, *transmittance = nullptr; // null: there is no fog
+
+  // Returns one colour of the light of hit i that arrives through the fog. seen: share that the
+  // surface shows of what lies beyond it. That part already has the airlight of the whole path.
+  float attenuate(uint32_t i, int colour, float light, float seen) const {
+    if (!transmittance) return light;
+    return transmittance[i] * light + (1 - transmittance[i]) * airlight[colour][i] * (1 - seen);
+  }
+};
+// Evaluates the fog at hits. On mirrored and refracted paths the fog has the whole path length, in
+// the direction of the current ray.
+Fog fogAt(const StageContext& context, const Points& points, const PathStates& states);
+
+} // namespace openrt

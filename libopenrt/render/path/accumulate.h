@@ -1,0 +1,21 @@
+// accumulate.h: the last stage at a hit: adds radiance and alpha to the samples, behind the fog,
+// and records first surfaces. [render]
+#pragma once
+
+#include "render/lights/environment.h"
+#include "render/path/pixel_samples.h"
+#include "render/path/spawn_rays.h"
+
+namespace openrt {
+
+// Adds what `shade` has returned for the hits of the paths, and spawns rays through transparent
+// surfaces.
+void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& fog,
+                PixelSamples& found);
+
+// Adds the light of surfaces that are described by lobes. surface: its emission is all light that
+// the hits send back.
+void addSurface(const RtsBatch& batch, const RtsSurface& surface, const Boundaries& boundaries,
+                const Fog& fog, PixelSamples& found);
+
+} // namespace openrt

@@ -1,0 +1,104 @@
+#include "render/path/camera_connections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/lights/shadows.h"
+#include "render/surface/adjoint.h"
+#include "render/surface/lobes.h"
+#include "shading/running.h"
+
+namespace openrt {
+
+CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, uint32_t n,
+                                  const float* const lens[2]) {
+  const RenderScene& scene = *batch.scene;
+  const RoleSlot& camera = scene.camera;
+  Arena& arena = *batch.arena;
+  const uint32_t size = padded(n);
+  CameraConnections to{.count = n, .hit = hit};
+  float *local[3], *square[2];
+  RtsProjection seen{};
+  for (int k = 0; k < 3; k++) {
+    local[k] = arena.take<float>(size);
+    to.direction[k] = arena.take<float>(size);
+    seen.toEye[k] = arena.takeZero<float>(size);
+  }
+  for (int k = 0; k < 2; k++) {
+    square[k] = arena.take<float>(size);
+    seen.xy[k] = to.xy[k] = arena.takeZero<float>(size);
+  }
+  seen.weight = to.weight = arena.takeZero<float>(size);
+  to.distance = arena.take<float>(size);
+  for (uint32_t i = 0; i < size; i++) {
+    const uint32_t h = hit[std::min(i, n - 1)];
+    const Vector3 place = mapPoint(camera.toLocal, vectorAt(batch.points->hits.position, h));
+    for (int k = 0; k < 3; k++) local[k][i] = place[k];
+    for (int k = 0; k < 2; k++) square[k][i] = lens[k][h];
+  }
+  const float extent[2] = {float(scene.frame.width), float(scene.frame.height)};
+  RtsBatch places = batch;
+  places.points = nullptr; // the camera gets n places, not the hits
+  places.lanes = n;
+  {
+    const RtsClass& shaderClass = *camera.shader.shaderClass;
+    const RunningShader running(shaderClass);
+    shaderClass.project(&scene.host, &places, camera.shader.params, n, local, square, extent,
+                        &seen);
+  }
+  to.parallel = seen.parallel;
+  for (uint32_t i = 0; i < n; i++) {
+    const Vector3 toEye = mapVector(camera.fromLocal, vectorAt(seen.toEye, i));
+    to.distance[i] = std::sqrt(dot3(toEye, toEye));
+    for (int k = 0; k < 3; k++) to.direction[k][i] = toEye[k] / to.distance[i];
+  }
+  return to;
+}
+
+// Rough boundaries scale radiance by eta squared. Flux is not scaled, because the camera is outside
+// of all media.
+void scatterToCamera(const RtsBatch& batch, const CameraConnections& to,
+                     float* const scattered[3]) {
+  const RtsHits& hits = batch.points->hits;
+  for (int k = 0; k < 3; k++) std::fill_n(scattered[k], to.count, 0.0f);
+  LobeValues lobeValues(*batch.arena, to.count, &batch);
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    const RtsLobe& lobe = batch.lobes[l];
+    if (!nonSpecularFunctions(lobe)) continue;
+    lobeValues.evaluate(lobe, hits, to.count, to.hit, to.direction);
+    for (uint32_t i = 0; i < to.count; i++) {
+      const uint32_t h = to.hit[i];
+      const Vector3 out = vectorAt(to.direction, i);
+      const bool front = dot3(vectorAt(hits.geometric, h), out) > 0;
+      float w[3];
+      if (!weightAt(lobe, h, w) || (!nonSpecularFunctions(lobe)->transmits && !front)) continue;
+      const float factor = adjointCorrection(lobe, hits, h, out) * to.weight[i];
+      for (int k = 0; k < 3; k++) scattered[k][i] += w[k] * lobeValues.value[k][i] * factor;
+    }
+  }
+}
+
+void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* const colour[3]) {
+  ShadowRays rays;
+  rays.rays.allocate(*batch.arena, to.count);
+  rays.lane = batch.arena->take<uint32_t>(to.count);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < to.count; i++) {
+    if (!(to.weight[i] > 0) || !(colour[0][i] > 0 || colour[1][i] > 0 || colour[2][i] > 0))
+      continue;
+    float origin[3];
+    liftPoint(*batch.points, to.hit[i], vectorAt(to.direction, i), origin);
+    for (int k = 0; k < 3; k++) {
+      rays.rays.org[k][n] = origin[k];
+      rays.rays.dir[k][n] = to.direction[k][i];
+    }
+    rays.rays.tnear[n] = 0;
+    rays.rays.tfar[n] = to.parallel ? std::numeric_limits<float>::infinity() : to.distance[i];
+    rays.lane[n++] = i;
+  }
+  rays.rays.count = n;
+  traceTransmittance(batch, rays, colour);
+}
+
+} // namespace openrt

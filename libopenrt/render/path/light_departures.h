@@ -1,0 +1,58 @@
+// light_departures.h: where light paths start, and the flux that they have carried away from there.
+// [render]
+#pragma once
+
+#include <vector>
+
+#include "render/lights/light_sources.h"
+#include "render/path/random_numbers.h"
+#include "render/surface/batch.h"
+
+namespace openrt {
+
+// The pairs of dimensions of the sampler for the start of a light path. The pairs of the surfaces
+// follow.
+enum class LightPair : uint32_t { source, place, direction, count };
+
+// The light sources of the light paths of a wave, by path.
+class LightDepartures {
+ public:
+  LightDepartures(const StageContext& context, const LightSources& sources)
+      : context_(context), sources_(sources) {}
+  // Samples the first rays of n paths and queues those that carry flux.
+  void start(const PathSamples& samples, uint32_t n, RayQueue& queue);
+  // Adds the length of the ray that has reached the next surface.
+  void travel(uint32_t path, float length) { departures_[path].pathLength += double(length); }
+  // Multiplies the throughput by the emitted flux when a path has reached its first surface, hit i.
+  // Returns whether any throughput is left.
+  bool applyEmission(const Points& points, uint32_t i, RayState& state);
+  // Computes the attenuation at the current, non-specular surface of a path, if it is not known
+  // yet: evaluates the light at the end of the unfolded path, in the direction in which the path
+  // has left it. A light with inverse-square falloff has the same flux everywhere; a difference
+  // below 1e-3 is then taken as rounding.
+  void updateAttenuation(uint32_t path);
+  // Returns the flux at the current surface over that in the throughput, by colour.
+  const float* attenuation(uint32_t path) const { return departures_[path].attenuation; }
+  // Multiplies the throughput by the attenuation of a path that is scattered.
+  void applyAttenuation(RayState& state);
+
+ private:
+  // State of a path that started at a light without extent. The attenuation is that of the unfolded
+  // path, as if mirrors and smooth boundaries had not bent it, up to the first non-specular
+  // surface.
+  struct Departure {
+    double pathLength = 0;     // path length from the light to the current hit
+    float flux[3] = {0, 0, 0}; // flux at the first surface; already contained in the throughput
+    float attenuation[3] = {1, 1, 1}; // flux at the current hit divided by `flux`
+    // the attenuation has been applied, or the light does not depend on distance
+    bool attenuationKnown = true;
+  };
+  void lampFlux(const LightSources::LightRay& start, const float at[3], float flux[3]);
+
+  const StageContext context_;
+  const LightSources& sources_;
+  std::vector<LightSources::LightRay> rays_;
+  std::vector<Departure> departures_;
+};
+
+} // namespace openrt

@@ -1,0 +1,46 @@
+#include "render/path/pixel_samples.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace openrt {
+
+void PixelSamples::allocate(Arena& arena, uint32_t n) {
+  const uint32_t size = padded(n);
+  for (auto& colour : radiance) colour = arena.takeZero<float>(size);
+  alpha = arena.takeZero<float>(size);
+  first = arena.takeZero<uint8_t>(size);
+}
+
+void PixelSamples::allocateFirst(Arena& arena, uint32_t n, uint32_t channels) {
+  const uint32_t size = padded(n);
+  const auto optional = [&](uint32_t channel) {
+    return channels & channel ? arena.takeZero<float>(size) : nullptr;
+  };
+  for (int k = 0; k < 3; k++) {
+    normal[k] = optional(RT_NORMAL);
+    albedo[k] = optional(RT_ALBEDO);
+    position[k] = optional(RT_POSITION);
+  }
+  depth = optional(RT_DEPTH);
+  if (depth) std::fill_n(depth, size, std::numeric_limits<float>::infinity());
+  name = arena.takeZero<uint32_t>(size);
+  std::fill_n(first, size, uint8_t(1));
+}
+
+void PixelSamples::storeFirst(const RenderScene& scene, const Points& points, uint32_t i,
+                              uint32_t path, float* const albedoOfHits[3]) {
+  const RtsHits& h = points.hits;
+  first[path] = 0;
+  name[path] = scene.records[points.record[i]].name;
+  float along = 0;
+  for (int k = 0; k < 3; k++) {
+    along += (h.position[k][i] - scene.eye[k]) * scene.viewAxis[k];
+    if (normal[k]) normal[k][path] = h.normal[k][i];
+    if (albedo[k]) albedo[k][path] = albedoOfHits[k][i];
+    if (position[k]) position[k][path] = float(h.position[k][i] + scene.origin[k]);
+  }
+  if (depth) depth[path] = along;
+}
+
+} // namespace openrt

@@ -1,0 +1,27 @@
+// pixel_samples.h: what the paths of a wave have found so far. Each path is a sample of a pixel.
+// [render]
+#pragma once
+
+#include <cstdint>
+
+#include "render/surface/points.h"
+
+namespace openrt {
+
+struct PixelSamples { // all arrays are indexed by path
+  float *radiance[3], *alpha;
+  uint8_t* first; // 1 until the first surface of the path has been shaded
+  // The first surface; null if the frame does not have the channel.
+  float *normal[3] = {}, *albedo[3] = {}, *position[3] = {}, *depth = nullptr;
+  uint32_t* name = nullptr;
+
+  // Allocates radiance and alpha, 0, of n paths. The first surfaces are not recorded.
+  void allocate(Arena& arena, uint32_t n);
+  // Allocates the arrays for the first surfaces. channels: RT_NORMAL and others.
+  void allocateFirst(Arena& arena, uint32_t n, uint32_t channels);
+  // Records hit i as the first surface of a path.
+  void storeFirst(const RenderScene& scene, const Points& points, uint32_t i, uint32_t path,
+                  float* const albedoOfHits[3]);
+};
+
+} // namespace openrt

@@ -1,0 +1,36 @@
+// spawn_rays.h: the stage that continues camera paths: selects BSDF samples, applies Russian
+// roulette and queues the next rays. [render]
+#pragma once
+
+#include "render/lights/unsampled_lights.h"
+#include "render/path/random_numbers.h"
+#include "render/surface/sample_lobes.h"
+#include "render/surface/surfaces.h"
+
+namespace openrt {
+
+// The camera paths at the hits of a batch.
+struct CameraPaths {
+  const RtsBatch& batch; // its points, path states and lobes
+  uint32_t level;        // number of surfaces that the paths have hit before
+  const PathSamples& samples;
+  UnsampledLights& unsampled;
+  Ledger& ledger;
+  RayQueue& next; // gets the spawned rays
+};
+
+// Spawns the rays of all hits. Transports:
+// * Direct: follows only straight transmission.
+// * Whitted: follows every specular reflection and refraction deterministically until a branch
+//   carries less than the frame's energy cut.
+// * Path: also follows the directions sampled from non-specular lobes. Once a path has split, one
+//   sample is selected with a probability proportional to what it carries. From the fourth surface
+//   on Russian roulette terminates paths.
+void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
+               const Boundaries& boundaries);
+
+// Spawns a ray that goes straight on from hit i, with its throughput multiplied by `weight`.
+void spawnStraightRay(const CameraPaths& paths, uint32_t i, const float weight[3],
+                      const MediaStack& media);
+
+} // namespace openrt

@@ -1,0 +1,44 @@
+#include "render/path/wave.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "render/surface/surfaces.h"
+
+namespace openrt {
+
+void loadWave(const RayQueue& queue, size_t begin, uint32_t n, Wave& wave) {
+  wave.rays.count = n;
+  for (int k = 0; k < 3; k++) {
+    wave.rays.org[k] = queue.origin()[k] + begin;
+    wave.rays.dir[k] = queue.direction()[k] + begin;
+  }
+  std::fill_n(wave.rays.tnear, n, 0.0f);
+  std::fill_n(wave.rays.tfar, n, std::numeric_limits<float>::infinity());
+  wave.states = queue.statesFrom(begin);
+}
+
+void intersectWave(const StageContext& context, Coherence coherence, Wave& wave) {
+  wave.hits = findNearest(context, wave.rays, coherence);
+  absorbAlongRays(context.scene, wave.rays, wave.hits, wave.states);
+  splitByHit(context.arena, wave);
+}
+
+void splitByHit(Arena& arena, Wave& wave) {
+  const uint32_t n = wave.rays.count;
+  auto *missed = arena.take<uint32_t>(n), *met = arena.take<uint32_t>(n);
+  uint32_t misses = 0, hits = 0;
+  for (uint32_t i = 0; i < n; i++)
+    (wave.hits.record[i] == noHit ? missed[misses++] : met[hits++]) = i;
+  wave.missed = {missed, misses};
+  wave.met = {met, hits};
+}
+
+void queueRay(const Points& points, uint32_t i, const float direction[3], const RayState& state,
+              RayQueue& queue) {
+  float origin[3];
+  liftPoint(points, i, direction, origin);
+  queue.push(origin, direction, state);
+}
+
+} // namespace openrt

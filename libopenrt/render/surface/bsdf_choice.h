@@ -1,0 +1,34 @@
+// bsdf_choice.h: the choice of one of the BSDF samples of a hit, and Russian roulette. [render]
+#pragma once
+
+#include <algorithm>
+
+#include "render/surface/bsdf_samples.h"
+#include "render/vectors.h"
+
+namespace openrt {
+
+// The throughput that each BSDF sample of a hit is expected to carry. One of them is selected with
+// a probability proportional to it.
+struct BsdfChoice {
+  float carried[BsdfSamples::maximum], sum = 0;
+  uint32_t count;
+
+  // throughput: of the path up to the hit; 1 1 1 if it is not known yet.
+  BsdfChoice(const BsdfSamples& samples, const float throughput[3]) : count(samples.count) {
+    for (uint32_t w = 0; w < count; w++) {
+      const float* expected = samples.list[w].expectedWeight;
+      const float left[3] = {expected[0] * throughput[0], expected[1] * throughput[1],
+                             expected[2] * throughput[2]};
+      sum += carried[w] = largest(left);
+    }
+  }
+  // Returns the sample that a random number in [0, 1) selects.
+  uint32_t select(float u) const { return sampleDiscrete(carried, count, u * sum); }
+  float probability(uint32_t sample) const { return carried[sample] / sum; }
+};
+
+// Returns the probability with which a path that carries this throughput survives Russian roulette.
+inline float survivalProbability(float carried) { return std::min(1.0f, carried); }
+
+} // namespace openrt

@@ -1,0 +1,32 @@
+#include "render/surface/sample_lobes.h"
+
+namespace openrt {
+
+LobeSampling drawChoices(const RtsBatch& batch, const RandomNumbers& random) {
+  LobeSampling sampling{.random = random};
+  random.draw(Decision::choice, *batch.arena, sampling.choices);
+  return sampling;
+}
+
+void sampleLobes(const RtsBatch& batch, LobeSampling& sampling) {
+  Arena& arena = *batch.arena;
+  const RtsHits& hits = batch.points->hits;
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    if (!nonSpecularFunctions(batch.lobes[l])) continue;
+    auto* samples = new (arena.take<LobeSamples>(1)) LobeSamples(arena, hits.count, &batch);
+    sampling.samples[l] = samples;
+    ArenaScope scope(arena);
+    float* square[2];
+    sampling.random.draw(Decision::direction, arena, square, pairOfLobe(l));
+    samples->sample(batch.lobes[l], hits, hits.count, arena.takeNumbers(hits.count), square);
+  }
+}
+
+void allocateSelection(const RtsBatch& batch, LobeSampling& sampling) {
+  for (uint32_t l = 0; l < batch.lobeCount; l++)
+    if (sampling.samples[l])
+      sampling.selectionProbability[l] =
+          batch.arena->takeZero<float>(padded(batch.points->hits.count));
+}
+
+} // namespace openrt
