@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "render/surface/batch.h"
 #include "shading/running.h"
@@ -12,6 +13,8 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t coarsest = 512, finest = 4096; // columns
+// A sky is not sampled if less than this share of its light is above the mean.
+constexpr double leastShare = 1.0 / 64;
 
 double luminance(const float c[3]) {
   const double l = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
@@ -40,7 +43,7 @@ uint32_t columnsFor(const RenderScene& scene) {
 } // namespace
 
 double SkySampler::solidAngle(uint32_t row) const {
-  return 2 * M_PI / columns_ * (std::cos(M_PI * row / rows_) - std::cos(M_PI * (row + 1) / rows_));
+  return 2 * M_PI / columns_ * (edge_[row] - edge_[row + 1]);
 }
 
 // Evaluates the environment in four directions of each cell.
@@ -108,8 +111,14 @@ SkySampler::SkySampler(const RenderScene& scene) {
   if (!environment.shaderClass || !environment.shaderClass->miss) return;
   columns_ = columnsFor(scene);
   rows_ = columns_ / 2;
+  for (uint32_t row = 0; row <= rows_; row++) edge_.push_back(std::cos(M_PI * row / rows_));
   std::vector<float> cells(size_t(columns_) * rows_);
   brightest_ = measure(scene, cells);
+  for (uint32_t row = 0; row < rows_; row++) {
+    const float* of = cells.data() + size_t(row) * columns_;
+    emitted_ += std::accumulate(of, of + columns_, 0.0) * solidAngle(row);
+  }
+  const double mean = emitted_ / (4 * M_PI);
   // A cell beside a much brighter one may contain some of its light between the sampled directions.
   const auto beside = [&](uint32_t row, uint32_t column) {
     float most = 0;
@@ -126,14 +135,17 @@ SkySampler::SkySampler(const RenderScene& scene) {
   std::vector<double> mass(columns_);
   for (uint32_t row = 0; row < rows_; row++) {
     double sum = 0;
-    for (uint32_t column = 0; column < columns_; column++)
-      mass[column] = sum += std::max(double(cells[size_t(row) * columns_ + column]),
-                                     double(beside(row, column)) / 16);
+    for (uint32_t column = 0; column < columns_; column++) {
+      const double radiance = std::max(double(cells[size_t(row) * columns_ + column]),
+                                       double(beside(row, column)) / 16);
+      mass[column] = sum += std::max(radiance - mean, 0.0);
+    }
     float* shares = inRow_.data() + size_t(row) * columns_;
     for (uint32_t column = 0; column < columns_; column++)
       shares[column] = sum > 0 ? float(mass[column] / sum) : 0;
     byRow_[row] = total_ += sum * solidAngle(row);
   }
+  if (!(total_ > leastShare * emitted_)) total_ = 0;
   for (double& share : byRow_) share /= total_ > 0 ? total_ : 1;
 }
 
@@ -154,8 +166,8 @@ float SkySampler::sample(double u, double v, float direction[3]) const {
   const double before = row ? byRow_[row - 1] : 0, left = column ? shares[column - 1] : 0;
   const double down = std::clamp((v - before) / (byRow_[row] - before), 0.0, 1.0);
   const double along = std::clamp((u - left) / (shares[column] - left), 0.0, 1.0);
-  const double top = std::cos(M_PI * row / rows_), bottom = std::cos(M_PI * (row + 1) / rows_);
-  const double y = top + (bottom - top) * down, phi = 2 * M_PI * (column + along) / columns_;
+  const double y = edge_[row] + (edge_[row + 1] - edge_[row]) * down,
+               phi = 2 * M_PI * (column + along) / columns_;
   const double s = std::sqrt(std::max(0.0, 1 - y * y));
   direction[0] = float(s * std::cos(phi));
   direction[1] = float(y);

@@ -1,9 +1,12 @@
 // sky_sampler.h: importance sampling of the environment by its radiance. A table of equal
 // latitude-longitude cells in its local space has the resolution of the environment's textures, and
 // at least enough resolution for a sun of half a degree. M. Pharr, W. Jakob, G. Humphreys,
-// "Physically Based Rendering", 4th ed., 12.5, without MIS compensation, so that the strategy is
-// also unbiased alone. Built between frames when the environment or its textures change, read by
-// all render threads.
+// "Physically Based Rendering", 4th ed., 12.5. Only what is brighter than the mean is sampled,
+// because BSDF sampling finds the rest as well (MIS compensation: O. Karlik et al., "MIS
+// Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", SIGGRAPH Asia
+// 2019). So a sky of one radiance needs no light samples at all, and the strategy is unbiased only
+// together with BSDF sampling. Built between frames when the environment or its textures change,
+// read by all render threads.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +18,14 @@ struct RenderScene;
 
 class SkySampler {
  public:
-  // Tabulates the scene's environment. usable() is false if there is none or it is black.
+  // Tabulates the scene's environment.
   explicit SkySampler(const RenderScene& scene);
+  // Returns whether there is no environment or it emits nothing.
+  bool black() const { return !(emitted_ > 0); }
+  // Returns whether sample() has directions: not if the sky is black or has nearly one radiance.
   bool usable() const { return total_ > 0; }
-  // Returns the irradiance (as luminance) by the whole sky, averaged over the orientations of a
-  // surface.
+  // Returns the irradiance (as luminance) by what is sampled of the sky, averaged over the
+  // orientations of a surface.
   double irradiance() const { return total_ / 4; }
   // Returns the largest mean radiance of a cell, summed over the colours.
   double brightest() const { return brightest_; }
@@ -42,7 +48,10 @@ class SkySampler {
   uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> inRow_;  // by cell: cumulative share of its row
   std::vector<double> byRow_; // by row: cumulative share of the sphere
-  double total_ = 0, brightest_ = 0;
+  std::vector<double> edge_;  // cosines of the polar angles that bound the rows
+  // Luminance, integrated over the sphere: of the whole sky, and of what is sampled.
+  double emitted_ = 0, total_ = 0;
+  double brightest_ = 0;
 };
 
 } // namespace openrt

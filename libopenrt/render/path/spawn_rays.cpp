@@ -11,8 +11,6 @@
 namespace openrt {
 namespace {
 
-constexpr uint32_t rouletteFrom = 3;
-
 // Returns whether the lobe has one sample at each hit, whose expected weight is the lobe's weight.
 bool hasOneSample(const RtsLobe& lobe) {
   return lobe.kind == RTS_LOBE_DIFFUSE || lobe.kind == RTS_LOBE_CUSTOM;
@@ -67,7 +65,7 @@ void continueAtOneLobe(const CameraPaths& paths, const LobeSampling& sampling) {
                           .lobe = &batch.lobes[0],
                           .transmits = nonSpecularFunctions(batch.lobes[0])->transmits != 0,
                           .samples = sampling.samples[0],
-                          .survival = paths.level >= rouletteFrom ? sampling.choices[1] : nullptr,
+                          .survival = sampling.choices[1],
                           .selectionProbability = sampling.selectionProbability[0]};
   continuePaths(from, batch.arena->take<uint32_t>(padded(n) + lanes), paths.next);
 }
@@ -90,7 +88,7 @@ void spawnRaysAt(const CameraPaths& paths, uint32_t i, const LobeSampling& sampl
   }
   const BsdfChoice choice(bsdfSamples, ray.throughput);
   if (!(choice.sum > 0)) return;
-  const bool all = !path || bsdfSamples.count == 1 || ray.flags.splits() == 0;
+  const bool all = !path || bsdfSamples.count == 1 || ray.flags.splits() < mostSplits;
   for (uint32_t w = 0; w < bsdfSamples.count; w++)
     if (float* probability = sampling.selectionProbability[bsdfSamples.list[w].lobe])
       probability[i] = all ? 1 : choice.probability(w);
@@ -98,12 +96,13 @@ void spawnRaysAt(const CameraPaths& paths, uint32_t i, const LobeSampling& sampl
     const BsdfSample& sample = bsdfSamples.list[w];
     if (sample.rejected) return;
     float kept = probability;
-    if (path && paths.level >= rouletteFrom) {
-      const float survival = survivalProbability(choice.carried[w] / probability);
+    if (path) {
+      const float survival =
+          survivalProbability(choice.carried[w] / (probability * certainThroughput));
       if (survival < 1) paths.samples.markRandom(ray.path);
       if (sampling.choices[1][i] >= survival) return;
       kept *= survival;
-    } else if (!path && choice.carried[w] < frame.energyCut) {
+    } else if (choice.carried[w] < frame.energyCut) {
       for (int k = 0; k < 3; k++)
         paths.ledger.cutByEnergy += double(sample.expectedWeight[k]) * double(ray.throughput[k]);
       return;

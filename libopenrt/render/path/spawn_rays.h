@@ -23,9 +23,9 @@ struct CameraPaths {
 // * Direct: follows only straight transmission.
 // * Whitted: follows every specular reflection and refraction deterministically until a branch
 //   carries less than the frame's energy cut.
-// * Path: also follows the directions sampled from non-specular lobes. Once a path has split, one
-//   sample is selected with a probability proportional to what it carries. From the fourth surface
-//   on Russian roulette terminates paths.
+// * Path: also follows the directions sampled from non-specular lobes. Russian roulette terminates
+//   paths that carry little. Once a path has split several times, one sample is selected with a
+//   probability proportional to what it carries.
 void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries);
 

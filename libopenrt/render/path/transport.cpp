@@ -92,7 +92,7 @@ bool shines(const RenderScene& scene, const RenderScene* before) {
       before->environment.shader.params == environment.params &&
       before->environment.shader.shaderClass == environment.shaderClass)
     return before->skyShines;
-  return SkySampler::shines(scene) || SkySampler(scene).usable();
+  return SkySampler::shines(scene) || !SkySampler(scene).black();
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "render/surface/continue_paths.h"
 
+#include "render/surface/bsdf_choice.h"
 #include "render/surface/lobes.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -70,11 +71,8 @@ size_t appendRays(const Continuation& from, uint32_t* laneOf, const RayQueue& qu
     Mask valid = hn::And(dot(direction, n) > zero, towards > zero);
     if (from.transmits) valid = hn::Or(valid, hn::AndNot(dot(direction, n) > zero, towards < zero));
     valid = hn::And(hn::And(wanted, valid), pdf > zero);
-    Lanes kept = one;
-    if (from.survival) {
-      kept = min(one, carried);
-      valid = hn::And(valid, load(from.survival + i) < kept);
-    }
+    const Lanes kept = min(one, carried / lanesOf(certainThroughput));
+    valid = hn::And(valid, load(from.survival + i) < kept);
     if (hn::AllFalse(LanesTag(), valid)) continue;
     const LaneVec value = load(from.samples->value, i);
     const LaneVec position = load(hits.position, i),

@@ -17,7 +17,7 @@ struct Continuation {
   const RtsLobe* lobe;
   bool transmits; // light from behind the surface counts, too
   const LobeSamples* samples;
-  const float* survival; // random numbers for Russian roulette; null: every path survives
+  const float* survival; // random numbers for Russian roulette
   // By hit: gets 1 where the sample is followed if it survives, which light sampling must know.
   // Null if emitters are not sampled.
   float* selectionProbability;
