@@ -242,13 +242,15 @@ TEST(Lanes, LightSamplesAgreeWithDoublePrecision) {
       left++;
       continue;
     }
-    float corner[3][3], eye[3];
+    std::array<Vec3f, 3> corner;
+    Vec3f eye;
     for (size_t k = 0; k < 3; k++) {
       for (size_t c = 0; c < 3; c++) corner[c][k] = scene.corner[c][k][i];
       eye[k] = scene.position[k][i];
     }
     const SphericalTriangle seen(corner, eye);
-    double direction[3], distance;
+    Vec3d direction;
+    double distance;
     ASSERT_TRUE(seen.sample(scene.u[i], scene.v[i], direction, distance)) << i;
     ASSERT_GT(samples.pdf[i], 0) << i;
     EXPECT_NEAR(samples.pdf[i] / seen.pdf(direction), 1, 1e-3) << i;

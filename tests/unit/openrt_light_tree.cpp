@@ -16,8 +16,7 @@ namespace {
 
 LightBounds pointLight(float x, float y, float z, float intensity) {
   LightBounds b;
-  const float p[3] = {x, y, z};
-  for (int k = 0; k < 3; k++) b.low[k] = b.high[k] = p[k];
+  b.low = b.high = {x, y, z};
   b.intensity = intensity;
   return b;
 }
@@ -26,15 +25,13 @@ LightBounds pointLight(float x, float y, float z, float intensity) {
 LightBounds patch(std::mt19937& random, float size) {
   std::uniform_real_distribution<float> unit(-1, 1);
   LightBounds b;
-  float length = 0;
   for (int k = 0; k < 3; k++) {
     const float middle = 4 * unit(random);
     b.low[k] = middle - size;
     b.high[k] = middle + size;
     b.axis[k] = unit(random);
-    length += b.axis[k] * b.axis[k];
   }
-  for (float& a : b.axis) a /= std::sqrt(length);
+  b.axis = normalize(b.axis);
   b.cosineNormals = 1;
   b.intensity = 1 + unit(random) * .9f;
   return b;

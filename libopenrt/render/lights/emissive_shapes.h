@@ -3,6 +3,7 @@
 // threads.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,9 +24,9 @@ class EmissiveShapes {
     // the other side
     uint8_t sides;
     bool sphere;
-    float corner[3][3]; // triangle in render space, in the order of the kernel's normal
-    bool swapped;       // corners 1 and 2 are the record's 2 and 1
-    float power;        // approximately proportional to the flux
+    std::array<Vec3f, 3> corner; // triangle in render space, in the order of the kernel's normal
+    bool swapped;                // corners 1 and 2 are the record's 2 and 1
+    float power;                 // approximately proportional to the flux
     // Every point of a side emits the same radiance in all directions (RTS_UNIFORM_EMISSION).
     bool uniform = false;
     float radiance[2][3] = {}; // mean emitted radiance of the sides, in the order of `sides`
@@ -47,7 +48,8 @@ class EmissiveShapes {
   // which is the area of a triangle, and for an ellipsoid also corrects the uneven distribution of
   // points.
   struct Place {
-    float position[3], normal[3], u, v;
+    Vec3f position, normal;
+    float u, v;
     double area;
   };
   // Samples a point of a shape. u, v: uniform in the unit square.
@@ -74,10 +76,10 @@ class EmissiveShapes {
   double brightest_ = 0;
 };
 
-// Writes a unit normal in render space as the kernel would return it for a triangle of the record.
-void kernelNormal(const struct Record& record, const float normal[3], float out[3]);
+// Returns a unit normal in render space as the kernel would return it for a triangle of the record.
+Vec3f kernelNormal(const struct Record& record, const Vec3f& normal);
 
-// Writes the corners of a record's triangle in render space.
-void cornersOf(const Record& record, uint32_t primitive, float out[3][3]);
+// Returns the corners of a record's triangle in render space.
+std::array<Vec3f, 3> cornersOf(const Record& record, uint32_t primitive);
 
 } // namespace openrt

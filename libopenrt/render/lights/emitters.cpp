@@ -7,7 +7,6 @@
 #include "render/lights/spherical.h"
 #include "render/render_scene.h"
 #include "render/surface/points.h"
-#include "render/surface/scatter.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -44,10 +43,8 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
     shapes_ = before->emitters.shapes_;
   else
     shapes_ = std::make_shared<const EmissiveShapes>(scene);
-  const auto& m = scene.environment.toLocal.r;
-  determinant_ = std::fabs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
+  const Affine& m = scene.environment.toLocal;
+  determinant_ = std::fabs(dot(m.row(0), cross(m.row(1), m.row(2))));
   const bool sky = sky_->usable() && determinant_ > 0 && std::isfinite(determinant_);
   skyIrradiance_ = sky ? float(std::clamp(sky_->irradiance(), 1e-30, 1e30)) : 0;
 }
@@ -63,28 +60,23 @@ float Emitters::skyShare(const LightSampleContext& from) const {
 
 // Jacobian of directions: solid angle in render space over that in the environment's space. A
 // linear map M scales solid angle by |det M| / |M d|^3.
-float Emitters::skyJacobian(const float local[3]) const {
-  const auto& m = scene_->environment.fromLocal.r;
-  double square = 0;
-  for (int k = 0; k < 3; k++) {
-    const double x =
-        double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
-    square += x * x;
-  }
+float Emitters::skyJacobian(const Vec3f& local) const {
+  const Vec3d towards = scene_->environment.fromLocal.direction(Vec3d(local));
+  const double square = dot(towards, towards);
   return float(square * std::sqrt(square) * determinant_);
 }
 
 // Samples a direction to a point on the shape. Returns its pdf as if the shape were the only one;
 // 0: no sample.
 double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from,
-                             double u, double v, double direction[3], double& distance) const {
+                             double u, double v, Vec3d& direction, double& distance) const {
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
-    const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
+    const SphericalEllipsoid seen(r.fromRender, r.toRender, vectorOf(from.position));
     if (!(shape.sides & 1) || !seen.sample(u, v, direction, distance)) return 0;
     return seen.pdf(direction);
   }
-  const SphericalTriangle seen(shape.corner, from.position);
+  const SphericalTriangle seen(shape.corner, vectorOf(from.position));
   if (!(shape.sides & (seen.front() ? 1 : 2)) || !seen.sample(u, v, direction, distance)) return 0;
   return seen.pdf(direction);
 }
@@ -92,19 +84,13 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
 // share: selection probability of the sky.
 LightSample Emitters::chooseSky(double share, float u, float v) const {
   LightSample lightSample;
-  float local[3];
+  Vec3f local;
   lightSample.distance = std::numeric_limits<float>::infinity();
   lightSample.pdf = float(share * sky_->sample(u, v, local));
   if (!(lightSample.pdf > 0)) return {};
   lightSample.pdf /= skyJacobian(local);
-  const auto& m = scene_->environment.fromLocal.r;
-  double towards[3], square = 0;
-  for (int k = 0; k < 3; k++) {
-    towards[k] =
-        double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
-    square += towards[k] * towards[k];
-  }
-  for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k] / std::sqrt(square));
+  const Vec3d towards = scene_->environment.fromLocal.direction(Vec3d(local));
+  store(Vec3f(towards / length(towards)), lightSample.direction);
   return lightSample;
 }
 
@@ -115,12 +101,13 @@ LightSample Emitters::sampleChosen(const LightSampleContext& from, uint32_t numb
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
   LightSample lightSample;
   lightSample.shape = number;
-  double towards[3], distance = 0;
+  Vec3d towards;
+  double distance = 0;
   const double alone = sampleShape(shape, from, u, v, towards, distance);
   if (!(alone > 0)) return {};
   lightSample.pdf = float(probability * alone);
   lightSample.distance = float(distance);
-  for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k]);
+  store(Vec3f(towards), lightSample.direction);
   return lightSample;
 }
 
@@ -129,7 +116,7 @@ namespace {
 // Returns the sample if it is valid and its light counts, else none.
 LightSample checked(const LightSample& lightSample, const float* normal) {
   const bool valid = lightSample.pdf > 0 && std::isfinite(lightSample.pdf) &&
-                     (!normal || dot3(lightSample.direction, normal) > 0);
+                     (!normal || dot(vectorOf(lightSample.direction), vectorOf(normal)) > 0);
   return valid ? lightSample : LightSample{};
 }
 
@@ -152,13 +139,9 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
   const uint32_t size = padded(points.count);
   const auto contextOf = [&](uint32_t i) {
     LightSampleContext from;
-    float p[3], n[3];
-    for (int k = 0; k < 3; k++) {
-      p[k] = points.position[k][i];
-      n[k] = points.normal[k][i];
-    }
-    if (!points.twoSided[i]) std::copy_n(n, 3, from.normal);
-    offsetPoint(p, n, points.error[i], from.position);
+    const Vec3f n = load(points.normal, i);
+    if (!points.twoSided[i]) store(n, from.normal);
+    store(offsetPoint(load(points.position, i), n, points.error[i]), from.position);
     return from;
   };
   if (!hasShapes()) {
@@ -213,7 +196,7 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
     out[i].pdf = (1 - sky) * chosen.probability[i] * sampled.pdf[i];
     out[i].distance = sampled.distance[i];
     if (!points.twoSided[i]) out[i].end = sampled.end[i];
-    for (int k = 0; k < 3; k++) out[i].direction[k] = sampled.direction[k][i];
+    store(load(sampled.direction, i), out[i].direction);
     if (!std::isfinite(out[i].pdf)) out[i].pdf = 0;
   }
 }
@@ -226,14 +209,14 @@ float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t pr
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
   if (!shape.sides) return 0;
   const float* normal = sideOf(from);
-  const double towards[3] = {direction[0], direction[1], direction[2]};
+  const Vec3d towards(vectorOf(direction));
   double alone = 0;
   if (shape.sphere) {
     const Record& r = scene_->records[record];
-    const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
+    const SphericalEllipsoid seen(r.fromRender, r.toRender, vectorOf(from.position));
     if (shape.sides & 1) alone = seen.pdf(towards);
   } else {
-    const SphericalTriangle seen(shape.corner, from.position);
+    const SphericalTriangle seen(shape.corner, vectorOf(from.position));
     if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.pdf(towards);
   }
   if (!(alone > 0)) return 0;
@@ -242,7 +225,8 @@ float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t pr
 }
 
 float Emitters::skyPdf(const LightSampleContext& from, const float local[3]) const {
-  return hasSky() ? skyShare(from) * sky_->pdf(local) / skyJacobian(local) : 0.0f;
+  const Vec3f direction = vectorOf(local);
+  return hasSky() ? skyShare(from) * sky_->pdf(direction) / skyJacobian(direction) : 0.0f;
 }
 
 double Emitters::brightestSky() const { return hasSky() ? sky_->brightest() : 0; }
@@ -256,14 +240,9 @@ bool Emitters::startsLightPaths(uint32_t record, uint32_t primitive,
   if (number == EmissiveShapes::none) return false;
   const EmissiveShapes::Shape& s = (*shapes_)[number];
   if (s.sphere || !(s.power > 0)) return s.power > 0;
-  double n[3], towards = 0;
-  for (int k = 0; k < 3; k++) {
-    const int a = (k + 1) % 3, b = (k + 2) % 3;
-    n[k] = (double(s.corner[1][a]) - s.corner[0][a]) * (double(s.corner[2][b]) - s.corner[0][b]) -
-           (double(s.corner[1][b]) - s.corner[0][b]) * (double(s.corner[2][a]) - s.corner[0][a]);
-    towards -= n[k] * direction[k];
-  }
-  return s.sides & (towards > 0 ? 1 : 2);
+  const Vec3d n =
+      cross(Vec3d(s.corner[1]) - Vec3d(s.corner[0]), Vec3d(s.corner[2]) - Vec3d(s.corner[0]));
+  return s.sides & (dot(n, Vec3d(vectorOf(direction))) < 0 ? 1 : 2);
 }
 
 } // namespace openrt

@@ -74,8 +74,8 @@ class Emitters {
   LightSample sampleChosen(const LightSampleContext& from, uint32_t number, double probability,
                            float u, float v) const;
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
-                     double v, double direction[3], double& distance) const;
-  float skyJacobian(const float local[3]) const;
+                     double v, Vec3d& direction, double& distance) const;
+  float skyJacobian(const Vec3f& local) const;
   const RenderScene* scene_ = nullptr;
   std::shared_ptr<const SkySampler> sky_;
   std::shared_ptr<const EmissiveShapes> shapes_;

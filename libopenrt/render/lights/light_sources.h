@@ -41,10 +41,11 @@ class LightSources {
   };
   void boundSpecularSurfaces(const RenderScene& scene);
   void measureSceneExtent(const RenderScene& scene);
-  double coneToSpecular(const float from[3], float axis[3]) const;
+  double coneToSpecular(const Vec3f& from, Vec3f& axis) const;
   std::vector<Source> sources_;
-  std::vector<double> cumulative_;    // cumulative power of the sources
-  float centre_[3] = {}, radius_ = 0; // bounding sphere of all specular surfaces
+  std::vector<double> cumulative_; // cumulative power of the sources
+  Vec3f centre_;                   // centre_, radius_: bounding sphere of all specular surfaces
+  float radius_ = 0;
   float far_ = 0; // distance at which parallel light starts: the whole scene lies in front of it
 };
 

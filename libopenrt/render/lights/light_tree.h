@@ -12,15 +12,16 @@
 #include <vector>
 
 #include "render/lights/light_node.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
 // Bounds of one light or a group of lights. They must be conservative: a light with selection
 // probability 0 is lost light.
 struct LightBounds {
-  float low[3], high[3];
-  float axis[3] = {0, 0, 1}; // unit axis of the cone of normals, or of a spot light's cone
-  float cosineNormals = -1;  // cosine of that cone's half angle; -1: any direction
+  Vec3f low, high;
+  Vec3f axis{0, 0, 1};      // unit axis of the cone of normals, or of a spot light's cone
+  float cosineNormals = -1; // cosine of that cone's half angle; -1: any direction
   // Cosine of the angle up to which light is emitted about a normal. 0: a surface; 1: only the
   // cone's directions.
   float cosineEmission = 0;

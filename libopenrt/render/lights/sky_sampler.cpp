@@ -144,7 +144,7 @@ float SkySampler::cellPdf(uint32_t row, uint32_t column) const {
 }
 
 // Selects row and column by u and v, and uses their remainders for the position in the cell.
-float SkySampler::sample(double u, double v, float direction[3]) const {
+float SkySampler::sample(double u, double v, Vec3f& direction) const {
   if (!usable()) return 0;
   const auto row = uint32_t(std::min(
       std::upper_bound(byRow_.begin(), byRow_.end(), v) - byRow_.begin(), ptrdiff_t(rows_) - 1));
@@ -157,16 +157,14 @@ float SkySampler::sample(double u, double v, float direction[3]) const {
   const double top = std::cos(M_PI * row / rows_), bottom = std::cos(M_PI * (row + 1) / rows_);
   const double y = top + (bottom - top) * down, phi = 2 * M_PI * (column + along) / columns_;
   const double s = std::sqrt(std::max(0.0, 1 - y * y));
-  direction[0] = float(s * std::cos(phi));
-  direction[1] = float(y);
-  direction[2] = float(s * std::sin(phi));
+  direction = {float(s * std::cos(phi)), float(y), float(s * std::sin(phi))};
   return cellPdf(row, column);
 }
 
-float SkySampler::pdf(const float d[3]) const {
+float SkySampler::pdf(const Vec3f& d) const {
   if (!usable()) return 0;
-  const double theta = std::acos(std::clamp(double(d[1]), -1.0, 1.0));
-  double phi = std::atan2(double(d[2]), double(d[0]));
+  const double theta = std::acos(std::clamp(double(d.y), -1.0, 1.0));
+  double phi = std::atan2(double(d.z), double(d.x));
   if (phi < 0) phi += 2 * M_PI;
   if (!(theta >= 0) || !(phi >= 0)) return 0;
   const uint32_t row = std::min(uint32_t(theta / M_PI * rows_), rows_ - 1),

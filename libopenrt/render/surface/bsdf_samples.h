@@ -4,6 +4,7 @@
 
 #include "render/surface/lobes.h"
 #include "render/surface/media.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
@@ -46,15 +47,15 @@ class BsdfSamples {
   uint32_t count = 0;
 
  private:
-  BsdfSample& put(const float direction[3], const float weight[3], float factor);
-  void scatter(const RtsLobe& lobe, const LobeSamples& samples, const float w[3]);
-  void mirror(const float n[3], const float w[3], float factor);
-  void dielectric(const float n[3], const float w[3], float eta);
+  BsdfSample& put(const Vec3f& direction, const Vec3f& weight, float factor);
+  void scatter(const RtsLobe& lobe, const LobeSamples& samples, const Vec3f& w);
+  void mirror(const Vec3f& n, const Vec3f& w, float factor);
+  void dielectric(const Vec3f& n, const Vec3f& w, float eta);
   uint32_t hit_, lobe_ = 0;
   const float* eta_;
   uint8_t channel_;
   bool fromLamp_;
-  float d_[3], g_[3];
+  Vec3f d_, g_; // the ray's direction, the geometric normal
 };
 
 } // namespace openrt
