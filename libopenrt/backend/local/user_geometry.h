@@ -20,6 +20,7 @@ struct Lane {
   bool reaches(double t) const { return float(t) >= near && float(t) <= far; }
 };
 
+// Writes a box to Embree's bounds.
 inline void storeBounds(const Vec3f& low, const Vec3f& high, RTCBounds& out) {
   out.lower_x = low.x;
   out.lower_y = low.y;
