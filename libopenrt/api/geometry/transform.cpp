@@ -2,7 +2,6 @@
 // functions.
 #include "api/geometry/transform.h"
 
-#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>

@@ -1,6 +1,4 @@
 // rules_geometry.cpp: rules about the vertices of one object. Application thread.
-#include <algorithm>
-#include <cmath>
 
 #include "backend/debug/rules.h"
 

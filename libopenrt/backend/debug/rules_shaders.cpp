@@ -1,7 +1,6 @@
 // rules_shaders.cpp: rules about shaders, their parameters and textures, and lights. Application
 // thread.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <set>

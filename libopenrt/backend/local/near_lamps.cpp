@@ -3,7 +3,6 @@
 #include "backend/local/near_lamps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <vector>

@@ -1,8 +1,6 @@
 // slivers.cpp: an Embree user geometry for slivers, triangles that single precision cannot
 // intersect (sliver_edges.h). Embree traverses their bounding boxes; the triangles are intersected
 // here in double precision (exact.h). Called by render threads.
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "backend/local/accel/embree_parts.h"

@@ -4,7 +4,6 @@
 #include "render/lights/shadows.h"
 #include "shading/running.h"
 
-#include <cmath>
 #include <limits>
 
 namespace openrt {

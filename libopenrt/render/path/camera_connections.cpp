@@ -1,7 +1,6 @@
 #include "render/path/camera_connections.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "render/lights/shadows.h"

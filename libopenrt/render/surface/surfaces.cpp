@@ -1,7 +1,6 @@
 #include "render/surface/surfaces.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace openrt {
 

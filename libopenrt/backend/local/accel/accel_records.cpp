@@ -1,7 +1,6 @@
 // accel_records.cpp: writes the records of clusters: the data that shading needs for each placed
 // geometry.
 #include <algorithm>
-#include <cmath>
 
 #include "backend/local/accel/accel_build.h"
 #include "render/huge_spheres.h"

@@ -1,7 +1,6 @@
 // accel_trace.cpp: traces rays through both Embree scenes. Every ray is checked first, because an
 // Embree build with assertions aborts the process on a ray that is not finite. Called by render
 // threads and the threads of queries.
-#include <cmath>
 #include <limits>
 
 #include "backend/local/accel/accel.h"

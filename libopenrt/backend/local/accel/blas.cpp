@@ -2,7 +2,6 @@
 // Slivers and huge spheres go to user geometries that intersect in double precision.
 #include "backend/local/accel/blas.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "backend/local/accel/bake.h"
