@@ -21,15 +21,11 @@ inline bool isHugeSphere(const Matrix4d& unitToKernel) {
 // in single precision.
 inline bool intersectedInDouble(const Record& r) {
   if (r.primitive != edit::Primitive::Sphere || r.instanced) return false;
-  double largest = 0;
-  for (int j = 0; j < 3; j++) {
-    double square = 0;
-    for (int i = 0; i < 3; i++) square += double(r.toRender.r[i][j]) * r.toRender.r[i][j];
-    largest = std::max(largest, square);
-  }
+  const Vec3d x(r.toRender.column(0)), y(r.toRender.column(1)), z(r.toRender.column(2));
   // The threshold is a little lower here, because the record is rounded to float and the result
   // must agree with what the kernels were given.
-  return largest >= hugeRadius * hugeRadius * (1 - 1e-6) * r.scale * r.scale;
+  return std::max({dot(x, x), dot(y, y), dot(z, z)}) >=
+         hugeRadius * hugeRadius * (1 - 1e-6) * r.scale * r.scale;
 }
 
 } // namespace openrt

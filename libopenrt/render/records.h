@@ -9,7 +9,8 @@
 
 namespace openrt {
 
-struct Affine { // 3x4: x' = r[0][0..2] . p + r[0][3]
+// An affine map in float: row i maps p to r[i][0..2] . p + r[i][3].
+struct Affine {
   float r[3][4];
   static Affine from(const Matrix4d& m) {
     Affine a;
@@ -17,34 +18,66 @@ struct Affine { // 3x4: x' = r[0][0..2] . p + r[0][3]
       for (int j = 0; j < 4; j++) a.r[i][j] = float(m.m[4 * j + i]);
     return a;
   }
+  Vec3f row(int i) const { return {r[i][0], r[i][1], r[i][2]}; }
+  Vec3f column(int j) const { return {r[0][j], r[1][j], r[2][j]}; }
+  Vec3f translation() const { return column(3); }
+
+  // These compute in the type T of the argument's components. None of them normalises.
+
+  // Returns the image of a direction: the linear part alone.
+  template <class T> Vec3<T> direction(const Vec3<T>& v) const {
+    return {dot(Vec3<T>(row(0)), v), dot(Vec3<T>(row(1)), v), dot(Vec3<T>(row(2)), v)};
+  }
+  // Returns the image of a point.
+  template <class T> Vec3<T> point(const Vec3<T>& p) const {
+    return direction(p) + Vec3<T>(translation());
+  }
+  // Like point(), but the sum starts with the translation, so its last digit may differ.
+  template <class T> Vec3<T> pointFromTranslation(const Vec3<T>& p) const {
+    return Vec3<T>(translation()) + Vec3<T>(column(0)) * p.x + Vec3<T>(column(1)) * p.y +
+           Vec3<T>(column(2)) * p.z;
+  }
+  // Multiplies the transpose of the linear part by v. A map transforms normals by the transpose of
+  // its inverse, so this maps a normal of the space that the map leads to back to the other space.
+  template <class T> Vec3<T> transposed(const Vec3<T>& v) const {
+    return {dot(Vec3<T>(column(0)), v), dot(Vec3<T>(column(1)), v), dot(Vec3<T>(column(2)), v)};
+  }
+  // Returns the image of a normal: the inverse transpose of the linear part. It computes the
+  // inverse; where that is at hand, use inverse.transposed(n). Returns 0 0 0 for singular maps.
+  template <class T> Vec3<T> normal(const Vec3<T>& n) const;
 };
 
+// Returns the sum of the squares of the linear part's numbers (the squared Frobenius norm).
+inline double squaredNormOf(const Affine& m) {
+  double sum = 0;
+  for (const auto& row : m.r)
+    for (int k = 0; k < 3; k++) sum += double(row[k]) * row[k];
+  return sum;
+}
+
 // Returns the determinant of the linear part.
-inline double determinantOf(const Affine& map) {
-  const auto& m = map.r;
-  return m[0][0] * (double(m[1][1]) * m[2][2] - double(m[1][2]) * m[2][1]) -
-         m[0][1] * (double(m[1][0]) * m[2][2] - double(m[1][2]) * m[2][0]) +
-         m[0][2] * (double(m[1][0]) * m[2][1] - double(m[1][1]) * m[2][0]);
+inline double determinantOf(const Affine& m) {
+  return dot(Vec3d(m.row(0)), cross(Vec3d(m.row(1)), Vec3d(m.row(2))));
 }
 
 // Returns the inverse of an affine map, or the zero map if it is singular.
 inline Affine inverseOf(const Affine& m) {
-  const auto& r = m.r;
-  const float c[3][3] = {
-      {r[1][1] * r[2][2] - r[1][2] * r[2][1], r[0][2] * r[2][1] - r[0][1] * r[2][2],
-       r[0][1] * r[1][2] - r[0][2] * r[1][1]},
-      {r[1][2] * r[2][0] - r[1][0] * r[2][2], r[0][0] * r[2][2] - r[0][2] * r[2][0],
-       r[0][2] * r[1][0] - r[0][0] * r[1][2]},
-      {r[1][0] * r[2][1] - r[1][1] * r[2][0], r[0][1] * r[2][0] - r[0][0] * r[2][1],
-       r[0][0] * r[1][1] - r[0][1] * r[1][0]}};
-  const float determinant = r[0][0] * c[0][0] + r[0][1] * c[1][0] + r[0][2] * c[2][0];
+  const Vec3f a = m.row(0), b = m.row(1), c = m.row(2), bc = cross(b, c);
+  const float determinant = dot(a, bc);
   Affine out{};
   if (determinant == 0) return out;
+  const auto linear = Rows<float>::ofColumns(bc / determinant, cross(c, a) / determinant,
+                                             cross(a, b) / determinant);
+  const Vec3f translation = -(linear * m.translation());
   for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) out.r[i][j] = c[i][j] / determinant;
-    out.r[i][3] = -(out.r[i][0] * r[0][3] + out.r[i][1] * r[1][3] + out.r[i][2] * r[2][3]);
+    store(linear[i], out.r[i]);
+    out.r[i][3] = translation[i];
   }
   return out;
+}
+
+template <class T> Vec3<T> Affine::normal(const Vec3<T>& n) const {
+  return inverseOf(*this).transposed(n);
 }
 
 struct Record {
@@ -73,9 +106,18 @@ struct Record {
   Affine toRender;
   Affine fromRender; // sphere: inverse of toRender
   // Normals of the geometry -> render space (inverse transpose), not normalised.
-  float normalMatrix[3][3];
+  Rows<float> normalMatrix;
   Affine toObject;          // render space -> frame of the object that contains the geometry
-  float kernelNormal[3][3]; // instanced: the kernel's geometric normal -> render space
+  Rows<float> kernelNormal; // instanced: the kernel's geometric normal -> render space
+
+  // Returns corner 0, 1 or 2 of a triangle, as the kernel sees it.
+  Vec3f corner(uint32_t triangle, int number) const {
+    return vectorOf(vertices + 3 * size_t(indices[3 * size_t(triangle) + size_t(number)]));
+  }
+  // Maps a vertex that the kernel sees to render space.
+  template <class T> Vec3<T> placeOf(const Vec3<T>& vertex) const {
+    return instanced ? toRender.point(vertex) : vertex * T(scale);
+  }
 };
 
 struct Bucket {

@@ -101,10 +101,10 @@ struct RenderScene {
   // Shared between snapshots while unchanged, like the textures.
   std::shared_ptr<const ShaderTable> shaders;
   RoleSlot camera, environment;
-  ShaderSlot transport; // shaderClass null: the engine's own transport
-  float eye[3] = {0, 0, 0}, viewAxis[3] = {0, 0, -1}; // render space; unit
-  double origin[3] = {0, 0, 0};                       // world position of render space's origin
-  Emitters emitters; // path tracing: emissive surfaces and the environment
+  ShaderSlot transport;          // shaderClass null: the engine's own transport
+  Vec3f eye, viewAxis{0, 0, -1}; // render space; unit
+  double origin[3] = {0, 0, 0};  // world position of render space's origin
+  Emitters emitters;             // path tracing: emissive surfaces and the environment
   // Indexed by light set. Null: every light is evaluated at every hit.
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>

@@ -5,28 +5,27 @@
 #include <array>
 #include <cmath>
 
-namespace openrt {
+#include "scene/vec3.h"
 
-struct Vec3d {
-  double x = 0, y = 0, z = 0;
-  Vec3d operator+(const Vec3d& b) const { return {x + b.x, y + b.y, z + b.z}; }
-  Vec3d operator-(const Vec3d& b) const { return {x - b.x, y - b.y, z - b.z}; }
-  Vec3d operator*(double s) const { return {x * s, y * s, z * s}; }
-};
-inline double dot(const Vec3d& a, const Vec3d& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(const Vec3d& a) { return std::sqrt(dot(a, a)); }
+namespace openrt {
 
 struct Matrix4d {
   std::array<double, 16> m{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
   bool operator==(const Matrix4d&) const = default;
   Vec3d column(int i) const { return {m[4 * i], m[4 * i + 1], m[4 * i + 2]}; }
+  Vec3d row(int i) const { return {m[i], m[4 + i], m[8 + i]}; } // of the linear part
   Vec3d translation() const { return column(3); }
-  Vec3d vector(const Vec3d& v) const { return column(0) * v.x + column(1) * v.y + column(2) * v.z; }
-  Vec3d point(const Vec3d& p) const { return vector(p) + column(3); }
+  // Return the images of a direction and of a point.
+  Vec3d direction(const Vec3d& v) const {
+    return column(0) * v.x + column(1) * v.y + column(2) * v.z;
+  }
+  Vec3d point(const Vec3d& p) const { return direction(p) + translation(); }
+  // Multiplies the transpose of the linear part by v. A map transforms normals by the transpose of
+  // its inverse: inverse(m).transposed(normal).
+  Vec3d transposed(const Vec3d& v) const {
+    return {dot(column(0), v), dot(column(1), v), dot(column(2), v)};
+  }
   double determinant() const { return dot(column(0), cross(column(1), column(2))); }
   void translate(const Vec3d& t) {
     m[12] += t.x;

@@ -225,8 +225,7 @@ TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean
 }
 
 TEST(Error, whatChanceMayHaveMissedDoesNotDependOnTheColourOfALamp) {
-  const float white[3] = {.5f, .5f, .5f}, tinted[3] = {.5f, .2f, .1f}, blue[3] = {0, 0, 9},
-              weakest[3] = {0, 0, 4.4f};
+  const Vec3f white{.5f, .5f, .5f}, tinted{.5f, .2f, .1f}, blue{0, 0, 9}, weakest{0, 0, 4.4f};
   UnsampledLight a, b;
   a.send(white, 9);
   b.send(tinted, 9);

@@ -242,13 +242,15 @@ TEST(Lanes, LightSamplesAgreeWithDoublePrecision) {
       left++;
       continue;
     }
-    float corner[3][3], eye[3];
+    std::array<Vec3f, 3> corner;
+    Vec3f eye;
     for (size_t k = 0; k < 3; k++) {
       for (size_t c = 0; c < 3; c++) corner[c][k] = scene.corner[c][k][i];
       eye[k] = scene.position[k][i];
     }
     const SphericalTriangle seen(corner, eye);
-    double direction[3], distance;
+    Vec3d direction;
+    double distance;
     ASSERT_TRUE(seen.sample(scene.u[i], scene.v[i], direction, distance)) << i;
     ASSERT_GT(samples.pdf[i], 0) << i;
     EXPECT_NEAR(samples.pdf[i] / seen.pdf(direction), 1, 1e-3) << i;
@@ -273,9 +275,8 @@ TEST(Lanes, ChosenLightsHaveTheProbabilityOfTheTree) {
     EXPECT_EQ(scene.share[i], 0);
     if (!(scene.probability[i] > 0)) continue;
     chosen++;
-    float place[3];
-    for (size_t k = 0; k < 3; k++) place[k] = scene.position[k][i];
-    EXPECT_NEAR(scene.probability[i], tree.probability(place, nullptr, scene.shape[i]), 1e-4) << i;
+    const Vec3f place{scene.position[0][i], scene.position[1][i], scene.position[2][i]};
+    EXPECT_NEAR(scene.probability[i], tree.probability(place, Vec3f(), scene.shape[i]), 1e-4) << i;
   }
   EXPECT_GT(chosen, count / 2);
 }
@@ -283,11 +284,10 @@ TEST(Lanes, ChosenLightsHaveTheProbabilityOfTheTree) {
 TEST(RayQueues, KeepTheirRaysWhileTheyGrow) {
   RayQueue queue;
   for (uint32_t i = 0; i < 1000; i++) {
-    const float origin[3] = {float(i), 1, 2}, direction[3] = {0, float(i), 1};
     RayState state{.path = i, .branch = 2 * i};
     state.flags.setChannel(uint8_t(i % 4));
     state.media = {uint16_t(i), 0, 0, 7};
-    queue.push(origin, direction, state);
+    queue.push({float(i), 1, 2}, {0, float(i), 1}, state);
   }
   ASSERT_EQ(queue.size(), 1000u);
   RayQueue other;

@@ -14,10 +14,11 @@ using namespace openrt;
 
 namespace {
 
+constexpr Vec3f everywhere; // as a normal: light counts from both sides
+
 LightBounds pointLight(float x, float y, float z, float intensity) {
   LightBounds b;
-  const float p[3] = {x, y, z};
-  for (int k = 0; k < 3; k++) b.low[k] = b.high[k] = p[k];
+  b.low = b.high = {x, y, z};
   b.intensity = intensity;
   return b;
 }
@@ -26,21 +27,19 @@ LightBounds pointLight(float x, float y, float z, float intensity) {
 LightBounds patch(std::mt19937& random, float size) {
   std::uniform_real_distribution<float> unit(-1, 1);
   LightBounds b;
-  float length = 0;
   for (int k = 0; k < 3; k++) {
     const float middle = 4 * unit(random);
     b.low[k] = middle - size;
     b.high[k] = middle + size;
     b.axis[k] = unit(random);
-    length += b.axis[k] * b.axis[k];
   }
-  for (float& a : b.axis) a /= std::sqrt(length);
+  b.axis = normalize(b.axis);
   b.cosineNormals = 1;
   b.intensity = 1 + unit(random) * .9f;
   return b;
 }
 
-double sumOf(const LightTree& tree, size_t lights, const float p[3], const float* n) {
+double sumOf(const LightTree& tree, size_t lights, const Vec3f& p, const Vec3f& n) {
   double sum = 0;
   for (uint32_t i = 0; i < lights; i++) sum += double(tree.probability(p, n, i));
   return sum;
@@ -51,7 +50,7 @@ TEST(LightTree, R12EqualLightsAreEquallyLikely) {
     const std::vector<LightBounds> lights(n, pointLight(1, 2, 3, 1.0f / float(n)));
     LightTree tree;
     tree.build(lights);
-    const float p[3] = {0, 0, 0}, normal[3] = {0, 0, 1};
+    const Vec3f p, normal{0, 0, 1};
     for (uint32_t i = 0; i < n; i += 1 + n / 7)
       EXPECT_NEAR(double(tree.probability(p, normal, i)) * n, 1, 1e-5) << n;
     EXPECT_LT(tree.depth(), 20u);
@@ -68,8 +67,8 @@ TEST(LightTree, ProbabilitiesAddUpAndAreThoseOfTheChoice) {
   tree.build(lights);
   for (int place = 0; place < 20; place++) {
     std::uniform_real_distribution<float> unit(-1, 1);
-    const float p[3] = {5 * unit(random), 5 * unit(random), 5 * unit(random)}, n[3] = {0, 1, 0};
-    const float* normal = place % 2 ? n : nullptr;
+    const Vec3f p{5 * unit(random), 5 * unit(random), 5 * unit(random)};
+    const Vec3f normal = place % 2 ? Vec3f{0, 1, 0} : everywhere;
     // The sum may be below 1. If the box of a branch may light the point and none of its lights
     // does, the choice ends without a light.
     EXPECT_LE(sumOf(tree, lights.size(), p, normal), 1 + 1e-5);
@@ -107,13 +106,12 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
     LightTree tree;
     tree.build(lights);
     for (int place = 0; place < 200; place++) {
-      float p[3], n[3], length = 0;
+      Vec3f p, n;
       for (int k = 0; k < 3; k++) {
         p[k] = 5 * unit(random);
         n[k] = unit(random);
-        length += n[k] * n[k];
       }
-      for (float& x : n) x /= std::sqrt(length);
+      n = normalize(n);
       for (uint32_t i = 0; i < lights.size(); i++) { // from a point inside its box
         const LightBounds& b = lights[i];
         double way[3], square = 0, leaving = 0, facing = 0;
@@ -129,7 +127,7 @@ TEST(LightTree, LightThatArrivesIsNeverImpossible) {
                              : leaving > 0;
         if (!lit || facing <= 0 || square > double(b.reach) * b.reach) continue;
         ASSERT_GT(tree.probability(p, n, i), 0) << i;
-        ASSERT_GT(tree.probability(p, nullptr, i), 0) << i;
+        ASSERT_GT(tree.probability(p, everywhere, i), 0) << i;
       }
     }
   }
@@ -142,11 +140,11 @@ TEST(LightTree, TheBrightestAndNearestAreTheLikeliest) {
   tree.build(lights);
   double expected = 0;
   for (int i = 0; i < 1000; i++) expected += 1 / (1 + double(i - 500) * (i - 500));
-  const float p[3] = {500, 1, 0};
+  const Vec3f p{500, 1, 0};
   // Within a factor of the light that arrives.
   for (const uint32_t i : {500u, 499u, 490u, 600u, 0u}) {
     const double share = 1 / (1 + (double(i) - 500) * (double(i) - 500)) / expected;
-    EXPECT_GT(double(tree.probability(p, nullptr, i)), share / 6) << i;
+    EXPECT_GT(double(tree.probability(p, everywhere, i)), share / 6) << i;
   }
 }
 
@@ -155,12 +153,12 @@ TEST(LightTree, NoLightWhereNoneReaches) {
   b.reach = 4;
   LightTree tree;
   tree.build(std::vector<LightBounds>{b, b});
-  const float p[3] = {0, 0, 0}, near[3] = {0, 0, 2}, away[3] = {0, 0, -1};
-  EXPECT_EQ(tree.choose(p, nullptr, .5).probability, 0);
+  const Vec3f p, near{0, 0, 2}, away{0, 0, -1};
+  EXPECT_EQ(tree.choose(p, everywhere, .5).probability, 0);
   EXPECT_EQ(tree.choose(near, away, .5).probability, 0);
-  EXPECT_NEAR(tree.choose(near, nullptr, .5).probability, .5, 1e-6);
+  EXPECT_NEAR(tree.choose(near, everywhere, .5).probability, .5, 1e-6);
   tree.build({});
-  EXPECT_EQ(tree.choose(near, nullptr, .5).probability, 0);
+  EXPECT_EQ(tree.choose(near, everywhere, .5).probability, 0);
   EXPECT_TRUE(tree.empty());
 }
 
@@ -173,8 +171,8 @@ TEST(LightTree, LightsOfAnyPlaceMakeAShallowTree) {
   LightTree tree;
   tree.build(lights);
   EXPECT_LE(tree.depth(), 60u);
-  const float p[3] = {0, 0, 1};
-  double sum = sumOf(tree, lights.size(), p, nullptr);
+  const Vec3f p{0, 0, 1};
+  double sum = sumOf(tree, lights.size(), p, everywhere);
   EXPECT_NEAR(sum, 1, 1e-4);
 }
 
@@ -185,9 +183,9 @@ TEST(LightTree, SameLightsSameTree) {
   LightTree a, b;
   a.build(lights);
   b.build(lights);
-  const float p[3] = {1, 2, 3};
+  const Vec3f p{1, 2, 3};
   for (uint32_t i = 0; i < lights.size(); i += 37)
-    ASSERT_EQ(a.probability(p, nullptr, i), b.probability(p, nullptr, i));
+    ASSERT_EQ(a.probability(p, everywhere, i), b.probability(p, everywhere, i));
 }
 
 } // namespace

@@ -56,9 +56,8 @@ struct Bench {
       if (!(samples.pdf[i] > 0)) continue;
       some++;
       sum += samples.value[0][i];
-      const float d[3] = {samples.direction[0][i], samples.direction[1][i],
-                          samples.direction[2][i]};
-      EXPECT_NEAR(dot3(d, d), 1, 1e-5);
+      const Vec3f d = load(samples.direction, i);
+      EXPECT_NEAR(dot(d, d), 1, 1e-5);
       // Evaluated again for the rounded direction; near the axis of a narrow lobe digits are lost.
       EXPECT_NEAR(answers.pdf[i] / samples.pdf[i], 1, 2e-3) << i;
       EXPECT_NEAR(answers.value[0][i], samples.value[0][i] * samples.pdf[i],

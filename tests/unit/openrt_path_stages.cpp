@@ -12,7 +12,6 @@
 #include "render/path/wave.h"
 #include "render/surface/bsdf_choice.h"
 #include "render/surface/sample_lobes.h"
-#include "render/vectors.h"
 #include "unit/plane_hits.h"
 
 using namespace openrt;
@@ -127,8 +126,7 @@ TEST(PathStages, AWaveIsLoadedFromTheMiddleOfAQueue) {
   Arena arena;
   RayQueue queue;
   for (uint32_t i = 0; i < 10; i++) {
-    const float origin[3] = {float(i), 0, 0}, direction[3] = {0, 1, 0};
-    queue.push(origin, direction, RayState{.path = 100 + i});
+    queue.push({float(i), 0, 0}, {0, 1, 0}, RayState{.path = 100 + i});
   }
   Wave wave;
   wave.rays.allocate(arena, 4);
@@ -163,8 +161,7 @@ TEST(PathStages, ASampleIsSelectedInProportionToWhatItCarries) {
   plane.add(batch, RTS_LOBE_TRANSPARENT, 0.75f);
   BsdfSamples samples(plane.points.hits, 0, nullptr, 0);
   for (uint32_t l = 0; l < 2; l++) samples.add(l, batch.lobes[l], nullptr);
-  const float throughput[3] = {0.5f, 0.25f, 0};
-  const BsdfChoice choice(samples, throughput);
+  const BsdfChoice choice(samples, {0.5f, 0.25f, 0});
   EXPECT_EQ(choice.sum, 0.5f);
   EXPECT_EQ(choice.probability(0), 0.25f);
   EXPECT_EQ(choice.probability(1), 0.75f);

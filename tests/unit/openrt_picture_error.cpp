@@ -147,7 +147,7 @@ TEST(PictureError, whatNoPathHasMetIsBoundByTheRuleOfThree) {
   Ledger ledger;
   const auto missed = [&ledger] { return ledger.missedRadiance(ledger, 1000); };
   EXPECT_EQ(missed(), 0);
-  const float grey[] = {.1f, .1f, .1f}, bright[] = {40, 40, 40}, dim[] = {20, 20, 20};
+  const Vec3f grey{.1f, .1f, .1f}, bright{40, 40, 40}, dim{20, 20, 20};
   for (int i = 0; i < 100; i++)
     ledger.unsampled.send(grey, 150); // .1 of radiance 150 for each of 100 rays in 1000 samples
   ledger.unsampled.meet(dim, 150);

@@ -14,19 +14,19 @@ using namespace openrt;
 
 namespace {
 
-constexpr float origin[3] = {0, 0, 0};
+constexpr Vec3f origin;
 
 struct Corners {
-  float at[3][3];
+  std::array<Vec3f, 3> at;
 };
-const Corners tilted{{{1, 0, 1}, {0, 1, 1}, {-1, -1, 1}}};
-const Corners octant{{{1, 0, 0}, {0, 2, 0}, {0, 0, 3}}};
-const Corners half{{{100, 0, 1e-6f}, {-100, 100, 1e-6f}, {-100, -100, 1e-6f}}};
-const Corners sliver{{{-5, 0, 1}, {5, 0, 1}, {0, 1e-4f, 1}}};
-const Corners small{{{1e-3f, 0, 10}, {0, 1e-3f, 10}, {-1e-3f, -1e-3f, 10}}};
+const Corners tilted{{{{1, 0, 1}, {0, 1, 1}, {-1, -1, 1}}}};
+const Corners octant{{{{1, 0, 0}, {0, 2, 0}, {0, 0, 3}}}};
+const Corners half{{{{100, 0, 1e-6f}, {-100, 100, 1e-6f}, {-100, -100, 1e-6f}}}};
+const Corners sliver{{{{-5, 0, 1}, {5, 0, 1}, {0, 1e-4f, 1}}}};
+const Corners small{{{{1e-3f, 0, 10}, {0, 1e-3f, 10}, {-1e-3f, -1e-3f, 10}}}};
 
 // Projects a direction onto the triangle's plane; returns its barycentric coordinates.
-void barycentric(const Corners& t, const double d[3], double w[3]) {
+void barycentric(const Corners& t, const Vec3d& d, double w[3]) {
   double m[3][3];
   for (int c = 0; c < 3; c++)
     for (int k = 0; k < 3; k++) m[k][c] = t.at[c][k];
@@ -67,9 +67,10 @@ void spread(const Corners& t) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < samples; i++) {
-    double d[3], distance, w[3];
+    Vec3d d;
+    double distance, w[3];
     ASSERT_TRUE(s.sample(unit(random), unit(random), d, distance));
-    ASSERT_NEAR(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], 1, 1e-12);
+    ASSERT_NEAR(dot(d, d), 1, 1e-12);
     barycentric(t, d, w);
     for (double x : w) ASSERT_GT(x, -1e-6);
     for (int k = 0; k < 3; k++) {
@@ -106,7 +107,7 @@ TEST(Spherical, SolidAnglesHaveTheirClosedForms) {
   EXPECT_NEAR(SphericalTriangle(half.at, origin).solidAngle(), 2 * M_PI, 1e-6);
   for (const double s : {1e-3, 1e-5, 1e-7, 1e-9}) { // far away: area over squared distance
     const float e = float(s);
-    const float corner[3][3] = {{-e, -e, 1}, {2 * e, -e, 1}, {-e, 2 * e, 1}};
+    const std::array<Vec3f, 3> corner{{{-e, -e, 1}, {2 * e, -e, 1}, {-e, 2 * e, 1}}};
     const double area = 4.5 * double(e) * double(e);
     EXPECT_NEAR(SphericalTriangle(corner, origin).solidAngle() / area, 1, 4 * s * s + 1e-12) << s;
   }
@@ -115,29 +116,28 @@ TEST(Spherical, SolidAnglesHaveTheirClosedForms) {
                          {-1, -1, 1},  {1, -1, 1},  {-1, 1, 1},  {1, 1, 1}};
   const int face[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
                           {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
-  const float eye[3] = {.3f, -.9999f, .7f};
+  const Vec3f eye{.3f, -.9999f, .7f};
   double sum = 0;
   for (const auto& f : face)
     for (int part = 0; part < 2; part++) {
-      float corner[3][3];
-      for (int c = 0; c < 3; c++)
-        for (int k = 0; k < 3; k++) corner[c][k] = v[f[c == 0 ? 0 : c + part]][k];
+      const std::array<Vec3f, 3> corner{vectorOf(v[f[0]]), vectorOf(v[f[1 + part]]),
+                                        vectorOf(v[f[2 + part]])};
       sum += SphericalTriangle(corner, eye).solidAngle();
     }
   EXPECT_NEAR(sum, 4 * M_PI, 1e-12);
 }
 
 TEST(Spherical, R11NothingOfTrianglesSeenEdgeOnOrWithoutArea) {
-  const float edgeOn[3][3] = {{1, 0, 0}, {2, 0, 0}, {1, 1, 0}},
-              line[3][3] = {{0, 0, 1}, {1, 1, 2}, {2, 2, 3}};
-  const float atCorner[3][3] = {{0, 0, 0}, {1, 0, 1}, {0, 1, 1}},
-              point[3][3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
-  for (const auto* corner : {edgeOn, line, atCorner, point}) {
-    const SphericalTriangle t(corner, origin);
-    double d[3], distance;
+  const Corners edgeOn{{{{1, 0, 0}, {2, 0, 0}, {1, 1, 0}}}},
+      line{{{{0, 0, 1}, {1, 1, 2}, {2, 2, 3}}}}, atCorner{{{{0, 0, 0}, {1, 0, 1}, {0, 1, 1}}}},
+      point{{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}};
+  for (const Corners* corners : {&edgeOn, &line, &atCorner, &point}) {
+    const SphericalTriangle t(corners->at, origin);
+    Vec3d d;
+    double distance;
     EXPECT_EQ(t.solidAngle(), 0);
     EXPECT_FALSE(t.sample(.3, .7, d, distance));
-    EXPECT_EQ(t.pdf(corner == line ? (const double[3]){0, 0, 1} : (const double[3]){1, 0, 0}), 0);
+    EXPECT_EQ(t.pdf(corners == &line ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0}), 0);
   }
 }
 
@@ -152,7 +152,8 @@ TEST(Spherical, AHemisphereIsCoveredEvenly) {
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<double> got(16 * 4), expected(16 * 4, 50000 / 64.0);
   for (int i = 0; i < 50000; i++) {
-    double d[3], distance;
+    Vec3d d;
+    double distance;
     if (!t.sample(unit(random), unit(random), d, distance)) continue;
     const int ring = std::min(3, int(d[2] * 4)),
               turn = int((std::atan2(d[1], d[0]) / (2 * M_PI) + .5) * 16) % 16;
@@ -163,14 +164,15 @@ TEST(Spherical, AHemisphereIsCoveredEvenly) {
 
 TEST(Spherical, FarTrianglesAreSpreadByArea) {
   for (const float e : {.2f, 1e-3f, 1e-6f, 1e-9f}) {
-    const float corner[3][3] = {{e, 0, 1}, {0, e, 1}, {-e, -e, 1}};
+    const std::array<Vec3f, 3> corner{{{e, 0, 1}, {0, e, 1}, {-e, -e, 1}}};
     const SphericalTriangle t(corner, origin);
     ASSERT_TRUE(t.far() || e > .1f);
     double sum = 0;
     for (uint32_t i = 0; i < 4096; i++) { // the mean of 1 / pdf is the solid angle
       float u, v;
       PairSampler(1, 2, 3)(i, u, v);
-      double d[3], distance;
+      Vec3d d;
+      double distance;
       ASSERT_TRUE(t.sample(u, v, d, distance));
       sum += 1 / t.pdf(d) / 4096;
     }
@@ -190,13 +192,14 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
       const float half = .5f, x = float(-places[p][0]), y = float(-places[p][1]),
                   z = float(places[p][2]);
       const bool second = i & 1;
-      const float corner[3][3] = {{x - half, y - half, z},
-                                  {x + half, y + (second ? half : -half), z},
-                                  {x + (second ? -half : half), y + half, z}};
+      const std::array<Vec3f, 3> corner{{{x - half, y - half, z},
+                                         {x + half, y + (second ? half : -half), z},
+                                         {x + (second ? -half : half), y + half, z}}};
       float u, v;
       PairSampler(5, 6, 7)(i >> 1, u, v);
       const SphericalTriangle t(corner, origin);
-      double d[3], distance;
+      Vec3d d;
+      double distance;
       if (t.sample(u, v, d, distance)) {
         const double e = 2 * d[2] / t.pdf(d);
         sums[0][0] += e;
@@ -225,26 +228,18 @@ TEST(Spherical, SolidAnglesAreLessNoisyThanAreas) {
 }
 
 // Checks that sampled points lie on the ellipsoid and that the mean of 1 / pdf is the solid angle.
-void ellipsoid(const float toRender[3][4], const float eye[3], double expectedSolidAngle) {
-  float toLocal[3][4];
-  for (int i = 0; i < 3; i++) { // diagonal matrices
-    for (int k = 0; k < 3; k++) toLocal[i][k] = i == k ? 1 / toRender[i][i] : 0;
-    toLocal[i][3] = -toRender[i][3] / toRender[i][i];
-  }
-  const SphericalEllipsoid s(toLocal, toRender, eye);
+void ellipsoid(const Affine& toRender, const Vec3f& eye, double expectedSolidAngle) {
+  const SphericalEllipsoid s(inverseOf(toRender), toRender, eye);
   double sum = 0, longest = 0;
   const int n = 1 << 14;
   for (int i = 0; i < n; i++) {
     float u, v;
     PairSampler(1, 2, 3)(uint32_t(i), u, v);
-    double d[3], distance;
+    Vec3d d;
+    double distance;
     if (!s.sample(u, v, d, distance)) continue;
-    double onSphere = 0;
-    for (int k = 0; k < 3; k++) {
-      const double x = (eye[k] + distance * d[k] - toRender[k][3]) / toRender[k][k];
-      onSphere += x * x;
-    }
-    longest = std::max(longest, std::fabs(onSphere - 1));
+    const Vec3d local = inverseOf(toRender).point(Vec3d(eye) + distance * d);
+    longest = std::max(longest, std::fabs(dot(local, local) - 1));
     sum += 1 / s.pdf(d) / n; // estimates the solid angle
   }
   EXPECT_LT(longest, 1e-3);
@@ -252,25 +247,26 @@ void ellipsoid(const float toRender[3][4], const float eye[3], double expectedSo
 }
 
 TEST(Spherical, SpheresAndEllipsoidsAreCoveredEvenly) {
-  const float unit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
-  const float at3[3] = {0, 0, 3}, far[3] = {0, 0, 1e4f};
+  const Affine unit{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  const Vec3f at3{0, 0, 3}, far{0, 0, 1e4f};
   ellipsoid(unit, at3, 2 * M_PI * (1 - std::sqrt(8.0) / 3));
   ellipsoid(unit, far, M_PI * 1e-8);
   // A flat ellipsoid seen along its short axis, from far away, has the solid angle of a disc with
   // the tangent cone's radius.
-  const float flat[3][4] = {{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, .5f, 0}}, above[3] = {0, 0, 3};
+  const Affine flat{{{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, .5f, 0}}};
   // Tangent of the cone's half angle: r / sqrt(h^2 - c^2).
   const double tangent = 2 / std::sqrt(9 - .25);
-  ellipsoid(flat, above, 2 * M_PI * (1 - 1 / std::sqrt(1 + tangent * tangent)));
+  ellipsoid(flat, at3, 2 * M_PI * (1 - 1 / std::sqrt(1 + tangent * tangent)));
 }
 
 TEST(Spherical, InsideASphereThereIsNothingToChoose) {
-  const float unit[3][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}, inside[3] = {.5f, 0, 0},
-              on[3] = {0, 1, 0};
-  for (const auto* eye : {inside, on}) {
+  const Affine unit{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  const Vec3f inside{.5f, 0, 0}, on{0, 1, 0};
+  for (const Vec3f& eye : {inside, on}) {
     const SphericalEllipsoid s(unit, unit, eye);
-    const double any[3] = {0, 0, 1};
-    double d[3], distance;
+    const Vec3d any{0, 0, 1};
+    Vec3d d;
+    double distance;
     EXPECT_TRUE(s.inside());
     EXPECT_FALSE(s.sample(.5, .5, d, distance));
     EXPECT_EQ(s.pdf(any), 0);
@@ -284,28 +280,16 @@ template <class T> void checkFrames(double tolerance) {
   std::normal_distribution<double> normal;
   int jumps = 0;
   for (int i = 0; i < 200000; i++) {
-    double d[3] = {normal(random), normal(random), i % 3 ? normal(random) : 0.0}, other[3],
-           length = 0, otherLength = 0;
-    for (int k = 0; k < 3; k++) length += d[k] * d[k];
-    for (int k = 0; k < 3; k++) {
-      d[k] /= std::sqrt(length);
-      other[k] = d[k] + 1e-3 * normal(random);
-      otherLength += other[k] * other[k];
-    }
-    const T n[3] = {T(d[0]), T(d[1]), T(d[2])};
-    T s[3], t[3], near[3], beside[3];
-    const T m[3] = {T(other[0] / std::sqrt(otherLength)), T(other[1] / std::sqrt(otherLength)),
-                    T(other[2] / std::sqrt(otherLength))};
+    const auto component = [&] { return normal(random); };
+    const Vec3d d = normalize(Vec3d{component(), component(), i % 3 ? component() : 0.0});
+    const Vec3d other = d + 1e-3 * Vec3d{component(), component(), component()};
+    const Vec3<T> n(d), m(normalize(other));
+    Vec3<T> s, t, near, beside;
     basisOf(n, s, t);
     basisOf(m, near, beside);
-    const auto dot = [](const T a[3], const T b[3]) {
-      return double(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
-    };
-    for (const double zero : {dot(s, t), dot(s, n), dot(t, n), dot(s, s) - 1, dot(t, t) - 1})
-      ASSERT_NEAR(zero, 0, tolerance);
-    const T across[3] = {s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2],
-                         s[0] * t[1] - s[1] * t[0]};
-    ASSERT_GT(dot(across, n), 0.99);
+    for (const T zero : {dot(s, t), dot(s, n), dot(t, n), dot(s, s) - 1, dot(t, t) - 1})
+      ASSERT_NEAR(double(zero), 0, tolerance);
+    ASSERT_GT(dot(cross(s, t), n), 0.99);
     jumps += dot(s, near) < 0.99;
   }
   EXPECT_LT(jumps, 20) << "of 200,000 pairs that are about a milliradian apart";
@@ -317,14 +301,13 @@ TEST(Frame, IsRightHandedOrthonormalAndContinuous) {
   // Also along the direction where it jumps.
   const double pole[3] = {0.6649982694690716, 0.11246117974981107, -0.7383290490373657};
   for (const double off : {0.0, 1e-12, 1e-7, 1e-5, 1e-3, .05, .1, .15}) {
-    float n[3] = {float(pole[0] + off), float(pole[1]), float(pole[2])}, s[3], t[3];
-    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (float& x : n) x /= length;
+    const Vec3f n = normalize(Vec3f{float(pole[0] + off), float(pole[1]), float(pole[2])});
+    Vec3f s, t;
     basisOf(n, s, t);
-    for (int k = 0; k < 3; k++) EXPECT_TRUE(std::isfinite(s[k]) && std::isfinite(t[k]));
-    EXPECT_NEAR(s[0] * n[0] + s[1] * n[1] + s[2] * n[2], 0, 3e-6) << off;
-    EXPECT_NEAR(t[0] * n[0] + t[1] * n[1] + t[2] * n[2], 0, 3e-6) << off;
-    EXPECT_NEAR(s[0] * t[0] + s[1] * t[1] + s[2] * t[2], 0, 3e-6) << off;
+    EXPECT_TRUE(isFinite(s) && isFinite(t));
+    EXPECT_NEAR(dot(s, n), 0, 3e-6) << off;
+    EXPECT_NEAR(dot(t, n), 0, 3e-6) << off;
+    EXPECT_NEAR(dot(s, t), 0, 3e-6) << off;
   }
 }
 

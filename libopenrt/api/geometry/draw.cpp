@@ -103,8 +103,7 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   for (size_t i = 0; i < call.vertexCount; i++) {
     if (!used[i]) continue;
     const Vec3d p = loadPoint(call.points, i);
-    if (!(std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) <= maxCoordinate &&
-          p.x == p.x && p.y == p.y && p.z == p.z))
+    if (!isFinite(p) || largest(abs(p)) > maxCoordinate)
       fail(RT_INVALID_VALUE, "a coordinate is not finite or beyond 1e38");
     bounds.add(p);
   }
@@ -113,9 +112,7 @@ ArrayPtr widePoints(const DrawCall& call, Matrix4d& matrix) {
   float* out = reinterpret_cast<float*>(array->data());
   for (size_t i = 0; i < call.vertexCount; i++, out += 3) {
     const Vec3d p = used[i] ? loadPoint(call.points, i) - origin : Vec3d();
-    out[0] = static_cast<float>(p.x);
-    out[1] = static_cast<float>(p.y);
-    out[2] = static_cast<float>(p.z);
+    store(Vec3f(p), out);
   }
   if (!bounds.exact) matrix = matrix * translation(origin.x, origin.y, origin.z);
   return array;

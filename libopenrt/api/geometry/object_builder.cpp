@@ -32,8 +32,8 @@ void WideBounds::add(const Vec3d& p) {
     low = high = p;
     any = true;
   }
-  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  low = min(low, p);
+  high = max(high, p);
 }
 
 Vec3d WideBounds::origin() const {
@@ -48,11 +48,7 @@ Vec3d WideBounds::origin() const {
 }
 
 double WideBounds::reach(const Vec3d& from) const {
-  const auto along = [](double a, double b, double f) {
-    return std::max(std::fabs(a - f), std::fabs(b - f));
-  };
-  return std::max(
-      {along(low.x, high.x, from.x), along(low.y, high.y, from.y), along(low.z, high.z, from.z)});
+  return largest(max(abs(low - from), abs(high - from)));
 }
 
 void ObjectBuilder::begin(RTenum mode, const GeometryState& state) {

@@ -2,7 +2,6 @@
 // functions.
 #include "api/geometry/transform.h"
 
-#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -40,10 +39,9 @@ bool allFinite(std::initializer_list<double> values) {
 }
 
 Vec3d unit(const Vec3d& v, const char* complaint) {
-  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  require(largest > 0, RT_INVALID_VALUE, complaint);
-  const Vec3d scaled{v.x / largest, v.y / largest,
-                     v.z / largest}; // no overflow or underflow in the squares
+  const double size = largest(abs(v));
+  require(size > 0, RT_INVALID_VALUE, complaint);
+  const Vec3d scaled = v / size; // no overflow or underflow in the squares
   return scaled * (1 / length(scaled));
 }
 

@@ -1,16 +1,11 @@
 // rules_geometry.cpp: rules about the vertices of one object. Application thread.
-#include <algorithm>
-#include <cmath>
 
 #include "backend/debug/rules.h"
 
 namespace openrt::debug {
 namespace {
 
-Vec3d at(const ArrayPtr& array, size_t i) {
-  const float* p = array->as<float>() + 3 * i;
-  return {p[0], p[1], p[2]};
-}
+Vec3d at(const ArrayPtr& array, size_t i) { return Vec3d(vectorOf(array->as<float>() + 3 * i)); }
 
 // Reports float coordinates whose precision is coarse compared to the object's size. Positions
 // given in double never have this problem, because they get an origin of their own.
@@ -18,17 +13,12 @@ void farFromOrigin(uint32_t id, const Object& object, const RuleContext&, const 
   constexpr double steps = 1 << 14; // smallest number of float steps across a geometry
   for (const Geometry& g : object.geometries) {
     if (!g.points || g.points->count<float>() < 6) continue;
-    double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300}, reach = 0,
-           extent = 0;
-    for (size_t i = 0; i < g.points->count<float>(); i++) {
-      const double v = g.points->as<float>()[i];
-      low[i % 3] = std::min(low[i % 3], v);
-      high[i % 3] = std::max(high[i % 3], v);
+    Vec3d low{1e300, 1e300, 1e300}, high = -low;
+    for (size_t i = 0; i < g.points->count<float>() / 3; i++) {
+      low = min(low, at(g.points, i));
+      high = max(high, at(g.points, i));
     }
-    for (int k = 0; k < 3; k++) {
-      extent = std::max(extent, high[k] - low[k]);
-      reach = std::max({reach, std::fabs(low[k]), std::fabs(high[k])});
-    }
+    const double extent = largest(high - low), reach = largest(max(abs(low), abs(high)));
     if (extent > 0 && reach * 0x1p-23 * steps > extent)
       report(id, nameOf("object", id) + " is " + std::to_string(extent) + " large and " +
                      std::to_string(reach) +

@@ -1,7 +1,6 @@
 // rules_shaders.cpp: rules about shaders, their parameters and textures, and lights. Application
 // thread.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <set>
@@ -92,22 +91,13 @@ void overriddenParameters(const RuleContext& f, const Report& report) {
 }
 
 struct Bounds {
-  double low[3] = {1e300, 1e300, 1e300}, high[3] = {-1e300, -1e300, -1e300};
+  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   void add(const Vec3d& p) {
-    const double c[3] = {p.x, p.y, p.z};
-    for (int k = 0; k < 3; k++) {
-      low[k] = std::min(low[k], c[k]);
-      high[k] = std::max(high[k], c[k]);
-    }
+    low = min(low, p);
+    high = max(high, p);
   }
-  bool empty() const { return !(low[0] <= high[0]); }
-  double distance(const Vec3d& p) const {
-    const double c[3] = {p.x, p.y, p.z};
-    double square = 0;
-    for (int k = 0; k < 3; k++)
-      square += std::pow(std::max({low[k] - c[k], c[k] - high[k], 0.0}), 2);
-    return std::sqrt(square);
-  }
+  bool empty() const { return !(low.x <= high.x); }
+  double distance(const Vec3d& p) const { return length(max(max(low - p, p - high), Vec3d())); }
 };
 
 Bounds boundsOf(const Object& object) {
@@ -138,9 +128,8 @@ Bounds boundsOf(const Scene& scene) {
       const Bounds& b = known->second;
       const Matrix4d toWorld = cluster.world * item.matrix;
       for (int corner = 0; corner < 8 && !b.empty(); corner++)
-        world.add(
-            toWorld.point({corner & 1 ? b.high[0] : b.low[0], corner & 2 ? b.high[1] : b.low[1],
-                           corner & 4 ? b.high[2] : b.low[2]}));
+        world.add(toWorld.point({corner & 1 ? b.high.x : b.low.x, corner & 2 ? b.high.y : b.low.y,
+                                 corner & 4 ? b.high.z : b.low.z}));
     }
   }
   return world;

@@ -10,18 +10,12 @@
 namespace openrt {
 namespace {
 
-double largest(const Vec3d& v) {
-  return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-}
-
 // Returns twice the volume that the direction and the edge from p to q span with the origin;
 // swapping p and q exactly negates it. The sign says on which side of the edge the ray passes
 // (Pluecker coordinates, as in S. Woop, C. Benthin, I. Wald: Watertight ray/triangle intersection,
 // JCGT 2(1), 2013, but for any direction).
-template <class T> T side(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
-  const T ex = T(q.x) - p.x, ey = T(q.y) - p.y, ez = T(q.z) - p.z, sx = T(q.x) + p.x,
-          sy = T(q.y) + p.y, sz = T(q.z) + p.z;
-  return (ey * sz - ez * sy) * d.x + (ez * sx - ex * sz) * d.y + (ex * sy - ey * sx) * d.z;
+template <class T> T side(const Vec3<T>& p, const Vec3<T>& q, const Vec3<T>& d) {
+  return dot(cross(q - p, q + p), d);
 }
 
 // Returns side(), recomputed in long double if the double result is below the error bound. The
@@ -29,9 +23,12 @@ template <class T> T side(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
 // factor of 2^20 above the rounding error, because a barycentric weight must be right to about 1e-6
 // at grazing angles too.
 double sideOf(const Vec3d& p, const Vec3d& q, const Vec3d& d) {
-  const double rough = side<double>(p, q, d);
-  const double doubt = 0x1p-30 * largest(q - p) * (largest(p) + largest(q)) * largest(d);
-  return std::fabs(rough) > doubt ? rough : double(side<long double>(p, q, d));
+  const double rough = side(p, q, d);
+  const double doubt =
+      0x1p-30 * largest(abs(q - p)) * (largest(abs(p)) + largest(abs(q))) * largest(abs(d));
+  if (std::fabs(rough) > doubt) return rough;
+  using Long = Vec3<long double>;
+  return double(side(Long(p), Long(q), Long(d)));
 }
 
 struct Sides {
@@ -104,32 +101,20 @@ double intersectPlane(const RelativeTriangle& s, const Vec3d& d) {
 
 bool isHitInSinglePrecision(const RelativeTriangle& s, const Vec3d& direction, float near,
                             float far) {
-  struct V {
-    float x, y, z;
-    V operator+(const V& o) const { return {x + o.x, y + o.y, z + o.z}; }
-    V operator-(const V& o) const { return {x - o.x, y - o.y, z - o.z}; }
-  };
-  const auto rounded = [](const Vec3d& v) { return V{float(v.x), float(v.y), float(v.z)}; };
-  const auto times = [](const V& p, const V& q) { return p.x * q.x + p.y * q.y + p.z * q.z; };
-  const auto across = [](const V& p, const V& q) {
-    return V{p.y * q.z - p.z * q.y, p.z * q.x - p.x * q.z, p.x * q.y - p.y * q.x};
-  };
-  const V d = rounded(direction), a = rounded(s.a), b = rounded(s.b), c = rounded(s.c), e0 = c - a,
-          e1 = a - b, e2 = b - c;
-  const float u = times(across(e0, c + a), d), v = times(across(e1, a + b), d),
-              w = times(across(e2, b + c), d);
+  const Vec3f d(direction), a(s.a), b(s.b), c(s.c), e0 = c - a, e1 = a - b, e2 = b - c;
+  const float u = dot(cross(e0, c + a), d), v = dot(cross(e1, a + b), d),
+              w = dot(cross(e2, b + c), d);
   const float slack = 0x1p-23f * std::fabs(u + v + w);
   if (!(std::min({u, v, w}) >= -slack || std::max({u, v, w}) <= slack)) return false;
-  const V n = across(e0, e1);
-  const float t = times(a, n) / times(n, d);
+  const Vec3f n = cross(e0, e1);
+  const float t = dot(a, n) / dot(n, d);
   return t >= near && t <= far;
 }
 
 std::optional<TriangleHit> refineHit(const Record& r, uint32_t primitive, const RaySegment& ray) {
-  const uint32_t* corner = r.indices + 3 * size_t(primitive);
   const auto place = [&](int k) {
-    const float* p = r.vertices + 3 * size_t(corner[k]);
-    return r.instanced ? Vec3d{p[0], p[1], p[2]} : Vec3d{p[0], p[1], p[2]} * double(r.scale);
+    const Vec3d p(r.corner(primitive, k));
+    return r.instanced ? p : p * double(r.scale);
   };
   Vec3d from = ray.origin, d = ray.direction;
   if (r.instanced) {
@@ -138,7 +123,7 @@ std::optional<TriangleHit> refineHit(const Record& r, uint32_t primitive, const 
       for (int j = 0; j < 4; j++) m.m[size_t(4 * j + i)] = r.toRender.r[i][j];
     const Matrix4d back = inverse(m);
     from = back.point(ray.origin);
-    d = back.vector(ray.direction);
+    d = back.direction(ray.direction);
   }
   const RelativeTriangle seen{place(0) - from, place(1) - from, place(2) - from};
   TriangleHit at;

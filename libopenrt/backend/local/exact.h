@@ -41,25 +41,13 @@ double intersectPlane(const RelativeTriangle& triangle, const Vec3d& direction);
 bool isHitInSinglePrecision(const RelativeTriangle& triangle, const Vec3d& direction, float near,
                             float far);
 
-// Transforms a geometric normal of an instanced record from the space of its Embree scene to render
-// space (the world's axes, origin at the camera).
-inline void normalToRender(const Record& r, const float kernel[3], float out[3]) {
-  for (int i = 0; i < 3; i++)
-    out[i] = r.kernelNormal[i][0] * kernel[0] + r.kernelNormal[i][1] * kernel[1] +
-             r.kernelNormal[i][2] * kernel[2];
-}
-
 // Returns whether the ray is at such a grazing angle that single precision misplaces t, u and v by
 // more than about 1e-5 of the triangle's distance. normal: the triangle's normal, of any length, in
 // the frame of the direction. It computes in floats, because it is called for every hit.
-inline bool grazes(const float normal[3], const float direction[3]) {
-  float along = 0, n = 0, d = 0;
-  for (int k = 0; k < 3; k++) {
-    along += normal[k] * direction[k];
-    n += normal[k] * normal[k];
-    d += direction[k] * direction[k];
-  }
-  return !(along * along > 0x1p-12f * n * d); // also true if the products leave the range of floats
+inline bool grazes(const Vec3f& normal, const Vec3f& direction) {
+  const float along = dot(normal, direction);
+  // Also true if the products leave the range of floats.
+  return !(along * along > 0x1p-12f * dot(normal, normal) * dot(direction, direction));
 }
 
 // A ray in render space with its interval of t.

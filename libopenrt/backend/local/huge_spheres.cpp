@@ -31,12 +31,11 @@ struct HugeSphere {
   Matrix4d toUnit;
   explicit HugeSphere(const Matrix4d& unit) : toUnit(inverse(unit)) {}
   bool intersectRay(const Lane& lane, double t[2]) const {
-    return intersectUnitSphere(toUnit.point(lane.origin), toUnit.vector(lane.direction), t);
+    return intersectUnitSphere(toUnit.point(lane.origin), toUnit.direction(lane.direction), t);
   }
   // Returns the outward normal: the transpose of the inverse matrix transforms normals.
   Vec3d normalAt(const Lane& lane, double t) const {
-    const Vec3d p = toUnit.point(lane.origin + lane.direction * t);
-    return {dot(toUnit.column(0), p), dot(toUnit.column(1), p), dot(toUnit.column(2), p)};
+    return toUnit.transposed(toUnit.point(lane.origin + lane.direction * t));
   }
 };
 
@@ -46,20 +45,9 @@ const Matrix4d& unitOf(const void* part, uint32_t primitive) {
 
 void boundsOf(const RTCBoundsFunctionArguments* a) {
   const Matrix4d& m = unitOf(a->geometryUserPtr, a->primID);
-  float low[3], high[3];
-  for (size_t k = 0; k < 3; k++) {
-    const double half =
-        std::sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]) * (1 + 1e-6);
-    const double slack = 1e-6 * std::fabs(m.m[12 + k]);
-    low[k] = float(m.m[12 + k] - half - slack);
-    high[k] = float(m.m[12 + k] + half + slack);
-  }
-  a->bounds_o->lower_x = low[0];
-  a->bounds_o->lower_y = low[1];
-  a->bounds_o->lower_z = low[2];
-  a->bounds_o->upper_x = high[0];
-  a->bounds_o->upper_y = high[1];
-  a->bounds_o->upper_z = high[2];
+  const Vec3d centre = m.translation(), slack = 1e-6 * abs(centre),
+              half = Vec3d{length(m.row(0)), length(m.row(1)), length(m.row(2))} * (1 + 1e-6);
+  storeBounds(Vec3f(centre - half - slack), Vec3f(centre + half + slack), *a->bounds_o);
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {

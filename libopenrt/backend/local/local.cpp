@@ -115,9 +115,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
   scopedLights_ = scoped;
 
   const Vec3d origin = builder_.survey.origin(eye());
-  next.origin[0] = origin.x;
-  next.origin[1] = origin.y;
-  next.origin[2] = origin.z;
+  store(origin, next.origin);
   makeCamera(next, origin);
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
@@ -178,21 +176,16 @@ void LocalBackend::makeCamera(RenderScene& next, const Vec3d& origin) const {
   place(scene_.environment, RTS_ENVIRONMENT, next.environment);
   if (!next.camera.shader.shaderClass) return;
   const Vec3d axis = scene_.camera.matrix.column(2) * (-1 / length(scene_.camera.matrix.column(2)));
-  const double a[3] = {axis.x, axis.y, axis.z};
-  for (int k = 0; k < 3; k++) {
-    next.eye[k] = next.camera.fromLocal.r[k][3];
-    next.viewAxis[k] = float(a[k]);
-  }
+  next.eye = next.camera.fromLocal.translation();
+  next.viewAxis = Vec3f(axis);
 }
 
 // Returns the distance between the rays of two neighbouring pixels in the middle of the picture.
 // The width of lines and points is given in pixels.
 PixelFootprint LocalBackend::footprint(const RenderScene& next) const {
   PixelFootprint result;
-  for (int k = 0; k < 3; k++) {
-    result.eye[k] = next.eye[k];
-    result.axis[k] = next.viewAxis[k];
-  }
+  result.eye = next.eye;
+  result.axis = next.viewAxis;
   const ShaderSlot& camera = next.camera.shader;
   if (!camera.shaderClass) return result;
   Arena arena;
@@ -336,7 +329,7 @@ void LocalBackend::stats(RTstats& s) const {
 }
 
 // The ray is in render space, which has the world's unit of length.
-bool LocalBackend::cameraRay(double x, double y, float origin[3], float direction[3]) const {
+bool LocalBackend::cameraRay(double x, double y, Vec3f& origin, Vec3f& direction) const {
   const ShaderSlot& camera = snapshot_->camera.shader;
   if (!camera.shaderClass || snapshot_->frame.width == 0) return false;
   Arena arena;
@@ -360,16 +353,10 @@ bool LocalBackend::cameraRay(double x, double y, float origin[3], float directio
     const RunningShader running(*camera.shaderClass);
     camera.shaderClass->generate(&snapshot_->host, &batch, camera.params, 1, points, size, &local);
   }
-  const Affine& m = snapshot_->camera.fromLocal;
-  double d[3], square = 0;
-  for (int k = 0; k < 3; k++) {
-    const float* o[3] = {local.origin[0], local.origin[1], local.origin[2]};
-    const float* v[3] = {local.direction[0], local.direction[1], local.direction[2]};
-    origin[k] = m.r[k][0] * *o[0] + m.r[k][1] * *o[1] + m.r[k][2] * *o[2] + m.r[k][3];
-    d[k] = double(m.r[k][0]) * *v[0] + double(m.r[k][1]) * *v[1] + double(m.r[k][2]) * *v[2];
-    square += d[k] * d[k];
-  }
-  for (int k = 0; k < 3; k++) direction[k] = float(d[k] / std::sqrt(square));
+  const Affine& toRender = snapshot_->camera.fromLocal;
+  origin = toRender.point(load(local.origin, 0));
+  const Vec3d towards = toRender.direction(Vec3d(load(local.direction, 0)));
+  direction = Vec3f(towards / length(towards));
   return true;
 }
 

@@ -47,7 +47,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   PixelFootprint footprint(const RenderScene& next) const;
   Vec3d eye() const;
   // Computes the ray of the snapshot's camera through a pixel.
-  bool cameraRay(double x, double y, float origin[3], float direction[3]) const;
+  bool cameraRay(double x, double y, Vec3f& origin, Vec3f& direction) const;
   RThit hitOf(const RayHits& found, uint32_t i) const;
   // Calls `use` for blocks of rays, converted to render space, on all threads.
   void forBatches(std::span<const RTray> rays,

@@ -3,7 +3,6 @@
 #include "backend/local/near_lamps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <vector>
@@ -21,55 +20,40 @@ constexpr double wanted = 128;
 // A ray from the centre of a shape in a direction of its light. `skip` is the distance from the
 // centre to the shape's own surface.
 struct Probe {
-  double origin[3], direction[3], skip;
+  Vec3d origin, direction;
+  double skip;
   uint32_t record;
 };
 
 void addTriangle(const EmissiveShapes::Shape& shape, std::vector<Probe>& out) {
-  const auto corner = [&](int c) {
-    return Vec3d{shape.corner[c][0], shape.corner[c][1], shape.corner[c][2]};
-  };
-  const Vec3d n = cross(corner(1) - corner(0), corner(2) - corner(0)),
-              m = (corner(0) + corner(1) + corner(2)) * (1 / 3.0);
+  const Vec3d a(shape.corner[0]), b(shape.corner[1]), c(shape.corner[2]);
+  const Vec3d n = cross(b - a, c - a), middle = (a + b + c) * (1 / 3.0);
   const double l = length(n);
   if (!(l > 0)) return;
   for (const int side : {1, 2}) {
     const double s = (side == 1 ? 1 : -1) / l;
-    if (shape.sides & side)
-      out.push_back({{m.x, m.y, m.z}, {n.x * s, n.y * s, n.z * s}, 0, shape.record});
+    if (shape.sides & side) out.push_back({middle, n * s, 0, shape.record});
   }
 }
 
 void addSphere(const EmissiveShapes::Shape& shape, const Record& r, std::vector<Probe>& out) {
   for (int axis = 0; axis < 3; axis++)
     for (const double sign : {-1.0, 1.0}) {
-      Probe p{{r.toRender.r[0][3], r.toRender.r[1][3], r.toRender.r[2][3]}, {}, 0, shape.record};
-      for (int k = 0; k < 3; k++) {
-        p.direction[k] = sign * double(r.toRender.r[k][axis]);
-        p.skip += p.direction[k] * p.direction[k];
-      }
-      p.skip = std::sqrt(p.skip);
-      if (!(p.skip > 0)) continue;
-      for (double& d : p.direction) d /= p.skip;
-      out.push_back(p);
+      const Vec3d radius = sign * Vec3d(r.toRender.column(axis));
+      const double l = length(radius);
+      if (l > 0) out.push_back({Vec3d(r.toRender.translation()), radius / l, l, shape.record});
     }
 }
 
 // Returns the offset of rays spawned at a hit, about as computed by render/surface/points.cpp. Sets
 // `unit` to the spacing of floats there.
 double stepOff(const Record& r, uint32_t primitive, const Probe& p, double t, double& unit) {
-  double largest[3] = {}, along = 0, all = 0;
-  float corner[3][3];
-  if (r.primitive == edit::Primitive::Triangles) cornersOf(r, primitive, corner);
-  for (int k = 0; k < 3; k++) {
-    largest[k] = std::fabs(p.origin[k] + t * p.direction[k]);
-    if (r.primitive == edit::Primitive::Triangles)
-      for (const auto& c : corner) largest[k] = std::max(largest[k], std::fabs(double(c[k])));
-    along += largest[k] * std::fabs(p.direction[k]);
-    all = std::max(all, largest[k]);
-  }
+  Vec3d reach = abs(p.origin + t * p.direction);
+  if (r.primitive == edit::Primitive::Triangles)
+    for (const Vec3f& corner : cornersOf(r, primitive)) reach = max(reach, abs(Vec3d(corner)));
+  const double along = dot(reach, abs(p.direction));
   unit = 0x1p-23 * along;
-  return 7 * 0x1p-24 * std::max(along, 0x1p-6 * all);
+  return 7 * 0x1p-24 * std::max(along, 0x1p-6 * largest(reach));
 }
 
 } // namespace
@@ -94,10 +78,8 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   hits.allocate(arena, uint32_t(probes.size()));
   auto* own = arena.take<uint32_t>(padded(uint32_t(probes.size())));
   for (uint32_t i = 0; i < probes.size(); i++) {
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][i] = float(probes[i].origin[k]);
-      rays.dir[k][i] = float(probes[i].direction[k]);
-    }
+    store(Vec3f(probes[i].origin), rays.org, i);
+    store(Vec3f(probes[i].direction), rays.dir, i);
     rays.tnear[i] = 0;
     rays.tfar[i] = std::numeric_limits<float>::infinity();
     own[i] = probes[i].record;

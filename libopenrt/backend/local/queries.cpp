@@ -5,7 +5,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "backend/local/local.h"
@@ -17,15 +16,10 @@ constexpr size_t block = 4096;
 
 // Transforms the kernel's normal from the instance's frame to the world's axes, turns it to the
 // front side and normalises it.
-void worldNormal(const Record& r, const float k[3], float out[3]) {
-  double n[3] = {k[0], k[1], k[2]};
-  if (r.instanced)
-    for (int j = 0; j < 3; j++)
-      n[j] = double(r.kernelNormal[j][0]) * k[0] + double(r.kernelNormal[j][1]) * k[1] +
-             double(r.kernelNormal[j][2]) * k[2];
-  const double l = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  const double s = l > 0 ? (r.flip ? -1 : 1) / l : 0;
-  for (int j = 0; j < 3; j++) out[j] = float(n[j] * s);
+Vec3f worldNormal(const Record& r, const Vec3f& kernel) {
+  const Vec3d k(kernel), n = r.instanced ? r.kernelNormal * k : k;
+  const double l = length(n);
+  return Vec3f(n * (l > 0 ? (r.flip ? -1 : 1) / l : 0));
 }
 
 template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& f) {
@@ -44,10 +38,8 @@ template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& 
 void LocalBackend::loadRays(std::span<const RTray> rays, size_t first, Rays& to) const {
   for (uint32_t i = 0; i < to.count; i++) {
     const RTray& ray = rays[first + i];
-    for (int k = 0; k < 3; k++) {
-      to.org[k][i] = float(ray.origin[k] - snapshot_->origin[k]);
-      to.dir[k][i] = ray.direction[k];
-    }
+    store(Vec3f(Vec3d(vectorOf(ray.origin)) - vectorOf(snapshot_->origin)), to.org, i);
+    store(vectorOf(ray.direction), to.dir, i);
     to.tnear[i] = ray.tnear;
     to.tfar[i] = ray.tfar;
   }
@@ -83,8 +75,7 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
   hit.t = found.t[i];
   hit.u = found.u[i];
   hit.v = found.v[i];
-  const float ng[3] = {found.ng[0][i], found.ng[1][i], found.ng[2][i]};
-  worldNormal(r, ng, hit.normal);
+  store(worldNormal(r, load(found.ng, i)), hit.normal);
   hit.instance = r.instance;
   hit.name = r.name;
   hit.primitive = found.primitive[i];
@@ -125,7 +116,7 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
       hit.t = p.t;
       hit.u = p.u;
       hit.v = p.v;
-      worldNormal(r, p.ng, hit.normal);
+      store(worldNormal(r, p.ng), hit.normal);
       hit.instance = r.instance;
       hit.name = r.name;
       hit.primitive = p.primitive;
@@ -137,24 +128,21 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
 void LocalBackend::closestPoints(std::span<const float> points, float radius,
                                  std::span<RTclosest> closest) {
   prepare();
-  const double* origin = snapshot_->origin;
+  const Vec3d origin = vectorOf(snapshot_->origin);
   const std::vector<uint32_t> round = accel_->spheres();
   parallelBlocks(threads_, closest.size(), [&](size_t first, size_t n) {
     for (size_t i = first; i < first + n; i++) {
       RTclosest& out = closest[i] = {};
       out.distance = std::numeric_limits<float>::infinity();
-      const double place[3] = {points[3 * i] - origin[0], points[3 * i + 1] - origin[1],
-                               points[3 * i + 2] - origin[2]};
+      const Vec3d place = Vec3d(vectorOf(&points[3 * i])) - origin;
       Accel::Nearest found;
       if (!accel_->nearest(place, radius, round, found)) continue;
       const Record& r = accel_->records[found.record];
       out.distance = float(found.distance);
       out.u = float(found.u);
       out.v = float(found.v);
-      for (int k = 0; k < 3; k++) {
-        out.point[k] = float(found.point[k] + origin[k]);
-        out.normal[k] = float(found.normal[k]);
-      }
+      store(Vec3f(found.point + origin), out.point);
+      store(Vec3f(found.normal), out.normal);
       out.instance = r.instance;
       out.name = r.name;
       out.primitive = found.primitive;
@@ -170,12 +158,10 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
   Arena arena;
   Rays ray;
   ray.allocate(arena, 1);
-  float origin[3], direction[3];
+  Vec3f origin, direction;
   if (!cameraRay(x, y, origin, direction)) return false;
-  for (int k = 0; k < 3; k++) {
-    ray.org[k][0] = origin[k];
-    ray.dir[k][0] = direction[k];
-  }
+  store(origin, ray.org, 0);
+  store(direction, ray.dir, 0);
   ray.tnear[0] = 0;
   ray.tfar[0] = std::numeric_limits<float>::infinity();
   RayHits found;

@@ -92,8 +92,8 @@ class Edges {
 } // namespace
 
 TriangleShape shapeOf(const float* a, const float* b, const float* c) {
-  const Vec3d p{a[0], a[1], a[2]}, e1 = Vec3d{b[0], b[1], b[2]} - p,
-                                   e2 = Vec3d{c[0], c[1], c[2]} - p, e3 = e2 - e1;
+  const Vec3d p(vectorOf(a)), e1 = Vec3d(vectorOf(b)) - p, e2 = Vec3d(vectorOf(c)) - p,
+                              e3 = e2 - e1;
   const Vec3d n = cross(e1, e2);
   const double area = dot(n, n), longest = std::max({dot(e1, e1), dot(e2, e2), dot(e3, e3)});
   if (!(area > 0) || !std::isfinite(area)) return TriangleShape::degenerate;

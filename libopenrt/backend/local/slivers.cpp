@@ -1,8 +1,6 @@
 // slivers.cpp: an Embree user geometry for slivers, triangles that single precision cannot
 // intersect (sliver_edges.h). Embree traverses their bounding boxes; the triangles are intersected
 // here in double precision (exact.h). Called by render threads.
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "backend/local/accel/embree_parts.h"
@@ -12,14 +10,14 @@
 namespace openrt {
 namespace {
 
-double largest(const Vec3d& v) {
-  return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+// Returns the largest absolute value of the components of three vectors.
+double reachOf(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  return largest(max(max(abs(a), abs(b)), abs(c)));
 }
 
 Vec3d cornerOf(const Part& part, uint32_t triangle, int k) {
-  const float* v =
-      part.vertices.data() + 3 * size_t(part.indices[3 * size_t(triangle) + size_t(k)]);
-  return {v[0], v[1], v[2]};
+  const uint32_t index = part.indices[3 * size_t(triangle) + size_t(k)];
+  return Vec3d(vectorOf(part.vertices.data() + 3 * size_t(index)));
 }
 
 // Returns whether a ray passes an open edge so closely that it counts as a hit. The neighbour
@@ -28,7 +26,7 @@ Vec3d cornerOf(const Part& part, uint32_t triangle, int k) {
 bool closesGap(const RelativeTriangle& s, unsigned open, const Vec3d& d, double near,
                TriangleHit& at) {
   const double distance = closestPointToLine(s, d, open, at),
-               slack = 0x1p-21 * std::max({largest(s.a), largest(s.b), largest(s.c)});
+               slack = 0x1p-21 * reachOf(s.a, s.b, s.c);
   return distance <= slack && intersectPlane(s, d) >= near;
 }
 
@@ -45,14 +43,13 @@ struct Sliver {
         c(cornerOf(part, triangle, 2)), edge{c - a, a - b, b - c}, moment{cross(edge[0], c + a),
                                                                           cross(edge[1], a + b),
                                                                           cross(edge[2], b + c)},
-        extent(std::max({largest(a), largest(b), largest(c)})),
-        doubt(0x1p-18 * std::max({largest(edge[0]), largest(edge[1]), largest(edge[2])})) {}
+        extent(reachOf(a, b, c)), doubt(0x1p-18 * reachOf(edge[0], edge[1], edge[2])) {}
 
   // Returns whether the ray's line passes the triangle at such a distance that neither float
   // rounding nor closesGap() could make it a hit.
   bool isClearlyMissed(const Lane& ray) const {
     const Vec3d m = cross(ray.direction, ray.origin) * 2;
-    const double slack = doubt * (extent + largest(ray.origin)) * largest(ray.direction);
+    const double slack = doubt * (extent + largest(abs(ray.origin))) * largest(abs(ray.direction));
     const auto side = [&](int k) { return dot(moment[k], ray.direction) + dot(edge[k], m); };
     const auto apart = [slack](double p, double q) {
       return (p > slack && q < -slack) || (p < -slack && q > slack);
@@ -82,14 +79,8 @@ void boundsOf(const RTCBoundsFunctionArguments* a) {
   const Vec3d p = cornerOf(part, a->primID, 0), q = cornerOf(part, a->primID, 1),
               r = cornerOf(part, a->primID, 2);
   // The bounds are padded by the tolerance of closesGap().
-  const auto wide = [](double x, double y, double z, float& low, float& high) {
-    const double slack = 0x1p-21 * std::max({std::fabs(x), std::fabs(y), std::fabs(z)});
-    low = float(std::min({x, y, z}) - slack);
-    high = float(std::max({x, y, z}) + slack);
-  };
-  wide(p.x, q.x, r.x, a->bounds_o->lower_x, a->bounds_o->upper_x);
-  wide(p.y, q.y, r.y, a->bounds_o->lower_y, a->bounds_o->upper_y);
-  wide(p.z, q.z, r.z, a->bounds_o->lower_z, a->bounds_o->upper_z);
+  const Vec3d slack = 0x1p-21 * max(max(abs(p), abs(q)), abs(r));
+  storeBounds(Vec3f(min(min(p, q), r) - slack), Vec3f(max(max(p, q), r) + slack), *a->bounds_o);
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {

@@ -15,12 +15,11 @@ void addThin(Part& part, const Geometry& g, const Matrix4d& toKernel, uint32_t r
   const uint32_t* index = g.indices->as<uint32_t>();
   const bool lines = g.primitive == edit::Primitive::Lines;
   const auto put = [&](uint32_t i) {
-    const float* p = points.data() + 3 * size_t(i);
-    float depth = 0;
-    for (int k = 0; k < 3; k++) depth += (p[k] / scale - footprint.eye[k]) * footprint.axis[k];
+    const Vec3f p = vectorOf(points.data() + 3 * size_t(i));
+    const float depth = dot(p / scale - footprint.eye, footprint.axis);
     const float radius =
         0.5f * g.width * (footprint.constant + footprint.slope * std::fabs(depth)) * scale;
-    part.vertices.insert(part.vertices.end(), {p[0], p[1], p[2], radius});
+    part.vertices.insert(part.vertices.end(), {p.x, p.y, p.z, radius});
   };
   for (size_t i = 0; i < g.primitives(); i++) {
     if (lines) part.indices.push_back(uint32_t(part.vertices.size() / 4));

@@ -12,7 +12,7 @@ namespace openrt {
 // The size of a pixel at depth d along the view axis, in render space: constant + slope * |d|.
 struct PixelFootprint {
   float constant = 0, slope = 0;
-  float eye[3] = {}, axis[3] = {0, 0, -1};
+  Vec3f eye, axis{0, 0, -1};
   bool operator==(const PixelFootprint&) const = default;
 };
 

@@ -20,6 +20,16 @@ struct Lane {
   bool reaches(double t) const { return float(t) >= near && float(t) <= far; }
 };
 
+// Writes a box to Embree's bounds.
+inline void storeBounds(const Vec3f& low, const Vec3f& high, RTCBounds& out) {
+  out.lower_x = low.x;
+  out.lower_y = low.y;
+  out.lower_z = low.z;
+  out.upper_x = high.x;
+  out.upper_y = high.y;
+  out.upper_z = high.z;
+}
+
 // Returns whether the filter of the query, if any, accepts a hit of lane i at distance t. The
 // filter gets the hit as a packet of one ray. Arguments: those of an intersection or of an
 // occlusion callback.

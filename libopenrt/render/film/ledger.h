@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdint>
 
-namespace openrt {
+#include "scene/vec3.h"
 
-inline double sumOf(const float v[3]) { return double(v[0]) + double(v[1]) + double(v[2]); }
+namespace openrt {
 
 // Emitted light that only BSDF sampling can find: the ray comes from a non-specular surface via
 // mirrors or smooth boundaries, so light sampling cannot connect to the emitter.
@@ -29,14 +29,15 @@ struct UnsampledLight {
   // Counts a ray. brightest: radiance of the brightest emitter that the ray can reach, summed over
   // the colours. The colour of the emitter is not known here, so the largest component of the
   // throughput bounds what the ray could contribute.
-  void send(const float throughput[3], double brightest) {
+  void send(const Vec3f& throughput, double brightest) {
     if (!(brightest > 0)) return;
-    light += double(std::max({throughput[0], throughput[1], throughput[2]})) * brightest;
+    light += double(largest(throughput)) * brightest;
     rays++;
   }
   // Counts the hit of such a ray if the radiance found there is at least half of `brightest`.
-  void meet(const float radiance[3], double brightest) {
-    if (sumOf(radiance) >= .5 * brightest) met++;
+  void meet(const Vec3f& radiance, double brightest) {
+    const double sum = double(radiance.x) + double(radiance.y) + double(radiance.z);
+    if (sum >= .5 * brightest) met++;
   }
   // Returns a bound of the share of rays that should have hit such an emitter but did not: the
   // upper 95 % bound of a Poisson variable (E. B. Wilson, M. M. Hilferty, The distribution of

@@ -1,7 +1,7 @@
-// vec3-inl.h: a vector of three components, for one value (float, double) and for vector lanes
-// alike. Lanes need functions that are compiled for each instruction set, so this text is included
-// once in namespace openrt (vec3.h) and once in the namespace of each instruction set
-// (lanes-inl.h). The including file opens the namespace. Pure functions. [any thread]
+// vec3-inl.h: a vector whose three components are vector lanes. The names are those of
+// scene/vec3.h, which has the vectors of single numbers. Lanes need functions that are compiled for
+// each instruction set, so lanes-inl.h includes this text once in the namespace of each. Pure
+// functions. [any thread]
 
 template <class T> struct Vec3 { T x, y, z; };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/luminance.h"
 #include "render/surface/batch.h"
 #include "shading/running.h"
 
@@ -13,22 +14,9 @@ namespace {
 
 constexpr uint32_t batchSize = 1024;
 
-double luminance(const float c[3]) {
-  const double l = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-  return std::isfinite(l) && l > 0 ? std::min(l, 1e30) : 0;
-}
-
-double areaOf(const float p[3][3], float normal[3]) {
-  double a[3], b[3];
-  for (int k = 0; k < 3; k++) {
-    a[k] = double(p[1][k]) - p[0][k];
-    b[k] = double(p[2][k]) - p[0][k];
-  }
-  const double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                       a[0] * b[1] - a[1] * b[0]};
-  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  for (int k = 0; k < 3; k++) normal[k] = float(length > 0 ? n[k] / length : 0);
-  return length / 2;
+// Returns the cross product of two edges of a triangle: its normal, twice as long as its area.
+Vec3d areaNormalOf(const std::array<Vec3f, 3>& p) {
+  return cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
 }
 
 // Returns whether the instance's map reverses the orientation of corners. The kernel's normal is
@@ -49,11 +37,9 @@ struct ProbeRays {
   }
   // Adds a probe ray at `place`. `towards` is the unit direction from the point to the ray's
   // origin.
-  void add(const float place[3], const float towards[3]) {
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][count] = place[k] + towards[k];
-      rays.dir[k][count] = -towards[k];
-    }
+  void add(const Vec3f& place, const Vec3f& towards) {
+    store(place + towards, rays.org, count);
+    store(-towards, rays.dir, count);
     hits.t[count] = 1;
     order[count] = count;
     count++;
@@ -85,11 +71,12 @@ RtsSurface evaluateEmission(const RenderScene& scene, uint32_t record, const Pro
 // of the colours bounds the light that is missing if no path has found it. radiance: 0 where a
 // colour is not finite.
 struct Brightness {
-  double luminance = 0, sum = 0, radiance[3] = {};
+  double luminance = 0, sum = 0;
+  Vec3d radiance;
   void add(const Brightness& other, double weight) {
     luminance += weight * other.luminance;
     sum += weight * other.sum;
-    for (int k = 0; k < 3; k++) radiance[k] += weight * other.radiance[k];
+    radiance += weight * other.radiance;
   }
 };
 
@@ -99,17 +86,13 @@ bool emitsUniformly(const RenderScene& scene, const Record& r) {
   return ((*scene.shaders)[r.shader].traits & RTS_UNIFORM_EMISSION) && r.parameterCount == 0;
 }
 
-void storeRadiance(const Brightness& from, float out[3]) {
-  for (int k = 0; k < 3; k++) out[k] = float(from.radiance[k]);
-}
-
 // Computes the emitted radiance of the probed points.
 void emittedBrightness(const RenderScene& scene, uint32_t record, const ProbeRays& probes,
                        Arena& arena, Brightness* out) {
   const RtsSurface surface = evaluateEmission(scene, record, probes, arena);
   for (uint32_t i = 0; i < probes.count; i++) {
-    const float c[3] = {surface.emission[0][i], surface.emission[1][i], surface.emission[2][i]};
-    const double sum = double(c[0]) + double(c[1]) + double(c[2]);
+    const Vec3f c = load(surface.emission, i);
+    const double sum = double(c.x) + double(c.y) + double(c.z);
     out[i] = {luminance(c), std::isfinite(sum) && sum > 0 ? std::min(sum, 1e30) : 0, {}};
     for (int k = 0; k < 3; k++) out[i].radiance[k] = std::isfinite(c[k]) ? double(c[k]) : 0;
   }
@@ -129,23 +112,17 @@ void triangleEmission(const RenderScene& scene, uint32_t record,
   ArenaScope scope(arena);
   ProbeRays probes(arena, uint32_t(shapes.size()) * places);
   for (const EmissiveShapes::Shape& s : shapes) {
-    float normal[3], towards[3], kernel[3];
-    areaOf(s.corner, normal);
-    for (int k = 0; k < 3; k++) towards[k] = otherSide ? -normal[k] : normal[k];
-    kernelNormal(r, normal, kernel);
+    const Vec3f normal(normalize(areaNormalOf(s.corner))), kernel = kernelNormal(r, normal);
     for (uint32_t p = 0; p < places; p++) {
       const uint32_t i = probes.count;
       const float u = at[p][0], v = at[p][1];
-      float place[3];
-      for (int k = 0; k < 3; k++) {
-        place[k] = (1 - u - v) * s.corner[0][k] + u * s.corner[1][k] + v * s.corner[2][k];
-        probes.hits.ng[k][i] = kernel[k];
-      }
+      store(kernel, probes.hits.ng, i);
       probes.hits.u[i] = mirrored ? v : u;
       probes.hits.v[i] = mirrored ? u : v;
       probes.hits.record[i] = record;
       probes.hits.primitive[i] = s.primitive;
-      probes.add(place, towards);
+      probes.add((1 - u - v) * s.corner[0] + u * s.corner[1] + v * s.corner[2],
+                 otherSide ? -normal : normal);
     }
   }
   auto* each = arena.take<Brightness>(probes.count);
@@ -160,19 +137,14 @@ Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& aren
   ProbeRays probes(arena, 6);
   for (int axis = 0; axis < 3; axis++)
     for (const float sign : {1.0f, -1.0f}) {
-      float place[3], towards[3], length = 0;
-      for (int k = 0; k < 3; k++) {
-        place[k] = r.toRender.r[k][3] + sign * r.toRender.r[k][axis];
-        towards[k] = sign * r.normalMatrix[k][axis];
-        length += towards[k] * towards[k];
-      }
-      for (float& x : towards) x /= std::sqrt(length);
+      const Vec3f normal = sign * r.normalMatrix.column(size_t(axis)),
+                  towards = normal / length(normal);
       const uint32_t i = probes.count;
-      for (int k = 0; k < 3; k++) probes.hits.ng[k][i] = towards[k];
+      store(towards, probes.hits.ng, i);
       probes.hits.u[i] = probes.hits.v[i] = 0;
       probes.hits.record[i] = record;
       probes.hits.primitive[i] = 0;
-      probes.add(place, towards);
+      probes.add(r.toRender.translation() + sign * r.toRender.column(axis), towards);
     }
   Brightness each[6], mean;
   emittedBrightness(scene, record, probes, arena, each);
@@ -182,13 +154,12 @@ Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& aren
 
 LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double back) {
   LightBounds b;
-  float normal[3];
-  const double area = areaOf(s.corner, normal);
-  for (int k = 0; k < 3; k++) {
-    b.low[k] = std::min({s.corner[0][k], s.corner[1][k], s.corner[2][k]});
-    b.high[k] = std::max({s.corner[0][k], s.corner[1][k], s.corner[2][k]});
-    b.axis[k] = front > 0 ? normal[k] : -normal[k];
-  }
+  const Vec3d areaNormal = areaNormalOf(s.corner);
+  const double area = length(areaNormal) / 2;
+  const Vec3f normal(normalize(areaNormal));
+  b.low = min(min(s.corner[0], s.corner[1]), s.corner[2]);
+  b.high = max(max(s.corner[0], s.corner[1]), s.corner[2]);
+  b.axis = front > 0 ? normal : -normal;
   b.cosineNormals = 1;
   b.bothSides = front > 0 && back > 0;
   const double intensity = std::max(front, back) * area;
@@ -198,14 +169,11 @@ LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double 
 
 LightBounds sphereBounds(const Record& r, double outside) {
   LightBounds b;
-  double disc = 0; // approximate area of the largest projection
-  for (int k = 0; k < 3; k++) {
-    const auto& m = r.toRender.r[k];
-    const double half = std::sqrt(double(m[0]) * m[0] + double(m[1]) * m[1] + double(m[2]) * m[2]);
-    b.low[k] = float(m[3] - half);
-    b.high[k] = float(m[3] + half);
-    disc = std::max(disc, M_PI * half * half);
-  }
+  const Affine& m = r.toRender;
+  const Vec3d half{length(Vec3d(m.row(0))), length(Vec3d(m.row(1))), length(Vec3d(m.row(2)))};
+  b.low = Vec3f(Vec3d(m.translation()) - half);
+  b.high = Vec3f(Vec3d(m.translation()) + half);
+  const double disc = largest(M_PI * half * half); // about the area of the largest projection
   const double intensity = outside * disc;
   b.intensity = std::isfinite(intensity) ? float(std::min(intensity, 1e30)) : 0;
   return b;
@@ -215,22 +183,13 @@ LightBounds sphereBounds(const Record& r, double outside) {
 
 // For an instance that is the normal in the instance's frame, mapped by the transpose of toRender:
 // the inverse of the map Record::kernelNormal except for the length.
-void kernelNormal(const Record& r, const float normal[3], float out[3]) {
-  for (int k = 0; k < 3; k++) out[k] = normal[k];
-  if (!r.instanced) return;
-  for (int k = 0; k < 3; k++)
-    out[k] = r.toRender.r[0][k] * normal[0] + r.toRender.r[1][k] * normal[1] +
-             r.toRender.r[2][k] * normal[2];
+Vec3f kernelNormal(const Record& r, const Vec3f& normal) {
+  return r.instanced ? r.toRender.transposed(normal) : normal;
 }
 
-void cornersOf(const Record& r, uint32_t primitive, float out[3][3]) {
-  for (int c = 0; c < 3; c++) {
-    const float* v = r.vertices + 3 * size_t(r.indices[3 * size_t(primitive) + c]);
-    for (int k = 0; k < 3; k++) {
-      const float* m = r.toRender.r[k];
-      out[c][k] = r.instanced ? m[0] * v[0] + m[1] * v[1] + m[2] * v[2] + m[3] : v[k] * r.scale;
-    }
-  }
+std::array<Vec3f, 3> cornersOf(const Record& r, uint32_t primitive) {
+  return {r.placeOf(r.corner(primitive, 0)), r.placeOf(r.corner(primitive, 1)),
+          r.placeOf(r.corner(primitive, 2))};
 }
 
 EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.records.size(), none) {
@@ -238,8 +197,8 @@ EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.record
   for (uint32_t id = 0; id < scene.records.size(); id++) add(scene, id, bounds);
   tree_.build(bounds);
   for (const Shape& shape : shapes_) {
-    for (int c = 0; c < 3; c++)
-      for (int k = 0; k < 3; k++) corners_[c][k].push_back(shape.corner[c][k]);
+    for (size_t c = 0; c < 3; c++)
+      for (size_t k = 0; k < 3; k++) corners_[c][k].push_back(shape.corner[c][k]);
     sides_.push_back(shape.sides | (shape.sphere ? ShapeArrays::sphere : 0) |
                      (scene.records[shape.record].instanced ? ShapeArrays::instanced : 0));
   }
@@ -269,7 +228,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     Shape& s = shapes_.emplace_back(
         Shape{id, 0, uint8_t(outside > 0 ? 1 : 0), true, {}, false, 4 * bounds.back().intensity});
     s.uniform = emitsUniformly(scene, r);
-    storeRadiance(emission, s.radiance[0]);
+    s.radiance[0] = Vec3f(emission.radiance);
     return;
   }
   if (r.primitive != edit::Primitive::Triangles || !r.vertices) return;
@@ -281,7 +240,7 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
     const size_t begin = shapes_.size();
     for (uint32_t i = 0; i < n; i++) {
       Shape& s = shapes_.emplace_back(Shape{id, first + i, 0, false, {}, mirrored, 0});
-      cornersOf(r, s.primitive, s.corner);
+      s.corner = cornersOf(r, s.primitive);
       if (mirrored) std::swap(s.corner[1], s.corner[2]);
     }
     front.assign(n, {});
@@ -300,8 +259,8 @@ void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<Ligh
         s.sides = uint8_t((ahead > 0 ? 1 : 0) | (behind > 0 ? 2 : 0));
       s.power = bounds.back().intensity * (s.sides == 3 ? 2.0f : 1.0f);
       s.uniform = uniform;
-      storeRadiance(front[i], s.radiance[0]);
-      storeRadiance(back[i], s.radiance[1]);
+      s.radiance[0] = Vec3f(front[i].radiance);
+      s.radiance[1] = Vec3f(back[i].radiance);
     }
   }
 }
@@ -314,57 +273,43 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
     const float root = std::sqrt(u); // uniform on the triangle
     p.u = root * (1 - v);
     p.v = root * v;
-    for (int k = 0; k < 3; k++)
-      p.position[k] =
-          (1 - p.u - p.v) * s.corner[0][k] + p.u * s.corner[1][k] + p.v * s.corner[2][k];
-    p.area = areaOf(s.corner, p.normal);
+    p.position = (1 - p.u - p.v) * s.corner[0] + p.u * s.corner[1] + p.v * s.corner[2];
+    const Vec3d areaNormal = areaNormalOf(s.corner);
+    p.normal = Vec3f(normalize(areaNormal));
+    p.area = length(areaNormal) / 2;
     return p;
   }
   const Record& r = scene.records[s.record];
   const double z = 1 - 2.0 * u, round = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * M_PI * v;
-  const double l[3] = {round * std::cos(phi), round * std::sin(phi), z};
-  double length = 0, n[3];
-  const auto& m = r.toRender.r;
-  for (int k = 0; k < 3; k++) {
-    p.position[k] = float(m[k][0] * l[0] + m[k][1] * l[1] + m[k][2] * l[2] + m[k][3]);
-    // Normals are transformed by the inverse transpose.
-    n[k] = r.fromRender.r[0][k] * l[0] + r.fromRender.r[1][k] * l[1] + r.fromRender.r[2][k] * l[2];
-    length += n[k] * n[k];
-  }
-  length = std::sqrt(length);
-  for (int k = 0; k < 3; k++) p.normal[k] = float(n[k] / length);
+  const Vec3d l{round * std::cos(phi), round * std::sin(phi), z}, n = r.fromRender.transposed(l);
+  p.position = Vec3f(r.toRender.point(l));
+  p.normal = Vec3f(n / length(n));
   // An element of area grows by |det M| |M^-T n|.
-  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) * length;
+  p.area = 4 * M_PI * std::fabs(determinantOf(r.toRender)) * length(n);
   return p;
 }
 
-void EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const Place& place,
-                              const float towards[3], Arena& arena, float out[3]) const {
+Vec3f EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const Place& place,
+                               const Vec3f& towards, Arena& arena) const {
   const Shape& s = shapes_[number];
   if (s.uniform) {
-    float along = 0;
-    for (int k = 0; k < 3; k++) along += place.normal[k] * towards[k];
-    for (int k = 0; k < 3; k++) out[k] = std::max(s.radiance[along > 0 ? 0 : 1][k], 0.0f);
-    return;
+    const float along = dot(place.normal, towards);
+    return max(s.radiance[along > 0 ? 0 : 1], Vec3f());
   }
   ArenaScope scope(arena);
   ProbeRays probes(arena, 1);
-  float kernel[3];
-  if (s.sphere)
-    std::copy_n(place.normal, 3, kernel);
-  else
-    kernelNormal(scene.records[s.record], place.normal, kernel);
-  for (int k = 0; k < 3; k++) probes.hits.ng[k][0] = kernel[k];
+  store(s.sphere ? place.normal : kernelNormal(scene.records[s.record], place.normal),
+        probes.hits.ng, 0);
   probes.hits.u[0] = s.swapped ? place.v : place.u;
   probes.hits.v[0] = s.swapped ? place.u : place.v;
   probes.hits.record[0] = s.record;
   probes.hits.primitive[0] = s.primitive;
   probes.add(place.position, towards);
   const RtsSurface surface = evaluateEmission(scene, s.record, probes, arena);
-  for (int k = 0; k < 3; k++)
-    out[k] = surface.emission[k][0] > 0 && std::isfinite(surface.emission[k][0])
-                 ? surface.emission[k][0]
-                 : 0;
+  Vec3f out = load(surface.emission, 0);
+  for (float* colour : {&out.x, &out.y, &out.z})
+    if (!(*colour > 0) || !std::isfinite(*colour)) *colour = 0;
+  return out;
 }
 
 } // namespace openrt

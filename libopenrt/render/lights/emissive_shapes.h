@@ -3,6 +3,7 @@
 // threads.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,12 +24,12 @@ class EmissiveShapes {
     // the other side
     uint8_t sides;
     bool sphere;
-    float corner[3][3]; // triangle in render space, in the order of the kernel's normal
-    bool swapped;       // corners 1 and 2 are the record's 2 and 1
-    float power;        // approximately proportional to the flux
+    std::array<Vec3f, 3> corner; // triangle in render space, in the order of the kernel's normal
+    bool swapped;                // corners 1 and 2 are the record's 2 and 1
+    float power;                 // approximately proportional to the flux
     // Every point of a side emits the same radiance in all directions (RTS_UNIFORM_EMISSION).
     bool uniform = false;
-    float radiance[2][3] = {}; // mean emitted radiance of the sides, in the order of `sides`
+    Vec3f radiance[2]; // mean emitted radiance of the sides, in the order of `sides`
     // The shape may be hidden, or have another surface in the same place: it counts only where rays
     // report it.
     bool uncertain = false;
@@ -47,15 +48,16 @@ class EmissiveShapes {
   // which is the area of a triangle, and for an ellipsoid also corrects the uneven distribution of
   // points.
   struct Place {
-    float position[3], normal[3], u, v;
+    Vec3f position, normal;
+    float u, v;
     double area;
   };
   // Samples a point of a shape. u, v: uniform in the unit square.
   Place place(const RenderScene& scene, uint32_t number, float u, float v) const;
-  // Evaluates the radiance that a point emits in a direction. The shader is not called if the shape
+  // Returns the radiance that a point emits in a direction. The shader is not called if the shape
   // emits uniformly.
-  void radiance(const RenderScene& scene, uint32_t number, const Place& place,
-                const float towards[3], Arena& arena, float out[3]) const;
+  Vec3f radiance(const RenderScene& scene, uint32_t number, const Place& place,
+                 const Vec3f& towards, Arena& arena) const;
   // Returns the number of a primitive's shape, or `none` if its record is not emissive.
   uint32_t find(uint32_t record, uint32_t primitive) const {
     const uint32_t first = firstOf_[record];
@@ -74,10 +76,10 @@ class EmissiveShapes {
   double brightest_ = 0;
 };
 
-// Writes a unit normal in render space as the kernel would return it for a triangle of the record.
-void kernelNormal(const struct Record& record, const float normal[3], float out[3]);
+// Returns a unit normal in render space as the kernel would return it for a triangle of the record.
+Vec3f kernelNormal(const struct Record& record, const Vec3f& normal);
 
-// Writes the corners of a record's triangle in render space.
-void cornersOf(const Record& record, uint32_t primitive, float out[3][3]);
+// Returns the corners of a record's triangle in render space.
+std::array<Vec3f, 3> cornersOf(const Record& record, uint32_t primitive);
 
 } // namespace openrt

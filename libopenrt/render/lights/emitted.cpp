@@ -10,15 +10,8 @@
 namespace openrt {
 
 LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool twoSided) {
-  LightSampleContext from;
-  float p[3], n[3];
-  for (int k = 0; k < 3; k++) {
-    p[k] = points.hits.position[k][i];
-    n[k] = points.hits.geometric[k][i];
-  }
-  for (int k = 0; k < 3 && !twoSided; k++) from.normal[k] = n[k];
-  offsetPoint(p, n, points.error[i], from.position);
-  return from;
+  const Vec3f p = load(points.hits.position, i), n = load(points.hits.geometric, i);
+  return {offsetPoint(p, n, points.error[i]), twoSided ? Vec3f() : n};
 }
 
 namespace {
@@ -30,7 +23,7 @@ float emissionMisWeight(const RtsBatch& batch, uint32_t i) {
   const PathStates& states = *batch.states;
   const uint32_t lane = batch.order[i], record = points.rayHits->record[lane],
                  primitive = points.rayHits->primitive[lane];
-  const Vector3 direction = vectorAt(points.hits.direction, i);
+  const Vec3f direction = load(points.hits.direction, i);
   if (canOnlyReachSky(scene, states.flagsOf(lane)) &&
       scene.emitters.startsLightPaths(record, primitive, direction))
     return 0;
@@ -47,8 +40,9 @@ void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, Unsampl
                     float* const emission[3]) {
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const float weight = boundaries.visibleAt(i) ? emissionMisWeight(batch, i) : 0;
-    for (int k = 0; k < 3; k++) emission[k][i] *= weight;
-    if (weight > 0) unsampled.meet(batch.states->flagsOf(batch.order[i]), vectorAt(emission, i));
+    const Vec3f weighted = load(emission, i) * weight;
+    store(weighted, emission, i);
+    if (weight > 0) unsampled.meet(batch.states->flagsOf(batch.order[i]), weighted);
   }
 }
 
@@ -89,12 +83,9 @@ LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampl
   for (uint32_t i = 0; i < hits.count; i++) {
     const LightSample& lightSample = all[i];
     if (!(lightSample.pdf > 0)) continue;
-    float origin[3];
-    liftPoint(points, i, lightSample.direction, origin);
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][n] = origin[k];
-      rays.dir[k][n] = lightSample.direction[k];
-    }
+    const Vec3f origin = liftPoint(points, i, lightSample.direction);
+    store(origin, rays.org, n);
+    store(lightSample.direction, rays.dir, n);
     rays.tnear[n] = 0;
     rays.tfar[n] = lightSample.end >= 0
                        ? lightSample.end
@@ -123,21 +114,19 @@ void weightLightSamples(const RtsBatch& batch, const LobeSampling& sampling,
     if (!selectionProbability) continue;
     lobeValues.evaluate(batch.lobes[l], batch.points->hits, n, hitOf, rays.dir);
     for (uint32_t r = 0; r < n; r++) {
-      float w[3];
+      Vec3f w;
       const float followed = selectionProbability[hitOf[r]];
       if (!(followed > 0) || !weightAt(batch.lobes[l], hitOf[r], w)) continue;
       const float scale = 1 / (lightSamples[r].pdf + followed * lobeValues.pdf[r]);
-      for (int k = 0; k < 3; k++) response[k][r] += w[k] * lobeValues.value[k][r] * scale;
+      store(load(response, r) + w * load(lobeValues.value, r) * scale, response, r);
     }
   }
   uint32_t left = 0;
   for (uint32_t r = 0; r < n; r++) {
     if (!(response[0][r] > 0 || response[1][r] > 0 || response[2][r] > 0)) continue;
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][left] = rays.org[k][r];
-      rays.dir[k][left] = rays.dir[k][r];
-      response[k][left] = response[k][r];
-    }
+    store(load(rays.org, r), rays.org, left);
+    store(load(rays.dir, r), rays.dir, left);
+    store(load(response, r), response, left);
     rays.tnear[left] = rays.tnear[r];
     rays.tfar[left] = rays.tfar[r];
     hitOf[left] = hitOf[r];
@@ -196,7 +185,7 @@ template <class Add> void shadeSampledPoints(const StageContext& context, const 
     inner.tracer = nullptr;
     inner.points = &points;
     const RtsSurface surface = runSurfaceShader(inner, shaderClass);
-    for (uint32_t i = 0; i < m; i++) add(sorted[range.begin + i], vectorAt(surface.emission, i));
+    for (uint32_t i = 0; i < m; i++) add(sorted[range.begin + i], load(surface.emission, i));
   }
 }
 
@@ -219,11 +208,11 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
   findBlocked(scene, rays, blocked);
   blockUncertain(context, rays, lightSamples, blocked);
 
-  const auto add = [&](uint32_t ray, const float light[3]) {
+  const auto add = [&](uint32_t ray, const Vec3f& light) {
     const uint32_t i = samples.hit[ray];
-    float left[3] = {light[0], light[1], light[2]};
+    Vec3f left = light;
     if (!scene.shaders->media().empty()) { // absorption of the medium between hit and emitter
-      const MediaStack& media = mediaTowards(*batch.points, i, vectorAt(rays.dir, ray), boundaries,
+      const MediaStack& media = mediaTowards(*batch.points, i, load(rays.dir, ray), boundaries,
                                              batch.states->media[batch.order[i]]);
       absorb(mediumOf(media, scene.shaders->media()), std::min(lightSamples[ray].distance, 1e30f),
              scene.shaders->media(), left);
@@ -240,14 +229,14 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
       continue;
     }
     const EmissiveShapes::Shape& shape = (*scene.emitters.shapes())[lightSamples[r].shape];
-    if (const float* light = uniformRadiance(shape, lightSamples[r].direction))
-      add(r, light);
+    if (const Vec3f* light = uniformRadiance(shape, lightSamples[r].direction))
+      add(r, *light);
     else
       toShade[shaded++] = r;
   }
   if (skies) {
     const SkyAlongRays sky = evaluateSky(context, rays, toSky, skies);
-    for (uint32_t i = 0; i < skies; i++) add(toSky[i], vectorAt(sky.rgba, i));
+    for (uint32_t i = 0; i < skies; i++) add(toSky[i], load(sky.rgba, i));
   }
   if (shaded) shadeSampledPoints(context, rays, lightSamples, toShade, shaded, add);
 }

@@ -7,7 +7,6 @@
 #include "render/lights/spherical.h"
 #include "render/render_scene.h"
 #include "render/surface/points.h"
-#include "render/surface/scatter.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -21,10 +20,6 @@ bool sameEmission(const RenderScene& a, const RenderScene& b) {
     if (((now.traits | then.traits) & RTS_EMISSIVE) && now.params != then.params) return false;
   }
   return true;
-}
-
-const float* sideOf(const LightSampleContext& from) {
-  return from.normal[0] != 0 || from.normal[1] != 0 || from.normal[2] != 0 ? from.normal : nullptr;
 }
 
 } // namespace
@@ -44,10 +39,8 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
     shapes_ = before->emitters.shapes_;
   else
     shapes_ = std::make_shared<const EmissiveShapes>(scene);
-  const auto& m = scene.environment.toLocal.r;
-  determinant_ = std::fabs(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
+  const Affine& m = scene.environment.toLocal;
+  determinant_ = std::fabs(dot(m.row(0), cross(m.row(1), m.row(2))));
   const bool sky = sky_->usable() && determinant_ > 0 && std::isfinite(determinant_);
   skyIrradiance_ = sky ? float(std::clamp(sky_->irradiance(), 1e-30, 1e30)) : 0;
 }
@@ -55,32 +48,27 @@ void Emitters::build(const RenderScene& scene, const RenderScene* before, bool s
 float Emitters::skyShare(const LightSampleContext& from) const {
   if (!hasShapes() || !hasSky()) return hasSky() ? 1 : 0;
   float each[LightNode::width], sum = 0;
-  importances(shapes_->tree().root(),
-              LightReceiver(from.position, sideOf(from), ReceiverSide::only), each);
+  importances(shapes_->tree().root(), LightReceiver(from.position, from.normal, ReceiverSide::only),
+              each);
   for (const float importance : each) sum += importance;
   return skyShareOf(skyIrradiance_, sum);
 }
 
 // Jacobian of directions: solid angle in render space over that in the environment's space. A
 // linear map M scales solid angle by |det M| / |M d|^3.
-float Emitters::skyJacobian(const float local[3]) const {
-  const auto& m = scene_->environment.fromLocal.r;
-  double square = 0;
-  for (int k = 0; k < 3; k++) {
-    const double x =
-        double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
-    square += x * x;
-  }
+float Emitters::skyJacobian(const Vec3f& local) const {
+  const Vec3d towards = scene_->environment.fromLocal.direction(Vec3d(local));
+  const double square = dot(towards, towards);
   return float(square * std::sqrt(square) * determinant_);
 }
 
 // Samples a direction to a point on the shape. Returns its pdf as if the shape were the only one;
 // 0: no sample.
 double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from,
-                             double u, double v, double direction[3], double& distance) const {
+                             double u, double v, Vec3d& direction, double& distance) const {
   if (shape.sphere) {
     const Record& r = scene_->records[shape.record];
-    const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
+    const SphericalEllipsoid seen(r.fromRender, r.toRender, from.position);
     if (!(shape.sides & 1) || !seen.sample(u, v, direction, distance)) return 0;
     return seen.pdf(direction);
   }
@@ -92,19 +80,13 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
 // share: selection probability of the sky.
 LightSample Emitters::chooseSky(double share, float u, float v) const {
   LightSample lightSample;
-  float local[3];
+  Vec3f local;
   lightSample.distance = std::numeric_limits<float>::infinity();
   lightSample.pdf = float(share * sky_->sample(u, v, local));
   if (!(lightSample.pdf > 0)) return {};
   lightSample.pdf /= skyJacobian(local);
-  const auto& m = scene_->environment.fromLocal.r;
-  double towards[3], square = 0;
-  for (int k = 0; k < 3; k++) {
-    towards[k] =
-        double(m[k][0]) * local[0] + double(m[k][1]) * local[1] + double(m[k][2]) * local[2];
-    square += towards[k] * towards[k];
-  }
-  for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k] / std::sqrt(square));
+  const Vec3d towards = scene_->environment.fromLocal.direction(Vec3d(local));
+  lightSample.direction = Vec3f(towards / length(towards));
   return lightSample;
 }
 
@@ -115,35 +97,35 @@ LightSample Emitters::sampleChosen(const LightSampleContext& from, uint32_t numb
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
   LightSample lightSample;
   lightSample.shape = number;
-  double towards[3], distance = 0;
+  Vec3d towards;
+  double distance = 0;
   const double alone = sampleShape(shape, from, u, v, towards, distance);
   if (!(alone > 0)) return {};
   lightSample.pdf = float(probability * alone);
   lightSample.distance = float(distance);
-  for (int k = 0; k < 3; k++) lightSample.direction[k] = float(towards[k]);
+  lightSample.direction = Vec3f(towards);
   return lightSample;
 }
 
 namespace {
 
 // Returns the sample if it is valid and its light counts, else none.
-LightSample checked(const LightSample& lightSample, const float* normal) {
+LightSample checked(const LightSample& lightSample, const LightSampleContext& from) {
   const bool valid = lightSample.pdf > 0 && std::isfinite(lightSample.pdf) &&
-                     (!normal || dot3(lightSample.direction, normal) > 0);
+                     (from.normal == Vec3f() || dot(lightSample.direction, from.normal) > 0);
   return valid ? lightSample : LightSample{};
 }
 
 } // namespace
 
 LightSample Emitters::choose(const LightSampleContext& from, double pick, float u, float v) const {
-  const float* normal = sideOf(from);
   if (!any()) return {};
   const double sky = skyShare(from);
-  if (pick < sky) return checked(chooseSky(sky, u, v), normal);
+  if (pick < sky) return checked(chooseSky(sky, u, v), from);
   const double left = std::min((pick - sky) / (1 - sky), 1 - 0x1p-53);
-  const LightTree::Choice choice = shapes_->tree().choose(from.position, normal, left);
+  const LightTree::Choice choice = shapes_->tree().choose(from.position, from.normal, left);
   if (!(choice.probability > 0)) return {};
-  return checked(sampleChosen(from, choice.light, (1 - sky) * choice.probability, u, v), normal);
+  return checked(sampleChosen(from, choice.light, (1 - sky) * choice.probability, u, v), from);
 }
 
 void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena,
@@ -151,21 +133,14 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
   ArenaScope scope(arena);
   const uint32_t size = padded(points.count);
   const auto contextOf = [&](uint32_t i) {
-    LightSampleContext from;
-    float p[3], n[3];
-    for (int k = 0; k < 3; k++) {
-      p[k] = points.position[k][i];
-      n[k] = points.normal[k][i];
-    }
-    if (!points.twoSided[i]) std::copy_n(n, 3, from.normal);
-    offsetPoint(p, n, points.error[i], from.position);
-    return from;
+    const Vec3f n = load(points.normal, i);
+    return LightSampleContext{offsetPoint(load(points.position, i), n, points.error[i]),
+                              points.twoSided[i] ? Vec3f() : n};
   };
   if (!hasShapes()) {
     for (uint32_t i = 0; i < points.count; i++)
-      out[i] = points.wanted[i]
-                   ? checked(chooseSky(1, points.u[i], points.v[i]), sideOf(contextOf(i)))
-                   : LightSample{};
+      out[i] = points.wanted[i] ? checked(chooseSky(1, points.u[i], points.v[i]), contextOf(i))
+                                : LightSample{};
     return;
   }
   const auto floats = [&] { return arena.take<float>(size); };
@@ -180,7 +155,7 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
       const double share = chosen.skyShare[i];
       const double rest = share < 1 ? std::clamp((all - share) / (1 - share), 0.0, 1 - 0x1p-53) : 0;
       const LightTree::Choice choice =
-          shapes_->tree().choose(context.position, sideOf(context), rest);
+          shapes_->tree().choose(context.position, context.normal, rest);
       chosen.shape[i] = choice.light;
       chosen.probability[i] = choice.probability;
     }
@@ -195,7 +170,7 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
       continue;
     }
     if (points.pick[i] < sky) {
-      out[i] = checked(chooseSky(sky, points.u[i], points.v[i]), sideOf(contextOf(i)));
+      out[i] = checked(chooseSky(sky, points.u[i], points.v[i]), contextOf(i));
       continue;
     }
     out[i] = {};
@@ -205,7 +180,7 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
       out[i] =
           checked(sampleChosen(from, chosen.shape[i], (1 - double(sky)) * chosen.probability[i],
                                points.u[i], points.v[i]),
-                  sideOf(from));
+                  from);
       continue;
     }
     if (!(sampled.pdf[i] > 0)) continue;
@@ -213,24 +188,23 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
     out[i].pdf = (1 - sky) * chosen.probability[i] * sampled.pdf[i];
     out[i].distance = sampled.distance[i];
     if (!points.twoSided[i]) out[i].end = sampled.end[i];
-    for (int k = 0; k < 3; k++) out[i].direction[k] = sampled.direction[k][i];
+    out[i].direction = load(sampled.direction, i);
     if (!std::isfinite(out[i].pdf)) out[i].pdf = 0;
   }
 }
 
 float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
-                    const float direction[3], float) const {
+                    const Vec3f& direction, float) const {
   if (!hasShapes()) return 0;
   const uint32_t number = shapes_->find(record, primitive);
   if (number == EmissiveShapes::none) return 0;
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
   if (!shape.sides) return 0;
-  const float* normal = sideOf(from);
-  const double towards[3] = {direction[0], direction[1], direction[2]};
+  const Vec3d towards(direction);
   double alone = 0;
   if (shape.sphere) {
     const Record& r = scene_->records[record];
-    const SphericalEllipsoid seen(r.fromRender.r, r.toRender.r, from.position);
+    const SphericalEllipsoid seen(r.fromRender, r.toRender, from.position);
     if (shape.sides & 1) alone = seen.pdf(towards);
   } else {
     const SphericalTriangle seen(shape.corner, from.position);
@@ -238,10 +212,10 @@ float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t pr
   }
   if (!(alone > 0)) return 0;
   return float((1 - double(skyShare(from))) *
-               double(shapes_->tree().probability(from.position, normal, number)) * alone);
+               double(shapes_->tree().probability(from.position, from.normal, number)) * alone);
 }
 
-float Emitters::skyPdf(const LightSampleContext& from, const float local[3]) const {
+float Emitters::skyPdf(const LightSampleContext& from, const Vec3f& local) const {
   return hasSky() ? skyShare(from) * sky_->pdf(local) / skyJacobian(local) : 0.0f;
 }
 
@@ -250,20 +224,14 @@ double Emitters::brightest() const {
   return any() ? std::max(brightestSky(), shapes_->brightest()) : 0;
 }
 
-bool Emitters::startsLightPaths(uint32_t record, uint32_t primitive,
-                                const float direction[3]) const {
+bool Emitters::startsLightPaths(uint32_t record, uint32_t primitive, const Vec3f& direction) const {
   const uint32_t number = shapes_ ? shapes_->find(record, primitive) : EmissiveShapes::none;
   if (number == EmissiveShapes::none) return false;
   const EmissiveShapes::Shape& s = (*shapes_)[number];
   if (s.sphere || !(s.power > 0)) return s.power > 0;
-  double n[3], towards = 0;
-  for (int k = 0; k < 3; k++) {
-    const int a = (k + 1) % 3, b = (k + 2) % 3;
-    n[k] = (double(s.corner[1][a]) - s.corner[0][a]) * (double(s.corner[2][b]) - s.corner[0][b]) -
-           (double(s.corner[1][b]) - s.corner[0][b]) * (double(s.corner[2][a]) - s.corner[0][a]);
-    towards -= n[k] * direction[k];
-  }
-  return s.sides & (towards > 0 ? 1 : 2);
+  const Vec3d n =
+      cross(Vec3d(s.corner[1]) - Vec3d(s.corner[0]), Vec3d(s.corner[2]) - Vec3d(s.corner[0]));
+  return s.sides & (dot(n, Vec3d(direction)) < 0 ? 1 : 2);
 }
 
 } // namespace openrt

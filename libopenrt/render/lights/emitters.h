@@ -18,15 +18,15 @@ struct RenderScene;
 
 // The reference point that light is sampled for.
 struct LightSampleContext {
-  float position[3];
+  Vec3f position;
   // Unit normal if light counts from its side only; 0 0 0: light counts from everywhere.
-  float normal[3] = {0, 0, 0};
+  Vec3f normal;
 };
 
 // A sampled direction towards an emitter.
 struct LightSample {
   uint32_t shape = EmissiveShapes::none; // number of the shape; none: the sky was sampled
-  float direction[3];                    // unit, render space
+  Vec3f direction;                       // unit, render space
   float distance = 0;                    // to the sampled point; infinite for the sky
   float pdf = 0; // solid-angle pdf including the selection of the emitter; 0: no sample
   // Where the shadow ray ends, just before the sampled point; -1: shadowRayEnd() has to tell.
@@ -53,14 +53,14 @@ class Emitters {
   // Returns the solid-angle pdf of choose() for a surface hit along a direction; 0 if choose()
   // cannot sample it.
   float pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
-            const float direction[3], float distance) const;
+            const Vec3f& direction, float distance) const;
   // Returns the solid-angle pdf of choose() for a direction to the sky, given in the environment's
   // local space.
-  float skyPdf(const LightSampleContext& from, const float local[3]) const;
+  float skyPdf(const LightSampleContext& from, const Vec3f& local) const;
 
   // Returns whether light paths start on the surface hit along a direction
   // (render/lights/light_sources.h).
-  bool startsLightPaths(uint32_t record, uint32_t primitive, const float direction[3]) const;
+  bool startsLightPaths(uint32_t record, uint32_t primitive, const Vec3f& direction) const;
   // Access for light_sources.h, tests and statistics.
   const EmissiveShapes* shapes() const { return shapes_.get(); }
   const SkySampler* sky() const { return sky_.get(); }
@@ -74,8 +74,8 @@ class Emitters {
   LightSample sampleChosen(const LightSampleContext& from, uint32_t number, double probability,
                            float u, float v) const;
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
-                     double v, double direction[3], double& distance) const;
-  float skyJacobian(const float local[3]) const;
+                     double v, Vec3d& direction, double& distance) const;
+  float skyJacobian(const Vec3f& local) const;
   const RenderScene* scene_ = nullptr;
   std::shared_ptr<const SkySampler> sky_;
   std::shared_ptr<const EmissiveShapes> shapes_;

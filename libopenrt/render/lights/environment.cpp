@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/vectors.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -16,9 +15,9 @@ SkyAlongRays evaluateSky(const StageContext& context, const Rays& rays, const ui
   for (auto& a : sky.rgba) a = context.arena.takeZero<float>(size);
   const RoleSlot& environment = context.scene.environment;
   for (uint32_t i = 0; i < size; i++) {
-    const Vector3 direction =
-        mapDirection(environment.toLocal, vectorAt(rays.dir, lanes[std::min(i, n - 1)]));
-    for (int k = 0; k < 3; k++) sky.direction[k][i] = direction[k];
+    const Vec3f direction =
+        environment.toLocal.direction(load(rays.dir, lanes[std::min(i, n - 1)]));
+    store(direction * (1 / length(direction)), sky.direction, i);
   }
   const ShaderSlot& shader = environment.shader;
   RtsBatch batch = makeBatch(context);
@@ -50,8 +49,8 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
     // MIS weight.
     if (pdf > 0 && emitters.any())
       misWeight =
-          pdf / (pdf + emitters.skyPdf(wave.states.previousOf(lane), vectorAt(sky.direction, i)));
-    unsampled.meet(flags, vectorAt(sky.rgba, i));
+          pdf / (pdf + emitters.skyPdf(wave.states.previousOf(lane), load(sky.direction, i)));
+    unsampled.meet(flags, load(sky.rgba, i));
     for (int k = 0; k < 3; k++) {
       const float throughput = wave.states.throughput[k][lane], radiance = sky.rgba[k][i];
       if (std::isfinite(radiance)) found.radiance[k][path] += throughput * misWeight * radiance;
@@ -72,12 +71,9 @@ Fog fogAt(const StageContext& context, const Points& points, const PathStates& s
   for (auto& a : fromEye) a = context.arena.take<float>(size);
   for (uint32_t i = 0; i < size; i++) {
     const bool deflected = states.flagsOf(points.order[std::min(i, n - 1)]).deflected();
-    float toHit[3];
-    for (int k = 0; k < 3; k++)
-      toHit[k] =
-          deflected ? h.direction[k][i] * h.distance[i] : h.position[k][i] - context.scene.eye[k];
-    const Vector3 local = mapVector(environment.toLocal, toHit);
-    for (int k = 0; k < 3; k++) fromEye[k][i] = local[k];
+    const Vec3f toHit =
+        deflected ? load(h.direction, i) * h.distance[i] : load(h.position, i) - context.scene.eye;
+    store(environment.toLocal.direction(toHit), fromEye, i);
   }
   for (auto& a : fog.airlight) a = context.arena.takeZero<float>(size);
   fog.transmittance = context.arena.takeZero<float>(size);

@@ -94,10 +94,9 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const Rt
     for (float* a : {out.toLight[k], out.color[k], out.ambient[k]}) std::fill_n(a, padded(n), 0.0f);
   std::fill_n(batch.reach, padded(n), 0.0f);
   for (uint32_t i = 0; i < n; i++) {
-    const float place[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]};
-    const float normal[3] = {hits.normal[0][i], hits.normal[1][i], hits.normal[2][i]};
     const LightSampler::Choice c =
-        sampler.choose(place, normal, double(square[0][i]) + double(square[1][i]) * 0x1p-24);
+        sampler.choose(load(hits.position, i), load(hits.normal, i),
+                       double(square[0][i]) + double(square[1][i]) * 0x1p-24);
     batch.chosen[i] = c.probability > 0 ? c.light : none;
     probability[i] = c.probability;
     if (c.probability > 0) order[lit++] = i;

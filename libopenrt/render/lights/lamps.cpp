@@ -37,15 +37,12 @@ void addLamps(RtsBatch& batch, float* const radiance[3]) {
       if (!nonSpecularFunctions(lobe)) continue;
       lobeValues.evaluate(lobe, hits, n, all, from.toLight);
       for (uint32_t i = 0; i < n; i++) {
-        float w[3];
+        Vec3f w;
         if (!weightAt(lobe, i, w)) continue;
-        float side = 0, sum = 0;
-        for (int k = 0; k < 3; k++) {
-          response[k][i] += w[k] *= lobeValues.value[k][i];
-          sum += w[k];
-          side += lobe.normal[k][i] * from.toLight[k][i];
-        }
-        if (sum > 0) wanted[i] = side > 0 ? 1 : 2;
+        w *= load(lobeValues.value, i);
+        store(load(response, i) + w, response, i);
+        if (w.x + w.y + w.z > 0)
+          wanted[i] = dot(load(lobe.normal, i), load(from.toLight, i)) > 0 ? 1 : 2;
       }
     }
     host.shadow(&batch, light, &hits, wanted, &from);

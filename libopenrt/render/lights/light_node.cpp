@@ -17,8 +17,8 @@ void importances(const LightNode& node, const LightReceiver& receiver,
   using V = hn::Vec<decltype(tag)>;
   const auto all = [&](float value) { return hn::Set(tag, value); };
   const ReceiverLanes<V> to{
-      {all(receiver.place[0]), all(receiver.place[1]), all(receiver.place[2])},
-      {all(receiver.normal[0]), all(receiver.normal[1]), all(receiver.normal[2])},
+      {all(receiver.place.x), all(receiver.place.y), all(receiver.place.z)},
+      {all(receiver.normal.x), all(receiver.normal.y), all(receiver.normal.z)},
       all(receiver.facing),
       all(receiver.cut),
       all(receiver.least)};
@@ -46,12 +46,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace openrt {
 
-LightReceiver::LightReceiver(const float from[3], const float* side, ReceiverSide meaning) {
-  for (int k = 0; k < 3; k++) {
-    place[k] = from[k];
-    normal[k] = side ? side[k] : 0;
-  }
-  facing = side ? 0 : 2;
+LightReceiver::LightReceiver(const Vec3f& from, const Vec3f& side, ReceiverSide meaning)
+    : place(from), normal(side) {
+  facing = side == Vec3f() ? 2 : 0;
   cut = meaning == ReceiverSide::only ? -1e-5f : -2;
   least = meaning == ReceiverSide::only ? 1e-5f : 0.1f;
 }

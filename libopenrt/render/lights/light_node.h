@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "scene/vec3.h"
+
 namespace openrt {
 
 // Up to eight children side by side for vector lanes, with everything precomputed that does not
@@ -25,14 +27,14 @@ enum class ReceiverSide : uint8_t { only, likely };
 
 // The point for which light is sampled.
 struct LightReceiver {
-  float place[3], normal[3];
+  Vec3f place, normal;
   // Added to the cosine at the receiver; 2 if the side of the receiver does not matter.
   float facing;
   // cut: cosine at the receiver below which nothing arrives. least: smallest cosine that is used
   // above that.
   float cut, least;
-  // side: unit normal; null if light counts from everywhere.
-  LightReceiver(const float from[3], const float* side, ReceiverSide meaning);
+  // side: unit normal; 0 0 0 if light counts from everywhere.
+  LightReceiver(const Vec3f& from, const Vec3f& side, ReceiverSide meaning);
 };
 
 // Writes the importance of each of the eight children.

@@ -17,14 +17,10 @@ namespace {
 struct Placed { // a light with an extent, transformed to render space
   uint32_t light;
   RtsExtent extent;
-  float position[3], axis[3];
+  Vec3f position, axis;
   bool similar; // the transform is a similarity: angles are those of the light's space
   double stretch;
 };
-
-bool finite(const float* values, int n) {
-  return std::all_of(values, values + n, [](float x) { return std::isfinite(x); });
-}
 
 bool place(const RenderScene& scene, uint32_t number, Placed& out) {
   const LightSlot& slot = scene.lights[number];
@@ -36,32 +32,23 @@ bool place(const RenderScene& scene, uint32_t number, Placed& out) {
     const RunningShader running(c);
     if (!c.extent(&scene.host, slot.shader.params, &e) || e.parallel) return false;
   }
-  if (!finite(e.position, 3) || !finite(e.direction, 3) || !(e.power >= 0) || !(e.radius >= 0) ||
-      std::isnan(e.cosine))
+  if (!isFinite(vectorOf(e.position)) || !isFinite(vectorOf(e.direction)) || !(e.power >= 0) ||
+      !(e.radius >= 0) || std::isnan(e.cosine))
     return false;
   out.light = number;
-  double gram[3][3] = {}, length = 0;
-  out.stretch = 0;
-  const auto& m = slot.fromLocal.r;
-  for (int i = 0; i < 3; i++) {
-    out.position[i] = m[i][3];
-    out.axis[i] = 0;
-    for (int k = 0; k < 3; k++) {
-      out.position[i] += m[i][k] * e.position[k];
-      out.axis[i] += m[i][k] * e.direction[k];
-      out.stretch += double(m[i][k]) * m[i][k];
-      for (int j = 0; j < 3; j++) gram[k][j] += double(m[i][k]) * m[i][j];
-    }
-    length += double(out.axis[i]) * out.axis[i];
-  }
-  out.similar = length > 0;
+  const Affine& m = slot.fromLocal;
+  out.position = m.pointFromTranslation(vectorOf(e.position));
+  const Vec3d axis(m.direction(vectorOf(e.direction)));
+  out.axis = Vec3f(normalize(axis));
+  out.similar = length(axis) > 0;
+  const Vec3d x(m.column(0));
   for (int k = 0; k < 3; k++)
-    for (int j = 0; j < 3; j++)
-      out.similar &= std::fabs(gram[k][j] - (k == j ? gram[0][0] : 0)) < 1e-4 * gram[0][0];
+    for (int j = 0; j < 3; j++) // the columns of a similarity are orthogonal and equally long
+      out.similar &= std::fabs(dot(Vec3d(m.column(k)), Vec3d(m.column(j))) -
+                               (k == j ? dot(x, x) : 0)) < 1e-4 * dot(x, x);
   // Upper bound of the length of a transformed unit vector.
-  out.stretch = out.similar ? std::sqrt(gram[0][0]) : std::sqrt(out.stretch);
-  for (float& a : out.axis) a = length > 0 ? float(a / std::sqrt(length)) : 0;
-  return finite(out.position, 3) && finite(out.axis, 3);
+  out.stretch = out.similar ? length(x) : std::sqrt(squaredNormOf(m));
+  return isFinite(out.position) && isFinite(out.axis);
 }
 
 // Computes the mean colour of a light at `distance` and at twice that along its axis.
@@ -76,12 +63,10 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
     light.toLight[k] = arena.takeZero<float>(lanes);
     light.color[k] = arena.takeZero<float>(lanes);
     light.ambient[k] = arena.takeZero<float>(lanes);
-    for (uint32_t i = 0; i < lanes; i++) {
-      const auto& m = slot.toLocal.r[k];
-      local[k][i] = m[3];
-      for (int j = 0; j < 3; j++)
-        local[k][i] += m[j] * (p.position[j] + p.axis[j] * distance * (i == 0 ? 1.0f : 2.0f));
-    }
+  }
+  for (uint32_t i = 0; i < lanes; i++) {
+    const Vec3f at = p.position + p.axis * distance * (i == 0 ? 1.0f : 2.0f);
+    store(slot.toLocal.pointFromTranslation(at), local, i);
   }
   const float* const places[3] = {local[0], local[1], local[2]};
   RayCounters counters;
@@ -104,10 +89,8 @@ void measure(const RenderScene& scene, const Placed& p, float distance, Arena& a
 
 LightBounds boundsOf(const RenderScene& scene, const Placed& p, float distance, Arena& arena) {
   LightBounds b;
-  for (int k = 0; k < 3; k++) {
-    b.low[k] = b.high[k] = p.position[k];
-    b.axis[k] = p.axis[k];
-  }
+  b.low = b.high = p.position;
+  b.axis = p.axis;
   b.cosineNormals = p.similar && p.extent.cosine > -1 ? std::min(p.extent.cosine, 1.0f) : -1;
   b.cosineEmission = 1; // light is emitted only within the cone
   const double reach = double(p.extent.radius) * p.stretch;
@@ -144,24 +127,21 @@ bool sameLights(const RenderScene& a, const RenderScene& b) {
 
 LightSampler::LightSampler(const RenderScene& scene, const std::vector<uint32_t>& set) {
   std::vector<Placed> placed;
-  float low[3], high[3];
+  Vec3f low, high;
   for (const uint32_t light : set) {
     Placed p;
     if (set.size() <= few || !place(scene, light, p)) {
       always_.push_back(light);
       continue;
     }
-    for (int k = 0; k < 3; k++) {
-      low[k] = placed.empty() ? p.position[k] : std::min(low[k], p.position[k]);
-      high[k] = placed.empty() ? p.position[k] : std::max(high[k], p.position[k]);
-    }
+    low = placed.empty() ? p.position : min(low, p.position);
+    high = placed.empty() ? p.position : max(high, p.position);
     placed.push_back(p);
   }
   if (placed.empty()) return;
-  double square = 0;
-  for (int k = 0; k < 3; k++) square += (double(high[k]) - low[k]) * (double(high[k]) - low[k]);
-  const auto distance = float(square > 0 ? std::min(std::sqrt(square) / 4, 1e15)
-                                         : 1); // distance at which strengths are compared
+  const double diagonal = length(Vec3d(high) - Vec3d(low));
+  const auto distance =
+      float(diagonal > 0 ? std::min(diagonal / 4, 1e15) : 1); // at which strengths are compared
   Arena arena;
   std::vector<LightBounds> bounds;
   for (const Placed& p : placed) {
@@ -176,7 +156,7 @@ LightSampler::LightSampler(const RenderScene& scene, const std::vector<uint32_t>
   tree_.build(bounds);
 }
 
-LightSampler::Choice LightSampler::choose(const float place[3], const float normal[3],
+LightSampler::Choice LightSampler::choose(const Vec3f& place, const Vec3f& normal,
                                           double pick) const {
   const LightTree::Choice c = tree_.choose(place, normal, pick, LightTree::Side::likely);
   return {c.probability > 0 ? chosen_[c.light] : 0, c.probability};

@@ -29,7 +29,7 @@ class LightSampler {
     float probability;
   };
   // Samples a light for a point. normal: the surface normal, used only as a hint.
-  Choice choose(const float place[3], const float normal[3], double pick) const;
+  Choice choose(const Vec3f& place, const Vec3f& normal, double pick) const;
 
  private:
   std::vector<uint32_t> always_, chosen_;

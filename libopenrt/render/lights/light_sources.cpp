@@ -4,20 +4,20 @@
 #include <cmath>
 #include <limits>
 
+#include "render/frame.h"
 #include "render/surface/points.h"
-#include "render/surface/scatter.h"
 
 namespace openrt {
 namespace {
 
 // Samples a direction in a cone about an axis uniformly by solid angle.
-void sampleCone(const float axis[3], double cosine, float u, float v, float out[3]) {
+Vec3f sampleCone(const Vec3f& axis, double cosine, float u, float v) {
   const double z = 1 - (1 - cosine) * u, round = std::sqrt(std::max(0.0, 1 - z * z)),
                phi = 2 * M_PI * v;
-  float s[3], t[3];
+  Vec3f s, t;
   basisOf(axis, s, t);
-  for (int k = 0; k < 3; k++)
-    out[k] = float(round * std::cos(phi) * s[k] + round * std::sin(phi) * t[k] + z * axis[k]);
+  return Vec3f(round * std::cos(phi) * Vec3d(s) + round * std::sin(phi) * Vec3d(t) +
+               z * Vec3d(axis));
 }
 
 // Transforms a light's extent into render space. Returns false if the light has no usable extent.
@@ -26,17 +26,10 @@ bool extentOf(const RenderScene& scene, const LightSlot& light, RtsExtent& out) 
   RtsExtent local{};
   if (!c.extent || !c.extent(&scene.host, light.shader.params, &local)) return false;
   out = local;
-  const auto& m = light.fromLocal.r;
-  double length = 0;
-  for (int k = 0; k < 3; k++) {
-    out.position[k] = m[k][0] * local.position[0] + m[k][1] * local.position[1] +
-                      m[k][2] * local.position[2] + m[k][3];
-    out.direction[k] =
-        m[k][0] * local.direction[0] + m[k][1] * local.direction[1] + m[k][2] * local.direction[2];
-    length += double(out.direction[k]) * out.direction[k];
-  }
-  if (!(length > 0) && local.parallel) return false;
-  for (float& x : out.direction) x = length > 0 ? float(x / std::sqrt(length)) : 0.0f;
+  const Vec3d direction(light.fromLocal.direction(vectorOf(local.direction)));
+  if (!(length(direction) > 0) && local.parallel) return false;
+  store(light.fromLocal.point(vectorOf(local.position)), out.position);
+  store(Vec3f(normalize(direction)), out.direction);
   return local.power > 0 && std::isfinite(local.power);
 }
 
@@ -49,54 +42,38 @@ bool sameSpecularSurfaces(const RenderScene& a, const RenderScene& b) {
 } // namespace
 
 void LightSources::boundSpecularSurfaces(const RenderScene& scene) {
-  double low[3], high[3];
-  std::fill_n(low, 3, std::numeric_limits<double>::infinity());
-  std::fill_n(high, 3, -std::numeric_limits<double>::infinity());
-  const auto add = [&](const float p[3]) {
-    for (int k = 0; k < 3; k++) {
-      low[k] = std::min(low[k], double(p[k]));
-      high[k] = std::max(high[k], double(p[k]));
-    }
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Vec3d low{infinite, infinite, infinite}, high = -low;
+  const auto add = [&](const Vec3f& p) {
+    low = min(low, Vec3d(p));
+    high = max(high, Vec3d(p));
   };
   for (const Record& r : scene.records) {
     if (!((*scene.shaders)[r.shader].traits & RTS_SPECULAR)) continue;
     if (r.primitive == edit::Primitive::Sphere) {
-      for (const float sign : {-1.0f, 1.0f}) {
-        float p[3];
-        for (int k = 0; k < 3; k++) {
-          const auto& m = r.toRender.r[k];
-          p[k] = m[3] + sign * std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
-        }
-        add(p);
-      }
+      const Affine& m = r.toRender;
+      const Vec3f half{length(m.row(0)), length(m.row(1)), length(m.row(2))};
+      add(m.translation() - half);
+      add(m.translation() + half);
     } else if (r.primitive == edit::Primitive::Triangles && r.vertices) {
-      for (uint32_t t = 0; t < r.primitives; t++) {
-        float corner[3][3];
-        cornersOf(r, t, corner);
-        for (const auto& p : corner) add(p);
-      }
+      for (uint32_t t = 0; t < r.primitives; t++)
+        for (const Vec3f& p : cornersOf(r, t)) add(p);
     }
   }
-  double square = 0;
-  for (int k = 0; k < 3; k++) {
-    if (!(low[k] <= high[k])) return;
-    centre_[k] = float((low[k] + high[k]) / 2);
-    square += (high[k] - low[k]) * (high[k] - low[k]) / 4;
-  }
-  radius_ = float(std::sqrt(square) * (1 + 1e-5));
+  if (!(low.x <= high.x) || !(low.y <= high.y) || !(low.z <= high.z)) return;
+  centre_ = Vec3f((low + high) / 2);
+  radius_ = float(length(high - low) / 2 * (1 + 1e-5));
 }
 
 void LightSources::measureSceneExtent(const RenderScene& scene) {
-  float sceneLow[3], sceneHigh[3];
-  scene.kernel->bounds(sceneLow, sceneHigh);
-  double diagonal = 0;
-  for (int k = 0; k < 3; k++) diagonal += std::pow(double(sceneHigh[k]) - sceneLow[k], 2);
-  far_ = float(std::sqrt(diagonal)) + radius_;
+  float low[3], high[3];
+  scene.kernel->bounds(low, high);
+  far_ = float(length(Vec3d(vectorOf(high)) - Vec3d(vectorOf(low)))) + radius_;
 }
 
 LightSources::LightSources(const RenderScene& scene, const RenderScene* before) {
   if (before && before->lightSources && sameSpecularSurfaces(scene, *before)) {
-    std::copy_n(before->lightSources->centre_, 3, centre_);
+    centre_ = before->lightSources->centre_;
     radius_ = before->lightSources->radius_;
   } else
     boundSpecularSurfaces(scene);
@@ -123,12 +100,9 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before) 
 
 // Returns the cosine of the half angle of the cone about the specular surfaces as seen from a
 // point; -1 from inside their bounding sphere.
-double LightSources::coneToSpecular(const float from[3], float axis[3]) const {
-  double square = 0;
-  for (int k = 0; k < 3; k++) square += std::pow(double(centre_[k]) - from[k], 2);
-  const double distance = std::sqrt(square);
-  for (int k = 0; k < 3; k++)
-    axis[k] = distance > 0 ? float((centre_[k] - from[k]) / distance) : k == 2 ? 1.0f : 0.0f;
+double LightSources::coneToSpecular(const Vec3f& from, Vec3f& axis) const {
+  const double distance = length(Vec3d(centre_) - Vec3d(from));
+  axis = distance > 0 ? Vec3f(Vec3d(centre_ - from) / distance) : Vec3f{0, 0, 1};
   const double sine = radius_ / distance;
   return sine < 1 ? std::sqrt(1 - sine * sine) : -1;
 }
@@ -145,46 +119,40 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
   LightRay start;
   start.light = source.light;
   start.shape = source.shape;
-  float axis[3];
+  Vec3f axis;
   if (source.light != none) {
     const RtsExtent& e = source.extent;
     start.parallel = e.parallel != 0;
     start.endless = !std::isfinite(e.radius);
     if (!start.parallel) {
-      const double cosine = coneToSpecular(e.position, axis);
-      std::copy_n(e.position, 3, start.origin);
-      sampleCone(axis, cosine, direction[0], direction[1], start.direction);
+      start.origin = vectorOf(e.position);
+      const double cosine = coneToSpecular(start.origin, axis);
+      start.direction = sampleCone(axis, cosine, direction[0], direction[1]);
       start.weight = 2 * M_PI * (1 - cosine) / probability;
       return start;
     }
-    float s[3], t[3];
-    basisOf(e.direction, s, t);
+    const Vec3f towards = vectorOf(e.direction);
+    Vec3f s, t;
+    basisOf(towards, s, t);
     const float r = radius_ * std::sqrt(place[0]), phi = float(2 * M_PI) * place[1];
-    for (int k = 0; k < 3; k++) {
-      start.origin[k] =
-          centre_[k] + r * (std::cos(phi) * s[k] + std::sin(phi) * t[k]) - far_ * e.direction[k];
-      start.direction[k] = e.direction[k];
-    }
+    start.origin = centre_ + r * (std::cos(phi) * s + std::sin(phi) * t) - far_ * towards;
+    start.direction = towards;
     start.weight = M_PI * radius_ * radius_ / probability;
     return start;
   }
   const EmissiveShapes& shapes = *scene.emitters.shapes();
   start.place = shapes.place(scene, source.shape, place[0], place[1]);
-  std::copy_n(start.place.position, 3, start.origin);
-  double cosine = coneToSpecular(start.origin, axis), solidAngle = 2 * M_PI * (1 - cosine);
-  sampleCone(axis, cosine, direction[0], direction[1], start.direction);
-  const float towards = dot3(start.place.normal, start.direction);
+  const Vec3f position = start.place.position, normal = start.place.normal;
+  start.origin = position;
+  const double cosine = coneToSpecular(position, axis), solidAngle = 2 * M_PI * (1 - cosine);
+  start.direction = sampleCone(axis, cosine, direction[0], direction[1]);
+  const float towards = dot(normal, start.direction);
   if (!(shapes[source.shape].sides & (towards > 0 ? 1 : 2)) || towards == 0) return start;
   start.weight = start.place.area * std::fabs(towards) * solidAngle / probability;
   // Offsets the origin off the surface, to the side that the direction leads to. The position is a
   // sum of about three products, each rounded.
-  float n[3], origin[3], bound = 0;
-  for (int k = 0; k < 3; k++) {
-    n[k] = towards > 0 ? start.place.normal[k] : -start.place.normal[k];
-    bound += std::fabs(n[k]) * std::fabs(start.origin[k]);
-  }
-  offsetPoint(start.origin, n, bound * 8 * 0x1p-24f, origin);
-  std::copy_n(origin, 3, start.origin);
+  const float bound = dot(abs(normal), abs(position)) * 8 * 0x1p-24f;
+  start.origin = offsetPoint(position, towards > 0 ? normal : -normal, bound);
   return start;
 }
 

@@ -20,7 +20,7 @@ class LightSources {
   bool empty() const { return cumulative_.empty(); }
 
   struct LightRay {
-    float origin[3], direction[3];
+    Vec3f origin, direction;
     // For a shape: flux over radiance. For a light: flux over (irradiance times the squared
     // distance to the hit); for a parallel light: flux over irradiance.
     double weight = 0; // 0: no ray was sampled
@@ -41,10 +41,11 @@ class LightSources {
   };
   void boundSpecularSurfaces(const RenderScene& scene);
   void measureSceneExtent(const RenderScene& scene);
-  double coneToSpecular(const float from[3], float axis[3]) const;
+  double coneToSpecular(const Vec3f& from, Vec3f& axis) const;
   std::vector<Source> sources_;
-  std::vector<double> cumulative_;    // cumulative power of the sources
-  float centre_[3] = {}, radius_ = 0; // bounding sphere of all specular surfaces
+  std::vector<double> cumulative_; // cumulative power of the sources
+  Vec3f centre_;                   // centre_, radius_: bounding sphere of all specular surfaces
+  float radius_ = 0;
   float far_ = 0; // distance at which parallel light starts: the whole scene lies in front of it
 };
 

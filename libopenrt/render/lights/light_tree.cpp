@@ -11,10 +11,6 @@ namespace {
 constexpr uint32_t none = ~0u;
 constexpr uint32_t balanceFrom = 28; // deeper nodes are split in halves, which bounds the depth
 
-double dot(const float a[3], const float b[3]) {
-  return double(a[0]) * b[0] + double(a[1]) * b[1] + double(a[2]) * b[2];
-}
-
 // Unites two cones into the smallest cone about both (S. Glassner's construction, as in PBR 3.8.4),
 // slightly widened for rounding.
 void uniteCones(LightBounds& a, const LightBounds& b) {
@@ -22,7 +18,7 @@ void uniteCones(LightBounds& a, const LightBounds& b) {
     a.cosineNormals = -1;
     return;
   }
-  const double along = dot(a.axis, b.axis);
+  const double along = dot(Vec3d(a.axis), Vec3d(b.axis));
   if (b.cosineNormals >= 1 && along >= a.cosineNormals)
     return; // the most frequent case: one more normal inside the cone
   const double first = std::acos(std::clamp(double(a.cosineNormals), -1.0, 1.0));
@@ -30,7 +26,7 @@ void uniteCones(LightBounds& a, const LightBounds& b) {
   const double between = std::acos(std::clamp(along, -1.0, 1.0));
   if (std::min(between + second, M_PI) <= first) return;
   if (std::min(between + first, M_PI) <= second) {
-    std::copy_n(b.axis, 3, a.axis);
+    a.axis = b.axis;
     a.cosineNormals = b.cosineNormals;
     return;
   }
@@ -39,20 +35,15 @@ void uniteCones(LightBounds& a, const LightBounds& b) {
     a.cosineNormals = -1;
     return;
   }
-  double axis[3], square = 0; // rotated from the first axis towards the second
-  for (int k = 0; k < 3; k++) {
-    axis[k] = (std::sin(between - turn) * a.axis[k] + std::sin(turn) * b.axis[k]) / sine;
-    square += axis[k] * axis[k];
-  }
-  for (int k = 0; k < 3; k++) a.axis[k] = float(axis[k] / std::sqrt(square));
+  const Vec3d axis = // rotated from the first axis towards the second
+      (std::sin(between - turn) * Vec3d(a.axis) + std::sin(turn) * Vec3d(b.axis)) / sine;
+  a.axis = Vec3f(axis / length(axis));
   a.cosineNormals = float(std::cos(std::min(half + 1e-6, M_PI)));
 }
 
 void unite(LightBounds& a, const LightBounds& b) {
-  for (int k = 0; k < 3; k++) {
-    a.low[k] = std::min(a.low[k], b.low[k]);
-    a.high[k] = std::max(a.high[k], b.high[k]);
-  }
+  a.low = min(a.low, b.low);
+  a.high = max(a.high, b.high);
   uniteCones(a, b);
   a.cosineEmission = std::min(a.cosineEmission, b.cosineEmission);
   a.bothSides |= b.bothSides;
@@ -63,7 +54,7 @@ void unite(LightBounds& a, const LightBounds& b) {
 
 // Cost of a node for split selection: strength times the solid angle lit times the surface area of
 // the box. Flat boxes are treated as if they had a small depth.
-double cost(const LightBounds& b, const double size[3]) {
+double cost(const LightBounds& b, const Vec3d& size) {
   const double normals = std::acos(std::clamp(double(b.cosineNormals), -1.0, 1.0));
   const double all =
       std::min(normals + std::acos(std::clamp(double(b.cosineEmission), -1.0, 1.0)), M_PI);
@@ -71,11 +62,9 @@ double cost(const LightBounds& b, const double size[3]) {
                             M_PI / 2 *
                                 (2 * all * std::sin(normals) - std::cos(normals - 2 * all) -
                                  2 * normals * std::sin(normals) + std::cos(normals));
-  double d[3];
-  const double least = 1e-3 * std::max({size[0], size[1], size[2]});
-  for (int k = 0; k < 3; k++) d[k] = std::max(double(b.high[k]) - b.low[k], least);
-  return (double(b.intensity) + b.irradiance) * directions *
-         (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]);
+  const double least = 1e-3 * largest(size);
+  const Vec3d d = max(Vec3d(b.high) - Vec3d(b.low), {least, least, least});
+  return (double(b.intensity) + b.irradiance) * directions * (d.x * d.y + d.y * d.z + d.z * d.x);
 }
 
 struct Range {
@@ -117,18 +106,17 @@ class Builder {
   // Partitions the lights of a range and returns the position of the split.
   uint32_t split(const Range& range, const LightBounds& whole) {
     const uint32_t middle = (range.begin + range.end) / 2;
-    float low[3], high[3];
-    std::fill_n(low, 3, std::numeric_limits<float>::infinity());
-    std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
-    for (uint32_t i = range.begin; i < range.end; i++)
-      for (int k = 0; k < 3; k++) {
-        low[k] = std::min(low[k], centre(order_[i], k));
-        high[k] = std::max(high[k], centre(order_[i], k));
-      }
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    Vec3f low{infinite, infinite, infinite}, high = -low;
+    for (uint32_t i = range.begin; i < range.end; i++) {
+      low = min(low, centre(order_[i]));
+      high = max(high, centre(order_[i]));
+    }
+    const Vec3f size = high - low;
     int widest = 0;
     for (int k = 1; k < 3; k++)
-      if (high[k] - low[k] > high[widest] - low[widest]) widest = k;
-    if (!(high[widest] - low[widest] > 0)) return middle; // all lights are in one place
+      if (size[k] > size[widest]) widest = k;
+    if (!(size[widest] > 0)) return middle; // all lights are in one place
     Cut best;
     // With many lights only the widest axis is tried.
     const bool all = range.end - range.begin <= 1u << 14;
@@ -138,25 +126,25 @@ class Builder {
     const auto first = order_.begin() + range.begin, last = order_.begin() + range.end;
     if (best.bins.axis >= 0) {
       const auto found = std::stable_partition(first, last, [&](uint32_t i) {
-        return best.bins.of(centre(i, best.bins.axis)) <= best.last;
+        return best.bins.of(centre(i)[best.bins.axis]) <= best.last;
       });
       if (found != first && found != last) return uint32_t(found - order_.begin());
     }
     std::nth_element(first, order_.begin() + middle, last, [&](uint32_t a, uint32_t b) {
-      const float x = centre(a, widest), y = centre(b, widest);
+      const float x = centre(a)[widest], y = centre(b)[widest];
       return x != y ? x < y : a < b;
     });
     return middle;
   }
 
  private:
-  float centre(uint32_t i, int k) const { return lights_[i].low[k] / 2 + lights_[i].high[k] / 2; }
+  Vec3f centre(uint32_t i) const { return lights_[i].low / 2 + lights_[i].high / 2; }
   // Sorts the lights of a range into bins and replaces `best` if a cut between them costs less.
   void tryCuts(const Range& range, const LightBounds& whole, Bins bins, Cut& best) const {
     LightBounds in[Bins::count];
     bool used[Bins::count] = {};
     for (uint32_t i = range.begin; i < range.end; i++) {
-      const uint32_t b = bins.of(centre(order_[i], bins.axis));
+      const uint32_t b = bins.of(centre(order_[i])[bins.axis]);
       if (used[b])
         unite(in[b], lights_[order_[i]]);
       else {
@@ -164,9 +152,8 @@ class Builder {
         used[b] = true;
       }
     }
-    double size[3];
-    for (int j = 0; j < 3; j++) size[j] = double(whole.high[j]) - whole.low[j];
-    const double longest = std::max({size[0], size[1], size[2]}),
+    const Vec3d size = Vec3d(whole.high) - Vec3d(whole.low);
+    const double longest = largest(size),
                  factor = longest / std::max(size[bins.axis], 1e-3 * longest);
     const auto add = [](LightBounds& sum, bool& any, const LightBounds& more) {
       if (any)
@@ -277,14 +264,11 @@ void LightTree::build(std::span<const LightBounds> lights) {
 
 void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
   Node& node = nodes_[number];
-  double diagonal = 0;
-  for (int k = 0; k < 3; k++) {
-    node.centre[k][i] = b.low[k] / 2 + b.high[k] / 2;
-    const double half =
-        std::max(double(b.high[k]) - node.centre[k][i], double(node.centre[k][i]) - b.low[k]);
-    diagonal += half * half;
-    node.axis[k][i] = b.axis[k];
-  }
+  const Vec3f centre = b.low / 2 + b.high / 2;
+  const Vec3d half = max(Vec3d(b.high) - Vec3d(centre), Vec3d(centre) - Vec3d(b.low));
+  const double diagonal = dot(half, half);
+  store(centre, node.centre, i);
+  store(b.axis, node.axis, i);
   node.radius2[i] = float(std::min(diagonal * (1 + 1e-6), 3e38));
   const double far = double(b.reach) * (1 + 1e-5) + std::sqrt(diagonal);
   node.reach2[i] =
@@ -298,7 +282,7 @@ void LightTree::fill(uint32_t number, uint32_t i, const LightBounds& b) {
   node.used[i] = 1;
 }
 
-LightTree::Choice LightTree::choose(const float place[3], const float* normal, double pick,
+LightTree::Choice LightTree::choose(const Vec3f& place, const Vec3f& normal, double pick,
                                     Side side) const {
   if (nodes_.empty()) return {};
   const LightReceiver query(place, normal, side);
@@ -322,7 +306,7 @@ LightTree::Choice LightTree::choose(const float place[3], const float* normal, d
   }
 }
 
-float LightTree::probability(const float place[3], const float* normal, uint32_t light) const {
+float LightTree::probability(const Vec3f& place, const Vec3f& normal, uint32_t light) const {
   if (nodes_.empty() || places_[light].node == none) return 0;
   const LightReceiver query(place, normal, Side::only);
   double probability = 1;

@@ -12,15 +12,16 @@
 #include <vector>
 
 #include "render/lights/light_node.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
 // Bounds of one light or a group of lights. They must be conservative: a light with selection
 // probability 0 is lost light.
 struct LightBounds {
-  float low[3], high[3];
-  float axis[3] = {0, 0, 1}; // unit axis of the cone of normals, or of a spot light's cone
-  float cosineNormals = -1;  // cosine of that cone's half angle; -1: any direction
+  Vec3f low, high;
+  Vec3f axis{0, 0, 1};      // unit axis of the cone of normals, or of a spot light's cone
+  float cosineNormals = -1; // cosine of that cone's half angle; -1: any direction
   // Cosine of the angle up to which light is emitted about a normal. 0: a surface; 1: only the
   // cone's directions.
   float cosineEmission = 0;
@@ -42,10 +43,9 @@ class LightTree {
   void build(std::span<const LightBounds> lights);
   bool empty() const { return nodes_.empty(); }
   size_t bytes() const { return nodes_.size() * sizeof(Node) + places_.size() * sizeof(Place); }
-  // Samples a light for a point. normal: null if light counts from everywhere. pick in [0, 1).
-  Choice choose(const float place[3], const float* normal, double pick,
-                Side side = Side::only) const;
-  float probability(const float place[3], const float* normal, uint32_t light) const;
+  // Samples a light for a point. normal: 0 0 0 if light counts from everywhere. pick in [0, 1).
+  Choice choose(const Vec3f& place, const Vec3f& normal, double pick, Side side = Side::only) const;
+  float probability(const Vec3f& place, const Vec3f& normal, uint32_t light) const;
   uint32_t depth() const { return depth_; }
   // Returns the root, which must exist.
   const LightNode& root() const { return nodes_.front(); }

@@ -10,38 +10,18 @@ namespace {
 // Bound of n roundings, each half a unit in the last place of a float.
 constexpr double roundings(int n) { return n * 0x1p-24; }
 
-double lengthOf(const double v[3]) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-double lengthOf(const float v[3]) {
-  const double d[3] = {v[0], v[1], v[2]};
-  return lengthOf(d);
-}
-double distanceBetween(const float a[3], const float b[3]) {
-  const double d[3] = {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
-  return lengthOf(d);
-}
-
-void cross(const double a[3], const double b[3], double out[3]) {
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
+double distanceBetween(const Vec3f& a, const Vec3f& b) { return length(Vec3d(a) - Vec3d(b)); }
 
 // The edges from the first corner of a triangle, and their cross product.
 struct Edges {
-  double a[3], b[3], normal[3];
-  explicit Edges(const EmissiveShapes::Shape& s) {
-    for (int k = 0; k < 3; k++) {
-      a[k] = double(s.corner[1][k]) - s.corner[0][k];
-      b[k] = double(s.corner[2][k]) - s.corner[0][k];
-    }
-    cross(a, b, normal);
-  }
+  Vec3d a, b, normal;
+  explicit Edges(const EmissiveShapes::Shape& s)
+      : a(Vec3d(s.corner[1]) - Vec3d(s.corner[0])), b(Vec3d(s.corner[2]) - Vec3d(s.corner[0])),
+        normal(cross(a, b)) {}
 };
 
-double cosineOf(const double normal[3], const float direction[3]) {
-  double along = 0;
-  for (int k = 0; k < 3; k++) along += normal[k] * direction[k];
-  return along / lengthOf(normal);
+double cosineOf(const Vec3d& normal, const Vec3f& direction) {
+  return dot(normal, Vec3d(direction)) / length(normal);
 }
 
 // A bound of the distance along the normal by which the surface that the kernel intersects may
@@ -52,45 +32,36 @@ struct Rounding {
 
 // The kernel subtracts the origin from the corners first, so its error is relative to the distance
 // of the farthest corner. In an instance it also transforms the ray.
-Rounding roundingOf(const EmissiveShapes::Shape& s, const Record& r, const float direction[3],
-                    const float origin[3]) {
+Rounding roundingOf(const EmissiveShapes::Shape& s, const Record& r, const Vec3f& direction,
+                    const Vec3f& origin) {
   double farthest = 0, coordinates = 0;
-  for (const auto& corner : s.corner) {
+  for (const Vec3f& corner : s.corner) {
     farthest = std::max(farthest, distanceBetween(corner, origin));
-    coordinates = std::max(coordinates, lengthOf(corner));
+    coordinates = std::max(coordinates, length(Vec3d(corner)));
   }
   double bound = roundings(24) * farthest;
-  if (r.instanced) {
-    const float translation[3] = {r.toRender.r[0][3], r.toRender.r[1][3], r.toRender.r[2][3]};
-    bound += roundings(8) * (coordinates + lengthOf(origin) + lengthOf(translation));
-  }
+  if (r.instanced)
+    bound += roundings(8) *
+             (coordinates + length(Vec3d(origin)) + length(Vec3d(r.toRender.translation())));
   return {bound, std::fabs(cosineOf(Edges(s).normal, direction))};
 }
 
 // The centre of a sphere and both of its maps are rounded relative to their coordinates.
-Rounding roundingOfSphere(const Record& r, const float direction[3], const float origin[3],
+Rounding roundingOfSphere(const Record& r, const Vec3f& direction, const Vec3f& origin,
                           double distance) {
-  const auto& m = r.toRender.r;
-  const float centre[3] = {m[0][3], m[1][3], m[2][3]};
-  double local[3], normal[3] = {0, 0, 0}, square = 0;
-  for (int i = 0; i < 3; i++) {
-    local[i] = r.fromRender.r[i][3];
-    for (int k = 0; k < 3; k++) {
-      local[i] += r.fromRender.r[i][k] * (origin[k] + distance * direction[k]);
-      square += double(m[i][k]) * m[i][k];
-    }
-  }
-  for (int k = 0; k < 3; k++) // normals are transformed by the inverse transpose
-    for (int i = 0; i < 3; i++) normal[k] += r.fromRender.r[i][k] * local[i];
-  return {roundings(24) * (distanceBetween(centre, origin) + std::sqrt(square)) +
-              roundings(8) * (lengthOf(centre) + lengthOf(origin)),
-          std::fabs(cosineOf(normal, direction))};
+  const Vec3f centre = r.toRender.translation();
+  const Vec3d local =
+      r.fromRender.pointFromTranslation(Vec3d(origin) + distance * Vec3d(direction));
+  const double size = std::sqrt(squaredNormOf(r.toRender));
+  return {roundings(24) * (distanceBetween(centre, origin) + size) +
+              roundings(8) * (length(Vec3d(centre)) + length(Vec3d(origin))),
+          std::fabs(cosineOf(r.fromRender.transposed(local), direction))};
 }
 
 } // namespace
 
-float shadowRayEnd(const RenderScene& scene, const LightSample& sample, const float eye[3],
-                   const float origin[3]) {
+float shadowRayEnd(const RenderScene& scene, const LightSample& sample, const Vec3f& eye,
+                   const Vec3f& origin) {
   if (sample.shape == EmissiveShapes::none) return std::numeric_limits<float>::infinity();
   const EmissiveShapes::Shape& s = (*scene.emitters.shapes())[sample.shape];
   const Record& r = scene.records[s.record];
@@ -103,10 +74,10 @@ float shadowRayEnd(const RenderScene& scene, const LightSample& sample, const fl
   return float(distance - std::min(distance * 0x1p-10, error)); // 2^-10 also if error is NaN
 }
 
-const float* uniformRadiance(const EmissiveShapes::Shape& s, const float direction[3]) {
+const Vec3f* uniformRadiance(const EmissiveShapes::Shape& s, const Vec3f& direction) {
   if (!s.uniform) return nullptr;
-  if (s.sphere || s.sides == 1) return s.radiance[0];
-  return s.radiance[s.sides == 2 || cosineOf(Edges(s).normal, direction) > 0 ? 1 : 0];
+  if (s.sphere || s.sides == 1) return &s.radiance[0];
+  return &s.radiance[s.sides == 2 || cosineOf(Edges(s).normal, direction) > 0 ? 1 : 0];
 }
 
 void writeSampledHit(const RenderScene& scene, const LightSample& sample, const Rays& rays,
@@ -117,29 +88,21 @@ void writeSampledHit(const RenderScene& scene, const LightSample& sample, const 
   hits.t[lane] = sample.distance;
   hits.u[lane] = hits.v[lane] = 0;
   if (s.sphere) { // makePoints() finds everything from the position
-    for (int k = 0; k < 3; k++) hits.ng[k][lane] = -rays.dir[k][lane];
+    store(-load(rays.dir, lane), hits.ng, lane);
     return;
   }
   const Edges edges(s);
-  double place[3], first[3], second[3], u = 0, v = 0, square = 0;
-  for (int k = 0; k < 3; k++)
-    place[k] =
-        double(rays.org[k][lane]) + double(sample.distance) * rays.dir[k][lane] - s.corner[0][k];
-  cross(place, edges.b, first);
-  cross(edges.a, place, second);
-  for (int k = 0; k < 3; k++) {
-    u += first[k] * edges.normal[k];
-    v += second[k] * edges.normal[k];
-    square += edges.normal[k] * edges.normal[k];
-  }
+  const Vec3d origin(load(rays.org, lane)), direction(load(rays.dir, lane));
+  const Vec3d place = origin + double(sample.distance) * direction - Vec3d(s.corner[0]);
+  const double u = dot(cross(place, edges.b), edges.normal),
+               v = dot(cross(edges.a, place), edges.normal),
+               square = dot(edges.normal, edges.normal);
   const float across = float(std::clamp(u / square, 0.0, 1.0)),
               along = std::clamp(float(v / square), 0.0f, 1 - across);
   hits.u[lane] = s.swapped ? along : across;
   hits.v[lane] = s.swapped ? across : along;
-  float normal[3], kernel[3];
-  for (int k = 0; k < 3; k++) normal[k] = float(edges.normal[k] / std::sqrt(square));
-  kernelNormal(scene.records[s.record], normal, kernel);
-  for (int k = 0; k < 3; k++) hits.ng[k][lane] = kernel[k];
+  const Vec3f normal(edges.normal / std::sqrt(square));
+  store(kernelNormal(scene.records[s.record], normal), hits.ng, lane);
 }
 
 } // namespace openrt

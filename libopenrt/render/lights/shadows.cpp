@@ -4,7 +4,6 @@
 #include "render/lights/shadows.h"
 #include "shading/running.h"
 
-#include <cmath>
 #include <limits>
 
 namespace openrt {
@@ -19,24 +18,16 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
     if (!wanted[i] || !(batch.directional || batch.reach[i] > 0)) continue;
-    if (!(light.color[0][i] != 0 || light.color[1][i] != 0 || light.color[2][i] != 0)) continue;
-    const float l[3] = {light.toLight[0][i], light.toLight[1][i], light.toLight[2][i]};
-    float g[3] = {hits.geometric[0][i], hits.geometric[1][i], hits.geometric[2][i]};
-    float p[3] = {hits.position[0][i], hits.position[1][i], hits.position[2][i]}, origin[3];
+    if (load(light.color, i) == Vec3f()) continue;
+    const Vec3f toLight = load(light.toLight, i);
+    Vec3f g = load(hits.geometric, i), p = load(hits.position, i);
     // If the facet faces away from the light but the smooth surface does not, the ray starts on the
     // smooth surface, or behind the facet if the surface is flat. Light that is transmitted through
     // the surface (2) arrives from behind.
-    const bool away = g[0] * l[0] + g[1] * l[1] + g[2] * l[2] < 0;
-    if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) {
-      g[0] = -g[0];
-      g[1] = -g[1];
-      g[2] = -g[2];
-    }
-    offsetPoint(p, g, batch.points->error[i], origin);
-    for (int k = 0; k < 3; k++) {
-      s.rays.org[k][n] = origin[k];
-      s.rays.dir[k][n] = l[k];
-    }
+    const bool away = dot(g, toLight) < 0;
+    if (away && (wanted[i] == 2 || !liftToSmooth(*batch.scene, *batch.points, i, p))) g = -g;
+    store(offsetPoint(p, g, batch.points->error[i]), s.rays.org, n);
+    store(toLight, s.rays.dir, n);
     s.rays.tnear[n] = 0;
     s.rays.tfar[n] = batch.directional ? std::numeric_limits<float>::infinity()
                                        : batch.reach[i] * (1 - 0x1p-20f);
@@ -46,10 +37,8 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
   return s;
 }
 
-void scaleColor(float* const color[3], uint32_t lane, float r, float g, float b) {
-  color[0][lane] *= r;
-  color[1][lane] *= g;
-  color[2][lane] *= b;
+void scaleColor(float* const color[3], uint32_t lane, const Vec3f& by) {
+  store(load(color, lane) * by, color, lane);
 }
 
 // Removes the rays whose flag is set.
@@ -57,10 +46,8 @@ void compact(ShadowRays& s, const uint8_t* drop) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < s.rays.count; i++) {
     if (drop[i]) continue;
-    for (int k = 0; k < 3; k++) {
-      s.rays.org[k][n] = s.rays.org[k][i];
-      s.rays.dir[k][n] = s.rays.dir[k][i];
-    }
+    store(load(s.rays.org, i), s.rays.org, n);
+    store(load(s.rays.dir, i), s.rays.dir, n);
     s.rays.tnear[n] = s.rays.tnear[i];
     s.rays.tfar[n] = s.rays.tfar[i];
     s.lane[n++] = s.lane[i];
@@ -103,21 +90,14 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
     }
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t ray = order[range.begin + i];
-      float t[3];
-      for (int k = 0; k < 3; k++)
-        t[k] = through[k][i] > 0 ? std::fmin(through[k][i], 1.0f) : 0.0f; // NaN: opaque
-      scaleColor(color, s.lane[ray], t[0], t[1], t[2]);
-      if (t[0] + t[1] + t[2] < 1e-6f) {
+      const Vec3f t = min(max(Vec3f(), load(through, i)), {1, 1, 1}); // NaN: opaque
+      scaleColor(color, s.lane[ray], t);
+      if (t.x + t.y + t.z < 1e-6f) {
         done[ray] = 1;
         continue;
       }
-      const float p[3] = {points.hits.position[0][i], points.hits.position[1][i],
-                          points.hits.position[2][i]};
-      const float g[3] = {-points.hits.geometric[0][i], -points.hits.geometric[1][i],
-                          -points.hits.geometric[2][i]};
-      float origin[3];
-      offsetPoint(p, g, points.error[i], origin);
-      for (int k = 0; k < 3; k++) s.rays.org[k][ray] = origin[k];
+      const Vec3f p = load(points.hits.position, i), behind = -load(points.hits.geometric, i);
+      store(offsetPoint(p, behind, points.error[i]), s.rays.org, ray);
       s.rays.tfar[ray] -= found.t[ray];
       if (!(s.rays.tfar[ray] > 0)) done[ray] = 1;
     }
@@ -134,7 +114,7 @@ void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color
   auto* blocked = batch.arena->take<uint8_t>(s.rays.count);
   scene.kernel->occluded(s.rays, maskOpaque, Coherence::coherent, blocked);
   for (uint32_t i = 0; i < s.rays.count; i++)
-    if (blocked[i]) scaleColor(color, s.lane[i], 0, 0, 0);
+    if (blocked[i]) scaleColor(color, s.lane[i], {});
   if (!scene.transparentShadows) return;
   compact(s, blocked);
   RayHits found;
@@ -145,7 +125,7 @@ void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color
   }
   for (uint32_t i = 0; i < s.rays.count; i++)
     // rays that cross too many transparent surfaces are dark, as documented
-    scaleColor(color, s.lane[i], 0, 0, 0);
+    scaleColor(color, s.lane[i], {});
 }
 
 void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light) {

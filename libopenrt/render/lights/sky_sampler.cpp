@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "render/lights/luminance.h"
 #include "render/surface/batch.h"
 #include "shading/running.h"
 
@@ -15,11 +16,6 @@ namespace {
 constexpr uint32_t coarsest = 512, finest = 4096; // columns
 // A sky is not sampled if less than this share of its light is above the mean.
 constexpr double leastShare = 1.0 / 64;
-
-double luminance(const float c[3]) {
-  const double l = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-  return std::isfinite(l) && l > 0 ? std::min(l, 1e30) : 0;
-}
 
 // Returns the number of columns: as many as the widest texture has texels around the horizon. A
 // single texture covers the whole horizon, one of several covers a quarter.
@@ -86,7 +82,7 @@ double SkySampler::measure(const RenderScene& scene, std::vector<float>& cells) 
     for (uint32_t column = 0; column < columns_; column++) {
       double mean = 0, sum = 0;
       for (uint32_t i = 4 * column; i < 4 * column + 4; i++) {
-        const float c[3] = {rgba[0][i], rgba[1][i], rgba[2][i]};
+        const Vec3f c = load(rgba, i);
         mean += luminance(c) / 4;
         sum += (double(c[0]) + double(c[1]) + double(c[2])) / 4;
       }
@@ -156,7 +152,7 @@ float SkySampler::cellPdf(uint32_t row, uint32_t column) const {
 }
 
 // Selects row and column by u and v, and uses their remainders for the position in the cell.
-float SkySampler::sample(double u, double v, float direction[3]) const {
+float SkySampler::sample(double u, double v, Vec3f& direction) const {
   if (!usable()) return 0;
   const auto row = uint32_t(std::min(
       std::upper_bound(byRow_.begin(), byRow_.end(), v) - byRow_.begin(), ptrdiff_t(rows_) - 1));
@@ -169,16 +165,14 @@ float SkySampler::sample(double u, double v, float direction[3]) const {
   const double y = edge_[row] + (edge_[row + 1] - edge_[row]) * down,
                phi = 2 * M_PI * (column + along) / columns_;
   const double s = std::sqrt(std::max(0.0, 1 - y * y));
-  direction[0] = float(s * std::cos(phi));
-  direction[1] = float(y);
-  direction[2] = float(s * std::sin(phi));
+  direction = {float(s * std::cos(phi)), float(y), float(s * std::sin(phi))};
   return cellPdf(row, column);
 }
 
-float SkySampler::pdf(const float d[3]) const {
+float SkySampler::pdf(const Vec3f& d) const {
   if (!usable()) return 0;
-  const double theta = std::acos(std::clamp(double(d[1]), -1.0, 1.0));
-  double phi = std::atan2(double(d[2]), double(d[0]));
+  const double theta = std::acos(std::clamp(double(d.y), -1.0, 1.0));
+  double phi = std::atan2(double(d.z), double(d.x));
   if (phi < 0) phi += 2 * M_PI;
   if (!(theta >= 0) || !(phi >= 0)) return 0;
   const uint32_t row = std::min(uint32_t(theta / M_PI * rows_), rows_ - 1),

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/vec3.h"
+
 namespace openrt {
 
 struct RenderScene;
@@ -34,8 +36,8 @@ class SkySampler {
   static bool shines(const RenderScene& scene);
   // Samples a local unit direction from a point of the unit square and returns its solid-angle pdf;
   // 0: no sample.
-  float sample(double u, double v, float direction[3]) const;
-  float pdf(const float direction[3]) const;
+  float sample(double u, double v, Vec3f& direction) const;
+  float pdf(const Vec3f& direction) const;
   uint32_t columns() const { return columns_; }
 
  private:

@@ -1,54 +1,42 @@
 #include "render/lights/spherical.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/frame.h"
 
 namespace openrt {
 namespace {
 
-double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-void cross(const double a[3], const double b[3], double out[3]) {
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-bool normalize(double v[3]) {
-  const double length = std::sqrt(dot(v, v));
-  if (!(length > 0) || !std::isfinite(length)) return false;
-  const double scale = 1 / length;
-  for (int k = 0; k < 3; k++) v[k] *= scale;
+// Normalises a vector. Returns false if its length is 0 or not finite.
+bool makeUnit(Vec3d& v) {
+  const double size = length(v);
+  if (!(size > 0) || !std::isfinite(size)) return false;
+  v *= 1 / size;
   return true;
 }
 
-// Computes the direction about an axis with the cosine 1 - below.
-void aboutAxis(const double axis[3], double below, double turn, double out[3]) {
-  double s[3], t[3];
+// Returns the direction about an axis with the cosine 1 - below.
+Vec3d aboutAxis(const Vec3d& axis, double below, double turn) {
+  Vec3d s, t;
   basisOf(axis, s, t);
   const double sine = std::sqrt(std::max(0.0, below * (2 - below))), phi = 2 * M_PI * turn;
   const double x = sine * std::cos(phi), y = sine * std::sin(phi), z = 1 - below;
-  for (int k = 0; k < 3; k++) out[k] = x * s[k] + y * t[k] + z * axis[k];
+  return x * s + y * t + z * axis;
 }
 
 } // namespace
 
-SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3]) {
-  double a[3], b[3];
-  for (int k = 0; k < 3; k++) {
-    a[k] = double(corner[1][k]) - corner[0][k];
-    b[k] = double(corner[2][k]) - corner[0][k];
-    for (int c = 0; c < 3; c++) corner_[c][k] = double(corner[c][k]) - eye[k];
-  }
-  cross(a, b, normal_);
+SphericalTriangle::SphericalTriangle(const std::array<Vec3f, 3>& corner, const Vec3f& eye) {
+  for (size_t c = 0; c < 3; c++) corner_[c] = Vec3d(corner[c]) - Vec3d(eye);
+  const Vec3d a = Vec3d(corner[1]) - Vec3d(corner[0]), b = Vec3d(corner[2]) - Vec3d(corner[0]),
+              c = a - b;
+  normal_ = cross(a, b);
   height_ = dot(corner_[0], normal_);
-  const double c[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
   const double longest = std::max({dot(a, a), dot(b, b), dot(c, c)});
-  const double square[3] = {dot(corner_[0], corner_[0]), dot(corner_[1], corner_[1]),
-                            dot(corner_[2], corner_[2])};
-  const double nearest = std::min({square[0], square[1], square[2]}),
-               farthest = std::max({square[0], square[1], square[2]});
+  const Vec3d square{dot(corner_[0], corner_[0]), dot(corner_[1], corner_[1]),
+                     dot(corner_[2], corner_[2])};
+  const double nearest = smallest(square), farthest = largest(square);
   far_ = nearest > 4 * longest && farthest < 2 * nearest;
   if (!std::isfinite(height_)) height_ = 0;
   if (!far_) computeSolidAngle();
@@ -57,10 +45,9 @@ SphericalTriangle::SphericalTriangle(const float corner[3][3], const float eye[3
 void SphericalTriangle::computeSolidAngle() {
   double size = 1;
   for (int c = 0; c < 3; c++) {
-    const double length = std::sqrt(dot(corner_[c], corner_[c]));
-    const double scale = 1 / length;
-    for (int k = 0; k < 3; k++) unit_[c][k] = corner_[c][k] * scale;
-    size *= length;
+    const double distance = length(corner_[c]);
+    unit_[c] = corner_[c] * (1 / distance);
+    size *= distance;
   }
   if (!(size > 0) || !std::isfinite(size)) return; // also if a length was 0
   volume_ = std::fabs(height_) / size;
@@ -76,62 +63,45 @@ double SphericalTriangle::solidAngle() const {
   return near.solidAngle_;
 }
 
-double SphericalTriangle::distanceAlong(const double d[3]) const {
-  return height_ / dot(normal_, d);
-}
+double SphericalTriangle::distanceAlong(const Vec3d& d) const { return height_ / dot(normal_, d); }
 
-bool SphericalTriangle::sample(double u, double v, double direction[3], double& distance) const {
+bool SphericalTriangle::sample(double u, double v, Vec3d& direction, double& distance) const {
   if (far_) {
     if (height_ == 0) return false;
-    const double root = std::sqrt(u), w[3] = {1 - root, root * (1 - v), root * v};
-    for (int k = 0; k < 3; k++)
-      direction[k] = w[0] * corner_[0][k] + w[1] * corner_[1][k] + w[2] * corner_[2][k];
-    distance = std::sqrt(dot(direction, direction));
-    return normalize(direction);
+    const double root = std::sqrt(u);
+    direction = (1 - root) * corner_[0] + root * (1 - v) * corner_[1] + root * v * corner_[2];
+    distance = length(direction);
+    return makeUnit(direction);
   }
   if (!(solidAngle_ > 0)) return false;
   // Selects the point on the arc from the first corner to the last that cuts off the fraction u of
   // the solid angle. Then selects a point on the arc from the second corner to that point.
   const double half = u * solidAngle_ / 2, c = std::cos(half), s = std::sin(half);
   const double x = volume_ * c - others_ * s, y = first_ * s;
-  double r[3], end[3];
-  for (int k = 0; k < 3; k++) r[k] = x * unit_[0][k] + y * unit_[2][k];
+  const Vec3d r = x * unit_[0] + y * unit_[2];
   const double square = dot(r, r), scale = square > 0 ? 2 * dot(unit_[0], r) / square : 0;
-  for (int k = 0; k < 3; k++) end[k] = scale * r[k] - unit_[0][k];
-  double across[3], span = 0; // span: 1 - cosine of the second arc, computed from its chord
-  const double far = dot(unit_[1], end);
-  for (int k = 0; k < 3; k++) {
-    across[k] = end[k] - far * unit_[1][k];
-    span += (end[k] - unit_[1][k]) * (end[k] - unit_[1][k]) / 2;
-  }
+  const Vec3d end = scale * r - unit_[0], chord = end - unit_[1];
+  const double span = dot(chord, chord) / 2; // 1 - cosine of the second arc
   const double below = v * span, sine = std::sqrt(std::max(0.0, below * (2 - below)));
-  if (!normalize(across)) return false;
-  for (int k = 0; k < 3; k++) direction[k] = (1 - below) * unit_[1][k] + sine * across[k];
-  if (!normalize(direction)) return false;
+  Vec3d across = end - dot(unit_[1], end) * unit_[1];
+  if (!makeUnit(across)) return false;
+  direction = (1 - below) * unit_[1] + sine * across;
+  if (!makeUnit(direction)) return false;
   distance = distanceAlong(direction);
   return distance > 0 && std::isfinite(distance);
 }
 
-double SphericalTriangle::pdf(const double direction[3]) const {
+double SphericalTriangle::pdf(const Vec3d& direction) const {
   if (!far_) return solidAngle_ > 0 ? 1 / solidAngle_ : 0;
   const double along = std::fabs(dot(normal_, direction)), distance = distanceAlong(direction);
   return height_ != 0 ? 2 * distance * distance / along
                       : 0; // squared distance over the projected area
 }
 
-SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4],
-                                       const float eye[3]) {
-  for (int i = 0; i < 3; i++) {
-    eye_[i] = toLocal[i][3];
-    for (int k = 0; k < 3; k++) {
-      toLocal_[i][k] = toLocal[i][k];
-      toRender_[i][k] = toRender[i][k];
-      eye_[i] += double(toLocal[i][k]) * eye[k];
-    }
-  }
-  double c[3];
-  cross(toLocal_[1], toLocal_[2], c);
-  determinant_ = std::fabs(dot(toLocal_[0], c));
+SphericalEllipsoid::SphericalEllipsoid(const Affine& toLocal, const Affine& toRender,
+                                       const Vec3f& eye)
+    : toLocal_(toLocal), toRender_(toRender), determinant_(std::fabs(determinantOf(toLocal))),
+      eye_(toLocal.pointFromTranslation(Vec3d(eye))) {
   const double square = dot(eye_, eye_);
   inside_ = !(square > 1);
   if (!inside_) cap_ = 1 / (square * (1 + std::sqrt(1 - 1 / square)));
@@ -139,30 +109,25 @@ SphericalEllipsoid::SphericalEllipsoid(const float toLocal[3][4], const float to
 
 // Samples the cone uniformly in the sphere's frame: a linear map M transforms solid angle there by
 // |det M| / |M d|^3.
-bool SphericalEllipsoid::sample(double u, double v, double direction[3], double& distance) const {
+bool SphericalEllipsoid::sample(double u, double v, Vec3d& direction, double& distance) const {
   if (inside_) return false;
-  const double length = std::sqrt(dot(eye_, eye_)),
-               axis[3] = {-eye_[0] / length, -eye_[1] / length, -eye_[2] / length};
-  double local[3];
-  aboutAxis(axis, u * cap_, v, local);
-  for (int i = 0; i < 3; i++) direction[i] = dot(toRender_[i], local);
-  const double scale = std::sqrt(dot(direction, direction));
-  if (!normalize(direction)) return false;
-  for (double& l : local) l /= scale;
+  Vec3d local = aboutAxis(-eye_ / length(eye_), u * cap_, v);
+  direction = toRender_.direction(local);
+  const double scale = length(direction);
+  if (!makeUnit(direction)) return false;
+  local = local / scale;
   // The nearer of the two intersections along the line.
   const double a = dot(local, local), b = dot(eye_, local), c = dot(eye_, eye_) - 1;
   // Offset of the line from the centre. It is accurate also if the sphere is small and far away.
-  double offset[3];
-  for (int k = 0; k < 3; k++) offset[k] = eye_[k] - b / a * local[k];
+  const Vec3d offset = eye_ - b / a * local;
   const double root = std::sqrt(std::max(0.0, (1 - dot(offset, offset)) * a));
   distance = c / (root - b);
   return distance > 0 && std::isfinite(distance);
 }
 
-double SphericalEllipsoid::pdf(const double direction[3]) const {
+double SphericalEllipsoid::pdf(const Vec3d& direction) const {
   if (inside_) return 0;
-  double local[3];
-  for (int i = 0; i < 3; i++) local[i] = dot(toLocal_[i], direction);
+  const Vec3d local = toLocal_.direction(direction);
   const double square = dot(local, local);
   return determinant_ / (square * std::sqrt(square)) / (2 * M_PI * cap_);
 }

@@ -3,7 +3,9 @@
 // (render/lights/emitters.h). [any]
 #pragma once
 
-#include <cmath>
+#include <array>
+
+#include "render/records.h"
 
 namespace openrt {
 
@@ -16,23 +18,23 @@ namespace openrt {
 // accurate at any apparent size.
 class SphericalTriangle {
  public:
-  SphericalTriangle(const float corner[3][3], const float eye[3]);
+  SphericalTriangle(const std::array<Vec3f, 3>& corner, const Vec3f& eye);
   // Returns 0 if the triangle is seen edge-on, has no area, or the eye is at one of its corners.
   double solidAngle() const;
   bool far() const { return far_; }
   // Samples a unit direction with pdf(direction), and the distance of the triangle along it.
   // Returns false if there is none.
-  bool sample(double u, double v, double direction[3], double& distance) const;
+  bool sample(double u, double v, Vec3d& direction, double& distance) const;
   // Returns the pdf by solid angle.
-  double pdf(const double direction[3]) const;
+  double pdf(const Vec3d& direction) const;
   // Returns whether the eye is on the side from which the corners turn counter-clockwise.
   bool front() const { return height_ < 0; }
 
  private:
   void computeSolidAngle();
-  double distanceAlong(const double direction[3]) const;
+  double distanceAlong(const Vec3d& direction) const;
   // corner_: relative to the eye. normal_: its length is twice the area.
-  double corner_[3][3], unit_[3][3], normal_[3];
+  Vec3d corner_[3], unit_[3], normal_;
   // volume_: triple product of the unit vectors. others_: AC + BC, first_: 1 + AB (dot
   // products of unit vectors).
   double volume_ = 0, others_ = 0, first_ = 0;
@@ -46,17 +48,18 @@ class SphericalTriangle {
 // sampling is better there.
 class SphericalEllipsoid {
  public:
-  // toLocal: rows of the map into the frame in which it is the unit sphere. toRender: rows of the
-  // inverse.
-  SphericalEllipsoid(const float toLocal[3][4], const float toRender[3][4], const float eye[3]);
+  // toLocal: the map into the frame in which it is the unit sphere. toRender: the inverse.
+  SphericalEllipsoid(const Affine& toLocal, const Affine& toRender, const Vec3f& eye);
   bool inside() const { return inside_; }
-  bool sample(double u, double v, double direction[3], double& distance) const;
-  double pdf(const double direction[3]) const; // by solid angle, for a direction that hits it
+  bool sample(double u, double v, Vec3d& direction, double& distance) const;
+  double pdf(const Vec3d& direction) const; // by solid angle, for a direction that hits it
 
  private:
-  double toLocal_[3][3], toRender_[3][3], determinant_; // absolute determinant of toLocal
+  Affine toLocal_, toRender_;
+  double determinant_; // absolute determinant of toLocal
   // eye_: in the sphere's frame. cap_: 1 - cosine of the cone's half angle.
-  double eye_[3], cap_ = 0;
+  Vec3d eye_;
+  double cap_ = 0;
   bool inside_;
 };
 

@@ -29,17 +29,14 @@ struct Probes {
   }
   // Adds a ray that passes a point against the normal, from just before it to just behind it.
   void add(uint32_t number, const EmissiveShapes::Place& place, bool otherSide) {
-    double coordinates = 0;
-    for (const float x : place.position) coordinates = std::max(coordinates, std::fabs(double(x)));
+    const double coordinates = largest(abs(place.position));
     // The rounding errors of the point and of the kernel, also in an instance.
     const auto reach = float(std::max(coordinates, std::sqrt(place.area)) * 0x1p-19);
     if (!(reach > 0) || !std::isfinite(reach)) return;
     const uint32_t i = rays.count++;
-    for (int k = 0; k < 3; k++) {
-      const float towards = otherSide ? -place.normal[k] : place.normal[k];
-      rays.org[k][i] = place.position[k] + reach * towards;
-      rays.dir[k][i] = -towards;
-    }
+    const Vec3f towards = otherSide ? -place.normal : place.normal;
+    store(place.position + reach * towards, rays.org, i);
+    store(-towards, rays.dir, i);
     rays.tnear[i] = 0;
     rays.tfar[i] = 2 * reach;
     shape[i] = number;

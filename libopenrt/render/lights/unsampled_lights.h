@@ -20,11 +20,11 @@ class UnsampledLights {
       : scene_(scene), ledger_(ledger), brightest_(scene.emitters.brightest()),
         brightestSky_(scene.emitters.brightestSky()) {}
   // Counts a ray, if light sampling cannot find the emitter that it may hit.
-  void send(PathFlags path, const float throughput[3]) {
+  void send(PathFlags path, const Vec3f& throughput) {
     if (path.specularSinceDiffuse()) countOf(path).send(throughput, brightestFor(path));
   }
   // Counts the emitted radiance that such a ray has hit.
-  void meet(PathFlags path, const float radiance[3]) {
+  void meet(PathFlags path, const Vec3f& radiance) {
     if (path.specularSinceDiffuse()) countOf(path).meet(radiance, brightestFor(path));
   }
 

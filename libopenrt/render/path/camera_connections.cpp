@@ -1,7 +1,6 @@
 #include "render/path/camera_connections.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "render/lights/shadows.h"
@@ -33,8 +32,7 @@ CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, ui
   to.distance = arena.take<float>(size);
   for (uint32_t i = 0; i < size; i++) {
     const uint32_t h = hit[std::min(i, n - 1)];
-    const Vector3 place = mapPoint(camera.toLocal, vectorAt(batch.points->hits.position, h));
-    for (int k = 0; k < 3; k++) local[k][i] = place[k];
+    store(camera.toLocal.point(load(batch.points->hits.position, h)), local, i);
     for (int k = 0; k < 2; k++) square[k][i] = lens[k][h];
   }
   const float extent[2] = {float(scene.frame.width), float(scene.frame.height)};
@@ -49,9 +47,9 @@ CameraConnections projectToCamera(const RtsBatch& batch, const uint32_t* hit, ui
   }
   to.parallel = seen.parallel;
   for (uint32_t i = 0; i < n; i++) {
-    const Vector3 toEye = mapVector(camera.fromLocal, vectorAt(seen.toEye, i));
-    to.distance[i] = std::sqrt(dot3(toEye, toEye));
-    for (int k = 0; k < 3; k++) to.direction[k][i] = toEye[k] / to.distance[i];
+    const Vec3f toEye = camera.fromLocal.direction(load(seen.toEye, i));
+    to.distance[i] = length(toEye);
+    store(toEye / to.distance[i], to.direction, i);
   }
   return to;
 }
@@ -69,12 +67,12 @@ void scatterToCamera(const RtsBatch& batch, const CameraConnections& to,
     lobeValues.evaluate(lobe, hits, to.count, to.hit, to.direction);
     for (uint32_t i = 0; i < to.count; i++) {
       const uint32_t h = to.hit[i];
-      const Vector3 out = vectorAt(to.direction, i);
-      const bool front = dot3(vectorAt(hits.geometric, h), out) > 0;
-      float w[3];
+      const Vec3f out = load(to.direction, i);
+      const bool front = dot(load(hits.geometric, h), out) > 0;
+      Vec3f w;
       if (!weightAt(lobe, h, w) || (!nonSpecularFunctions(lobe)->transmits && !front)) continue;
       const float factor = adjointCorrection(lobe, hits, h, out) * to.weight[i];
-      for (int k = 0; k < 3; k++) scattered[k][i] += w[k] * lobeValues.value[k][i] * factor;
+      store(load(scattered, i) + w * load(lobeValues.value, i) * factor, scattered, i);
     }
   }
 }
@@ -87,12 +85,9 @@ void traceToCamera(const RtsBatch& batch, const CameraConnections& to, float* co
   for (uint32_t i = 0; i < to.count; i++) {
     if (!(to.weight[i] > 0) || !(colour[0][i] > 0 || colour[1][i] > 0 || colour[2][i] > 0))
       continue;
-    float origin[3];
-    liftPoint(*batch.points, to.hit[i], vectorAt(to.direction, i), origin);
-    for (int k = 0; k < 3; k++) {
-      rays.rays.org[k][n] = origin[k];
-      rays.rays.dir[k][n] = to.direction[k][i];
-    }
+    const Vec3f direction = load(to.direction, i);
+    store(liftPoint(*batch.points, to.hit[i], direction), rays.rays.org, n);
+    store(direction, rays.rays.dir, n);
     rays.rays.tnear[n] = 0;
     rays.rays.tfar[n] = to.parallel ? std::numeric_limits<float>::infinity() : to.distance[i];
     rays.lane[n++] = i;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "render/vectors.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -50,12 +49,9 @@ void makeCameraRays(const StageContext& context, const float* const xy[2], Rays&
   }
   const Affine& toRender = scene.camera.fromLocal;
   for (uint32_t i = 0; i < size; i++) {
-    const Vector3 origin = mapPoint(toRender, vectorAt(local.origin, i));
-    const Vector3 direction = mapDirection(toRender, vectorAt(local.direction, i));
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][i] = origin[k];
-      rays.dir[k][i] = direction[k];
-    }
+    const Vec3f direction = toRender.direction(load(local.direction, i));
+    store(toRender.point(load(local.origin, i)), rays.org, i);
+    store(direction * (1 / length(direction)), rays.dir, i);
   }
   std::fill_n(rays.tnear, size, 0.0f);
   std::fill_n(rays.tfar, size, std::numeric_limits<float>::infinity());

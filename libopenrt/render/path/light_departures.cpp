@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/vectors.h"
 #include "shading/running.h"
 
 namespace openrt {
+namespace {
+
+// Replaces negative flux and flux that is not finite by 0.
+Vec3f checked(const Vec3f& flux) {
+  const auto component = [](float x) { return x > 0 && std::isfinite(x) ? x : 0.0f; };
+  return {component(flux.x), component(flux.y), component(flux.z)};
+}
+
+} // namespace
 
 void LightDepartures::start(const PathSamples& samples, uint32_t n, RayQueue& queue) {
   ArenaScope scope(context_.arena);
@@ -27,14 +35,13 @@ void LightDepartures::start(const PathSamples& samples, uint32_t n, RayQueue& qu
   }
 }
 
-// Computes the flux that a light without extent sends to a point, ignoring occlusion.
-void LightDepartures::lampFlux(const LightSources::LightRay& start, const float at[3],
-                               float flux[3]) {
+// Returns the flux that a light without extent sends to a point, ignoring occlusion.
+Vec3f LightDepartures::lampFlux(const LightSources::LightRay& start, const Vec3f& at) {
   const RenderScene& scene = context_.scene;
   Arena& arena = context_.arena;
   const LightSlot& light = scene.lights[start.light];
   ArenaScope scope(arena);
-  const Vector3 place = mapPoint(light.toLocal, at);
+  const Vec3f place = light.toLocal.point(at);
   float* local[3];
   RtsIllumination out{};
   for (int k = 0; k < 3; k++) {
@@ -50,32 +57,26 @@ void LightDepartures::lampFlux(const LightSources::LightRay& start, const float 
     const RunningShader running(*light.shader.shaderClass);
     light.shader.shaderClass->illuminate(&scene.host, &batch, light.shader.params, 1, local, &out);
   }
-  double squaredDistance = 0;
-  for (int k = 0; k < 3; k++) squaredDistance += std::pow(double(at[k]) - start.origin[k], 2);
+  const Vec3d way = Vec3d(at) - Vec3d(start.origin);
   // The factor pi turns a light's colour into irradiance, because the colour is the radiance of a
   // white Lambert surface.
-  const double scale = M_PI * start.weight * (start.parallel ? 1 : squaredDistance);
-  for (int k = 0; k < 3; k++) {
-    flux[k] = float(out.color[k][0] * scale);
-    if (!(flux[k] > 0) || !std::isfinite(flux[k])) flux[k] = 0;
-  }
+  const double scale = M_PI * start.weight * (start.parallel ? 1 : dot(way, way));
+  return checked(Vec3f(Vec3d(load(out.color, 0)) * scale));
 }
 
 bool LightDepartures::applyEmission(const Points& points, uint32_t i, RayState& state) {
   const LightSources::LightRay& start = rays_[state.path];
   Departure& departure = departures_[state.path];
-  float flux[3] = {0, 0, 0};
+  Vec3f flux;
   if (start.shape != LightSources::none) {
-    context_.scene.emitters.shapes()->radiance(context_.scene, start.shape, start.place,
-                                               start.direction, context_.arena, flux);
-    for (float& x : flux) x = float(x * start.weight);
+    const Vec3f radiance = context_.scene.emitters.shapes()->radiance(
+        context_.scene, start.shape, start.place, start.direction, context_.arena);
+    flux = checked(Vec3f(Vec3d(radiance) * start.weight));
   } else {
-    lampFlux(start, vectorAt(points.hits.position, i), flux);
-    std::copy_n(flux, 3, departure.flux);
+    flux = departure.flux = lampFlux(start, load(points.hits.position, i));
     departure.attenuationKnown = start.parallel;
   }
-  for (int k = 0; k < 3; k++)
-    state.throughput[k] *= flux[k] > 0 && std::isfinite(flux[k]) ? flux[k] : 0.0f;
+  state.throughput *= flux;
   return largest(state.throughput) > 0;
 }
 
@@ -83,10 +84,8 @@ void LightDepartures::updateAttenuation(uint32_t path) {
   const LightSources::LightRay& start = rays_[path];
   Departure& departure = departures_[path];
   if (departure.attenuationKnown) return;
-  float at[3], flux[3];
-  for (int k = 0; k < 3; k++)
-    at[k] = float(start.origin[k] + departure.pathLength * start.direction[k]);
-  lampFlux(start, at, flux);
+  const Vec3f at(Vec3d(start.origin) + departure.pathLength * Vec3d(start.direction)),
+      flux = lampFlux(start, at);
   for (int k = 0; k < 3; k++) {
     const float change = departure.flux[k] > 0 ? flux[k] / departure.flux[k] : 0.0f;
     const bool rounding = departure.flux[k] > 0 && start.endless && std::fabs(change - 1) < 1e-3f;
@@ -97,7 +96,7 @@ void LightDepartures::updateAttenuation(uint32_t path) {
 void LightDepartures::applyAttenuation(RayState& state) {
   Departure& departure = departures_[state.path];
   if (departure.attenuationKnown) return;
-  for (int k = 0; k < 3; k++) state.throughput[k] *= departure.attenuation[k];
+  state.throughput *= departure.attenuation;
   departure = {};
 }
 

@@ -32,7 +32,7 @@ class LightDepartures {
   // below 1e-3 is then taken as rounding.
   void updateAttenuation(uint32_t path);
   // Returns the flux at the current surface over that in the throughput, by colour.
-  const float* attenuation(uint32_t path) const { return departures_[path].attenuation; }
+  const Vec3f& attenuation(uint32_t path) const { return departures_[path].attenuation; }
   // Multiplies the throughput by the attenuation of a path that is scattered.
   void applyAttenuation(RayState& state);
 
@@ -41,13 +41,13 @@ class LightDepartures {
   // path, as if mirrors and smooth boundaries had not bent it, up to the first non-specular
   // surface.
   struct Departure {
-    double pathLength = 0;     // path length from the light to the current hit
-    float flux[3] = {0, 0, 0}; // flux at the first surface; already contained in the throughput
-    float attenuation[3] = {1, 1, 1}; // flux at the current hit divided by `flux`
+    double pathLength = 0;      // path length from the light to the current hit
+    Vec3f flux;                 // flux at the first surface; already contained in the throughput
+    Vec3f attenuation{1, 1, 1}; // flux at the current hit divided by `flux`
     // the attenuation has been applied, or the light does not depend on distance
     bool attenuationKnown = true;
   };
-  void lampFlux(const LightSources::LightRay& start, const float at[3], float flux[3]);
+  Vec3f lampFlux(const LightSources::LightRay& start, const Vec3f& at);
 
   const StageContext context_;
   const LightSources& sources_;

@@ -96,9 +96,8 @@ void LightTracer::transmitRays(const Points& points, const PathStates& states,
   }
   for (uint32_t i = 0; i < n; i++) {
     RayState state = states[points.order[i]];
-    for (int k = 0; k < 3; k++)
-      state.throughput[k] *= through[k][i] > 0 ? std::min(through[k][i], 1.0f) : 0.0f;
-    if (largest(state.throughput) > 0) push(points, i, state, vectorAt(points.hits.direction, i));
+    state.throughput *= min(max(Vec3f(), load(through, i)), {1, 1, 1}); // NaN: opaque
+    if (largest(state.throughput) > 0) push(points, i, state, load(points.hits.direction, i));
   }
 }
 
@@ -132,7 +131,7 @@ void LightTracer::scatter(const Points& points, const PathStates& states,
     }
     RayState passed = states[points.order[i]];
     passed.media = boundaries.crossing[i].behind;
-    push(points, i, passed, vectorAt(points.hits.direction, i));
+    push(points, i, passed, load(points.hits.direction, i));
   }
 }
 
@@ -148,8 +147,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling
     if (!first || !nonSpecularFunctions(batch.lobes[l]))
       bsdfSamples.add(l, batch.lobes[l], first ? nullptr : sampling.samples[l]);
   // The flux of the path is not known before the first surface has been shaded.
-  constexpr float unit[3] = {1, 1, 1};
-  const BsdfChoice choice(bsdfSamples, unit);
+  const BsdfChoice choice(bsdfSamples, {1, 1, 1});
   if (!(choice.sum > 0)) return;
   const uint32_t chosen = choice.select(sampling.choices[0][i]);
   const BsdfSample& sample = bsdfSamples.list[chosen];
@@ -164,7 +162,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling
   if (nonSpecularFunctions(lobe)) departures_.applyAttenuation(state);
   const float correction =
       sample.deflected ? adjointCorrection(lobe, points.hits, i, sample.direction) : 1.0f;
-  for (int k = 0; k < 3; k++) state.throughput[k] *= float(sample.weight[k] * correction / kept);
+  state.throughput *= Vec3f(Vec3d(sample.weight * correction) / kept);
   state.flags.setChannel(sample.channel);
   state.media = mediaTowards(points, i, sample.direction, boundaries, state.media);
   if (first && sample.deflected) {
@@ -175,7 +173,7 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling
 }
 
 void LightTracer::push(const Points& points, uint32_t i, const RayState& state,
-                       const float direction[3]) {
+                       const Vec3f& direction) {
   if (largest(state.throughput) > 0 && std::isfinite(largest(state.throughput)))
     queueRay(points, i, direction, state, next_);
 }
@@ -196,7 +194,7 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
     if (!(to.weight[i] > 0) || !(x >= 0 && y >= 0 && x < float(width) && y < float(height)))
       continue;
     const RayState state = (*batch.states)[batch.order[hits[i]]];
-    const float* attenuation = departures_.attenuation(state.path);
+    const Vec3f& attenuation = departures_.attenuation(state.path);
     float* pixel = &picture_[3 * (size_t(y) * width + size_t(x))];
     for (int k = 0; k < 3; k++) {
       const double light =

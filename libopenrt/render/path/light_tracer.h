@@ -37,7 +37,7 @@ class LightTracer {
                uint32_t n);
   void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling& sampling,
                 const Boundaries& boundaries);
-  void push(const Points& points, uint32_t i, const RayState& state, const float direction[3]);
+  void push(const Points& points, uint32_t i, const RayState& state, const Vec3f& direction);
 
   const RenderScene& scene_;
   uint32_t seed_ = 0;

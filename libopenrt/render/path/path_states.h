@@ -59,7 +59,7 @@ struct PathFlags {
 
 // State that one ray carries for its path.
 struct RayState {
-  float throughput[3] = {1, 1, 1};
+  Vec3f throughput{1, 1, 1};
   float travelled = 0; // path length up to the ray's origin
   uint32_t path = 0;   // index of the path (sample) in the tile
   // Distinguishes the random numbers of the path's branches; 0: the branch of the camera ray.
@@ -88,22 +88,13 @@ struct PathStates {
         [&](auto*& array) { array = arena.take<std::remove_reference_t<decltype(*array)>>(n); });
   }
   RayState operator[](size_t i) const {
-    return {{throughput[0][i], throughput[1][i], throughput[2][i]},
-            travelled[i],
-            path[i],
-            branch[i],
-            pdf[i],
-            {{previousPosition[0][i], previousPosition[1][i], previousPosition[2][i]},
-             {previousNormal[0][i], previousNormal[1][i], previousNormal[2][i]}},
-            media[i],
-            {flags[i]}};
+    return {load(throughput, i), travelled[i], path[i],   branch[i], pdf[i],
+            previousOf(i),       media[i],     flagsOf(i)};
   }
   void set(size_t i, const RayState& state) const {
-    for (int k = 0; k < 3; k++) {
-      throughput[k][i] = state.throughput[k];
-      previousPosition[k][i] = state.previous.position[k];
-      previousNormal[k][i] = state.previous.normal[k];
-    }
+    store(state.throughput, throughput, i);
+    store(state.previous.position, previousPosition, i);
+    store(state.previous.normal, previousNormal, i);
     travelled[i] = state.travelled;
     path[i] = state.path;
     branch[i] = state.branch;
@@ -113,8 +104,7 @@ struct PathStates {
   }
   PathFlags flagsOf(size_t i) const { return {flags[i]}; }
   LightSampleContext previousOf(size_t i) const {
-    return {{previousPosition[0][i], previousPosition[1][i], previousPosition[2][i]},
-            {previousNormal[0][i], previousNormal[1][i], previousNormal[2][i]}};
+    return {load(previousPosition, i), load(previousNormal, i)};
   }
   // Calls f with a reference to each pointer.
   template <class F> void forEachArray(const F& f) {
@@ -136,12 +126,10 @@ class RayQueue {
   bool empty() const { return size_ == 0; }
   size_t size() const { return size_; }
   void clear() { size_ = 0; }
-  void push(const float origin[3], const float direction[3], const RayState& state) {
+  void push(const Vec3f& origin, const Vec3f& direction, const RayState& state) {
     reserve(1);
-    for (int k = 0; k < 3; k++) {
-      origin_[k][size_] = origin[k];
-      direction_[k][size_] = direction[k];
-    }
+    store(origin, origin_, size_);
+    store(direction, direction_, size_);
     states_.set(size_++, state);
   }
   // Makes room for `count` more rays and for the 16 elements after them, which vector lanes may

@@ -33,14 +33,12 @@ void PixelSamples::storeFirst(const RenderScene& scene, const Points& points, ui
   const RtsHits& h = points.hits;
   first[path] = 0;
   name[path] = scene.records[points.record[i]].name;
-  float along = 0;
   for (int k = 0; k < 3; k++) {
-    along += (h.position[k][i] - scene.eye[k]) * scene.viewAxis[k];
     if (normal[k]) normal[k][path] = h.normal[k][i];
     if (albedo[k]) albedo[k][path] = albedoOfHits[k][i];
     if (position[k]) position[k][path] = float(h.position[k][i] + scene.origin[k]);
   }
-  if (depth) depth[path] = along;
+  if (depth) depth[path] = dot(load(h.position, i) - scene.eye, scene.viewAxis);
 }
 
 } // namespace openrt

@@ -17,7 +17,7 @@ bool hasOneSample(const RtsLobe& lobe) {
 }
 
 struct NextRay { // a ray to be spawned at a hit
-  Vector3 direction, weight;
+  Vec3f direction, weight;
   float pdf;
   // twoSided: the lobes of the hit respond to light from both sides.
   bool deflected, split, twoSided;
@@ -30,7 +30,7 @@ struct NextRay { // a ray to be spawned at a hit
 void spawnRay(const CameraPaths& paths, uint32_t i, const NextRay& nextRay) {
   const Points& points = *paths.batch.points;
   RayState ray = (*paths.batch.states)[paths.batch.order[i]];
-  for (int k = 0; k < 3; k++) ray.throughput[k] *= nextRay.weight[k];
+  ray.throughput *= nextRay.weight;
   ray.travelled = points.hits.distance[i];
   ray.pdf = nextRay.pdf;
   const bool specular = !(nextRay.pdf > 0);
@@ -107,17 +107,16 @@ void spawnRaysAt(const CameraPaths& paths, uint32_t i, const LobeSampling& sampl
         paths.ledger.cutByEnergy += double(sample.expectedWeight[k]) * double(ray.throughput[k]);
       return;
     }
-    spawnRay(
-        paths, i,
-        {.direction = vectorOf(sample.direction),
-         .weight = {{sample.weight[0] / kept, sample.weight[1] / kept, sample.weight[2] / kept}},
-         .pdf = sample.pdf * probability,
-         .deflected = sample.deflected,
-         .split = bsdfSamples.count > 1,
-         .twoSided = sample.pdf > 0 && transmitsAt(batch, i),
-         .channel = sample.channel,
-         .branch = w == 0 ? ray.branch : hash(ray.branch + w, paths.level + 1),
-         .media = mediaTowards(points, i, sample.direction, boundaries, ray.media)});
+    spawnRay(paths, i,
+             {.direction = sample.direction,
+              .weight = sample.weight / kept,
+              .pdf = sample.pdf * probability,
+              .deflected = sample.deflected,
+              .split = bsdfSamples.count > 1,
+              .twoSided = sample.pdf > 0 && transmitsAt(batch, i),
+              .channel = sample.channel,
+              .branch = w == 0 ? ray.branch : hash(ray.branch + w, paths.level + 1),
+              .media = mediaTowards(points, i, sample.direction, boundaries, ray.media)});
   };
   if (all) {
     for (uint32_t w = 0; w < bsdfSamples.count; w++) send(w, 1);
@@ -130,13 +129,13 @@ void spawnRaysAt(const CameraPaths& paths, uint32_t i, const LobeSampling& sampl
 
 } // namespace
 
-void spawnStraightRay(const CameraPaths& paths, uint32_t i, const float weight[3],
+void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
                       const MediaStack& media) {
   const PathStates& states = *paths.batch.states;
   const uint32_t lane = paths.batch.order[i];
   spawnRay(paths, i,
-           {.direction = vectorAt(paths.batch.points->hits.direction, i),
-            .weight = vectorOf(weight),
+           {.direction = load(paths.batch.points->hits.direction, i),
+            .weight = weight,
             .pdf = 0,
             .deflected = false,
             .split = false,
@@ -152,7 +151,7 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
   if (tracesPaths(batch.scene->frame.transport) && !boundaries.crossing && batch.lobeCount == 1 &&
       hasOneSample(batch.lobes[0]))
     return continueAtOneLobe(paths, sampling);
-  constexpr float clear[3] = {1, 1, 1};
+  constexpr Vec3f clear{1, 1, 1};
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     if (boundaries.visibleAt(i))
       spawnRaysAt(paths, i, sampling, boundaries);

@@ -30,7 +30,7 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries);
 
 // Spawns a ray that goes straight on from hit i, with its throughput multiplied by `weight`.
-void spawnStraightRay(const CameraPaths& paths, uint32_t i, const float weight[3],
+void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
                       const MediaStack& media);
 
 } // namespace openrt

@@ -29,17 +29,11 @@ Rays raysOf(const RtsBatch& batch, const RtsRequest& request, uint32_t* to) {
   for (uint32_t i = 0; i < request.count; i++) {
     const uint32_t hit = request.hit[i];
     if (hit >= pointsOf(batch) || (!request.origin[0] && !batch.points)) continue;
-    float d[3], origin[3];
-    for (int k = 0; k < 3; k++) d[k] = request.direction[k][i];
-    if (request.origin[0]) {
-      for (int k = 0; k < 3; k++) origin[k] = request.origin[k][i];
-    } else {
-      liftPoint(*batch.points, batch.pointOf(hit), d, origin);
-    }
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][n] = origin[k];
-      rays.dir[k][n] = d[k];
-    }
+    const Vec3f direction = load(request.direction, i);
+    store(request.origin[0] ? load(request.origin, i)
+                            : liftPoint(*batch.points, batch.pointOf(hit), direction),
+          rays.org, n);
+    store(direction, rays.dir, n);
     rays.tnear[n] = 0;
     rays.tfar[n] = request.length ? request.length[i] : infinite;
     to[n++] = i;

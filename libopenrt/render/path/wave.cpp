@@ -34,11 +34,9 @@ void splitByHit(Arena& arena, Wave& wave) {
   wave.met = {met, hits};
 }
 
-void queueRay(const Points& points, uint32_t i, const float direction[3], const RayState& state,
+void queueRay(const Points& points, uint32_t i, const Vec3f& direction, const RayState& state,
               RayQueue& queue) {
-  float origin[3];
-  liftPoint(points, i, direction, origin);
-  queue.push(origin, direction, state);
+  queue.push(liftPoint(points, i, direction), direction, state);
 }
 
 } // namespace openrt

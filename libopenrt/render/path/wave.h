@@ -43,7 +43,7 @@ template <class F> void forEachBucket(const StageContext& context, const Wave& w
 }
 
 // Queues a ray that starts at hit i, on the side of the surface that its direction leads to.
-void queueRay(const Points& points, uint32_t i, const float direction[3], const RayState& state,
+void queueRay(const Points& points, uint32_t i, const Vec3f& direction, const RayState& state,
               RayQueue& queue);
 
 } // namespace openrt

@@ -3,17 +3,17 @@
 
 #include <cmath>
 
-#include "render/vectors.h"
+#include "openrt/openrts.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
 // Returns the correction for shading normals in importance transport: flux scales with the cosines
 // at the geometric normal, lobes with those at their own normal. E. Veach, 1997, 5.3.
 inline float adjointCorrection(const RtsLobe& lobe, const RtsHits& hits, uint32_t i,
-                               const float out[3]) {
-  const Vector3 n = vectorAt(lobe.normal, i), g = vectorAt(hits.geometric, i),
-                d = vectorAt(hits.direction, i);
-  const float t = dot3(n, d) * dot3(g, out) / (dot3(g, d) * dot3(n, out));
+                               const Vec3f& out) {
+  const Vec3f n = load(lobe.normal, i), g = load(hits.geometric, i), d = load(hits.direction, i);
+  const float t = dot(n, d) * dot(g, out) / (dot(g, d) * dot(n, out));
   return std::isfinite(t) ? std::fabs(t) : 0.0f;
 }
 

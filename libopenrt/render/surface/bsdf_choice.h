@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "render/surface/bsdf_samples.h"
-#include "render/vectors.h"
 
 namespace openrt {
 
@@ -15,13 +14,9 @@ struct BsdfChoice {
   uint32_t count;
 
   // throughput: of the path up to the hit; 1 1 1 if it is not known yet.
-  BsdfChoice(const BsdfSamples& samples, const float throughput[3]) : count(samples.count) {
-    for (uint32_t w = 0; w < count; w++) {
-      const float* expected = samples.list[w].expectedWeight;
-      const float left[3] = {expected[0] * throughput[0], expected[1] * throughput[1],
-                             expected[2] * throughput[2]};
-      sum += carried[w] = largest(left);
-    }
+  BsdfChoice(const BsdfSamples& samples, const Vec3f& throughput) : count(samples.count) {
+    for (uint32_t w = 0; w < count; w++)
+      sum += carried[w] = largest(samples.list[w].expectedWeight * throughput);
   }
   // Returns the sample that a random number in [0, 1) selects.
   uint32_t select(float u) const { return sampleDiscrete(carried, count, u * sum); }

@@ -4,16 +4,18 @@
 
 #include "render/surface/lobes.h"
 #include "render/surface/media.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
 // One sampled continuation of a path. pdf: solid-angle pdf of a non-specular lobe; 0: a specular
 // direction.
 struct BsdfSample {
-  float direction[3], weight[3], pdf;
+  Vec3f direction, weight;
+  float pdf;
   // Approximate weight independent of the sampled direction. One of several samples is selected
   // with probability proportional to it.
-  float expectedWeight[3];
+  Vec3f expectedWeight;
   uint32_t lobe;
   uint8_t channel; // 1 + index of the only colour that is carried; 0: all colours
   // deflected: the direction differs from the incoming ray's. rejected: the direction is on the
@@ -42,19 +44,21 @@ class BsdfSamples {
   // samples are left out.
   void add(uint32_t number, const RtsLobe& lobe, const LobeSamples* samples);
 
-  BsdfSample list[maximum];
+  union { // keeps the elements beyond `count` uninitialised: most hits have one or two samples
+    BsdfSample list[maximum];
+  };
   uint32_t count = 0;
 
  private:
-  BsdfSample& put(const float direction[3], const float weight[3], float factor);
-  void scatter(const RtsLobe& lobe, const LobeSamples& samples, const float w[3]);
-  void mirror(const float n[3], const float w[3], float factor);
-  void dielectric(const float n[3], const float w[3], float eta);
+  BsdfSample& put(const Vec3f& direction, const Vec3f& weight, float factor);
+  void scatter(const RtsLobe& lobe, const LobeSamples& samples, const Vec3f& w);
+  void mirror(const Vec3f& n, const Vec3f& w, float factor);
+  void dielectric(const Vec3f& n, const Vec3f& w, float eta);
   uint32_t hit_, lobe_ = 0;
   const float* eta_;
   uint8_t channel_;
   bool fromLamp_;
-  float d_[3], g_[3];
+  Vec3f d_, g_; // the ray's direction, the geometric normal
 };
 
 } // namespace openrt

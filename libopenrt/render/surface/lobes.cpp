@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <optional>
 
+#include "render/frame.h"
 #include "render/surface/batch.h"
 #include "render/surface/lambert.h"
 #include "render/surface/scatter.h"
@@ -18,13 +19,7 @@
 namespace openrt {
 namespace {
 
-struct Vec {
-  double x, y, z;
-};
-double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
-Vec unit(const Vec& a) {
+Vec3d unit(const Vec3d& a) {
   const double l = dot(a, a);
   return (l > 0 ? 1 / std::sqrt(l) : 0.0) * a;
 }
@@ -33,19 +28,21 @@ Vec unit(const Vec& a) {
 class Frame {
  public:
   Frame(const RtsLobe& lobe, uint32_t hit) {
-    for (int k = 0; k < 3; k++) n_[k] = lobe.normal[k][hit];
-    basisOf(n_, s_, t_);
+    const Vec3f n = load(lobe.normal, hit);
+    Vec3f s, t;
+    basisOf(n, s, t);
+    s_ = Vec3d(s);
+    t_ = Vec3d(t);
+    n_ = Vec3d(n);
   }
-  Vec toLocal(double x, double y, double z) const {
-    return {x * s_[0] + y * s_[1] + z * s_[2], x * t_[0] + y * t_[1] + z * t_[2],
-            x * n_[0] + y * n_[1] + z * n_[2]};
+  Vec3d toLocal(const Vec3f& v) const {
+    const Vec3d d(v);
+    return {dot(d, s_), dot(d, t_), dot(d, n_)};
   }
-  void toWorld(const Vec& v, float out[3]) const {
-    for (int k = 0; k < 3; k++) out[k] = float(v.x * s_[k] + v.y * t_[k] + v.z * n_[k]);
-  }
+  Vec3f toWorld(const Vec3d& v) const { return Vec3f(v.x * s_ + v.y * t_ + v.z * n_); }
 
  private:
-  float n_[3], s_[3], t_[3];
+  Vec3d s_, t_, n_;
 };
 
 // Value (of every colour) and pdf of a lobe for one direction.
@@ -54,7 +51,8 @@ struct LobeValue {
 };
 // A direction sampled from a lobe, with value / pdf. pdf 0: no direction was sampled.
 struct SampledDirection {
-  float direction[3] = {}, quotient = 0, pdf = 0;
+  Vec3f direction;
+  float quotient = 0, pdf = 0;
 };
 
 // Microfacets
@@ -64,27 +62,27 @@ class Facets {
  public:
   explicit Facets(double alpha) : a_(alpha > 1e-4 ? std::min(alpha, 1.0) : 1e-4) {}
   // Returns the distribution of facet normals per area and solid angle at h.
-  double distribution(const Vec& h) const {
+  double distribution(const Vec3d& h) const {
     const double t = (h.x * h.x + h.y * h.y) / (a_ * a_) + h.z * h.z;
     return h.z > 0 ? 1 / (M_PI * a_ * a_ * t * t) : 0;
   }
   // Smith's Lambda: a fraction 1 / (1 + Lambda) of the facets that face v is visible from v.
-  double lambda(const Vec& v) const {
+  double lambda(const Vec3d& v) const {
     const double slope2 = a_ * a_ * (v.x * v.x + v.y * v.y) / (v.z * v.z);
     return v.z != 0 ? (std::sqrt(1 + slope2) - 1) / 2 : 1e30;
   }
-  double masking(const Vec& v) const { return 1 / (1 + lambda(v)); }
-  double shadowing(const Vec& v, const Vec& w) const { return 1 / (1 + lambda(v) + lambda(w)); }
+  double masking(const Vec3d& v) const { return 1 / (1 + lambda(v)); }
+  double shadowing(const Vec3d& v, const Vec3d& w) const { return 1 / (1 + lambda(v) + lambda(w)); }
   // Samples a facet normal among those visible from v.
-  Vec visible(const Vec& v, double u1, double u2) const {
-    const Vec stretched = unit({a_ * v.x, a_ * v.y, v.z});
+  Vec3d visible(const Vec3d& v, double u1, double u2) const {
+    const Vec3d stretched = unit({a_ * v.x, a_ * v.y, v.z});
     const double phi = 2 * M_PI * u1, z = (1 - u2) * (1 + stretched.z) - stretched.z;
     const double s = std::sqrt(std::max(0.0, 1 - z * z));
-    const Vec h = Vec{s * std::cos(phi), s * std::sin(phi), z} + stretched;
+    const Vec3d h = Vec3d{s * std::cos(phi), s * std::sin(phi), z} + stretched;
     return unit({a_ * h.x, a_ * h.y, std::max(h.z, 0.0)});
   }
   // Returns the pdf of visible(), by the solid angle of normals.
-  double visiblePdf(const Vec& v, const Vec& h) const {
+  double visiblePdf(const Vec3d& v, const Vec3d& h) const {
     return masking(v) * distribution(h) * std::max(0.0, dot(v, h)) / v.z;
   }
 
@@ -99,7 +97,7 @@ double fresnelAt(double cosine, double eta) {
 
 // A direction sampled in the frame of a lobe, with value / pdf.
 struct LocalSample {
-  Vec direction;
+  Vec3d direction;
   double quotient, pdf;
 };
 
@@ -108,16 +106,16 @@ class Glossy {
  public:
   Glossy(const RtsLobe& lobe, uint32_t hit)
       : facets_(lobe.parameter[0][hit]), eta_(lobe.parameter[1][hit]) {}
-  LobeValue evaluate(const Vec& v, const Vec& w) const {
+  LobeValue evaluate(const Vec3d& v, const Vec3d& w) const {
     if (!(w.z > 0)) return {};
-    const Vec h = unit(v + w);
+    const Vec3d h = unit(v + w);
     const double d = facets_.distribution(h);
     return {float(reflectance(dot(v, h)) * d * facets_.shadowing(v, w) / (4 * v.z)),
             float(facets_.masking(v) * d / (4 * v.z))};
   }
-  std::optional<LocalSample> sample(const Vec& v, double u1, double u2) const {
-    const Vec h = facets_.visible(v, u1, u2);
-    const Vec w = unit(2 * dot(v, h) * h + -1 * v);
+  std::optional<LocalSample> sample(const Vec3d& v, double u1, double u2) const {
+    const Vec3d h = facets_.visible(v, u1, u2);
+    const Vec3d w = unit(2 * dot(v, h) * h + -1 * v);
     if (!(w.z > 0)) return {};
     return LocalSample{w, reflectance(dot(v, h)) * facets_.shadowing(v, w) / facets_.masking(v),
                        facets_.masking(v) * facets_.distribution(h) / (4 * v.z)};
@@ -137,21 +135,21 @@ class Boundary {
       : facets_(lobe.parameter[1][hit]), eta_(lobe.parameter[0][hit]) {
     if (!(eta_ > 0) || !std::isfinite(eta_)) eta_ = 1;
   }
-  LobeValue evaluate(const Vec& v, const Vec& w) const {
+  LobeValue evaluate(const Vec3d& v, const Vec3d& w) const {
     double value, pdf;
     evaluateAt(v, w, value, pdf);
     return {float(value), float(pdf)};
   }
   // The low digits of the second random number choose between reflection and refraction; they are
   // as evenly distributed as the leading ones.
-  std::optional<LocalSample> sample(const Vec& v, double u1, double u2) const {
-    const Vec h = facets_.visible(v, u1, u2);
+  std::optional<LocalSample> sample(const Vec3d& v, double u1, double u2) const {
+    const Vec3d h = facets_.visible(v, u1, u2);
     const double choice = u2 * 4096.0 - std::floor(u2 * 4096.0), cosine = std::min(1.0, dot(v, h));
     if (!(cosine > 0)) return {};
     double behind;
     const double f = fresnel(cosine, eta_, behind);
     const bool reflected = choice < f;
-    const Vec w =
+    const Vec3d w =
         unit(reflected ? 2 * cosine * h + -1 * v : (eta_ * cosine - behind) * h + -eta_ * v);
     if (reflected ? !(w.z > 0) : !(w.z < 0)) return {};
     double value, pdf;
@@ -163,12 +161,12 @@ class Boundary {
 
  private:
   // Computes value and pdf for light from w. The facet normal that scatters it to v is on v's side.
-  void evaluateAt(const Vec& v, const Vec& w, double& value, double& pdf) const {
+  void evaluateAt(const Vec3d& v, const Vec3d& w, double& value, double& pdf) const {
     value = pdf = 0;
     if (!(v.z > 0) || w.z == 0) return;
     const bool reflected = w.z > 0;
     // Walter's equations 13 and 16, scaled by the index of the far side
-    Vec h = reflected ? unit(v + w) : unit(eta_ * v + w);
+    Vec3d h = reflected ? unit(v + w) : unit(eta_ * v + w);
     if (h.z < 0) h = -1 * h;
     const double vh = dot(v, h), wh = dot(w, h);
     if (!(vh > 0) || (reflected ? wh <= 0 : wh >= 0)) return;
@@ -194,18 +192,17 @@ template <class Model> class MicrofacetLobe {
  public:
   MicrofacetLobe(const RtsLobe& lobe, const RtsHits& hits, uint32_t hit)
       : frame_(lobe, hit), model_(lobe, hit),
-        eye_(unit(frame_.toLocal(-double(hits.direction[0][hit]), -double(hits.direction[1][hit]),
-                                 -double(hits.direction[2][hit])))) {}
-  LobeValue evaluate(const float w[3]) const {
+        eye_(unit(frame_.toLocal(-load(hits.direction, hit)))) {}
+  LobeValue evaluate(const Vec3f& w) const {
     if (!(eye_.z > 0)) return {};
-    return model_.evaluate(eye_, unit(frame_.toLocal(w[0], w[1], w[2])));
+    return model_.evaluate(eye_, unit(frame_.toLocal(w)));
   }
   SampledDirection sample(float u1, float u2) const {
     SampledDirection out;
     if (!(eye_.z > 0)) return out;
     const std::optional<LocalSample> local = model_.sample(eye_, u1, u2);
     if (!local) return out;
-    frame_.toWorld(local->direction, out.direction);
+    out.direction = frame_.toWorld(local->direction);
     out.quotient = float(local->quotient);
     out.pdf = float(local->pdf);
     return out;
@@ -214,7 +211,7 @@ template <class Model> class MicrofacetLobe {
  private:
   Frame frame_;
   Model model_;
-  Vec eye_;
+  Vec3d eye_;
 };
 
 // Function tables
@@ -225,9 +222,8 @@ template <class Lobe> void evaluateEach(const RtsLobe* lobe, const RtsHits* hits
                                         const uint32_t* hit, const float* const direction[3],
                                         float* const value[3], float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
-    const float w[3] = {direction[0][i], direction[1][i], direction[2][i]};
-    const LobeValue at = Lobe(*lobe, *hits, hit[i]).evaluate(w);
-    for (int k = 0; k < 3; k++) value[k][i] = at.value;
+    const LobeValue at = Lobe(*lobe, *hits, hit[i]).evaluate(load(direction, i));
+    store(Vec3f{at.value, at.value, at.value}, value, i);
     pdf[i] = at.pdf;
   }
 }
@@ -239,10 +235,8 @@ template <class Lobe> void sampleEach(const RtsLobe* lobe, const RtsHits* hits, 
                                       float* pdf) {
   for (uint32_t i = 0; i < n; i++) {
     const SampledDirection at = Lobe(*lobe, *hits, hit[i]).sample(square[0][i], square[1][i]);
-    for (int k = 0; k < 3; k++) {
-      direction[k][i] = at.direction[k];
-      quotient[k][i] = at.quotient;
-    }
+    store(at.direction, direction, i);
+    store(Vec3f{at.quotient, at.quotient, at.quotient}, quotient, i);
     pdf[i] = at.pdf;
   }
 }
@@ -269,13 +263,14 @@ const RtsLobeFunctions* nonSpecularFunctions(const RtsLobe& lobe) {
   }
 }
 
-bool weightAt(const RtsLobe& lobe, uint32_t hit, float out[3]) {
-  for (int k = 0; k < 3; k++) out[k] = checked(lobe.weight[k][hit]);
-  return out[0] > 0 || out[1] > 0 || out[2] > 0;
+bool weightAt(const RtsLobe& lobe, uint32_t hit, Vec3f& out) {
+  const Vec3f w = load(lobe.weight, hit);
+  out = {checked(w.x), checked(w.y), checked(w.z)};
+  return largest(out) > 0;
 }
 
 bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
-  float ignored[3];
+  Vec3f ignored;
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     const RtsLobeFunctions* functions = nonSpecularFunctions(batch.lobes[l]);
     if (functions && functions->transmits && weightAt(batch.lobes[l], hit, ignored)) return true;
@@ -341,8 +336,8 @@ void LobeSamples::sample(const RtsLobe& lobe, const RtsHits& hits, uint32_t n, c
              [&] { lobe.functions->sample(&lobe, &hits, n, hit, square, direction, value, pdf); });
   checkCustom(batch_, {value[0], value[1], value[2], pdf}, n);
   for (uint32_t i = 0; i < n; i++) { // a direction that is not normalised counts as no sample
-    const float d[3] = {direction[0][i], direction[1][i], direction[2][i]};
-    if (!(std::fabs(dot3(d, d) - 1) < 1e-3f)) pdf[i] = 0;
+    const Vec3f d = load(direction, i);
+    if (!(std::fabs(dot(d, d) - 1) < 1e-3f)) pdf[i] = 0;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "openrt/openrts.h"
 #include "render/arena.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
@@ -13,7 +14,7 @@ const RtsLobeFunctions* nonSpecularFunctions(const RtsLobe& lobe);
 
 // Returns whether the lobe's weight at a hit is above 0 and writes the weight to `out`. NaN,
 // infinite and negative components become 0.
-bool weightAt(const RtsLobe& lobe, uint32_t hit, float out[3]);
+bool weightAt(const RtsLobe& lobe, uint32_t hit, Vec3f& out);
 
 // Returns whether light from behind the surface contributes at a hit.
 bool transmitsAt(const RtsBatch& batch, uint32_t hit);

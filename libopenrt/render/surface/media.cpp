@@ -35,7 +35,7 @@ Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
   return c;
 }
 
-void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, float colour[3]) {
+void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, Vec3f& colour) {
   if (!medium) return;
   for (int k = 0; k < 3; k++) {
     const float a = media[medium - 1].absorption[k];

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "openrt/openrts.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
@@ -34,6 +35,6 @@ inline float indexOf(uint16_t medium, int colour, std::span<const RtsMedium> med
   return medium ? media[medium - 1].index[colour] : 1.0f;
 }
 // Attenuates `colour` by the absorption along `length` in a medium.
-void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, float colour[3]);
+void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, Vec3f& colour);
 
 } // namespace openrt

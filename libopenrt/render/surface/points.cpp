@@ -14,31 +14,25 @@
 namespace openrt {
 namespace {
 
-void apply(const float m[3][3], const float v[3], float out[3]) {
-  for (int i = 0; i < 3; i++) out[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
+// Returns the map with the absolute values of its numbers.
+Affine absolute(Affine m) {
+  for (auto& row : m.r)
+    for (float& x : row) x = std::fabs(x);
+  return m;
 }
 
-// Transforms a point and its componentwise error bound by an affine map.
-void applyBound(const Affine& m, const float p[3], const float e[3], float out[3], float bound[3]) {
-  for (int i = 0; i < 3; i++) {
-    const float* r = m.r[i];
-    const float x = r[0] * p[0], y = r[1] * p[1], z = r[2] * p[2];
-    out[i] = x + y + z + r[3];
-    const float magnitude = std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(r[3]);
-    bound[i] = std::fabs(r[0]) * e[0] + std::fabs(r[1]) * e[1] + std::fabs(r[2]) * e[2] +
-               2 * gammaOf(4) * magnitude;
-  }
+// Returns the error bound of the image of p under a map, where e bounds the error of p.
+Vec3f boundOfImage(const Affine& m, const Vec3f& p, const Vec3f& e) {
+  const Affine magnitude = absolute(m);
+  return magnitude.direction(e) + 2 * gammaOf(4) * magnitude.point(abs(p));
 }
 
-bool normalize(float v[3]) {
-  const float largest = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-  if (!(largest > 0) || !std::isfinite(largest)) return false;
-  const float s = 1 / largest; // scaled first, so that squares neither overflow nor underflow
-  const float x = v[0] * s, y = v[1] * s, z = v[2] * s;
-  const float k = 1 / std::sqrt(x * x + y * y + z * z);
-  v[0] = x * k;
-  v[1] = y * k;
-  v[2] = z * k;
+// Normalises a vector of any length. Returns false if it has no direction.
+bool makeUnit(Vec3f& v) {
+  const float size = largest(abs(v));
+  if (!(size > 0) || !std::isfinite(size)) return false;
+  const Vec3f scaled = v * (1 / size); // so that squares neither overflow nor underflow
+  v = scaled * (1 / length(scaled));
   return true;
 }
 
@@ -51,22 +45,20 @@ void gatherTriangle(const Record& r, const RayHits& hits, uint32_t lane, PointBl
   block.v[to] = hits.v[lane];
   block.scale[to] = r.scale;
   for (int c = 0; c < 3; c++) {
-    const float* at = r.vertices + 3 * size_t(corner[c]);
-    for (int k = 0; k < 3; k++) block.corner[c][k][to] = at[k];
+    store(vectorOf(r.vertices + 3 * size_t(corner[c])), block.corner[c], to);
   }
   if (r.instanced) {
     own |= pointInstanced;
     for (int i = 0; i < 3; i++) {
       for (int k = 0; k < 4; k++) block.toRender[i][k][to] = r.toRender.r[i][k];
-      for (int k = 0; k < 3; k++) block.kernelNormal[i][k][to] = r.kernelNormal[i][k];
+      store(r.kernelNormal[i], block.kernelNormal[i], to);
     }
   }
   if (r.normals) {
     own |= pointNormals;
     for (int c = 0; c < 3; c++) {
-      const float* n = r.normals + 3 * size_t(corner[c]);
-      for (int k = 0; k < 3; k++) block.cornerNormal[c][k][to] = n[k];
-      for (int k = 0; k < 3; k++) block.normalMatrix[c][k][to] = r.normalMatrix[c][k];
+      store(vectorOf(r.normals + 3 * size_t(corner[c])), block.cornerNormal[c], to);
+      store(r.normalMatrix[c], block.normalMatrix[c], to);
     }
   }
   if (r.texCoords) {
@@ -86,33 +78,24 @@ void gatherTriangle(const Record& r, const RayHits& hits, uint32_t lane, PointBl
 
 void computeSphere(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
                    PointBlock& block, uint32_t to) {
-  float p[3], bound[3], l[3], none[3] = {0, 0, 0}, ignored[3], normal[3];
-  for (int k = 0; k < 3; k++) {
-    const float step = hits.t[lane] * rays.dir[k][lane];
-    p[k] = rays.org[k][lane] + step;
-    bound[k] = gammaOf(8) * (std::fabs(rays.org[k][lane]) + std::fabs(step));
-  }
-  applyBound(r.fromRender, p, none, l, ignored);
-  if (!normalize(l)) {
-    l[0] = 0;
-    l[1] = 0;
-    l[2] = 1;
-  }
-  const float e[3] = {gammaOf(5), gammaOf(5), gammaOf(5)};
+  const Vec3f origin = load(rays.org, lane), step = hits.t[lane] * load(rays.dir, lane);
+  Vec3f p = origin + step, bound = gammaOf(8) * (abs(origin) + abs(step));
+  Vec3f l = r.fromRender.point(p); // in the frame of the unit sphere
+  if (!makeUnit(l)) l = {0, 0, 1};
   // t is exact to its last bit, so near the ray's origin the position is known far better than to
   // the rounding error of the radius.
-  if (!intersectedInDouble(r)) applyBound(r.toRender, l, e, p, bound);
-  apply(r.normalMatrix, l, normal);
-  for (int k = 0; k < 3; k++) {
-    block.position[k][to] = p[k];
-    block.bound[k][to] = bound[k];
-    block.ng[k][to] = normal[k];
+  if (!intersectedInDouble(r)) {
+    p = r.toRender.point(l);
+    bound = boundOfImage(r.toRender, l, {gammaOf(5), gammaOf(5), gammaOf(5)});
   }
+  store(p, block.position, to);
+  store(bound, block.bound, to);
+  store(r.normalMatrix * l, block.ng, to);
   // Clause 6.43: s runs counter-clockwise seen from above, starting at the back; t from bottom to
   // top.
-  const float turn = std::atan2(-l[0], -l[2]) * float(0.5 / M_PI);
+  const float turn = std::atan2(-l.x, -l.z) * float(0.5 / M_PI);
   block.uv[0][to] = turn < 0 ? turn + 1 : turn;
-  block.uv[1][to] = 0.5f + std::asin(std::clamp(l[1], -1.0f, 1.0f)) * float(1 / M_PI);
+  block.uv[1][to] = 0.5f + std::asin(std::clamp(l.y, -1.0f, 1.0f)) * float(1 / M_PI);
   for (auto& color : block.color) color[to] = 1;
   block.flags[to] = RTS_HIT_TEXCOORD;
   block.smooth[to] = 0;
@@ -120,12 +103,11 @@ void computeSphere(const Record& r, const Rays& rays, const RayHits& hits, uint3
 
 void computeThin(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
                  PointBlock& block, uint32_t to) {
-  for (int k = 0; k < 3; k++) {
-    const float step = hits.t[lane] * rays.dir[k][lane];
-    block.position[k][to] = rays.org[k][lane] + step;
-    block.bound[k][to] = gammaOf(8) * (std::fabs(rays.org[k][lane]) + std::fabs(step));
-    block.ng[k][to] = -rays.dir[k][lane];
-  }
+  const Vec3f origin = load(rays.org, lane), direction = load(rays.dir, lane),
+              step = hits.t[lane] * direction;
+  store(origin + step, block.position, to);
+  store(gammaOf(8) * (abs(origin) + abs(step)), block.bound, to);
+  store(-direction, block.ng, to);
   for (auto& coordinate : block.uv) coordinate[to] = 0;
   for (auto& color : block.color) color[to] = 1;
   block.flags[to] = RTS_HIT_LINE;
@@ -150,10 +132,8 @@ void computeBlock(const RenderScene& scene, const Rays& rays, const RayHits& hit
   for (uint32_t to = 0; to < lanes; to++) {
     const uint32_t lane = hitLanes[to];
     const Record& r = scene.records[hits.record[lane]];
-    for (int k = 0; k < 3; k++) {
-      block.direction[k][to] = rays.dir[k][lane];
-      block.ng[k][to] = hits.ng[k][lane];
-    }
+    store(load(rays.dir, lane), block.direction, to);
+    store(load(hits.ng, lane), block.ng, to);
     block.flipped[to] = r.flip ? ~0u : 0;
     if (r.primitive == edit::Primitive::Triangles) {
       gatherTriangle(r, hits, lane, block, to);
@@ -290,30 +270,26 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
   return points;
 }
 
-bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, float out[3]) {
+bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, Vec3f& out) {
   const Record& r = scene.records[points.record[i]];
   if (!r.normals || r.primitive != edit::Primitive::Triangles) return false;
   const uint32_t lane = points.order[i];
   const uint32_t* corner = r.indices + 3 * size_t(points.rayHits->primitive[lane]);
   const float u = points.rayHits->u[lane], v = points.rayHits->v[lane], w[3] = {1 - u - v, u, v};
   const float sign = points.hits.flags[i] & RTS_HIT_BACK ? -1.0f : 1.0f;
-  float p[3], lift[3] = {0, 0, 0};
-  for (int k = 0; k < 3; k++) p[k] = points.hits.position[k][i];
+  const Vec3f p = load(points.hits.position, i);
+  Vec3f lift;
   for (int c = 0; c < 3; c++) {
-    const float* at = r.vertices + 3 * size_t(corner[c]);
-    float n[3], vertex[3];
-    apply(r.normalMatrix, r.normals + 3 * size_t(corner[c]), n);
-    if (!normalize(n)) return false;
-    for (int k = 0; k < 3; k++) {
-      const float* m = r.toRender.r[k];
-      vertex[k] = r.instanced ? m[0] * at[0] + m[1] * at[1] + m[2] * at[2] + m[3] : at[k] * r.scale;
-    }
-    float below = 0; // depth of the point below the tangent plane of the vertex
-    for (int k = 0; k < 3; k++) below += (p[k] - vertex[k]) * n[k] * sign;
-    below = std::min(below, 0.0f);
-    for (int k = 0; k < 3; k++) lift[k] -= w[c] * below * n[k] * sign;
+    const size_t at = 3 * size_t(corner[c]);
+    Vec3f n = r.normalMatrix * vectorOf(r.normals + at);
+    if (!makeUnit(n)) return false;
+    n *= sign;
+    // Depth of the point below the tangent plane of the vertex.
+    const Vec3f vertex = r.placeOf(vectorOf(r.vertices + at));
+    const float below = std::min(dot(p - vertex, n), 0.0f);
+    lift -= w[c] * below * n;
   }
-  for (int k = 0; k < 3; k++) out[k] = p[k] + lift[k];
+  out = p + lift;
   return true;
 }
 

@@ -37,14 +37,8 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
 inline bool isBackFaceHit(const RenderScene& scene, const Rays& rays, const RayHits& hits,
                           uint32_t lane) {
   const Record& r = scene.records[hits.record[lane]];
-  float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
-  if (r.instanced) {
-    const float k[3] = {n[0], n[1], n[2]};
-    for (int i = 0; i < 3; i++)
-      n[i] =
-          r.kernelNormal[i][0] * k[0] + r.kernelNormal[i][1] * k[1] + r.kernelNormal[i][2] * k[2];
-  }
-  const float d = n[0] * rays.dir[0][lane] + n[1] * rays.dir[1][lane] + n[2] * rays.dir[2][lane];
+  const Vec3f kernel = load(hits.ng, lane), n = r.instanced ? r.kernelNormal * kernel : kernel;
+  const float d = dot(n, load(rays.dir, lane));
   return r.flip ? d < 0 : d > 0;
 }
 // Returns whether the hit is a back face that is culled.
@@ -56,32 +50,26 @@ inline bool isCulledHit(const RenderScene& scene, const Rays& rays, const RayHit
 // Lifts the point of hit i from its flat triangle to the smooth surface that the vertex normals
 // describe, on the side of the shading normal: J. Hanika, "Hacking the Shadow Terminator", Ray
 // Tracing Gems II, ch. 4. Returns false and writes nothing if the surface is flat.
-bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, float out[3]);
+bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, Vec3f& out);
 
 // Moves p along the unit vector n out of the error bound, then by one more float on every axis: M.
 // Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 3rd ed., 3.9.5.
-inline void offsetPoint(const float p[3], const float n[3], float error, float out[3]) {
-  for (int k = 0; k < 3; k++) {
-    const float step = n[k] * error, moved = p[k] + step;
+inline Vec3f offsetPoint(const Vec3f& p, const Vec3f& n, float error) {
+  const auto along = [](float place, float step) {
+    const float moved = place + step;
     const int32_t bits = std::bit_cast<int32_t>(moved);
     // The next float is away from zero or towards it.
     const int32_t outward = (step > 0) == (moved > 0) ? bits + 1 : bits - 1;
     const float next = moved != 0 ? std::bit_cast<float>(outward) : step;
-    out[k] = step != 0 ? next : moved;
-  }
+    return step != 0 ? next : moved;
+  };
+  return {along(p.x, n.x * error), along(p.y, n.y * error), along(p.z, n.z * error)};
 }
 
 // Moves the point of hit i off its surface, to the side that a direction leads to.
-inline void liftPoint(const Points& points, uint32_t i, const float direction[3], float out[3]) {
-  float p[3], n[3], towards = 0;
-  for (int k = 0; k < 3; k++) {
-    p[k] = points.hits.position[k][i];
-    n[k] = points.hits.geometric[k][i];
-    towards += n[k] * direction[k];
-  }
-  const float side = towards > 0 ? 1.0f : -1.0f;
-  for (float& x : n) x *= side;
-  offsetPoint(p, n, points.error[i], out);
+inline Vec3f liftPoint(const Points& points, uint32_t i, const Vec3f& direction) {
+  const Vec3f p = load(points.hits.position, i), n = load(points.hits.geometric, i);
+  return offsetPoint(p, dot(n, direction) > 0 ? n : -n, points.error[i]);
 }
 
 } // namespace openrt

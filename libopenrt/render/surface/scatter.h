@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/frame.h"
-#include "render/vectors.h"
+#include "scene/vec3.h"
 
 namespace openrt {
 
 // Reflects a direction that points towards the surface, at a normal.
-inline void reflectAt(const float d[3], const float n[3], float out[3]) {
-  const float twice = 2 * dot3(d, n);
-  for (int k = 0; k < 3; k++) out[k] = d[k] - twice * n[k];
-}
+inline Vec3f reflectAt(const Vec3f& d, const Vec3f& n) { return d - 2 * dot(d, n) * n; }
 
 // Returns the Fresnel reflectance of unpolarised light at a smooth dielectric boundary. cosine:
 // cosine of the angle of incidence, 0..1. eta: index on the ray's side over that on the far side.
@@ -33,16 +29,12 @@ inline double fresnel(double cosine, double eta, double& cosineBehind) {
 }
 
 // Refracts a direction by Snell's law in vector form. d points towards the surface, n against d.
-inline void refractAt(const float d[3], const float n[3], double eta, double cosine,
-                      double cosineBehind, float out[3]) {
-  double length = 0, r[3];
-  for (int k = 0; k < 3; k++) {
-    r[k] = eta * d[k] + (eta * cosine - cosineBehind) * n[k];
-    length += r[k] * r[k];
-  }
+inline Vec3f refractAt(const Vec3f& d, const Vec3f& n, double eta, double cosine,
+                       double cosineBehind) {
+  const Vec3d r = eta * Vec3d(d) + (eta * cosine - cosineBehind) * Vec3d(n);
   // The direction is normalised again, so that errors do not grow over a long chain of refractions.
-  const double s = length > 0 ? 1 / std::sqrt(length) : 0;
-  for (int k = 0; k < 3; k++) out[k] = float(r[k] * s);
+  const double square = dot(r, r);
+  return Vec3f(r * (square > 0 ? 1 / std::sqrt(square) : 0));
 }
 
 } // namespace openrt

@@ -1,7 +1,6 @@
 #include "render/surface/surfaces.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace openrt {
 
@@ -10,10 +9,8 @@ Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& are
   out.allocate(arena, n);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = rayLanes[i];
-    for (int k = 0; k < 3; k++) {
-      out.org[k][i] = rays.org[k][lane];
-      out.dir[k][i] = rays.dir[k][lane];
-    }
+    store(load(rays.org, lane), out.org, i);
+    store(load(rays.dir, lane), out.dir, i);
     out.tnear[i] = rays.tnear[lane];
     out.tfar[i] = rays.tfar[lane];
   }
@@ -38,7 +35,7 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
     hits.t[lane] = found.t[i];
     hits.u[lane] = found.u[i];
     hits.v[lane] = found.v[i];
-    for (int k = 0; k < 3; k++) hits.ng[k][lane] = found.ng[k][i];
+    store(load(found.ng, i), hits.ng, lane);
     hits.record[lane] = found.record[i];
     hits.primitive[lane] = found.primitive[i];
   }
@@ -80,14 +77,12 @@ void crossSharedFaces(const RtsBatch& batch, Crossing* crossings) {
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
     if (!mediumAt(scene, points.record[i])) continue;
-    float cosine = 0;
-    for (int k = 0; k < 3; k++) cosine -= hits.geometric[k][i] * hits.direction[k][i];
+    const Vec3f direction = load(hits.direction, i);
+    const float cosine = -dot(load(hits.geometric, i), direction);
     const float reach =
         2 * points.error[i] / std::max(cosine, 1e-3f); // two error bounds along the normal
-    for (int k = 0; k < 3; k++) {
-      rays.org[k][n] = hits.position[k][i] - reach * hits.direction[k][i];
-      rays.dir[k][n] = hits.direction[k][i];
-    }
+    store(load(hits.position, i) - reach * direction, rays.org, n);
+    store(direction, rays.dir, n);
     rays.tnear[n] = 0;
     rays.tfar[n] = 2 * reach;
     own[n] = points.record[i];
@@ -121,10 +116,9 @@ namespace {
 void absorbAt(uint16_t medium, float length, std::span<const RtsMedium> media,
               const PathStates& states, uint32_t lane) {
   if (!medium) return;
-  float throughput[3];
-  for (int k = 0; k < 3; k++) throughput[k] = states.throughput[k][lane];
+  Vec3f throughput = load(states.throughput, lane);
   absorb(medium, length, media, throughput);
-  for (int k = 0; k < 3; k++) states.throughput[k][lane] = throughput[k];
+  store(throughput, states.throughput, lane);
 }
 
 } // namespace

@@ -4,7 +4,6 @@
 
 #include "render/surface/batch.h"
 #include "render/surface/media.h"
-#include "render/vectors.h"
 
 namespace openrt {
 
@@ -37,9 +36,9 @@ struct Boundaries {
 Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass);
 
 // Returns the media on the side of hit i that a direction leads to. media: on the ray's side.
-inline const MediaStack& mediaTowards(const Points& points, uint32_t i, const float direction[3],
+inline const MediaStack& mediaTowards(const Points& points, uint32_t i, const Vec3f& direction,
                                       const Boundaries& boundaries, const MediaStack& media) {
-  const bool behind = dot3(vectorAt(points.hits.geometric, i), direction) < 0;
+  const bool behind = dot(load(points.hits.geometric, i), direction) < 0;
   return behind && boundaries.crossing ? boundaries.crossing[i].behind : media;
 }
 

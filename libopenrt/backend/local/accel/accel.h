@@ -41,17 +41,20 @@ class Accel final : public Intersector {
   // One of all the hits along a ray.
   struct MultiHit {
     uint32_t ray, record, primitive;
-    float t, u, v, ng[3];
+    float t, u, v;
+    Vec3f ng;
   };
   // Finds all hits along the rays, sorted by ray and distance. [any thread]
   void allHits(const Rays& rays, std::vector<MultiHit>& out) const;
   struct Nearest {
     uint32_t record = noHit, primitive = 0;
-    double distance = 0, point[3] = {}, normal[3] = {}, u = 0, v = 0; // normal: outward, unit
+    double distance = 0;
+    Vec3d point, normal; // normal: outward, unit
+    double u = 0, v = 0;
   };
   // Finds the surface point closest to a point of render space, within `distance`. Returns false if
   // there is none. round: the result of spheres(). [any thread]
-  bool nearest(const double place[3], double distance, std::span<const uint32_t> round,
+  bool nearest(const Vec3d& place, double distance, std::span<const uint32_t> round,
                Nearest& out) const;
   std::vector<uint32_t> spheres() const; // returns the records of all visible spheres
 

@@ -32,14 +32,9 @@ void Accel::collectHit(const RTCFilterFunctionNArguments* a) {
 // Recomputes hits at grazing angles in double precision, as is done for hits that are shaded.
 void Accel::refineMultiHit(const Rays& rays, MultiHit& p) const {
   const Record& r = records[p.record];
-  const float d[3] = {rays.dir[0][p.ray], rays.dir[1][p.ray], rays.dir[2][p.ray]};
-  float n[3] = {p.ng[0], p.ng[1], p.ng[2]};
-  if (r.instanced) normalToRender(r, p.ng, n);
+  const Vec3f d = load(rays.dir, p.ray), n = r.instanced ? r.kernelNormal * p.ng : p.ng;
   if (r.primitive != edit::Primitive::Triangles || !grazes(n, d)) return;
-  const RaySegment ray{{rays.org[0][p.ray], rays.org[1][p.ray], rays.org[2][p.ray]},
-                       {d[0], d[1], d[2]},
-                       rays.tnear[p.ray],
-                       rays.tfar[p.ray]};
+  const RaySegment ray{Vec3d(load(rays.org, p.ray)), Vec3d(d), rays.tnear[p.ray], rays.tfar[p.ray]};
   if (const auto hit = refineHit(r, p.primitive, ray)) {
     p.t = float(hit->t);
     p.u = float(hit->u);

@@ -72,55 +72,36 @@ void eigen(double a[3][3], double v[3][3]) {
 // Returns the unit vector s whose image m s is closest to p; m is the linear part of an ellipsoid's
 // map. s solves (G + l) s = b with G = m'm and b = m'p, for the only l with |s| = 1 and G + l
 // positive (J. More, D. Sorensen: Computing a trust region step, 1983).
-Vec3d closestOnEllipsoid(const Affine& map, const double p[3]) {
-  double g[3][3], v[3][3], b[3], y[3];
+Vec3d closestOnEllipsoid(const Affine& map, const Vec3d& p) {
+  double g[3][3], v[3][3];
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      g[i][j] = 0;
-      for (int k = 0; k < 3; k++) g[i][j] += double(map.r[k][i]) * map.r[k][j];
-    }
+    for (int j = 0; j < 3; j++) g[i][j] = dot(Vec3d(map.column(i)), Vec3d(map.column(j)));
   eigen(g, v);
-  double length = 0;
-  for (int i = 0; i < 3; i++) {
-    b[i] = 0;
+  Vec3d b, y;
+  for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++) b[i] += v[j][i] * double(map.r[k][j]) * p[k];
-    length += b[i] * b[i];
-  }
-  length = std::sqrt(length);
   const int smallest = g[0][0] <= g[1][1] && g[0][0] <= g[2][2] ? 0 : g[1][1] <= g[2][2] ? 1 : 2;
   const double floor = -g[smallest][smallest];
   const auto square = [&](double l) {
-    double sum = 0;
-    for (int i = 0; i < 3; i++) {
-      y[i] = b[i] == 0 ? 0 : b[i] / (g[i][i] + l);
-      sum += y[i] * y[i];
-    }
-    return sum;
+    for (int i = 0; i < 3; i++) y[i] = b[i] == 0 ? 0 : b[i] / (g[i][i] + l);
+    return dot(y, y);
   };
-  double low = floor, high = floor + length;
+  double low = floor, high = floor + length(b);
   for (int i = 0; i < 100 && low < high; i++) {
     const double middle = low + (high - low) / 2;
     if (middle == low || middle == high) break;
     (square(middle) > 1 ? low : high) = middle;
   }
   const double sum = high > floor ? square(high) : 0;
-  if (high == floor) y[0] = y[1] = y[2] = 0;
+  if (high == floor) y = {};
   if (sum < 1) { // p is in a plane of symmetry: points on both sides of it are equally close
     const double rest = std::sqrt(std::max(0.0, 1 - sum + y[smallest] * y[smallest]));
     y[smallest] = std::copysign(rest, y[smallest]);
   }
   Vec3d s;
-  for (int i = 0; i < 3; i++) s = s + Vec3d{v[0][i], v[1][i], v[2][i]} * y[i];
-  return s * (1 / openrt::length(s));
-}
-
-Vec3d moved(const Affine& m, const Vec3d& p) {
-  const double v[3] = {p.x, p.y, p.z};
-  double out[3];
-  for (int i = 0; i < 3; i++)
-    out[i] = m.r[i][0] * v[0] + m.r[i][1] * v[1] + m.r[i][2] * v[2] + m.r[i][3];
-  return {out[0], out[1], out[2]};
+  for (int i = 0; i < 3; i++) s += Vec3d{v[0][i], v[1][i], v[2][i]} * y[i];
+  return s * (1 / length(s));
 }
 
 } // namespace
@@ -151,31 +132,16 @@ bool Accel::updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& bes
   Vec3d at, normal;
   double u = 0, v = 0;
   if (r.primitive == edit::Primitive::Sphere) {
-    const double from[3] = {p.x - r.toRender.r[0][3], p.y - r.toRender.r[1][3],
-                            p.z - r.toRender.r[2][3]};
-    const Vec3d s = closestOnEllipsoid(r.toRender, from);
-    at = moved(r.toRender, s);
-    const double n[3] = {s.x, s.y, s.z};
-    double out[3] = {};
-    for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) out[i] += double(r.fromRender.r[j][i]) * n[j];
-    normal = {out[0], out[1], out[2]};
+    const Vec3d s = closestOnEllipsoid(r.toRender, p - Vec3d(r.toRender.translation()));
+    at = r.toRender.point(s);
+    normal = r.fromRender.transposed(s);
   } else if (r.primitive == edit::Primitive::Triangles) {
     Vec3d corner[3];
-    for (int k = 0; k < 3; k++) {
-      const float* vertex =
-          r.vertices + 3 * size_t(r.indices[3 * size_t(found.primitive) + size_t(k)]);
-      corner[k] = {vertex[0], vertex[1], vertex[2]};
-    }
+    for (int k = 0; k < 3; k++) corner[k] = Vec3d(r.corner(found.primitive, k));
     normal = cross(corner[1] - corner[0], corner[2] - corner[0]); // in the kernel's frame
-    if (r.instanced) {
-      const auto& n = r.kernelNormal;
-      normal = {n[0][0] * normal.x + n[0][1] * normal.y + n[0][2] * normal.z,
-                n[1][0] * normal.x + n[1][1] * normal.y + n[1][2] * normal.z,
-                n[2][0] * normal.x + n[2][1] * normal.y + n[2][2] * normal.z};
-    }
-    if (r.flip) normal = normal * -1;
-    for (Vec3d& c : corner) c = r.instanced ? moved(r.toRender, c) : c * double(r.scale);
+    if (r.instanced) normal = r.kernelNormal * normal;
+    if (r.flip) normal = -normal;
+    for (Vec3d& c : corner) c = r.placeOf(c);
     const Weights w = closestOnTriangle(p, corner[0], corner[1], corner[2]);
     at = corner[0] * w[0] + corner[1] * w[1] + corner[2] * w[2];
     u = w[1];
@@ -190,13 +156,7 @@ bool Accel::updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& bes
     return false;
   const double l = length(normal);
   normal = l > 0 ? normal * (1 / l) : Vec3d{};
-  best = {found.record,
-          found.primitive,
-          distance,
-          {at.x, at.y, at.z},
-          {normal.x, normal.y, normal.z},
-          u,
-          v};
+  best = {found.record, found.primitive, distance, at, normal, u, v};
   return true;
 }
 
@@ -211,21 +171,19 @@ std::vector<uint32_t> Accel::spheres() const {
   return out;
 }
 
-bool Accel::nearest(const double place[3], double distance, std::span<const uint32_t> round,
+bool Accel::nearest(const Vec3d& place, double distance, std::span<const uint32_t> round,
                     Nearest& out) const {
-  const float p[3] = {float(place[0] * scale_), float(place[1] * scale_), float(place[2] * scale_)};
-  for (const float c : p)
-    if (!(std::fabs(c) <= 1e18f)) return false;
-  if (!(distance > 0)) return false;
+  const Vec3f p(place * double(scale_));
+  if (!isFinite(p) || largest(abs(p)) > 1e18f || !(distance > 0)) return false;
   out = {};
   out.distance = distance;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (!level->masks) continue;
-    PointSearch search{this, level, {place[0], place[1], place[2]}, &out};
+    PointSearch search{this, level, place, &out};
     RTCPointQuery query;
-    query.x = p[0];
-    query.y = p[1];
-    query.z = p[2];
+    query.x = p.x;
+    query.y = p.y;
+    query.z = p.z;
     query.time = 0;
     query.radius = float(std::min(out.distance * scale_ * (1 + 1e-6),
                                   double(std::numeric_limits<float>::infinity())));
@@ -235,7 +193,7 @@ bool Accel::nearest(const double place[3], double distance, std::span<const uint
   }
   for (const uint32_t record : round)
     // Embree has no point queries for spheres.
-    updateNearest({record, 0}, {place[0], place[1], place[2]}, out);
+    updateNearest({record, 0}, place, out);
   return out.record != noHit;
 }
 

@@ -1,7 +1,6 @@
 // accel_records.cpp: writes the records of clusters: the data that shading needs for each placed
 // geometry.
 #include <algorithm>
-#include <cmath>
 
 #include "backend/local/accel/accel_build.h"
 #include "render/huge_spheres.h"
@@ -12,24 +11,18 @@ namespace {
 
 // Computes the inverse transpose, scaled by a positive factor so that its largest element is 1. It
 // is used for directions, whose length does not matter.
-void normalMatrixOf(const Matrix4d& m, float out[3][3]) {
+Rows<float> normalMatrixOf(const Matrix4d& m) {
   const Vec3d a = m.column(0), b = m.column(1), c = m.column(2);
-  const Vec3d r[3] = {cross(b, c), cross(c, a), cross(a, b)}; // columns of the cofactor matrix
-  double largest = 0;
-  for (const Vec3d& v : r)
-    largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  const double s = (m.determinant() < 0 ? -1 : 1) / (largest > 0 ? largest : 1);
-  for (int j = 0; j < 3; j++) {
-    out[0][j] = float(r[j].x * s);
-    out[1][j] = float(r[j].y * s);
-    out[2][j] = float(r[j].z * s);
-  }
+  const Vec3d bc = cross(b, c), ca = cross(c, a), ab = cross(a, b); // columns of the cofactors
+  const double size = largest(max(max(abs(bc), abs(ca)), abs(ab)));
+  const double s = (m.determinant() < 0 ? -1 : 1) / (size > 0 ? size : 1);
+  return Rows<float>::ofColumns(Vec3f(bc * s), Vec3f(ca * s), Vec3f(ab * s));
 }
 
 void setInstance(Record& r, const Matrix4d& kernelToRender) {
   r.instanced = true;
   r.toRender = Affine::from(kernelToRender);
-  normalMatrixOf(kernelToRender, r.kernelNormal);
+  r.kernelNormal = normalMatrixOf(kernelToRender);
 }
 
 bool flipped(const Geometry& g, const Matrix4d& asTheKernelSeesIt) {
@@ -84,7 +77,7 @@ Record AccelBuilder::recordOf(const Inherited& path, const Geometry& g, const Ma
     r.parameterCount = uint32_t(g.parameters.size());
   }
   r.scale = 1 / accel_->scale_;
-  normalMatrixOf(toRender, r.normalMatrix);
+  r.normalMatrix = normalMatrixOf(toRender);
   return r;
 }
 

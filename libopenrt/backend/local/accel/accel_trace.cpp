@@ -1,7 +1,6 @@
 // accel_trace.cpp: traces rays through both Embree scenes. Every ray is checked first, because an
 // Embree build with assertions aborts the process on a ray that is not finite. Called by render
 // threads and the threads of queries.
-#include <cmath>
 #include <limits>
 
 #include "backend/local/accel/accel.h"
@@ -33,17 +32,10 @@ struct Packet8 {
 // Recomputes a hit at a grazing angle in double precision.
 void refineGrazingHit(const Record& r, const Rays& rays, float far, RayHits& hits, uint32_t lane) {
   if (r.primitive != edit::Primitive::Triangles) return;
-  float n[3] = {hits.ng[0][lane], hits.ng[1][lane], hits.ng[2][lane]};
-  const float d[3] = {rays.dir[0][lane], rays.dir[1][lane], rays.dir[2][lane]};
-  if (r.instanced) {
-    const float k[3] = {n[0], n[1], n[2]};
-    normalToRender(r, k, n);
-  }
+  const Vec3f kernel = load(hits.ng, lane), n = r.instanced ? r.kernelNormal * kernel : kernel,
+              d = load(rays.dir, lane);
   if (!grazes(n, d)) return;
-  const RaySegment ray{{rays.org[0][lane], rays.org[1][lane], rays.org[2][lane]},
-                       {d[0], d[1], d[2]},
-                       rays.tnear[lane],
-                       far};
+  const RaySegment ray{Vec3d(load(rays.org, lane)), Vec3d(d), rays.tnear[lane], far};
   if (const auto hit = refineHit(r, hits.primitive[lane], ray)) {
     hits.t[lane] = float(hit->t);
     hits.u[lane] = float(hit->u);
@@ -262,18 +254,17 @@ void Accel::occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) 
 }
 
 void Accel::bounds(float low[3], float high[3]) const {
-  std::fill_n(low, 3, std::numeric_limits<float>::infinity());
-  std::fill_n(high, 3, -std::numeric_limits<float>::infinity());
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  Vec3f lowest{infinite, infinite, infinite}, highest = -lowest;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (!level->masks) continue;
     RTCBounds b;
     rtcGetSceneBounds(level->scene->scene, &b);
-    const float l[3] = {b.lower_x, b.lower_y, b.lower_z}, h[3] = {b.upper_x, b.upper_y, b.upper_z};
-    for (int k = 0; k < 3; k++) {
-      low[k] = std::min(low[k], l[k] / scale_);
-      high[k] = std::max(high[k], h[k] / scale_);
-    }
+    lowest = min(lowest, Vec3f{b.lower_x, b.lower_y, b.lower_z} / scale_);
+    highest = max(highest, Vec3f{b.upper_x, b.upper_y, b.upper_z} / scale_);
   }
+  store(lowest, low);
+  store(highest, high);
 }
 
 } // namespace openrt

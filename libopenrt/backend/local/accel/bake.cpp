@@ -14,8 +14,8 @@
 namespace openrt {
 
 void Box::add(const Vec3d& p) {
-  low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  low = min(low, p);
+  high = max(high, p);
 }
 
 void Box::add(const Box& box, const Matrix4d& matrix) {
@@ -34,15 +34,14 @@ Box boundsOf(const Geometry& geometry) {
   } else if (geometry.points) {
     const float* p = geometry.points->as<float>();
     const size_t n = geometry.points->count<float>() / 3;
-    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < n; i++)
-      for (int k = 0; k < 3; k++) {
-        low[k] = std::min(low[k], p[3 * i + k]);
-        high[k] = std::max(high[k], p[3 * i + k]);
-      }
+    Vec3f low{INFINITY, INFINITY, INFINITY}, high = -low;
+    for (size_t i = 0; i < n; i++) {
+      low = min(low, vectorOf(p + 3 * i));
+      high = max(high, vectorOf(p + 3 * i));
+    }
     if (n) {
-      local.add({low[0], low[1], low[2]});
-      local.add({high[0], high[1], high[2]});
+      local.add(Vec3d(low));
+      local.add(Vec3d(high));
     }
   }
   result.add(local, geometry.matrix);
@@ -69,11 +68,8 @@ std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& m) {
   const size_t n = geometry.points->count<float>() / 3;
   std::vector<float> out(3 * n);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, n, 16384), [&](const auto& range) {
-    for (size_t i = range.begin(); i < range.end(); i++) {
-      const double x = p[3 * i], y = p[3 * i + 1], z = p[3 * i + 2];
-      for (int k = 0; k < 3; k++)
-        out[3 * i + k] = float(m.m[k] * x + m.m[4 + k] * y + m.m[8 + k] * z + m.m[12 + k]);
-    }
+    for (size_t i = range.begin(); i < range.end(); i++)
+      store(Vec3f(m.point(Vec3d(vectorOf(p + 3 * i)))), &out[3 * i]);
   });
   return out;
 }

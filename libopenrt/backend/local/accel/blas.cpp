@@ -2,7 +2,6 @@
 // Slivers and huge spheres go to user geometries that intersect in double precision.
 #include "backend/local/accel/blas.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "backend/local/accel/bake.h"
@@ -149,7 +148,7 @@ std::shared_ptr<Blas> BlasBuilder::finish() {
 
 Matrix4d kernelFrame(const Vec3d& low, const Vec3d& high) {
   const Vec3d half = (high - low) * 0.5;
-  const double size = std::max({half.x, half.y, half.z});
+  const double size = largest(half);
   Matrix4d m =
       uniformScale(size > 0 && std::isfinite(size) ? std::exp2(std::ceil(std::log2(size))) : 1.0);
   if (size >= 0 && std::isfinite(size)) m.translate((low + high) * 0.5);

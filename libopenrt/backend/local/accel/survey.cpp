@@ -194,9 +194,7 @@ Vec3d Survey::origin(const Vec3d& eye) const {
 double Survey::scale(const Vec3d& origin) const {
   const Box world = bounds();
   if (world.empty()) return 1;
-  const Vec3d a = world.low - origin, b = world.high - origin;
-  const double far = std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z), std::fabs(b.x),
-                               std::fabs(b.y), std::fabs(b.z)});
+  const double far = largest(max(abs(world.low - origin), abs(world.high - origin)));
   if (!(far > 0)) return 1;
   const auto powerOfTwo = [](double x) { return std::exp2(std::floor(std::log2(x))); };
   if (far < 1e-4) return powerOfTwo(1 / far); // small scenes are scaled up to about 1
