@@ -19,15 +19,17 @@ class Measure {
   Measure(Graph& graph, const Places& places)
       : graph_(graph), places_(places), boxes_(graph.items.size()) {}
 
-  Bounds all() {
-    // Children come before parents, so the shared parts inside a shared item have been measured
-    // already.
+  // Measures the shared items. Children come before parents, so the shared parts inside a shared
+  // item have been measured already.
+  void measureShared() {
     for (const ItemId id : graph_.order)
       if (shared(id)) boxes_[id] = below({id, none, Matrix()});
-    return below({Graph::root, 0, Matrix()});
   }
 
-  // Returns the largest distance from a point. Call it after all().
+  // Returns the bounds of the world. Call measureShared() before.
+  Bounds all() { return below({Graph::root, 0, Matrix()}); }
+
+  // Returns the largest distance from a point. Call measureShared() before.
   double reach(const Vector& center) {
     center_ = &center;
     below({Graph::root, 0, Matrix()});
@@ -92,7 +94,11 @@ class Measure {
 
 } // namespace
 
-Bounds boundsOf(Graph& graph, const Places& places) { return Measure(graph, places).all(); }
+Bounds boundsOf(Graph& graph, const Places& places) {
+  Measure measure(graph, places);
+  measure.measureShared();
+  return measure.all();
+}
 
 BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds) {
   BoundingSphere sphere;
@@ -100,7 +106,7 @@ BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds
   for (int i = 0; i < 3; ++i)
     sphere.center[i] = bounds.minimum[i] + (bounds.maximum[i] - bounds.minimum[i]) / 2;
   Measure measure(graph, places);
-  measure.all();
+  measure.measureShared();
   sphere.radius = measure.reach(Vector(sphere.center[0], sphere.center[1], sphere.center[2]));
   sphere.empty = false;
   return sphere;
