@@ -8,10 +8,11 @@
 namespace xvrml::mapper {
 namespace {
 
-struct Step {
+struct Step { // an item that is being measured
   ItemId item;
   int32_t place;
   Matrix matrix;
+  size_t next = 0; // child to visit
 };
 
 class Measure {
@@ -47,30 +48,37 @@ class Measure {
     Bounds bounds;
     std::vector<Step> open{first};
     while (!open.empty()) {
-      const Step step = open.back();
-      open.pop_back();
+      Step& step = open.back();
       const Item& item = graph_.items[step.item];
-      if (item.kind == Kind::shape && center_)
-        reach_ = std::max(reach_, graph_.meshes.reach(item.mesh, step.matrix, *center_));
-      if (item.kind == Kind::shape && !center_) graph_.meshes.grow(bounds, item.mesh, step.matrix);
+      if (item.kind == Kind::shape) measureShape(bounds, item, step.matrix);
       const size_t count =
           item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
-      for (size_t c = 0; c < count; ++c) {
-        const ItemId child = item.children[c];
-        if (!graph_.items[child].draws) continue;
-        const int32_t at = step.place == none
-                               ? none
-                               : places_.children[places_.all[size_t(step.place)].firstChild + c];
-        const Matrix inside = graph_.below(step.matrix, graph_.items[child]);
-        if (at == none && shared(child))
-          growBy(bounds, boxes_[child], inside);
-        else
-          open.push_back(
-              {child, at,
-               at == none ? inside : compose(inside, places_.billboardRotations[size_t(at)])});
+      if (step.next >= count) {
+        open.pop_back();
+        continue;
       }
+      const size_t c = step.next++;
+      const ItemId child = item.children[c];
+      if (!graph_.items[child].draws) continue;
+      const int32_t at = step.place == none
+                             ? none
+                             : places_.children[places_.all[size_t(step.place)].firstChild + c];
+      const Matrix inside = Graph::below(step.matrix, graph_.items[child]);
+      if (at == none && shared(child))
+        growBy(bounds, boxes_[child], inside);
+      else
+        open.push_back(
+            {child, at,
+             at == none ? inside : compose(inside, places_.billboardRotations[size_t(at)])});
     }
     return bounds;
+  }
+
+  void measureShape(Bounds& bounds, const Item& shape, const Matrix& matrix) {
+    if (center_)
+      reach_ = std::max(reach_, graph_.meshes.reach(shape.mesh, matrix, *center_));
+    else
+      graph_.meshes.grow(bounds, shape.mesh, matrix);
   }
 
   void growBy(Bounds& bounds, const Bounds& box, const Matrix& matrix) {

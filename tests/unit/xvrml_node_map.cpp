@@ -41,7 +41,7 @@ TEST(NodeMap, HoldsWhatAMapHolds) {
     for (const Node* node : all) {
       const int* value = map.find(node);
       ASSERT_EQ(value != nullptr, expected.contains(node));
-      if (value) EXPECT_EQ(*value, expected[node]);
+      if (value) { EXPECT_EQ(*value, expected[node]); }
     }
   }
 }
