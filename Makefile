@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays bench-isa clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -148,6 +148,11 @@ tidy:
 python-sequences: build
 	XVRML_SEQUENCES=$(or $(XVRML_SEQUENCES),100000) PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) -X faulthandler -m pytest -q -p no:cacheprovider \
 	  tests/python/test_random_sdk.py
+
+## make bench-parts   worlds of many small parts: seconds of each stage and bytes a part; PARTS="100000 1000000"
+PARTS ?= 100000
+bench-parts: build
+	@$(PYTHON) tools/bench_parts.py --vv $(R)/bin/vv --parts $(PARTS)
 
 ## make bench-rays     ray queries from numpy beside raw Embree, Open3D and embreex
 bench-rays: build

@@ -16,9 +16,12 @@ namespace vv {
 
 std::vector<std::string> usedFiles(const xvrml::World& world) {
   std::set<std::string> files{world.path};
+  const std::string* last = nullptr; // the file of the last node; most nodes are in the same file
   forEachNode(world, [&](const xvrml::Node& node) {
-    files.insert(node.source.file ? *node.source.file : world.path);
+    if (node.source.file && node.source.file.get() != last) files.insert(*node.source.file);
+    last = node.source.file.get();
     for (const xvrml::FieldInfo& field : node.type().fields) {
+      if (node.type().index >= 0 && !field.holdsUrls) continue;
       if (!holdsUrls(node, field)) continue;
       const auto& file = urlBase(node, field);
       const std::string base = file ? *file : world.path;

@@ -27,6 +27,7 @@ class CommitBuilder {
 
   std::shared_ptr<const Commit> make(bool render) {
     commit_->edits.render = render;
+    commit_->edits.edits.reserve(scene_.objects.dirty.size() + scene_.instances.dirty.size());
     addDeletions<edit::DeleteLightT>(scene_.lights);
     addDeletions<edit::DeleteInstanceT>(scene_.instances);
     addTextures();

@@ -3,6 +3,7 @@
 #include "api/scene_state.h"
 
 #include <limits>
+#include <unordered_map>
 
 #include "scene/quality.h"
 

@@ -21,13 +21,13 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "api/errors.h"
 #include "api/geometry/object_builder.h"
 #include "openrt/openrts.h"
 #include "scene/commit.h"
+#include "scene/id_table.h"
 #include "scene/matrix.h"
 
 namespace openrt {
@@ -85,7 +85,7 @@ struct RoleState {
 
 // The entries of one kind by id, with the ids that changed and the committed ids that were deleted.
 template <class State> struct Table {
-  std::unordered_map<RTid, State> entries;
+  IdTable<State> entries;
   std::vector<RTid> dirty, deleted;
 
   State* find(RTid id) {

@@ -155,8 +155,9 @@ void Scene::placeInstance(const edit::InstanceT& edit, SceneChanges& changes) {
                 edit.visible, edit.userData, edit.name,   edit.dynamic};
   const auto [found, fresh] = instances.try_emplace(edit.id, next);
   if (fresh) {
-    children_[edit.parent].push_back(edit.id);
-    unsorted_.push_back(edit.parent);
+    std::vector<uint32_t>& siblings = children_[edit.parent];
+    if (!siblings.empty() && siblings.back() >= edit.id) unsorted_.push_back(edit.parent);
+    siblings.push_back(edit.id);
     changes.structure = true;
     return;
   }
@@ -179,7 +180,7 @@ void Scene::deleteInstance(uint32_t id) {
   const auto found = instances.find(id);
   if (found == instances.end()) return;
   unsorted_.push_back(found->second.parent);
-  instances.erase(found);
+  instances.erase(id);
 }
 
 void Scene::dropChildren(uint32_t object) {
@@ -188,7 +189,7 @@ void Scene::dropChildren(uint32_t object) {
   for (uint32_t id : list->second)
     if (const auto found = instances.find(id);
         found != instances.end() && found->second.parent == object)
-      instances.erase(found);
+      instances.erase(id);
   children_.erase(list);
 }
 

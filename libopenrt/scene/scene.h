@@ -1,6 +1,6 @@
 // scene.h: the committed scene as tables by id, the sum of all commits (scene/commit.h). A backend
 // owns one and applies commits between frames; the renderer reads it while no commit is applied.
-// The maps are ordered, so every traversal has the same order.
+// The tables are ordered, so every traversal has the same order.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scene/commit.h"
+#include "scene/id_table.h"
 #include "scene/matrix.h"
 
 namespace openrt {
@@ -103,7 +104,7 @@ class Scene {
   std::map<uint32_t, ShaderClassName> classes;
   std::map<uint32_t, ShaderValues> shaders;
   std::map<uint32_t, Object> objects;
-  std::map<uint32_t, Instance> instances;
+  IdTable<Instance> instances;
   std::map<uint32_t, Light> lights;
   Role camera, environment;
   uint32_t defaultShader = 0, transport = 0;

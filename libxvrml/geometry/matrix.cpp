@@ -45,6 +45,9 @@ Matrix rotation(const Rotation& r) { return rotation(Vector(r.x, r.y, r.z), r.an
 
 Matrix transformMatrix(const TransformFields& f) {
   const bool scales = f.scale != Vec3f{1, 1, 1};
+  // Most Transforms only translate. This is the same matrix as below.
+  if (!scales && f.rotation.angle == 0 && f.center == Vec3f())
+    return translation(vector(f.translation));
   Matrix m = compose(translation(vector(f.translation) + vector(f.center)), rotation(f.rotation));
   if (scales) {
     const Rotation& o = f.scaleOrientation;

@@ -8,10 +8,11 @@
 namespace xvrml::mapper {
 namespace {
 
-struct Step {
+struct Step { // an item that is being measured
   ItemId item;
   int32_t place;
   Matrix matrix;
+  size_t next = 0; // child to visit
 };
 
 class Measure {
@@ -19,15 +20,17 @@ class Measure {
   Measure(Graph& graph, const Places& places)
       : graph_(graph), places_(places), boxes_(graph.items.size()) {}
 
-  Bounds all() {
-    // Children come before parents, so the shared parts inside a shared item have been measured
-    // already.
+  // Measures the shared items. Children come before parents, so the shared parts inside a shared
+  // item have been measured already.
+  void measureShared() {
     for (const ItemId id : graph_.order)
       if (shared(id)) boxes_[id] = below({id, none, Matrix()});
-    return below({Graph::root, 0, Matrix()});
   }
 
-  // Returns the largest distance from a point. Call it after all().
+  // Returns the bounds of the world. Call measureShared() before.
+  Bounds all() { return below({Graph::root, 0, Matrix()}); }
+
+  // Returns the largest distance from a point. Call measureShared() before.
   double reach(const Vector& center) {
     center_ = &center;
     below({Graph::root, 0, Matrix()});
@@ -45,30 +48,37 @@ class Measure {
     Bounds bounds;
     std::vector<Step> open{first};
     while (!open.empty()) {
-      const Step step = open.back();
-      open.pop_back();
+      Step& step = open.back();
       const Item& item = graph_.items[step.item];
-      if (item.kind == Kind::shape && center_)
-        reach_ = std::max(reach_, graph_.meshes.reach(item.mesh, step.matrix, *center_));
-      if (item.kind == Kind::shape && !center_) graph_.meshes.grow(bounds, item.mesh, step.matrix);
+      if (item.kind == Kind::shape) measureShape(bounds, item, step.matrix);
       const size_t count =
           item.kind == Kind::lod ? std::min(item.children.size(), size_t(1)) : item.children.size();
-      for (size_t c = 0; c < count; ++c) {
-        const ItemId child = item.children[c];
-        if (!graph_.items[child].draws) continue;
-        const int32_t at = step.place == none
-                               ? none
-                               : places_.children[places_.all[size_t(step.place)].firstChild + c];
-        const Matrix inside = graph_.below(step.matrix, graph_.items[child]);
-        if (at == none && shared(child))
-          growBy(bounds, boxes_[child], inside);
-        else
-          open.push_back(
-              {child, at,
-               at == none ? inside : compose(inside, places_.billboardRotations[size_t(at)])});
+      if (step.next >= count) {
+        open.pop_back();
+        continue;
       }
+      const size_t c = step.next++;
+      const ItemId child = item.children[c];
+      if (!graph_.items[child].draws) continue;
+      const int32_t at = step.place == none
+                             ? none
+                             : places_.children[places_.all[size_t(step.place)].firstChild + c];
+      const Matrix inside = Graph::below(step.matrix, graph_.items[child]);
+      if (at == none && shared(child))
+        growBy(bounds, boxes_[child], inside);
+      else
+        open.push_back(
+            {child, at,
+             at == none ? inside : compose(inside, places_.billboardRotations[size_t(at)])});
     }
     return bounds;
+  }
+
+  void measureShape(Bounds& bounds, const Item& shape, const Matrix& matrix) {
+    if (center_)
+      reach_ = std::max(reach_, graph_.meshes.reach(shape.mesh, matrix, *center_));
+    else
+      graph_.meshes.grow(bounds, shape.mesh, matrix);
   }
 
   void growBy(Bounds& bounds, const Bounds& box, const Matrix& matrix) {
@@ -92,7 +102,11 @@ class Measure {
 
 } // namespace
 
-Bounds boundsOf(Graph& graph, const Places& places) { return Measure(graph, places).all(); }
+Bounds boundsOf(Graph& graph, const Places& places) {
+  Measure measure(graph, places);
+  measure.measureShared();
+  return measure.all();
+}
 
 BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds) {
   BoundingSphere sphere;
@@ -100,7 +114,7 @@ BoundingSphere sphereOf(Graph& graph, const Places& places, const Bounds& bounds
   for (int i = 0; i < 3; ++i)
     sphere.center[i] = bounds.minimum[i] + (bounds.maximum[i] - bounds.minimum[i]) / 2;
   Measure measure(graph, places);
-  measure.all();
+  measure.measureShared();
   sphere.radius = measure.reach(Vector(sphere.center[0], sphere.center[1], sphere.center[2]));
   sphere.empty = false;
   return sphere;

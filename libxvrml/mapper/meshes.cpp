@@ -46,14 +46,14 @@ template <class T> bool equalBytes(std::span<const T> a, std::span<const T> b) {
 } // namespace
 
 int32_t Meshes::add(Node& geometry, bool textured) {
-  const auto [it, fresh] = index_.try_emplace(&geometry, int32_t(entries_.size()));
+  const auto [known, fresh] = index_.insert(&geometry, int32_t(entries_.size()));
   if (fresh && !free_.empty()) {
-    it->second = free_.back();
+    *known = free_.back();
     free_.pop_back();
   } else if (fresh) {
     entries_.emplace_back();
   }
-  const int32_t mesh = it->second;
+  const int32_t mesh = *known;
   if (fresh) entries_[size_t(mesh)].geometry = NodeRef(&geometry);
   if (textured) needTexture(mesh);
   count(mesh, 1);
@@ -65,6 +65,7 @@ void Meshes::drop(int32_t mesh) {
   Entry& entry = entries_[size_t(mesh)];
   if (entry.users > 0) return;
   leave(mesh);
+  forgetCorners();
   index_.erase(entry.geometry.get());
   entry = Entry();
   dropped_.push_back(mesh);
@@ -92,8 +93,8 @@ uint32_t Meshes::users(int32_t mesh) const {
 }
 
 int32_t Meshes::find(const Node* geometry) const {
-  const auto found = index_.find(geometry);
-  return found == index_.end() ? none_ : found->second;
+  const int32_t* known = index_.find(geometry);
+  return known ? *known : none_;
 }
 
 bool Meshes::needTexture(int32_t mesh) {
@@ -107,6 +108,7 @@ bool Meshes::needTexture(int32_t mesh) {
 
 void Meshes::changed(int32_t mesh) {
   leave(mesh);
+  forgetCorners();
   Entry& entry = entries_[size_t(mesh)];
   entry.mesh.reset();
   entry.known = false;
@@ -230,6 +232,7 @@ Meshes::Extent Meshes::extent(int32_t mesh) {
 void Meshes::release() {
   for (const int32_t mesh : built_) entries_[size_t(mesh)].mesh.reset();
   built_.clear();
+  forgetCorners();
   quota_.clear();
 }
 
@@ -264,18 +267,40 @@ void Meshes::grow(Bounds& bounds, int32_t mesh, const Matrix& matrix) {
     growByPoint(bounds, center + reach);
     return;
   }
+  for (const Vec3f& corner : corners(mesh))
+    growByPoint(bounds, transformPoint(matrix, vector(corner)));
+}
+
+// Returns the points that the mesh uses. Those of the last mesh are kept: worlds of many equal
+// shapes ask for the same mesh again and again, so equal points are worth removing there.
+const std::vector<Vec3f>& Meshes::corners(int32_t mesh) {
+  const Mesh& m = get(mesh);
+  const int32_t first = equal(mesh);
+  if (cornersOf_ == first) return corners_;
+  cornersOf_ = first;
+  corners_.clear();
   // A Coordinate node may hold many points that this geometry does not use.
   if (m.indices.size() < m.points.size()) {
     for (const uint32_t index : m.indices)
-      if (index < m.points.size())
-        growByPoint(bounds, transformPoint(matrix, vector(m.points[index])));
-    return;
+      if (index < m.points.size()) corners_.push_back(m.points[index]);
+  } else {
+    std::vector<uint8_t> used(m.points.size());
+    for (const uint32_t index : m.indices)
+      if (index < used.size()) used[index] = 1;
+    for (size_t i = 0; i < used.size(); ++i)
+      if (used[i]) corners_.push_back(m.points[i]);
   }
-  std::vector<uint8_t> used(m.points.size());
-  for (const uint32_t index : m.indices)
-    if (index < used.size()) used[index] = 1;
-  for (size_t i = 0; i < used.size(); ++i)
-    if (used[i]) growByPoint(bounds, transformPoint(matrix, vector(m.points[i])));
+  if (users(mesh) > 1) {
+    const auto order = [](const Vec3f& a, const Vec3f& b) {
+      return std::memcmp(&a, &b, sizeof a) < 0;
+    };
+    const auto same = [](const Vec3f& a, const Vec3f& b) {
+      return std::memcmp(&a, &b, sizeof a) == 0;
+    };
+    std::sort(corners_.begin(), corners_.end(), order);
+    corners_.erase(std::unique(corners_.begin(), corners_.end(), same), corners_.end());
+  }
+  return corners_;
 }
 
 double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from) {
@@ -285,9 +310,8 @@ double Meshes::reach(int32_t mesh, const Matrix& matrix, const Vector& from) {
     far = (transformPoint(matrix, Vector(0)) - from).length() + m.radius * largestStretch(matrix);
     return std::isfinite(far) ? far : 0;
   }
-  for (const uint32_t index : m.indices) {
-    if (index >= m.points.size()) continue;
-    const double length = (transformPoint(matrix, vector(m.points[index])) - from).length();
+  for (const Vec3f& corner : corners(mesh)) {
+    const double length = (transformPoint(matrix, vector(corner)) - from).length();
     if (length > far && std::isfinite(length)) far = length;
   }
   return far;

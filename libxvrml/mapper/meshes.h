@@ -10,6 +10,7 @@
 #include "geometry/mesh.h"
 #include "mapper/ration.h"
 #include "xvrml/mapper.h"
+#include "xvrml/node_map.h"
 
 namespace xvrml::mapper {
 
@@ -75,6 +76,11 @@ class Meshes {
   bool sameContent(int32_t a, int32_t b);
   void join(int32_t mesh); // joins the group of equal content
   void leave(int32_t mesh);
+  const std::vector<Vec3f>& corners(int32_t mesh);
+  void forgetCorners() {
+    cornersOf_ = none_;
+    std::vector<Vec3f>().swap(corners_);
+  }
   int32_t newGroup(uint64_t hash);
   void count(int32_t mesh, int32_t users);
 
@@ -82,10 +88,12 @@ class Meshes {
   Quota quota_; // quota for the meshes that are built now
   std::vector<Entry> entries_;
   std::vector<int32_t> free_, dropped_, built_;
-  std::unordered_map<const Node*, int32_t> index_;
+  NodeMap<int32_t> index_;
   std::vector<Group> groups_;
   int32_t freeGroup_ = none_;
   std::unordered_map<uint64_t, int32_t> byContent_; // first group of each hash
+  int32_t cornersOf_ = none_;                       // the mesh that corners_ belongs to
+  std::vector<Vec3f> corners_;
 };
 
 // Copies a mesh with only the vertices that its indices use, in their order.

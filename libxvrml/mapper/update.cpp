@@ -93,7 +93,7 @@ void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
   viewsStale |= graph.items[id].placeDependent;
   boundsStale = true;
   if (graph.items[id].kind == Kind::billboard) return; // updated with every frame
-  if (!graph.readMatrix(id)) {
+  if (!nodeCast<nodes::Transform>(&node)) {
     graph.plan(id);
     work.regroup = true;
     return;

@@ -61,7 +61,8 @@ void walkInto(Nodes first, const Visit& visit, const Enter& enter) {
       enter(scope);
       appendRoots(scope, open);
     };
-    if (auto* instance = dynamic_cast<const ProtoInstance*>(&node)) add(instance->body);
+    if (node.type().index < 0)
+      if (auto* instance = dynamic_cast<const ProtoInstance*>(&node)) add(instance->body);
     if (const Scope* content = node.type().name == "Inline" ? inlineScope(node) : nullptr)
       add(*content);
   });

@@ -4,15 +4,24 @@
 #pragma once
 
 #include <type_traits>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "xvrml/node_map.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
 
-using SeenNodes = std::unordered_set<const Node*>;
+class SeenNodes {
+ public:
+  // Returns whether the node was not in the set. node: not null.
+  bool insert(const Node* node) { return nodes_.insert(node, {}).second; }
+  bool contains(const Node* node) const { return nodes_.contains(node); }
+
+ private:
+  struct Nothing {};
+  NodeMap<Nothing> nodes_;
+};
 
 // Calls visit(node, open) for each node in `open`, the last one first; null is skipped. visit
 // appends to `open` the nodes where the walk goes on. If visit returns false, the walk ends and
@@ -22,7 +31,7 @@ bool walk(std::vector<N*> open, SeenNodes& seen, const Visit& visit) {
   while (!open.empty()) {
     N* node = open.back();
     open.pop_back();
-    if (!node || !seen.insert(node).second) continue;
+    if (!node || !seen.insert(node)) continue;
     if constexpr (std::is_void_v<decltype(visit(*node, open))>)
       visit(*node, open);
     else if (!visit(*node, open))

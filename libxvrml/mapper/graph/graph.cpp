@@ -21,8 +21,8 @@ Graph::Graph(World& world) : meshes(world), context_{world}, quota_(world, "node
 }
 
 ItemId Graph::find(const Node* node) const {
-  const auto found = known_.find(node);
-  return found == known_.end() ? 0 : found->second;
+  const ItemId* known = known_.find(node);
+  return known ? *known : 0;
 }
 
 void Graph::plan(ItemId item) {
@@ -39,17 +39,17 @@ bool Graph::planRoots() {
   return true;
 }
 
-bool Graph::readMatrix(ItemId id) {
-  Item& item = items[id];
-  auto* t = nodeCast<nodes::Transform>(item.node);
-  if (!t) return false;
-  const Matrix matrix =
-      transformMatrix({t->center, t->translation, t->scale, t->rotation, t->scaleOrientation});
-  if (item.matrix)
-    *item.matrix = matrix;
-  else
-    item.matrix = std::make_unique<Matrix>(matrix);
-  return true;
+Matrix Graph::matrixOf(const Item& item) {
+  const auto* t = nodeCast<nodes::Transform>(item.node);
+  return t ? transformMatrix(
+                 {t->center, t->translation, t->scale, t->rotation, t->scaleOrientation})
+           : Matrix();
+}
+
+Matrix Graph::below(const Matrix& outside, const Item& item) {
+  if (!nodeCast<nodes::Transform>(item.node)) return outside;
+  const Matrix matrix = matrixOf(item);
+  return matrix == Matrix() ? outside : compose(outside, matrix);
 }
 
 void Graph::readLight(ItemId id) {
@@ -73,10 +73,10 @@ ItemId Graph::newItem() {
 ItemId Graph::itemFor(Node* written) {
   Node* node = renderedNode(written);
   if (!node || !planOf(node->type())) return 0;
-  const auto [known, fresh] = known_.try_emplace(node, 0);
-  if (!fresh) return known->second;
+  const auto [known, fresh] = known_.insert(node, 0);
+  if (!fresh) return *known;
   if (!quota_.take(bytesOfItem, node->source)) return 0;
-  const ItemId id = known->second = newItem();
+  const ItemId id = *known = newItem();
   items[id].node = NodeRef(node);
   items[id].name = nameId(node->defName.empty() ? written->defName : node->defName);
   pending_.push_back(id);
@@ -104,8 +104,7 @@ void Graph::planItem(ItemId id) {
   item.isInline = plan.isInline;
   item.awaited = plan.awaited;
   item.on = plan.on;
-  item.children = std::move(children);
-  item.matrix = plan.matrix == Matrix() ? nullptr : std::make_unique<Matrix>(plan.matrix);
+  item.children = children;
   int32_t mesh = none;
   if (auto* shape = nodeCast<nodes::Shape>(item.node); shape && item.kind == Kind::shape)
     mesh = meshes.add(*renderedNode(shape->geometry.get()), isTextured(shape->appearance.get()));

@@ -5,6 +5,7 @@
 // stack.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -16,6 +17,7 @@
 #include "mapper/meshes.h"
 #include "mapper/ration.h"
 #include "xvrml/node.h"
+#include "xvrml/node_map.h"
 #include "xvrml/world.h"
 
 namespace xvrml::mapper {
@@ -55,10 +57,32 @@ constexpr bool isSplit(ObjectReason objectReason) { return objectReason > Object
 using ItemId = uint32_t;
 inline constexpr int32_t none = -1;
 
+// The children of an item. Most items have one or none, which take no memory of their own.
+class Children {
+ public:
+  void operator=(const std::vector<ItemId>& items) {
+    size_ = uint32_t(items.size());
+    many_ = size_ > 1 ? std::make_unique<ItemId[]>(size_) : nullptr;
+    std::copy(items.begin(), items.end(), begin());
+  }
+  size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  ItemId* begin() { return many_ ? many_.get() : &one_; }
+  ItemId* end() { return begin() + size_; }
+  const ItemId* begin() const { return many_ ? many_.get() : &one_; }
+  const ItemId* end() const { return begin() + size_; }
+  ItemId& operator[](size_t index) { return begin()[index]; }
+  ItemId operator[](size_t index) const { return begin()[index]; }
+
+ private:
+  uint32_t size_ = 0;
+  ItemId one_ = 0; // unused if `many_` is set
+  std::unique_ptr<ItemId[]> many_;
+};
+
 struct Item {
-  NodeRef node; // the rendered node; a prototype instance's body node; null for the root
-  std::unique_ptr<Matrix> matrix; // null: identity
-  std::vector<ItemId> children;   // an LOD has one child per level, 0 for an empty level
+  NodeRef node;      // the rendered node; a prototype instance's body node; null for the root
+  Children children; // an LOD has one child per level, 0 for an empty level
   Kind kind = Kind::none;
   Hint hint = Hint::none;
   bool planned = false;
@@ -101,10 +125,9 @@ struct Plan {
   Kind kind = Kind::none;
   Hint hint = Hint::none;
   bool isInline = false;
-  bool awaited = false;   // an Inline whose content is still to come
-  bool keepEmpty = false; // children keep their index even if nothing is drawn for them (LOD)
-  bool on = true;         // for a light: it is on
-  Matrix matrix;
+  bool awaited = false;        // an Inline whose content is still to come
+  bool keepEmpty = false;      // children keep their index even if nothing is drawn for them (LOD)
+  bool on = true;              // for a light: it is on
   std::vector<Node*> children; // as in the file: may contain prototype instances and nulls
 
   void add(const MFNode& nodes) {
@@ -132,8 +155,6 @@ class Graph {
   void plan(ItemId item);
   // Calls plan(root) if the roots of the world have changed. Returns whether they have.
   bool planRoots();
-  // Reads only the matrix again. Returns false if the node has no matrix that can change alone.
-  bool readMatrix(ItemId item);
   void readLight(ItemId item);
   // Plans marked and new items, drops unreachable ones and computes the order.
   void settle();
@@ -142,10 +163,10 @@ class Graph {
   // Items planned again by the last settle() and still reachable.
   const std::vector<ItemId>& replanned() const { return replanned_; }
 
-  Matrix matrixOf(const Item& item) const { return item.matrix ? *item.matrix : Matrix(); }
-  Matrix below(const Matrix& outside, const Item& item) const {
-    return item.matrix ? compose(outside, *item.matrix) : outside;
-  }
+  // Returns the matrix of an item, which is that of its Transform: it is computed when it is
+  // needed, because a million matrices take more memory than time.
+  static Matrix matrixOf(const Item& item);
+  static Matrix below(const Matrix& outside, const Item& item);
   uint32_t nameId(const std::string& name);
   // Returns the name of each shape number: the DEF name of the shape, else of the nearest group
   // above its first place, else "Shape".
@@ -170,7 +191,7 @@ class Graph {
 
   PlanContext context_;
   Quota quota_;
-  std::unordered_map<const Node*, ItemId> known_;
+  NodeMap<ItemId> known_;
   std::unordered_map<std::string, uint32_t> nameIds_;
   std::vector<ItemId> pending_, free_, dropped_, replanned_;
   std::vector<uint32_t> freeNumbers_; // free shape numbers

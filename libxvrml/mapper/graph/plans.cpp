@@ -27,9 +27,7 @@ void planCollision(PlanContext&, Node& node, Plan& plan) {
 }
 
 void planTransform(PlanContext&, Node& node, Plan& plan) {
-  auto& t = static_cast<nodes::Transform&>(node);
-  group(plan, t.children);
-  plan.matrix = transformMatrix({t.center, t.translation, t.scale, t.rotation, t.scaleOrientation});
+  group(plan, static_cast<nodes::Transform&>(node).children);
 }
 
 // A whichChoice below 0 or beyond the last choice draws nothing (clause 6.46).

@@ -71,6 +71,7 @@ constexpr size_t smallWorld = 256;
 // Returns the bytes of all values that decide how a surface looks.
 std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) {
   std::string key;
+  key.reserve(64); // a material takes 60 bytes
   const auto add = [&key](const auto& value) {
     key.append(reinterpret_cast<const char*>(&value), sizeof value);
   };

@@ -112,7 +112,7 @@ void AccelBuilder::hide(uint32_t c) {
   const PartInfo& part = survey.parts()[input_->flat.clusters[c].part];
   const Slots slots(part, input_->flat.clusters[c].part == 0);
   for (uint32_t s = 0; s < slots.lines; s++)
-    if (accel_->top_.parts[placed.firstSlot + s])
+    if (accel_->top_.parts[placed.firstSlot + s].used())
       setEnabled(accel_->top_, placed.firstSlot + s, false);
   for (uint32_t s = slots.lines; s < slots.end; s++) detach(accel_->top_, placed.firstSlot + s);
   placed.shown = placed.instances = placed.transparent = false;
@@ -157,18 +157,15 @@ bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas
   const Matrix4d toRoot = uniformScale(input_->scale) * toRender;
   changed_ = true;
   if (!blas || blas->parts.empty() || !toRoot.usable()) {
-    if (top.parts[slot]) setEnabled(top, slot, false);
+    if (top.parts[slot].used()) setEnabled(top, slot, false);
     return false;
   }
-  if (top.parts[slot] && top.parts[slot]->object == blas) {
+  if (top.parts[slot].object == blas) {
     setTransform(top, slot, toRoot);
     setEnabled(top, slot, true);
     return true;
   }
-  auto part = std::make_unique<Part>();
-  part->record = record;
-  part->object = std::move(blas);
-  attachInstance(top, *device_, std::move(part), toRoot, slot);
+  attachInstance(top, *device_, std::move(blas), record, toRoot, slot);
   return true;
 }
 

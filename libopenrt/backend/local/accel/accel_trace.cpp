@@ -64,11 +64,11 @@ Accel::PrimitiveId Accel::find(const PartScene& root, uint32_t instance, uint32_
   uint32_t base = 0;
   const PartScene* scene = &root;
   if (instance != RTC_INVALID_GEOMETRY_ID) {
-    const Part& placed = *root.parts[instance];
+    const PartSlot& placed = root.parts[instance];
     base = placed.record;
     scene = placed.object.get();
   }
-  const Part& part = *scene->parts[geometry];
+  const Part& part = *scene->parts[geometry].part;
   if (part.recordOf.empty()) return {base + part.record, primitive};
   return {base + part.recordOf[primitive], part.primitiveOf[primitive]};
 }

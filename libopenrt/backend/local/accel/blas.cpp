@@ -48,11 +48,8 @@ void BlasBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entr
 void BlasBuilder::addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel,
                               uint32_t entry) {
   if (!toKernel.usable() || blas->parts.empty()) return;
-  auto part = std::make_unique<Part>();
-  part->record = entry;
-  part->object = std::move(blas);
   blas_->instances = true;
-  attachInstance(*blas_, device_, std::move(part), toKernel);
+  attachInstance(*blas_, device_, std::move(blas), entry, toKernel);
 }
 
 void BlasBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,

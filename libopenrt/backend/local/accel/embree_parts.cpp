@@ -7,7 +7,7 @@
 namespace openrt {
 namespace {
 
-void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uint32_t mask,
+void attach(PartScene& to, RTCGeometry geometry, PartSlot content, uint32_t mask,
             uint32_t slot = nextSlot) {
   rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
@@ -18,7 +18,7 @@ void attach(PartScene& to, RTCGeometry geometry, std::unique_ptr<Part> part, uin
   detach(to, slot);
   rtcAttachGeometryByID(to.scene, geometry, slot);
   rtcReleaseGeometry(geometry);
-  to.parts[slot] = std::move(part);
+  to.parts[slot] = std::move(content);
 }
 
 void transform(RTCGeometry geometry, const Matrix4d& matrix) {
@@ -45,7 +45,7 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
                      uint32_t mask, bool slivers) {
   if (slivers) {
     RTCGeometry geometry = newSlivers(device, *part);
-    attach(to, geometry, std::move(part), mask);
+    attach(to, geometry, {std::move(part)}, mask);
     return;
   }
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -60,13 +60,13 @@ void attachTriangles(PartScene& to, const EmbreeDevice& device, std::unique_ptr<
                              part->vertices.data(), 0, 12, points);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, indices, 0, 12,
                              corners / 3);
-  attach(to, geometry, std::move(part), mask);
+  attach(to, geometry, {std::move(part)}, mask);
 }
 
 void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                        uint32_t mask) {
   RTCGeometry geometry = newHugeSpheres(device, *part);
-  attach(to, geometry, std::move(part), mask);
+  attach(to, geometry, {std::move(part)}, mask);
 }
 
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
@@ -77,21 +77,21 @@ void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part
   if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE)
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
                                part->indices.data(), 0, 4, part->indices.size());
-  attach(to, geometry, std::move(part), mask, slot);
+  attach(to, geometry, {std::move(part)}, mask, slot);
 }
 
-void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
-                    const Matrix4d& matrix, uint32_t slot) {
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::shared_ptr<const Blas> object,
+                    uint32_t record, const Matrix4d& matrix, uint32_t slot) {
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_INSTANCE);
-  rtcSetGeometryInstancedScene(geometry, part->object->scene);
+  rtcSetGeometryInstancedScene(geometry, object->scene);
   transform(geometry, matrix);
-  attach(to, geometry, std::move(part), maskAll, slot);
+  attach(to, geometry, {nullptr, std::move(object), record}, maskAll, slot);
 }
 
 void detach(PartScene& from, uint32_t slot) {
-  if (!from.parts[slot]) return;
+  if (!from.parts[slot].used()) return;
   rtcDetachGeometry(from.scene, slot);
-  from.parts[slot].reset();
+  from.parts[slot] = {};
 }
 
 void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix) {

@@ -18,8 +18,7 @@ struct Blas;
 // The buffers of one Embree geometry, and the map from its primitives to records and primitives of
 // the scene.
 struct Part {
-  // The record of every primitive is `record`, or recordOf[i] in merged geometries. For an instance
-  // `record` is the first of the instance's records.
+  // The record of every primitive is `record`, or recordOf[i] in merged geometries.
   uint32_t record = 0;
   std::vector<uint32_t> recordOf;
   std::vector<uint32_t> primitiveOf;
@@ -29,7 +28,15 @@ struct Part {
   std::vector<uint8_t> openEdges; // for each sliver bits of its open edges (sliver_edges.h)
   std::vector<Matrix4d> spheres;  // for huge spheres: unit sphere's frame to the geometry's frame
   std::atomic<uint64_t>* wrongHits = nullptr; // for slivers: the device's; it outlives the part
-  std::shared_ptr<const Blas> object;         // for an instance: the instanced scene
+};
+
+// One Embree geometry: a part, or an instance of another Embree scene. There may be a million
+// instances, so an instance takes no memory besides its slot.
+struct PartSlot {
+  std::unique_ptr<Part> part;         // null for an instance
+  std::shared_ptr<const Blas> object; // for an instance: the instanced scene
+  uint32_t record = 0;                // for an instance: the first of its records
+  bool used() const { return part || object; }
 };
 
 // An Embree scene and its parts, indexed by geometry id.
@@ -41,7 +48,7 @@ struct PartScene {
     if (scene) rtcReleaseScene(scene);
   }
   RTCScene scene = nullptr;
-  std::vector<std::unique_ptr<Part>> parts;
+  std::vector<PartSlot> parts;
 };
 
 inline constexpr uint32_t nextSlot = ~0u; // the first id after the existing parts
@@ -63,9 +70,9 @@ RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part);
 // the geometry id.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                  uint32_t mask, RTCGeometryType type, uint32_t slot = nextSlot);
-// Attaches an instance of part->object.
-void attachInstance(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
-                    const Matrix4d& matrix, uint32_t slot = nextSlot);
+// Attaches an instance of another scene. record: the first of the instance's records.
+void attachInstance(PartScene& to, const EmbreeDevice& device, std::shared_ptr<const Blas> object,
+                    uint32_t record, const Matrix4d& matrix, uint32_t slot = nextSlot);
 void detach(PartScene& from, uint32_t slot); // does nothing if the slot is empty
 // setTransform() moves the instance in a slot, setEnabled() shows or hides it.
 void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix);
