@@ -233,7 +233,7 @@ TEST(PathStages, OneLobeAndManyLobesContinuePathsAlike) {
     PlaneHits plane(8);
     plane.scene.frame.transport = RT_TRANSPORT_PATH;
     RtsBatch batch = plane.batch();
-    plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f);
+    plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f * certainThroughput);
     if (many) plane.add(batch, RTS_LOBE_REFLECTION, 0);
     Paths paths(plane);
     LobeSampling sampling =
