@@ -8,8 +8,11 @@
 
 #include "render/lights/light_samples.h"
 #include "render/lights/light_tree.h"
+#include "render/path/accumulate.h"
+#include "render/path/camera_rays.h"
 #include "render/path/random_numbers.h"
 #include "render/path/spawn_rays.h"
+#include "render/surface/faults.h"
 #include "render/surface/lambert.h"
 #include "render/surface/point_block.h"
 #include "render/surface/sample_lobes.h"
@@ -225,5 +228,56 @@ void nextRays(benchmark::State& state) {
   setItems(state);
 }
 BENCHMARK(nextRays)->Name("stage/spawned rays, lobes")->Arg(1)->Arg(2);
+
+// The time of the camera's shader is not in it: this one does nothing.
+void cameraRays(benchmark::State& state) {
+  PlanePaths paths;
+  std::vector<uint32_t> pixels(count / 16);
+  for (uint32_t i = 0; i < count / 16; i++) pixels[i] = i;
+  const FilmSamples film{pixels, 64, 0, 16, {}, false};
+  RtsClass camera{};
+  camera.generate = [](const RtsHost*, RtsBatch*, const void*, uint32_t, const float* const*,
+                       const float*, RtsRays*) {};
+  paths.plane.scene.camera.shader.shaderClass = &camera;
+  paths.plane.scene.camera.fromLocal = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  Rays rays;
+  rays.allocate(paths.plane.arena, count);
+  for (auto _ : state) {
+    ArenaScope scope(paths.plane.arena);
+    startSamples(film, paths.samples);
+    float* xy[2];
+    sampleFilm(film, paths.samples, paths.plane.arena, xy);
+    makeCameraRays(paths.plane.context(), xy, rays);
+  }
+  setItems(state);
+}
+BENCHMARK(cameraRays)->Name("stage/camera rays");
+
+// lobes: 1: one Lambert lobe; 2: also a mirror, which shows what lies beyond the surface.
+void surfaceLight(benchmark::State& state) {
+  PlanePaths paths;
+  PixelSamples found;
+  found.allocate(paths.plane.arena, count);
+  RtsBatch batch = paths.plane.batch();
+  paths.plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f);
+  if (state.range(0) > 1) paths.plane.add(batch, RTS_LOBE_REFLECTION, 0.25f);
+  RtsSurface surface{};
+  for (auto& a : surface.emission) a = paths.plane.arena.takeZero<float>(count);
+  for (auto _ : state) addSurface(batch, surface, {}, {}, found);
+  setItems(state);
+}
+BENCHMARK(surfaceLight)->Name("stage/light added to the paths, lobes")->Arg(1)->Arg(2);
+
+void shaderOutput(benchmark::State& state) {
+  PlanePaths paths;
+  RtsBatch batch = paths.plane.batch();
+  paths.plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f);
+  RtsSurface surface{};
+  for (auto& a : surface.emission) a = paths.plane.arena.takeZero<float>(count);
+  const RtsClass shaderClass{};
+  for (auto _ : state) sanitizeOutput(shaderClass, batch, surface);
+  setItems(state);
+}
+BENCHMARK(shaderOutput)->Name("stage/test for NaN in a shader's output");
 
 } // namespace

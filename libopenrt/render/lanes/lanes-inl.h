@@ -92,6 +92,12 @@ inline Lanes loadSome(const float* from, uint32_t count) {
   for (uint32_t k = 0; k < count; k++) some[k] = from[k];
   return load(some);
 }
+inline Bits loadSome(const uint32_t* from, uint32_t count) {
+  if (count >= width()) return load(from);
+  uint32_t some[lanes] = {};
+  for (uint32_t k = 0; k < count; k++) some[k] = from[k];
+  return load(some);
+}
 inline void storeSome(Lanes v, float* to, uint32_t count) {
   if (count >= width()) return store(v, to);
   float some[lanes];

@@ -1,34 +1,109 @@
 #include "render/path/accumulate.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/path/accumulate.cpp"
+#include <hwy/foreach_target.h>
+
+#include "render/lanes/lanes-inl.h"
+#include "render/surface/lobes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace openrt {
+namespace HWY_NAMESPACE {
+namespace {
+
+// Weights of what hits show of the light beyond their surface.
+struct Shown {
+  LaneVec clear; // straight transmission
+  LaneVec seen;  // all specular lobes: also mirror images and refractions
+};
+
+// Returns the weights of a lobe. NaN, infinite and negative components are 0, as in weightAt().
+LaneVec weightsOf(const RtsLobe& lobe, uint32_t i) {
+  const auto usable = [](Lanes w) {
+    return hn::IfThenElseZero(hn::And(isFinite(w), w > lanesOf(0)), w);
+  };
+  const LaneVec w = load(lobe.weight, i);
+  return {usable(w.x), usable(w.y), usable(w.z)};
+}
+
+// Returns what the hits from i on show. hidden: as in lightOfHits().
+Shown shownAt(const RtsBatch& batch, const uint32_t* hidden, uint32_t i) {
+  const Lanes zero = lanesOf(0), one = lanesOf(1);
+  Shown shown{{zero, zero, zero}, {zero, zero, zero}};
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    const RtsLobe& lobe = batch.lobes[l];
+    if (nonSpecularFunctions(lobe)) continue;
+    const LaneVec w = weightsOf(lobe, i);
+    shown.seen = shown.seen + w;
+    if (lobe.kind == RTS_LOBE_TRANSPARENT) shown.clear = shown.clear + w;
+  }
+  if (!hidden) return shown;
+  const Mask all = loadMask(hidden + i);
+  const LaneVec ones{one, one, one};
+  return {select(all, ones, shown.clear), select(all, ones, shown.seen)};
+}
+
+// Returns one colour of the light that the hits from i on send through the fog: Fog::attenuate().
+Lanes attenuate(const Fog& fog, uint32_t i, int colour, Lanes light, Lanes seen) {
+  if (!fog.transmittance) return light;
+  const Lanes one = lanesOf(1), transmittance = load(fog.transmittance + i);
+  return transmittance * light +
+         (one - transmittance) * load(fog.airlight[colour] + i) * (one - min(seen, one));
+}
+
+} // namespace
+
+// Computes what each hit adds to the radiance and the alpha of its path. hidden: not 0 where a
+// boundary has no effect on light; null: nowhere.
+void lightOfHits(const RtsBatch& batch, const RtsSurface& surface, const Fog& fog,
+                 const uint32_t* hidden, float* const radiance[3], float* alpha) {
+  const Lanes zero = lanesOf(0), one = lanesOf(1);
+  const auto uncovered = [&](Lanes clear) { return one - min(clear, one); };
+  const uint32_t n = batch.points->hits.count;
+  for (uint32_t i = 0; i < n; i += width()) {
+    const LaneVec throughput = gather(batch.states->throughput, indicesFrom(batch.order, i, n));
+    const Shown shown = shownAt(batch, hidden, i);
+    const auto arriving = [&](int colour, Lanes seen) {
+      const Lanes light = load(surface.emission[colour] + i);
+      return attenuate(fog, i, colour, select(isFinite(light), light, zero), seen);
+    };
+    const LaneVec light{arriving(0, shown.seen.x), arriving(1, shown.seen.y),
+                        arriving(2, shown.seen.z)};
+    store(throughput * light, radiance, i);
+    const LaneVec covered{uncovered(shown.clear.x), uncovered(shown.clear.y),
+                          uncovered(shown.clear.z)};
+    store(dot(throughput, covered) / lanesOf(3), alpha + i);
+  }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace openrt
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 #include <algorithm>
 #include <cmath>
 
 namespace openrt {
+HWY_EXPORT(lightOfHits);
+
 namespace {
 
-constexpr Vec3f one{1, 1, 1};
-
-// Weights of what a hit shows of the light beyond its surface.
-struct Shown {
-  Vec3f clear; // straight transmission
-  Vec3f seen;  // all specular lobes: also mirror images and refractions
-};
-Shown shownAt(const RtsBatch& batch, uint32_t i, bool visible) {
-  if (!visible) return {one, one};
-  Shown shown;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    Vec3f w;
-    if (nonSpecularFunctions(batch.lobes[l]) || !weightAt(batch.lobes[l], i, w)) continue;
-    shown.seen += w;
-    if (batch.lobes[l].kind == RTS_LOBE_TRANSPARENT) shown.clear += w;
-  }
-  return shown;
+// Returns where a boundary has no effect on light, as a mask by hit; null if there are none.
+const uint32_t* hiddenHits(const RtsBatch& batch, const Boundaries& boundaries) {
+  if (!boundaries.crossing) return nullptr;
+  const uint32_t n = batch.points->hits.count;
+  auto* hidden = batch.arena->take<uint32_t>(padded(n));
+  for (uint32_t i = 0; i < padded(n); i++) hidden[i] = !boundaries.visibleAt(std::min(i, n - 1));
+  return hidden;
 }
 
 } // namespace
 
 void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& fog,
                 PixelSamples& found) {
+  constexpr Vec3f one{1, 1, 1};
   const RtsBatch& batch = paths.batch;
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const RayState ray = (*batch.states)[batch.order[i]];
@@ -50,25 +125,24 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
   }
 }
 
+// Several hits may belong to one path, so what the vector lanes have computed is added hit by hit.
 void addSurface(const RtsBatch& batch, const RtsSurface& surface, const Boundaries& boundaries,
                 const Fog& fog, PixelSamples& found) {
+  ArenaScope scope(*batch.arena);
   const PathStates& states = *batch.states;
-  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
+  const uint32_t n = batch.points->hits.count;
+  float *radiance[3], *alpha = batch.arena->take<float>(padded(n));
+  for (auto& a : radiance) a = batch.arena->take<float>(padded(n));
+  HWY_DYNAMIC_DISPATCH(lightOfHits)
+  (batch, surface, fog, hiddenHits(batch, boundaries), radiance, alpha);
+  for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order[i], path = states.path[lane];
-    const bool visible = boundaries.visibleAt(i);
-    const Shown shown = shownAt(batch, i, visible);
-    const Vec3f throughput = load(states.throughput, lane);
-    for (int k = 0; k < 3; k++) {
-      const float radiance = surface.emission[k][i];
-      const float light = fog.attenuate(i, k, std::isfinite(radiance) ? radiance : 0.0f,
-                                        std::min(shown.seen[k], 1.0f));
-      found.radiance[k][path] += throughput[k] * light;
-    }
-    const float covered = dot(throughput, one - min(shown.clear, one));
-    if (!states.flagsOf(lane).deflected()) found.alpha[path] += covered / 3;
-    if (found.first[path] && visible)
+    store(load(found.radiance, path) + load(radiance, i), found.radiance, path);
+    if (!states.flagsOf(lane).deflected()) found.alpha[path] += alpha[i];
+    if (found.first[path] && boundaries.visibleAt(i))
       found.storeFirst(*batch.scene, *batch.points, i, path, surface.albedo);
   }
 }
 
 } // namespace openrt
+#endif

@@ -1,18 +1,50 @@
 #include "render/path/camera_rays.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/path/camera_rays.cpp"
+#include <hwy/foreach_target.h>
+
+#include "render/lanes/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace openrt {
+namespace HWY_NAMESPACE {
+
+// Maps rays from the camera's local space to render space, with directions of length 1. The padding
+// of the arrays holds rays, too.
+void mapRays(const Affine& map, const RtsRays& local, const Rays& rays) {
+  const Rows<Lanes> linear{vectorOf(map.r[0]), vectorOf(map.r[1]), vectorOf(map.r[2])};
+  const LaneVec translation{lanesOf(map.r[0][3]), lanesOf(map.r[1][3]), lanesOf(map.r[2][3])};
+  for (uint32_t i = 0; i < padded(rays.count); i += width()) {
+    const LaneVec direction = linear * load(local.direction, i);
+    store(linear * load(local.origin, i) + translation, rays.org, i);
+    store(direction * (lanesOf(1) / sqrt(dot(direction, direction))), rays.dir, i);
+  }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace openrt
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 #include <algorithm>
 #include <limits>
 
 #include "shading/running.h"
 
 namespace openrt {
+HWY_EXPORT(mapRays);
 
 void startSamples(const FilmSamples& film, PathSamples& samples) {
-  uint32_t path = 0;
-  for (uint32_t pixel : film.pixels)
-    for (uint32_t s = 0; s < film.perPixel; s++, path++)
-      samples.set(path, pixel, film.replicates.seedOf(film.first + s),
-                  film.replicates.indexOf(film.first + s));
+  for (uint32_t s = 0; s < film.perPixel; s++) {
+    const uint32_t seed = film.replicates.seedOf(film.first + s),
+                   point = film.replicates.indexOf(film.first + s);
+    uint32_t path = s;
+    for (uint32_t pixel : film.pixels) {
+      samples.set(path, pixel, seed, point);
+      path += film.perPixel;
+    }
+  }
 }
 
 void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& arena, float* xy[2]) {
@@ -22,11 +54,13 @@ void sampleFilm(const FilmSamples& film, const PathSamples& samples, Arena& aren
   else
     randomNumbersAtStart(samples, n, arena).drawPair(0, arena, xy);
   uint32_t path = 0;
-  for (uint32_t pixel : film.pixels)
+  for (uint32_t pixel : film.pixels) {
+    const auto x = float(pixel % film.width), y = float(pixel / film.width);
     for (uint32_t s = 0; s < film.perPixel; s++, path++) {
-      xy[0][path] += float(pixel % film.width);
-      xy[1][path] += float(pixel / film.width);
+      xy[0][path] += x;
+      xy[1][path] += y;
     }
+  }
   for (int k = 0; k < 2; k++) std::fill(xy[k] + n, xy[k] + padded(n), xy[k][n - 1]);
 }
 
@@ -47,14 +81,10 @@ void makeCameraRays(const StageContext& context, const float* const xy[2], Rays&
     const RunningShader running(*camera.shaderClass);
     camera.shaderClass->generate(&scene.host, &batch, camera.params, n, xy, extent, &local);
   }
-  const Affine& toRender = scene.camera.fromLocal;
-  for (uint32_t i = 0; i < size; i++) {
-    const Vec3f direction = toRender.direction(load(local.direction, i));
-    store(toRender.point(load(local.origin, i)), rays.org, i);
-    store(direction * (1 / length(direction)), rays.dir, i);
-  }
+  HWY_DYNAMIC_DISPATCH(mapRays)(scene.camera.fromLocal, local, rays);
   std::fill_n(rays.tnear, size, 0.0f);
   std::fill_n(rays.tfar, size, std::numeric_limits<float>::infinity());
 }
 
 } // namespace openrt
+#endif

@@ -1,10 +1,28 @@
 #include "render/path/random_numbers.h"
 
+#include <algorithm>
+
 namespace openrt {
+namespace {
+
+// Returns an array of n numbers to be written, whose padding is 0.
+float* takePadded(Arena& arena, uint32_t n) {
+  auto* numbers = arena.take<float>(padded(n));
+  std::fill(numbers + n, numbers + padded(n), 0.0f);
+  return numbers;
+}
+
+} // namespace
 
 void RandomNumbers::drawPair(uint32_t offset, Arena& arena, float* square[2]) const {
-  for (int k = 0; k < 2; k++) square[k] = arena.takeZero<float>(padded(count));
+  for (int k = 0; k < 2; k++) square[k] = takePadded(arena, count);
   samplePairs(count, key, pair, offset, index, square[0], square[1]);
+}
+
+float* RandomNumbers::drawSecond(Decision what, Arena& arena) const {
+  float* second = takePadded(arena, count);
+  samplePairs(count, key, pair, uint32_t(what), index, nullptr, second);
+  return second;
 }
 
 RandomNumbers randomNumbersAt(const PathSamples& samples, const PathStates& states,

@@ -56,6 +56,8 @@ struct RandomNumbers {
     drawPair(uint32_t(what) + offset, arena, square);
   }
   void drawPair(uint32_t offset, Arena& arena, float* square[2]) const;
+  // Draws only the second coordinates of the points of draw().
+  float* drawSecond(Decision what, Arena& arena) const;
 };
 
 // Returns the random numbers at n hits. pair: pairAtLevel() for branch 0. order: lane in `states`

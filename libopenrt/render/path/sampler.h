@@ -89,8 +89,8 @@ class PairSampler {
   uint32_t order_, x_, y_;
 };
 
-// Vectorised form for many samples: writes point index[i] of the pair pair[i] + draw, where key[i]
-// is hash(pixel, seed).
+// Does the same with vector lanes: writes point index[i] of the pair pair[i] + draw, where key[i]
+// is hash(pixel, seed). The arrays have n elements. x: null if nobody reads the first coordinates.
 void samplePairs(uint32_t n, const uint32_t* key, const uint32_t* pair, uint32_t draw,
                  const uint32_t* index, float* x, float* y);
 

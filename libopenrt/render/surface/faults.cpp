@@ -1,11 +1,11 @@
 #include "render/surface/faults.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <string>
 
+#include "render/lanes/all_finite.h"
 #include "render/surface/batch.h"
 #include "render/surface/lobes.h"
 #include "shading/running.h"
@@ -34,16 +34,6 @@ const char* textOf(Fault fault) {
            "the same radiance everywhere";
   }
   return "";
-}
-
-// Returns whether all values are finite. It tests the bits of the exponent, so that the loop
-// vectorises.
-bool allFinite(const float* values, uint32_t n) {
-  constexpr uint32_t exponent = 0x7f800000;
-  uint32_t bad = 0;
-  for (uint32_t i = 0; i < n; i++)
-    bad |= uint32_t((std::bit_cast<uint32_t>(values[i]) & exponent) == exponent);
-  return bad == 0;
 }
 
 uint32_t traitsAt(const RtsBatch& batch, uint32_t i) {

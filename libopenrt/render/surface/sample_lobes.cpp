@@ -4,7 +4,13 @@ namespace openrt {
 
 LobeSampling drawChoices(const RtsBatch& batch, const RandomNumbers& random) {
   LobeSampling sampling{.random = random};
-  random.draw(Decision::choice, *batch.arena, sampling.choices);
+  if (batch.lobeCount == 1 && nonSpecularFunctions(batch.lobes[0])) {
+    // Each hit has at most one sample, so no choice depends on the first numbers.
+    sampling.choices[0] = batch.arena->takeZero<float>(padded(random.count));
+    sampling.choices[1] = random.drawSecond(Decision::choice, *batch.arena);
+  } else {
+    random.draw(Decision::choice, *batch.arena, sampling.choices);
+  }
   return sampling;
 }
 
