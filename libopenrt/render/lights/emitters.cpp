@@ -116,20 +116,6 @@ LightSample checked(const LightSample& lightSample, const LightSampleContext& fr
   return valid ? lightSample : LightSample{};
 }
 
-} // namespace
-
-LightSample Emitters::choose(const LightSampleContext& from, double pick, float u, float v) const {
-  if (!any()) return {};
-  const double sky = skyShare(from);
-  if (pick < sky) return checked(chooseSky(sky, u, v), from);
-  const double left = std::min((pick - sky) / (1 - sky), 1 - 0x1p-53);
-  const LightTree::Choice choice = shapes_->tree().choose(from.position, from.normal, left);
-  if (!(choice.probability > 0)) return {};
-  return checked(sampleChosen(from, choice.light, (1 - sky) * choice.probability, u, v), from);
-}
-
-namespace {
-
 LightSampleContext contextOf(const LightPoints& points, uint32_t i) {
   const Vec3f n = load(points.normal, i);
   return {offsetPoint(load(points.position, i), n, points.error[i]),
@@ -192,7 +178,8 @@ void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena
   }
 }
 
-float Emitters::pdf(const LightSampleContext& from, uint32_t number, const Vec3f& direction) const {
+float Emitters::pdfOf(const LightSampleContext& from, uint32_t number,
+                      const Vec3f& direction) const {
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
   if (!hasShapes() || !shape.sides) return 0;
   const Vec3d towards(direction);
@@ -215,8 +202,8 @@ void Emitters::pdf(const FoundShapes& found, float* out) const {
   if (oneNode) pdfFromRoot(shapes_->tree().root(), shapes_->arrays(), found, skyIrradiance_, out);
   for (uint32_t i = 0; i < found.count; i++)
     if (!oneNode || out[i] < 0)
-      out[i] = pdf({load(found.position, i), load(found.normal, i)}, found.shape[i],
-                   load(found.direction, i));
+      out[i] = pdfOf({load(found.position, i), load(found.normal, i)}, found.shape[i],
+                     load(found.direction, i));
 }
 
 float Emitters::skyPdf(const LightSampleContext& from, const Vec3f& local) const {

@@ -42,17 +42,12 @@ class Emitters {
   // sky. brightest(): of these and of the sides of shapes.
   double brightestSky() const;
   double brightest() const;
-  // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point
-  // on it. With many emitters all digits of pick matter.
-  LightSample choose(const LightSampleContext& from, double pick, float u, float v) const;
-  // Does the same for many points at once; points that want no sample get none. fine: low digits of
-  // the random numbers `pick`, by point.
+  // Samples an emitter as seen from each point that wants a sample. fine: low digits of the random
+  // numbers `pick`, by point, which matter with many emitters. No sample is left to other code.
   void choose(const LightPoints& points, const float* fine, Arena& arena,
               const SampledLights& out) const;
-  // Returns the solid-angle pdf of choose() for a shape hit along a direction; 0 if choose() cannot
-  // sample it.
-  float pdf(const LightSampleContext& from, uint32_t shape, const Vec3f& direction) const;
-  // Does the same for many hits at once.
+  // Computes the solid-angle pdf of choose() for the direction of each found shape; 0 if choose()
+  // cannot sample it.
   void pdf(const FoundShapes& found, float* out) const;
   // Returns the solid-angle pdf of choose() for a direction to the sky, given in the environment's
   // local space.
@@ -77,6 +72,8 @@ class Emitters {
   // are left to other code (SampledLights::left).
   bool sampleMost(const LightPoints& points, const float* fine, Arena& arena,
                   const SampledLights& out) const;
+  // Does pdf() for one shape, in double precision.
+  float pdfOf(const LightSampleContext& from, uint32_t shape, const Vec3f& direction) const;
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
                      double v, Vec3d& direction, double& distance) const;
   float skyJacobian(const Vec3f& local) const;

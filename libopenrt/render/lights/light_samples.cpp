@@ -1,6 +1,7 @@
 // light_samples.cpp: triangles are sampled by the formulas of SphericalTriangle (spherical.h), in
 // single precision. That is enough where the triangle is not seen at a grazing angle and is no
-// sliver: directions and pdfs then have the accuracy of the float that holds them.
+// sliver: directions and pdfs then have the accuracy of the float that holds them. Functions with
+// HWY_INLINE return many vectors, which then stay in registers.
 #include "render/lights/light_samples.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -33,7 +34,7 @@ struct Importances { // of the children of a node for some points
   uint32_t count;
 };
 
-Importances importancesAt(const LightNode& node, const Receivers& from) {
+HWY_INLINE Importances importancesAt(const LightNode& node, const Receivers& from) {
   const Lanes zero = lanesOf(0);
   const ReceiverLanes<Lanes> to{from.position, from.normal, select(from.twoSided, lanesOf(2), zero),
                                 lanesOf(-cosineSlack), lanesOf(cosineSlack)};
@@ -117,7 +118,7 @@ struct Triangle { // triangles seen from some points
   Mask lit;       // the side towards the point emits
 };
 
-Triangle triangleAt(const ShapeArrays& shapes, Indices shape, const LaneVec& eye) {
+HWY_INLINE Triangle triangleAt(const ShapeArrays& shapes, Indices shape, const LaneVec& eye) {
   const LaneVec a = gather(shapes.corner[0], shape), b = gather(shapes.corner[1], shape),
                 c = gather(shapes.corner[2], shape);
   const LaneVec first = b - a, second = c - a, third = first - second;
@@ -151,12 +152,6 @@ struct SampledDirection {
   Lanes distance, pdf;
 };
 
-SampledDirection selectSample(Mask condition, const SampledDirection& a,
-                              const SampledDirection& b) {
-  return {select(condition, a.direction, b.direction), select(condition, a.distance, b.distance),
-          select(condition, a.pdf, b.pdf)};
-}
-
 // Returns the squared distance over the projected area.
 Lanes pdfByArea(const Triangle& t, const LaneVec& direction, Lanes distance) {
   return lanesOf(2) * distance * distance / abs(dot(t.normal, direction));
@@ -177,7 +172,7 @@ struct SphericalTriangles { // the terms of SphericalTriangle
   Lanes volume, others, first, halfAngle;
 };
 
-SphericalTriangles project(const Triangle& t) {
+HWY_INLINE SphericalTriangles project(const Triangle& t) {
   const Lanes one = lanesOf(1);
   SphericalTriangles s;
   Lanes size = one;
@@ -215,11 +210,23 @@ SampledDirection sampleNear(const Triangle& t, Lanes u, Lanes v) {
   return {direction, t.height / dot(t.normal, direction), pdfBySolidAngle(seen)};
 }
 
+SampledDirection selectSample(Mask condition, const SampledDirection& a,
+                              const SampledDirection& b) {
+  return {select(condition, a.direction, b.direction), select(condition, a.distance, b.distance),
+          select(condition, a.pdf, b.pdf)};
+}
+
+SampledDirection sampleTriangle(const Triangle& t, Lanes u, Lanes v) {
+  if (hn::AllTrue(LanesTag(), t.far)) return sampleFar(t, u, v);
+  const SampledDirection near = sampleNear(t, u, v);
+  return hn::AllFalse(LanesTag(), t.far) ? near : selectSample(t.far, sampleFar(t, u, v), near);
+}
+
 // Returns the end of shadow rays by the bounds of shadowRayEnd() (sampled_points.cpp).
 Lanes endBefore(const Triangle& t, const SampledDirection& to) {
-  const Lanes cosine = abs(dot(t.normal, to.direction)) / sqrt(t.area2);
-  const Lanes error = lanesOf(24 * 0x1p-24f) * sqrt(t.farthest) / cosine +
-                      lanesOf(8 * 0x1p-24f) * to.distance,
+  // Farthest distance over the cosine at the triangle.
+  const Lanes over = sqrt(t.farthest * t.area2) / abs(dot(t.normal, to.direction));
+  const Lanes error = lanesOf(24 * 0x1p-24f) * over + lanesOf(8 * 0x1p-24f) * to.distance,
               most = to.distance * lanesOf(0x1p-10f);
   return to.distance - select(error < most, error, most);
 }
@@ -238,8 +245,7 @@ Mask sampleAt(const ShapeArrays& shapes, const LightPoints& points, const Receiv
              fromSky = load(points.pick + i) < choice.skyShare;
   const Mask any = hn::And(hn::AndNot(fromSky, wanted), choice.probability > zero);
   const Triangle t = triangleAt(shapes, indicesWhere(any, choice.shape), from.position);
-  SampledDirection to = sampleFar(t, u, v);
-  if (!hn::AllTrue(LanesTag(), t.far)) to = selectSample(t.far, to, sampleNear(t, u, v));
+  const SampledDirection to = sampleTriangle(t, u, v);
   const Lanes selection = (lanesOf(1) - choice.skyShare) * choice.probability,
               pdf = selection * to.pdf;
   const Mask above = hn::Or(from.twoSided, dot(to.direction, from.normal) > zero);

@@ -1,6 +1,5 @@
-// light_samples.h: samples emitters for many shading points at once, with vector lanes. It does
-// what Emitters::choose() does for one point; rare cases that need double precision are left to
-// that. [render]
+// light_samples.h: samples emitters for many shading points at once, with vector lanes. Rare cases
+// that need double precision, and the sky, are left to Emitters (emitters.h). [render]
 #pragma once
 
 #include <cstdint>
