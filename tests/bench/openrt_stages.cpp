@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "render/lights/light_rays.h"
 #include "render/lights/light_samples.h"
 #include "render/lights/light_tree.h"
 #include "render/path/accumulate.h"
@@ -38,12 +39,13 @@ struct Room {
   std::vector<float> error = std::vector<float>(count, 1e-6f);
   std::vector<uint32_t> twoSided = std::vector<uint32_t>(count, 0);
   std::vector<float> pick = numbers(0, 1, 3), u = numbers(0, 1, 4), v = numbers(0, 1, 5);
-  std::vector<uint8_t> wanted = std::vector<uint8_t>(count, 1);
+  std::vector<float> wanted = std::vector<float>(count, 1);
   std::vector<float> corner[3][3];
   std::vector<uint32_t> sides, shape = std::vector<uint32_t>(count);
   std::vector<float> share = y, probability = y, out[6] = {y, y, y, y, y, y};
-  std::vector<uint32_t> exact = twoSided;
   LightTree tree;
+  Arena arena;
+  SampledLights samples;
 
   Room() {
     std::vector<LightBounds> bounds;
@@ -54,12 +56,29 @@ struct Room {
         corner[c][1].push_back(3);
         corner[c][2].push_back(triangle[c][1]);
       }
-      sides.push_back(3);
+      sides.push_back(3 | ShapeArrays::oneRadiance);
       LightBounds b{{-1, 3, -1}, {1, 3, 1}, {0, -1, 0}, 1};
       b.intensity = 2;
       bounds.push_back(b);
     }
     tree.build(bounds);
+    samples.allocate(arena, count);
+  }
+  ShapeArrays shapes() const {
+    ShapeArrays arrays;
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 3; k++) arrays.corner[c][k] = corner[c][k].data();
+    arrays.sides = sides.data();
+    for (int k = 0; k < 3; k++) arrays.radiance[k] = ny.data();
+    return arrays;
+  }
+  // Starts the shadow rays of light samples at all points.
+  LightSamples shadowRays() {
+    sampleFromRoot(tree.root(), shapes(), points(), 0, samples);
+    LightSamples rays;
+    rays.allocate(arena, count);
+    startShadowRays(points(), samples, rays);
+    return rays;
   }
   LightPoints points() const {
     return {count,
@@ -89,19 +108,73 @@ BENCHMARK(lightChoice)->Name("stage/light choice among two");
 void lightSamples(benchmark::State& state) {
   Room room;
   chooseFromRoot(room.tree.root(), room.points(), 0, room.chosen());
-  ShapeArrays shapes;
-  for (int c = 0; c < 3; c++)
-    for (int k = 0; k < 3; k++) shapes.corner[c][k] = room.corner[c][k].data();
-  shapes.sides = room.sides.data();
-  const SampledLights out{{room.out[0].data(), room.out[1].data(), room.out[2].data()},
-                          room.out[3].data(),
-                          room.out[4].data(),
-                          room.out[5].data(),
-                          room.exact.data()};
-  for (auto _ : state) sampleShapes(shapes, room.points(), room.chosen(), out);
+  for (auto _ : state) sampleShapes(room.shapes(), room.points(), room.chosen(), room.samples);
   setItems(state);
 }
 BENCHMARK(lightSamples)->Name("stage/light samples on triangles");
+
+void lightsOfOneNode(benchmark::State& state) {
+  Room room;
+  for (auto _ : state)
+    sampleFromRoot(room.tree.root(), room.shapes(), room.points(), 0, room.samples);
+  setItems(state);
+}
+BENCHMARK(lightsOfOneNode)->Name("stage/light choice and samples, one node");
+
+void shadowRays(benchmark::State& state) {
+  Room room;
+  LightSamples rays = room.shadowRays();
+  for (auto _ : state) startShadowRays(room.points(), room.samples, rays);
+  setItems(state);
+}
+BENCHMARK(shadowRays)->Name("stage/shadow rays of light samples");
+
+void lightWeights(benchmark::State& state) {
+  test::PlaneHits plane(count);
+  RtsBatch batch = plane.batch();
+  plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f);
+  Room room;
+  LightSamples rays = room.shadowRays();
+  LobeValues values(room.arena, count);
+  for (auto _ : state) {
+    values.evaluate(batch.lobes[0], plane.points.hits, rays.rays.count, rays.hit, rays.rays.dir);
+    weightByLobe(batch.lobes[0], room.wanted.data(), values, false, rays);
+    benchmark::DoNotOptimize(rays);
+  }
+  setItems(state);
+}
+BENCHMARK(lightWeights)->Name("stage/weights of light samples, one Lambert lobe");
+
+void lightOfLamps(benchmark::State& state) {
+  Room room;
+  LightSamples rays = room.shadowRays();
+  const std::vector<uint8_t> blocked(padded(count));
+  std::vector<uint32_t> others(padded(count));
+  for (int k = 0; k < 3; k++) std::fill_n(rays.response[k], count, 1.0f);
+  float* const radiance[3] = {room.out[0].data(), room.out[1].data(), room.out[2].data()};
+  for (auto _ : state) addOneRadiance(room.shapes(), rays, blocked.data(), radiance, others.data());
+  setItems(state);
+}
+BENCHMARK(lightOfLamps)->Name("stage/light of lamps of one radiance");
+
+void emissionPdfs(benchmark::State& state) {
+  Room room;
+  const LightSamples rays = room.shadowRays();
+  FoundShapes found;
+  found.allocate(room.arena, count);
+  found.count = count;
+  for (uint32_t i = 0; i < count; i++) {
+    const uint32_t r = i % rays.rays.count;
+    store(load(rays.rays.org, r), found.position, i);
+    store(Vec3f{0, 1, 0}, found.normal, i);
+    store(load(rays.rays.dir, r), found.direction, i);
+    found.shape[i] = rays.shape[r];
+  }
+  for (auto _ : state)
+    pdfFromRoot(room.tree.root(), room.shapes(), found, 0, room.probability.data());
+  setItems(state);
+}
+BENCHMARK(emissionPdfs)->Name("stage/light pdfs of found emission");
 
 void lambert(benchmark::State& state) {
   Room room;

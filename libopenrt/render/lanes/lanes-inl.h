@@ -129,11 +129,21 @@ inline Lanes gather(const float* from, Indices index) {
 inline LaneVec gather(const float* const from[3], Indices index) {
   return {gather(from[0], index), gather(from[1], index), gather(from[2], index)};
 }
-
-// Returns where the array is not 0.
-inline Mask loadMask(const uint32_t* from) {
-  return hn::RebindMask(LanesTag(), hn::Ne(load(from), bitsOf(0)));
+inline Bits gather(const uint32_t* from, Indices index) {
+  const hn::RebindToSigned<LanesTag> tag;
+  return hn::BitCast(BitsTag(),
+                     hn::GatherIndex(tag, reinterpret_cast<const int32_t*>(from), index));
 }
+
+// Returns the lanes of element i to element n - 1 of an array whose first vector starts at i.
+inline Mask presentFrom(uint32_t i, uint32_t n) { return hn::FirstN(LanesTag(), n - i); }
+inline Mask noLanes() { return hn::FirstN(LanesTag(), 0); }
+// Returns where any of the given bits is set.
+inline Mask hasBits(Bits v, uint32_t bits) {
+  return hn::RebindMask(LanesTag(), hn::Ne(hn::And(v, bitsOf(bits)), bitsOf(0)));
+}
+// Returns where the array is not 0.
+inline Mask loadMask(const uint32_t* from) { return hasBits(load(from), ~0u); }
 
 } // namespace HWY_NAMESPACE
 } // namespace openrt

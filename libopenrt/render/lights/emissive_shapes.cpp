@@ -152,6 +152,13 @@ Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& aren
   return mean;
 }
 
+// Returns whether the points that emit light samples have one radiance. It is finite, so that light
+// from such a shape needs no checks.
+bool emitsOneRadiance(const EmissiveShapes::Shape& s) {
+  if (!s.uniform || !isFinite(s.radiance[0]) || !isFinite(s.radiance[1])) return false;
+  return s.sphere || s.sides != 3 || s.radiance[0] == s.radiance[1];
+}
+
 LightBounds triangleBounds(const EmissiveShapes::Shape& s, double front, double back) {
   LightBounds b;
   const Vec3d areaNormal = areaNormalOf(s.corner);
@@ -199,8 +206,12 @@ EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.record
   for (const Shape& shape : shapes_) {
     for (size_t c = 0; c < 3; c++)
       for (size_t k = 0; k < 3; k++) corners_[c][k].push_back(shape.corner[c][k]);
+    const bool instanced = scene.records[shape.record].instanced;
     sides_.push_back(shape.sides | (shape.sphere ? ShapeArrays::sphere : 0) |
-                     (scene.records[shape.record].instanced ? ShapeArrays::instanced : 0));
+                     (instanced ? ShapeArrays::instanced : 0) |
+                     (emitsOneRadiance(shape) ? ShapeArrays::oneRadiance : 0));
+    for (int k = 0; k < 3; k++)
+      radiance_[k].push_back(shape.radiance[shape.sides == ShapeArrays::back ? 1 : 0][k]);
   }
   markUncertain(scene);
 }
@@ -210,6 +221,7 @@ ShapeArrays EmissiveShapes::arrays() const {
   for (int c = 0; c < 3; c++)
     for (int k = 0; k < 3; k++) arrays.corner[c][k] = corners_[c][k].data();
   arrays.sides = sides_.data();
+  for (int k = 0; k < 3; k++) arrays.radiance[k] = radiance_[k].data();
   return arrays;
 }
 

@@ -41,6 +41,8 @@ class EmissiveShapes {
   // Returns the largest mean radiance of a shape's side, summed over the colours.
   double brightest() const { return brightest_; }
   const Shape& operator[](uint32_t number) const { return shapes_[number]; }
+  // Returns whether any shape is uncertain.
+  bool anyUncertain() const { return anyUncertain_; }
   const LightTree& tree() const { return tree_; }
   // Returns the shapes as structure of arrays, for vector code.
   ShapeArrays arrays() const;
@@ -73,6 +75,8 @@ class EmissiveShapes {
   LightTree tree_;
   std::vector<float> corners_[3][3]; // as Shape::corner, by shape
   std::vector<uint32_t> sides_;      // ShapeArrays::sides
+  std::vector<float> radiance_[3];   // ShapeArrays::radiance
+  bool anyUncertain_ = false;
   double brightest_ = 0;
 };
 

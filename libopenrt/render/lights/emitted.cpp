@@ -16,163 +16,194 @@ LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool two
 
 namespace {
 
-// Returns the MIS weight of the emission that a ray has found at hit i.
-float emissionMisWeight(const RtsBatch& batch, uint32_t i) {
+// Returns the number of the emissive shape at hit i, or `none`.
+uint32_t shapeAt(const RtsBatch& batch, uint32_t i) {
+  const EmissiveShapes* shapes = batch.scene->emitters.shapes();
+  const RayHits& hits = *batch.points->rayHits;
+  const uint32_t lane = batch.order[i];
+  return shapes ? shapes->find(hits.record[lane], hits.primitive[lane]) : EmissiveShapes::none;
+}
+
+// Returns whether light tracing contributes the emission of hit i.
+bool isLeftToLightTracing(const RtsBatch& batch, uint32_t i) {
   const RenderScene& scene = *batch.scene;
-  const Points& points = *batch.points;
+  const RayHits& hits = *batch.points->rayHits;
+  const uint32_t lane = batch.order[i];
+  return canOnlyReachSky(scene, batch.states->flagsOf(lane)) &&
+         scene.emitters.startsLightPaths(hits.record[lane], hits.primitive[lane],
+                                         load(batch.points->hits.direction, i));
+}
+
+// Returns the MIS weights of the emission that rays have found at some hits.
+float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, const uint32_t* hit,
+                          uint32_t n) {
+  Arena& arena = *batch.arena;
   const PathStates& states = *batch.states;
-  const uint32_t lane = batch.order[i], record = points.rayHits->record[lane],
-                 primitive = points.rayHits->primitive[lane];
-  const Vec3f direction = load(points.hits.direction, i);
-  if (canOnlyReachSky(scene, states.flagsOf(lane)) &&
-      scene.emitters.startsLightPaths(record, primitive, direction))
-    return 0;
-  const float pdf = states.pdf[lane];
-  if (!(pdf > 0)) return 1;
-  const float lightPdf = scene.emitters.pdf(states.previousOf(lane), record, primitive, direction,
-                                            points.hits.segment[i]);
-  return std::isfinite(lightPdf) ? pdf / (pdf + lightPdf) : 0.0f;
+  auto *weight = arena.take<float>(n), *bsdfPdf = arena.take<float>(n),
+       *lightPdf = arena.take<float>(padded(n));
+  auto* place = arena.take<uint32_t>(n); // index into `weight` of each found shape
+  FoundShapes found;
+  found.allocate(arena, n);
+  for (uint32_t j = 0; j < n; j++) {
+    const uint32_t i = hit[j], lane = batch.order[i], shape = shapeAt(batch, i);
+    weight[j] = boundaries.visibleAt(i) && !isLeftToLightTracing(batch, i) ? 1 : 0;
+    if (weight[j] == 0 || !(states.pdf[lane] > 0) || shape == EmissiveShapes::none) continue;
+    const uint32_t f = found.count++;
+    const LightSampleContext from = states.previousOf(lane);
+    store(from.position, found.position, f);
+    store(from.normal, found.normal, f);
+    store(load(batch.points->hits.direction, i), found.direction, f);
+    found.shape[f] = shape;
+    bsdfPdf[f] = states.pdf[lane];
+    place[f] = j;
+  }
+  batch.scene->emitters.pdf(found, lightPdf);
+  for (uint32_t f = 0; f < found.count; f++)
+    weight[place[f]] = std::isfinite(lightPdf[f]) ? bsdfPdf[f] / (bsdfPdf[f] + lightPdf[f]) : 0.0f;
+  return weight;
 }
 
 } // namespace
 
 void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, UnsampledLights& unsampled,
                     float* const emission[3]) {
-  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
-    const float weight = boundaries.visibleAt(i) ? emissionMisWeight(batch, i) : 0;
-    const Vec3f weighted = load(emission, i) * weight;
+  Arena& arena = *batch.arena;
+  ArenaScope scope(arena);
+  const uint32_t count = batch.points->hits.count;
+  auto* hit = arena.take<uint32_t>(padded(count));
+  const uint32_t n = listEmitting(emission, count, hit);
+  if (n == 0) return;
+  const float* weight = emissionMisWeights(batch, boundaries, hit, n);
+  for (uint32_t j = 0; j < n; j++) {
+    const uint32_t i = hit[j];
+    const Vec3f weighted = load(emission, i) * weight[j];
     store(weighted, emission, i);
-    if (weight > 0) unsampled.meet(batch.states->flagsOf(batch.order[i]), weighted);
+    if (weight[j] > 0) unsampled.meet(batch.states->flagsOf(batch.order[i]), weighted);
   }
 }
 
+namespace {
+
+// Returns by hit the largest probability that a lobe's sample is followed: light samples are wanted
+// where it is above 0. Returns null if none is wanted.
+const float* mostFollowed(const RtsBatch& batch, const LobeSampling& sampling) {
+  const uint32_t n = batch.points->hits.count;
+  const float* most = nullptr;
+  for (const float* followed : sampling.selectionProbability) {
+    if (!most) {
+      most = followed;
+    } else if (followed) {
+      auto* both = batch.arena->take<float>(padded(n));
+      for (uint32_t i = 0; i < n; i++) both[i] = std::max(most[i], followed[i]);
+      most = both;
+    }
+  }
+  return most && std::any_of(most, most + n, [](float p) { return p > 0; }) ? most : nullptr;
+}
+
+// Returns by hit whether light from behind the surface counts; null: it does so nowhere.
+const uint32_t* findTwoSided(const RtsBatch& batch) {
+  const auto transmits = [](const RtsLobe& lobe) {
+    const RtsLobeFunctions* functions = nonSpecularFunctions(lobe);
+    return functions && functions->transmits;
+  };
+  if (std::none_of(batch.lobes, batch.lobes + batch.lobeCount, transmits)) return nullptr;
+  const uint32_t n = batch.points->hits.count;
+  auto* twoSided = batch.arena->take<uint32_t>(padded(n));
+  for (uint32_t i = 0; i < n; i++) twoSided[i] = transmitsAt(batch, i);
+  return twoSided;
+}
+
+} // namespace
+
 LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampling) {
-  const RenderScene& scene = *batch.scene;
   Arena& arena = *batch.arena;
   const Points& points = *batch.points;
   const RtsHits& hits = points.hits;
   LightSamples out{};
-  Rays& rays = out.rays;
-  rays.allocate(arena, hits.count);
-  out.sample = arena.take<LightSample>(hits.count);
-  out.hit = arena.take<uint32_t>(hits.count);
-  const uint32_t size = padded(hits.count);
-  auto* wanted = arena.takeZero<uint8_t>(size);
-  for (uint32_t l = 0; l < batch.lobeCount; l++)
-    for (uint32_t i = 0; sampling.selectionProbability[l] && i < hits.count; i++)
-      wanted[i] |= sampling.selectionProbability[l][i] > 0;
-  rays.count = 0;
-  if (std::none_of(wanted, wanted + hits.count, [](uint8_t w) { return w != 0; })) return out;
+  const float* wanted = mostFollowed(batch, sampling);
+  if (!wanted) return out;
+  out.allocate(arena, hits.count);
+  ArenaScope scope(arena);
   float *pick[2], *place[2];
   sampling.random.draw(Decision::emitter, arena, pick);
   sampling.random.draw(Decision::place, arena, place);
-  auto* twoSided = arena.takeZero<uint32_t>(size);
-  for (uint32_t i = 0; i < hits.count; i++) twoSided[i] = transmitsAt(batch, i);
   const LightPoints lightPoints{hits.count,
                                 {hits.position[0], hits.position[1], hits.position[2]},
                                 {hits.geometric[0], hits.geometric[1], hits.geometric[2]},
                                 points.error,
-                                twoSided,
+                                findTwoSided(batch),
                                 pick[0],
                                 place[0],
                                 place[1],
                                 wanted};
-  auto* all = arena.take<LightSample>(hits.count);
-  scene.emitters.choose(lightPoints, pick[1], arena, all);
-  uint32_t n = 0;
-  for (uint32_t i = 0; i < hits.count; i++) {
-    const LightSample& lightSample = all[i];
-    if (!(lightSample.pdf > 0)) continue;
-    const Vec3f origin = liftPoint(points, i, lightSample.direction);
-    store(origin, rays.org, n);
-    store(lightSample.direction, rays.dir, n);
-    rays.tnear[n] = 0;
-    rays.tfar[n] = lightSample.end >= 0
-                       ? lightSample.end
-                       : shadowRayEnd(scene, lightSample,
-                                      lightSampleContext(points, i, false).position, origin);
-    out.hit[n] = i;
-    out.sample[n++] = lightSample;
-  }
-  rays.count = n;
+  SampledLights sampled;
+  sampled.allocate(arena, hits.count);
+  batch.scene->emitters.choose(lightPoints, pick[1], arena, sampled);
+  startShadowRays(lightPoints, sampled, out);
+  Rays& rays = out.rays;
+  for (uint32_t r = 0; r < rays.count; r++)
+    if (rays.tfar[r] < 0)
+      rays.tfar[r] =
+          shadowRayEnd(*batch.scene, out[r], lightSampleContext(points, out.hit[r], false).position,
+                       load(rays.org, r));
   return out;
 }
 
 void weightLightSamples(const RtsBatch& batch, const LobeSampling& sampling,
                         LightSamples& samples) {
-  Arena& arena = *batch.arena;
-  Rays& rays = samples.rays;
-  const uint32_t n = rays.count;
-  LightSample* lightSamples = samples.sample;
-  uint32_t* hitOf = samples.hit;
-  float* response[3];
-  for (int k = 0; k < 3; k++) response[k] = samples.response[k] = arena.takeZero<float>(padded(n));
-  ArenaScope scope(arena);
-  LobeValues lobeValues(arena, n, &batch);
+  const Rays& rays = samples.rays;
+  if (rays.count == 0) return;
+  ArenaScope scope(*batch.arena);
+  LobeValues values(*batch.arena, rays.count, &batch);
+  bool more = false;
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    const float* selectionProbability = sampling.selectionProbability[l];
-    if (!selectionProbability) continue;
-    lobeValues.evaluate(batch.lobes[l], batch.points->hits, n, hitOf, rays.dir);
-    for (uint32_t r = 0; r < n; r++) {
-      Vec3f w;
-      const float followed = selectionProbability[hitOf[r]];
-      if (!(followed > 0) || !weightAt(batch.lobes[l], hitOf[r], w)) continue;
-      const float scale = 1 / (lightSamples[r].pdf + followed * lobeValues.pdf[r]);
-      store(load(response, r) + w * load(lobeValues.value, r) * scale, response, r);
-    }
+    const float* followed = sampling.selectionProbability[l];
+    if (!followed) continue;
+    values.evaluate(batch.lobes[l], batch.points->hits, rays.count, samples.hit, rays.dir);
+    weightByLobe(batch.lobes[l], followed, values, more, samples);
+    more = true;
   }
-  uint32_t left = 0;
-  for (uint32_t r = 0; r < n; r++) {
-    if (!(response[0][r] > 0 || response[1][r] > 0 || response[2][r] > 0)) continue;
-    store(load(rays.org, r), rays.org, left);
-    store(load(rays.dir, r), rays.dir, left);
-    store(load(response, r), response, left);
-    rays.tnear[left] = rays.tnear[r];
-    rays.tfar[left] = rays.tfar[r];
-    hitOf[left] = hitOf[r];
-    lightSamples[left++] = lightSamples[r];
-  }
-  rays.count = left;
+  removeUseless(samples);
 }
 
 namespace {
 
 // Blocks the rays to shapes that may be hidden, or share their place with another surface, unless
 // the sampled shape is the one that the kernel reports.
-void blockUncertain(const StageContext& context, const Rays& rays, const LightSample* lightSamples,
-                    uint8_t* blocked) {
-  const RenderScene& scene = context.scene;
+void blockUncertain(const StageContext& context, const LightSamples& samples, uint8_t* blocked) {
+  const EmissiveShapes& shapes = *context.scene.emitters.shapes();
+  if (!shapes.anyUncertain()) return;
+  const Rays& rays = samples.rays;
   Arena& arena = context.arena;
   ArenaScope scope(arena);
   auto* lanes = arena.take<uint32_t>(rays.count);
   uint32_t n = 0;
   for (uint32_t r = 0; r < rays.count; r++) {
-    const uint32_t shape = lightSamples[r].shape;
-    if (!blocked[r] && shape != EmissiveShapes::none && (*scene.emitters.shapes())[shape].uncertain)
-      lanes[n++] = r;
+    const uint32_t shape = samples.shape[r];
+    if (!blocked[r] && shape != EmissiveShapes::none && shapes[shape].uncertain) lanes[n++] = r;
   }
   if (n == 0) return;
   const Rays again = copyRays(rays, lanes, n, arena);
-  for (uint32_t i = 0; i < n; i++) again.tfar[i] = lightSamples[lanes[i]].distance * (1 + 0x1p-10f);
+  for (uint32_t i = 0; i < n; i++) again.tfar[i] = samples.distance[lanes[i]] * (1 + 0x1p-10f);
   const RayHits found = findNearest(context, again, Coherence::incoherent);
   for (uint32_t i = 0; i < n; i++)
     blocked[lanes[i]] = found.record[i] == noHit ||
-                        scene.emitters.shapes()->find(found.record[i], found.primitive[i]) !=
-                            lightSamples[lanes[i]].shape;
+                        shapes.find(found.record[i], found.primitive[i]) != samples.shape[lanes[i]];
 }
 
 // Evaluates the emission at the sampled points of some rays by their shaders. Calls add(ray,
 // light).
-template <class Add> void shadeSampledPoints(const StageContext& context, const Rays& rays,
-                                             const LightSample* lightSamples, const uint32_t* lanes,
+template <class Add> void shadeSampledPoints(const StageContext& context,
+                                             const LightSamples& samples, const uint32_t* lanes,
                                              uint32_t n, const Add& add) {
   const RenderScene& scene = context.scene;
+  const Rays& rays = samples.rays;
   Arena& arena = context.arena;
   ArenaScope scope(arena);
   RayHits seen;
   seen.allocate(arena, rays.count);
-  for (uint32_t i = 0; i < n; i++)
-    writeSampledHit(scene, lightSamples[lanes[i]], rays, lanes[i], seen);
+  for (uint32_t i = 0; i < n; i++) writeSampledHit(scene, samples[lanes[i]], rays, lanes[i], seen);
   const auto* travelled = arena.takeZero<float>(padded(rays.count));
   auto* sorted = arena.take<uint32_t>(n);
   for (const BucketRange& range : sortByBucket(scene, seen, lanes, n, sorted, arena)) {
@@ -189,6 +220,13 @@ template <class Add> void shadeSampledPoints(const StageContext& context, const 
   }
 }
 
+uint32_t listUnblocked(uint32_t n, const uint8_t* blocked, uint32_t* rays) {
+  uint32_t left = 0;
+  for (uint32_t r = 0; r < n; r++)
+    if (!blocked[r]) rays[left++] = r;
+  return left;
+}
+
 } // namespace
 
 void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
@@ -200,36 +238,38 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
   LightSamples samples = chooseLightSamples(batch, sampling);
   weightLightSamples(batch, sampling, samples);
   const Rays& rays = samples.rays;
-  const LightSample* lightSamples = samples.sample;
   const uint32_t n = rays.count;
   if (n == 0) return;
   context.counters.shadow += n;
-  auto* blocked = arena.take<uint8_t>(n);
+  auto* blocked = arena.take<uint8_t>(padded(n));
   findBlocked(scene, rays, blocked);
-  blockUncertain(context, rays, lightSamples, blocked);
+  blockUncertain(context, samples, blocked);
 
+  const EmissiveShapes& shapes = *scene.emitters.shapes();
+  const bool absorbs = !scene.shaders->media().empty();
   const auto add = [&](uint32_t ray, const Vec3f& light) {
     const uint32_t i = samples.hit[ray];
     Vec3f left = light;
-    if (!scene.shaders->media().empty()) { // absorption of the medium between hit and emitter
+    if (absorbs) { // absorption of the medium between hit and emitter
       const MediaStack& media = mediaTowards(*batch.points, i, load(rays.dir, ray), boundaries,
                                              batch.states->media[batch.order[i]]);
-      absorb(mediumOf(media, scene.shaders->media()), std::min(lightSamples[ray].distance, 1e30f),
+      absorb(mediumOf(media, scene.shaders->media()), std::min(samples.distance[ray], 1e30f),
              scene.shaders->media(), left);
     }
     for (int k = 0; k < 3; k++)
       if (std::isfinite(left[k])) radiance[k][i] += samples.response[k][ray] * left[k];
   };
-  auto *toSky = arena.take<uint32_t>(n), *toShade = arena.take<uint32_t>(n);
+  auto *others = arena.take<uint32_t>(padded(n)), *toSky = arena.take<uint32_t>(n),
+       *toShade = arena.take<uint32_t>(n);
+  const uint32_t left = absorbs || shapes.empty()
+                            ? listUnblocked(n, blocked, others)
+                            : addOneRadiance(shapes.arrays(), samples, blocked, radiance, others);
   uint32_t skies = 0, shaded = 0;
-  for (uint32_t r = 0; r < n; r++) {
-    if (blocked[r]) continue;
-    if (lightSamples[r].shape == EmissiveShapes::none) {
+  for (uint32_t o = 0; o < left; o++) {
+    const uint32_t r = others[o];
+    if (samples.shape[r] == EmissiveShapes::none)
       toSky[skies++] = r;
-      continue;
-    }
-    const EmissiveShapes::Shape& shape = (*scene.emitters.shapes())[lightSamples[r].shape];
-    if (const Vec3f* light = uniformRadiance(shape, lightSamples[r].direction))
+    else if (const Vec3f* light = uniformRadiance(shapes[samples.shape[r]], load(rays.dir, r)))
       add(r, *light);
     else
       toShade[shaded++] = r;
@@ -238,7 +278,7 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
     const SkyAlongRays sky = evaluateSky(context, rays, toSky, skies);
     for (uint32_t i = 0; i < skies; i++) add(toSky[i], load(sky.rgba, i));
   }
-  if (shaded) shadeSampledPoints(context, rays, lightSamples, toShade, shaded, add);
+  if (shaded) shadeSampledPoints(context, samples, toShade, shaded, add);
 }
 
 } // namespace openrt

@@ -2,7 +2,7 @@
 // shadow ray per hit, combined with BSDF sampling by MIS. [render]
 #pragma once
 
-#include "render/lights/emitters.h"
+#include "render/lights/light_rays.h"
 #include "render/lights/unsampled_lights.h"
 #include "render/surface/sample_lobes.h"
 #include "render/surface/surfaces.h"
@@ -18,13 +18,6 @@ LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool two
 void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, UnsampledLights& unsampled,
                     float* const emission[3]);
 
-// Light samples at the hits of a batch, one for each hit at most.
-struct LightSamples {
-  Rays rays;           // the shadow rays; count: number of samples
-  LightSample* sample; // by ray
-  uint32_t* hit;       // by ray: index of the hit in the batch
-  float* response[3];  // by ray: BSDF times MIS weight over pdf
-};
 // Samples an emitter for each hit with a non-specular lobe.
 LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampling);
 // Computes the BSDF response of the hits to their light samples, with the MIS weight of light

@@ -116,94 +116,76 @@ LightSample checked(const LightSample& lightSample, const LightSampleContext& fr
   return valid ? lightSample : LightSample{};
 }
 
+LightSampleContext contextOf(const LightPoints& points, uint32_t i) {
+  const Vec3f n = load(points.normal, i);
+  return {offsetPoint(load(points.position, i), n, points.error[i]),
+          points.twoSided && points.twoSided[i] ? Vec3f() : n};
+}
+
+void store(const LightSample& lightSample, const SampledLights& to, uint32_t i) {
+  store(lightSample.direction, to.direction, i);
+  to.distance[i] = lightSample.distance;
+  to.end[i] = -1;
+  to.pdf[i] = lightSample.pdf;
+  to.shape[i] = lightSample.shape;
+}
+
 } // namespace
 
-LightSample Emitters::choose(const LightSampleContext& from, double pick, float u, float v) const {
-  if (!any()) return {};
-  const double sky = skyShare(from);
-  if (pick < sky) return checked(chooseSky(sky, u, v), from);
-  const double left = std::min((pick - sky) / (1 - sky), 1 - 0x1p-53);
-  const LightTree::Choice choice = shapes_->tree().choose(from.position, from.normal, left);
-  if (!(choice.probability > 0)) return {};
-  return checked(sampleChosen(from, choice.light, (1 - sky) * choice.probability, u, v), from);
+bool Emitters::sampleMost(const LightPoints& points, const float* fine, Arena& arena,
+                          const SampledLights& out) const {
+  if (!hasShapes()) {
+    for (uint32_t i = 0; i < points.count; i++) {
+      const bool wanted = points.wanted[i] > 0;
+      out.left[i] = wanted ? SampledLights::sky : 0;
+      out.pdf[i] = wanted ? 1 : 0;
+    }
+    return true;
+  }
+  const LightTree& tree = shapes_->tree();
+  if (tree.hasOneNode())
+    return sampleFromRoot(tree.root(), shapes_->arrays(), points, skyIrradiance_, out);
+  ArenaScope scope(arena);
+  const uint32_t size = padded(points.count);
+  const ChosenLights chosen{arena.take<float>(size), arena.take<uint32_t>(size),
+                            arena.take<float>(size)};
+  chooseFromRoot(tree.root(), points, skyIrradiance_, chosen);
+  std::fill_n(chosen.probability, size, 0.0f);
+  for (uint32_t i = 0; i < points.count; i++) {
+    const double share = chosen.skyShare[i];
+    if (!(points.wanted[i] > 0) || points.pick[i] < chosen.skyShare[i]) continue;
+    const LightSampleContext from = contextOf(points, i);
+    const double all = double(points.pick[i]) + double(fine[i]) * 0x1p-24;
+    const double rest = share < 1 ? std::clamp((all - share) / (1 - share), 0.0, 1 - 0x1p-53) : 0;
+    const LightTree::Choice choice = tree.choose(from.position, from.normal, rest);
+    chosen.shape[i] = choice.light;
+    chosen.probability[i] = choice.probability;
+  }
+  return sampleShapes(shapes_->arrays(), points, chosen, out);
 }
 
 void Emitters::choose(const LightPoints& points, const float* fine, Arena& arena,
-                      LightSample* out) const {
-  ArenaScope scope(arena);
-  const uint32_t size = padded(points.count);
-  const auto contextOf = [&](uint32_t i) {
-    const Vec3f n = load(points.normal, i);
-    return LightSampleContext{offsetPoint(load(points.position, i), n, points.error[i]),
-                              points.twoSided[i] ? Vec3f() : n};
-  };
-  if (!hasShapes()) {
-    for (uint32_t i = 0; i < points.count; i++)
-      out[i] = points.wanted[i] ? checked(chooseSky(1, points.u[i], points.v[i]), contextOf(i))
-                                : LightSample{};
-    return;
-  }
-  const auto floats = [&] { return arena.take<float>(size); };
-  const ChosenLights chosen{floats(), arena.take<uint32_t>(size), floats()};
-  chooseFromRoot(shapes_->tree().root(), points, skyIrradiance_, chosen);
-  if (!shapes_->tree().hasOneNode()) {
-    std::fill_n(chosen.probability, size, 0.0f);
-    for (uint32_t i = 0; i < points.count; i++) {
-      if (!points.wanted[i] || points.pick[i] < chosen.skyShare[i]) continue;
-      const LightSampleContext context = contextOf(i);
-      const double all = double(points.pick[i]) + double(fine[i]) * 0x1p-24;
-      const double share = chosen.skyShare[i];
-      const double rest = share < 1 ? std::clamp((all - share) / (1 - share), 0.0, 1 - 0x1p-53) : 0;
-      const LightTree::Choice choice =
-          shapes_->tree().choose(context.position, context.normal, rest);
-      chosen.shape[i] = choice.light;
-      chosen.probability[i] = choice.probability;
-    }
-  }
-  const SampledLights sampled{
-      {floats(), floats(), floats()}, floats(), floats(), floats(), arena.take<uint32_t>(size)};
-  sampleShapes(shapes_->arrays(), points, chosen, sampled);
+                      const SampledLights& out) const {
+  if (!sampleMost(points, fine, arena, out)) return;
   for (uint32_t i = 0; i < points.count; i++) {
-    const float sky = chosen.skyShare[i];
-    if (!points.wanted[i]) {
-      out[i] = {};
-      continue;
-    }
-    if (points.pick[i] < sky) {
-      out[i] = checked(chooseSky(sky, points.u[i], points.v[i]), contextOf(i));
-      continue;
-    }
-    out[i] = {};
-    if (!(chosen.probability[i] > 0)) continue;
-    if (sampled.exact[i]) {
-      const LightSampleContext from = contextOf(i);
-      out[i] =
-          checked(sampleChosen(from, chosen.shape[i], (1 - double(sky)) * chosen.probability[i],
-                               points.u[i], points.v[i]),
-                  from);
-      continue;
-    }
-    if (!(sampled.pdf[i] > 0)) continue;
-    out[i].shape = chosen.shape[i];
-    out[i].pdf = (1 - sky) * chosen.probability[i] * sampled.pdf[i];
-    out[i].distance = sampled.distance[i];
-    if (!points.twoSided[i]) out[i].end = sampled.end[i];
-    out[i].direction = load(sampled.direction, i);
-    if (!std::isfinite(out[i].pdf)) out[i].pdf = 0;
+    if (!out.left[i]) continue;
+    const LightSampleContext from = contextOf(points, i);
+    const float probability = out.pdf[i], u = points.u[i], v = points.v[i];
+    const LightSample lightSample = out.left[i] == SampledLights::sky
+                                        ? chooseSky(probability, u, v)
+                                        : sampleChosen(from, out.shape[i], probability, u, v);
+    store(checked(lightSample, from), out, i);
   }
 }
 
-float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
-                    const Vec3f& direction, float) const {
-  if (!hasShapes()) return 0;
-  const uint32_t number = shapes_->find(record, primitive);
-  if (number == EmissiveShapes::none) return 0;
+float Emitters::pdfOf(const LightSampleContext& from, uint32_t number,
+                      const Vec3f& direction) const {
   const EmissiveShapes::Shape& shape = (*shapes_)[number];
-  if (!shape.sides) return 0;
+  if (!hasShapes() || !shape.sides) return 0;
   const Vec3d towards(direction);
   double alone = 0;
   if (shape.sphere) {
-    const Record& r = scene_->records[record];
+    const Record& r = scene_->records[shape.record];
     const SphericalEllipsoid seen(r.fromRender, r.toRender, from.position);
     if (shape.sides & 1) alone = seen.pdf(towards);
   } else {
@@ -213,6 +195,15 @@ float Emitters::pdf(const LightSampleContext& from, uint32_t record, uint32_t pr
   if (!(alone > 0)) return 0;
   return float((1 - double(skyShare(from))) *
                double(shapes_->tree().probability(from.position, from.normal, number)) * alone);
+}
+
+void Emitters::pdf(const FoundShapes& found, float* out) const {
+  const bool oneNode = hasShapes() && shapes_->tree().hasOneNode();
+  if (oneNode) pdfFromRoot(shapes_->tree().root(), shapes_->arrays(), found, skyIrradiance_, out);
+  for (uint32_t i = 0; i < found.count; i++)
+    if (!oneNode || out[i] < 0)
+      out[i] = pdfOf({load(found.position, i), load(found.normal, i)}, found.shape[i],
+                     load(found.direction, i));
 }
 
 float Emitters::skyPdf(const LightSampleContext& from, const Vec3f& local) const {

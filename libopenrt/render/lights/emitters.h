@@ -29,8 +29,6 @@ struct LightSample {
   Vec3f direction;                       // unit, render space
   float distance = 0;                    // to the sampled point; infinite for the sky
   float pdf = 0; // solid-angle pdf including the selection of the emitter; 0: no sample
-  // Where the shadow ray ends, just before the sampled point; -1: shadowRayEnd() has to tell.
-  float end = -1;
 };
 
 class Emitters {
@@ -44,16 +42,13 @@ class Emitters {
   // sky. brightest(): of these and of the sides of shapes.
   double brightestSky() const;
   double brightest() const;
-  // Samples an emitter as seen from a point. pick in [0, 1) selects the emitter, (u, v) the point
-  // on it. With many emitters all digits of pick matter.
-  LightSample choose(const LightSampleContext& from, double pick, float u, float v) const;
-  // Does the same for many points at once; points that want no sample get none. fine: low digits of
-  // the random numbers `pick`, by point.
-  void choose(const LightPoints& points, const float* fine, Arena& arena, LightSample* out) const;
-  // Returns the solid-angle pdf of choose() for a surface hit along a direction; 0 if choose()
+  // Samples an emitter as seen from each point that wants a sample. fine: low digits of the random
+  // numbers `pick`, by point, which matter with many emitters. No sample is left to other code.
+  void choose(const LightPoints& points, const float* fine, Arena& arena,
+              const SampledLights& out) const;
+  // Computes the solid-angle pdf of choose() for the direction of each found shape; 0 if choose()
   // cannot sample it.
-  float pdf(const LightSampleContext& from, uint32_t record, uint32_t primitive,
-            const Vec3f& direction, float distance) const;
+  void pdf(const FoundShapes& found, float* out) const;
   // Returns the solid-angle pdf of choose() for a direction to the sky, given in the environment's
   // local space.
   float skyPdf(const LightSampleContext& from, const Vec3f& local) const;
@@ -73,6 +68,12 @@ class Emitters {
   LightSample chooseSky(double share, float u, float v) const;
   LightSample sampleChosen(const LightSampleContext& from, uint32_t number, double probability,
                            float u, float v) const;
+  // Selects an emitter for each point and samples most of the shapes; returns whether some samples
+  // are left to other code (SampledLights::left).
+  bool sampleMost(const LightPoints& points, const float* fine, Arena& arena,
+                  const SampledLights& out) const;
+  // Does pdf() for one shape, in double precision.
+  float pdfOf(const LightSampleContext& from, uint32_t shape, const Vec3f& direction) const;
   double sampleShape(const EmissiveShapes::Shape& shape, const LightSampleContext& from, double u,
                      double v, Vec3d& direction, double& distance) const;
   float skyJacobian(const Vec3f& local) const;

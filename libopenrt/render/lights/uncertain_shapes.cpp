@@ -77,7 +77,10 @@ void EmissiveShapes::markUncertain(const RenderScene& scene) {
     }
   }
   if (probes.rays.count) trace();
-  for (Shape& s : shapes_) s.uncertain |= uncertain[s.record] != 0;
+  for (Shape& s : shapes_) {
+    s.uncertain |= uncertain[s.record] != 0;
+    anyUncertain_ |= s.uncertain;
+  }
 }
 
 } // namespace openrt
