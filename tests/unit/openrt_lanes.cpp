@@ -5,12 +5,8 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <functional>
 #include <random>
 #include <vector>
-
-#include <hwy/targets.h>
 
 #include "render/lights/light_samples.h"
 #include "render/lights/light_tree.h"
@@ -18,8 +14,10 @@
 #include "render/path/path_states.h"
 #include "render/surface/lambert.h"
 #include "render/surface/point_block.h"
+#include "unit/same_bytes.h"
 
 using namespace openrt;
+using openrt::test::expectSameBytes;
 
 namespace {
 
@@ -106,25 +104,6 @@ struct Samples {
             exact.data()};
   }
 };
-
-// Calls `compute` with each instruction set. It appends its results; they must have the same bytes.
-void expectSameBytes(const std::function<void(std::vector<float>&)>& compute) {
-  std::vector<float> first;
-  int sets = 0;
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    std::vector<float> results;
-    compute(results);
-    if (sets++ == 0) first = results;
-    ASSERT_EQ(results.size(), first.size());
-    EXPECT_EQ(std::memcmp(results.data(), first.data(), first.size() * sizeof(float)), 0)
-        << hwy::TargetName(target);
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(sets, 1);
-}
 
 LightTree treeOf(uint32_t lights, Numbers& numbers) {
   std::vector<LightBounds> bounds(lights);
