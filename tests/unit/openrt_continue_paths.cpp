@@ -75,9 +75,9 @@ struct Hits {
   }
   LobeSampling sampleAll() {
     if (!tracesPaths(plane.scene.frame.transport)) return {};
-    LobeSampling sampling = drawChoices(
-        batch, randomNumbersAt(samples, plane.states, batch.order, count, pairAtLevel(1, 3),
-                               plane.arena));
+    LobeSampling sampling =
+        drawChoices(batch, randomNumbersAt(samples, plane.states, batch.order, count,
+                                           pairAtLevel(1, 3), plane.arena));
     sampleLobes(batch, sampling);
     allocateSelection(batch, sampling);
     return sampling;
@@ -391,7 +391,8 @@ TEST(ContinuePaths, BoundariesAtTheCriticalAngle) {
     const double critical = std::sqrt(1 - 1 / (double(eta) * double(eta)));
     for (int i = -40; i <= 40; i++) cosines.push_back(critical * (1 + i * 0x1p-24));
     for (int i = 2; i < 30; i++)
-      for (const double side : {-1., 1.}) cosines.push_back(critical * (1 + side * std::pow(2, -i)));
+      for (const double side : {-1., 1.})
+        cosines.push_back(critical * (1 + side * std::pow(2, -i)));
     for (double& cosine : cosines) cosine = std::min(cosine, 1.0);
     expectClosedForm(cosines, eta);
   }

@@ -4,20 +4,13 @@
 #include <cstring>
 
 namespace openrt {
-namespace {
-
-// Arrays whose distance is a multiple of 4 KiB compete for the same lines of the cache, so each
-// begins one line later.
-constexpr size_t skew = 64;
-
-} // namespace
 
 void RayQueue::reserve(size_t count) {
   const size_t needed = size_ + count + lanes;
   if (needed <= capacity_) return;
   const size_t capacity = std::max<size_t>((needed + lanes - 1) / lanes * lanes, 2 * capacity_);
   size_t bytes = 0;
-  const auto countBytes = [&](auto* array) { bytes += capacity * sizeof *array + skew; };
+  const auto countBytes = [&](auto* array) { bytes += capacity * sizeof *array; };
   const auto forAll = [&](const auto& f) {
     for (auto* group : {origin_, direction_})
       for (int k = 0; k < 3; k++) f(group[k]);
@@ -31,7 +24,7 @@ void RayQueue::reserve(size_t count) {
     using Element = std::remove_reference_t<decltype(*array)>;
     if (size_) std::memcpy(at, array, size_ * sizeof(Element));
     array = reinterpret_cast<Element*>(at);
-    at += capacity * sizeof(Element) + skew;
+    at += capacity * sizeof(Element);
   });
   memory_ = std::move(memory);
   capacity_ = capacity;

@@ -108,8 +108,7 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
   if (!boundaries.crossing) return;
   constexpr Vec3f clear{1, 1, 1};
   for (uint32_t i = 0; i < batch.points->hits.count; i++)
-    if (!boundaries.visibleAt(i))
-      spawnStraightRay(paths, i, clear, boundaries.crossing[i].behind);
+    if (!boundaries.visibleAt(i)) spawnStraightRay(paths, i, clear, boundaries.crossing[i].behind);
 }
 
 } // namespace openrt

@@ -16,7 +16,7 @@ namespace {
 
 using BitsMask = hn::Mask<BitsTag>;
 
-// Marks a hit whose next ray leads behind the surface.
+// Marks the number of a hit whose next ray leads behind the surface.
 constexpr uint32_t behindBit = 1u << 31;
 
 Mask maskOf(BitsMask condition) { return hn::RebindMask(LanesTag(), condition); }
@@ -52,8 +52,8 @@ Bits hashOf(Bits x) {
   return hn::Xor(x, hn::ShiftRight<16>(x));
 }
 Bits hashOf(Bits a, uint32_t b) {
-  return hashOf(hn::Xor(a, bitsOf(hash(b) + 0x9e3779b9u) + hn::ShiftLeft<6>(a) +
-                               hn::ShiftRight<2>(a)));
+  return hashOf(
+      hn::Xor(a, bitsOf(hash(b) + 0x9e3779b9u) + hn::ShiftLeft<6>(a) + hn::ShiftRight<2>(a)));
 }
 
 // Returns the weight of the lobe in the colours of the sample. Components below 0 and those that
@@ -88,8 +88,8 @@ Bits branchesAfter(const Continuation& paths, Bits branch, Bits number) {
 // Returns the facts of the paths after a sample has been followed.
 Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
   const Bits splits = hn::ShiftRight<PathFlags::splitsShift>(flags);
-  const BitsMask adds = hn::And(hn::Gt(samples, bitsOf(1)),
-                                hn::Ne(splits, bitsOf(PathFlags::mostSplits)));
+  const BitsMask adds =
+      hn::And(hn::Gt(samples, bitsOf(1)), hn::Ne(splits, bitsOf(PathFlags::mostSplits)));
   flags = flags + hn::IfThenElseZero(adds, bitsOf(1u << PathFlags::splitsShift));
   if (sample.colour) flags = hn::Or(flags, bitsOf(sample.colour << PathFlags::channelShift));
   if (!sample.deflected) return flags;
@@ -103,8 +103,7 @@ Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
   if (sample.pdf)
     return rest | bitsOf(PathFlags::deflectedBit | PathFlags::scatteredBit) |
            hn::IfThenElse(is(PathClass::specularFirst), first, bitsOfClass(PathClass::diffuse));
-  const BitsMask scattered =
-      hn::Ne(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
+  const BitsMask scattered = hn::Ne(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
   return rest | bitsOf(PathFlags::deflectedBit) |
          hn::IfThenElseZero(scattered, bitsOf(PathFlags::specularSinceDiffuseBit)) |
          hn::IfThenElse(hn::Or(is(PathClass::undeflected), is(PathClass::specularFirst)), first,
@@ -223,8 +222,7 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
       append(gather(states.previousNormal, lane), to.previousNormal);
     } else {
       append(offsetPoint(position, g, error), to.previousPosition);
-      append(paths.twoSided ? select(loadMask(paths.twoSided + i), none, g) : g,
-             to.previousNormal);
+      append(paths.twoSided ? select(loadMask(paths.twoSided + i), none, g) : g, to.previousNormal);
     }
     Compressed{valid, end - begin}(
         hn::Or(hn::Iota(BitsTag(), i), bitsWhere(towards < zero, behindBit)), hitOf);
@@ -253,7 +251,7 @@ void continuePaths(const Continuation& paths, const SampleArrays& sample, uint32
   const size_t begin = queue.size(),
                count = HWY_DYNAMIC_DISPATCH(appendRays)(paths, sample, hitOf, queue);
   for (size_t i = 0; i < count; i++) {
-    const uint32_t hit = hitOf[i] & ~(1u << 31);
+    const uint32_t hit = hitOf[i] & ~HWY_NAMESPACE::behindBit;
     const bool crosses = paths.crossing && hit != hitOf[i];
     queue.states().media[begin + i] =
         crosses ? paths.crossing[hit].behind : paths.states->media[paths.points->order[hit]];

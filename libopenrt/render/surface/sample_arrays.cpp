@@ -78,8 +78,8 @@ void boundaryLanes(const RtsHits& hits, const RtsLobe& lobe, const float* etas,
     Floats reflectedShare = demote(r), refractedShare = demote((all - r) * eta * eta);
     refractedShare = select(dot(refracted, g) < zero, refractedShare, zero);
     if (wanted) {
-      const auto absent = hn::RebindMask(FloatsTag(), hn::Eq(hn::LoadU(WordsTag(), wanted + i),
-                                                             hn::Zero(WordsTag())));
+      const auto absent = hn::RebindMask(
+          FloatsTag(), hn::Eq(hn::LoadU(WordsTag(), wanted + i), hn::Zero(WordsTag())));
       reflectedShare = select(absent, zero, reflectedShare);
       refractedShare = select(absent, zero, refractedShare);
     }
@@ -97,8 +97,7 @@ void glossyLanes(const RtsHits& hits, const RtsLobe& lobe, float* share) {
     Floats out = one;
     if (!hn::AllFalse(FloatsTag(), coated)) {
       Doubles behind;
-      const Doubles cosine =
-          incidence(loadFloats(hits.direction, i), loadFloats(lobe.normal, i));
+      const Doubles cosine = incidence(loadFloats(hits.direction, i), loadFloats(lobe.normal, i));
       out = select(coated, demote(fresnel(cosine, promote(eta), behind)), one);
     }
     storeFloats(out, share + i);
@@ -131,7 +130,7 @@ void expectGlossy(const RtsHits& hits, const RtsLobe& lobe, float* share) {
 
 BsdfSampleArrays::BsdfSampleArrays(const RtsBatch& batch, const LobeSampling& sampling,
                                    const Boundaries& boundaries, bool onlyStraight)
-    : batch_(batch) {
+    : batch_(batch), list_(batch.arena->take<SampleArrays>(mostOfLobe * batch.lobeCount)) {
   for (uint32_t l = 0; l < batch.lobeCount; l++)
     if (!onlyStraight || batch.lobes[l].kind == RTS_LOBE_TRANSPARENT)
       addLobe(l, sampling, boundaries);
@@ -171,11 +170,11 @@ void BsdfSampleArrays::addBoundary(const RtsLobe& lobe, const Boundaries& bounda
   const uint32_t* disperses = boundaries.disperses;
   if (!disperses) return addPair(lobe, lobe.parameter[0], nullptr, 0);
   auto* even = take<uint32_t>();
-  for (uint32_t i = 0; i < count(); i++) even[i] = !disperses[i];
+  for (uint32_t i = 0; i < hitCount(); i++) even[i] = !disperses[i];
   addPair(lobe, lobe.parameter[0], even, 0);
   for (uint32_t k = 0; k < 3; k++) {
     auto* eta = take<float>();
-    for (uint32_t i = 0; i < count(); i++) eta[i] = boundaries.eta[i][k];
+    for (uint32_t i = 0; i < hitCount(); i++) eta[i] = boundaries.eta[i][k];
     addPair(lobe, eta, disperses, k + 1);
   }
 }

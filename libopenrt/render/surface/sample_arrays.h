@@ -47,12 +47,13 @@ class BsdfSampleArrays {
   void addBoundary(const RtsLobe& lobe, const Boundaries& boundaries);
   void addPair(const RtsLobe& lobe, const float* eta, const uint32_t* wanted, uint32_t colour);
   SampleArrays& add(const RtsLobe& lobe, const float* const direction[3]);
-  template <class T> T* take() const { return batch_.arena->take<T>(padded(count())); }
-  uint32_t count() const { return batch_.points->hits.count; }
+  template <class T> T* take() const { return batch_.arena->take<T>(padded(hitCount())); }
+  uint32_t hitCount() const { return batch_.points->hits.count; }
 
-  const RtsBatch& batch_;
   // A boundary has a pair for all colours, and one for each colour where it disperses light.
-  SampleArrays list_[8 * RTS_MAX_LOBES];
+  static constexpr uint32_t mostOfLobe = 8;
+  const RtsBatch& batch_;
+  SampleArrays* list_;
   uint32_t count_ = 0;
 };
 
