@@ -284,13 +284,25 @@ void lobes(benchmark::State& state) {
 }
 BENCHMARK(lobes)->Name("stage/BSDF samples with their random numbers");
 
-// lobes: 1: one Lambert lobe, continued with vector lanes; 2: also a mirror, hit by hit.
-void nextRays(benchmark::State& state) {
+// A lobe of a surface and its weight.
+struct Lobe {
+  RtsLobeKind kind;
+  float weight;
+};
+
+// splits: how often the paths have split before.
+void nextRays(benchmark::State& state, std::initializer_list<Lobe> lobes, uint32_t splits = 0) {
   PlanePaths paths;
   paths.plane.scene.frame.transport = RT_TRANSPORT_PATH;
   RtsBatch batch = paths.plane.batch();
-  paths.plane.add(batch, RTS_LOBE_DIFFUSE, 0.5f);
-  if (state.range(0) > 1) paths.plane.add(batch, RTS_LOBE_REFLECTION, 0.25f);
+  for (const Lobe& lobe : lobes) {
+    paths.plane.add(batch, lobe.kind, lobe.weight);
+    if (lobe.kind == RTS_LOBE_DIELECTRIC)
+      std::fill_n(batch.lobes[batch.lobeCount - 1].parameter[0], count, 1 / 1.5f);
+  }
+  PathFlags flags;
+  for (uint32_t s = 0; s < splits; s++) flags.addSplit();
+  std::fill_n(paths.plane.states.flags, count, flags.bits);
   LobeSampling sampling = drawChoices(batch, paths.random());
   sampleLobes(batch, sampling);
   const CameraPaths at{batch, 1, paths.samples, paths.unsampled, paths.ledger, paths.next};
@@ -300,7 +312,14 @@ void nextRays(benchmark::State& state) {
   }
   setItems(state);
 }
-BENCHMARK(nextRays)->Name("stage/spawned rays, lobes")->Arg(1)->Arg(2);
+constexpr Lobe matte{RTS_LOBE_DIFFUSE, 0.5f}, mirror{RTS_LOBE_REFLECTION, 0.25f},
+    glass{RTS_LOBE_DIELECTRIC, 1}, pane{RTS_LOBE_TRANSPARENT, 0.5f};
+BENCHMARK_CAPTURE(nextRays, matte, {matte})->Name("stage/spawned rays, Lambert");
+BENCHMARK_CAPTURE(nextRays, both, {matte, mirror})->Name("stage/spawned rays, Lambert and mirror");
+BENCHMARK_CAPTURE(nextRays, mirror, {mirror})->Name("stage/spawned rays, mirror");
+BENCHMARK_CAPTURE(nextRays, pane, {pane})->Name("stage/spawned rays, transparent");
+BENCHMARK_CAPTURE(nextRays, glass, {glass})->Name("stage/spawned rays, glass");
+BENCHMARK_CAPTURE(nextRays, selected, {glass}, 4)->Name("stage/spawned rays, glass, one selected");
 
 // The time of the camera's shader is not in it: this one does nothing.
 void cameraRays(benchmark::State& state) {

@@ -27,6 +27,31 @@ inline LaneVec offsetPoint(const LaneVec& p, const LaneVec& n, Lanes error) {
   return {along(p.x, n.x * error), along(p.y, n.y * error), along(p.z, n.z * error)};
 }
 
+// Reflects directions that point towards the surface, at normals: reflectAt() of
+// render/surface/scatter.h, and so on below.
+template <class V> inline Vec3<V> reflectAt(const Vec3<V>& d, const Vec3<V>& n) {
+  return d - (constant<V>(2) * dot(d, n)) * n;
+}
+
+// Returns the Fresnel reflectance. V: lanes of double.
+template <class V> inline V fresnel(V cosine, V eta, V& cosineBehind) {
+  const V zero = constant<V>(0), one = constant<V>(1);
+  const V sineBehind2 = eta * eta * max(zero, one - cosine * cosine);
+  const auto total = sineBehind2 >= one;
+  cosineBehind = select(total, zero, sqrt(one - sineBehind2));
+  const V s = (eta * cosine - cosineBehind) / (eta * cosine + cosineBehind);
+  const V p = (cosine - eta * cosineBehind) / (cosine + eta * cosineBehind);
+  return select(total, one, (s * s + p * p) / constant<V>(2));
+}
+
+// Refracts directions by Snell's law. V: lanes of double.
+template <class V>
+inline Vec3<V> refractAt(const Vec3<V>& d, const Vec3<V>& n, V eta, V cosine, V cosineBehind) {
+  const Vec3<V> r = eta * d + (eta * cosine - cosineBehind) * n;
+  const V square = dot(r, r), zero = constant<V>(0);
+  return r * select(square > zero, constant<V>(1) / sqrt(square), zero);
+}
+
 // Completes unit vectors to right-handed orthonormal frames s, t, n: basisOf() of render/frame.h.
 inline void basisOf(const LaneVec& n, LaneVec& s, LaneVec& t) {
   const auto vector = [](float x, float y, float z) {

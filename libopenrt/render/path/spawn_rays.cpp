@@ -1,163 +1,114 @@
 #include "render/path/spawn_rays.h"
 
-#include <algorithm>
-
-#include "render/lights/emitted.h"
 #include "render/path/wave.h"
-#include "render/surface/bsdf_choice.h"
 #include "render/surface/continue_paths.h"
 #include "scene/transports.h"
 
 namespace openrt {
 namespace {
 
-// Returns whether the lobe has one sample at each hit, whose expected weight is the lobe's weight.
-bool hasOneSample(const RtsLobe& lobe) {
-  return lobe.kind == RTS_LOBE_DIFFUSE || lobe.kind == RTS_LOBE_CUSTOM;
-}
-
-struct NextRay { // a ray to be spawned at a hit
-  Vec3f direction, weight;
-  float pdf;
-  // twoSided: the lobes of the hit respond to light from both sides.
-  bool deflected, split, twoSided;
-  uint8_t channel;
-  uint32_t branch;
-  MediaStack media;
-};
-
-// Queues another ray of the path at hit i.
-void spawnRay(const CameraPaths& paths, uint32_t i, const NextRay& nextRay) {
-  const Points& points = *paths.batch.points;
-  RayState ray = (*paths.batch.states)[paths.batch.order[i]];
-  ray.throughput *= nextRay.weight;
-  ray.travelled = points.hits.distance[i];
-  ray.pdf = nextRay.pdf;
-  const bool specular = !(nextRay.pdf > 0);
-  if (!specular) ray.previous = lightSampleContext(points, i, nextRay.twoSided);
-  if (nextRay.deflected) {
-    const PathClass before = ray.flags.pathClass();
-    if (before == PathClass::undeflected)
-      ray.flags.setClass(specular ? PathClass::specularFirst : PathClass::diffuse);
-    else if (before != PathClass::specularFirst)
-      ray.flags.setClass(specular ? PathClass::caustic : PathClass::diffuse);
-    if (!specular) ray.flags.set(PathFlags::scatteredBit, true);
-    ray.flags.set(PathFlags::specularSinceDiffuseBit, ray.flags.scattered() && specular);
-    paths.unsampled.send(ray.flags, ray.throughput);
-    ray.flags.set(PathFlags::deflectedBit, true);
+// Returns where light from behind the surface counts, by hit; null if it counts nowhere.
+const uint32_t* findTwoSided(const RtsBatch& batch) {
+  bool any = false;
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    const RtsLobeFunctions* functions = nonSpecularFunctions(batch.lobes[l]);
+    any |= functions && functions->transmits;
   }
-  ray.branch = nextRay.branch;
-  ray.flags.setChannel(nextRay.channel);
-  ray.media = nextRay.media;
-  if (nextRay.split) ray.flags.addSplit();
-  queueRay(points, i, nextRay.direction, ray, paths.next);
+  if (!any) return nullptr;
+  const uint32_t n = batch.points->hits.count;
+  auto* twoSided = batch.arena->take<uint32_t>(padded(n));
+  for (uint32_t i = 0; i < n; i++) twoSided[i] = transmitsAt(batch, i);
+  return twoSided;
 }
 
-// Spawns the rays at surfaces with one non-specular lobe, with vector lanes.
-void continueAtOneLobe(const CameraPaths& paths, const LobeSampling& sampling) {
+// Marks the paths that have taken a random decision. Sampling a lobe is one, too.
+void markRandom(const CameraPaths& paths, const BsdfSampleArrays& samples,
+                const Boundaries& boundaries, const uint32_t* random) {
   const RtsBatch& batch = paths.batch;
-  ArenaScope scope(*batch.arena);
+  bool scatters = false;
+  for (const SampleArrays& sample : samples) scatters |= sample.pdf != nullptr;
+  for (uint32_t i = 0; i < batch.points->hits.count; i++)
+    if (random[i] || (scatters && boundaries.visibleAt(i)))
+      paths.samples.markRandom(batch.states->path[batch.order[i]]);
+}
+
+// Counts what the samples would carry that the energy cut ends.
+void countCut(const CameraPaths& paths, const BsdfSampleArrays& samples) {
+  const RtsBatch& batch = paths.batch;
+  for (uint32_t i = 0; i < batch.points->hits.count; i++)
+    for (const SampleArrays& sample : samples) {
+      Vec3f weight;
+      if (sample.kept[i] > 0 || sample.number[i] == SampleArrays::lacking) continue;
+      if (!weightAt(*sample.lobe, i, weight)) continue;
+      const float share = sample.share ? sample.share[i] : 1;
+      const Vec3f throughput = load(batch.states->throughput, batch.order[i]);
+      for (uint32_t k = 0; k < 3; k++)
+        if (!sample.colour || sample.colour == k + 1)
+          paths.ledger.cutByEnergy += double(weight[k] * share) * double(throughput[k]);
+    }
+}
+
+// Counts the rays of the queue, from ray `begin` on, that only BSDF sampling connects to emitters.
+void countUnsampled(const CameraPaths& paths, size_t begin) {
+  const PathStates& states = paths.next.states();
+  for (size_t r = begin; r < paths.next.size(); r++)
+    paths.unsampled.send(states.flagsOf(r), load(states.throughput, r));
+}
+
+// Spawns the rays of the BSDF samples: those of one sample of all hits, then those of the next.
+void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
+                   const Boundaries& boundaries, const BsdfSampleArrays& samples) {
+  const RtsBatch& batch = paths.batch;
+  Arena& arena = *batch.arena;
   const uint32_t n = batch.points->hits.count;
-  for (uint32_t i = 0; i < n; i++) paths.samples.markRandom(batch.states->path[batch.order[i]]);
+  const bool path = tracesPaths(batch.scene->frame.transport);
   const Continuation from{.points = batch.points,
                           .states = batch.states,
-                          .order = batch.order,
-                          .lobe = &batch.lobes[0],
-                          .transmits = nonSpecularFunctions(batch.lobes[0])->transmits != 0,
-                          .samples = sampling.samples[0],
+                          .level = paths.level,
+                          .choice = sampling.choices[0],
                           .survival = sampling.choices[1],
-                          .selectionProbability = sampling.selectionProbability[0]};
-  continuePaths(from, batch.arena->take<uint32_t>(padded(n) + lanes), paths.next);
-}
-
-// Spawns the rays at hit i: all samples, or one selected sample. Writes the selection probability
-// of each lobe's sample. The probability must not depend on the sampled directions, because the MIS
-// weights of light sampling use it.
-void spawnRaysAt(const CameraPaths& paths, uint32_t i, const LobeSampling& sampling,
-                 const Boundaries& boundaries) {
-  const RtsBatch& batch = paths.batch;
-  const Points& points = *batch.points;
-  const RayState ray = (*batch.states)[batch.order[i]];
-  const edit::FrameSettingsT& frame = batch.scene->frame;
-  const bool path = tracesPaths(frame.transport), images = followsImages(frame.transport);
-  BsdfSamples bsdfSamples(points.hits, i, boundaries.etaAt(i), ray.flags.channel());
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    if (!images && batch.lobes[l].kind != RTS_LOBE_TRANSPARENT) continue;
-    bsdfSamples.add(l, batch.lobes[l], sampling.samples[l]);
-    if (sampling.samples[l]) paths.samples.markRandom(ray.path);
+                          .energyCut = batch.scene->frame.energyCut,
+                          .crossing = boundaries.crossing,
+                          .twoSided = path ? findTwoSided(batch) : nullptr,
+                          .count = arena.take<uint32_t>(padded(n)),
+                          .random = arena.take<uint32_t>(padded(n))};
+  chooseSamples(from, samples);
+  if (path)
+    markRandom(paths, samples, boundaries, from.random);
+  else
+    countCut(paths, samples);
+  auto* hitOf = arena.take<uint32_t>(padded(n) + lanes);
+  for (const SampleArrays& sample : samples) {
+    const size_t begin = paths.next.size();
+    continuePaths(from, sample, hitOf, paths.next);
+    if (sample.deflected && !sample.pdf) countUnsampled(paths, begin);
   }
-  const BsdfChoice choice(bsdfSamples, ray.throughput);
-  if (!(choice.sum > 0)) return;
-  const bool all = !path || bsdfSamples.count == 1 || ray.flags.splits() < mostSplits;
-  for (uint32_t w = 0; w < bsdfSamples.count; w++)
-    if (float* probability = sampling.selectionProbability[bsdfSamples.list[w].lobe])
-      probability[i] = all ? 1 : choice.probability(w);
-  const auto send = [&](uint32_t w, float probability) {
-    const BsdfSample& sample = bsdfSamples.list[w];
-    if (sample.rejected) return;
-    float kept = probability;
-    if (path) {
-      const float survival =
-          survivalProbability(choice.carried[w] / (probability * certainThroughput));
-      if (survival < 1) paths.samples.markRandom(ray.path);
-      if (sampling.choices[1][i] >= survival) return;
-      kept *= survival;
-    } else if (choice.carried[w] < frame.energyCut) {
-      for (int k = 0; k < 3; k++)
-        paths.ledger.cutByEnergy += double(sample.expectedWeight[k]) * double(ray.throughput[k]);
-      return;
-    }
-    spawnRay(paths, i,
-             {.direction = sample.direction,
-              .weight = sample.weight / kept,
-              .pdf = sample.pdf * probability,
-              .deflected = sample.deflected,
-              .split = bsdfSamples.count > 1,
-              .twoSided = sample.pdf > 0 && transmitsAt(batch, i),
-              .channel = sample.channel,
-              .branch = w == 0 ? ray.branch : hash(ray.branch + w, paths.level + 1),
-              .media = mediaTowards(points, i, sample.direction, boundaries, ray.media)});
-  };
-  if (all) {
-    for (uint32_t w = 0; w < bsdfSamples.count; w++) send(w, 1);
-    return;
-  }
-  paths.samples.markRandom(ray.path);
-  const uint32_t chosen = choice.select(sampling.choices[0][i]);
-  if (choice.carried[chosen] > 0) send(chosen, choice.probability(chosen));
 }
 
 } // namespace
 
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
                       const MediaStack& media) {
-  const PathStates& states = *paths.batch.states;
-  const uint32_t lane = paths.batch.order[i];
-  spawnRay(paths, i,
-           {.direction = load(paths.batch.points->hits.direction, i),
-            .weight = weight,
-            .pdf = 0,
-            .deflected = false,
-            .split = false,
-            .twoSided = false,
-            .channel = states.flagsOf(lane).channel(),
-            .branch = states.branch[lane],
-            .media = media});
+  const Points& points = *paths.batch.points;
+  RayState ray = (*paths.batch.states)[paths.batch.order[i]];
+  ray.throughput *= weight;
+  ray.travelled = points.hits.distance[i];
+  ray.pdf = 0;
+  ray.media = media;
+  queueRay(points, i, load(points.hits.direction, i), ray, paths.next);
 }
 
 void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries) {
   const RtsBatch& batch = paths.batch;
-  if (tracesPaths(batch.scene->frame.transport) && !boundaries.crossing && batch.lobeCount == 1 &&
-      hasOneSample(batch.lobes[0]))
-    return continueAtOneLobe(paths, sampling);
+  ArenaScope scope(*batch.arena);
+  const BsdfSampleArrays samples(batch, sampling, boundaries,
+                                 !followsImages(batch.scene->frame.transport));
+  if (!samples.empty()) followSamples(paths, sampling, boundaries, samples);
+  if (!boundaries.crossing) return;
   constexpr Vec3f clear{1, 1, 1};
-  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
-    if (boundaries.visibleAt(i))
-      spawnRaysAt(paths, i, sampling, boundaries);
-    else
-      spawnStraightRay(paths, i, clear, boundaries.crossing[i].behind);
-  }
+  for (uint32_t i = 0; i < batch.points->hits.count; i++)
+    if (!boundaries.visibleAt(i)) spawnStraightRay(paths, i, clear, boundaries.crossing[i].behind);
 }
 
 } // namespace openrt

@@ -26,6 +26,9 @@ struct CameraPaths {
 // * Path: also follows the directions sampled from non-specular lobes. Russian roulette terminates
 //   paths that carry little. Once a path has split several times, one sample is selected with a
 //   probability proportional to what it carries.
+// The order of the spawned rays is fixed and the same on all instruction sets: the rays of one
+// sample (SampleArrays) in the order of the hits, then those of the next; at last those that pass
+// hidden boundaries. The sums over the rays of a path and those of the ledger follow this order.
 void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries);
 

@@ -30,7 +30,7 @@ void BsdfSamples::add(uint32_t number, const RtsLobe& lobe, const LobeSamples* s
       }
       channel_ = 0;
     } else {
-      dielectric(n, w, eta_ ? eta_[channel_ ? channel_ - 1 : 0] : lobe.parameter[0][hit_]);
+      dielectric(n, w, lobe.parameter[0][hit_]);
     }
     break;
   default:

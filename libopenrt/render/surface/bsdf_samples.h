@@ -1,5 +1,6 @@
 // bsdf_samples.h: BSDF samples of one hit: the directions in which a path may continue, one for
-// every lobe, two at a smooth boundary. [render]
+// every lobe, two at a smooth boundary. Light paths use it. Camera paths compute the same numbers
+// for all hits of a batch at once (sample_arrays.h). [render]
 #pragma once
 
 #include "render/surface/lobes.h"
@@ -35,9 +36,9 @@ class BsdfSamples {
  public:
   static constexpr uint32_t maximum = 6 * RTS_MAX_LOBES;
   // eta: relative index of refraction (ray's side over far side) by colour if the engine knows it,
-  // else null. channel: channel of the incoming ray, as in BsdfSample. fromLamp: the path starts at
-  // a light, so it carries flux (importance transport), which is not scaled by eta squared at
-  // boundaries.
+  // else null; the lobe's parameter has that of the channel. channel: channel of the incoming ray,
+  // as in BsdfSample. fromLamp: the path starts at a light, so it carries flux (importance
+  // transport), which is not scaled by eta squared at boundaries.
   BsdfSamples(const RtsHits& hits, uint32_t hit, const float* eta, uint8_t channel,
               bool fromLamp = false);
   // Adds the samples of one lobe. samples: null for specular lobes. Non-specular lobes without

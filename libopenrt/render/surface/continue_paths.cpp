@@ -1,7 +1,7 @@
 #include "render/surface/continue_paths.h"
 
+#include "render/path/sampler.h"
 #include "render/surface/bsdf_choice.h"
-#include "render/surface/lobes.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/surface/continue_paths.cpp"
@@ -14,11 +14,14 @@ namespace openrt {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Weights below 0 and weights that are not finite count as 0.
-Lanes checkedWeight(const float* from) {
-  const Lanes zero = lanesOf(0), w = load(from);
-  return select(hn::And(w > zero, isFinite(w)), w, zero);
-}
+using BitsMask = hn::Mask<BitsTag>;
+
+// Marks the number of a hit whose next ray leads behind the surface.
+constexpr uint32_t behindBit = 1u << 31;
+
+Mask maskOf(BitsMask condition) { return hn::RebindMask(LanesTag(), condition); }
+BitsMask maskOf(Mask condition) { return hn::RebindMask(BitsTag(), condition); }
+Lanes whereOrZero(Mask condition, Lanes v) { return hn::IfThenElseZero(condition, v); }
 
 struct Compressed { // appends the lanes where a condition holds to arrays
   Mask condition;
@@ -27,7 +30,7 @@ struct Compressed { // appends the lanes where a condition holds to arrays
     hn::CompressStore(v, condition, LanesTag(), to + at);
   }
   void operator()(Bits v, uint32_t* to) const {
-    hn::CompressStore(v, hn::RebindMask(BitsTag(), condition), BitsTag(), to + at);
+    hn::CompressStore(v, maskOf(condition), BitsTag(), to + at);
   }
   void operator()(const LaneVec& v, float* const to[3]) const {
     (*this)(v.x, to[0]);
@@ -42,65 +45,187 @@ Bits gatherBits(const uint32_t* from, Indices index) {
                      hn::GatherIndex(tag, reinterpret_cast<const int32_t*>(from), index));
 }
 
+// hash() of render/path/sampler.h.
+Bits hashOf(Bits x) {
+  x = hn::Xor(x, hn::ShiftRight<16>(x)) * bitsOf(0x7feb352du);
+  x = hn::Xor(x, hn::ShiftRight<15>(x)) * bitsOf(0x846ca68bu);
+  return hn::Xor(x, hn::ShiftRight<16>(x));
+}
+Bits hashOf(Bits a, uint32_t b) {
+  return hashOf(
+      hn::Xor(a, bitsOf(hash(b) + 0x9e3779b9u) + hn::ShiftLeft<6>(a) + hn::ShiftRight<2>(a)));
+}
+
+// Returns the weight of the lobe in the colours of the sample. Components below 0 and those that
+// are not finite count as 0.
+LaneVec weightAt(const SampleArrays& sample, uint32_t i) {
+  const auto component = [&](uint32_t k) {
+    const Lanes zero = lanesOf(0);
+    if (sample.colour && sample.colour != k + 1) return zero;
+    const Lanes w = load(sample.lobe->weight[k] + i);
+    return select(hn::And(w > zero, isFinite(w)), w, zero);
+  };
+  return {component(0), component(1), component(2)};
+}
+Lanes loadOrOne(const float* from, uint32_t i) { return from ? load(from + i) : lanesOf(1); }
+
+// Returns where one of several samples is selected, because the path has split often enough.
+Mask selectsOne(const Continuation& paths, Bits samples, Indices lane) {
+  const BitsMask several = hn::Gt(samples, bitsOf(1));
+  if (hn::AllFalse(BitsTag(), several)) return maskOf(several);
+  const Bits flags = gatherBits(paths.states->flags, lane);
+  const Bits splits = hn::ShiftRight<PathFlags::splitsShift>(flags);
+  return maskOf(hn::And(several, hn::Gt(splits, bitsOf(mostSplits - 1))));
+}
+
+// Returns the branches that the rays of the samples belong to. number: samples of the hit before.
+Bits branchesAfter(const Continuation& paths, Bits branch, Bits number) {
+  const BitsMask first = hn::Eq(number, bitsOf(0));
+  if (hn::AllTrue(BitsTag(), first)) return branch;
+  return hn::IfThenElse(first, branch, hashOf(branch + number, paths.level + 1));
+}
+
+// Returns the facts of the paths after a sample has been followed.
+Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
+  const Bits splits = hn::ShiftRight<PathFlags::splitsShift>(flags);
+  const BitsMask adds =
+      hn::And(hn::Gt(samples, bitsOf(1)), hn::Ne(splits, bitsOf(PathFlags::mostSplits)));
+  flags = flags + hn::IfThenElseZero(adds, bitsOf(1u << PathFlags::splitsShift));
+  if (sample.colour) flags = hn::Or(flags, bitsOf(sample.colour << PathFlags::channelShift));
+  if (!sample.deflected) return flags;
+  const auto is = [&](PathClass pathClass) {
+    return hn::Eq(hn::And(flags, bitsOf(PathFlags::classBits)), bitsOf(uint32_t(pathClass)));
+  };
+  const auto bitsOfClass = [](PathClass pathClass) { return bitsOf(uint32_t(pathClass)); };
+  const Bits first = bitsOfClass(PathClass::specularFirst);
+  const Bits rest =
+      hn::AndNot(bitsOf(PathFlags::classBits | PathFlags::specularSinceDiffuseBit), flags);
+  if (sample.pdf)
+    return rest | bitsOf(PathFlags::deflectedBit | PathFlags::scatteredBit) |
+           hn::IfThenElse(is(PathClass::specularFirst), first, bitsOfClass(PathClass::diffuse));
+  const BitsMask scattered = hn::Ne(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
+  return rest | bitsOf(PathFlags::deflectedBit) |
+         hn::IfThenElseZero(scattered, bitsOf(PathFlags::specularSinceDiffuseBit)) |
+         hn::IfThenElse(hn::Or(is(PathClass::undeflected), is(PathClass::specularFirst)), first,
+                        bitsOfClass(PathClass::caustic));
+}
+
 } // namespace
 
+void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
+  const uint32_t n = paths.points->hits.count;
+  const Lanes zero = lanesOf(0), one = lanesOf(1);
+  const Bits lacking = bitsOf(SampleArrays::lacking);
+  for (uint32_t i = 0; i < n; i += width()) {
+    const Mask present = hn::FirstN(LanesTag(), n - i);
+    const Indices lane = indicesFrom(paths.points->order, i, n);
+    const LaneVec throughput = gather(paths.states->throughput, lane);
+    Lanes sum = zero;
+    Bits count = bitsOf(0);
+    for (const SampleArrays& sample : samples) {
+      const LaneVec weight = weightAt(sample, i);
+      const Lanes share = loadOrOne(sample.share, i);
+      Mask exists = hn::And(present, largest(weight) > zero);
+      if (!sample.pdf) exists = hn::And(exists, share > zero);
+      const Lanes carried = whereOrZero(exists, largest(weight * share * throughput));
+      store(carried, sample.kept + i);
+      store(hn::IfThenElse(maskOf(exists), count, lacking), sample.number + i);
+      count = count + bitsWhere(exists, 1);
+      sum = sum + carried;
+    }
+    store(count, paths.count + i);
+    const Mask some = sum > zero;
+    const Mask selects =
+        paths.choice ? hn::And(some, selectsOne(paths, count, lane)) : hn::FirstN(LanesTag(), 0);
+    const bool anySelects = !hn::AllFalse(LanesTag(), selects);
+    Mask open = selects; // where a sample is still to be selected
+    Lanes at = anySelects ? load(paths.choice + i) * sum : zero;
+    Mask random = selects;
+    for (const SampleArrays& sample : samples) {
+      const Lanes carried = load(sample.kept + i);
+      const Bits number = load(sample.number + i);
+      const Mask exists = hn::And(some, maskOf(hn::Ne(number, lacking)));
+      Mask follows = hn::And(exists, carried > zero);
+      Lanes probability = one;
+      if (anySelects) {
+        probability = select(selects, carried / sum, one);
+        const Mask last = maskOf(hn::Eq(number + bitsOf(1), count));
+        const Mask selected = hn::And(hn::And(open, exists), hn::Or(at < carried, last));
+        open = hn::AndNot(selected, open);
+        at = at - carried;
+        follows = hn::And(follows, hn::Or(hn::Not(selects), selected));
+      }
+      if (sample.probability) store(probability, sample.probability + i);
+      if (sample.selectionProbability)
+        store(whereOrZero(exists, probability), sample.selectionProbability + i);
+      if (!paths.survival) {
+        const Mask cut = carried < lanesOf(paths.energyCut);
+        store(whereOrZero(hn::AndNot(cut, follows), one), sample.kept + i);
+        continue;
+      }
+      const Lanes survival = min(one, carried / (probability * lanesOf(certainThroughput)));
+      random = hn::Or(random, hn::And(follows, survival < one));
+      const Mask survives = hn::And(follows, load(paths.survival + i) < survival);
+      store(whereOrZero(survives, probability * survival), sample.kept + i);
+    }
+    store(bitsWhere(random, 1), paths.random + i);
+  }
+}
+
 // Returns the number of rays written behind the end of the queue.
-size_t appendRays(const Continuation& from, uint32_t* laneOf, const RayQueue& queue) {
-  const RtsHits& hits = from.points->hits;
-  const PathStates& states = *from.states;
-  const PathStates& to = queue.states();
+size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_t* hitOf,
+                  const RayQueue& queue) {
+  const RtsHits& hits = paths.points->hits;
+  const PathStates &states = *paths.states, &to = queue.states();
   const Lanes zero = lanesOf(0), one = lanesOf(1);
   const LaneVec none{zero, zero, zero};
+  const bool specular = !sample.pdf;
   const size_t begin = queue.size();
   size_t end = begin;
   for (uint32_t i = 0; i < hits.count; i += width()) {
-    const Mask present = hn::FirstN(LanesTag(), hits.count - i);
-    const Indices lane = indicesFrom(from.order, i, hits.count);
-    const LaneVec weight{checkedWeight(from.lobe->weight[0] + i),
-                         checkedWeight(from.lobe->weight[1] + i),
-                         checkedWeight(from.lobe->weight[2] + i)};
-    const LaneVec throughput = gather(states.throughput, lane);
-    const Lanes carried = largest(weight * throughput);
-    const Mask wanted = hn::And(present, carried > zero);
-    if (from.selectionProbability) store(select(wanted, one, zero), from.selectionProbability + i);
-    const LaneVec direction = load(from.samples->direction, i), n = load(from.lobe->normal, i),
-                  g = load(hits.geometric, i);
-    const Lanes pdf = load(from.samples->pdf + i);
-    // The sample must be on the same side of the facet as of the lobe's normal.
-    const Lanes towards = dot(direction, g);
-    Mask valid = hn::And(dot(direction, n) > zero, towards > zero);
-    if (from.transmits) valid = hn::Or(valid, hn::AndNot(dot(direction, n) > zero, towards < zero));
-    valid = hn::And(hn::And(wanted, valid), pdf > zero);
-    const Lanes kept = min(one, carried / lanesOf(certainThroughput));
-    valid = hn::And(valid, load(from.survival + i) < kept);
+    const Lanes kept = load(sample.kept + i);
+    Mask valid = hn::And(hn::FirstN(LanesTag(), hits.count - i), kept > zero);
     if (hn::AllFalse(LanesTag(), valid)) continue;
-    const LaneVec value = load(from.samples->value, i);
+    const LaneVec direction = load(sample.direction, i), g = load(hits.geometric, i);
+    const Lanes towards = dot(direction, g);
+    Lanes pdf = zero;
+    if (!specular) {
+      // The sample must be on the same side of the facet as of the lobe's normal.
+      pdf = load(sample.pdf + i);
+      const Mask above = dot(direction, load(sample.lobe->normal, i)) > zero;
+      Mask consistent = hn::And(above, towards > zero);
+      if (sample.transmits) consistent = hn::Or(consistent, hn::AndNot(above, towards < zero));
+      valid = hn::And(hn::And(valid, consistent), pdf > zero);
+      if (hn::AllFalse(LanesTag(), valid)) continue;
+      pdf = pdf * load(sample.probability + i);
+    }
+    const Indices lane = indicesFrom(paths.points->order, i, hits.count);
+    const LaneVec weight = weightAt(sample, i);
+    const LaneVec carried{weight.x * loadOrOne(sample.valueOf(0), i) / kept,
+                          weight.y * loadOrOne(sample.valueOf(1), i) / kept,
+                          weight.z * loadOrOne(sample.valueOf(2), i) / kept};
     const LaneVec position = load(hits.position, i),
                   side = select(towards > zero, one, lanesOf(-1)) * g;
-    const Lanes error = load(from.points->error + i);
-    const Bits flags = gatherBits(states.flags, lane);
-    const Bits pathClass = hn::And(flags, bitsOf(PathFlags::classBits));
-    const auto first = hn::Eq(pathClass, bitsOf(uint32_t(PathClass::specularFirst)));
-    const Bits newClass = hn::IfThenElse(first, pathClass, bitsOf(uint32_t(PathClass::diffuse)));
-    const Bits cleared =
-        hn::AndNot(bitsOf(PathFlags::classBits | PathFlags::specularSinceDiffuseBit), flags);
+    const Lanes error = load(paths.points->error + i);
     const Compressed append{valid, end};
     append(offsetPoint(position, side, error), queue.origin());
     append(direction, queue.direction());
-    // The order of operations is that of spawnRays(): weight over probability, times throughput.
-    const LaneVec left{weight.x * value.x / kept, weight.y * value.y / kept,
-                       weight.z * value.z / kept};
-    append(throughput * left, to.throughput);
+    append(gather(states.throughput, lane) * carried, to.throughput);
     append(load(hits.distance + i), to.travelled);
-    append(gatherBits(states.path, lane), to.path);
-    append(gatherBits(states.branch, lane), to.branch);
     append(pdf, to.pdf);
-    append(offsetPoint(position, g, error), to.previousPosition);
-    append(from.transmits ? none : g, to.previousNormal);
-    append(hn::Or(hn::Or(cleared, newClass),
-                  bitsOf(PathFlags::scatteredBit | PathFlags::deflectedBit)),
-           to.flags);
-    Compressed{valid, end - begin}(hn::BitCast(BitsTag(), lane), laneOf);
+    append(gatherBits(states.path, lane), to.path);
+    append(branchesAfter(paths, gatherBits(states.branch, lane), load(sample.number + i)),
+           to.branch);
+    append(flagsAfter(sample, gatherBits(states.flags, lane), load(paths.count + i)), to.flags);
+    if (specular) {
+      append(gather(states.previousPosition, lane), to.previousPosition);
+      append(gather(states.previousNormal, lane), to.previousNormal);
+    } else {
+      append(offsetPoint(position, g, error), to.previousPosition);
+      append(paths.twoSided ? select(loadMask(paths.twoSided + i), none, g) : g, to.previousNormal);
+    }
+    Compressed{valid, end - begin}(
+        hn::Or(hn::Iota(BitsTag(), i), bitsWhere(towards < zero, behindBit)), hitOf);
     end += hn::CountTrue(LanesTag(), valid);
   }
   return end - begin;
@@ -113,13 +238,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace openrt {
 
+HWY_EXPORT(choose);
 HWY_EXPORT(appendRays);
 
-void continuePaths(const Continuation& from, uint32_t* laneOf, RayQueue& queue) {
-  queue.reserve(from.points->hits.count);
-  const size_t begin = queue.size(), count = HWY_DYNAMIC_DISPATCH(appendRays)(from, laneOf, queue);
-  for (size_t i = 0; i < count; i++)
-    queue.states().media[begin + i] = from.states->media[laneOf[i]];
+void chooseSamples(const Continuation& paths, const BsdfSampleArrays& samples) {
+  HWY_DYNAMIC_DISPATCH(choose)(paths, samples);
+}
+
+void continuePaths(const Continuation& paths, const SampleArrays& sample, uint32_t* hitOf,
+                   RayQueue& queue) {
+  queue.reserve(paths.points->hits.count);
+  const size_t begin = queue.size(),
+               count = HWY_DYNAMIC_DISPATCH(appendRays)(paths, sample, hitOf, queue);
+  for (size_t i = 0; i < count; i++) {
+    const uint32_t hit = hitOf[i] & ~HWY_NAMESPACE::behindBit;
+    const bool crosses = paths.crossing && hit != hitOf[i];
+    queue.states().media[begin + i] =
+        crosses ? paths.crossing[hit].behind : paths.states->media[paths.points->order[hit]];
+  }
   queue.add(count);
 }
 

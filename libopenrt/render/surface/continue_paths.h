@@ -1,30 +1,37 @@
-// continue_paths.h: continues many paths at once, with vector lanes, where a surface has one
-// non-specular lobe and is no boundary of a medium. spawnRays() (render/path/spawn_rays.h) calls
-// it, and does the same hit by hit at other surfaces. [render]
+// continue_paths.h: continues the camera paths at all hits of a batch with vector lanes: selects
+// BSDF samples, applies Russian roulette or the energy cut, and queues the next rays. spawnRays()
+// (render/path/spawn_rays.h) calls it. [render]
 #pragma once
 
-#include "render/path/path_states.h"
-#include "render/surface/points.h"
+#include "render/surface/sample_arrays.h"
 
 namespace openrt {
 
-struct LobeSamples;
-
+// The paths at the hits of a batch.
 struct Continuation {
   const Points* points;
   const PathStates* states;
-  const uint32_t* order; // by hit: lane in `states`
-  const RtsLobe* lobe;
-  bool transmits; // light from behind the surface counts, too
-  const LobeSamples* samples;
-  const float* survival; // random numbers for Russian roulette
-  // By hit: gets 1 where the sample is followed if it survives, which light sampling must know.
-  // Null if emitters are not sampled.
-  float* selectionProbability;
+  uint32_t level; // number of surfaces that the paths have hit before
+  // Random numbers by hit: to select a sample, for Russian roulette. Null without path tracing:
+  // then paths end where they carry less than the energy cut.
+  const float *choice, *survival;
+  float energyCut;
+  const Crossing* crossing; // boundaries of media by hit; null: there are none
+  // By hit: 1 if light from behind the surface counts for light samples; null: nowhere.
+  const uint32_t* twoSided;
+  // Written by chooseSamples(), by hit: number of samples; 1 if chance has decided which of them
+  // are followed.
+  uint32_t *count, *random;
 };
 
-// Appends the spawned rays to the queue, in the order of the hits. `lanes` is working storage for
-// as many numbers as there are hits, padded.
-void continuePaths(const Continuation& from, uint32_t* lanes, RayQueue& queue);
+// Decides which samples of each hit are followed: all, or a selected one if the path has split
+// several times. The probability of the selection does not depend on the sampled directions,
+// because the MIS weights of light sampling use it.
+void chooseSamples(const Continuation& paths, const BsdfSampleArrays& samples);
+
+// Appends to the queue the rays of the hits that follow a sample, in the order of the hits.
+// `hitOf` is working storage for as many numbers as there are hits, padded, and 16 more.
+void continuePaths(const Continuation& paths, const SampleArrays& sample, uint32_t* hitOf,
+                   RayQueue& queue);
 
 } // namespace openrt

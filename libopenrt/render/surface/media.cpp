@@ -5,13 +5,6 @@
 
 namespace openrt {
 
-uint16_t mediumOf(const MediaStack& stack, std::span<const RtsMedium> media) {
-  uint16_t top = 0;
-  for (uint16_t m : stack)
-    if (m && (!top || media[m - 1].priority >= media[top - 1].priority)) top = m;
-  return top;
-}
-
 Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
                std::span<const RtsMedium> media) {
   Crossing c{stack, mediumOf(stack, media), 0, true, false};

@@ -12,13 +12,20 @@
 
 namespace openrt {
 
-// Media by number (1 + index into the scene's media) in the order they were entered; 0: empty. A
-// fifth medium inside four others is ignored.
+// Media by number (1 + index into the scene's media) in the order they were entered; 0: empty, as
+// are all that follow. A fifth medium inside four others is ignored.
 using MediaStack = std::array<uint16_t, 4>;
 
 // Returns the medium that a ray with this stack is in, 0 for none. If several media have the
 // highest priority, the one entered last wins.
-uint16_t mediumOf(const MediaStack& stack, std::span<const RtsMedium> media);
+inline uint16_t mediumOf(const MediaStack& stack, std::span<const RtsMedium> media) {
+  uint16_t top = 0;
+  for (const uint16_t m : stack) {
+    if (!m) break;
+    if (!top || media[m - 1].priority >= media[top - 1].priority) top = m;
+  }
+  return top;
+}
 
 struct Crossing {
   MediaStack behind; // media stack on the far side of the boundary

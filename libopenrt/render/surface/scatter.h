@@ -1,4 +1,6 @@
 // scatter.h: geometry of scattering: reflection, refraction, Fresnel's equations. Pure functions.
+// render/lanes/directions-inl.h has them for vector lanes, with the same operations and so the same
+// numbers.
 #pragma once
 
 #include <algorithm>

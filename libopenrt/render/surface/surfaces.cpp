@@ -140,19 +140,28 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
     if (medium) c = cross(stack, medium, hits.flags[i] & RTS_HIT_BACK, media);
   }
   if (media.size() > 1) crossSharedFaces(batch, out.crossing);
+  auto* disperses = batch.arena->take<uint32_t>(padded(hits.count));
+  bool any = false;
   for (uint32_t i = 0; i < hits.count; i++) {
     const uint32_t lane = batch.order[i];
     const uint8_t channel = states.flagsOf(lane).channel();
     const Crossing& c = out.crossing[i];
     if (c.unknown) absorbAt(c.from, hits.segment[i], media, states, lane);
-    for (int k = 0; k < 3; k++) out.eta[i][k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
+    float* eta = out.eta[i];
+    for (int k = 0; k < 3; k++) eta[k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
+    disperses[i] = channel == 0 && (eta[0] != eta[1] || eta[0] != eta[2]);
+    any |= disperses[i] != 0;
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       if (!c.visible)
         for (auto* weight : batch.lobes[l].weight) weight[i] = 0;
+      // A rough boundary does not disperse light: it has the index of green.
       if (batch.lobes[l].kind == RTS_LOBE_ROUGH_DIELECTRIC)
-        batch.lobes[l].parameter[0][i] = out.eta[i][channel ? channel - 1 : 1];
+        batch.lobes[l].parameter[0][i] = eta[channel ? channel - 1 : 1];
+      if (batch.lobes[l].kind == RTS_LOBE_DIELECTRIC)
+        batch.lobes[l].parameter[0][i] = eta[channel ? channel - 1 : 0];
     }
   }
+  if (any) out.disperses = disperses;
   return out;
 }
 

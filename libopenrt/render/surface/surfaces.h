@@ -26,13 +26,16 @@ void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked);
 struct Boundaries {
   Crossing* crossing = nullptr;
   float (*eta)[3] = nullptr; // relative index of refraction by colour: ray's side over far side
+  // 1 where the ray carries several colours that are refracted differently; null: nowhere.
+  uint32_t* disperses = nullptr;
 
   // Returns false where a boundary has no effect on light, because another medium wins there.
   bool visibleAt(uint32_t i) const { return !crossing || crossing[i].visible; }
   const float* etaAt(uint32_t i) const { return eta ? eta[i] : nullptr; }
 };
 // Computes the media on both sides of each hit if the class has a medium. Called after its
-// `surface`. Sets all weights to 0 at boundaries inside a medium of higher priority.
+// `surface`. Sets all weights to 0 at boundaries inside a medium of higher priority, and the index
+// of dielectric lobes to that of the colour that a ray carries.
 Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass);
 
 // Returns the media on the side of hit i that a direction leads to. media: on the ray's side.

@@ -1,0 +1,74 @@
+// sample_arrays.h: the BSDF samples of camera paths at all hits of a batch, as arrays: every lobe
+// has one sample at each hit, a smooth boundary two. The directions of specular lobes are computed
+// with vector lanes, with the numbers of BsdfSamples (bsdf_samples.h). [render]
+#pragma once
+
+#include "render/surface/sample_lobes.h"
+#include "render/surface/surfaces.h"
+
+namespace openrt {
+
+// One sample at each hit. A hit lacks it where its lobe has no weight.
+struct SampleArrays {
+  const RtsLobe* lobe;
+  const float* direction[3];
+  // By hit: the expected part of the lobe's weight. A hit with 0 lacks a specular sample. Null: 1.
+  const float* share = nullptr;
+  const float* value[3] = {}; // value over pdf of a non-specular lobe; null: `share`
+  const float* pdf = nullptr; // solid-angle pdf of a non-specular lobe; null: specular
+  uint32_t colour = 0;        // 1 + index of the only colour that is carried; 0: all colours
+  bool deflected = true;      // the direction differs from the incoming ray's
+  bool transmits = false;     // the direction may lead behind the surface
+  // By hit: gets the probability that the sample is followed if it survives. Null: nobody asks.
+  float* selectionProbability = nullptr;
+
+  // Written by chooseSamples() (continue_paths.h), by hit.
+  uint32_t* number = nullptr;   // number of samples of the hit before this one; or `lacking`
+  float* kept = nullptr;        // probability that the ray is spawned; 0: it is not
+  float* probability = nullptr; // the same without Russian roulette; null: specular
+
+  static constexpr uint32_t lacking = ~0u;
+  // Factors of the lobe's weight.
+  const float* valueOf(int k) const { return value[k] ? value[k] : share; }
+};
+
+// All samples of the hits of a batch. They lie in the arena of the batch.
+class BsdfSampleArrays {
+ public:
+  // onlyStraight: leaves out everything but straight transmission.
+  BsdfSampleArrays(const RtsBatch& batch, const LobeSampling& sampling,
+                   const Boundaries& boundaries, bool onlyStraight);
+  const SampleArrays* begin() const { return list_; }
+  const SampleArrays* end() const { return list_ + count_; }
+  bool empty() const { return count_ == 0; }
+
+ private:
+  void addLobe(uint32_t number, const LobeSampling& sampling, const Boundaries& boundaries);
+  void addBoundary(const RtsLobe& lobe, const Boundaries& boundaries);
+  void addPair(const RtsLobe& lobe, const float* eta, const uint32_t* wanted, uint32_t colour);
+  SampleArrays& add(const RtsLobe& lobe, const float* const direction[3]);
+  template <class T> T* take() const { return batch_.arena->take<T>(padded(hitCount())); }
+  uint32_t hitCount() const { return batch_.points->hits.count; }
+
+  // A boundary has a pair for all colours, and one for each colour where it disperses light.
+  static constexpr uint32_t mostOfLobe = 8;
+  const RtsBatch& batch_;
+  SampleArrays* list_;
+  uint32_t count_ = 0;
+};
+
+// Reflection and refraction at a smooth boundary, by hit; share: of the lobe's weight.
+struct BoundarySamples {
+  float *reflected[3], *reflectedShare;
+  float *refracted[3], *refractedShare;
+};
+// Computes the samples at a smooth boundary. eta: relative index of refraction, by hit. wanted: 0
+// where a hit gets none; null: all hits get them.
+void sampleBoundary(const RtsHits& hits, const RtsLobe& lobe, const float* eta,
+                    const uint32_t* wanted, const BoundarySamples& out);
+// Computes the directions of a mirror.
+void sampleMirror(const RtsHits& hits, const RtsLobe& lobe, float* const direction[3]);
+// Computes the Fresnel reflectance of a glossy lobe at its normal; 1 without Fresnel factor.
+void expectGlossy(const RtsHits& hits, const RtsLobe& lobe, float* share);
+
+} // namespace openrt
