@@ -27,7 +27,8 @@ demo: packages
 ## make test          install the packages, build everything, run all tests
 test: packages build
 	@status=0; \
-	ctest --test-dir $(R) --no-tests=error -j $(JOBS) -E '^python$$' || status=1; \
+	ctest --test-dir $(R) --no-tests=error -j $(JOBS) -E '^python$$' -LE timed || status=1; \
+	ctest --test-dir $(R) --no-tests=error -j $(JOBS) -L timed --repeat until-pass:3 || status=1; \
 	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) -m pytest -q -p no:cacheprovider tests/python || status=1; \
 	exit $$status
 

@@ -4,6 +4,7 @@
 * No source over 500 lines without a stated reason.
 * No line over 100 characters in C and C++, except in worlds and programs in raw strings.
 * No absolute path of a developer's machine, no left-over notes to self, no trailing blanks.
+* At most 120 lines in the README.md of the root.
 * A first comment in every C and C++ file. That of the header of the same name also serves a .cpp
   file."""
 import pathlib
@@ -36,6 +37,8 @@ def complaints(root, path, relative):
     if path.suffix in SOURCE and len(lines) > 501 and not any(REASON in line
                                                               for line in lines[:20]):
         yield f"{relative}: {len(lines) - 1} lines: split it, or say why it is one file (\"{REASON} ...\") in its first comment"
+    if str(relative) == "README.md" and len(lines) > 121:
+        yield f"{relative}: {len(lines) - 1} lines (at most 120)"
     raw = raw_lines(text)
     for number, line in enumerate(lines, 1):
         where = f"{relative}:{number}"

@@ -5,8 +5,8 @@
 namespace numeric {
 namespace {
 
-// What a square lamp of side 1 at height 1 shows on the floor below it, and a ball of radius 1 with
-// its centre at height 3.
+// Radiance of the floor below a square lamp of side 1 at height 1, and below a ball of radius 1
+// whose centre is at height 3.
 constexpr double squareLamp = .75227469 / pi, ballLamp = 1.0 / 9;
 
 class ShadowedLamps : public Lamps {

@@ -163,7 +163,7 @@ TEST(LightLanes, RaysOfLightSamplesHaveTheSameBytes) {
     auto* pdf = arena.take<float>(padded(found.count));
     pdfFromRoot(scene.tree.root(), scene.shapes(), found, 2, pdf);
     out.insert(out.end(), pdf, pdf + found.count);
-    // What is left to other code stays without a sample here.
+    // Points that are left to other code get no sample here.
     for (uint32_t i = 0; i < count; i++)
       if (samples.left[i]) samples.pdf[i] = 0;
     LightSamples rays;

@@ -23,7 +23,7 @@ struct Compressed {
     hn::CompressStore(v, condition, LanesTag(), to + at);
   }
   void operator()(Bits v, uint32_t* to) const {
-    hn::CompressStore(v, hn::RebindMask(BitsTag(), condition), BitsTag(), to + at);
+    hn::CompressStore(v, maskOf(condition), BitsTag(), to + at);
   }
   void operator()(const LaneVec& v, float* const to[3]) const {
     (*this)(v.x, to[0]);

@@ -31,6 +31,7 @@ using BitsTag = hn::CappedTag<uint32_t, 16>;
 using Lanes = hn::Vec<LanesTag>;
 using Bits = hn::Vec<BitsTag>;
 using Mask = hn::Mask<LanesTag>;
+using BitsMask = hn::Mask<BitsTag>;
 inline uint32_t width() { return uint32_t(hn::Lanes(LanesTag())); }
 
 inline Lanes lanesOf(float value) { return hn::Set(LanesTag(), value); }
@@ -51,16 +52,24 @@ template <class V> inline V abs(V v) { return hn::Abs(v); }
 template <class V> inline V max(V a, V b) { return hn::IfThenElse(a < b, b, a); }
 template <class V> inline V min(V a, V b) { return hn::IfThenElse(b < a, b, a); }
 inline Mask isFinite(Lanes v) { return hn::Abs(v) <= lanesOf(std::numeric_limits<float>::max()); }
+// Returns v where it is finite and above 0, else 0.
+inline Lanes checked(Lanes v) {
+  return hn::IfThenElseZero(hn::And(v > lanesOf(0), isFinite(v)), v);
+}
 inline Bits bitsOfFloat(Lanes v) { return hn::BitCast(BitsTag(), v); }
 inline Lanes floatOfBits(Bits v) { return hn::BitCast(LanesTag(), v); }
+// Convert conditions between lanes and bits.
+inline Mask maskOf(BitsMask condition) { return hn::RebindMask(LanesTag(), condition); }
+inline BitsMask maskOf(Mask condition) { return hn::RebindMask(BitsTag(), condition); }
 // Returns `bits` where the condition holds, else 0.
 inline Bits bitsWhere(Mask condition, uint32_t bits) {
-  return hn::IfThenElseZero(hn::RebindMask(BitsTag(), condition), bitsOf(bits));
+  return hn::IfThenElseZero(maskOf(condition), bitsOf(bits));
 }
 
 #include "render/lanes/vec3-inl.h"
 
 using LaneVec = Vec3<Lanes>;
+inline LaneVec checked(const LaneVec& v) { return {checked(v.x), checked(v.y), checked(v.z)}; }
 inline LaneVec vectorOf(const float v[3]) { return {lanesOf(v[0]), lanesOf(v[1]), lanesOf(v[2])}; }
 // Load and store the elements from i on of three arrays.
 inline LaneVec load(const float* const from[3], size_t i) {
@@ -140,7 +149,7 @@ inline Mask presentFrom(uint32_t i, uint32_t n) { return hn::FirstN(LanesTag(), 
 inline Mask noLanes() { return hn::FirstN(LanesTag(), 0); }
 // Returns where any of the given bits is set.
 inline Mask hasBits(Bits v, uint32_t bits) {
-  return hn::RebindMask(LanesTag(), hn::Ne(hn::And(v, bitsOf(bits)), bitsOf(0)));
+  return maskOf(hn::Ne(hn::And(v, bitsOf(bits)), bitsOf(0)));
 }
 // Returns where the array is not 0.
 inline Mask loadMask(const uint32_t* from) { return hasBits(load(from), ~0u); }

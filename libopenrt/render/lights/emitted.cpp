@@ -101,19 +101,6 @@ const float* mostFollowed(const RtsBatch& batch, const LobeSampling& sampling) {
   return most && std::any_of(most, most + n, [](float p) { return p > 0; }) ? most : nullptr;
 }
 
-// Returns by hit whether light from behind the surface counts; null: it does so nowhere.
-const uint32_t* findTwoSided(const RtsBatch& batch) {
-  const auto transmits = [](const RtsLobe& lobe) {
-    const RtsLobeFunctions* functions = nonSpecularFunctions(lobe);
-    return functions && functions->transmits;
-  };
-  if (std::none_of(batch.lobes, batch.lobes + batch.lobeCount, transmits)) return nullptr;
-  const uint32_t n = batch.points->hits.count;
-  auto* twoSided = batch.arena->take<uint32_t>(padded(n));
-  for (uint32_t i = 0; i < n; i++) twoSided[i] = transmitsAt(batch, i);
-  return twoSided;
-}
-
 } // namespace
 
 LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampling) {
@@ -132,7 +119,7 @@ LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampl
                                 {hits.position[0], hits.position[1], hits.position[2]},
                                 {hits.geometric[0], hits.geometric[1], hits.geometric[2]},
                                 points.error,
-                                findTwoSided(batch),
+                                transmitsByHit(batch),
                                 pick[0],
                                 place[0],
                                 place[1],

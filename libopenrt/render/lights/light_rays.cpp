@@ -15,19 +15,10 @@ namespace openrt {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Weights below 0 and weights that are not finite count as 0.
-LaneVec checkedWeight(const LaneVec& w) {
-  const auto checked = [](Lanes v) {
-    const Lanes zero = lanesOf(0);
-    return select(hn::And(v > zero, isFinite(v)), v, zero);
-  };
-  return {checked(w.x), checked(w.y), checked(w.z)};
-}
-
 Mask isZero(const uint8_t* from) {
   const hn::Rebind<uint8_t, BitsTag> bytes;
   const Bits v = hn::PromoteTo(BitsTag(), hn::LoadU(bytes, from));
-  return hn::RebindMask(LanesTag(), hn::Eq(v, bitsOf(0)));
+  return maskOf(hn::Eq(v, bitsOf(0)));
 }
 
 } // namespace
@@ -76,7 +67,7 @@ void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& 
   for (uint32_t r = 0; r < n; r += width()) {
     const Indices hit = indicesFrom(samples.hit, r, n);
     const Lanes share = gather(followed, hit);
-    const LaneVec weight = checkedWeight(gather(lobe.weight, hit));
+    const LaneVec weight = checked(gather(lobe.weight, hit));
     const Mask lit = hn::And(share > zero, largest(weight) > zero);
     const Lanes scale = one / (load(samples.pdf + r) + share * load(values.pdf + r));
     const LaneVec response = select(lit, weight * load(values.value, r) * scale, none);
@@ -114,11 +105,9 @@ uint32_t addOneRadiance(const ShapeArrays& shapes, const LightSamples& samples,
   for (uint32_t r = 0; r < n; r += width()) {
     const Mask arrives = hn::And(presentFrom(r, n), isZero(blocked + r));
     const Bits number = load(samples.shape + r);
-    const Mask onShape =
-        hn::And(arrives, hn::RebindMask(LanesTag(), hn::Ne(number, bitsOf(EmissiveShapes::none))));
+    const Mask onShape = hn::And(arrives, maskOf(hn::Ne(number, bitsOf(EmissiveShapes::none))));
     const Indices shape =
-        hn::BitCast(hn::RebindToSigned<LanesTag>(),
-                    hn::IfThenElseZero(hn::RebindMask(BitsTag(), onShape), number));
+        hn::BitCast(hn::RebindToSigned<LanesTag>(), hn::IfThenElseZero(maskOf(onShape), number));
     const Mask added =
         hn::And(onShape, hasBits(gather(shapes.sides, shape), ShapeArrays::oneRadiance));
     Compressed{hn::AndNot(added, arrives), left}(hn::Iota(BitsTag(), r), others);

@@ -66,7 +66,8 @@ Lanes skyShareAt(float skyIrradiance, Lanes shapes) {
   const Lanes one = lanesOf(1), sky = lanesOf(skyIrradiance);
   const Mask any = shapes > lanesOf(0);
   const Lanes mixed = sky / select(any, sky + shapes, one);
-  return select(any, min(max(mixed, lanesOf(0.0625f)), lanesOf(0.9375f)), one);
+  return select(any, min(max(mixed, lanesOf(leastEmitterShare)), lanesOf(1 - leastEmitterShare)),
+                one);
 }
 
 struct Choice { // ChosenLights of some points
@@ -95,7 +96,7 @@ Choice chooseAt(const LightNode& node, const Receivers& from, float skyIrradianc
   for (uint32_t c = 0; c < by.count; c++) {
     const Mask possible = by.each[c] > zero;
     const Mask take = hn::AndNot(found, possible);
-    shape = hn::IfThenElse(hn::RebindMask(BitsTag(), take), bitsOf(node.child[c]), shape);
+    shape = hn::IfThenElse(maskOf(take), bitsOf(node.child[c]), shape);
     chosen = select(take, by.each[c], chosen);
     found = hn::Or(found, hn::And(take, left < by.each[c]));
     left = left - by.each[c];
@@ -233,8 +234,7 @@ Lanes endBefore(const Triangle& t, const SampledDirection& to) {
 
 // Returns the numbers of the shapes as indices, 0 where the condition does not hold.
 Indices indicesWhere(Mask condition, Bits shape) {
-  return hn::BitCast(hn::RebindToSigned<LanesTag>(),
-                     hn::IfThenElseZero(hn::RebindMask(BitsTag(), condition), shape));
+  return hn::BitCast(hn::RebindToSigned<LanesTag>(), hn::IfThenElseZero(maskOf(condition), shape));
 }
 
 // Returns the points whose samples are left to other code.
@@ -277,7 +277,7 @@ Lanes pdfAt(const LightNode& root, const ShapeArrays& shapes, const FoundShapes&
   const Importances by = importancesAt(root, from);
   Lanes own = zero;
   for (uint32_t c = 0; c < by.count; c++)
-    own = select(hn::RebindMask(LanesTag(), hn::Eq(shape, bitsOf(root.child[c]))), by.each[c], own);
+    own = select(maskOf(hn::Eq(shape, bitsOf(root.child[c]))), by.each[c], own);
   const Triangle t =
       triangleAt(shapes, indicesWhere(presentFrom(i, found.count), shape), from.position);
   Lanes alone = pdfByArea(t, direction, t.height / dot(t.normal, direction));

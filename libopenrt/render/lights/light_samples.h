@@ -2,6 +2,7 @@
 // that need double precision, and the sky, are left to Emitters (emitters.h). [render]
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace openrt {
@@ -36,6 +37,10 @@ struct ChosenLights { // by point; arrays are padded
   float* probability; // selection probability of the shape, if the sky is not selected
 };
 
+// Where both the sky and shapes may illuminate a point, each is selected with at least this
+// probability.
+constexpr float leastEmitterShare = 0.0625f;
+
 // Returns the selection probability of the sky for a point. skyIrradiance: mean irradiance by the
 // sky, 0 if there is none. shapes: sum of the importances of the shapes, which bounds theirs. Both
 // keep a share, because a part of either may be hidden.
@@ -43,7 +48,7 @@ inline float skyShareOf(float skyIrradiance, float shapes) {
   if (!(shapes > 0)) return skyIrradiance > 0 ? 1 : 0;
   if (!(skyIrradiance > 0)) return 0;
   const float share = skyIrradiance / (skyIrradiance + shapes);
-  return share < 0.0625f ? 0.0625f : share > 0.9375f ? 0.9375f : share;
+  return std::clamp(share, leastEmitterShare, 1 - leastEmitterShare);
 }
 
 // One light sample at most for each point; arrays are padded.

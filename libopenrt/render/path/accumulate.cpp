@@ -18,15 +18,6 @@ struct Shown {
   LaneVec seen;  // all specular lobes: also mirror images and refractions
 };
 
-// Returns the weights of a lobe. NaN, infinite and negative components are 0, as in weightAt().
-LaneVec weightsOf(const RtsLobe& lobe, uint32_t i) {
-  const auto usable = [](Lanes w) {
-    return hn::IfThenElseZero(hn::And(isFinite(w), w > lanesOf(0)), w);
-  };
-  const LaneVec w = load(lobe.weight, i);
-  return {usable(w.x), usable(w.y), usable(w.z)};
-}
-
 // Returns what the hits from i on show. hidden: as in lightOfHits().
 Shown shownAt(const RtsBatch& batch, const uint32_t* hidden, uint32_t i) {
   const Lanes zero = lanesOf(0), one = lanesOf(1);
@@ -34,7 +25,7 @@ Shown shownAt(const RtsBatch& batch, const uint32_t* hidden, uint32_t i) {
   for (uint32_t l = 0; l < batch.lobeCount; l++) {
     const RtsLobe& lobe = batch.lobes[l];
     if (nonSpecularFunctions(lobe)) continue;
-    const LaneVec w = weightsOf(lobe, i);
+    const LaneVec w = checked(load(lobe.weight, i));
     shown.seen = shown.seen + w;
     if (lobe.kind == RTS_LOBE_TRANSPARENT) shown.clear = shown.clear + w;
   }

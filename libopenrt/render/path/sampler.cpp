@@ -6,23 +6,12 @@
 #define HWY_TARGET_INCLUDE "render/path/sampler.cpp"
 #include <hwy/foreach_target.h>
 
-#include "render/lanes/lanes-inl.h"
+#include "render/lanes/hash-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace openrt {
 namespace HWY_NAMESPACE {
 namespace {
-
-Bits hash(Bits x) {
-  x = hn::Xor(x, hn::ShiftRight<16>(x)) * bitsOf(0x7feb352du);
-  x = hn::Xor(x, hn::ShiftRight<15>(x)) * bitsOf(0x846ca68bu);
-  return hn::Xor(x, hn::ShiftRight<16>(x));
-}
-// Returns hash(a, b). hashOfB: hash(b)
-Bits hash(Bits a, Bits hashOfB) {
-  const Bits mixed = hn::ShiftLeft<6>(a) + hn::ShiftRight<2>(a);
-  return hash(hn::Xor(a, hashOfB + bitsOf(0x9e3779b9u) + mixed));
-}
 
 #if HWY_TARGET == HWY_SCALAR
 Bits reverseBits(Bits x) { return bitsOf(openrt::reverseBits(hn::GetLane(x))); }

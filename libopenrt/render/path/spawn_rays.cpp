@@ -7,20 +7,6 @@
 namespace openrt {
 namespace {
 
-// Returns where light from behind the surface counts, by hit; null if it counts nowhere.
-const uint32_t* findTwoSided(const RtsBatch& batch) {
-  bool any = false;
-  for (uint32_t l = 0; l < batch.lobeCount; l++) {
-    const RtsLobeFunctions* functions = nonSpecularFunctions(batch.lobes[l]);
-    any |= functions && functions->transmits;
-  }
-  if (!any) return nullptr;
-  const uint32_t n = batch.points->hits.count;
-  auto* twoSided = batch.arena->take<uint32_t>(padded(n));
-  for (uint32_t i = 0; i < n; i++) twoSided[i] = transmitsAt(batch, i);
-  return twoSided;
-}
-
 // Marks the paths that have taken a random decision. Sampling a lobe is one, too.
 void markRandom(const CameraPaths& paths, const BsdfSampleArrays& samples,
                 const Boundaries& boundaries, const uint32_t* random) {
@@ -69,7 +55,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
                           .survival = sampling.choices[1],
                           .energyCut = batch.scene->frame.energyCut,
                           .crossing = boundaries.crossing,
-                          .twoSided = path ? findTwoSided(batch) : nullptr,
+                          .twoSided = path ? transmitsByHit(batch) : nullptr,
                           .count = arena.take<uint32_t>(padded(n)),
                           .random = arena.take<uint32_t>(padded(n))};
   chooseSamples(from, samples);

@@ -15,7 +15,7 @@ struct RayCounters {
   ShaderFaults faults;
 };
 
-// What the stages of one render thread share.
+// Holds what the stages of one render thread share.
 struct StageContext {
   const RenderScene& scene;
   Arena& arena;

@@ -7,63 +7,26 @@
 #define HWY_TARGET_INCLUDE "render/surface/continue_paths.cpp"
 #include <hwy/foreach_target.h>
 
+#include "render/lanes/compress-inl.h"
 #include "render/lanes/directions-inl.h"
+#include "render/lanes/hash-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace openrt {
 namespace HWY_NAMESPACE {
 namespace {
 
-using BitsMask = hn::Mask<BitsTag>;
-
 // Marks the number of a hit whose next ray leads behind the surface.
 constexpr uint32_t behindBit = 1u << 31;
 
-Mask maskOf(BitsMask condition) { return hn::RebindMask(LanesTag(), condition); }
-BitsMask maskOf(Mask condition) { return hn::RebindMask(BitsTag(), condition); }
 Lanes whereOrZero(Mask condition, Lanes v) { return hn::IfThenElseZero(condition, v); }
-
-struct Compressed { // appends the lanes where a condition holds to arrays
-  Mask condition;
-  size_t at;
-  void operator()(Lanes v, float* to) const {
-    hn::CompressStore(v, condition, LanesTag(), to + at);
-  }
-  void operator()(Bits v, uint32_t* to) const {
-    hn::CompressStore(v, maskOf(condition), BitsTag(), to + at);
-  }
-  void operator()(const LaneVec& v, float* const to[3]) const {
-    (*this)(v.x, to[0]);
-    (*this)(v.y, to[1]);
-    (*this)(v.z, to[2]);
-  }
-};
-
-Bits gatherBits(const uint32_t* from, Indices index) {
-  const hn::RebindToSigned<LanesTag> tag;
-  return hn::BitCast(BitsTag(),
-                     hn::GatherIndex(tag, reinterpret_cast<const int32_t*>(from), index));
-}
-
-// hash() of render/path/sampler.h.
-Bits hashOf(Bits x) {
-  x = hn::Xor(x, hn::ShiftRight<16>(x)) * bitsOf(0x7feb352du);
-  x = hn::Xor(x, hn::ShiftRight<15>(x)) * bitsOf(0x846ca68bu);
-  return hn::Xor(x, hn::ShiftRight<16>(x));
-}
-Bits hashOf(Bits a, uint32_t b) {
-  return hashOf(
-      hn::Xor(a, bitsOf(hash(b) + 0x9e3779b9u) + hn::ShiftLeft<6>(a) + hn::ShiftRight<2>(a)));
-}
 
 // Returns the weight of the lobe in the colours of the sample. Components below 0 and those that
 // are not finite count as 0.
 LaneVec weightAt(const SampleArrays& sample, uint32_t i) {
   const auto component = [&](uint32_t k) {
-    const Lanes zero = lanesOf(0);
-    if (sample.colour && sample.colour != k + 1) return zero;
-    const Lanes w = load(sample.lobe->weight[k] + i);
-    return select(hn::And(w > zero, isFinite(w)), w, zero);
+    if (sample.colour && sample.colour != k + 1) return lanesOf(0);
+    return checked(load(sample.lobe->weight[k] + i));
   };
   return {component(0), component(1), component(2)};
 }
@@ -73,7 +36,7 @@ Lanes loadOrOne(const float* from, uint32_t i) { return from ? load(from + i) : 
 Mask selectsOne(const Continuation& paths, Bits samples, Indices lane) {
   const BitsMask several = hn::Gt(samples, bitsOf(1));
   if (hn::AllFalse(BitsTag(), several)) return maskOf(several);
-  const Bits flags = gatherBits(paths.states->flags, lane);
+  const Bits flags = gather(paths.states->flags, lane);
   const Bits splits = hn::ShiftRight<PathFlags::splitsShift>(flags);
   return maskOf(hn::And(several, hn::Gt(splits, bitsOf(mostSplits - 1))));
 }
@@ -82,7 +45,8 @@ Mask selectsOne(const Continuation& paths, Bits samples, Indices lane) {
 Bits branchesAfter(const Continuation& paths, Bits branch, Bits number) {
   const BitsMask first = hn::Eq(number, bitsOf(0));
   if (hn::AllTrue(BitsTag(), first)) return branch;
-  return hn::IfThenElse(first, branch, hashOf(branch + number, paths.level + 1));
+  return hn::IfThenElse(first, branch,
+                        hash(branch + number, bitsOf(openrt::hash(paths.level + 1))));
 }
 
 // Returns the facts of the paths after a sample has been followed.
@@ -117,7 +81,7 @@ void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
   const Lanes zero = lanesOf(0), one = lanesOf(1);
   const Bits lacking = bitsOf(SampleArrays::lacking);
   for (uint32_t i = 0; i < n; i += width()) {
-    const Mask present = hn::FirstN(LanesTag(), n - i);
+    const Mask present = presentFrom(i, n);
     const Indices lane = indicesFrom(paths.points->order, i, n);
     const LaneVec throughput = gather(paths.states->throughput, lane);
     Lanes sum = zero;
@@ -135,8 +99,7 @@ void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
     }
     store(count, paths.count + i);
     const Mask some = sum > zero;
-    const Mask selects =
-        paths.choice ? hn::And(some, selectsOne(paths, count, lane)) : hn::FirstN(LanesTag(), 0);
+    const Mask selects = paths.choice ? hn::And(some, selectsOne(paths, count, lane)) : noLanes();
     const bool anySelects = !hn::AllFalse(LanesTag(), selects);
     Mask open = selects; // where a sample is still to be selected
     Lanes at = anySelects ? load(paths.choice + i) * sum : zero;
@@ -184,7 +147,7 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
   size_t end = begin;
   for (uint32_t i = 0; i < hits.count; i += width()) {
     const Lanes kept = load(sample.kept + i);
-    Mask valid = hn::And(hn::FirstN(LanesTag(), hits.count - i), kept > zero);
+    Mask valid = hn::And(presentFrom(i, hits.count), kept > zero);
     if (hn::AllFalse(LanesTag(), valid)) continue;
     const LaneVec direction = load(sample.direction, i), g = load(hits.geometric, i);
     const Lanes towards = dot(direction, g);
@@ -213,10 +176,9 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
     append(gather(states.throughput, lane) * carried, to.throughput);
     append(load(hits.distance + i), to.travelled);
     append(pdf, to.pdf);
-    append(gatherBits(states.path, lane), to.path);
-    append(branchesAfter(paths, gatherBits(states.branch, lane), load(sample.number + i)),
-           to.branch);
-    append(flagsAfter(sample, gatherBits(states.flags, lane), load(paths.count + i)), to.flags);
+    append(gather(states.path, lane), to.path);
+    append(branchesAfter(paths, gather(states.branch, lane), load(sample.number + i)), to.branch);
+    append(flagsAfter(sample, gather(states.flags, lane), load(paths.count + i)), to.flags);
     if (specular) {
       append(gather(states.previousPosition, lane), to.previousPosition);
       append(gather(states.previousNormal, lane), to.previousNormal);
@@ -226,7 +188,7 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
     }
     Compressed{valid, end - begin}(
         hn::Or(hn::Iota(BitsTag(), i), bitsWhere(towards < zero, behindBit)), hitOf);
-    end += hn::CountTrue(LanesTag(), valid);
+    end += countTrue(valid);
   }
   return end - begin;
 }

@@ -6,6 +6,7 @@
 // near its axis.
 #include "render/surface/lobes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
@@ -276,6 +277,18 @@ bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
     if (functions && functions->transmits && weightAt(batch.lobes[l], hit, ignored)) return true;
   }
   return false;
+}
+
+const uint32_t* transmitsByHit(const RtsBatch& batch) {
+  const auto transmits = [](const RtsLobe& lobe) {
+    const RtsLobeFunctions* functions = nonSpecularFunctions(lobe);
+    return functions && functions->transmits;
+  };
+  if (std::none_of(batch.lobes, batch.lobes + batch.lobeCount, transmits)) return nullptr;
+  const uint32_t n = batch.points->hits.count;
+  auto* transmitting = batch.arena->take<uint32_t>(padded(n));
+  for (uint32_t i = 0; i < n; i++) transmitting[i] = transmitsAt(batch, i);
+  return transmitting;
 }
 
 namespace {

@@ -18,6 +18,8 @@ bool weightAt(const RtsLobe& lobe, uint32_t hit, Vec3f& out);
 
 // Returns whether light from behind the surface contributes at a hit.
 bool transmitsAt(const RtsBatch& batch, uint32_t hit);
+// Returns transmitsAt() of all hits as an array in the batch's arena; null: it is false for all.
+const uint32_t* transmitsByHit(const RtsBatch& batch);
 
 // Values and pdfs of a lobe for n pairs of a hit and a direction. Values that are not finite or
 // negative are replaced by 0.

@@ -17,7 +17,7 @@ namespace {
 // Returns where hits have an attribute of their own.
 inline Mask has(const PointBlock& block, PointAttributes attribute, uint32_t i) {
   const Bits own = load(block.own + i);
-  return hn::RebindMask(LanesTag(), hn::Ne(hn::And(own, bitsOf(attribute)), bitsOf(0)));
+  return hasBits(own, attribute);
 }
 
 // Normalises v. Returns where that is possible. Components are scaled first, so that squares
@@ -105,8 +105,7 @@ void finishAt(const PointBlock& block, uint32_t i, const PointArrays& out, uint3
   // The kernel's normal points away from the ray's origin.
   const Mask away = dot(ng, direction) > lanesOf(0);
   const Bits flags = load(block.flags + i);
-  const Mask line =
-      hn::RebindMask(LanesTag(), hn::Ne(hn::And(flags, bitsOf(RTS_HIT_LINE)), bitsOf(0)));
+  const Mask line = hasBits(flags, RTS_HIT_LINE);
   const Mask back = hn::AndNot(line, hn::Xor(away, loadMask(block.flipped + i)));
   store(hn::Or(flags, bitsWhere(back, RTS_HIT_BACK)), out.flags + to);
   const Lanes one = lanesOf(1), minusOne = lanesOf(-1);
