@@ -85,7 +85,7 @@ endif
 	@$(PYTHON) tools/bench_render.py --out build/bench/render $(if $(FULL),--full) $(if $(DOCS),--docs) \
 	  $(if $(WORLDS),--worlds $(WORLDS)) $(if $(BINARIES),--binaries $(BINARIES))
 
-## make audit         do the error bars hold? coverage over AUDIT_SEEDS (default 60) pictures of each scene, with 64 and 512 samples
+## make audit         do the error bars hold? coverage over AUDIT_SEEDS (default 200) pictures of each scene, with 64 and 512 samples
 audit:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target audit
 	@$(R)/bin/audit $(AUDIT_SEEDS)
