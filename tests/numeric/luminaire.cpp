@@ -108,6 +108,26 @@ TEST_F(StockLights, ASmallSunInAPictureOfTheSky) {
   expectGrey(look(0, 0, .001), expected, 2e-3);
 }
 
+// The spot has less of the sky's light than what is left to BSDF sampling where no place is bright.
+TEST_F(StockLights, ASmallSunThatHasLittleOfTheLightIsFound) {
+  constexpr int width = 1024, height = 512, row = 383, column = 0; // as above
+  const double theta = pi * (1 - (row + .5) / height), phi = 2 * pi * ((column + .5) / width - .5);
+  const double solidAngle = 2 * pi / width * pi / height * std::sin(theta), share = 1. / 128;
+  std::vector<float> texels(size_t(width) * height * 3, 1.0f);
+  for (int k = 0; k < 3; k++)
+    texels[size_t(3 * (row * width + column) + k)] += float(share * 4 * pi / solidAngle);
+  RTid picture = 0;
+  rtGenTextures(1, &picture);
+  rtBindTexture(picture);
+  rtTexImage2D(3, width, height, RT_FLOAT, texels.data());
+  rtUseEnvironment(Shader("EnvironmentMap").setTexture("texture", picture));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_MAX_DEPTH, 1);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
+  const double cosine = -std::sin(theta) * std::cos(phi); // the floor faces +z
+  expectGrey(look(0, 0, .001), 1 + 4 * share * cosine, 2e-3);
+}
+
 TEST_F(StockLights, APictureOfTheSkyIsTurnedAndScaled) {
   constexpr int width = 8, height = 4;
   std::vector<float> texels;

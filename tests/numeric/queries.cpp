@@ -139,6 +139,44 @@ TEST_F(Queries, AllHitsAreThoseOfEveryTriangle) {
   EXPECT_LE(wrong, 1u);
 }
 
+// Rays along an axis towards a closed sheet of small triangles, with directions of any length.
+TEST_F(Queries, ShortDirectionsHitWhatLongOnesHit) {
+  constexpr int n = 40;
+  std::vector<float> points;
+  for (int y = 0; y < n; y++)
+    for (int x = 0; x < n; x++)
+      for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}})
+        for (const double p : {double(x + dx) / n, double(y + dy) / n, 0.1 * ((x + dx) % 3)})
+          points.push_back(float(p));
+  const RTid object = rtBeginObject(0);
+  rtVertexPointer(3, RT_FLOAT, 0, points.data());
+  rtDrawArrays(RT_TRIANGLES, 0, points.size() / 3);
+  rtVertexPointer(3, RT_FLOAT, 0, nullptr);
+  rtEndObject();
+  rtInstantiateObject(object);
+  rtRender();
+  constexpr size_t count = 1000;
+  std::vector<RTray> rays(count);
+  for (RTray& ray : rays) {
+    const Vec at = (any(0.49) + Vec{.5, .5, 0});
+    ray = {{float(at.x), float(at.y), 50}, 0, {0, 0, -1}, infinity};
+  }
+  std::vector<RThit> wanted(count), hits(count);
+  rtCastRays(count, rays.data(), wanted.data());
+  std::vector<uint8_t> occluded(count);
+  for (const float scale : {0x1p-10f, 0x1p-30f, 0x1p-45f, 0x1p-60f, 0x1p-90f, 0x1p-120f}) {
+    SCOPED_TRACE(scale);
+    for (RTray& ray : rays) ray.direction[2] = -scale;
+    rtCastRays(count, rays.data(), hits.data());
+    rtOccludedRays(count, rays.data(), occluded.data());
+    for (size_t i = 0; i < count; i++) {
+      EXPECT_EQ(hits[i].primitive, wanted[i].primitive) << i;
+      EXPECT_FLOAT_EQ(hits[i].t * scale, wanted[i].t) << i;
+      EXPECT_EQ(occluded[i], 1) << i;
+    }
+  }
+}
+
 TEST_F(Queries, FewerPlacesThanHitsGetTheNearest) {
   add(60, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, false, 1);
   rtRender();

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "backend/local/local.h"
@@ -13,6 +14,7 @@ namespace openrt {
 namespace {
 
 constexpr size_t block = 4096;
+constexpr float mostFinite = std::numeric_limits<float>::max();
 
 // Transforms the kernel's normal from the instance's frame to the world's axes, turns it to the
 // front side and normalises it.
@@ -20,6 +22,15 @@ Vec3f worldNormal(const Record& r, const Vec3f& kernel) {
   const Vec3d k(kernel), n = r.instanced ? r.kernelNormal * k : k;
   const double l = length(n);
   return Vec3f(n * (l > 0 ? (r.flip ? -1 : 1) / l : 0));
+}
+
+// Returns by what the direction of a ray is multiplied before the kernel gets it: a power of two
+// for very short directions, else 1. Embree treats components below 1e-18 as 1e-18, so rays with
+// such directions would pass between triangles.
+float directionScale(const RTray& ray) {
+  const float most = largest(abs(vectorOf(ray.direction)));
+  if (!(most > 0 && most < 0x1p-20f)) return 1;
+  return std::ldexp(1.0f, std::min(-std::ilogb(most), 126));
 }
 
 template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& f) {
@@ -39,9 +50,11 @@ void LocalBackend::loadRays(std::span<const RTray> rays, size_t first, Rays& to)
   for (uint32_t i = 0; i < to.count; i++) {
     const RTray& ray = rays[first + i];
     store(Vec3f(Vec3d(vectorOf(ray.origin)) - vectorOf(snapshot_->origin)), to.org, i);
-    store(vectorOf(ray.direction), to.dir, i);
-    to.tnear[i] = ray.tnear;
-    to.tfar[i] = ray.tfar;
+    const float scale = directionScale(ray);
+    store(scale * vectorOf(ray.direction), to.dir, i);
+    to.tnear[i] = ray.tnear / scale;
+    // No hit is so far that its distance in lengths of the given direction is no float.
+    to.tfar[i] = scale == 1 ? ray.tfar : std::min(ray.tfar, mostFinite) / scale;
   }
 }
 
@@ -63,7 +76,10 @@ void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) 
     RayHits found;
     found.allocate(arena, batch.count);
     accel_->intersect(batch, maskAll, Coherence::incoherent, found);
-    for (uint32_t i = 0; i < batch.count; i++) hits[first + i] = hitOf(found, i);
+    for (uint32_t i = 0; i < batch.count; i++) {
+      RThit& hit = hits[first + i] = hitOf(found, i);
+      hit.t *= directionScale(rays[first + i]);
+    }
   });
 }
 
@@ -113,7 +129,7 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
       if (i - first[ray] >= allHits.size()) continue;
       const Accel::MultiHit& p = allHits[i - first[ray]];
       const Record& r = accel_->records[p.record];
-      hit.t = p.t;
+      hit.t = p.t * directionScale(rays[ray]);
       hit.u = p.u;
       hit.v = p.v;
       store(worldNormal(r, p.ng), hit.normal);

@@ -14,8 +14,10 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t coarsest = 512, finest = 4096; // columns
-// A sky is not sampled if less than this share of its light is above the mean.
-constexpr double leastShare = 1.0 / 64;
+// A sky is not sampled if less than this share of its light is above the mean, and no cell is
+// brighter than `mostContrast` times the mean. BSDF sampling finds such a sky with little noise. It
+// would rarely find a small sun, however little of the light that sends.
+constexpr double leastShare = 1.0 / 64, mostContrast = 4;
 
 // Returns the number of columns: as many as the widest texture has texels around the horizon. A
 // single texture covers the whole horizon, one of several covers a quarter.
@@ -141,7 +143,8 @@ SkySampler::SkySampler(const RenderScene& scene) {
       shares[column] = sum > 0 ? float(mass[column] / sum) : 0;
     byRow_[row] = total_ += sum * solidAngle(row);
   }
-  if (!(total_ > leastShare * emitted_)) total_ = 0;
+  const double most = *std::max_element(cells.begin(), cells.end());
+  if (!(total_ > leastShare * emitted_ || most > mostContrast * mean)) total_ = 0;
   for (double& share : byRow_) share /= total_ > 0 ? total_ : 1;
 }
 
