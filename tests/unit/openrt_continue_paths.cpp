@@ -352,7 +352,7 @@ void expectClosedForm(const std::vector<double>& cosines, float eta) {
   }
   out.reflectedShare = take();
   out.refractedShare = take();
-  sampleBoundary(plane.points.hits, lobe, lobe.parameter[0], nullptr, out);
+  sampleBoundary(plane.points.hits, lobe, lobe.parameter[0], out);
   for (uint32_t i = 0; i < n; i++) {
     const ClosedForm exact(float(cosines[i]), eta);
     const Vec3f d = load(plane.points.hits.direction, i);
@@ -368,6 +368,60 @@ void expectClosedForm(const std::vector<double>& cosines, float eta) {
 }
 
 } // namespace
+
+// Where glass disperses light, one ray carries the reflection of all colours, and the refraction of
+// each colour has a ray of its own. By colour they carry what Fresnel's equations say.
+TEST(ContinuePaths, DispersionReflectsAllColoursInOneRay) {
+  Hits hits(RT_TRANSPORT_WHITTED);
+  hits.plane.scene.frame.energyCut = 0;
+  hits.plane.add(hits.batch, RTS_LOBE_DIELECTRIC, 1);
+  const Glass glass(hits, true);
+  UnsampledLights unsampled(hits.plane.scene, hits.ledger);
+  RayQueue next;
+  spawnRays({hits.batch, 3, hits.samples, unsampled, hits.ledger, next}, {}, glass.boundaries);
+  uint32_t reflections = 0, refractions = 0;
+  for (size_t r = 0; r < next.size(); r++) {
+    const RayState ray = next.states()[r];
+    const uint32_t i = ray.path, colour = ray.flags.channel();
+    if (!glass.boundaries.disperses[i]) continue;
+    const RtsHits& at = hits.plane.points.hits;
+    const float cosine =
+        std::min(1.0f, -dot(load(at.direction, i), load(hits.batch.lobes[0].normal, i)));
+    if (cosine < 0.01f) continue;
+    const bool reflected = dot(load(next.direction(), r), load(at.geometric, i)) > 0;
+    (reflected ? reflections : refractions)++;
+    EXPECT_EQ(reflected, colour == 0) << i;
+    for (uint32_t k = 0; k < 3; k++) {
+      const float eta = glass.eta[i][k];
+      const double reflectance = double(ClosedForm(cosine, eta).reflectance);
+      const double part = reflected         ? reflectance
+                          : colour == k + 1 ? (1 - reflectance) * eta * eta
+                                            : 0;
+      EXPECT_NEAR(ray.throughput[k], load(hits.plane.states.throughput, i)[k] * part, 1e-6) << i;
+    }
+  }
+  EXPECT_GT(reflections, count / 10);
+  EXPECT_GT(refractions, 2 * reflections);
+}
+
+// The flux of a light path is divided between the reflection and the refractions, colour by colour.
+TEST(ContinuePaths, DispersionKeepsTheFluxOfLightPaths) {
+  Hits hits(RT_TRANSPORT_PATH);
+  hits.plane.add(hits.batch, RTS_LOBE_DIELECTRIC, 1);
+  const Glass glass(hits, true);
+  for (uint32_t i = 0; i < count; i++) {
+    if (!glass.boundaries.disperses[i]) continue;
+    BsdfSamples samples(hits.plane.points.hits, i, glass.boundaries.etaAt(i), 0, true);
+    samples.add(0, hits.batch.lobes[0], nullptr);
+    ASSERT_GT(samples.count, 0u);
+    EXPECT_LE(samples.count, 4u);
+    EXPECT_EQ(samples.list[0].channel, 0);
+    Vec3f sum;
+    for (uint32_t w = 0; w < samples.count; w++) sum = sum + samples.list[w].weight;
+    if (samples.count < 4) continue; // total reflection, or a refraction above the facet
+    for (int k = 0; k < 3; k++) EXPECT_NEAR(sum[k], 1, 1e-6) << i;
+  }
+}
 
 TEST(ContinuePaths, BoundariesFollowFresnelAndSnell) {
   std::vector<double> all, grazing;

@@ -132,12 +132,18 @@ def dusk(folder):
         at((-1.5, .8, 3.6), shape(lamp(20, 14, 6), "Sphere { radius .08 }")), *posts)
 
 
+def caustic_even(folder):
+    """The example caustic without dispersion, which Mitsuba's glass does not have."""
+    return (EXAMPLES / "caustic.wrl").read_text().replace(' "1f abbe 35"', "")
+
+
 WORLDS = {
     "cornell": World("Cornell box", ("path", "light"), "same"),
     "headlight": World("Headlight: mirror and lens", ("light", "path"), "same"),
     "interior": World("Interior lit through glass", ("light", "path"), "same"),
     "board": World("Circuit board under an environment", ("path",), "own"),
-    "caustic": World("Caustics of a ball and a ring", ("light", "path"), "own"),
+    "caustic": World("Caustics, with dispersion", ("light", "path")),
+    "caustic_even": World("Caustics, without dispersion", ("light", "path"), "same", caustic_even),
     "still_life": World("Still life: direct light of lamps", ("direct",)),
     "car_paint": World("Car paint: flakes, coat, sky, sun", ("path",)),
     "globe": World("Globe: wood, brass, a window", ("path",)),

@@ -20,17 +20,12 @@ void BsdfSamples::add(uint32_t number, const RtsLobe& lobe, const LobeSamples* s
   case RTS_LOBE_REFLECTION: mirror(n, w, 1); break;
   case RTS_LOBE_TRANSPARENT: put(d_, w, 1).deflected = false; break;
   case RTS_LOBE_DIELECTRIC:
-    // Dispersion: every colour is refracted separately.
     if (eta_ && channel_ == 0 && (eta_[0] != eta_[1] || eta_[0] != eta_[2])) {
-      for (int k = 0; k < 3; k++) {
-        Vec3f only;
-        only[k] = w[k];
-        channel_ = uint8_t(k + 1);
-        if (w[k] > 0) dielectric(n, only, eta_[k]);
-      }
-      channel_ = 0;
+      disperse(n, w);
     } else {
-      dielectric(n, w, lobe.parameter[0][hit_]);
+      const Boundary boundary = boundaryOf(n, lobe.parameter[0][hit_]);
+      if (boundary.reflectance > 0) mirror(n, w, float(boundary.reflectance));
+      refract(n, w, boundary);
     }
     break;
   default:
@@ -69,22 +64,45 @@ void BsdfSamples::scatter(const RtsLobe& lobe, const LobeSamples& samples, const
 }
 
 // A shading normal may reflect a ray below the facet; then the facet's own normal is used.
-void BsdfSamples::mirror(const Vec3f& n, const Vec3f& w, float factor) {
+BsdfSample& BsdfSamples::mirror(const Vec3f& n, const Vec3f& w, float factor) {
   const Vec3f out = reflectAt(d_, n);
-  put(dot(out, g_) > 0 ? out : reflectAt(d_, g_), w, factor);
+  return put(dot(out, g_) > 0 ? out : reflectAt(d_, g_), w, factor);
+}
+
+BsdfSamples::Boundary BsdfSamples::boundaryOf(const Vec3f& n, float eta) const {
+  Boundary out{};
+  out.eta = eta > 0 && std::isfinite(eta) ? eta : 1;
+  out.cosine = std::min(1.0, std::max(0.0, -double(dot(d_, n))));
+  out.reflectance = fresnel(out.cosine, out.eta, out.cosineBehind);
+  return out;
 }
 
 // Radiance is scaled by the squared relative index where it enters a denser medium (R. Siegel, J.
 // Howell, "Thermal Radiation Heat Transfer", on n^2). So a refracted ray has the weight eta^2.
-void BsdfSamples::dielectric(const Vec3f& n, const Vec3f& w, float eta) {
-  if (!(eta > 0) || !std::isfinite(eta)) eta = 1;
-  const double cosine = std::min(1.0, std::max(0.0, -double(dot(d_, n))));
-  double behind;
-  const double r = fresnel(cosine, eta, behind);
-  if (r > 0) mirror(n, w, float(r));
-  if (r >= 1) return;
-  const Vec3f out = refractAt(d_, n, eta, cosine, behind);
-  if (dot(out, g_) < 0) put(out, w, float(fromLamp_ ? 1 - r : (1 - r) * eta * eta));
+void BsdfSamples::refract(const Vec3f& n, const Vec3f& w, const Boundary& boundary) {
+  const double eta = boundary.eta, transmittance = 1 - boundary.reflectance;
+  if (!(transmittance > 0)) return;
+  const Vec3f out = refractAt(d_, n, eta, boundary.cosine, boundary.cosineBehind);
+  if (dot(out, g_) < 0) put(out, w, float(fromLamp_ ? transmittance : transmittance * eta * eta));
+}
+
+// Dispersion: every colour is refracted separately. All are reflected in one direction.
+void BsdfSamples::disperse(const Vec3f& n, const Vec3f& w) {
+  Boundary boundary[3];
+  Vec3f reflectance;
+  for (int k = 0; k < 3; k++) {
+    boundary[k] = boundaryOf(n, eta_[k]);
+    reflectance[k] = float(boundary[k].reflectance);
+  }
+  const float most = largest(reflectance);
+  if (most > 0) mirror(n, w, most).weight = w * reflectance;
+  for (int k = 0; k < 3; k++) {
+    Vec3f only;
+    only[k] = w[k];
+    channel_ = uint8_t(k + 1);
+    if (w[k] > 0) refract(n, only, boundary[k]);
+  }
+  channel_ = 0;
 }
 
 } // namespace openrt

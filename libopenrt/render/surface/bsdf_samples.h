@@ -1,6 +1,6 @@
 // bsdf_samples.h: BSDF samples of one hit: the directions in which a path may continue, one for
-// every lobe, two at a smooth boundary. Light paths use it. Camera paths compute the same numbers
-// for all hits of a batch at once (sample_arrays.h). [render]
+// every lobe, two at a smooth boundary (four if it disperses light). Light paths use it. Camera
+// paths compute the same numbers for all hits of a batch at once (sample_arrays.h). [render]
 #pragma once
 
 #include "render/surface/lobes.h"
@@ -34,7 +34,7 @@ inline uint32_t sampleDiscrete(const float* shares, uint32_t count, float at) {
 
 class BsdfSamples {
  public:
-  static constexpr uint32_t maximum = 6 * RTS_MAX_LOBES;
+  static constexpr uint32_t maximum = 4 * RTS_MAX_LOBES;
   // eta: relative index of refraction (ray's side over far side) by colour if the engine knows it,
   // else null; the lobe's parameter has that of the channel. channel: channel of the incoming ray,
   // as in BsdfSample. fromLamp: the path starts at a light, so it carries flux (importance
@@ -53,8 +53,14 @@ class BsdfSamples {
  private:
   BsdfSample& put(const Vec3f& direction, const Vec3f& weight, float factor);
   void scatter(const RtsLobe& lobe, const LobeSamples& samples, const Vec3f& w);
-  void mirror(const Vec3f& n, const Vec3f& w, float factor);
-  void dielectric(const Vec3f& n, const Vec3f& w, float eta);
+  BsdfSample& mirror(const Vec3f& n, const Vec3f& w, float factor);
+  // A smooth boundary for one index of refraction.
+  struct Boundary {
+    double eta, cosine, cosineBehind, reflectance;
+  };
+  Boundary boundaryOf(const Vec3f& n, float eta) const;
+  void refract(const Vec3f& n, const Vec3f& w, const Boundary& boundary);
+  void disperse(const Vec3f& n, const Vec3f& w);
   uint32_t hit_, lobe_ = 0;
   const float* eta_;
   uint8_t channel_;

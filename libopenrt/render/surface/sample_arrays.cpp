@@ -1,5 +1,7 @@
 #include "render/surface/sample_arrays.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/surface/sample_arrays.cpp"
 #include <hwy/foreach_target.h>
@@ -15,7 +17,6 @@ namespace {
 // the lanes are doubles, and half as many floats.
 using DoublesTag = hn::CappedTag<double, lanes>;
 using FloatsTag = hn::Rebind<float, DoublesTag>;
-using WordsTag = hn::Rebind<uint32_t, DoublesTag>;
 using Doubles = hn::Vec<DoublesTag>;
 using Floats = hn::Vec<FloatsTag>;
 using FloatsVec = Vec3<Floats>;
@@ -63,7 +64,7 @@ void mirrorLanes(const RtsHits& hits, const RtsLobe& lobe, float* const directio
 }
 
 void boundaryLanes(const RtsHits& hits, const RtsLobe& lobe, const float* etas,
-                   const uint32_t* wanted, const BoundarySamples& out) {
+                   const BoundarySamples& out) {
   forEachGroup(hits.count, [&](uint32_t i) {
     const Floats zero = constant<Floats>(0), one = constant<Floats>(1);
     const FloatsVec d = loadFloats(hits.direction, i), n = loadFloats(lobe.normal, i),
@@ -75,18 +76,11 @@ void boundaryLanes(const RtsHits& hits, const RtsLobe& lobe, const float* etas,
     Doubles behind;
     const Doubles r = fresnel(cosine, eta, behind), all = constant<Doubles>(1);
     const FloatsVec refracted = demote(refractAt(promote(d), promote(n), eta, cosine, behind));
-    Floats reflectedShare = demote(r), refractedShare = demote((all - r) * eta * eta);
-    refractedShare = select(dot(refracted, g) < zero, refractedShare, zero);
-    if (wanted) {
-      const auto absent = hn::RebindMask(
-          FloatsTag(), hn::Eq(hn::LoadU(WordsTag(), wanted + i), hn::Zero(WordsTag())));
-      reflectedShare = select(absent, zero, reflectedShare);
-      refractedShare = select(absent, zero, refractedShare);
-    }
+    const Floats refractedShare = demote((all - r) * eta * eta);
     storeFloats(mirrored(d, n, g), out.reflected, i);
-    storeFloats(reflectedShare, out.reflectedShare + i);
+    storeFloats(demote(r), out.reflectedShare + i);
     storeFloats(refracted, out.refracted, i);
-    storeFloats(refractedShare, out.refractedShare + i);
+    storeFloats(select(dot(refracted, g) < zero, refractedShare, zero), out.refractedShare + i);
   });
 }
 
@@ -120,8 +114,8 @@ void sampleMirror(const RtsHits& hits, const RtsLobe& lobe, float* const directi
 }
 
 void sampleBoundary(const RtsHits& hits, const RtsLobe& lobe, const float* eta,
-                    const uint32_t* wanted, const BoundarySamples& out) {
-  HWY_DYNAMIC_DISPATCH(boundaryLanes)(hits, lobe, eta, wanted, out);
+                    const BoundarySamples& out) {
+  HWY_DYNAMIC_DISPATCH(boundaryLanes)(hits, lobe, eta, out);
 }
 
 void expectGlossy(const RtsHits& hits, const RtsLobe& lobe, float* share) {
@@ -142,18 +136,18 @@ void BsdfSampleArrays::addLobe(uint32_t number, const LobeSampling& sampling,
   const RtsHits& hits = batch_.points->hits;
   const LobeSamples* samples = sampling.samples[number];
   switch (lobe.kind) {
-  case RTS_LOBE_TRANSPARENT: add(lobe, hits.direction).deflected = false; return;
+  case RTS_LOBE_TRANSPARENT: add(lobe, hits.direction, nullptr).deflected = false; return;
   case RTS_LOBE_DIELECTRIC: return addBoundary(lobe, boundaries);
   case RTS_LOBE_REFLECTION: {
     float* const direction[3] = {take<float>(), take<float>(), take<float>()};
     sampleMirror(hits, lobe, direction);
-    add(lobe, direction);
+    add(lobe, direction, nullptr);
     return;
   }
   default: break;
   }
   if (!samples) return;
-  SampleArrays& sample = add(lobe, samples->direction);
+  SampleArrays& sample = add(lobe, samples->direction, nullptr);
   std::copy_n(samples->value, 3, sample.value);
   sample.pdf = samples->pdf;
   sample.transmits = nonSpecularFunctions(lobe)->transmits != 0;
@@ -165,39 +159,53 @@ void BsdfSampleArrays::addLobe(uint32_t number, const LobeSampling& sampling,
   sample.share = share;
 }
 
-// Where the indices of the media differ by colour, every colour is refracted separately.
 void BsdfSampleArrays::addBoundary(const RtsLobe& lobe, const Boundaries& boundaries) {
-  const uint32_t* disperses = boundaries.disperses;
-  if (!disperses) return addPair(lobe, lobe.parameter[0], nullptr, 0);
-  auto* even = take<uint32_t>();
-  for (uint32_t i = 0; i < hitCount(); i++) even[i] = !disperses[i];
-  addPair(lobe, lobe.parameter[0], even, 0);
+  if (boundaries.disperses) return addDispersion(lobe, boundaries);
+  const BoundarySamples both = sampleBoundary(lobe, lobe.parameter[0]);
+  add(lobe, both.reflected, both.reflectedShare);
+  add(lobe, both.refracted, both.refractedShare);
+}
+
+// Where the indices of the media differ by colour, every colour is refracted separately. All are
+// reflected in one direction.
+void BsdfSampleArrays::addDispersion(const RtsLobe& lobe, const Boundaries& boundaries) {
+  BoundarySamples byColour[3];
   for (uint32_t k = 0; k < 3; k++) {
     auto* eta = take<float>();
-    for (uint32_t i = 0; i < hitCount(); i++) eta[i] = boundaries.eta[i][k];
-    addPair(lobe, eta, disperses, k + 1);
+    for (uint32_t i = 0; i < hitCount(); i++)
+      eta[i] = boundaries.disperses[i] ? boundaries.eta[i][k] : lobe.parameter[0][i];
+    byColour[k] = sampleBoundary(lobe, eta);
   }
+  auto *most = take<float>(), *together = take<float>();
+  for (uint32_t i = 0; i < hitCount(); i++) {
+    most[i] = std::max({byColour[0].reflectedShare[i], byColour[1].reflectedShare[i],
+                        byColour[2].reflectedShare[i]});
+    together[i] = boundaries.disperses[i] ? 0 : byColour[0].refractedShare[i];
+    for (const BoundarySamples& one : byColour)
+      if (!boundaries.disperses[i]) one.refractedShare[i] = 0;
+  }
+  SampleArrays& reflected = add(lobe, byColour[0].reflected, most);
+  for (uint32_t k = 0; k < 3; k++) reflected.value[k] = byColour[k].reflectedShare;
+  add(lobe, byColour[0].refracted, together);
+  for (uint32_t k = 0; k < 3; k++)
+    add(lobe, byColour[k].refracted, byColour[k].refractedShare).colour = k + 1;
 }
 
-void BsdfSampleArrays::addPair(const RtsLobe& lobe, const float* eta, const uint32_t* wanted,
-                               uint32_t colour) {
-  BoundarySamples pair;
-  for (auto* group : {pair.reflected, pair.refracted})
+BoundarySamples BsdfSampleArrays::sampleBoundary(const RtsLobe& lobe, const float* eta) const {
+  BoundarySamples out;
+  for (auto* group : {out.reflected, out.refracted})
     for (int k = 0; k < 3; k++) group[k] = take<float>();
-  pair.reflectedShare = take<float>();
-  pair.refractedShare = take<float>();
-  sampleBoundary(batch_.points->hits, lobe, eta, wanted, pair);
-  SampleArrays& reflected = add(lobe, pair.reflected);
-  reflected.share = pair.reflectedShare;
-  reflected.colour = colour;
-  SampleArrays& refracted = add(lobe, pair.refracted);
-  refracted.share = pair.refractedShare;
-  refracted.colour = colour;
+  out.reflectedShare = take<float>();
+  out.refractedShare = take<float>();
+  openrt::sampleBoundary(batch_.points->hits, lobe, eta, out);
+  return out;
 }
 
-SampleArrays& BsdfSampleArrays::add(const RtsLobe& lobe, const float* const direction[3]) {
+SampleArrays& BsdfSampleArrays::add(const RtsLobe& lobe, const float* const direction[3],
+                                    const float* share) {
   SampleArrays& sample = list_[count_++];
   sample = {.lobe = &lobe, .direction = {direction[0], direction[1], direction[2]}};
+  sample.share = share;
   sample.number = take<uint32_t>();
   sample.kept = take<float>();
   return sample;

@@ -14,7 +14,9 @@ struct SampleArrays {
   const float* direction[3];
   // By hit: the expected part of the lobe's weight. A hit with 0 lacks a specular sample. Null: 1.
   const float* share = nullptr;
-  const float* value[3] = {}; // value over pdf of a non-specular lobe; null: `share`
+  // By hit and colour: value over pdf of a non-specular lobe; the part of a specular lobe's weight
+  // that depends on the colour. Null: `share`.
+  const float* value[3] = {};
   const float* pdf = nullptr; // solid-angle pdf of a non-specular lobe; null: specular
   uint32_t colour = 0;        // 1 + index of the only colour that is carried; 0: all colours
   bool deflected = true;      // the direction differs from the incoming ray's
@@ -32,6 +34,12 @@ struct SampleArrays {
   const float* valueOf(int k) const { return value[k] ? value[k] : share; }
 };
 
+// Reflection and refraction at a smooth boundary, by hit; share: of the lobe's weight.
+struct BoundarySamples {
+  float *reflected[3], *reflectedShare;
+  float *refracted[3], *refractedShare;
+};
+
 // All samples of the hits of a batch. They lie in the arena of the batch.
 class BsdfSampleArrays {
  public:
@@ -45,27 +53,23 @@ class BsdfSampleArrays {
  private:
   void addLobe(uint32_t number, const LobeSampling& sampling, const Boundaries& boundaries);
   void addBoundary(const RtsLobe& lobe, const Boundaries& boundaries);
-  void addPair(const RtsLobe& lobe, const float* eta, const uint32_t* wanted, uint32_t colour);
-  SampleArrays& add(const RtsLobe& lobe, const float* const direction[3]);
+  void addDispersion(const RtsLobe& lobe, const Boundaries& boundaries);
+  BoundarySamples sampleBoundary(const RtsLobe& lobe, const float* eta) const;
+  SampleArrays& add(const RtsLobe& lobe, const float* const direction[3], const float* share);
   template <class T> T* take() const { return batch_.arena->take<T>(padded(hitCount())); }
   uint32_t hitCount() const { return batch_.points->hits.count; }
 
-  // A boundary has a pair for all colours, and one for each colour where it disperses light.
-  static constexpr uint32_t mostOfLobe = 8;
+  // A boundary has a reflection, a refraction of all colours, and one of each colour where it
+  // disperses light.
+  static constexpr uint32_t mostOfLobe = 5;
   const RtsBatch& batch_;
   SampleArrays* list_;
   uint32_t count_ = 0;
 };
 
-// Reflection and refraction at a smooth boundary, by hit; share: of the lobe's weight.
-struct BoundarySamples {
-  float *reflected[3], *reflectedShare;
-  float *refracted[3], *refractedShare;
-};
-// Computes the samples at a smooth boundary. eta: relative index of refraction, by hit. wanted: 0
-// where a hit gets none; null: all hits get them.
+// Computes the samples at a smooth boundary. eta: relative index of refraction, by hit.
 void sampleBoundary(const RtsHits& hits, const RtsLobe& lobe, const float* eta,
-                    const uint32_t* wanted, const BoundarySamples& out);
+                    const BoundarySamples& out);
 // Computes the directions of a mirror.
 void sampleMirror(const RtsHits& hits, const RtsLobe& lobe, float* const direction[3]);
 // Computes the Fresnel reflectance of a glossy lobe at its normal; 1 without Fresnel factor.
