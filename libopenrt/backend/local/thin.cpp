@@ -25,9 +25,8 @@ void addThin(Part& part, const Geometry& g, const Matrix4d& toKernel, uint32_t r
     if (lines) part.indices.push_back(uint32_t(part.vertices.size() / 4));
     put(index[lines ? 2 * i : i]);
     if (lines) put(index[2 * i + 1]);
-    part.recordOf.push_back(record);
-    part.primitiveOf.push_back(uint32_t(i));
   }
+  part.primitives.add(record, 0, uint32_t(g.primitives()));
 }
 
 } // namespace openrt

@@ -75,9 +75,6 @@ class Accel final : public Intersector {
                       bool first, RayHits& hits) const;
   void occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
                      uint8_t* blocked) const;
-  struct PrimitiveId {
-    uint32_t record, primitive;
-  };
   // Maps Embree's ids to record and primitive.
   static PrimitiveId find(const PartScene& scene, uint32_t instance, uint32_t geometry,
                           uint32_t primitive);

@@ -127,8 +127,8 @@ std::shared_ptr<const Blas> AccelBuilder::partBlas(uint32_t part, uint32_t overr
   };
   return cached({source.object, true, override}, sign, [&] {
     Box box;
-    forEachBaked([&](const Item& item, const Object& object, const Geometry& g, uint32_t) {
-      box.add(survey.object(item.object).boxes[size_t(&g - object.geometries.data())], item.matrix);
+    forEachBaked([&](const Item& item, const Object&, const Geometry& g, uint32_t) {
+      box.add(boundsOf(g), item.matrix);
     });
     const Matrix4d fromKernel = kernelFrame(box.low, box.high), toKernel = inverse(fromKernel);
     BlasBuilder builder(*device_, spheres_, info.entries());

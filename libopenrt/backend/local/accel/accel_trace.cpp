@@ -59,8 +59,8 @@ template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* en
 
 } // namespace
 
-Accel::PrimitiveId Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry,
-                               uint32_t primitive) {
+PrimitiveId Accel::find(const PartScene& root, uint32_t instance, uint32_t geometry,
+                        uint32_t primitive) {
   uint32_t base = 0;
   const PartScene* scene = &root;
   if (instance != RTC_INVALID_GEOMETRY_ID) {
@@ -68,12 +68,12 @@ Accel::PrimitiveId Accel::find(const PartScene& root, uint32_t instance, uint32_
     base = placed.record;
     scene = placed.object.get();
   }
-  const Part& part = *scene->parts[geometry].part;
-  if (part.recordOf.empty()) return {base + part.record, primitive};
-  return {base + part.recordOf[primitive], part.primitiveOf[primitive]};
+  PrimitiveId found = scene->parts[geometry].part->primitives.find(primitive);
+  found.record += base;
+  return found;
 }
 
-Accel::PrimitiveId Accel::primitiveOfHit(const RTCFilterFunctionNArguments* a, unsigned i) {
+PrimitiveId Accel::primitiveOfHit(const RTCFilterFunctionNArguments* a, unsigned i) {
   const FilterContext& self =
       *static_cast<const FilterContext*>(static_cast<const QueryContext*>(a->context)->user);
   return find(*self.level->scene, RTCHitN_instID(a->hit, a->N, i, 0),

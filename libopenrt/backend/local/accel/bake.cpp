@@ -12,6 +12,17 @@
 #include "backend/local/sliver_edges.h"
 
 namespace openrt {
+namespace {
+
+// Calls f(begin, end) for ranges that make up 0 to count, in parallel if there is more than one.
+template <class F> void forRanges(size_t count, const F& f) {
+  constexpr size_t grain = 16384;
+  if (count <= grain) return f(0, count); // worlds have millions of small geometries
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain),
+                    [&](const auto& range) { f(range.begin(), range.end()); });
+}
+
+} // namespace
 
 void Box::add(const Vec3d& p) {
   low = min(low, p);
@@ -67,8 +78,8 @@ std::vector<float> bakePoints(const Geometry& geometry, const Matrix4d& m) {
   const float* p = geometry.points->as<float>();
   const size_t n = geometry.points->count<float>() / 3;
   std::vector<float> out(3 * n);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, n, 16384), [&](const auto& range) {
-    for (size_t i = range.begin(); i < range.end(); i++)
+  forRanges(n, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; i++)
       store(Vec3f(m.point(Vec3d(vectorOf(p + 3 * i)))), &out[3 * i]);
   });
   return out;
@@ -85,8 +96,8 @@ BakedTriangles bakeTriangles(const Geometry& geometry, const Matrix4d& toKernel)
                    v + 3 * size_t(index[3 * t + 2]));
   };
   std::atomic<bool> clean{true};
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 16384), [&](const auto& range) {
-    for (size_t t = range.begin(); t < range.end(); t++)
+  forRanges(count, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; t++)
       if (shape(t) != TriangleShape::good) {
         clean = false;
         return;

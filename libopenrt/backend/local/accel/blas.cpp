@@ -28,6 +28,7 @@ std::shared_ptr<const Blas> UnitSpheres::get(uint32_t mask) {
   blas->scene = newScene(device_);
   auto part = std::make_unique<Part>();
   part->vertices = {0, 0, 0, 1};
+  part->primitives.add(0, 0);
   attachRound(*blas, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
   rtcCommitScene(blas->scene);
   return known = std::move(blas);
@@ -70,11 +71,10 @@ void BlasBuilder::addTriangles(const Geometry& g, const Matrix4d& toKernel, uint
   auto part = std::make_unique<Part>();
   part->vertices = std::move(baked.vertices);
   if (whole) {
-    part->record = entry;
+    part->primitives.add(entry, 0, uint32_t(kept));
     part->sharedIndices = g.indices;
   } else {
-    part->recordOf.assign(kept, entry);
-    part->primitiveOf = std::move(baked.kept);
+    for (const uint32_t t : baked.kept) part->primitives.add(entry, t);
     part->indices = std::move(baked.indices);
   }
   triangles_ += kept;
@@ -98,8 +98,7 @@ Part& BlasBuilder::merge(const std::vector<float>& vertices, const uint32_t* ind
   for (size_t i = 0; i < count; i++) {
     const uint32_t t = which ? (*which)[i] : uint32_t(i);
     for (int k = 0; k < 3; k++) part->indices.push_back(base + index[3 * size_t(t) + k]);
-    part->recordOf.push_back(entry);
-    part->primitiveOf.push_back(t);
+    part->primitives.add(entry, t);
   }
   return *part;
 }
@@ -111,8 +110,7 @@ void BlasBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_
     auto& part = hugeSpheres_[mask];
     if (!part) part = std::make_unique<Part>();
     part->spheres.push_back(unit);
-    part->recordOf.push_back(entry);
-    part->primitiveOf.push_back(0);
+    part->primitives.add(entry, 0);
     return;
   }
   if (!similarity(toKernel)) {
@@ -124,8 +122,7 @@ void BlasBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_
   const Vec3d c = toKernel.translation();
   const float radius = float(g.width * length(toKernel.column(0)));
   part->vertices.insert(part->vertices.end(), {float(c.x), float(c.y), float(c.z), radius});
-  part->recordOf.push_back(entry);
-  part->primitiveOf.push_back(0);
+  part->primitives.add(entry, 0);
 }
 
 // Attaches all parts that are still open and commits the scene. From here on the vertices keep

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backend/local/accel/embree_device.h"
+#include "backend/local/accel/primitive_runs.h"
 #include "scene/commit.h"
 #include "scene/matrix.h"
 
@@ -18,10 +19,7 @@ struct Blas;
 // The buffers of one Embree geometry, and the map from its primitives to records and primitives of
 // the scene.
 struct Part {
-  // The record of every primitive is `record`, or recordOf[i] in merged geometries.
-  uint32_t record = 0;
-  std::vector<uint32_t> recordOf;
-  std::vector<uint32_t> primitiveOf;
+  PrimitiveRuns primitives;
   std::vector<float> vertices; // in the layout that Embree reads
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;

@@ -42,8 +42,9 @@ void Survey::measure(const Scene& scene, uint32_t id) {
   info = {};
   info.version = object.version;
   for (const Geometry& g : object.geometries) {
-    info.boxes.push_back(boundsOf(g));
-    info.bounds.add(info.boxes.back(), Matrix4d());
+    const Box box = boundsOf(g);
+    info.sizes.push_back(halfDiagonal(box));
+    info.bounds.add(box, Matrix4d());
     if (g.primitive == edit::Primitive::Triangles) info.triangles += g.primitives();
     if (g.primitive == edit::Primitive::Lines || g.primitive == edit::Primitive::Points)
       info.bakeOnly = true;
@@ -117,10 +118,10 @@ void Survey::take(const Scene& scene, const Flattened& flat) {
   uint64_t total = 0;
   for (const Item& item : flat.parts[0].items) {
     const auto& geometries = scene.objects.at(item.object).geometries;
-    const auto& boxes = objects_.at(item.object).boxes;
+    const auto& itsSizes = objects_.at(item.object).sizes;
     const double growth = largestColumn(item.matrix);
     for (size_t g = 0; g < geometries.size(); g++) {
-      sizes[exponent(halfDiagonal(boxes[g]) * growth)] += geometries[g].primitives();
+      sizes[exponent(itsSizes[g] * growth)] += geometries[g].primitives();
       total += geometries[g].primitives();
     }
   }

@@ -23,7 +23,7 @@ enum class DrawnAs : uint8_t {
 
 struct ObjectInfo {
   uint64_t version = 0;
-  std::vector<Box> boxes; // by geometry
+  std::vector<double> sizes; // half the diagonal of each geometry's bounds
   Box bounds;
   uint64_t triangles = 0;
   bool bakeOnly = false; // has lines, points or ellipsoids, which cannot be instanced
