@@ -50,6 +50,29 @@ TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) {
   EXPECT_LT(error, .01);
 }
 
+// A path that goes straight on has no choice, so a filter darkens a lamp without adding noise,
+// however little it lets through.
+TEST_F(GlobalLight, ALampBehindDarkFiltersHasNoNoise) {
+  constexpr double transmitted = 1.0 / 64;
+  const auto at = [](double z, RTid shader) {
+    rtPushMatrix();
+    rtTranslated(0, 0, z);
+    place(square(shader, 10));
+    rtPopMatrix();
+  };
+  const Shader filter =
+      Shader("Glass").set("index", {1}).set("tint", {transmitted, transmitted, transmitted});
+  const double radiance = 1 / (transmitted * transmitted);
+  at(-1, filter);
+  at(-2, filter);
+  at(-3, Shader("Diffuse")
+             .set("emission", {radiance, radiance, radiance})
+             .set("reflectance", {0, 0, 0}));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 4);
+  for (const float value : picture(8)) EXPECT_NEAR(value, 1, 1e-5);
+}
+
 // The sum is exact: the power emitted equals the power absorbed.
 TEST_F(GlobalLight, G6RadiosityOfACube) {
   cube(Shader("Diffuse").set("emission", {1, 1, 1}).set("reflectance", {.5, .5, .5}),

@@ -98,6 +98,7 @@ void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
       sum = sum + carried;
     }
     store(count, paths.count + i);
+    const Mask single = maskOf(hn::Eq(count, bitsOf(1)));
     const Mask some = sum > zero;
     const Mask selects = paths.choice ? hn::And(some, selectsOne(paths, count, lane)) : noLanes();
     const bool anySelects = !hn::AllFalse(LanesTag(), selects);
@@ -126,7 +127,8 @@ void choose(const Continuation& paths, const BsdfSampleArrays& samples) {
         store(whereOrZero(hn::AndNot(cut, follows), one), sample.kept + i);
         continue;
       }
-      const Lanes survival = min(one, carried / (probability * lanesOf(certainThroughput)));
+      Lanes survival = min(one, carried / (probability * lanesOf(certainThroughput)));
+      if (!sample.pdf) survival = select(single, one, survival);
       random = hn::Or(random, hn::And(follows, survival < one));
       const Mask survives = hn::And(follows, load(paths.survival + i) < survival);
       store(whereOrZero(survives, probability * survival), sample.kept + i);
