@@ -10,10 +10,30 @@
 #include <numeric>
 #include <vector>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/asan_interface.h>
+#endif
+
 namespace openrt {
 
 inline constexpr uint32_t lanes = 16;
 inline uint32_t padded(uint32_t n) { return (n + lanes - 1) / lanes * lanes; }
+
+// Tell the address sanitizer which bytes of a chunk are in use, so that it reports access to
+// released blocks and beyond the ends of blocks. Blocks are filled with the bytes of NaN, so that
+// results show where elements are read that were never written.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr size_t gapBytes = 64; // between blocks
+inline void beginUse(void* at, size_t bytes) {
+  ASAN_UNPOISON_MEMORY_REGION(at, bytes);
+  std::memset(at, 0xff, bytes);
+}
+inline void endUse(void* at, size_t bytes) { ASAN_POISON_MEMORY_REGION(at, bytes); }
+#else
+inline constexpr size_t gapBytes = 0;
+inline void beginUse(void*, size_t) {}
+inline void endUse(void*, size_t) {}
+#endif
 
 // Bump allocator in chunks. Blocks do not move until release() to an earlier mark().
 class Arena {
@@ -26,7 +46,7 @@ class Arena {
   }
 
   template <class T> T* take(size_t count) {
-    const size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
+    const size_t inUse = count * sizeof(T), bytes = (inUse + 63) / 64 * 64 + gapBytes;
     while (current_ < chunks_.size() && chunks_[current_].used + bytes > chunks_[current_].size) {
       current_++;
       if (current_ < chunks_.size()) chunks_[current_].used = 0;
@@ -35,6 +55,7 @@ class Arena {
     Chunk& chunk = chunks_[current_];
     T* result = reinterpret_cast<T*>(chunk.data + chunk.used);
     chunk.used += bytes;
+    beginUse(result, inUse);
     return result;
   }
   template <class T> T* takeZero(size_t count) {
@@ -55,6 +76,10 @@ class Arena {
   };
   Mark mark() const { return {current_, current_ < chunks_.size() ? chunks_[current_].used : 0}; }
   void release(Mark mark) {
+    for (size_t k = mark.chunk; k < chunks_.size() && k <= current_; k++) {
+      const size_t kept = k == mark.chunk ? mark.used : 0;
+      endUse(chunks_[k].data + kept, chunks_[k].used - kept);
+    }
     current_ = mark.chunk;
     if (current_ < chunks_.size()) chunks_[current_].used = mark.used;
   }
@@ -69,6 +94,7 @@ class Arena {
     const size_t size = bytes > chunkBytes ? bytes : chunkBytes;
     void* data = std::aligned_alloc(64, size);
     if (!data) throw std::bad_alloc();
+    endUse(data, size);
     chunks_.push_back({static_cast<std::byte*>(data), size, 0});
   }
   std::vector<Chunk> chunks_;
