@@ -169,13 +169,16 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
     const LaneVec carried{weight.x * loadOrOne(sample.valueOf(0), i) / kept,
                           weight.y * loadOrOne(sample.valueOf(1), i) / kept,
                           weight.z * loadOrOne(sample.valueOf(2), i) / kept};
+    // A shader may return numbers so large that their product overflows. Such a path ends.
+    const LaneVec throughput = gather(states.throughput, lane) * carried;
+    valid = hn::And(valid, isFinite(throughput.x + throughput.y + throughput.z));
     const LaneVec position = load(hits.position, i),
                   side = select(towards > zero, one, lanesOf(-1)) * g;
     const Lanes error = load(paths.points->error + i);
     const Compressed append{valid, end};
     append(offsetPoint(position, side, error), queue.origin());
     append(direction, queue.direction());
-    append(gather(states.throughput, lane) * carried, to.throughput);
+    append(throughput, to.throughput);
     append(load(hits.distance + i), to.travelled);
     append(pdf, to.pdf);
     append(gather(states.path, lane), to.path);
