@@ -54,20 +54,16 @@ TEST_F(GlobalLight, G5RouletteDoesNotChangeTheMean) {
 // however little it lets through.
 TEST_F(GlobalLight, ALampBehindDarkFiltersHasNoNoise) {
   constexpr double transmitted = 1.0 / 64;
-  const auto at = [](double z, RTid shader) {
-    rtPushMatrix();
-    rtTranslated(0, 0, z);
-    place(square(shader, 10));
-    rtPopMatrix();
-  };
   const Shader filter =
       Shader("Glass").set("index", {1}).set("tint", {transmitted, transmitted, transmitted});
   const double radiance = 1 / (transmitted * transmitted);
-  at(-1, filter);
-  at(-2, filter);
-  at(-3, Shader("Diffuse")
-             .set("emission", {radiance, radiance, radiance})
-             .set("reflectance", {0, 0, 0}));
+  const Shader lamp = Shader("Diffuse")
+                          .set("emission", {radiance, radiance, radiance})
+                          .set("reflectance", {0, 0, 0});
+  placeAt(-1, square(filter));
+  placeAt(-2, square(filter));
+  placeAt(-3, square(lamp));
+  rtPerspective(45);
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   rtQuality(RT_SAMPLES_PER_PIXEL, 4);
   for (const float value : picture(8)) EXPECT_NEAR(value, 1, 1e-5);

@@ -127,8 +127,10 @@ struct ScalarRays {
         const float probability = all ? 1 : choice.probability(w);
         selection[samples.list[w].lobe][i] = probability;
         if (samples.list[w].rejected || (!all && w != chosen)) continue;
+        const bool alone =
+            samples.count == 1 && !nonSpecularFunctions(hits.batch.lobes[samples.list[w].lobe]);
         const float survival =
-            survivalProbability(choice.carried[w] / (probability * certainThroughput));
+            alone ? 1 : survivalProbability(choice.carried[w] / (probability * certainThroughput));
         random[i] |= survival < 1;
         if (sampling.choices[1][i] < survival)
           send(hits, boundaries, i, samples, w, probability, probability * survival);
