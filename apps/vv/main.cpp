@@ -10,8 +10,8 @@
 #include "report/cluster_report.h"
 #include "report/describe.h"
 #include "report/messages.h"
+#include "session/input/keys.h"
 #include "signals.h"
-#include "window/input/keys.h"
 #include "window/window.h"
 
 namespace {

@@ -25,9 +25,9 @@
 #include "report/messages.h"
 #include "report/progress.h"
 #include "report/report.h"
+#include "session/input/replay.h"
 #include "signals.h"
 #include "timeline.h"
-#include "window/input/replay.h"
 
 namespace vv {
 

@@ -24,7 +24,7 @@
 
 #include "libpicture/cluster.h"
 #include "libpicture/live.h"
-#include "window/pacing.h"
+#include "session/pacing.h"
 
 using namespace picture;
 using Clock = std::chrono::steady_clock;

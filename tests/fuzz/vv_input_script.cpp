@@ -4,7 +4,7 @@
 #include <string>
 
 #include "options/values.h"
-#include "window/input/input_script.h"
+#include "session/input/input_script.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) try {
   const vv::InputScript script =

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "window/session/fit.h"
-#include "window/session/session_clock.h"
-#include "window/world_time.h"
+#include "session/fit.h"
+#include "session/session_clock.h"
+#include "session/world_time.h"
 
 namespace {
 

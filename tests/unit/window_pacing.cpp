@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "window/pacing.h"
+#include "session/pacing.h"
 
 using namespace vv;
 

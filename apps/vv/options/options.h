@@ -14,8 +14,8 @@
 #include "libpicture/files/film.h"
 #include "libpicture/files/formats.h"
 #include "libpicture/renderer.h"
+#include "session/input/input_script.h"
 #include "values.h"
-#include "window/input/input_script.h"
 #include "xvrml/world.h"
 
 namespace vv {

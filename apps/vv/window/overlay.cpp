@@ -5,7 +5,7 @@
 #include "libpicture/transport.h"
 #include "report/cluster_report.h"
 #include "report/describe.h"
-#include "window/input/keys.h"
+#include "session/input/keys.h"
 
 namespace vv {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "window/session.h"
+#include "session/session.h"
 
 namespace vv {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "window/input/input.h"
+#include "session/input/input.h"
 #include "window/panel.h"
 
 namespace vv {

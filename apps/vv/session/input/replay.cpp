@@ -1,4 +1,4 @@
-#include "window/input/replay.h"
+#include "session/input/replay.h"
 
 namespace vv {
 

@@ -1,4 +1,4 @@
-#include "window/session.h"
+#include "session/session.h"
 
 #include <chrono>
 #include <thread>
@@ -7,9 +7,9 @@
 
 #include "report/describe.h"
 #include "report/messages.h"
+#include "session/input/view_command.h"
+#include "session/saving.h"
 #include "timeline.h"
-#include "window/input/view_command.h"
-#include "window/saving.h"
 #include "world_start.h"
 
 namespace vv {

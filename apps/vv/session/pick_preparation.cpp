@@ -1,4 +1,4 @@
-#include "window/session/pick_preparation.h"
+#include "session/pick_preparation.h"
 
 #include <exception>
 

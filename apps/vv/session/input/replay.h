@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "window/input/input_script.h"
-#include "window/pilot.h"
+#include "session/input/input_script.h"
+#include "session/pilot.h"
 
 namespace vv {
 

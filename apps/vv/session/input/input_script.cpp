@@ -1,4 +1,4 @@
-#include "window/input/input_script.h"
+#include "session/input/input_script.h"
 
 #include <cmath>
 #include <fstream>

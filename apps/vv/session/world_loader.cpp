@@ -1,4 +1,4 @@
-#include "window/world_loader.h"
+#include "session/world_loader.h"
 
 #include <atomic>
 #include <new>

@@ -14,13 +14,13 @@
 #include "libpicture/live.h"
 #include "options/options.h"
 #include "report/problems.h"
-#include "window/input/replay.h"
-#include "window/pilot.h"
-#include "window/session/fit.h"
-#include "window/session/inline_queue.h"
-#include "window/session/pick_preparation.h"
-#include "window/session/picture_loop.h"
-#include "window/session/session_clock.h"
+#include "session/fit.h"
+#include "session/inline_queue.h"
+#include "session/input/replay.h"
+#include "session/pick_preparation.h"
+#include "session/picture_loop.h"
+#include "session/pilot.h"
+#include "session/session_clock.h"
 
 namespace vv {
 

@@ -1,4 +1,4 @@
-#include "window/pacing.h"
+#include "session/pacing.h"
 
 #include <algorithm>
 #include <cmath>

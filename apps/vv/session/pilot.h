@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "libpicture/camera.h"
-#include "window/input/keys.h"
-#include "window/input/pointer.h"
-#include "window/world_time.h"
+#include "session/input/keys.h"
+#include "session/input/pointer.h"
+#include "session/world_time.h"
 #include "xvrml/browser.h"
 
 namespace vv {

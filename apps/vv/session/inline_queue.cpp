@@ -1,4 +1,4 @@
-#include "window/session/inline_queue.h"
+#include "session/inline_queue.h"
 
 #include <chrono>
 #include <utility>

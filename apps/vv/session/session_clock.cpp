@@ -1,4 +1,4 @@
-#include "window/session/session_clock.h"
+#include "session/session_clock.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "window/input/keys.h"
+#include "session/input/keys.h"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "window/input/input.h"
+#include "session/input/input.h"
 
 namespace vv {
 

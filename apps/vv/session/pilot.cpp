@@ -1,4 +1,4 @@
-#include "window/pilot.h"
+#include "session/pilot.h"
 
 #include <algorithm>
 #include <cmath>

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "window/input/input.h"
+#include "session/input/input.h"
 
 namespace vv {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "window/input/input.h"
+#include "session/input/input.h"
 #include "xvrml/browser.h"
 
 namespace vv {

@@ -7,9 +7,9 @@
 
 #include "libpicture/live.h"
 #include "options/options.h"
-#include "window/pacing.h"
-#include "window/pilot.h"
-#include "window/session/fit.h"
+#include "session/fit.h"
+#include "session/pacing.h"
+#include "session/pilot.h"
 
 namespace vv {
 

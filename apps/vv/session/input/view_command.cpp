@@ -1,4 +1,4 @@
-#include "window/input/view_command.h"
+#include "session/input/view_command.h"
 
 #include <cmath>
 #include <numbers>

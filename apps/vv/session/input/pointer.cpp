@@ -1,4 +1,4 @@
-#include "window/input/pointer.h"
+#include "session/input/pointer.h"
 
 #include <cmath>
 

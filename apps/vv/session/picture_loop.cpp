@@ -1,4 +1,4 @@
-#include "window/session/picture_loop.h"
+#include "session/picture_loop.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "window/saving.h"
+#include "session/saving.h"
 
 #include <filesystem>
 
