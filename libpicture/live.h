@@ -22,6 +22,14 @@ struct LiveFrame {
   View view;
   int width = 0, height = 0;
   int samples = 1;
+  // still: refined from 1 sample per pixel on, with the bytes of Renderer::render.
+  // preview: of something that moves; the picture is rebuilt from this frame and earlier previews
+  //   of the same viewer (live/reconstruction.h) and is never part of a file or a still picture.
+  // rawPreview: the same, but the samples are shown as they are.
+  enum class Purpose : uint8_t { still, preview, rawPreview };
+  Purpose purpose = Purpose::still;
+  // Whom a preview is for. Each viewer has accumulated frames of its own.
+  uint32_t viewer = 0;
 };
 
 // The state of a frame when it was polled.
@@ -34,6 +42,7 @@ struct LivePicture {
   double seconds = 0;    // seconds since the frame was started
   double alone = 0;      // seconds of an ended frame during which no other frame was in flight
   bool finished = false; // all samples are taken
+  bool preview = false;  // rebuilt from previews: biased, and to be called a preview
   // Finished or cancelled; no more updates follow. overhead, map and stats are valid.
   bool ended = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.

@@ -28,7 +28,12 @@ enum {
                            variance of the mean */
   RT_ERROR = 256,    /* 3: half-width of the 95 % confidence interval of each colour; infinite if
                            nothing is known */
-  RT_TRUST = 512     /* 1: 1 if that interval can be trusted, else 0 */
+  RT_TRUST = 512,    /* 1: 1 if that interval can be trusted, else 0 */
+  RT_MOTION = 1024   /* 3: world-space vector from where the hit point of the first sample was in the
+                         previous frame of this context to where it is now: how its instance
+                         moved, or its vertices. 0 0 0 if nothing moved or nothing is hit; not a
+                         number if the point did not exist in the previous frame. The motion of
+                         the camera is not part of it. */
 };
 
 /* Settings of rtQuality and rtQualityf. */
@@ -63,7 +68,12 @@ enum {
   RT_FRAMES_IN_FLIGHT = 12,
   /* Edge of tiles in pixels, 4 .. 128; 0 (default): chosen by picture size and samples. Errors are
    * judged tile by tile. */
-  RT_TILE_SIZE = 13
+  RT_TILE_SIZE = 13,
+  /* 0 (default) or 1: RT_DEPTH, RT_NORMAL, RT_ALBEDO, RT_POSITION, RT_NAME and RT_MOTION tell about
+   * what is seen in mirrors and through smooth glass instead of about the mirror or the glass. The
+   * position is then that of the image: on the ray of the camera, as far away as the light has
+   * travelled. For callers that rebuild pictures from few samples. It changes no other channel. */
+  RT_FOLLOW_IMAGES = 14
 };
 
 /* Light transports: how light is followed from surfaces whose shaders answer in lobes (openrts.h).

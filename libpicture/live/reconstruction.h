@@ -1,0 +1,69 @@
+// reconstruction.h: Rebuilds a picture of something that moves from a few samples per pixel.
+//
+// Each new frame has one or a few samples per pixel and guides (depth, normal, albedo, position,
+// motion, names) that follow mirror images. Its radiance is divided by the albedo, accumulated over
+// the earlier frames by reprojection, filtered across the pixels under the guidance of the measured
+// variance, and multiplied by the albedo again (C. Schied et al., "Spatiotemporal Variance-Guided
+// Filtering", HPG 2017). docs/decisions/0050 says what differs from the paper.
+//
+// What comes out is a preview: it is biased, and no error bar, no file and no still picture may be
+// made from it. LiveRenderer owns one Reconstruction for each viewer. [one thread at a time; a call
+// uses several threads]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "libpicture/files/picture.h"
+#include "openrt/openrt.h"
+#include "xvrml/mapper.h"
+
+namespace picture::live {
+
+// The channels that a frame must have for a preview, besides RT_RGBA and RT_SAMPLES. The frame must
+// be rendered with quality RT_FOLLOW_IMAGES 1.
+constexpr uint32_t previewChannels =
+    RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION;
+
+// How the frame's camera projects. A camera whose shader is not null cannot be inverted: its frames
+// are accumulated only while the camera rests.
+struct FrameCamera {
+  xvrml::CameraSettings settings;
+  double aspect = 1; // width / height of the frame
+};
+
+class Reconstruction {
+ public:
+  // threads: 0: as many as the process may use.
+  explicit Reconstruction(int threads = 0);
+  ~Reconstruction();
+  Reconstruction(const Reconstruction&) = delete;
+  Reconstruction& operator=(const Reconstruction&) = delete;
+
+  // Forgets everything that was accumulated: after a jump to another world.
+  void reset();
+
+  // Adds a frame and returns the rebuilt picture: its size and linear mode are those of the frame,
+  // and its only plane is RT_RGBA. Frames may differ in size. The bytes depend on the frames since
+  // reset() and on nothing else, in particular not on the number of threads. `frame` must have the
+  // planes of previewChannels, RT_RGBA and RT_SAMPLES; otherwise std::invalid_argument is thrown.
+  //
+  // A frame without noise (accumulated frames and neighbours of the same surface agree) comes out unchanged but
+  // for anti-aliasing over time.
+  Picture add(const Picture& frame, const FrameCamera& camera);
+
+  // Facts about the last add(), for reports and tests.
+  struct Facts {
+    double seconds = 0;     // time of the call
+    double reprojected = 0; // fraction of the pixels that found themselves in the frame before
+    double history = 0;     // accumulated frames, mean over the pixels
+  };
+  const Facts& facts() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace picture::live
