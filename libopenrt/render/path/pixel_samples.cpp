@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "render/motion.h"
+
 namespace openrt {
 
 void PixelSamples::allocate(Arena& arena, uint32_t n) {
@@ -21,6 +23,7 @@ void PixelSamples::allocateFirst(Arena& arena, uint32_t n, uint32_t channels) {
     normal[k] = optional(RT_NORMAL);
     albedo[k] = optional(RT_ALBEDO);
     position[k] = optional(RT_POSITION);
+    motion[k] = optional(RT_MOTION);
   }
   depth = optional(RT_DEPTH);
   if (depth) std::fill_n(depth, size, std::numeric_limits<float>::infinity());
@@ -38,6 +41,9 @@ void PixelSamples::storeFirst(const RenderScene& scene, const Points& points, ui
     if (albedo[k]) albedo[k][path] = albedoOfHits[k][i];
     if (position[k]) position[k][path] = float(h.position[k][i] + scene.origin[k]);
   }
+  if (motion[0])
+    store(Vec3f(motionOf(scene, *points.rayHits, points.order[i], load(h.position, i))), motion,
+          path);
   if (depth) depth[path] = dot(load(h.position, i) - scene.eye, scene.viewAxis);
 }
 

@@ -204,6 +204,8 @@ void TileRenderer::addToPixels(const PixelSamples& found, uint32_t firstSample, 
       if (found.depth) sums.depth = found.depth[i];
       if (found.position[0])
         for (int k = 0; k < 3; k++) sums.position[k] = found.position[k][i];
+      if (found.motion[0])
+        for (int k = 0; k < 3; k++) sums.motion[k] = found.motion[k][i];
       sums.name = has(RT_NAME) ? float(found.name[i]) : 0.0f;
     }
   }
