@@ -86,9 +86,11 @@ bool movedPlane(const RenderScene& scene, const RayHits& hits, uint32_t lane, Pl
     is[k] = m->now.point(vertex(*m->points, corner[k])) - origin;
     was[k] = m->before.point(vertex(pointsBefore, corner[k])) - origin;
   }
-  now = planeOf(is);
-  before = planeOf(was);
-  return now.normal != Vec3d() && before.normal != Vec3d();
+  const Plane planes[2] = {planeOf(is), planeOf(was)};
+  if (planes[0].normal == Vec3d() || planes[1].normal == Vec3d()) return false;
+  now = planes[0];
+  before = planes[1];
+  return true;
 }
 
 } // namespace openrt

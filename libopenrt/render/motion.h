@@ -45,7 +45,8 @@ struct Plane {
 Vec3d motionOf(const RenderScene& scene, const RayHits& hits, uint32_t lane, const Vec3f& position);
 
 // Writes the plane of the triangle that was hit, as it is and as it was in the frame before.
-// Returns false if it is no triangle, or did not move, or was not there. [render]
+// Returns false and writes nothing if it is no triangle, or did not move, or was not there.
+// [render]
 bool movedPlane(const RenderScene& scene, const RayHits& hits, uint32_t lane, Plane& now,
                 Plane& before);
 

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "render/lights/light_sources.h"
+#include "render/path/guides.h"
 #include "render/path/transport.h"
 #include "scene/transports.h"
 
@@ -76,8 +77,8 @@ void LocalBackend::prepare() {
     warnedOfNearLamp_ = !warning.empty();
   }
   next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
-  if (tracesLamps(choice.transport) && next->camera.shader.shaderClass &&
-      next->camera.shader.shaderClass->project) {
+  if (tracesLamps(choice.transport) && !showsNoLight(next->frame) &&
+      next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {
     auto sources =
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);

@@ -149,10 +149,10 @@ class MotionMaker {
 
   const MotionInput& in_;
   const std::shared_ptr<Motions> motions_ = std::make_shared<Motions>();
-  std::unordered_map<uint32_t, Past> steps_;    // changed ones, by index in Flattened::paths
+  std::unordered_map<uint32_t, Past> steps_;       // changed ones, by index in Flattened::paths
   std::unordered_map<uint32_t, Matrix4d> resting_; // some of the others
-  std::unordered_map<uint32_t, Past> clusters_; // those whose place has changed
-  std::vector<bool> changedParts_;              // empty: any part may have changed
+  std::unordered_map<uint32_t, Past> clusters_;    // those whose place has changed
+  std::vector<bool> changedParts_;                 // empty: any part may have changed
 };
 
 } // namespace

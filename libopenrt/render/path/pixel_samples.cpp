@@ -34,7 +34,6 @@ void PixelSamples::allocateFirst(Arena& arena, uint32_t n, uint32_t channels) {
 void PixelSamples::storeFirst(const RenderScene& scene, const Points& points, uint32_t i,
                               uint32_t path, float* const albedoOfHits[3]) {
   const RtsHits& h = points.hits;
-  first[path] = 0;
   name[path] = scene.records[points.record[i]].name;
   for (int k = 0; k < 3; k++) {
     if (normal[k]) normal[k][path] = h.normal[k][i];
