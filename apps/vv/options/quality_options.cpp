@@ -30,7 +30,8 @@ struct Wording {
 // The order is that of --help. Settings without a row follow.
 const Wording wordings[] = {
     {RT_SAMPLES_PER_PIXEL, "--spp", nullptr,
-     "Samples per pixel, 1 to 65536 (default 16; in the window 256, added one after the other).",
+     "Samples per pixel, 1 to 65536 (default 16; with --preview 4; in the window 256, added one "
+     "after the other).",
      [](Options& o, const std::string& v) {
        o.samples = int(readQuality(RT_SAMPLES_PER_PIXEL, v));
      }},
@@ -62,9 +63,10 @@ const Wording wordings[] = {
      }},
 };
 
-// vv chooses RT_PROGRESSIVE and RT_FRAMES_IN_FLIGHT itself and leaves the others to the engine.
+// vv chooses RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT and RT_FOLLOW_IMAGES itself and leaves the others
+// to the engine.
 constexpr RTenum withoutOption[] = {RT_REPLICATES, RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT,
-                                    RT_TILE_SIZE};
+                                    RT_TILE_SIZE, RT_FOLLOW_IMAGES};
 
 // Keeps a text until the program ends.
 const char* keep(std::string text) {
