@@ -146,6 +146,7 @@ class Looking {
       frame.width = size.width;
       frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(asked));
+      frame.purpose = LiveFrame::Purpose::preview;
       const LivePicture picture = finish(frame);
       pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples);
       const double now = secondsSince(begin);
@@ -206,6 +207,7 @@ class Looking {
       frame.width = size.width;
       frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(now));
+      frame.purpose = LiveFrame::Purpose::preview;
       next = std::max(next + period, now);
       live_.start(frame);
     }
@@ -334,10 +336,24 @@ class Looking {
   xvrml::CameraSettings camera_;
 };
 
+// Returns what is wrong with the options of --show and --converge; "": nothing.
+std::string faultOf(const Options& o) {
+  if (o.worlds.size() != 1) return "--show and --converge take one world";
+  const vv::FrameSize& frame = o.show.frame;
+  if (frame.width < 1 || frame.height < 1 || frame.samples < 1)
+    return "--frame: WxHxS above 0 expected";
+  if (o.width < 1 || o.height < 1) return "--size: WxH above 0 expected";
+  if (!(o.fps > 0) || !(o.seconds > 0)) return "--fps, --seconds: numbers above 0 expected";
+  if (o.show.steps < 0 || o.show.stillSamples < 1) return "--steps, --still: above 0 expected";
+  for (const int instant : o.converge.instants)
+    if (instant < 0) return "--at: instants from 0 expected";
+  return "";
+}
+
 // Does what --show and --converge ask for. Returns the program's exit code.
 int keepPictures(Options options) {
-  if (options.worlds.size() != 1) {
-    fmt::print(stderr, "--show and --converge take one world\n");
+  if (const std::string fault = faultOf(options); !fault.empty()) {
+    fmt::print(stderr, "bench_live: {}\n", fault);
     return 2;
   }
   options.show.world = options.converge.world = options.worlds[0];
