@@ -40,13 +40,14 @@ struct FrameInFlight {
   bool otherWorld = false;        // the first frame of another world
 };
 
-// Returns the settings of a frame. A preview is rebuilt from more channels than it shows.
-RenderSettings frameOf(const RenderSettings& settings) {
-  RenderSettings frame = settings;
-  if (!frame.preview) return frame;
+// Changes the settings of a frame to those of a preview, which is rebuilt from more channels than
+// it shows. number: counts the previews. Each has a seed of its own: from the same samples again
+// and again nothing could be accumulated.
+void makePreview(RenderSettings& frame, uint32_t number) {
   frame.channels |= RT_RGBA | RT_SAMPLES | live::previewChannels;
   frame.quality.set(RT_FOLLOW_IMAGES, 1);
-  return frame;
+  const uint32_t seed = uint32_t(frame.quality.whole(RT_SEED)) + number;
+  frame.quality.set(RT_SEED, seed & 0x7fffffff);
 }
 
 std::string previewNote(int samples) {
@@ -83,6 +84,7 @@ struct Renderer::Impl {
   std::deque<FrameInFlight> inFlight;
   Clock::time_point lastEnd;                          // when the last frame ended
   std::optional<live::Reconstruction> reconstruction; // none before the first preview
+  uint32_t previews = 0;                              // number of previews that were started
   bool otherWorld = false; // the browser shows another world than in the last frame
 
   Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings,
@@ -143,6 +145,13 @@ struct Renderer::Impl {
     otherWorld |= worldChanges.otherWorld;
   }
 
+  // Returns the settings of the next frame.
+  RenderSettings nextFrame() {
+    RenderSettings frame = stage.settings;
+    if (frame.preview) makePreview(frame, previews++);
+    return frame;
+  }
+
   // Replaces the samples of a frame by the picture that is rebuilt from them, if it is a preview.
   void rebuild(const RenderSettings& frame, const xvrml::CameraSettings& camera, bool newWorld,
                RenderResult& result) {
@@ -172,7 +181,7 @@ struct Renderer::Impl {
     noteCamera(flight.result);
     flight.camera = stage.shown();
     flight.otherWorld = std::exchange(otherWorld, false);
-    flight.settings = frameOf(stage.settings);
+    flight.settings = nextFrame();
     stage.setUpFrame(flight.settings);
     rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
     if (inFlight.empty()) lastEnd = Clock::now();
@@ -206,7 +215,7 @@ struct Renderer::Impl {
     // meshes are built once, with the first picture
     result.mapSeconds = secondsSince(start) + stage.takeMeshSeconds();
     noteCamera(result);
-    const RenderSettings frame = frameOf(stage.settings);
+    const RenderSettings frame = nextFrame();
     stage.setUpFrame(frame);
     start = Clock::now();
     rtRender();
