@@ -107,8 +107,8 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   void setProgressCallback(ProgressCallback watch);
-  // Changes samples, seed, error, headlight and channels of the following pictures; no other
-  // setting may change. Call it between two calls of render().
+  // Changes samples, seed, error, preview, headlight and channels of the following pictures; no
+  // other setting may change. Call it between two calls of render().
   void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();
