@@ -396,14 +396,17 @@ struct LiveRenderer::Impl {
     return true;
   }
 
-  bool copy(Picture& out) {
+  bool copy(Picture& out, uint64_t* number) {
     const std::shared_ptr<const EndedFrame> finished = still();
     const bool begun = current.purpose == Purpose::still && alone() &&
                        stage.snapshot(out, stage.settings.channels);
+    uint64_t copied = current.number;
     if (!begun || (finished && !all(out.planes[RT_SAMPLES], 1))) {
       if (!finished) return false;
       out = finished->picture;
+      copied = finished->facts.number;
     }
+    if (number) *number = copied;
     if (!(given.channels & RT_SAMPLES)) out.planes.erase(RT_SAMPLES);
     if (!(given.channels & RT_RGBA)) out.planes.erase(RT_RGBA);
     return true;
@@ -427,7 +430,7 @@ void LiveRenderer::cancel() {
 
 bool LiveRenderer::look(LivePicture& picture) { return impl_->look(picture); }
 
-bool LiveRenderer::copy(Picture& picture) { return impl_->copy(picture); }
+bool LiveRenderer::copy(Picture& picture, uint64_t* number) { return impl_->copy(picture, number); }
 
 void LiveRenderer::change(const std::function<void(RenderSettings&)>& change) {
   change(impl_->given);

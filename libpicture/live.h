@@ -91,7 +91,8 @@ class LiveRenderer {
   // frame that ended. So while something moves it is not the picture that is shown: start a still
   // frame first. Previews, rebuilt or not, are never copied. Returns false before the first still
   // frame.
-  bool copy(Picture& picture);
+  // number: receives what start() returned for its frame.
+  bool copy(Picture& picture, uint64_t* number = nullptr);
   // Changes the quality of the following frames. [idle]
   void change(const std::function<void(RenderSettings&)>& change);
   // Valid after the first mapping. [not while mapping]
