@@ -148,7 +148,8 @@ class Looking {
       frame.view.viewer = turned(.2 * std::sin(asked));
       frame.purpose = LiveFrame::Purpose::preview;
       const LivePicture picture = finish(frame);
-      pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples);
+      pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples,
+                  picture.rebuilding);
       const double now = secondsSince(begin);
       const double frameTime = 1 / options_.fps;
       if (now - last < frameTime)
@@ -187,7 +188,7 @@ class Looking {
       while (live_.look(picture)) {
         if (!picture.finished) continue;
         pacing.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
-                    picture.overhead, picture.samples);
+                    picture.overhead, picture.samples, picture.rebuilding);
         if (now < settled) continue;
         ends.push_back(now);
         seconds.push_back(picture.seconds);

@@ -24,7 +24,9 @@ using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 constexpr double stillSeconds = 0.5; // from the stop to the picture that is judged
-constexpr double wholeSeconds = 5;   // how long the whole unbiased picture is waited for
+// Seconds of larger previews between motion and rest, as in session/picture_loop.cpp.
+constexpr double settlingTime = 0.35;
+constexpr double wholeSeconds = 5; // how long the whole unbiased picture is waited for
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -39,6 +41,13 @@ void writePpm(const std::string& path, const LivePicture& picture) {
   std::string bytes = fmt::format("P6\n{} {}\n255\n", picture.width, picture.height);
   bytes.append(reinterpret_cast<const char*>(picture.rgb.data()), picture.rgb.size());
   writeFile(path, bytes);
+}
+
+// Tells which light a world has, as session/picture_loop.cpp does.
+vv::Pacing::Light lightOf(const RTstats& stats) {
+  const bool direct =
+      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
+  return stats.cameraRays > 0 && direct ? vv::Pacing::Light::direct : vv::Pacing::Light::sampled;
 }
 
 // A picture that was shown. Times are seconds since the turn began.
@@ -105,20 +114,23 @@ class Show {
   }
 
   void show(int instant) {
-    const vv::FrameSize size = options_.steps > 0
-                                   ? options_.frame
-                                   : pacing_.next(options_.width, options_.height, true, 64);
-    const auto purpose =
-        options_.raw ? LiveFrame::Purpose::rawPreview : LiveFrame::Purpose::preview;
+    const vv::FrameSize size =
+        options_.steps > 0 ? options_.frame
+                           : pacing_.next(options_.width, options_.height, true, 64, light_);
     Shown one;
     one.instant = instant;
     one.asked = secondsSince(begin_);
     turn_.advance(instant);
-    one.picture = finish(frameAt(instant, purpose, size));
+    one.picture = finish(frameAt(instant, moving(), size));
     one.shown = secondsSince(begin_);
     const LivePicture& p = one.picture;
-    pacing_.took(size, p.seconds, p.alone, p.overhead, p.samples);
+    light_ = lightOf(p.stats);
+    pacing_.took(size, p.seconds, p.alone, p.overhead, p.samples, p.rebuilding);
     shown_.push_back(std::move(one));
+  }
+
+  LiveFrame::Purpose moving() const {
+    return options_.raw ? LiveFrame::Purpose::rawPreview : LiveFrame::Purpose::preview;
   }
 
   LivePicture finish(const LiveFrame& frame) {
@@ -159,10 +171,13 @@ class Show {
   // Sets `picture` to what is shown after stillSeconds.
   Json refine(const LiveFrame& frame, LivePicture& picture) {
     const Clock::time_point stop = Clock::now();
+    if (!options_.raw && (light_ == vv::Pacing::Light::sampled || picture.width < options_.width))
+      settle(stop, picture);
     LivePicture now;
     Json whole;
     live_.start(frame);
-    for (double since = 0; since < wholeSeconds && (since < stillSeconds || whole.is_null());
+    for (double since = secondsSince(stop);
+         since < wholeSeconds && (since < stillSeconds || whole.is_null());
          since = secondsSince(stop)) {
       if (live_.look(now)) {
         if (whole.is_null() && now.covered == 1 && !now.preview) whole = secondsSince(stop);
@@ -174,6 +189,16 @@ class Show {
     while (live_.state() != LiveRenderer::State::idle) nap();
     check();
     return whole;
+  }
+
+  // Shows larger previews of the last instant, which accumulate, until the still picture begins.
+  void settle(Clock::time_point stop, LivePicture& picture) {
+    const int instant = shown_.back().instant;
+    while (secondsSince(stop) < settlingTime) {
+      const vv::FrameSize size = pacing_.settle(options_.width, options_.height, 64);
+      LivePicture next = finish(frameAt(instant, moving(), size));
+      if (secondsSince(stop) < stillSeconds) picture = std::move(next);
+    }
   }
 
   Json facts(const Json& still) const {
@@ -196,6 +221,7 @@ class Show {
   Turn turn_;
   LiveRenderer live_;
   vv::Pacing pacing_;
+  vv::Pacing::Light light_ = vv::Pacing::Light::sampled; // until the first picture tells
   Clock::time_point begin_;
   std::vector<Shown> shown_;
 };
