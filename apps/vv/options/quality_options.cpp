@@ -63,10 +63,9 @@ const Wording wordings[] = {
      }},
 };
 
-// vv chooses RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT and RT_FOLLOW_IMAGES itself and leaves the others
-// to the engine.
+// vv chooses RT_PROGRESSIVE and RT_FRAMES_IN_FLIGHT itself and leaves the others to the engine.
 constexpr RTenum withoutOption[] = {RT_REPLICATES, RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT,
-                                    RT_TILE_SIZE, RT_FOLLOW_IMAGES};
+                                    RT_TILE_SIZE};
 
 // Keeps a text until the program ends.
 const char* keep(std::string text) {
