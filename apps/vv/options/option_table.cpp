@@ -221,6 +221,11 @@ const OptionInfo table[] = {
      "Make N pictures, once around the world's centre, beginning at the chosen view. The camera "
      "turns about the axis that points up (--up).",
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
+    {"--preview", "", "Time",
+     "Rebuild each picture of a sequence from few samples and from the pictures before it, as the "
+     "window does while something moves. Such pictures are biased and have no error bars, and "
+     "their files say so. They depend on the frame that the sequence begins with.",
+     [](Options& o, const std::string&) { o.render.preview = true; }},
     {"--input", "FILE", "Time",
      "Replay mouse and keyboard input from FILE, one event per line: SECONDS EVENT (move X Y, "
      "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). World time "
