@@ -45,8 +45,24 @@ Vec3d change(const Motion& m, const Vec3d& point) {
   return sum;
 }
 
-Plane planeOf(const Vec3d (&corner)[3]) {
-  return {corner[0], normalize(cross(corner[1] - corner[0], corner[2] - corner[0]))};
+// Returns the length of the first axis: the scale of a map that scales all directions equally.
+double scaleOf(const Matrix4d& m) { return length(m.column(0)); }
+
+// Returns whether the shading normals of the triangle that was hit are the same everywhere.
+bool isFlat(const Record& r, uint32_t triangle) {
+  if (r.primitive != edit::Primitive::Triangles) return false;
+  if (!r.normals) return true;
+  const uint32_t* corner = r.indices + 3 * size_t(triangle);
+  const auto normal = [&](int k) { return vectorOf(r.normals + 3 * size_t(corner[k])); };
+  return normal(0) == normal(1) && normal(0) == normal(2);
+}
+
+// Returns the plane of a triangle. Its normal is 0 if the corners lie on a line.
+Plane planeOf(const Matrix4d& toWorld, const Array& points, const uint32_t* corner,
+              const Vec3d& origin) {
+  Vec3d at[3];
+  for (int k = 0; k < 3; k++) at[k] = toWorld.point(vertex(points, corner[k])) - origin;
+  return {at[0], normalize(cross(at[1] - at[0], at[2] - at[0]))};
 }
 
 } // namespace
@@ -72,24 +88,34 @@ Vec3d motionOf(const RenderScene& scene, const RayHits& hits, uint32_t lane,
   return change(*m, point) + m->before.direction(point - before);
 }
 
-bool movedPlane(const RenderScene& scene, const RayHits& hits, uint32_t lane, Plane& now,
-                Plane& before) {
+bool findMirrorPlanes(const RenderScene& scene, const RayHits& hits, uint32_t lane, Plane& now,
+                      Plane& before) {
   const uint32_t record = hits.record[lane];
-  const Motion* m = movedRecord(scene, record);
+  const uint32_t kind = scene.motions ? scene.motions->kindOf(record) : Motions::resting;
+  if (kind == Motions::isNew) return false;
+  before = now;
+  if (kind == Motions::resting) return true;
+  const Motion& m = *movedRecord(scene, record);
   const Record& r = scene.records[record];
-  if (!m || r.primitive != edit::Primitive::Triangles) return false;
-  const Array& pointsBefore = m->pointsBefore ? *m->pointsBefore : *m->points;
-  const Vec3d origin = vectorOf(scene.origin);
-  const uint32_t* corner = r.indices + 3 * size_t(hits.primitive[lane]);
-  Vec3d is[3], was[3];
-  for (int k = 0; k < 3; k++) {
-    is[k] = m->now.point(vertex(*m->points, corner[k])) - origin;
-    was[k] = m->before.point(vertex(pointsBefore, corner[k])) - origin;
+  if (r.primitive == edit::Primitive::Sphere) {
+    const double growth =
+        double(m.radius) * scaleOf(m.now) - double(m.radiusBefore) * scaleOf(m.before);
+    before.point -= change(m, {}) + now.normal * growth;
+    return true;
   }
-  const Plane planes[2] = {planeOf(is), planeOf(was)};
-  if (planes[0].normal == Vec3d() || planes[1].normal == Vec3d()) return false;
-  now = planes[0];
-  before = planes[1];
+  if (isFlat(r, hits.primitive[lane])) {
+    const uint32_t* corner = r.indices + 3 * size_t(hits.primitive[lane]);
+    const Vec3d origin = vectorOf(scene.origin);
+    const Array& points = m.pointsBefore ? *m.pointsBefore : *m.points;
+    const Plane is = planeOf(m.now, *m.points, corner, origin),
+                was = planeOf(m.before, points, corner, origin);
+    if (is.normal != Vec3d() && was.normal != Vec3d()) {
+      now = is;
+      before = was;
+      return true;
+    }
+  }
+  before.point -= motionOf(scene, hits, lane, Vec3f(now.point));
   return true;
 }
 

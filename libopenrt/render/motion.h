@@ -35,19 +35,24 @@ struct Motions {
   uint32_t kindOf(uint32_t record) const { return allNew ? isNew : kind[record]; }
 };
 
-// A plane in render space. normal: unit, or 0 0 0 if there is no plane.
+// A plane in render space. normal: unit.
 struct Plane {
   Vec3d point, normal;
+  bool operator==(const Plane&) const = default;
 };
 
 // Returns the vector from where the hit's point was in the frame before to where it is now; NaN if
 // it was not there. position: of the hit, in render space. [render]
 Vec3d motionOf(const RenderScene& scene, const RayHits& hits, uint32_t lane, const Vec3f& position);
 
-// Writes the plane of the triangle that was hit, as it is and as it was in the frame before.
-// Returns false and writes nothing if it is no triangle, or did not move, or was not there.
+// Finds the plane at which a mirror reflects, now and in the frame before. `now` holds the tangent
+// plane at the hit; it may become that of a flat triangle. Returns false, and leaves `before` as it
+// is, if the mirror is new.
+// * A flat triangle was in the plane of its three corners.
+// * A sphere moves with its centre: it reflects in the same way however it turns.
+// * Other curved surfaces are taken for a plane that moves with the point that was hit.
 // [render]
-bool movedPlane(const RenderScene& scene, const RayHits& hits, uint32_t lane, Plane& now,
-                Plane& before);
+bool findMirrorPlanes(const RenderScene& scene, const RayHits& hits, uint32_t lane, Plane& now,
+                      Plane& before);
 
 } // namespace openrt

@@ -45,15 +45,6 @@ float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
   return float(fresnel(std::clamp(cosine, 0.0, 1.0), eta, behind));
 }
 
-// Returns whether the shading normals of the triangle that was hit are the same everywhere.
-bool isFlat(const Record& r, uint32_t primitive) {
-  if (r.primitive != edit::Primitive::Triangles) return false;
-  if (!r.normals) return true;
-  const uint32_t* corner = r.indices + 3 * size_t(primitive);
-  const auto normal = [&](int k) { return vectorOf(r.normals + 3 * size_t(corner[k])); };
-  return normal(0) == normal(1) && normal(0) == normal(2);
-}
-
 } // namespace
 
 bool showsNoLight(const edit::FrameSettingsT& frame) {
@@ -221,24 +212,15 @@ void Guides::queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const Me
   queueRay(*batch.points, i, lead.direction, to, next_);
 }
 
-// Adds the mirror at hit i to those that an image is seen in. A flat mirror was in the plane of its
-// triangle in the frame before. A curved one is taken for a plane that keeps its direction and
-// moves with the point that was hit.
+// Adds the mirror at hit i, which sends the ray to `out`, to those that an image is seen in.
 void Guides::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const {
   const Points& points = *batch.points;
-  const uint32_t lane = points.order[i];
-  const Vec3f position = load(points.hits.position, i);
-  const Vec3d place(position);
-  const Vec3d normal = normalize(Vec3d(out) - Vec3d(load(points.hits.direction, i)));
-  const Vec3d motion = has(RT_MOTION) ? motionOf(scene_, *points.rayHits, lane, position) : Vec3d();
-  Plane now{place, normal}, before = now;
-  if (!isFinite(motion)) {
-    image.mirrorNew = true;
-  } else if (motion != Vec3d()) {
-    image.mirrorMoved = true;
-    before.point = place - motion;
-    if (isFlat(scene_.records[points.record[i]], points.rayHits->primitive[lane]))
-      movedPlane(scene_, *points.rayHits, lane, now, before);
+  Plane now{Vec3d(load(points.hits.position, i)),
+            normalize(Vec3d(out) - Vec3d(load(points.hits.direction, i)))};
+  Plane before = now;
+  if (has(RT_MOTION)) {
+    image.mirrorNew |= !findMirrorPlanes(scene_, *points.rayHits, points.order[i], now, before);
+    image.mirrorMoved |= before != now;
   }
   image.now = image.now * reflectionAt(now.point, now.normal);
   image.before = image.before * reflectionAt(before.point, before.normal);
