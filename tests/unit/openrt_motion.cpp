@@ -73,7 +73,7 @@ TEST(Motion, HasTheSameBytesIfFramesAreSkipped) {
 // Applies the commits and returns whether the history has anything after each of them.
 std::vector<bool> watched(const Commits& commits) {
   Scene scene;
-  History history;
+  SceneHistory history;
   std::vector<bool> any;
   for (const auto& commit : commits) {
     scene.apply(*commit, &history);
