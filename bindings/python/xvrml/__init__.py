@@ -24,13 +24,14 @@ import warnings as _warnings
 from . import _arguments, _world
 from . import _xvrml
 from ._camera import Pinhole
+from ._live import LiveView
 from ._world import loads
 from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError,
                      Picture, RenderError, ViewpointInfo, Worker, World, load_node_plugins,
                      __version__)
 
 load = _arguments.explained(_xvrml.load)
-for _class in (World, Browser, Cluster, Film, Node, Picture):
+for _class in (World, Browser, Cluster, Film, Node, Picture, _xvrml.Viewer):
     _arguments.explain_class(_class)
 _world.complete(World, Node)
 
@@ -41,7 +42,7 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError",
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Mesh", "Node", "ParseError",
     "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
     "load_node_plugins", "loads", "__version__", *nodes.__all__
 ]
@@ -53,8 +54,10 @@ def __getattr__(name):
     """Imports submodules on first use, and finds nodes of plug-ins that were loaded later."""
     if name.startswith("__"):
         raise AttributeError(f"module xvrml has no attribute {name}")
-    if name in _SUBMODULES:
+    if name in _SUBMODULES or name == "View":
         try:
+            if name == "View":
+                return _importlib.import_module("._notebook", __name__).View
             return _importlib.import_module(f".{name}", __name__)
         except ModuleNotFoundError as error:
             raise AttributeError(
@@ -62,7 +65,7 @@ def __getattr__(name):
     try:
         return getattr(nodes, name)
     except AttributeError:
-        known = [*__all__, *_SUBMODULES, "nodes"]
+        known = [*__all__, *_SUBMODULES, "View", "nodes"]
         near = _difflib.get_close_matches(name, known,
                                           1) or [k for k in known if k.lower() == name.lower()]
         hint = f"; did you mean {near[0]}?" if near else ""
