@@ -102,6 +102,7 @@ class Viewer {
   // does not have.
   std::optional<CameraSettings> frozen_;
   std::optional<double> fovy_;
+  std::optional<CameraSettings> last_; // the camera of the last picture
   FrameSizing sizing_;
   // The last frame that began.
   bool begun_ = false, moving_ = false;
@@ -222,10 +223,10 @@ picture::View Viewer::view() const {
   return view;
 }
 
-// Returns the camera of the view; nothing before a frame has read the world. [the world's lock]
+// Returns the camera of the view; nothing before its first picture. [the world's lock]
 std::optional<CameraSettings> Viewer::shownCamera() const {
   if (auto own = ownCamera()) return own;
-  if (!live() || !begun_) return {};
+  if (!live() || !begun_) return last_; // World.render() has ended the renderer
   picture::View seen = asked_;
   if (followsBrowser()) seen.viewer = browser().camera(aspect());
   const CameraSettings camera = live()->cameraOf(seen, aspect());
@@ -233,10 +234,17 @@ std::optional<CameraSettings> Viewer::shownCamera() const {
   return camera;
 }
 
+// Removes the ORTShader of a camera that is kept: nobody would keep the node.
+std::optional<CameraSettings> withoutShader(std::optional<CameraSettings> camera) {
+  if (camera) camera->shader = nullptr;
+  return camera;
+}
+
 // Keeps the cameras of the other views that follow the browser's viewer, which is about to move.
 void Viewer::freezeOthers() {
   for (Viewer* other : viewers_->open)
-    if (other != this && other->followsBrowser()) other->frozen_ = other->shownCamera();
+    if (other != this && other->followsBrowser())
+      other->frozen_ = withoutShader(other->shownCamera());
 }
 
 // Lets this view move the browser's viewer. Returns false before a frame has read the world.
@@ -247,7 +255,7 @@ bool Viewer::steer() {
   const bool there = followsBrowser();
   if (!browser().bound().viewpoint) {
     double up[3];
-    upVector(live()->upOf(asked_), up);
+    upVector(live() ? live()->upOf(asked_) : asked_.up.value_or(Axis::y), up);
     browser().setUp(up);
   }
   freezeOthers();
@@ -269,6 +277,7 @@ void Viewer::followGeneration() {
     one->asked_ = {};
     one->frozen_.reset();
     one->fovy_.reset();
+    one->last_.reset();
   }
 }
 
@@ -354,6 +363,7 @@ py::object Viewer::look() {
   // The gaps may show the picture of another view.
   if (viewers_->filling != this && picture->covered < 1) return py::none();
   viewers_->filling = this;
+  last_ = withoutShader(shownCamera());
   py::dict facts;
   facts["moving"] = moving_;
   facts["preview"] = picture->preview;

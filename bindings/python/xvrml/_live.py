@@ -70,16 +70,15 @@ class _Clock:
                     if not view.visible or any(one._viewer.is_outdated for one in shown):
                         view._viewer.cancel()
             return
-        for moving in (True, False):
-            for view in shown:
-                wanted = view._viewer.is_outdated if moving else view._phase in ("moving",
-                                                                                 "refining")
-                if wanted and view._begin(moving, now):
-                    for one in views:
-                        one._drawing = one is view
-                    self.remove(view)  # it goes to the end of the queue
-                    self.add(view)
-                    return
+        outdated = [view for view in shown if view._viewer.is_outdated]
+        unfinished = [view for view in shown if view._phase in ("moving", "refining")]
+        for view in outdated or unfinished:
+            if view._begin(bool(outdated), now):
+                for one in views:
+                    one._drawing = one is view
+                self.remove(view)  # it goes to the end of the queue
+                self.add(view)
+                return
 
 
 def _clock_of(world):
