@@ -32,7 +32,7 @@ struct WorldLocks {
   WorldObject* callbacks = nullptr; // delivers the recorded events to callbacks; null: nobody does
   WorldMutex drawing;               // held while a picture is rendered, and for every change
   WorldMutex graph;                 // held for every change, and while fields are read
-  // Renders for the world's views (viewer.cpp); null: no view is open. Its thread reads the world
+  // Renders for the world's views (viewer.h); null: no view is open. Its thread reads the world
   // while its state is `mapping`, and whoever takes `drawing` waits for the end of that.
   std::unique_ptr<picture::LiveRenderer> live;
 };
@@ -53,7 +53,7 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   // Fields that are sent as events when the world begins to run.
   std::vector<std::pair<xvrml::NodeRef, std::string>> initialEvents;
   LocksPtr locks = std::make_shared<WorldLocks>();
-  std::shared_ptr<Viewers> viewers; // the open views of the world (viewer.cpp); null: none
+  std::shared_ptr<Viewers> viewers; // the open views of the world (viewer.h); null: none
   uint64_t edits = 0;               // grows whenever Python may have changed the world
 
   virtual ~WorldObject();

@@ -1,6 +1,6 @@
 """Tests xvrml.LiveView: pictures of a running world while Python goes on, edits, the mouse and the
-keys, callbacks of sensors, several views, errors; and the small pictures of worlds. No clock of the
-machine decides about a result: steps have times of their own, and pictures are waited for."""
+keys, callbacks of sensors, several views, errors. No clock of the machine decides about a result:
+steps have times of their own, and pictures are waited for."""
 import gc
 import subprocess
 import sys
@@ -12,19 +12,7 @@ import pytest
 
 np = pytest.importorskip("numpy")
 xvrml = pytest.importorskip("xvrml")
-
-WORLD = """#VRML V2.0 utf8
-DEF Front Viewpoint { position 0 0 8 description "front" }
-DEF Side Viewpoint { position 8 0 0 orientation 0 1 0 1.5708 description "side" }
-DEF Clock TimeSensor { cycleInterval 2 loop TRUE enabled FALSE }
-DEF Way PositionInterpolator { key [0, 1] keyValue [-2 0 0, 2 0 0] }
-DEF Place Transform { children [
-  DEF Touch TouchSensor { }
-  Shape { appearance Appearance { material DEF Paint Material { emissiveColor 1 1 1 } } geometry DEF Cube Box { size 1 1 1 } } ] }
-ROUTE Clock.fraction_changed TO Way.set_fraction
-ROUTE Way.value_changed TO Place.set_translation
-"""
-SIZE = dict(size=(64, 48), spp=4)
+from live_view_tools import SIZE, WORLD, at, click, drag, key, steps  # noqa: E402
 
 
 @pytest.fixture
@@ -37,39 +25,6 @@ def view(world):
     with xvrml.LiveView(world, **SIZE) as view:
         view.wait()
         yield view
-
-
-def steps(view, until, limit=60, now=None):
-    """Steps the view until a condition holds."""
-    end = time.monotonic() + limit
-    while not until():
-        assert time.monotonic() < end, view.facts
-        time.sleep(min(view.step(now) or 0.01, 0.01))
-
-
-def at(view, now):
-    """Steps the view to a time. A step does nothing while a frame reads the world."""
-    steps(view, lambda: view._clock._last == now and not view._events, now=now)
-
-
-def click(view, x, y, button=1, **more):
-    for kind in ("pointer_move", "pointer_down", "pointer_up"):
-        view.event({"type": kind, "x": x, "y": y, "button": button, "modifiers": (), **more})
-
-
-def drag(view, start, end, button=1, modifiers=()):
-    for kind, (x, y) in (("pointer_move", start), ("pointer_down", start), ("pointer_move", end),
-                         ("pointer_up", end)):
-        view.event({"type": kind, "x": x, "y": y, "button": button, "modifiers": modifiers})
-
-
-def key(view, name, *modifiers):
-    for kind in ("key_down", "key_up"):
-        view.event({"type": kind, "key": name, "modifiers": modifiers})
-
-
-def brightness(picture):
-    return int(picture.astype(int).sum())
 
 
 # Pictures ---------------------------------------------------------------------------------------
@@ -98,7 +53,9 @@ def test_a_still_picture_after_motion_has_the_bytes_of_render(world):
 
 
 def test_a_world_without_viewpoint_is_shown_as_render_shows_it():
-    world = xvrml.loads("#VRML V2.0 utf8\nShape { geometry Cone { } appearance Appearance { material Material { } } }")
+    world = xvrml.loads(
+        "#VRML V2.0 utf8\nShape { geometry Cone { } appearance Appearance { material Material { } } }"
+    )
     with xvrml.LiveView(world, **SIZE) as view:
         assert np.array_equal(view.wait(), world.render(**SIZE).display)
         before = view.camera
@@ -305,12 +262,36 @@ def test_keys(view, world):
 
 
 @pytest.mark.parametrize("event, said", [
-    ({"type": "pointer_move", "x": float("nan"), "y": 0}, "x: a number"),
-    ({"type": "pointer_move", "x": "1", "y": 0}, "x: a number"),
-    ({"type": "pointer_move", "x": 1}, "y: a number"),
-    ({"type": "wheel", "dy": None}, "dy: a number"),
-    ({"type": "resize", "width": 1e300, "height": 1, "ratio": 1}, "size"),
-    ({"type": "resize", "width": 5, "height": 5, "ratio": "x"}, "ratio"),
+    ({
+        "type": "pointer_move",
+        "x": float("nan"),
+        "y": 0
+    }, "x: a number"),
+    ({
+        "type": "pointer_move",
+        "x": "1",
+        "y": 0
+    }, "x: a number"),
+    ({
+        "type": "pointer_move",
+        "x": 1
+    }, "y: a number"),
+    ({
+        "type": "wheel",
+        "dy": None
+    }, "dy: a number"),
+    ({
+        "type": "resize",
+        "width": 1e300,
+        "height": 1,
+        "ratio": 1
+    }, "size"),
+    ({
+        "type": "resize",
+        "width": 5,
+        "height": 5,
+        "ratio": "x"
+    }, "ratio"),
 ])
 def test_wrong_events_say_so(view, event, said):
     with pytest.raises(ValueError, match=said):
@@ -321,8 +302,20 @@ def test_wrong_events_say_so(view, event, said):
 
 def test_events_that_mean_nothing_are_left_alone(view):
     before = view.camera
-    for event in ({"type": "char", "data": "x"}, {"type": "key_down", "key": None}, {"type": 5}, {},
-                  {"type": "pointer_up", "x": 1e308, "y": -1e308, "button": 77}):
+    for event in ({
+            "type": "char",
+            "data": "x"
+    }, {
+            "type": "key_down",
+            "key": None
+    }, {
+            "type": 5
+    }, {}, {
+            "type": "pointer_up",
+            "x": 1e308,
+            "y": -1e308,
+            "button": 77
+    }):
         view.event(event)
     view.wait()
     assert np.array_equal(view.camera, before)
@@ -471,23 +464,3 @@ def test_wrong_arguments(world):
             xvrml.LiveView(world, **options)
     with pytest.raises(TypeError, match="World"):
         xvrml.LiveView("world.wrl")
-
-
-# The small picture of a world -----------------------------------------------------------------------
-
-
-def test_a_world_has_a_small_picture_until_it_changes(world):
-    png = world._repr_png_()
-    assert png.startswith(b"\x89PNG") and len(png) < 200_000
-    assert world._repr_png_() is png
-    world["Place"].translation = (1, 0, 0)
-    moved = world._repr_png_()
-    assert moved != png
-    world["Clock"].enabled = True
-    world.time = 0.5
-    assert world._repr_png_() != moved
-    assert xvrml.Browser(WORLD.encode())._repr_png_().startswith(b"\x89PNG")
-
-
-def test_an_empty_world_has_a_small_picture_too():
-    assert xvrml.World()._repr_png_().startswith(b"\x89PNG")

@@ -1,4 +1,4 @@
-"""Tests xvrml.View, the widget of jupyter_rfb, without a page: what the page would send is handed to
+"""Tests xvrml.notebook.View, the widget of jupyter_rfb, without a page: what the page would send is handed to
 the widget, and what it sends is kept. Also the message where jupyter_rfb is missing, and the
 notebook in examples/notebook. tests/python/test_jupyterlab.py has a page."""
 import asyncio
@@ -14,15 +14,16 @@ import pytest
 
 np = pytest.importorskip("numpy")
 xvrml = pytest.importorskip("xvrml")
-from test_live_view import WORLD  # noqa: E402
+from live_view_tools import WORLD  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-needs_rfb = pytest.mark.skipif(not hasattr(xvrml, "View"), reason="jupyter_rfb is not installed")
+needs_rfb = pytest.mark.skipif(not hasattr(xvrml, "notebook"),
+                               reason="jupyter_rfb is not installed")
 
 
 def test_without_jupyter_rfb_there_is_one_message():
     code = ("import sys; sys.modules['jupyter_rfb'] = None; import xvrml\n"
-            "assert not hasattr(xvrml, 'View')\n"
+            "assert not hasattr(xvrml, 'notebook')\n"
             "try: xvrml.World().view()\n"
             "except ModuleNotFoundError as error: print(error)\n")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
@@ -47,14 +48,13 @@ class Page:
         setattr(self.view, self.trait, visible)
 
     def event(self, kind, **more):
-        self.view._rfb_handle_msg(
-            self.view, {
-                "type": kind,
-                "event_type": kind,
-                "timestamp": 0,
-                "modifiers": [],
-                **more
-            }, [])
+        self.view._rfb_handle_msg(self.view, {
+            "type": kind,
+            "event_type": kind,
+            "timestamp": 0,
+            "modifiers": [],
+            **more
+        }, [])
 
     def click(self):
         for kind in ("pointer_move", "pointer_down", "pointer_up"):
@@ -65,18 +65,18 @@ class Page:
         while not condition():
             assert time.monotonic() < end, (self.view.live.facts, len(self.messages))
             await asyncio.sleep(0.005)
-            setattr(
-                self.view, self.feedback, {
-                    "index": self.view._rfb_frame_index,
-                    "timestamp": time.time(),
-                    "localtime": time.time()
-                })
+            setattr(self.view, self.feedback, {
+                "index": self.view._rfb_frame_index,
+                "timestamp": time.time(),
+                "localtime": time.time()
+            })
 
     async def finished(self):
         await self.until(lambda: self.view.live.is_finished and self.messages)
         count = len(self.messages)
-        await self.until(lambda: len(self.messages) > count or "png" in self.messages[-1][0][
-            "mimetype"])  # jupyter_rfb sends the last picture again without loss
+        await self.until(
+            lambda: len(self.messages) > count or "png" in self.messages[-1][0]["mimetype"]
+        )  # jupyter_rfb sends the last picture again without loss
 
 
 def on_page(test):
@@ -196,6 +196,27 @@ def test_a_view_needs_no_event_loop():
         view.update()
         time.sleep(0.005)
     view.close()
+
+
+# The small picture of a world -----------------------------------------------------------------------
+
+
+def test_a_world_has_a_small_picture_until_it_changes():
+    world = xvrml.loads(WORLD)
+    png = world._repr_png_()
+    assert png.startswith(b"\x89PNG") and len(png) < 200_000
+    assert world._repr_png_() is png
+    world["Place"].translation = (1, 0, 0)
+    moved = world._repr_png_()
+    assert moved != png
+    world["Clock"].enabled = True
+    world.time = 0.5
+    assert world._repr_png_() != moved
+    assert xvrml.Browser(WORLD.encode())._repr_png_().startswith(b"\x89PNG")
+
+
+def test_an_empty_world_has_a_small_picture_too():
+    assert xvrml.World()._repr_png_().startswith(b"\x89PNG")
 
 
 # The example ----------------------------------------------------------------------------------------

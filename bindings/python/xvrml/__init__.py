@@ -42,22 +42,20 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Mesh", "Node", "ParseError",
-    "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Mesh", "Node",
+    "ParseError", "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
     "load_node_plugins", "loads", "__version__", *nodes.__all__
 ]
 
-_SUBMODULES = ("dask", "interop", "rt")
+_SUBMODULES = ("dask", "interop", "notebook", "rt")
 
 
 def __getattr__(name):
     """Imports submodules on first use, and finds nodes of plug-ins that were loaded later."""
     if name.startswith("__"):
         raise AttributeError(f"module xvrml has no attribute {name}")
-    if name in _SUBMODULES or name == "View":
+    if name in _SUBMODULES:
         try:
-            if name == "View":
-                return _importlib.import_module("._notebook", __name__).View
             return _importlib.import_module(f".{name}", __name__)
         except ModuleNotFoundError as error:
             raise AttributeError(
@@ -65,7 +63,7 @@ def __getattr__(name):
     try:
         return getattr(nodes, name)
     except AttributeError:
-        known = [*__all__, *_SUBMODULES, "View", "nodes"]
+        known = [*__all__, *_SUBMODULES, "nodes"]
         near = _difflib.get_close_matches(name, known,
                                           1) or [k for k in known if k.lower() == name.lower()]
         hint = f"; did you mean {near[0]}?" if near else ""

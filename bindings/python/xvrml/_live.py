@@ -1,5 +1,5 @@
 """Shows a running world while Python goes on: a LiveView renders on threads of its own, and step()
-never waits for a picture. _notebook.py puts it into a notebook; a program with an event loop of its
+never waits for a picture. notebook.py puts it into a notebook; a program with an event loop of its
 own calls step() from there."""
 import collections
 import time
@@ -100,6 +100,9 @@ class LiveView:
     ...     picture = view.look()  # uint8 of shape (height, width, 3), or None
     """
 
+    raw = False  # shows the samples of something that moves as they are
+    on_wake = None  # called without arguments, on any thread, when another step() is of use
+
     def __init__(self, world, size=(640, 480), **options):
         self._viewer = Viewer(world, size=size, **options)
         self._end = weakref.finalize(self, self._viewer.close)  # also when the program ends
@@ -116,8 +119,6 @@ class LiveView:
         self._gap = 0.0  # smoothed seconds between the pictures of something that moves
         self._shown_at = None
         self._began_at = 0.0
-        self.raw = False
-        self.on_wake = None
         self_reference = weakref.ref(self)
 
         def changed():
@@ -209,8 +210,9 @@ class LiveView:
 
     @property
     def facts(self):
-        """What the newest picture is: size, samples (mean over the pixels), preview (rebuilt while
-        something moves), finished, seconds, frame_rate (0: nothing moves)."""
+        """What the newest picture is: size, samples (mean over the pixels), moving (one of a
+        sequence, perhaps smaller than the view), preview (rebuilt from few samples), finished,
+        seconds, frame_rate (0: nothing moves)."""
         moving = self._phase == "moving"
         return {**self._facts, "frame_rate": 1 / self._gap if moving and self._gap > 0 else 0.0}
 
@@ -256,7 +258,7 @@ class LiveView:
         try:
             while (found := self._viewer.look()) is not None:
                 picture, facts = found
-                moving = facts.pop("moving")
+                moving = facts["moving"]
                 if facts["finished"]:
                     if not moving:
                         self._phase = "done"

@@ -27,7 +27,8 @@ def _number(event, name, least=-1e9):
 def kind_of(event):
     """Returns the type of an event; older versions of jupyter_rfb have another key for it."""
     if not isinstance(event, dict):
-        raise TypeError(f"event: a dict expected, not an object of the class {type(event).__name__}")
+        raise TypeError(
+            f"event: a dict expected, not an object of the class {type(event).__name__}")
     return event.get("type", event.get("event_type"))
 
 

@@ -150,7 +150,7 @@ def view(self, size=(640, 480), **options):
     takes the mouse and the keys. The options are those of LiveView. Needs the package
     jupyter_rfb."""
     try:
-        from ._notebook import View
+        from .notebook import View
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError(
             f"world.view() needs the package {error.name}, which is not installed: pip install jupyter_rfb",

@@ -11,6 +11,8 @@ from ._live import LiveView
 _TITLE_GAP = 0.5  # seconds between two titles: each is a message to the page
 _SEND_GAP = 0.04  # seconds between two pictures that update() sends
 
+__all__ = ["View"]
+
 
 def _loop():
     try:
@@ -102,22 +104,27 @@ class View(jupyter_rfb.RemoteFrameBuffer):
             return
         if self.live.look() is not None:
             self.request_draw()
-        self._tell()
+        if not self._tell() and delay is None:
+            delay = _TITLE_GAP
         if delay is not None and self._timer is None:
             self._call_after(delay)
 
     def _tell(self):
-        """Says in the title what the picture is."""
+        """Says in the title what the picture is. Returns False if it is too early for that."""
         facts, now = self.live.facts, time.monotonic()
-        if not facts.get("size") or not self.has_trait("has_titlebar"):
-            return
-        if facts["preview"] or facts["frame_rate"]:
+        if "size" not in facts or not self.has_trait("has_titlebar"):
+            return True
+        if facts["moving"]:
             text = f"preview, {facts['frame_rate']:.0f} frames/s"
         else:
-            text = f"{facts['samples']:.0f} samples"
+            text = f"samples: {facts['samples']:.0f}"
         text += ", paused" if self.live.paused else ""
-        if text != self.title and now - self._titled_at > _TITLE_GAP:
-            self.title, self._titled_at = text, now
+        if text == self.title:
+            return True
+        if now - self._titled_at < _TITLE_GAP:
+            return False
+        self.title, self._titled_at = text, now
+        return True
 
     def _end(self):
         if self._timer is not None:
