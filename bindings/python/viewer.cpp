@@ -63,6 +63,7 @@ Viewer::Viewer(const ViewerArguments& given) : world_(given.world) {
     try {
       bind(given.viewpoint);
     } catch (...) {
+      if (shared->steering == this) shared->steering = nullptr;
       viewers_.reset();
       throw;
     }
@@ -112,13 +113,17 @@ const char* Viewer::state() {
   return !live() || live()->state() == State::idle ? "idle" : "rendering";
 }
 
+// Tells whether the last frame does not show the world as it is now; while the world is busy, what
+// was so before.
 bool Viewer::isOutdated() {
   if (!viewers_) return false;
-  if (!begun_ || !live()) return true; // the renderer of world.render() has taken the changes
-  const auto lock = world_->lockGraph();
-  return browser().hasChanges() || frameChanges_ != viewers_->changes ||
-         viewers_->generation != browser().generation() || !same(knownCamera(), frameCamera_) ||
-         (!moving_ && (frame_.width != width_ || frame_.height != height_));
+  const auto lock = world_->tryLock();
+  if (!lock) return wasOutdated_;
+  return wasOutdated_ =
+             !begun_ || !live() || // the renderer of World.render() has taken the changes
+             browser().hasChanges() || frameChanges_ != viewers_->changes ||
+             viewers_->generation != browser().generation() || !same(knownCamera(), frameCamera_) ||
+             (!moving_ && (frame_.width != width_ || frame_.height != height_));
 }
 
 void Viewer::makeRenderer() {
@@ -159,8 +164,11 @@ bool Viewer::start(bool moving, bool raw) {
   return true;
 }
 
+// Ends the frame in flight soon. Nothing happens while another thread uses the world.
 void Viewer::cancel() {
-  if (viewers_ && viewers_->drawing == this && live()) world_->locks->live->cancel();
+  if (!viewers_ || viewers_->drawing != this) return;
+  const std::unique_lock drawing(world_->locks->drawing, std::try_to_lock);
+  if (drawing && live()) world_->locks->live->cancel();
 }
 
 // Returns a newer picture and facts about it; None: there is none. Raises RenderError if the last

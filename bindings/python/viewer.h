@@ -84,7 +84,7 @@ class Viewer {
   std::optional<xvrml::CameraSettings> last_; // the camera of the last picture
   FrameSizing sizing_;
   // The last frame that began.
-  bool begun_ = false, moving_ = false;
+  bool begun_ = false, moving_ = false, wasOutdated_ = true;
   FrameSize frame_;
   uint64_t frameChanges_ = 0;
   std::optional<xvrml::CameraSettings> frameCamera_;
