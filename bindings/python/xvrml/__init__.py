@@ -24,13 +24,14 @@ import warnings as _warnings
 from . import _arguments, _world
 from . import _xvrml
 from ._camera import Pinhole
+from ._live import LiveView
 from ._world import loads
 from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError,
                      Picture, RenderError, ViewpointInfo, Worker, World, load_node_plugins,
                      __version__)
 
 load = _arguments.explained(_xvrml.load)
-for _class in (World, Browser, Cluster, Film, Node, Picture):
+for _class in (World, Browser, Cluster, Film, Node, Picture, _xvrml.Viewer):
     _arguments.explain_class(_class)
 _world.complete(World, Node)
 
@@ -41,12 +42,12 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError",
-    "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Mesh", "Node",
+    "ParseError", "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
     "load_node_plugins", "loads", "__version__", *nodes.__all__
 ]
 
-_SUBMODULES = ("dask", "interop", "rt")
+_SUBMODULES = ("dask", "interop", "notebook", "rt")
 
 
 def __getattr__(name):
