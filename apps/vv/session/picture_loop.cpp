@@ -50,6 +50,8 @@ PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit) const {
 
 void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now) {
   if (width_ <= 0) return;
+  if (still_.isBusy()) return advanceStill(pilot, fit);
+  if (!watched_ && hasShown()) return;
   switch (decide(isOutdated(pilot, fit), fit)) {
   case Decision::wait: break;
   case Decision::cancel: renderer_.cancel(); break;
@@ -113,6 +115,28 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   fit.begin();
 }
 
+// Returns the view that `vv -o` would have: that of the options, or the viewer's place once it has
+// been moved.
+picture::View PictureLoop::stillViewOf(const Pilot& pilot, double aspect) const {
+  picture::View view = options_.view;
+  if (!pilot.hasViewerMoved()) return view;
+  view = {};
+  view.shader = options_.view.shader;
+  view.viewer = pilot.camera(aspect);
+  return view;
+}
+
+void PictureLoop::advanceStill(const Pilot& pilot, Fit& fit) {
+  if (still_.isRendering()) return;
+  followHeadlight(pilot);
+  if (!still_.advance([&](double aspect) { return stillViewOf(pilot, aspect); })) return;
+  // The next frame that is shown begins as if something had moved.
+  phase_ = Phase::moving;
+  frame_ = {};
+  if (shown_ == Shown::something) shown_ = Shown::still;
+  if (fit.isWanted()) fit.begin();
+}
+
 bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
   if (fit.state() != Fit::State::mapping) return false;
   const bool initial = fit.direction() == Fit::Direction::initial;
@@ -125,6 +149,10 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
 }
 
 bool PictureLoop::look(picture::LivePicture& picture) {
+  if (still_.isRendering()) {
+    still_.look();
+    return false;
+  }
   if (!renderer_.look(picture)) return false;
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();

@@ -10,6 +10,7 @@
 #include "session/fit.h"
 #include "session/pacing.h"
 #include "session/pilot.h"
+#include "session/still.h"
 
 namespace vv {
 
@@ -38,7 +39,16 @@ class PictureLoop {
   // Returns a newer picture than the last one; false if there is none.
   bool look(picture::LivePicture& picture);
   // Copies the picture for a file. Returns false before the first frame.
-  bool copy(picture::Picture& picture) { return renderer_.copy(picture); }
+  bool copy(picture::Picture& picture) {
+    return shown_ == Shown::something && renderer_.copy(picture);
+  }
+  // Asks for a picture of its own for a program; the frames wait meanwhile. takeStill() returns it
+  // once it is finished.
+  void requestStill(const Still& still) { still_.request(still); }
+  std::optional<StillAnswer> takeStill() { return still_.take(); }
+  // Says whether anybody looks at the pictures. If not, only the first frame, which places the
+  // viewer, and still pictures are rendered.
+  void setWatched(bool watched) { watched_ = watched; }
   void cancel() { renderer_.cancel(); }
   std::string takeFailure() { return renderer_.takeFailure(); }
 
@@ -58,7 +68,11 @@ class PictureLoop {
 
  private:
   using RendererState = picture::LiveRenderer::State;
-  enum class Shown : uint8_t { nothing, something };
+  enum class Shown : uint8_t {
+    nothing,
+    something,
+    still // something before, and then a still picture, which the renderer's copy holds
+  };
   enum class Decision : uint8_t { wait, cancel, move, refine };
 
   // Tells whether the last frame does not show the world as it is now.
@@ -66,16 +80,20 @@ class PictureLoop {
   Decision decide(bool outdated, const Fit& fit) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
+  picture::View stillViewOf(const Pilot& pilot, double aspect) const;
+  void advanceStill(const Pilot& pilot, Fit& fit);
   void followHeadlight(const Pilot& pilot);
 
   xvrml::Browser& browser_;
   const Options& options_;
   picture::LiveRenderer renderer_;
+  StillTaker still_{renderer_};
   Pacing pacing_;
   int width_ = 0, height_ = 0; // size of the window in pixels
 
   Phase phase_ = Phase::unstarted;
   Shown shown_ = Shown::nothing;
+  bool watched_ = true;
   // The camera, headlight and size of the last frame.
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
