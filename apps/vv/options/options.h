@@ -69,8 +69,10 @@ struct Options {
   std::string inputScript, recordInput;      // files of user input; empty: none
   std::shared_ptr<const InputScript> script; // contents of inputScript
   std::string write, stats;
-  std::string compare;  // reference picture; empty: none
-  int audit = 0;        // number of pictures to check the error bars with; 0: none
+  std::string compare; // reference picture; empty: none
+  int audit = 0;       // number of pictures to check the error bars with; 0: none
+  std::string control; // address where programs control the world; empty: none
+  bool noWindow = false;
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;

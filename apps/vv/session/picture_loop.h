@@ -46,6 +46,7 @@ class PictureLoop {
   // once it is finished.
   void requestStill(const Still& still) { still_.request(still); }
   std::optional<StillAnswer> takeStill() { return still_.take(); }
+  bool stillWaits() const { return still_.isBusy() && !still_.isRendering(); }
   // Says whether anybody looks at the pictures. If not, only the first frame, which places the
   // viewer, and still pictures are rendered.
   void setWatched(bool watched) { watched_ = watched; }

@@ -75,6 +75,7 @@ class Session {
   // Asks for a picture with the bytes of `vv -o`; takeStill() returns it once it is finished.
   void requestStill(const Still& still) { pictures_.requestStill(still); }
   std::optional<StillAnswer> takeStill() { return pictures_.takeStill(); }
+  bool stillWaits() const { return pictures_.stillWaits(); } // it begins when the session advances
   // Shows a viewpoint at once. Returns false if there is none of this name or number.
   bool jumpToViewpoint(const std::string& name) { return pilot_.jumpToViewpoint(name); }
   void setPaused(bool paused) { pilot_.setPaused(paused); }
