@@ -266,10 +266,10 @@ std::string shownNode(const NodeName& name) {
   return "node " + shownJson(std::get<std::string>(name));
 }
 
-Line readLine(std::string_view line, const Limits& limits) {
+Line readLine(std::string_view line, const Limits& allowed) {
   Line read;
   try {
-    Json json = readJsonLine(line, limits);
+    Json json = readJsonLine(line, allowed);
     read.id = idOf(json);
     read.command = readCommand(std::move(json), read.id);
   } catch (const CommandError& error) {

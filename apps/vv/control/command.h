@@ -98,7 +98,7 @@ struct Line {
 };
 
 // Reads a line without its line feed. Never throws for anything that a client can send.
-Line readLine(std::string_view line, const Limits& limits = control::limits);
+Line readLine(std::string_view line, const Limits& allowed = limits);
 
 // Returns the answer to a command that failed, without a line feed.
 std::string errorAnswer(const std::string& id, std::string_view code, std::string_view message);

@@ -154,11 +154,12 @@ class Reader {
   float single(const Json& json) {
     if (!json.is_number()) wrong(json);
     const double value = json.get<double>();
-    if (std::abs(value) > double(std::numeric_limits<float>::max()))
+    const auto rounded = float(value);
+    if (!std::isfinite(rounded))
       fail(fmt::format("a number of 32 bits was expected, not {}{}", value,
                        path_.empty() ? "" : " at value" + path_));
     checkRange(value);
-    return float(value);
+    return rounded;
   }
 
   int32_t integer(const Json& json) {

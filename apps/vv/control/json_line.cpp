@@ -40,11 +40,11 @@ class Watch {
 
 } // namespace
 
-Json readJsonLine(std::string_view line, const Limits& limits) {
-  if (line.size() > limits.lineBytes)
+Json readJsonLine(std::string_view line, const Limits& allowed) {
+  if (line.size() > allowed.lineBytes)
     throw CommandError("limit",
-                       fmt::format("the line is longer than lineBytes={} bytes", limits.lineBytes));
-  Watch watch(limits);
+                       fmt::format("the line is longer than lineBytes={} bytes", allowed.lineBytes));
+  Watch watch(allowed);
   Json json;
   try {
     json = Json::parse(line, [&](int depth, Json::parse_event_t event, Json& parsed) {

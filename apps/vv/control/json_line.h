@@ -23,7 +23,7 @@ struct CommandError : std::runtime_error {
 // Reads a line that holds one JSON object. Throws CommandError: "syntax" if it is no JSON, holds
 // text that is not UTF-8 or a number beyond the range of a double, or if an object has a member
 // twice; "limit" if it is too deep or has too many values.
-Json readJsonLine(std::string_view line, const Limits& limits = control::limits);
+Json readJsonLine(std::string_view line, const Limits& allowed = limits);
 
 // Returns a text as a JSON string. Bytes that are not UTF-8 become U+FFFD.
 std::string jsonText(std::string_view text);
