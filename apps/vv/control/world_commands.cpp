@@ -246,6 +246,8 @@ std::string WorldCommands::create(const Create& create) {
   try {
     made = browser_.createVrmlFromString(create.vrml);
   } catch (const LoadError& error) { throw CommandError("vrml", error.diagnostic.text()); }
+  if (made.empty() && diagnostics.list().size() > before)
+    throw CommandError("vrml", diagnostics.list()[before].text());
   std::string nodes = valueText(made), names, problems;
   std::vector<Node*> open;
   for (const NodeRef& node : made) open.push_back(node.get());
