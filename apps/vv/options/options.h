@@ -69,15 +69,15 @@ struct Options {
   std::string inputScript, recordInput;      // files of user input; empty: none
   std::shared_ptr<const InputScript> script; // contents of inputScript
   std::string write, stats;
-  std::string compare; // reference picture; empty: none
-  int audit = 0;       // number of pictures to check the error bars with; 0: none
-  std::string control; // address where programs control the world; empty: none
-  bool noWindow = false;
+  std::string compare;  // reference picture; empty: none
+  int audit = 0;        // number of pictures to check the error bars with; 0: none
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;
   xvrml::RunOptions run; // options of the Browser; startWorld sets the epoch
   bool quiet = false, verbose = false;
+  std::string control; // address where programs control the world; empty: none
+  bool noWindow = false;
 
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
