@@ -17,6 +17,7 @@ struct Format {
   std::string_view suffixes[2]; // lower case; the first is the usual one, the second may be empty
   bool keepsAlpha;              // the file has alpha if Picture::transparent is set
   bool appliesCurve;            // linear colours are sRGB-encoded
+  bool keepsNote;               // the file has Picture::note
   // Returns the bytes of a file. Throws std::runtime_error that names the format.
   std::string (*encode)(const Picture& picture);
 };

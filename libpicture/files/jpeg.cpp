@@ -28,8 +28,8 @@ void fail(j_common_ptr info) {
 void silent(j_common_ptr, int) {}
 
 // Returns false on an error, with errors.message set. Holds only C values across libjpeg's longjmp.
-bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, unsigned char** out,
-           unsigned long* size) {
+bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, const std::string& note,
+           unsigned char** out, unsigned long* size) {
   jpeg_compress_struct info;
   info.err = jpeg_std_error(&errors.base);
   errors.base.error_exit = fail;
@@ -49,6 +49,9 @@ bool write(ErrorManager& errors, uint8_t* bytes, int width, int height, unsigned
   // no chroma subsampling: thin coloured lines survive
   info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&info, TRUE);
+  if (!note.empty())
+    jpeg_write_marker(&info, JPEG_COM, reinterpret_cast<const JOCTET*>(note.data()),
+                      unsigned(note.size()));
   while (info.next_scanline < info.image_height) {
     JSAMPROW row = bytes + size_t(info.next_scanline) * size_t(width) * 3;
     jpeg_write_scanlines(&info, &row, 1);
@@ -65,7 +68,8 @@ std::string encodeJpeg(const Picture& picture) {
   ErrorManager errors;
   unsigned char* data = nullptr;
   unsigned long size = 0;
-  const bool done = write(errors, bytes.data(), picture.width, picture.height, &data, &size);
+  const bool done =
+      write(errors, bytes.data(), picture.width, picture.height, picture.note, &data, &size);
   std::string out;
   if (done) out.assign(reinterpret_cast<char*>(data), size);
   std::free(data);

@@ -268,7 +268,7 @@ struct Control::Impl {
 
   bool serve(Session* current, bool isLoading) {
     collect();
-    if (current && !current->resting()) return false;
+    if (current && !current->isFree()) return false;
     attach(current);
     noticeOtherWorld();
     followPicture();

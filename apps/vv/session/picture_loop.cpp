@@ -7,6 +7,19 @@ namespace vv {
 
 namespace {
 
+using Purpose = picture::LiveFrame::Purpose;
+
+// Seconds in which previews still follow each other when nothing moves any more. They are larger
+// and accumulate, so that the still picture begins over a good one.
+constexpr double settlingTime = 0.35;
+
+// Tells which light a world has, as the engine chose its transport.
+Pacing::Light lightOf(const RTstats& stats) {
+  const bool direct =
+      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
+  return stats.cameraRays > 0 && direct ? Pacing::Light::direct : Pacing::Light::sampled;
+}
+
 bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
   return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy &&
          a.height == b.height && a.shader == b.shader;
@@ -28,34 +41,53 @@ void PictureLoop::resize(int width, int height) {
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
          browser_.hasChanges() || pilot.headlight() != headlight_ ||
-         (!isMoving() && (frame_.width != width_ || frame_.height != height_));
+         (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
-// Moving frames overlap where the renderer permits it. A frame that is refined is cancelled
+// A world without sampled light needs no larger preview than one of full size.
+bool PictureLoop::isSettled(double now) const {
+  if (motion_ == Motion::samples) return true;
+  if (phase_ == Phase::settling) return now >= settlingEnds_;
+  return lightOf(facts_.stats) == Pacing::Light::direct && frame_.width >= width_ &&
+         frame_.height >= height_;
+}
+
+// Moving frames overlap where the renderer permits it. A frame of what has stopped is cancelled
 // instead, but not before the first picture, so that it comes early.
-PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit) const {
+PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double now,
+                                          Need need) const {
   const RendererState state = renderer_.state();
+  const Decision following = need == Need::stillPicture ? Decision::refine : Decision::move;
   switch (state) {
   case RendererState::mapping: return Decision::wait;
   case RendererState::rendering:
   case RendererState::ready:
     if (!outdated) return Decision::wait;
-    if (isMoving()) return state == RendererState::ready ? Decision::move : Decision::wait;
+    if (isMoving()) return state == RendererState::ready ? following : Decision::wait;
     return hasShown() || fit.isWanted() ? Decision::cancel : Decision::wait;
   case RendererState::idle: break;
   }
-  if (outdated) return Decision::move;
-  return isMoving() ? Decision::refine : Decision::wait;
+  if (outdated || cancelled_) return following;
+  if (isRefining() && !(isStillLost_ && need == Need::stillPicture)) return Decision::wait;
+  if (need == Need::stillPicture) return Decision::refine;
+  return isSettled(now) ? Decision::refine : Decision::settle;
 }
 
-void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now) {
+void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now, Need need) {
   if (width_ <= 0) return;
-  if (still_.isBusy()) return advanceStill(pilot, fit);
+  if (taker_.isBusy()) return advanceStill(pilot, fit);
   if (!watched_ && hasShown()) return;
-  switch (decide(isOutdated(pilot, fit), fit)) {
+  switch (decide(isOutdated(pilot, fit), fit, now, need)) {
   case Decision::wait: break;
-  case Decision::cancel: renderer_.cancel(); break;
+  case Decision::cancel:
+    renderer_.cancel();
+    cancelled_ = true;
+    break;
   case Decision::move: start(Phase::moving, pilot, fit, now); break;
+  case Decision::settle:
+    if (isMoving()) settlingEnds_ = now + settlingTime;
+    start(Phase::settling, pilot, fit, now);
+    break;
   case Decision::refine: start(Phase::refining, pilot, fit, now); break;
   }
 }
@@ -65,8 +97,13 @@ bool PictureLoop::isDrawing() const {
   return isMoving() && (state == RendererState::mapping || state == RendererState::rendering);
 }
 
+bool PictureLoop::copyStill(picture::Picture& picture) {
+  uint64_t number = 0;
+  return hasStill() && renderer_.copy(picture, &number) && number == number_;
+}
+
 bool PictureLoop::isFinished(const Pilot& pilot) const {
-  return phase_ == Phase::refining && isIdle() && !browser_.hasChanges() &&
+  return isRefining() && still_ == Progress::finished && isIdle() && !browser_.hasChanges() &&
          equal(pilot.camera(), camera_);
 }
 
@@ -95,6 +132,12 @@ void PictureLoop::followHeadlight(const Pilot& pilot) {
   renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
 }
 
+FrameSize PictureLoop::sizeOf(Phase phase) {
+  const int samples = options_.render.samples;
+  if (phase == Phase::settling) return pacing_.settle(width_, height_, samples);
+  return pacing_.next(width_, height_, phase == Phase::moving, samples, lightOf(facts_.stats));
+}
+
 void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   picture::LiveFrame frame;
   frame.view = viewOf(pilot, fit);
@@ -105,12 +148,18 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
     gap_ = gap_ <= 0 ? now - lastStart_ : .9 * gap_ + .1 * (now - lastStart_);
   if (!moving) gap_ = 0;
   lastStart_ = now;
-  frame_ = pacing_.next(width_, height_, moving, options_.render.samples);
+  frame_ = sizeOf(phase);
   frame.width = frame_.width;
   frame.height = frame_.height;
   frame.samples = frame_.samples;
+  frame.purpose = phase == Phase::refining     ? Purpose::still
+                  : motion_ == Motion::rebuilt ? Purpose::preview
+                                               : Purpose::rawPreview;
+  still_ = Progress::none;
+  isStillLost_ = false;
+  cancelled_ = false;
   if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
-  renderer_.start(frame);
+  number_ = renderer_.start(frame);
   phase_ = phase;
   fit.begin();
 }
@@ -127,14 +176,17 @@ picture::View PictureLoop::stillViewOf(const Pilot& pilot, double aspect) const 
 }
 
 void PictureLoop::advanceStill(const Pilot& pilot, Fit& fit) {
-  if (still_.isRendering()) return;
+  if (taker_.isRendering()) return;
+  if (!isIdle()) {
+    renderer_.cancel();
+    cancelled_ = true;
+    return;
+  }
   followHeadlight(pilot);
-  if (!still_.advance([&](double aspect) { return stillViewOf(pilot, aspect); })) return;
-  // The next frame that is shown begins as if something had moved.
-  phase_ = Phase::moving;
-  frame_ = {};
-  if (shown_ == Shown::something) shown_ = Shown::still;
-  if (fit.isWanted()) fit.begin();
+  taker_.start([&](double aspect) { return stillViewOf(pilot, aspect); });
+  still_ = Progress::none;
+  isStillLost_ = true;
+  fit.begin();
 }
 
 bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
@@ -149,25 +201,38 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
 }
 
 bool PictureLoop::look(picture::LivePicture& picture) {
-  if (still_.isRendering()) {
-    still_.look();
+  if (taker_.isRendering()) {
+    taker_.look();
     return false;
   }
   if (!renderer_.look(picture)) return false;
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();
   shown_ = Shown::something;
+  failure_.clear();
   facts_.width = picture.width;
   facts_.height = picture.height;
   facts_.samples = picture.samples;
   facts_.finished = picture.finished;
+  facts_.preview = picture.preview;
+  facts_.purpose = picture.purpose;
+  if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
+    still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {
     pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
-                 picture.overhead, picture.samples);
+                 picture.overhead, picture.samples, picture.rebuilding);
     facts_.stats = picture.stats;
     facts_.map = picture.map;
   }
   return shown;
+}
+
+// A failure of many frames in a row is told once.
+std::string PictureLoop::takeFailure() {
+  if (taker_.isRendering()) return {}; // the failure belongs to a program
+  std::string failure = renderer_.takeFailure();
+  if (failure == failure_) return {};
+  return failure.empty() ? failure : failure_ = std::move(failure);
 }
 
 } // namespace vv

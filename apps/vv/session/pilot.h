@@ -82,7 +82,7 @@ class Pilot {
   std::optional<double> fov_;
   double aspect_ = 4.0 / 3;
   bool touched_ = false;
-  bool animates_ = false; // the viewer moves gradually between Viewpoints
+  bool animates_ = false;    // the viewer moves gradually between Viewpoints
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
   std::set<std::string> held_; // keys that are held down

@@ -8,7 +8,6 @@
 #include "report/describe.h"
 #include "report/messages.h"
 #include "session/input/view_command.h"
-#include "session/saving.h"
 #include "timeline.h"
 #include "world_start.h"
 
@@ -108,20 +107,23 @@ Session::Place Session::place() const {
 // --- Time ---
 
 void Session::advance(double seconds) {
-  clock_.read(seconds);
+  clock_.read(seconds,
+              isSaving() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
   if (!resting()) return;
   if (pictures_.placeViewer(pilot_, fit_) && replay_) replay_->resume();
   step();
   takeEvents();
   loadSome();
   problems_.tell(browser_->world());
-  pictures_.advance(pilot_, fit_, clock_.reading());
+  pictures_.advance(pilot_, fit_, clock_.reading(),
+                    isSaving() ? PictureLoop::Need::stillPicture : PictureLoop::Need::none);
   saveIfFinished();
   // Meanwhile nothing else uses the world (resting()).
   if (pictures_.hasShown()) preparation_.begin(*browser_, pilot_.camera());
 }
 
 void Session::step() {
+  if (isSaving()) return;
   if (!held()) clock_.pass();
   if (held() && !pictures_.hasStarted()) return;
   clock_.run({[this] { return held(); },
@@ -132,18 +134,44 @@ void Session::step() {
               }});
 }
 
+// While the world is held for a picture, only the window's keys act. What ends an action of the
+// user or moves the pointer is handled afterwards; what would begin one is dropped.
+Session::Passage Session::passageOf(const InputEvent& event) const {
+  using Kind = InputEvent::Kind;
+  if (!isSaving() || replay_) return Passage::passes;
+  switch (event.kind) {
+  case Kind::move:
+  case Kind::release:
+  case Kind::leave:
+  case Kind::up: return Passage::waits;
+  case Kind::down: return actionOf(event) >= Action::save ? Passage::passes : Passage::isDropped;
+  default: return Passage::isDropped;
+  }
+}
+
+// Adds an event to those that wait. Of moves that follow each other only the last one counts.
+void Session::postpone(InputEvent event, std::deque<InputEvent>& later) {
+  const bool moves = event.kind == InputEvent::Kind::move && !later.empty() &&
+                     later.back().kind == InputEvent::Kind::move;
+  if (moves)
+    later.back() = std::move(event);
+  else
+    later.push_back(std::move(event));
+}
+
 // Handles the user's input. In a scripted session only window commands are taken from the user.
 void Session::takeEvents() {
   const bool pointerWaits = preparation_.state() == PickPreparation::State::waiting && !replay_;
   std::deque<InputEvent> later;
   while (!waiting_.empty()) {
-    if (pointerWaits && waiting_.front().kind <= InputEvent::Kind::wheel) {
-      later.push_back(std::move(waiting_.front()));
-      waiting_.pop_front();
-      continue;
-    }
     const InputEvent event = std::move(waiting_.front());
     waiting_.pop_front();
+    const Passage passage = passageOf(event);
+    if (passage == Passage::isDropped) continue;
+    if (passage == Passage::waits || (pointerWaits && event.kind <= InputEvent::Kind::wheel)) {
+      postpone(event, later);
+      continue;
+    }
     Action action = Action::none;
     if (callbacks_.record) callbacks_.record(clock_.time(), event);
     if (!replay_)
@@ -173,16 +201,72 @@ void Session::want(Action fit) {
   fit_.want(fit == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current);
 }
 
-std::string Session::save(const std::string& path) {
+void Session::save(const std::string& path) {
   picture::Picture picture;
-  return pictures_.copy(picture) ? savePicture(picture, path, channels_)
-                                 : "there is no picture yet";
+  if (isSaving()) {
+    message_ = fmt::format("{} is not saved: another picture is waited for", path);
+  } else if (!replay_ && !pictures_.isOutdated(pilot_, fit_) && pictures_.copyStill(picture)) {
+    writer_.begin(std::move(picture), path, channels_);
+  } else {
+    saveTo_ = path;
+    saver_ = Saver::user;
+  }
 }
 
-void Session::saveIfFinished() {
-  if (saveTo_.empty() || !pictures_.isFinished(pilot_)) return;
-  message_ = save(std::exchange(saveTo_, {}));
+void Session::saveWhenFinished(const std::string& path) {
+  if (isSaving()) giveUp("another picture is wanted");
+  saveTo_ = path;
+  saver_ = Saver::script;
+}
+
+bool Session::giveUpSaving() {
+  if (!isSaving() || saver_ == Saver::script) return false;
+  giveUp("given up");
+  return true;
+}
+
+void Session::giveUp(const std::string& why) {
+  message_ = fmt::format("{} is not saved: {}", std::exchange(saveTo_, {}), why);
+  say("vv: " + message_);
   if (replay_) replay_->resume();
+}
+
+std::string Session::savingText() const {
+  if (!isSaving() || saver_ == Saver::script) return {};
+  const double taken = pictures_.hasStill() ? pictures_.facts().samples : 0;
+  return fmt::format("Saving the picture of this instant: {:.0f} of {} samples; Escape gives up",
+                     taken, options_.render.samples);
+}
+
+// A script continues, and a user's world goes on, when the picture has all its samples. Contents of
+// Inlines that are still to come belong to it.
+void Session::saveIfFinished() {
+  if (!isSaving() || inlines_.isLoading() || !pictures_.isFinished(pilot_)) return;
+  picture::Picture picture;
+  if (!pictures_.copyStill(picture)) return;
+  writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_);
+  if (replay_) replay_->resume();
+}
+
+std::string Session::endSaving() {
+  if (isSaving()) {
+    picture::Picture picture;
+    bool copied = pictures_.copyStill(picture);
+    // For a moment, while a frame ends, there is no copy.
+    for (int i = 0; i < 1000 && !copied && pictures_.hasStill(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      copied = pictures_.copyStill(picture);
+    }
+    if (copied)
+      writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_,
+                    fmt::format(", with {:.0f} of {} samples", pictures_.facts().samples,
+                                options_.render.samples));
+    else
+      giveUp("its picture has not begun yet");
+  }
+  writer_.wait();
+  const std::string written = writer_.takeMessage();
+  return written.empty() ? std::exchange(message_, {}) : written;
 }
 
 bool Session::stop(double seconds) {
@@ -211,19 +295,25 @@ std::string Session::takeMessage() {
   std::string pilots = pilot_.takeMessage();
   if (const std::string failure = pictures_.takeFailure(); !failure.empty()) {
     sayError(failure);
+    if (isSaving()) giveUp(failure);
     return failure;
   }
-  return pilots.empty() ? text : pilots;
+  const std::string written = writer_.takeMessage();
+  return !pilots.empty() ? pilots : !written.empty() ? written : text;
 }
 
 SessionFacts Session::facts() const {
+  using Showing = SessionFacts::Showing;
   const picture::LivePicture& picture = pictures_.facts();
+  const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
   SessionFacts facts;
+  facts.showing = picture.preview ? (still ? Showing::fading : Showing::preview)
+                                  : (still ? Showing::still : Showing::samples);
   facts.frameRate = pictures_.frameRate();
   facts.width = picture.width;
   facts.height = picture.height;
   facts.samples = picture.samples;
-  facts.wanted = pictures_.isMoving() ? 0 : options_.render.samples;
+  facts.wanted = pictures_.isRefining() ? options_.render.samples : 0;
   facts.stats = picture.stats;
   facts.map = picture.map;
   facts.finished = picture.finished;

@@ -20,12 +20,20 @@
 #include "session/pick_preparation.h"
 #include "session/picture_loop.h"
 #include "session/pilot.h"
+#include "session/saving.h"
 #include "session/session_clock.h"
 
 namespace vv {
 
 // The facts about a session that the overlay shows.
 struct SessionFacts {
+  enum class Showing : uint8_t {
+    still,   // the samples of the world as it is
+    fading,  // a still picture of few samples over a preview
+    preview, // rebuilt from few samples
+    samples  // the few samples themselves
+  };
+  Showing showing = Showing::still;
   double frameRate = 0; // pictures per second while something moves; 0: nothing moves
   int width = 0, height = 0;
   double samples = 0, wanted = 0;
@@ -65,10 +73,26 @@ class Session {
   void advance(double seconds);
   // Returns a newer picture than the last one; false if there is none.
   bool look(picture::LivePicture& picture) { return pictures_.look(picture); }
-  // Saves the current state of the picture. Returns a message for the user.
-  std::string save(const std::string& path);
-  // Saves the picture when all its samples are taken; the script waits until then.
-  void saveWhenFinished(const std::string& path) { saveTo_ = path; }
+
+  // Saves the true picture of this instant. If nothing moves, that is the picture as it is so far.
+  // Otherwise the world and the viewer are held until its still picture has all samples. A message
+  // follows (takeMessage).
+  void save(const std::string& path);
+  // Saves the picture for a script when all its samples are taken; the script waits until then.
+  void saveWhenFinished(const std::string& path);
+  // Gives up what save() waits for. Returns false if it waits for nothing.
+  bool giveUpSaving();
+  // Returns what save() waits for, as a line for the user; "" if it waits for nothing.
+  std::string savingText() const;
+  // Ends the saving before the session ends: what save() waits for is saved as it is so far, and
+  // the last file is complete when it returns. Returns the message about it, which has also been
+  // printed.
+  std::string endSaving();
+  // Waits for the last file, so that its name is taken.
+  void finishWriting() { writer_.wait(); }
+
+  // Chooses what is shown while something moves.
+  void setMotion(PictureLoop::Motion motion) { pictures_.setMotion(motion); }
 
   // --- For programs (docs/control.md) [while the world can be used] ---
   //
@@ -84,12 +108,19 @@ class Session {
   // Says whether anybody looks at the pictures; if not, none are rendered after the first one.
   void setWatched(bool watched) { pictures_.setWatched(watched); }
 
+  // Returns whether programs may use the world: it is at rest, and not held for a picture.
+  bool isFree() const { return resting() && !isSaving(); }
+
   // Returns whether the world can be used.
   bool resting() const {
     return preparation_.state() != PickPreparation::State::running && !pictures_.isMapping();
   }
   // Tells whether something moves and the next frame must wait for the current one.
   bool drawing() const { return pictures_.isDrawing(); }
+  // Tells whether advance() should be called soon: a frame can be started that does not wait for
+  // the frame rate.
+  bool due() const { return pictures_.isDue(); }
+  bool moving() const { return pictures_.isMoving(); }
   bool scripted() const { return replay_ != nullptr; }
   double time() const { return clock_.time(); } // time of the session's clock at the last step
   xvrml::Browser& browser() { return *browser_; }
@@ -107,8 +138,14 @@ class Session {
   void loadSome();
   void want(Action fit);
   void saveIfFinished();
+  void giveUp(const std::string& why);
   // Tells whether scripts wait: for a fit, or for a picture that is to be saved.
-  bool held() const { return fit_.isPending() || !saveTo_.empty(); }
+  bool held() const { return fit_.isPending() || isSaving(); }
+  bool isSaving() const { return !saveTo_.empty(); }
+  // Tells whether an event must wait, or is dropped, while the world is held for a picture.
+  enum class Passage : uint8_t { passes, waits, isDropped };
+  Passage passageOf(const InputEvent& event) const;
+  static void postpone(InputEvent event, std::deque<InputEvent>& later);
 
   Options options_;
   Problems& problems_;
@@ -122,6 +159,9 @@ class Session {
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted
+  enum class Saver : uint8_t { script, user };
+  Saver saver_ = Saver::script; // who wants that file
+  PictureWriter writer_;
   InlineQueue inlines_;
   PickPreparation preparation_; // the last member: its destructor waits for a user of the others
 };

@@ -4,29 +4,23 @@
 
 namespace vv {
 
-using RendererState = picture::LiveRenderer::State;
+namespace {
+
+// Still frames of programs must not fade in over what the user of the window sees.
+constexpr uint32_t programs = 0x5711;
+
+} // namespace
 
 void StillTaker::request(const Still& still) {
   still_ = still;
   answer_ = {};
-  if (state_ != State::rendering) {
-    state_ = State::requested;
-    return;
-  }
-  // The frame in flight belongs to the request before.
-  renderer_.cancel();
-  end({{}, "another picture was asked for"});
   state_ = State::requested;
 }
 
-bool StillTaker::advance(const std::function<picture::View(double aspect)>& viewOf) {
-  if (state_ != State::requested) return false;
-  if (renderer_.state() != RendererState::idle) {
-    renderer_.cancel();
-    return false;
-  }
+void StillTaker::start(const std::function<picture::View(double aspect)>& viewOf) {
   picture::LivePicture rest;
   while (renderer_.look(rest)) {} // ended frames that nobody has looked at
+  static_cast<void>(renderer_.takeFailure());
   renderer_.change([this](picture::RenderSettings& settings) {
     usualChannels_ = std::exchange(settings.channels, still_.channels);
   });
@@ -35,34 +29,26 @@ bool StillTaker::advance(const std::function<picture::View(double aspect)>& view
   frame.width = still_.width;
   frame.height = still_.height;
   frame.samples = still_.samples;
+  frame.viewer = programs;
   state_ = State::rendering;
-  renderer_.start(frame);
-  return true;
+  isWhole_ = false;
+  number_ = renderer_.start(frame);
 }
 
 void StillTaker::look() {
   picture::LivePicture seen;
-  const bool idle = renderer_.state() == RendererState::idle;
-  bool ended = false, finished = false;
-  while (renderer_.look(seen)) {
-    if (!seen.ended) break;
-    ended = true;
-    finished = seen.finished;
-  }
-  if (!ended && !idle) return;
-  StillAnswer answer;
-  answer.failure = renderer_.takeFailure();
-  if (answer.failure.empty() && !finished)
-    answer.failure = "the picture was cancelled";
-  else if (answer.failure.empty() && !renderer_.copy(answer.picture))
-    answer.failure = "there is no picture";
-  end(std::move(answer));
-}
-
-void StillTaker::end(StillAnswer answer) {
+  if (renderer_.look(seen) && seen.ended && seen.number == number_) isWhole_ = seen.finished;
+  if (renderer_.state() != picture::LiveRenderer::State::idle) return;
+  if (renderer_.look(seen) && seen.number == number_) isWhole_ = seen.finished;
+  answer_.failure = renderer_.takeFailure();
+  uint64_t copied = 0;
+  if (answer_.failure.empty() && !isWhole_)
+    answer_.failure = "the picture was cancelled";
+  else if (answer_.failure.empty() &&
+           (!renderer_.copy(answer_.picture, &copied) || copied != number_))
+    answer_.failure = "there is no picture";
   renderer_.change(
       [this](picture::RenderSettings& settings) { settings.channels = usualChannels_; });
-  answer_ = std::move(answer);
   state_ = State::finished;
 }
 

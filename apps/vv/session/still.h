@@ -1,6 +1,5 @@
 // still.h: Renders pictures that programs ask for, with the renderer that also makes the frames of
-// the window. The frame in flight is cancelled, and no other frame starts until the still picture
-// is finished. It has the bytes that `vv -o` writes. Owned by a picture loop. [the browser's
+// the window. A picture has the bytes that `vv -o` writes. Owned by a picture loop. [the browser's
 // thread]
 #pragma once
 
@@ -36,24 +35,24 @@ class StillTaker {
   // The renderer must outlive it.
   explicit StillTaker(picture::LiveRenderer& renderer) : renderer_(renderer) {}
 
-  // Asks for a picture. A request while another one is busy replaces it.
+  // Asks for a picture. [not while one is busy]
   void request(const Still& still);
   bool isBusy() const { return state_ == State::requested || state_ == State::rendering; }
   bool isRendering() const { return state_ == State::rendering; }
 
-  // Cancels what is in flight, then starts the frame. viewOf: returns the view for a picture of
-  // this width / height. Returns true when it has started the frame.
-  bool advance(const std::function<picture::View(double aspect)>& viewOf);
+  // Starts the frame. viewOf: returns the view for a picture of this width / height. [requested;
+  // the renderer is idle]
+  void start(const std::function<picture::View(double aspect)>& viewOf);
   // Looks for the end of the frame. [rendering]
   void look();
   std::optional<StillAnswer> take();
 
  private:
-  void end(StillAnswer answer);
-
   picture::LiveRenderer& renderer_;
   State state_ = State::none;
   Still still_;
+  uint64_t number_ = 0;        // of its frame
+  bool isWhole_ = false;       // its frame has ended with all samples
   uint32_t usualChannels_ = 0; // of the frames that are shown
   StillAnswer answer_;
 };
