@@ -1,7 +1,11 @@
 // control_line.cpp: Tests the reader of the control channel's lines: what is accepted, what the
 // messages say, and what hostile lines cost.
+#include <fstream>
+#include <sstream>
 #include <string>
+#include <utility>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "control/command.h"
@@ -126,6 +130,29 @@ TEST(ControlLine, HostileLinesAreRefused) {
   bad(std::string(limits.lineBytes + 1, ' '), "limit", "lineBytes=");
   bad(std::string("{\"command\":\"hello\"\0}", 20), "syntax", "not JSON");
   bad(R"({"command":")" + std::string(1'000'000, 'g') + "\"}", "command", "there is no command");
+}
+
+TEST(ControlLine, LimitsAreThoseOfThePage) {
+  std::ifstream file("docs/limits.md");
+  std::stringstream page;
+  page << file.rdbuf();
+  const std::pair<const char*, size_t> rows[] = {
+      {"lineBytes", limits.lineBytes},
+      {"lineDepth", limits.lineDepth},
+      {"lineValues", limits.lineValues},
+      {"waitingBytes", limits.waitingBytes},
+      {"unreadBytes", limits.unreadBytes},
+      {"clients", limits.clients},
+      {"nodes", limits.nodes},
+      {"subscriptions", limits.subscriptions},
+      {"pixels", limits.pixels},
+      {"samples", size_t(limits.samples)},
+      {"skip", size_t(limits.skip)},
+  };
+  for (const auto& [name, value] : rows)
+    EXPECT_NE(page.str().find(fmt::format("| `{}` | {} | ", name, value)), std::string::npos)
+        << "docs/limits.md lacks " << name << " " << value;
+  EXPECT_NE(page.str().find(fmt::format("sides up to {} |", limits.side)), std::string::npos);
 }
 
 TEST(ControlLine, LimitsAreThoseOfTheCaller) {

@@ -245,7 +245,7 @@ TEST(ControlPlace, AddressesAreRead) {
   EXPECT_EQ(Place::parse(":7").text(7), "127.0.0.1:7");
   EXPECT_EQ(Place::parse("[::1]:0").text(9), "[::1]:9");
   EXPECT_EQ(Place::parse("localhost:65535").port, 65535);
-  EXPECT_EQ(Place::parse("unix:/tmp/x").path, "/tmp/x");
+  EXPECT_EQ(Place::parse("unix:a/b").path, "a/b");
   for (const char* wrong :
        {"", "7", "localhost", "a:65536", "a:-1", "a:", "::1:5", "unix:", "a b:5"})
     EXPECT_THROW(Place::parse(wrong), vv::UsageError) << wrong;

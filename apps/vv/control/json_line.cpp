@@ -42,8 +42,8 @@ class Watch {
 
 Json readJsonLine(std::string_view line, const Limits& allowed) {
   if (line.size() > allowed.lineBytes)
-    throw CommandError("limit",
-                       fmt::format("the line is longer than lineBytes={} bytes", allowed.lineBytes));
+    throw CommandError(
+        "limit", fmt::format("the line is longer than lineBytes={} bytes", allowed.lineBytes));
   Watch watch(allowed);
   Json json;
   try {
