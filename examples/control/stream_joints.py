@@ -33,9 +33,8 @@ def main() -> None:
         steps = int(RATE * duration)
         for step in range(steps):
             pose = angles(step / RATE)
-            vv.set_many(
-                [(name, "rotation", (*AXES[name], angle)) for name, angle in pose.items()],
-                quiet=True)
+            vv.set_many([(name, "rotation", (*AXES[name], angle)) for name, angle in pose.items()],
+                        quiet=True)
             vv.poll()  # raises what vv has refused
             time.sleep(max(0, start + (step + 1) / RATE - time.monotonic()))
         elbow = vv.get("J3", "rotation")

@@ -187,7 +187,8 @@ class Control:
         except BaseException as error:
             self._line.close()
             if isinstance(error, TimeoutError) and key is not None:
-                raise TimeoutError("vv does not answer; perhaps it does not accept this key") from None
+                raise TimeoutError(
+                    "vv does not answer; perhaps it does not accept this key") from None
             raise
 
     def __enter__(self) -> Control:
