@@ -9,7 +9,9 @@ import sys
 import threading
 import time
 
-from conftest import ROOT, find_vv
+import pytest
+
+from conftest import HEADER, ROOT, find_vv
 
 PATIENCE = 30  # seconds, for things that take a moment on an idle machine
 
@@ -112,3 +114,58 @@ class Raw:
     def close(self):
         self.file.close()
         self.socket.close()
+
+
+def until(client, test):
+    """Lets the client poll until the test holds. Scripts may answer after a command has."""
+    end = time.monotonic() + PATIENCE
+    while not test():
+        assert time.monotonic() < end
+        client.poll(.01)
+
+
+WORLD = HEADER + """
+DEF Front Viewpoint { position 0 0 5 description "front" }
+DEF Back Viewpoint { position 0 0 -5 orientation 0 1 0 3.14159265 description "from behind" }
+DEF Place Transform {
+  children DEF Thing Shape {
+    appearance Appearance { material DEF Paint Material { diffuseColor 0.8 0.2 0.1 } }
+    geometry DEF Cube Box { size 2 2 2 }
+  }
+}
+DEF Blend ScalarInterpolator { key [ 0 1 ] keyValue [ 0 10 ] }
+DEF Sum Script {
+  eventIn SFFloat left eventIn SFFloat right eventOut SFFloat sum eventOut SFTime stamp
+  field SFFloat a 0
+  url "javascript:
+    function left(v) { a = v; }
+    function right(v, t) { sum = a + v; stamp = t; }"
+}
+DEF Many CoordinateInterpolator { key [ 0 1 ] }
+DEF Clock TimeSensor { cycleInterval 0.5 loop TRUE }
+ROUTE Blend.value_changed TO Sum.left
+"""
+SMALL = ("--size", "32x24", "--spp", "2")
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Returns a function that starts vv with WORLD, or with other arguments."""
+    if not find_vv().exists():
+        pytest.skip("vv is not built")
+    (tmp_path / "world.wrl").write_text(WORLD)
+    servers = []
+
+    def begin(*arguments, **options):
+        servers.append(Server(tmp_path, *(arguments or ("world.wrl", *SMALL)), **options))
+        return servers[-1]
+
+    yield begin
+    for server in servers:
+        server.end()
+
+
+def refused(code, words, function, *arguments, **options):
+    with pytest.raises(module().ControlError) as error:
+        function(*arguments, **options)
+    assert error.value.code == code and words in str(error.value), str(error.value)
