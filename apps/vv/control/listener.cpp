@@ -99,6 +99,15 @@ std::unique_ptr<addrinfo, FreeAddresses> lookUp(const Place& place) {
   return std::unique_ptr<addrinfo, FreeAddresses>(found);
 }
 
+Place numeric(Place place, const addrinfo& found) {
+  char digits[NI_MAXHOST];
+  if (const int error = ::getnameinfo(found.ai_addr, found.ai_addrlen, digits, sizeof digits,
+                                      nullptr, 0, NI_NUMERICHOST))
+    fail(place, ::gai_strerror(error));
+  place.host = digits;
+  return place;
+}
+
 } // namespace
 
 std::unique_ptr<Listener> listenAt(const Place& place, const KeyRing& keys, Mailbox& mailbox) {
@@ -109,7 +118,7 @@ std::unique_ptr<Listener> listenAt(const Place& place, const KeyRing& keys, Mail
       fail(place, "other machines can reach this address, so a key is needed: --key FILE "
                   "(openrt-worker --new-key FILE makes one), or an address of this machine and a "
                   "tunnel of ssh (docs/control.md)");
-    return listenWithKeys(place, keys, mailbox);
+    return listenWithKeys(numeric(place, *found), keys, mailbox); // ZeroMQ binds no names
   }
   Socket socket(found->ai_family);
   const int on = 1;

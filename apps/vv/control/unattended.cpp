@@ -55,7 +55,8 @@ class Unattended {
         next = std::max(next + 1 / options_.fps, seconds());
       }
       if (session_) session_->look(picture_);
-      if (control_->serve(session_.get(), loader_.busy())) next = 0;
+      if (control_->serve(session_.get(), loader_.busy()))
+        next = std::min(next, seconds() + shortest);
       report();
     }
     return end();
