@@ -205,20 +205,19 @@ void defineRender(py::object worldClass) {
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
   defineMethod(
       world, "render", render,
-      parameterList(parameter("size", &A::size), parameter("spp", &A::spp),
-                    parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
-                    parameter("fit", &A::fit), parameter("fov", &A::fov),
-                    qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
-                    qualityParameter<Switch>(RT_SHADOWS), parameter("colour", &A::colour),
-                    parameter("headlight", &A::headlight),
-                    qualityParameter<long long>(RT_MAX_DEPTH), parameter("channels", &A::channels),
-                    qualityParameter<std::string>(RT_TRANSPORT),
-                    qualityParameter<double>(RT_TARGET_ERROR),
-                    qualityParameter<double>(RT_TIME_LIMIT), qualityParameter<double>(RT_CLAMP),
-                    parameter("cluster", &A::cluster), parameter("progress", &A::progress),
-                    parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
-                    parameter("background", &A::background), parameter("isa", &A::isa),
-                    qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
+      parameterList(
+          parameter("size", &A::size), parameter("spp", &A::spp),
+          parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
+          parameter("fit", &A::fit), parameter("fov", &A::fov),
+          qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
+          qualityParameter<Switch>(RT_SHADOWS), parameter("colour", &A::colour),
+          parameter("headlight", &A::headlight), qualityParameter<long long>(RT_MAX_DEPTH),
+          parameter("channels", &A::channels), qualityParameter<std::string>(RT_TRANSPORT),
+          qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
+          qualityParameter<double>(RT_CLAMP), parameter("cluster", &A::cluster),
+          parameter("progress", &A::progress), parameter("multiply_textures", &A::multiplyTextures),
+          parameter("up", &A::up), parameter("background", &A::background),
+          parameter("isa", &A::isa), qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
       parameterList(),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "

@@ -130,7 +130,7 @@ void FrameSchedule::giveBlock(Job& job, OutstandingJob out, uint32_t tile, uint3
   out.job.number = tile;
   out.job.first = from;
   out.job.count = blockFrom(from, end, largest);
-  out.job.centred = out.until == 1 && (pilot || !rounds_);
+  out.job.centred = out.until == 1 && !frame_.jitter && (pilot || !rounds_);
   if (pilot)
     out.job.replicates = replicatesOf(
         frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));
