@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "control/unattended.h"
 #include "enough_stack.h"
 #include "headless.h"
 #include "inputs.h"
@@ -41,6 +42,7 @@ int run(int argc, char** argv) {
   vv::joinCluster(options);
   if (options.opensWindow()) {
     vv::checkInputs(options);
+    if (options.noWindow) return vv::control::runUnattended(options);
     return vv::runWindow(options, {argv + 1, argv + argc});
   }
   return vv::runHeadless(options, quoted(argc, argv));

@@ -68,13 +68,15 @@ PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double 
   case RendererState::idle: break;
   }
   if (outdated || cancelled_) return following;
-  if (isRefining()) return Decision::wait;
+  if (isRefining() && !(isStillLost_ && need == Need::stillPicture)) return Decision::wait;
   if (need == Need::stillPicture) return Decision::refine;
   return isSettled(now) ? Decision::refine : Decision::settle;
 }
 
 void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now, Need need) {
   if (width_ <= 0) return;
+  if (taker_.isBusy()) return advanceStill(pilot, fit);
+  if (!watched_ && hasShown()) return;
   switch (decide(isOutdated(pilot, fit), fit, now, need)) {
   case Decision::wait: break;
   case Decision::cancel:
@@ -101,7 +103,7 @@ bool PictureLoop::copyStill(picture::Picture& picture) {
 }
 
 bool PictureLoop::isFinished(const Pilot& pilot) const {
-  return isRefining() && still_ == Still::finished && isIdle() && !browser_.hasChanges() &&
+  return isRefining() && still_ == Progress::finished && isIdle() && !browser_.hasChanges() &&
          equal(pilot.camera(), camera_);
 }
 
@@ -153,11 +155,37 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   frame.purpose = phase == Phase::refining     ? Purpose::still
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
-  still_ = Still::none;
+  still_ = Progress::none;
+  isStillLost_ = false;
   cancelled_ = false;
   if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
   number_ = renderer_.start(frame);
   phase_ = phase;
+  fit.begin();
+}
+
+// Returns the view that `vv -o` would have: that of the options, or the viewer's place once it has
+// been moved.
+picture::View PictureLoop::stillViewOf(const Pilot& pilot, double aspect) const {
+  picture::View view = options_.view;
+  if (!pilot.hasViewerMoved()) return view;
+  view = {};
+  view.shader = options_.view.shader;
+  view.viewer = pilot.camera(aspect);
+  return view;
+}
+
+void PictureLoop::advanceStill(const Pilot& pilot, Fit& fit) {
+  if (taker_.isRendering()) return;
+  if (!isIdle()) {
+    renderer_.cancel();
+    cancelled_ = true;
+    return;
+  }
+  followHeadlight(pilot);
+  taker_.start([&](double aspect) { return stillViewOf(pilot, aspect); });
+  still_ = Progress::none;
+  isStillLost_ = true;
   fit.begin();
 }
 
@@ -173,6 +201,10 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
 }
 
 bool PictureLoop::look(picture::LivePicture& picture) {
+  if (taker_.isRendering()) {
+    taker_.look();
+    return false;
+  }
   if (!renderer_.look(picture)) return false;
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();
@@ -185,7 +217,7 @@ bool PictureLoop::look(picture::LivePicture& picture) {
   facts_.preview = picture.preview;
   facts_.purpose = picture.purpose;
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
-    still_ = picture.finished ? Still::finished : Still::covered;
+    still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {
     pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
                  picture.overhead, picture.samples, picture.rebuilding);
@@ -197,6 +229,7 @@ bool PictureLoop::look(picture::LivePicture& picture) {
 
 // A failure of many frames in a row is told once.
 std::string PictureLoop::takeFailure() {
+  if (taker_.isRendering()) return {}; // the failure belongs to a program
   std::string failure = renderer_.takeFailure();
   if (failure == failure_) return {};
   return failure.empty() ? failure : failure_ = std::move(failure);

@@ -11,6 +11,7 @@
 #include "session/fit.h"
 #include "session/pacing.h"
 #include "session/pilot.h"
+#include "session/still.h"
 
 namespace vv {
 
@@ -52,6 +53,14 @@ class PictureLoop {
   // Copies the picture of the last frame that was started, for a file. Returns false unless it is a
   // still one with samples everywhere, or for a moment while it ends.
   bool copyStill(picture::Picture& picture);
+  // Asks for a picture of its own for a program; the frames wait meanwhile. takeStill() returns it
+  // once it is finished. One at a time.
+  void requestStill(const Still& still) { taker_.request(still); }
+  std::optional<StillAnswer> takeStill() { return taker_.take(); }
+  bool stillWaits() const { return taker_.isBusy() && !taker_.isRendering(); }
+  // Says whether anybody looks at the pictures. If not, only the first frame, which places the
+  // viewer, and still pictures are rendered.
+  void setWatched(bool watched) { watched_ = watched; }
   void cancel() { renderer_.cancel(); }
   std::string takeFailure();
 
@@ -70,7 +79,7 @@ class PictureLoop {
   // Tells whether the last frame does not show the world as it is now.
   bool isOutdated(const Pilot& pilot, const Fit& fit) const;
   // Tells whether the last frame that was started is a still one with samples everywhere.
-  bool hasStill() const { return isRefining() && still_ != Still::none; }
+  bool hasStill() const { return isRefining() && still_ != Progress::none; }
   // Tells whether the still picture of the world as it is now has all its samples.
   bool isFinished(const Pilot& pilot) const;
   // The frames per second while something moves; 0: nothing moves.
@@ -82,26 +91,31 @@ class PictureLoop {
   enum class Shown : uint8_t { nothing, something };
   enum class Decision : uint8_t { wait, cancel, move, settle, refine };
   // What is there of the still frame that was started last.
-  enum class Still : uint8_t { none, covered, finished };
+  enum class Progress : uint8_t { none, covered, finished };
 
   Decision decide(bool outdated, const Fit& fit, double now, Need need) const;
   bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
   FrameSize sizeOf(Phase phase);
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
+  picture::View stillViewOf(const Pilot& pilot, double aspect) const;
+  void advanceStill(const Pilot& pilot, Fit& fit);
   void followHeadlight(const Pilot& pilot);
 
   xvrml::Browser& browser_;
   const Options& options_;
   picture::LiveRenderer renderer_;
+  StillTaker taker_{renderer_};
   Pacing pacing_;
   int width_ = 0, height_ = 0; // size of the window in pixels
   Motion motion_ = Motion::rebuilt;
 
   Phase phase_ = Phase::unstarted;
   Shown shown_ = Shown::nothing;
-  Still still_ = Still::none;
-  bool cancelled_ = false; // the last frame was cancelled for a newer one
+  bool watched_ = true;
+  Progress still_ = Progress::none;
+  bool isStillLost_ = false; // the renderer has another still frame, of a program
+  bool cancelled_ = false;   // the last frame was cancelled for a newer one
   // The number, the camera, headlight and size of the last frame.
   uint64_t number_ = 0;
   xvrml::CameraSettings camera_{};

@@ -65,9 +65,9 @@ void Pilot::setAspect(double aspect) {
   browser_.setAspect(aspect);
 }
 
-xvrml::CameraSettings Pilot::camera() const {
-  xvrml::CameraSettings camera = browser_.camera(aspect_);
-  if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect_);
+xvrml::CameraSettings Pilot::camera(double aspect) const {
+  xvrml::CameraSettings camera = browser_.camera(aspect);
+  if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect);
   return camera;
 }
 
@@ -196,7 +196,26 @@ bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
   return view.fit || (!view.lookAt && !browser_.bound().viewpoint);
 }
 
-void Pilot::animateTransitions() { browser_.setTransition(transition); }
+void Pilot::animateTransitions() {
+  animates_ = true;
+  browser_.setTransition(transition);
+}
+
+void Pilot::setPaused(bool wanted) {
+  if (wanted == paused()) return;
+  time_.toggle();
+  // a paused transition would stand still
+  browser_.setTransition(paused() || !animates_ ? 0 : transition);
+}
+
+void Pilot::skip(double seconds, double fps) {
+  const double begin = browser_.now();
+  time_.skip(seconds);
+  for (double passed = 0; passed < seconds;) {
+    passed = std::min(seconds, passed + 1 / fps);
+    browser_.tick(begin + passed);
+  }
+}
 
 void Pilot::putAt(const xvrml::CameraSettings& camera) {
   browser_.placeViewer(camera.matrix);
@@ -214,6 +233,15 @@ bool Pilot::bindViewpoint(const std::string& name) {
   browser_.set(*list[size_t(index)].node, "set_bind", true);
   gravityActs_ = false;
   return true;
+}
+
+bool Pilot::jumpToViewpoint(const std::string& name) {
+  const double usual = animates_ && !paused() ? transition : 0;
+  browser_.setTransition(0);
+  const bool bound = bindViewpoint(name);
+  browser_.setTransition(usual);
+  touched_ = touched_ || bound;
+  return bound;
 }
 
 void Pilot::jumpTo(size_t number) {
@@ -257,8 +285,7 @@ Action Pilot::press(Action action) {
     headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight());
     break;
   case Action::pause:
-    time_.toggle();
-    browser_.setTransition(paused() ? 0 : transition); // a paused transition would stand still
+    setPaused(!paused());
     message_ = paused() ? "time stands still" : "time goes on";
     break;
   default: return action;

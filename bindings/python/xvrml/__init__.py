@@ -15,7 +15,7 @@ A world has its own clock. The clock moves only when the program sets it:
 >>> for frame in world.animate(0, 10, fps=25): ...
 
 xvrml.rt is the renderer without VRML. xvrml.interop converts meshes and pictures to and from other
-packages.
+packages. xvrml.control controls a world that vv runs in another process.
 """
 import difflib as _difflib
 import importlib as _importlib
@@ -47,7 +47,7 @@ __all__ = [
     "load_node_plugins", "loads", "__version__", *nodes.__all__
 ]
 
-_SUBMODULES = ("dask", "interop", "notebook", "rt")
+_SUBMODULES = ("control", "dask", "interop", "notebook", "rt")
 
 
 def __getattr__(name):
