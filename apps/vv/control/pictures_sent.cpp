@@ -17,8 +17,9 @@ Encoded encoded(const picture::Picture& picture, uint32_t channels, const Render
   try {
     const picture::Format& format = formatOf(render);
     const std::string bytes = format.encode(wantedPart(picture, channels));
-    const std::string facts = fmt::format(R"("format":{},"width":{},"height":{})",
-                                          jsonText(format.name), picture.width, picture.height);
+    const std::string facts =
+        fmt::format(R"("format":{},"width":{},"height":{})", jsonText(format.suffixes[0]),
+                    picture.width, picture.height);
     if (render.file.empty())
       return {fmt::format(R"({{{},"data":"{}"}})", facts, base64(bytes)), ""};
     picture::writeFile(render.file, bytes);
