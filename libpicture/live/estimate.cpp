@@ -15,7 +15,7 @@ namespace HWY_NAMESPACE {
 
 // Two lumas are alike if they differ by less than this fraction and this amount, which cannot be
 // told on a screen.
-constexpr float alikeFraction = 0.02f, alikeAmount = 3e-4f;
+const float alikeFraction = tune(10,0.02f), alikeAmount = 3e-4f;
 
 Lanes count(Mask condition) { return where(condition, all(1)); }
 Mask areAlike(Lanes a, Lanes b) {
@@ -56,7 +56,7 @@ void compareRow(int y, Moment& now, Work& work) {
                 ownX = load(offsetX + i), ownY = load(offsetY + i);
     const Lanes3 ownNormal = load(guides.normal, i);
     Fit fit;
-    Lanes neighbours = all(0), sum = all(0), alike = all(0), straight = all(0);
+    Lanes neighbours = all(0), sum = all(0), most = all(0), alike = all(0), straight = all(0);
     Mask oppositeValid = ownName < ownName;
     Lanes opposite = all(0);
     for (int k = 0; k < 8; k++) {
@@ -66,6 +66,7 @@ void compareRow(int y, Moment& now, Work& work) {
       const Mask same = load(name + j) == ownName;
       neighbours = neighbours + count(same);
       sum = sum + where(same, other);
+      most = larger(most, where(same, other));
       alike = alike + count(both(same, areAlike(other, ownLuma)));
       if (k % 2 == 1)
         straight = straight + count(both(both(same, oppositeValid),
@@ -86,7 +87,8 @@ void compareRow(int y, Moment& now, Work& work) {
           work.deviation.data() + i);
     const Mask explained = either(either(alike >= all(3), alike + alike >= neighbours),
                                   straight >= all(2));
-    store(select(explained, all(0), all(1)), work.unlike.data() + i);
+    const Mask lonely = both(both(neighbours >= all(5), alike < all(1)), ownLuma > most + most);
+    store(select(explained, all(0), select(lonely, all(5), all(1))), work.unlike.data() + i);
   }
 }
 
@@ -109,10 +111,12 @@ void estimateRow(int y, const Moment& now, Work& work) {
         sum = sum + other;
         squares = squares + other * other;
         deviations = deviations + where(same, load(deviation + j));
-        odd = odd + where(same, load(unlike + j));
+        odd = odd + load(unlike + j);
       }
     store(deviations / larger(pixels, all(1)), work.variance.data() + i);
-    store(smaller(odd, all(1)), work.noise.data() + i);
+    const Lanes fraction = odd * all(1.0f / 49);
+    store(clamped((fraction - all(tune(13,0.04f))) * all(1 / tune(14,0.08f)), all(0), all(1)),
+          work.noise.data() + i);
     // The pixel itself does not widen its own limit.
     const Lanes others = larger(pixels - all(1), all(1));
     const Lanes mean = (sum - ownLuma) / others;

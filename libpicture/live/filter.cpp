@@ -13,8 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-constexpr float lumaSpread = 3;    // standard deviations at which a luma is e times less alike
-constexpr float normalFall = 64; // about the power of the cosine between normals
+const float lumaSpread = tune(5,3);    // standard deviations at which a luma is e times less alike
+const float normalFall = tune(6,64); // about the power of the cosine between normals
 constexpr float bspline[3] = {3.0f / 8, 1.0f / 4, 1.0f / 16};
 
 void filterRow(const FilterPass& pass, int y, const Moment& now) {
@@ -56,8 +56,9 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
         const Lanes expected = ownNear + slopeX * all(float(dx) * step) + slopeY * all(float(dy) * step);
         const Lanes away = absolute(load(near + j) - expected) * perNear +
                            absolute(other.x - own.x) * perLuma +
-                           absolute(one - dot(load(guides.normal, j), normal)) * all(normalFall);
-        const Lanes weight = where(load(name + j) == ownName,
+                           absolute(one - dot(load(guides.normal, j), normal)) * all(normalFall) +
+                           select(load(name + j) == ownName, zero, all(tune(16, 3)));
+        const Lanes weight = where(load(name + j) >= zero,
                                    fallOff(away) * all(bspline[std::abs(dx)] * bspline[std::abs(dy)]));
         weights = weights + weight;
         sum = sum + other * weight;
@@ -67,7 +68,6 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
     store(sum * per, *pass.to, i);
     store(varianceSum * (per * per), pass.toVariance->data() + i);
   }
-  (void)zero;
 }
 
 void colourRow(const Plane3& light, int y, const Moment& now, Work& work) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <vector>
+#include "libpicture/live/tune.h"
 
 namespace picture::live {
 

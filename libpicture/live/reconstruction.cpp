@@ -62,11 +62,25 @@ struct Reconstruction::Impl {
     now.projection = Projection(camera);
   }
 
+  // Sums up changes of brightness over 31 x 31 pixels.
+  void findChanges() {
+    ChangePass there{{&work.change, &work.level, &work.doubt},
+                     {&work.otherChange, &work.otherLevel, &work.otherDoubt},
+                     1};
+    ChangePass back{{&work.otherChange, &work.otherLevel, &work.otherDoubt},
+                    {&work.change, &work.level, &work.doubt},
+                    2};
+    for (int k = 0; k < 2; k++, there.step *= 4, back.step *= 4) {
+      rows([&](int y) { changeRow(there, y, now); });
+      rows([&](int y) { changeRow(back, y, now); });
+    }
+  }
+
   // Filters with neighbours farther and farther away; the result is in work.light.
   void filter() {
     FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
                     1};
-    for (; pass.step <= 16; pass.step *= 2) {
+    for (; pass.step <= int(tune(9,16)); pass.step *= 2) {
       rows([&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
       pass.variance = pass.toVariance;
@@ -84,7 +98,9 @@ struct Reconstruction::Impl {
     rows([&](int y) { readRow(planes, before, rests, y, now, work); });
     rows([&](int y) { compareRow(y, now, work); });
     rows([&](int y) { estimateRow(y, now, work); });
-    rows([&](int y) { accumulateRow(y, before, now, work); });
+    rows([&](int y) { recallRow(y, before, now, work); });
+    findChanges();
+    rows([&](int y) { accumulateRow(y, now, work); });
     rows([&](int y) { boundRow(y, now); });
     filter();
     rows([&](int y) { colourRow(*result, y, now, work); });

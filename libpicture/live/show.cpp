@@ -11,7 +11,7 @@ namespace picture::live {
 
 namespace {
 
-constexpr float framesAtRest = 256, framesMoving = 10;
+const float framesAtRest = 256, framesMoving = tune(7,5);
 
 struct Colour {
   float v[4] = {};
@@ -49,10 +49,11 @@ Range rangeAround(const Plane3& colour, size_t i, size_t stride) {
 // a little more with each frame.
 void splineWeights(float part, float weight[4]) {
   const float p2 = part * part, p3 = p2 * part;
-  weight[0] = 0.5f * (-p3 + 2 * p2 - part);
-  weight[1] = 0.5f * (3 * p3 - 5 * p2 + 2);
-  weight[2] = 0.5f * (-3 * p3 + 4 * p2 + part);
-  weight[3] = 0.5f * (p3 - p2);
+  const float a = tune(12, -0.5f);
+  weight[0] = a * (p3 - 2 * p2 + part);
+  weight[1] = (a + 2) * p3 - (a + 3) * p2 + 1;
+  weight[2] = -(a + 2) * p3 + (2 * a + 3) * p2 - a * part;
+  weight[3] = a * (p2 - p3);
 }
 
 // Returns the shown colour at a place between pixels. Outside of the picture its border continues.
@@ -87,10 +88,13 @@ Colour shownAt(const Moment& before, float x, float y) {
 // Returns the nearest of 3 x 3 pixels: at the edge of something that moves, its motion counts.
 size_t nearestAround(const Guides& guides, size_t i, size_t stride) {
   size_t nearest = i;
+  float most = guides.nearness[i] + tune(11,0.05f) * std::abs(guides.nearness[i]);
   for (ptrdiff_t dy = -1; dy <= 1; dy++)
     for (ptrdiff_t dx = -1; dx <= 1; dx++) {
       const size_t j = i + size_t(dy * ptrdiff_t(stride) + dx);
-      if (guides.name[j] >= 0 && guides.nearness[j] > guides.nearness[nearest]) nearest = j;
+      if (guides.name[j] < 0 || guides.nearness[j] <= most) continue;
+      nearest = j;
+      most = guides.nearness[j];
     }
   return nearest;
 }
@@ -132,8 +136,8 @@ void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now,
           low = range.least[k] - more;
           high = range.most[k] + more;
         } else {
-          low = std::max(range.least[k], range.mean[k] - 1.5f * range.spread[k]);
-          high = std::min(range.most[k], range.mean[k] + 1.5f * range.spread[k]);
+          low = std::max(range.least[k], range.mean[k] - tune(8,1.0f) * range.spread[k]);
+          high = std::min(range.most[k], range.mean[k] + tune(8,1.0f) * range.spread[k]);
         }
         const float bounded = std::clamp(old.v[k], low, high);
         shown[k] = std::max(0.0f, frames > 1 ? bounded + (fresh[k] - bounded) * part : fresh[k]);

@@ -34,7 +34,8 @@ struct Work {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&albedo, &light, &filtered, &colour}) planes->assign(layout.size(), 0);
     for (Plane* plane : {&pastX, &pastY, &pastNearness, &deviation, &unlike, &variance,
-                         &filteredVariance, &limit, &noise})
+                         &filteredVariance, &limit, &noise, &change, &level, &doubt,
+                         &otherChange, &otherLevel, &otherDoubt})
       plane->assign(layout.size(), 0);
     found.assign(size_t(layout.height), 0);
     frames.assign(size_t(layout.height), 0);
@@ -51,6 +52,9 @@ struct Work {
   Plane variance; // of the illumination's luma as it goes into the filter
   Plane limit;    // luma beyond that is taken for a rare bright sample
   Plane noise;    // whether this frame's samples are noisy around here, 0 to 1
+  // By how much the luma differs from the accumulated one, the accumulated one, and the variance of
+  // the difference; each summed up around the pixel.
+  Plane change, level, doubt, otherChange, otherLevel, otherDoubt;
   Plane3 filtered;
   Plane filteredVariance;
   Plane3 colour; // red, green and blue of the frame before accumulation over time
@@ -66,8 +70,17 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
 void compareRow(int y, Moment& now, Work& work);
 // Sums up over 7 x 7 pixels of the same surface: `variance`, `limit` and `noise`.
 void estimateRow(int y, const Moment& now, Work& work);
-// Adds the illumination to what was accumulated on the same surfaces.
-void accumulateRow(int y, const Moment& before, Moment& now, Work& work);
+// Finds what was accumulated on the same surfaces, and by how much this frame differs from it.
+void recallRow(int y, const Moment& before, Moment& now, Work& work);
+// One pass of a filter that sums up these differences over neighbours, `step` pixels apart.
+struct ChangePass {
+  const Plane* from[3]; // change, level and doubt
+  Plane* to[3];
+  int step;
+};
+void changeRow(const ChangePass& pass, int y, const Moment& now);
+// Adds the illumination to what was accumulated, brought to the present brightness.
+void accumulateRow(int y, Moment& now, Work& work);
 // Bounds what was accumulated by what the last few frames show around the pixel.
 void boundRow(int y, Moment& now);
 
