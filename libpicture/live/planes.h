@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <vector>
-#include "libpicture/live/tune.h"
 
 namespace picture::live {
 

@@ -32,8 +32,7 @@ FramePlanes planesOf(const Picture& frame) {
   // as rtFrameBuffer allows
   if (frame.width < 1 || frame.height < 1 || frame.width > 65536 || frame.height > 65536)
     throw std::invalid_argument("a preview needs a frame of 1 to 65536 pixels each way, not " +
-                                std::to_string(frame.width) + " x " +
-                                std::to_string(frame.height));
+                                std::to_string(frame.width) + " x " + std::to_string(frame.height));
   return {planeOf(frame, RT_RGBA, 4),     planeOf(frame, RT_DEPTH, 1),
           planeOf(frame, RT_NORMAL, 3),   planeOf(frame, RT_ALBEDO, 3),
           planeOf(frame, RT_POSITION, 3), planeOf(frame, RT_NAME, 1),
@@ -43,8 +42,7 @@ FramePlanes planesOf(const Picture& frame) {
 } // namespace
 
 struct Reconstruction::Impl {
-  explicit Impl(int threads)
-      : arena(threads > 0 ? threads : tbb::task_arena::automatic) {}
+  explicit Impl(int threads) : arena(threads > 0 ? threads : tbb::task_arena::automatic) {}
 
   // Calls stage(y) for each row of the picture.
   template <class Stage> void rows(const Stage& stage) {
@@ -62,17 +60,21 @@ struct Reconstruction::Impl {
     now.projection = Projection(camera);
   }
 
-  // Sums up changes of brightness over 31 x 31 pixels.
+  // Sums up changes of brightness over 15 x 15 pixels; the result is in work.change, level and
+  // doubt.
   void findChanges() {
-    ChangePass there{{&work.change, &work.level, &work.doubt},
-                     {&work.otherChange, &work.otherLevel, &work.otherDoubt},
-                     1};
-    ChangePass back{{&work.otherChange, &work.otherLevel, &work.otherDoubt},
-                    {&work.change, &work.level, &work.doubt},
-                    2};
-    for (int k = 0; k < 2; k++, there.step *= 4, back.step *= 4) {
-      rows([&](int y) { changeRow(there, y, now); });
-      rows([&](int y) { changeRow(back, y, now); });
+    ChangePass pass{{&work.change, &work.level, &work.doubt},
+                    {&work.otherChange, &work.otherLevel, &work.otherDoubt},
+                    1};
+    int n = int(tune(19, 4));
+    for (int k = 0; k < n; pass.step *= int(tune(20, 2)), k++) {
+      rows([&](int y) { changeRow(pass, y, now); });
+      std::swap(pass.from, pass.to);
+    }
+    if (n & 1) {
+      std::swap(work.change, work.otherChange);
+      std::swap(work.level, work.otherLevel);
+      std::swap(work.doubt, work.otherDoubt);
     }
   }
 
@@ -80,13 +82,12 @@ struct Reconstruction::Impl {
   void filter() {
     FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
                     1};
-    for (; pass.step <= int(tune(9,16)); pass.step *= 2) {
+    for (; pass.step <= int(tune(9, 16)); pass.step *= 2) {
       rows([&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
       pass.variance = pass.toVariance;
       pass.to = pass.to == &work.filtered ? &work.light : &work.filtered;
-      pass.toVariance =
-          pass.toVariance == &work.variance ? &work.filteredVariance : &work.variance;
+      pass.toVariance = pass.toVariance == &work.variance ? &work.filteredVariance : &work.variance;
     }
     result = pass.from;
   }

@@ -4,6 +4,8 @@
 // instruction sets. [any thread]
 #pragma once
 
+#include <array>
+
 #include "libpicture/live/planes.h"
 #include "libpicture/live/projection.h"
 
@@ -33,9 +35,9 @@ struct Moment {
 struct Work {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&albedo, &light, &filtered, &colour}) planes->assign(layout.size(), 0);
-    for (Plane* plane : {&pastX, &pastY, &pastNearness, &deviation, &unlike, &variance,
-                         &filteredVariance, &limit, &noise, &change, &level, &doubt,
-                         &otherChange, &otherLevel, &otherDoubt})
+    for (Plane* plane :
+         {&pastX, &pastY, &pastNearness, &deviation, &unlike, &variance, &filteredVariance, &limit,
+          &noise, &change, &level, &doubt, &otherChange, &otherLevel, &otherDoubt})
       plane->assign(layout.size(), 0);
     found.assign(size_t(layout.height), 0);
     frames.assign(size_t(layout.height), 0);
@@ -74,8 +76,7 @@ void estimateRow(int y, const Moment& now, Work& work);
 void recallRow(int y, const Moment& before, Moment& now, Work& work);
 // One pass of a filter that sums up these differences over neighbours, `step` pixels apart.
 struct ChangePass {
-  const Plane* from[3]; // change, level and doubt
-  Plane* to[3];
+  std::array<Plane*, 3> from, to; // change, level and doubt
   int step;
 };
 void changeRow(const ChangePass& pass, int y, const Moment& now);
@@ -84,7 +85,8 @@ void accumulateRow(int y, Moment& now, Work& work);
 // Bounds what was accumulated by what the last few frames show around the pixel.
 void boundRow(int y, Moment& now);
 
-// One pass of the à-trous filter over illumination and variance. Neighbours are `step` pixels apart.
+// One pass of the à-trous filter over illumination and variance. Neighbours are `step` pixels
+// apart.
 struct FilterPass {
   const Plane3* from;
   const Plane* variance;
@@ -98,7 +100,7 @@ void filterRow(const FilterPass& pass, int y, const Moment& now);
 void colourRow(const Plane3& light, int y, const Moment& now, Work& work);
 // Accumulates the colours over time, which smooths edges and textures, and writes width * 4 floats
 // with the alpha of the frame.
-void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now, Work& work,
+void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now, const Work& work,
              float* rgba);
 
 } // namespace picture::live
