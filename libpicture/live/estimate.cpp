@@ -15,7 +15,14 @@ namespace HWY_NAMESPACE {
 
 // Two lumas are alike if they differ by less than this fraction and this amount, which cannot be
 // told on a screen.
-const float alikeFraction = tune(10, 0.02f), alikeAmount = 3e-4f;
+constexpr float alikeFraction = 0.02f, alikeAmount = 3e-4f;
+// A part of the picture is noisy if more than this fraction of its pixels is unlike its neighbours;
+// entirely if that many more are. Of samples that are either light or dark, 14 % are.
+constexpr float fewUnlike = 0.1f, moreUnlike = 0.2f;
+// A bright sample without any like it around counts as that many pixels.
+constexpr float lonelyWeight = 5;
+// Samples are limited to so many standard deviations of the samples around them.
+constexpr float limitSpread = 32;
 
 inline Lanes count(Mask condition) { return where(condition, all(1)); }
 inline Mask areAlike(Lanes a, Lanes b) {
@@ -59,7 +66,7 @@ void compareRow(int y, Moment& now, Work& work) {
     const Lanes3 ownNormal = load(guides.normal, i);
     Fit fit;
     Lanes neighbours = all(0), sum = all(0), most = all(0), alike = all(0), straight = all(0);
-    Mask oppositeValid = hn::MaskFalse(Tag());
+    Mask oppositeValid = hn::FirstN(Tag(), 0);
     Lanes opposite = all(0);
     for (int k = 0; k < 8; k++) {
       const int dx = around[k][0], dy = around[k][1];
@@ -90,7 +97,8 @@ void compareRow(int y, Moment& now, Work& work) {
     const Mask explained =
         either(either(alike >= all(3), alike + alike >= neighbours), straight >= all(2));
     const Mask lonely = both(both(neighbours >= all(5), alike < all(1)), ownLuma > most + most);
-    store(select(explained, all(0), select(lonely, all(5), all(1))), work.unlike.data() + i);
+    store(select(explained, all(0), select(lonely, all(lonelyWeight), all(1))),
+          work.unlike.data() + i);
   }
 }
 
@@ -117,13 +125,13 @@ void estimateRow(int y, const Moment& now, Work& work) {
       }
     store(deviations / larger(pixels, all(1)), work.variance.data() + i);
     const Lanes fraction = odd * all(1.0f / 49);
-    store(clamped((fraction - all(tune(13, 0.1f))) * all(1 / tune(14, 0.2f)), all(0), all(1)),
+    store(clamped((fraction - all(fewUnlike)) * all(1 / moreUnlike), all(0), all(1)),
           work.noise.data() + i);
     // The pixel itself does not widen its own limit.
     const Lanes others = larger(pixels - all(1), all(1));
     const Lanes mean = (sum - ownLuma) / others;
     const Lanes spread = larger((squares - ownLuma * ownLuma) / others - mean * mean, all(0));
-    store(select(pixels > all(4), mean + all(tune(21, 3)) * hn::Sqrt(spread), all(1e30f)),
+    store(select(pixels > all(4), mean + all(limitSpread) * hn::Sqrt(spread), all(1e30f)),
           work.limit.data() + i);
   }
 }

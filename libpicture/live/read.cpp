@@ -150,7 +150,9 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
     const Lanes3 known = amounts(colour), floor{all(darkest), all(darkest), all(darkest)};
     const Lanes3 surface{larger(known.x, floor.x), larger(known.y, floor.y),
                          larger(known.z, floor.z)};
-    const Lanes3 albedo = select(hit, surface, Lanes3{one, one, one});
+    // The environment has an albedo only in mirrors and behind glass.
+    const Mask coloured = either(hit, known.x + known.y + known.z > zero);
+    const Lanes3 albedo = select(coloured, surface, Lanes3{one, one, one});
     const Lanes most = all(brightest);
     const Lanes3 light{smaller(radiance.x / albedo.x, most), smaller(radiance.y / albedo.y, most),
                        smaller(radiance.z / albedo.z, most)};

@@ -60,29 +60,23 @@ struct Reconstruction::Impl {
     now.projection = Projection(camera);
   }
 
-  // Sums up changes of brightness over 15 x 15 pixels; the result is in work.change, level and
-  // doubt.
+  // Sums up changes of brightness over 31 x 31 pixels of the same surface. After the four passes
+  // the result is in work.change, level and doubt.
   void findChanges() {
     ChangePass pass{{&work.change, &work.level, &work.doubt},
                     {&work.otherChange, &work.otherLevel, &work.otherDoubt},
                     1};
-    int n = int(tune(19, 4));
-    for (int k = 0; k < n; pass.step *= int(tune(20, 2)), k++) {
+    for (; pass.step <= 8; pass.step *= 2) {
       rows([&](int y) { changeRow(pass, y, now); });
       std::swap(pass.from, pass.to);
     }
-    if (n & 1) {
-      std::swap(work.change, work.otherChange);
-      std::swap(work.level, work.otherLevel);
-      std::swap(work.doubt, work.otherDoubt);
-    }
   }
 
-  // Filters with neighbours farther and farther away; the result is in work.light.
+  // Filters with neighbours farther and farther away; `result` is what the last pass wrote.
   void filter() {
     FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
                     1};
-    for (; pass.step <= int(tune(9, 16)); pass.step *= 2) {
+    for (; pass.step <= 16; pass.step *= 2) {
       rows([&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
       pass.variance = pass.toVariance;

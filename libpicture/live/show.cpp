@@ -17,10 +17,10 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-// Frames that are accumulated where nothing moves; and elsewhere, where each frame blurs what was
-// accumulated a little.
+// Frames that are accumulated where nothing moves; and elsewhere, where each frame blurs a little
+// what was accumulated.
 constexpr float framesAtRest = 256;
-const float framesMoving = tune(7, 4);
+constexpr float framesMoving = 4;
 // A neighbour that is nearer by this fraction is another surface.
 constexpr float nearer = 0.05f;
 
