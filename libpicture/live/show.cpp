@@ -61,6 +61,16 @@ inline Past pastOf(const Moment& before, const Moment& now, const Work& work, si
   return past;
 }
 
+// Returns where the surface was seen in the frame before, or those of most pixels around it: thin
+// things are met by few samples, and what was hidden appears in larger parts.
+inline Mask wasSeen(const Plane& frames, size_t i, ptrdiff_t stride) {
+  Lanes seen = all(0);
+  for (ptrdiff_t dy = -1; dy <= 1; dy++)
+    for (ptrdiff_t dx = -1; dx <= 1; dx++)
+      seen = seen + where(load(frames.data() + i + size_t(dy * stride + dx)) > all(1), all(1));
+  return either(load(frames.data() + i) > all(1), seen >= all(5));
+}
+
 // The colours that the pixels around allow.
 struct Range {
   Lanes low, high;
@@ -183,10 +193,9 @@ void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now,
     const Past past = pastOf(before, now, work, i);
     const Mask inside = both(both(past.x > all(-0.5f), past.x < all(float(old.width) - 0.5f)),
                              both(past.y > all(-0.5f), past.y < all(float(old.height) - 0.5f)));
-    // A surface that is seen for the first time has no colours yet. A pixel without a sample takes
-    // what was there.
+    // A pixel without a sample takes what was there.
     const Mask known = both(both(inside, present(x, layout.width)),
-                            either(hn::Not(some), load(now.accumulated.frames.data() + i) > one));
+                            either(hn::Not(some), wasSeen(now.accumulated.frames, i, stride)));
     const Shown shown = recallShown(before, past, known);
 
     const Mask rests =

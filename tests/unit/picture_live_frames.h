@@ -2,6 +2,7 @@
 // balls, a camera, samples at random places in their pixels, and noise like that of light sampling.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -169,6 +170,155 @@ inline Hit ball(Vec origin, Vec direction, double radius, double step) {
   hit.motion = p - turned(p, -step);
   hit.light = 1;
   return hit;
+}
+
+// Pictures that are compared with the truth
+// --------------------------------------------------------
+
+using picture::Picture;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+inline const std::vector<float>& valuesOf(const Picture& picture) {
+  return picture.planes.at(RT_RGBA);
+}
+
+inline float colourAt(const Picture& picture, int x, int y, int colour) {
+  return valuesOf(picture).at(4 * size_t(y * picture.width + x) + size_t(colour));
+}
+
+// A part of the picture, in pixels.
+struct Part {
+  int left, top, right, bottom;
+};
+inline Part inner(const Shot& shot, int margin = 8) {
+  return {margin, margin, shot.width - margin, shot.height - margin};
+}
+
+// Calls use(difference, pixel) for each colour of a part.
+template <class Use>
+void compare(const Picture& picture, const std::vector<float>& truth, Part part, const Use& use) {
+  for (int y = part.top; y < part.bottom; y++)
+    for (int x = part.left; x < part.right; x++)
+      for (int c = 0; c < 3; c++) {
+        const size_t pixel = size_t(y * picture.width + x);
+        use(colourAt(picture, x, y, c) - truth.at(3 * pixel + size_t(c)), pixel);
+      }
+}
+
+inline double rms(const Picture& picture, const std::vector<float>& truth, Part part) {
+  double sum = 0, n = 0;
+  compare(picture, truth, part, [&](float d, size_t) {
+    sum += double(d) * d;
+    n++;
+  });
+  return std::sqrt(sum / n);
+}
+
+inline double largest(const Picture& picture, const std::vector<float>& truth, Part part) {
+  double most = 0;
+  compare(picture, truth, part,
+          [&](float d, size_t) { most = std::max(most, std::abs(double(d))); });
+  return most;
+}
+
+inline bool isShowable(const Picture& picture) {
+  return std::ranges::all_of(valuesOf(picture), [](float v) { return std::isfinite(v) && v >= 0; });
+}
+
+// Returns by how many pixels the picture lies to the right of the truth: least squares of the
+// difference against the truth's slope.
+inline double shiftOf(const Picture& picture, const std::vector<float>& truth, Part part) {
+  double slopes = 0, products = 0;
+  for (int y = part.top; y < part.bottom; y++)
+    for (int x = part.left; x < part.right; x++) {
+      const size_t pixel = size_t(y * picture.width + x);
+      const double slope = (double(truth[3 * (pixel + 1)]) - double(truth[3 * (pixel - 1)])) / 2;
+      slopes += slope * slope;
+      products += slope * (double(colourAt(picture, x, y, 0)) - double(truth[3 * pixel]));
+    }
+  return -products / slopes;
+}
+
+inline std::vector<float> colours(const Picture& frame) {
+  std::vector<float> rgb;
+  for (size_t i = 0; i < valuesOf(frame).size(); i++)
+    if (i % 4 != 3) rgb.push_back(valuesOf(frame)[i]);
+  return rgb;
+}
+
+// A wave over a surface, about ten pixels long in these pictures.
+inline double wave(double u, double v) {
+  return 0.5 + 0.2 * std::sin(9 * u) + 0.2 * std::sin(7 * v + u);
+}
+
+// A plane that moves to the right by `step` a frame; its texture moves with it.
+inline World movingPlane(uint32_t frame, double step, bool textured) {
+  return [=](Vec origin, Vec direction) {
+    Hit hit = plane(origin, direction, 0, -infinite, infinite, {frame ? step : 0, 0, 0});
+    const Vec p = origin + direction * hit.distance;
+    const double w = wave(p.x - step * frame, p.y);
+    (textured ? hit.albedo : hit.normal) = textured ? Vec{w, w, w} : hit.normal;
+    if (!textured) hit.light = w;
+    hit.name = 1;
+    return hit;
+  };
+}
+
+inline World turningBall(uint32_t frame, double step, bool textured) {
+  return [=](Vec origin, Vec direction) {
+    Hit hit = ball(origin, direction, 1, frame ? step : 0);
+    if (!std::isfinite(hit.distance)) return hit;
+    const Vec local = turned(origin + direction * hit.distance, -step * frame);
+    const double w = wave(std::atan2(local.x, local.z), 2 * local.y);
+    if (textured)
+      hit.albedo = {w, w, w};
+    else
+      hit.light = w;
+    hit.name = 2;
+    return hit;
+  };
+}
+
+inline Shot shotAt(Vec eye, uint32_t number, bool noisy = false) {
+  Shot shot;
+  shot.camera = cameraAt(eye);
+  shot.number = number;
+  shot.noisy = noisy;
+  return shot;
+}
+
+// A checkered floor with a sharp shadow, a lamp, and a picture of the sky behind. Nothing is
+// sampled.
+inline World quietWorld() {
+  return [](Vec origin, Vec direction) {
+    Hit hit;
+    const double t = (-1 - origin.y) / direction.y;
+    const Vec p = origin + direction * t;
+    const Hit lamp = ball(origin - Vec{0.8, 0.6, 0}, direction, 0.4, 0);
+    if (std::isfinite(lamp.distance)) {
+      hit = lamp;
+      hit.albedo = {0, 0, 0};
+      hit.name = 3;
+    } else if (t > 0 && t < 20) {
+      hit.distance = t;
+      hit.normal = {0, 1, 0};
+      hit.name = 1;
+      const bool dark = (int(std::floor(p.x * 2)) + int(std::floor(p.z * 2))) % 2 != 0;
+      hit.albedo = dark ? Vec{0.1, 0.2, 0.05} : Vec{0.8, 0.7, 0.6};
+      hit.light = p.x + 0.3 * p.z > -0.4 ? 1 : 0.15;
+    } else {
+      hit.light = 0.3 + 0.2 * direction.y;
+    }
+    return hit;
+  };
+}
+
+// The lamp shines, though its albedo is black.
+inline Picture quietFrame(const Shot& shot) {
+  Picture frame = render(quietWorld(), shot);
+  for (size_t i = 0; i < frame.planes[RT_NAME].size(); i++)
+    if (frame.planes[RT_NAME][i] == 3) std::fill_n(&frame.planes[RT_RGBA][4 * i], 3, 5.0f);
+  return frame;
 }
 
 } // namespace live_frames
