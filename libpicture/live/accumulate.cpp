@@ -16,43 +16,9 @@ constexpr float mostFrames = 16;     // older light is not worth what has change
 constexpr float recentFrames = 5;    // frames in Accumulated::recent
 constexpr float recentSpread = 2;    // standard deviations around it that are allowed
 constexpr float noiseMemory = 0.96f; // of Accumulated::noise from frame to frame
-constexpr float firmFrames = 4;      // from here on the variance over time is trusted
-constexpr float certainty = 3;       // a change counts from sqrt(3) standard deviations on
-
-// Gives pixels whose surface is in none of the four taps the nearest one that shows it, among the
-// nine around (x, y): at edges the random place of the sample decides which surface a pixel shows.
-inline void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes y,
-                         Taps& taps) {
-  const Layout& layout = before.layout;
-  const Lanes half = all(0.5f);
-  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
-                           both(y > all(-1), y < all(float(layout.height))));
-  const Mask missing = hn::AndNot(taps.found, inside);
-  if (hn::AllFalse(Tag(), missing)) return;
-  const Lanes middleX = hn::Floor(where(missing, x) + half),
-              middleY = hn::Floor(where(missing, y) + half);
-  const IndexTag tag;
-  const auto stride = int32_t(layout.stride);
-  const Index middle =
-      (hn::ConvertTo(tag, middleY) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
-      hn::ConvertTo(tag, middleX) + hn::Set(tag, Layout::border);
-  Lanes least = all(1e30f);
-  Index best = middle;
-  for (int dy = -1; dy <= 1; dy++)
-    for (int dx = -1; dx <= 1; dx++) {
-      const Index at = middle + hn::Set(tag, dy * stride + dx);
-      const Lanes awayX = middleX + all(float(dx)) - x, awayY = middleY + all(float(dy)) - y;
-      const Lanes distance = awayX * awayX + awayY * awayY;
-      const Mask better =
-          both(both(missing, expected.matches(before.guides, at)), distance < least);
-      least = select(better, distance, least);
-      best = hn::IfThenElse(hn::RebindMask(tag, better), at, best);
-    }
-  const Mask met = least < all(1e30f);
-  taps.index[0] = hn::IfThenElse(hn::RebindMask(tag, met), best, taps.index[0]);
-  taps.weight[0] = select(met, all(1), taps.weight[0]);
-  taps.found = either(taps.found, met);
-}
+constexpr float forgottenNoise = 0.02f;
+constexpr float firmFrames = 4; // from here on the variance over time is trusted
+constexpr float certainty = 3;  // a change counts from sqrt(3) standard deviations on
 
 inline Lanes3 mixed(const Lanes3& old, const Lanes3& fresh, Lanes part) {
   return old + (fresh - old) * part;
@@ -94,7 +60,10 @@ void recallRow(const Reading& reading, int y, const Moment& before, Moment& now,
     const Lanes3 sample = limited(load(reading.light, i), load(work.limit.data() + i));
     store(where(known, sample.x - light.x), work.change.data() + i);
     store(where(known, light.x), work.level.data() + i);
-    store(where(known, load(work.variance.data() + i)), work.doubt.data() + i);
+    // The variance over time counts, too: a frame that happens to lack light looks less noisy.
+    const Lanes mean = load(fresh.mean.data() + i);
+    const Lanes overTime = load(fresh.square.data() + i) - mean * mean;
+    store(where(known, larger(load(work.variance.data() + i), overTime)), work.doubt.data() + i);
 
     float lanes[Layout::widest];
     store(where(both(taps.found, both(some, present(x, layout.width))), all(1)), lanes);
@@ -145,8 +114,9 @@ void accumulateRow(const Reading& reading, int y, Moment& now, Work& work) {
     const Lanes lost = absolute(brighter) / larger(absolute(brighter) + level, all(1e-20f));
 
     const Lanes count = smaller(load(sums.frames.data() + i) * (one - lost) + one, all(mostFrames));
+    const Lanes remembered = load(sums.noise.data() + i) * all(noiseMemory);
     const Lanes noise =
-        larger(load(work.noise.data() + i), load(sums.noise.data() + i) * all(noiseMemory));
+        larger(load(work.noise.data() + i), where(remembered > all(forgottenNoise), remembered));
     const Lanes trust = smaller(noise + noise, one); // 0: free of noise, nothing to average
     const Lanes part = larger(one / count, one - trust),
                 recentPart = larger(part, all(1 / recentFrames));
@@ -200,12 +170,14 @@ void boundRow(int y, Moment& now) {
       }
     const Lanes per = one / larger(pixels, one);
     const Lanes3 mean = sum * per, light = load(sums.light, i);
-    const auto bounded = [&](Lanes v, Lanes m, Lanes s) {
+    const Lanes3 own = load(sums.recent, i); // is always allowed
+    const auto bounded = [&](Lanes v, Lanes r, Lanes m, Lanes s) {
       const Lanes spread = all(recentSpread) * hn::Sqrt(larger(s * per - m * m, zero));
-      return clamped(v, m - spread, m + spread);
+      return clamped(v, smaller(m - spread, r), larger(m + spread, r));
     };
-    const Lanes3 inside{bounded(light.x, mean.x, squares.x), bounded(light.y, mean.y, squares.y),
-                        bounded(light.z, mean.z, squares.z)};
+    const Lanes3 inside{bounded(light.x, own.x, mean.x, squares.x),
+                        bounded(light.y, own.y, mean.y, squares.y),
+                        bounded(light.z, own.z, mean.z, squares.z)};
     store(inside, sums.light, i);
   }
 }

@@ -82,6 +82,41 @@ inline Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, 
   return taps;
 }
 
+// Gives pixels whose surface is in none of the four taps the nearest one that shows it, among the
+// nine around (x, y): at edges the random place of the sample decides which surface a pixel shows.
+inline void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes y,
+                         Taps& taps) {
+  const Layout& layout = before.layout;
+  const Lanes half = all(0.5f);
+  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
+                           both(y > all(-1), y < all(float(layout.height))));
+  const Mask missing = hn::AndNot(taps.found, inside);
+  if (hn::AllFalse(Tag(), missing)) return;
+  const Lanes middleX = hn::Floor(where(missing, x) + half),
+              middleY = hn::Floor(where(missing, y) + half);
+  const IndexTag tag;
+  const auto stride = int32_t(layout.stride);
+  const Index middle =
+      (hn::ConvertTo(tag, middleY) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
+      hn::ConvertTo(tag, middleX) + hn::Set(tag, Layout::border);
+  Lanes least = all(1e30f);
+  Index best = middle;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++) {
+      const Index at = middle + hn::Set(tag, dy * stride + dx);
+      const Lanes awayX = middleX + all(float(dx)) - x, awayY = middleY + all(float(dy)) - y;
+      const Lanes distance = awayX * awayX + awayY * awayY;
+      const Mask better =
+          both(both(missing, expected.matches(before.guides, at)), distance < least);
+      least = select(better, distance, least);
+      best = hn::IfThenElse(hn::RebindMask(tag, better), at, best);
+    }
+  const Mask met = least < all(1e30f);
+  taps.index[0] = hn::IfThenElse(hn::RebindMask(tag, met), best, taps.index[0]);
+  taps.weight[0] = select(met, all(1), taps.weight[0]);
+  taps.found = either(taps.found, met);
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace picture::live
 HWY_AFTER_NAMESPACE();

@@ -14,10 +14,19 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-// Frames that are accumulated where nothing moves; and elsewhere, where each frame blurs a little
-// what was accumulated.
-constexpr float framesAtRest = 256;
-constexpr float framesMoving = 4;
+// Frames that are accumulated: where nothing moves; where nothing moves but light is sampled, which
+// may change; and elsewhere, where each frame blurs a little what was accumulated.
+constexpr float framesAtRest = 256, framesSampled = 16, framesMoving = 4;
+
+// Returns where the surface was seen in the frame before, or those of most pixels around it: thin
+// things are met by few samples, and what was hidden appears in larger parts.
+inline Mask wasSeen(const Plane& frames, size_t i, ptrdiff_t stride) {
+  Lanes seen = all(0);
+  for (ptrdiff_t dy = -1; dy <= 1; dy++)
+    for (ptrdiff_t dx = -1; dx <= 1; dx++)
+      seen = seen + where(load(frames.data() + i + size_t(dy * stride + dx)) > all(1), all(1));
+  return either(load(frames.data() + i) > all(1), seen >= all(5));
+}
 
 void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
   const Layout& layout = pass.pixels.layout;
@@ -25,18 +34,19 @@ void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
     storeColour(load(pass.light, i), pass.reading, i, fresh);
-    const Mask seen = load(pass.cells.accumulated.frames.data() + i) > all(1);
+    const Mask seen = wasSeen(pass.cells.accumulated.frames, i, ptrdiff_t(layout.stride));
+    store(load(pass.cells.accumulated.noise.data() + i), fresh.noise.data() + i);
     keepShown(pass, recalledAt(pass, seen, x, i), i, fresh);
   }
 }
 
-// The colours that 3 x 3 pixels allow.
+// The colours that the pixels around allow.
 struct Range {
   Lanes low, high;
 };
 
-inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask rests) {
-  const float* middle = colour.data() + i;
+// In motion, 3 x 3 pixels bound the colours, the closer the more they are alike.
+inline Range rangeInMotion(const float* middle, ptrdiff_t stride) {
   Lanes least = load(middle), most = least, sum = all(0), squares = all(0);
   for (ptrdiff_t dy = -1; dy <= 1; dy++)
     for (ptrdiff_t dx = -1; dx <= 1; dx++) {
@@ -46,11 +56,32 @@ inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask r
       sum = sum + v;
       squares = squares + v * v;
     }
-  const Lanes mean = sum * all(1.0f / 9), more = all(0.5f) * (most - least);
+  const Lanes mean = sum * all(1.0f / 9);
   const Lanes spread = hn::Sqrt(larger(squares * all(1.0f / 9) - mean * mean, all(0)));
-  // At rest a pixel may keep more than its neighbours happen to show in this frame.
-  return {select(rests, least - more, larger(least, mean - spread)),
-          select(rests, most + more, smaller(most, mean + spread))};
+  return {larger(least, mean - spread), smaller(most, mean + spread)};
+}
+
+// At rest, a pixel may keep what it showed in other frames, though its neighbours happen not to
+// show it now: 5 x 5 pixels, and half of their range more.
+inline Range rangeAtRest(const float* middle, ptrdiff_t stride) {
+  Lanes least = load(middle), most = least;
+  for (ptrdiff_t dy = -2; dy <= 2; dy++)
+    for (ptrdiff_t dx = -2; dx <= 2; dx++) {
+      const Lanes v = load(middle + dy * stride + dx);
+      least = smaller(least, v);
+      most = larger(most, v);
+    }
+  const Lanes more = all(0.5f) * (most - least);
+  return {least - more, most + more};
+}
+
+inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask rests) {
+  const float* middle = colour.data() + i;
+  if (hn::AllTrue(Tag(), rests)) return rangeAtRest(middle, stride);
+  const Range moving = rangeInMotion(middle, stride);
+  if (hn::AllFalse(Tag(), rests)) return moving;
+  const Range resting = rangeAtRest(middle, stride);
+  return {select(rests, resting.low, moving.low), select(rests, resting.high, moving.high)};
 }
 
 inline Lanes mixed(Lanes old, Lanes fresh, const Range& range, Lanes part) {
@@ -72,14 +103,17 @@ void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment
     const Lanes oldFrames = load(fresh.oldFrames.data() + i);
     const Mask rests = both(same, both(load(fresh.pastX.data() + i) == countFrom(x),
                                        load(fresh.pastY.data() + i) == all(float(y))));
-    const Lanes frames =
-        smaller(oldFrames + one, select(rests, all(framesAtRest), all(framesMoving)));
+    // Where light is sampled, what was shown is filtered light, and may lag behind it.
+    const Mask quiet = both(rests, load(fresh.noise.data() + i) <= zero);
+    const Lanes most =
+        select(quiet, all(framesAtRest), select(rests, all(framesSampled), all(framesMoving)));
+    const Lanes frames = smaller(oldFrames + one, most);
     const Lanes part = one / frames;
     const Lanes3 own = load(fresh.colour, i), light = load(fresh.light, i);
     const Plane3& colours = fresh.colour;
-    const Lanes3 bounded{mixed(old.x, own.x, rangeAround(colours.x, i, stride, rests), part),
-                         mixed(old.y, own.y, rangeAround(colours.y, i, stride, rests), part),
-                         mixed(old.z, own.z, rangeAround(colours.z, i, stride, rests), part)};
+    const Lanes3 bounded{mixed(old.x, own.x, rangeAround(colours.x, i, stride, quiet), part),
+                         mixed(old.y, own.y, rangeAround(colours.y, i, stride, quiet), part),
+                         mixed(old.z, own.z, rangeAround(colours.z, i, stride, quiet), part)};
     const Lanes3 kept{larger(old.x, zero), larger(old.y, zero), larger(old.z, zero)};
     const Lanes3 colour = select(some, bounded, kept);
     hn::StoreInterleaved4(colour.x, colour.y, colour.z,
@@ -91,7 +125,8 @@ void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment
     loadQuadruples(frame.rgba + 4 * first, x, layout.width, alpha);
     float out[4 * Layout::widest];
     hn::StoreInterleaved4(colour.x, colour.y, colour.z,
-                          select(both(some, isFinite(alpha)), alpha, one), Tag(), out);
+                          select(both(some, isFinite(alpha)), clamped(alpha, zero, one), one),
+                          Tag(), out);
     std::copy_n(out, 4 * std::min(width(), layout.width - x), rgba + 4 * x);
   }
 }

@@ -166,7 +166,9 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
         expectedAt(pass.pixels, pass.before, pass.reading, around.slope * all(1 / block), i);
     const Lanes pastX = load(pass.reading.pastX.data() + i),
                 pastY = load(pass.reading.pastY.data() + i);
-    const Mask seen = tapsAround(pass.before, expected, pastX, pastY).found;
+    Taps taps = tapsAround(pass.before, expected, pastX, pastY);
+    searchAround(pass.before, expected, pastX, pastY, taps);
+    const Mask seen = taps.found;
     const Recalled recalled = recalledAt(pass, seen, x, i);
     keepShown(pass, recalled, i, fresh);
     Lanes unused;
@@ -185,6 +187,8 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
         hn::AndNot(isFinite(loadSome(pass.frame.depth + first, x, layout.width)), lit);
     const Lanes trust = smaller(around.noise + around.noise, one); // 0: free of noise
     const Lanes3 own = load(pass.reading.light, i);
+    store(where(hn::Not(environment), select(around.found(), around.noise, one)),
+          fresh.noise.data() + i);
     const Lanes3 sharp = select(lit, own, select(recalled.known, old, around.light));
     Lanes3 light = sharp + (around.light - sharp) * trust;
     const Mask found = around.found();

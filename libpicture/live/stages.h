@@ -78,11 +78,12 @@ struct Work {
 struct Fresh {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&colour, &light, &oldColour}) planes->assign(layout.size(), 0);
-    for (Plane* plane : {&pastX, &pastY, &oldFrames}) plane->assign(layout.size(), 0);
+    for (Plane* plane : {&noise, &pastX, &pastY, &oldFrames}) plane->assign(layout.size(), 0);
   }
 
   Plane3 colour; // red, green and blue
   Plane3 light;  // illumination
+  Plane noise;   // 0 to 1: of the illumination
   // What moves here: where it was, not a number if it was not to be seen; and what was shown there.
   Plane pastX, pastY, oldFrames;
   Plane3 oldColour;
