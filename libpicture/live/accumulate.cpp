@@ -16,6 +16,8 @@ constexpr float mostFrames = 16;     // older light is not worth what has change
 constexpr float recentFrames = 5;    // frames in Accumulated::recent
 constexpr float recentSpread = 2;    // standard deviations around it that are allowed
 constexpr float noiseMemory = 0.96f; // of Accumulated::noise from frame to frame
+// The same where more of the samples around than that fraction are like what was shown.
+constexpr float calmMemory = 0.5f, mostSteady = 0.85f;
 constexpr float forgottenNoise = 0.02f;
 constexpr float firmFrames = 4; // from here on the variance over time is trusted
 constexpr float certainty = 3;  // a change counts from sqrt(3) standard deviations on
@@ -114,7 +116,9 @@ void accumulateRow(const Reading& reading, int y, Moment& now, Work& work) {
     const Lanes lost = absolute(brighter) / larger(absolute(brighter) + level, all(1e-20f));
 
     const Lanes count = smaller(load(sums.frames.data() + i) * (one - lost) + one, all(mostFrames));
-    const Lanes remembered = load(sums.noise.data() + i) * all(noiseMemory);
+    const Mask calm = load(work.calm.data() + i) > all(mostSteady);
+    const Lanes remembered =
+        load(sums.noise.data() + i) * select(calm, all(calmMemory), all(noiseMemory));
     const Lanes noise =
         larger(load(work.noise.data() + i), where(remembered > all(forgottenNoise), remembered));
     const Lanes trust = smaller(noise + noise, one); // 0: free of noise, nothing to average

@@ -9,8 +9,7 @@ namespace picture::live {
 
 namespace {
 
-// A luma that lies by that fraction and that amount out of a range is unlike it.
-constexpr float unlikeFraction = 0.02f, unlikeAmount = 3e-4f;
+constexpr int fewestSamples = 3; // that judge another one
 
 // The pixels of a cell.
 struct Block {
@@ -63,35 +62,96 @@ Light lampLight(const CellPass& pass, const Block& block, float name) {
   return {sum.luma * per, sum.orange * per, sum.green * per};
 }
 
-// Tells whether the luma at a pixel is unlike what was shown around it.
-bool isUnlikeShown(const CellPass& pass, size_t pixel) {
+bool areAlike(float a, float b) {
+  return std::abs(a - b) <= std::max(std::abs(a), std::abs(b)) * alikeFraction + alikeAmount;
+}
+
+// The last samples of nine pixels around a place of the frame before: those of the same shape.
+struct Samples {
+  Samples(const CellPass& pass, size_t pixel);
+  float at[9];
+  int count = 0;
+};
+
+Samples::Samples(const CellPass& pass, size_t pixel) {
+  std::fill_n(at, 9, Shown::noSample);
   const float pastX = pass.reading.pastX[pixel], pastY = pass.reading.pastY[pixel];
   const Layout& old = pass.shown.layout;
-  if (!(pastX >= 0 && pastY >= 0 && pastX < float(old.width) && pastY < float(old.height)))
-    return true;
+  if (!(pastX >= 0 && pastY >= 0 && pastX < float(old.width) && pastY < float(old.height))) return;
   const size_t middle = old.row(int(pastY + 0.5f)) + size_t(pastX + 0.5f);
-  float least = 1e30f, most = 0;
-  for (ptrdiff_t dy = -1; dy <= 1; dy++)
-    for (ptrdiff_t dx = -1; dx <= 1; dx++) {
-      const size_t at = middle + size_t(dy * ptrdiff_t(old.stride) + dx);
-      if (pass.pixelsBefore.guides.name[at] != pass.pixels.guides.name[pixel]) continue;
-      const float luma = pass.shown.light[4 * at];
-      least = std::min(least, luma);
-      most = std::max(most, luma);
-    }
-  const float luma = pass.reading.light.x[pixel],
-              most2 = most * (1 + unlikeFraction) + unlikeAmount,
-              least2 = least * (1 - unlikeFraction) - unlikeAmount;
-  return luma > most2 || luma < least2;
+  for (int k = 0; k < 9; k++) {
+    const size_t i = middle + size_t((k / 3 - 1) * ptrdiff_t(old.stride) + k % 3 - 1);
+    if (pass.pixelsBefore.guides.name[i] != pass.pixels.guides.name[pixel]) continue;
+    at[k] = pass.shown.light[4 * i + 3];
+    if (at[k] >= 0) count++;
+  }
+}
+
+// Tells whether a luma continues smooth shading, whose samples lie anywhere in their pixels. The
+// samples of noise that are rarely light or dark have no such gradient.
+bool isSmooth(const Samples& samples, float luma) {
+  if (samples.count < 4) return false;
+  float least = 1e30f, most = 0, sum = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0, xv = 0, yv = 0;
+  for (int k = 0; k < 9; k++) {
+    const float v = samples.at[k], dx = float(k % 3 - 1), dy = float(k / 3 - 1);
+    if (v < 0) continue;
+    least = std::min(least, v);
+    most = std::max(most, v);
+    sum += v;
+    x += dx;
+    y += dy;
+    xx += dx * dx;
+    yy += dy * dy;
+    xy += dx * dy;
+    xv += dx * v;
+    yv += dy * v;
+  }
+  if (most > 2 * least) return false;
+  // The plane of least squares: its gradient and its value in the middle.
+  const auto n = float(samples.count);
+  const float a = xx - x * x / n, b = yy - y * y / n, c = xy - x * y / n, p = xv - x * sum / n,
+              q = yv - y * sum / n, determinant = a * b - c * c;
+  if (determinant < 0.1f) return false;
+  const float across = (p * b - q * c) / determinant, down = (q * a - p * c) / determinant;
+  const float middle = (sum - across * x - down * y) / n;
+  return std::abs(luma - middle) <=
+         std::abs(across) + std::abs(down) + std::abs(middle) * alikeFraction + alikeAmount;
+}
+
+// Judges a sample by those that the pixels around its place had last, as compareRow judges pixels
+// by their neighbours. So edges of shadows that are finer than cells are not taken for noise.
+float verdictOn(const CellPass& pass, size_t pixel) {
+  const Samples samples(pass, pixel);
+  const float luma = pass.reading.light.x[pixel];
+  int alike = 0, straight = 0;
+  float most = 0;
+  for (int k = 0; k < 9; k++) {
+    if (samples.at[k] < 0) continue;
+    alike += areAlike(samples.at[k], luma);
+    most = std::max(most, samples.at[k]);
+    const float opposite = samples.at[8 - k];
+    if (k < 4 && opposite >= 0) straight += areAlike((samples.at[k] + opposite) * 0.5f, luma);
+  }
+  if (samples.count < fewestSamples) return Work::notJudged;
+  if (alike >= 3 || 2 * alike >= samples.count || straight >= 2 || isSmooth(samples, luma))
+    return 0;
+  return alike < 1 && luma > 2 * most ? lonelyWeight : 1;
 }
 
 void setEmpty(size_t i, Moment& now, Reading& reading, Work& work) {
   now.guides.name[i] = emptyName;
-  for (Plane* plane :
-       {&now.guides.nearness, &now.guides.offsetX, &now.guides.offsetY, &reading.light.x,
-        &reading.light.y, &reading.light.z, &reading.pastNearness, &work.changed})
+  for (Plane* plane : {
+           &now.guides.nearness,
+           &now.guides.offsetX,
+           &now.guides.offsetY,
+           &reading.light.x,
+           &reading.light.y,
+           &reading.light.z,
+           &reading.pastNearness,
+       })
     (*plane)[i] = 0;
   reading.pastX[i] = reading.pastY[i] = NAN;
+  work.verdict[i] = Work::notJudged;
 }
 
 } // namespace
@@ -134,7 +194,9 @@ void cellRow(const CellPass& pass, int y, Moment& now, Reading& reading, Work& w
     reading.light.x[i] = pass.reading.light.x[j] + lamps.luma;
     reading.light.y[i] = pass.reading.light.y[j] + lamps.orange;
     reading.light.z[i] = pass.reading.light.z[j] + lamps.green;
-    work.changed[i] = isUnlikeShown(pass, j) ? 1.0f : 0.0f;
+    // Light of lamps that few paths brought is noise.
+    const bool lonely = lamps.luma > pass.reading.light.x[j] * alikeFraction + alikeAmount;
+    work.verdict[i] = now.block == 1 ? Work::notJudged : lonely ? lonelyWeight : verdictOn(pass, j);
   }
 }
 

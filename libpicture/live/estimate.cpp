@@ -13,14 +13,9 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-// Two lumas are alike if they differ by less than this fraction and this amount, which cannot be
-// told on a screen.
-constexpr float alikeFraction = 0.02f, alikeAmount = 3e-4f;
 // A part of the picture is noisy if more than this fraction of its pixels is unlike its neighbours;
 // entirely if that many more are. Of samples that are either light or dark, 14 % are.
 constexpr float fewUnlike = 0.1f, moreUnlike = 0.2f;
-// A bright sample without any like it around counts as that many pixels.
-constexpr float lonelyWeight = 5;
 // Samples are limited to so many standard deviations of the samples around them.
 constexpr float limitSpread = 32;
 
@@ -97,7 +92,9 @@ void compareRow(const Reading& reading, int y, Moment& now, Work& work) {
     const Mask explained =
         either(either(alike >= all(3), alike + alike >= neighbours), straight >= all(2));
     const Mask lonely = both(both(neighbours >= all(5), alike < all(1)), ownLuma > most + most);
-    store(select(explained, all(0), select(lonely, all(lonelyWeight), all(1))),
+    const Lanes verdict = load(work.verdict.data() + i);
+    store(select(verdict >= all(0), verdict,
+                 select(explained, all(0), select(lonely, all(lonelyWeight), all(1)))),
           work.unlike.data() + i);
   }
 }
@@ -111,7 +108,8 @@ void estimateRow(const Reading& reading, int y, const Moment& now, Work& work) {
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
     const Lanes ownName = load(name + i), ownLuma = load(luma + i);
-    Lanes pixels = all(0), sum = all(0), squares = all(0), deviations = all(0), odd = all(0);
+    Lanes pixels = all(0), sum = all(0), squares = all(0), deviations = all(0), odd = all(0),
+          calm = all(0);
     for (int dy = -reach; dy <= reach; dy++)
       for (int dx = -reach; dx <= reach; dx++) {
         const size_t j = i + size_t(ptrdiff_t(layout.stride) * dy + dx);
@@ -122,11 +120,13 @@ void estimateRow(const Reading& reading, int y, const Moment& now, Work& work) {
         squares = squares + other * other;
         deviations = deviations + where(same, load(deviation + j));
         odd = odd + load(unlike + j);
+        calm = calm + count(both(same, load(work.verdict.data() + j) == all(0)));
       }
     store(deviations / larger(pixels, all(1)), work.variance.data() + i);
     const Lanes fraction = odd * all(1.0f / 49);
     store(clamped((fraction - all(fewUnlike)) * all(1 / moreUnlike), all(0), all(1)),
           work.noise.data() + i);
+    store(calm / larger(pixels, all(1)), work.calm.data() + i);
     // The pixel itself does not widen its own limit.
     const Lanes others = larger(pixels - all(1), all(1));
     const Lanes mean = (sum - ownLuma) / others;

@@ -86,7 +86,10 @@ struct Shown {
 
   Layout layout;
   std::vector<float> colour; // red, green, blue, number of frames
-  std::vector<float> light;  // illumination: luma and colour differences; 0
+  // Illumination: luma and colour differences; luma of the pixel's last sample, if cells have
+  // several pixels and it has one.
+  std::vector<float> light;
+  static constexpr float noSample = -1;
 };
 
 // Maps pixels of a frame to pixels of another one that lie at the same place: pixel * ratio +

@@ -125,7 +125,7 @@ struct Reconstruction::Impl {
   void colour(const FramePlanes& planes) {
     const Moment& grid = sparse ? pixels : now;
     const ColourPass pass{planes, grid,    pixelsOfBefore(), sparse ? pixelReading : reading,
-                          now,    *result, work.changed,     shownBefore};
+                          now,    *result, work.verdict,     shownBefore};
     rows(grid,
          [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
   }

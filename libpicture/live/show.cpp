@@ -36,6 +36,7 @@ void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
     storeColour(load(pass.light, i), pass.reading, i, fresh);
     const Mask seen = wasSeen(pass.cells.accumulated.frames, i, ptrdiff_t(layout.stride));
     store(load(pass.cells.accumulated.noise.data() + i), fresh.noise.data() + i);
+    store(all(Shown::noSample), fresh.sample.data() + i);
     keepShown(pass, recalledAt(pass, seen, x, i), i, fresh);
   }
 }
@@ -119,14 +120,17 @@ void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment
     hn::StoreInterleaved4(colour.x, colour.y, colour.z,
                           select(some, frames, smaller(oldFrames, one)), Tag(),
                           shown.colour.data() + 4 * i);
-    hn::StoreInterleaved4(light.x, light.y, light.z, zero, Tag(), shown.light.data() + 4 * i);
+    hn::StoreInterleaved4(light.x, light.y, light.z, load(fresh.sample.data() + i), Tag(),
+                          shown.light.data() + 4 * i);
 
+    // Pixels without light of their own have no alpha of their own.
+    const Mask lit = loadSome(frame.samples + first, x, layout.width) > zero;
     Lanes alpha;
     loadQuadruples(frame.rgba + 4 * first, x, layout.width, alpha);
     float out[4 * Layout::widest];
     hn::StoreInterleaved4(colour.x, colour.y, colour.z,
-                          select(both(some, isFinite(alpha)), clamped(alpha, zero, one), one),
-                          Tag(), out);
+                          select(both(lit, isFinite(alpha)), clamped(alpha, zero, one), one), Tag(),
+                          out);
     std::copy_n(out, 4 * std::min(width(), layout.width - x), rgba + 4 * x);
   }
 }

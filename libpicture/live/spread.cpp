@@ -109,7 +109,9 @@ inline Around cellsAround(const ColourPass& pass, const Columns& columns, const 
       const Mask same = of(guides.name) == surface.name;
       const Lanes weight = where(same, fallOff(away) * across[dx + 1] * all(down[dy + 1]));
       around.add(columns.of(pass.light, at), weight, of(cells.accumulated.noise), slope);
-      around.changed = larger(around.changed, of(pass.changed));
+      const Mask exists = of(guides.name) >= all(0);
+      around.changed =
+          larger(around.changed, where(hn::AndNot(of(pass.verdict) == all(0), exists), all(1)));
     }
   const Lanes per = all(1) / larger(around.weights, all(1e-20f));
   around.light = around.light * per;
@@ -171,8 +173,8 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
     const Mask seen = taps.found;
     const Recalled recalled = recalledAt(pass, seen, x, i);
     keepShown(pass, recalled, i, fresh);
-    Lanes unused;
-    const Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
+    Lanes sample;
+    const Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, sample);
 
     // Where nothing has changed at rest, a surface keeps what it has shown, also what is too fine
     // for the cells.
@@ -185,8 +187,10 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
     const Mask lit = loadSome(pass.frame.samples + first, x, layout.width) > zero;
     const Mask environment =
         hn::AndNot(isFinite(loadSome(pass.frame.depth + first, x, layout.width)), lit);
-    const Lanes trust = smaller(around.noise + around.noise, one); // 0: free of noise
+    const Lanes trust = smaller(around.noise * all(4), one); // 0: free of noise
     const Lanes3 own = load(pass.reading.light, i);
+    store(select(lit, own.x, select(recalled.known, sample, all(Shown::noSample))),
+          fresh.sample.data() + i);
     store(where(hn::Not(environment), select(around.found(), around.noise, one)),
           fresh.noise.data() + i);
     const Lanes3 sharp = select(lit, own, select(recalled.known, old, around.light));

@@ -32,6 +32,12 @@ struct Moment {
   Accumulated accumulated;
 };
 
+// Two lumas are alike if they differ by less than this fraction and this amount, which cannot be
+// told on a screen.
+constexpr float alikeFraction = 0.02f, alikeAmount = 3e-4f;
+// A bright sample without any like it around counts as that many unlike ones.
+constexpr float lonelyWeight = 5;
+
 // What is read of a frame and not kept, by pixel or by cell.
 struct Reading {
   void resize(const Layout& layout) {
@@ -51,8 +57,9 @@ struct Work {
   void resize(const Layout& layout) {
     filtered.assign(layout.size(), 0);
     for (Plane* plane : {&deviation, &unlike, &variance, &filteredVariance, &limit, &noise, &change,
-                         &level, &doubt, &otherChange, &otherLevel, &otherDoubt, &changed})
+                         &level, &doubt, &otherChange, &otherLevel, &otherDoubt, &calm})
       plane->assign(layout.size(), 0);
+    verdict.assign(layout.size(), notJudged);
     found.assign(size_t(layout.height), 0);
     frames.assign(size_t(layout.height), 0);
   }
@@ -66,8 +73,10 @@ struct Work {
   // By how much the luma differs from the accumulated one, the accumulated one, and the variance of
   // the difference; each summed up around the cell.
   Plane change, level, doubt, otherChange, otherLevel, otherDoubt;
-  // 1 where the sample is unlike the illumination that was shown around its place.
-  Plane changed;
+  // What the samples of the last frames tell about the cell's one, where cells have several pixels:
+  // 0: it is like them, or as much as it counts in `unlike`. `calm`: fraction of 0 around the cell.
+  static constexpr float notJudged = -1;
+  Plane verdict, calm;
   Plane3 filtered;
   Plane filteredVariance;
   // For each row: cells that were found in the frame before, and their frames summed up.
@@ -78,12 +87,14 @@ struct Work {
 struct Fresh {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&colour, &light, &oldColour}) planes->assign(layout.size(), 0);
-    for (Plane* plane : {&noise, &pastX, &pastY, &oldFrames}) plane->assign(layout.size(), 0);
+    for (Plane* plane : {&noise, &sample, &pastX, &pastY, &oldFrames})
+      plane->assign(layout.size(), 0);
   }
 
   Plane3 colour; // red, green and blue
   Plane3 light;  // illumination
   Plane noise;   // 0 to 1: of the illumination
+  Plane sample;  // luma of the last sample, or Shown::noSample
   // What moves here: where it was, not a number if it was not to be seen; and what was shown there.
   Plane pastX, pastY, oldFrames;
   Plane3 oldColour;
@@ -142,7 +153,7 @@ struct ColourPass {
   const Reading& reading;        // by pixel
   const Moment& cells;
   const Plane3& light; // illumination by cell, filtered
-  const Plane& changed;
+  const Plane& verdict;
   const Shown& shown; // by the frame before
 };
 // Multiplies the illumination by albedo again where cells are pixels, and finds what was shown.
