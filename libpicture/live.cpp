@@ -9,6 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -47,6 +48,7 @@ struct FrameRequest {
 // A frame that has begun, and the facts that are known only at its start.
 struct FrameInFlight {
   RenderSettings settings;
+  uint32_t viewer;
   Clock::time_point started; // when start() was called
   xvrml::MapStats map;
   std::vector<std::string> names;
@@ -57,6 +59,7 @@ struct EndedFrame {
   Picture picture;
   RenderResult result;           // the picture in it is empty
   double seconds = 0, alone = 0; // see LivePicture
+  uint32_t viewer = 0;
   bool whole = false;
 };
 
@@ -108,7 +111,9 @@ struct LiveRenderer::Impl {
   float progress = 0;         // progress of the frame in flight at the last poll
   Clock::time_point nextPoll; // earliest time of the next poll of a frame in flight
   Picture scratch;            // scratch storage of look()
-  LivePicture before;         // size and rgb of the last picture that look() returned
+  uint32_t viewer = 0;        // of the frame that was started last
+  // For each viewer: size and rgb of the last picture that look() returned.
+  std::map<uint32_t, LivePicture> before;
 
   std::thread thread;
 
@@ -177,7 +182,7 @@ struct LiveRenderer::Impl {
   }
 
   void begin(FrameRequest frame) {
-    FrameInFlight flight{stage.settings, frame.started, {}, {}};
+    FrameInFlight flight{stage.settings, frame.frame.viewer, frame.started, {}, {}};
     try {
       map(std::move(frame));
       flight.map = stage.mapper()->stats();
@@ -216,6 +221,7 @@ struct LiveRenderer::Impl {
     rtFinishFrame();
     throwOnError("rendering");
     auto result = std::make_shared<EndedFrame>();
+    result->viewer = flight.viewer;
     stage.readChannels(flight.settings, result->picture, &flight.names);
     stage.describe(flight.settings, result->result);
     result->result.map = flight.map;
@@ -271,6 +277,7 @@ struct LiveRenderer::Impl {
     stage.settings.progressive = given.progressive && frame.samples > 1;
     stage.settings.channels |= shownChannels;
     started = Clock::now();
+    viewer = frame.viewer;
     progress = 0;
     nextPoll = {};
     cancelled = false;
@@ -295,9 +302,10 @@ struct LiveRenderer::Impl {
     thread.join();
   }
 
-  void show(const Picture& picture, LivePicture& out) {
+  void show(const Picture& picture, uint32_t ofViewer, LivePicture& out) {
     const std::vector<float>& samples = picture.planes.at(RT_SAMPLES);
     out = {};
+    out.viewer = ofViewer;
     out.width = picture.width;
     out.height = picture.height;
     out.rgb = displayBytes(picture);
@@ -309,17 +317,18 @@ struct LiveRenderer::Impl {
     }
     out.samples = sum / double(samples.size());
     out.covered = double(covered) / double(samples.size());
-    if (covered < samples.size()) fillFrom(before, samples, out);
-    before.width = out.width;
-    before.height = out.height;
-    before.rgb = out.rgb;
+    LivePicture& last = before[ofViewer];
+    if (covered < samples.size()) fillFrom(last, samples, out);
+    last.width = out.width;
+    last.height = out.height;
+    last.rgb = out.rgb;
   }
 
   bool look(LivePicture& out) {
     stage.reportMessages();
     const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
     if (!finished) return alone() && pollInFlight(out);
-    show(finished->picture, out);
+    show(finished->picture, finished->viewer, out);
     out.seconds = finished->seconds;
     out.alone = finished->alone;
     out.finished = finished->whole;
@@ -341,7 +350,7 @@ struct LiveRenderer::Impl {
     if (!std::any_of(scratch.planes[RT_SAMPLES].begin(), scratch.planes[RT_SAMPLES].end(),
                      [](float s) { return s > 0; }))
       return false;
-    show(scratch, out);
+    show(scratch, viewer, out);
     const double took = secondsSince(begin), rest = std::max(minPollInterval, pausePerPoll * took);
     nextPoll = Clock::now() +
                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));

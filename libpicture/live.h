@@ -35,7 +35,9 @@ struct LiveFrame {
 // The state of a frame when it was polled.
 struct LivePicture {
   int width = 0, height = 0;
-  // Display bytes, first row at the top. Pixels without a sample yet show the previous picture.
+  uint32_t viewer = 0; // LiveFrame::viewer of its frame
+  // Display bytes, first row at the top. Pixels without a sample yet show the viewer's previous
+  // picture.
   std::vector<uint8_t> rgb;
   double covered = 0;    // fraction of the pixels that have samples, 0 to 1
   double samples = 0;    // samples taken so far, mean over the pixels

@@ -14,8 +14,8 @@ bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
 
 } // namespace
 
-PictureLoop::PictureLoop(xvrml::Browser& browser, const Options& options)
-    : browser_(browser), options_(options), renderer_(browser, options.render),
+PictureLoop::PictureLoop(SharedRenderer& shared, const Options& options, uint32_t viewer)
+    : shared_(shared), renderer_(shared.live), options_(options), viewer_(viewer),
       pacing_(options.fps) {}
 
 void PictureLoop::resize(int width, int height) {
@@ -27,32 +27,44 @@ void PictureLoop::resize(int width, int height) {
 
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
-         browser_.hasChanges() || pilot.headlight() != headlight_ ||
+         shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
          (!isMoving() && (frame_.width != width_ || frame_.height != height_));
 }
 
+PictureLoop::Need PictureLoop::need(const Pilot& pilot, const Fit& fit) const {
+  if (width_ <= 0) return Need::nothing;
+  if (isOutdated(pilot, fit)) return Need::change;
+  return isMoving() || isInterrupted() ? Need::refinement : Need::nothing;
+}
+
+bool PictureLoop::isInterrupted() const {
+  return phase_ == Phase::refining && !ended_ && shared_.cancellations() != cancellations_;
+}
+
 // Moving frames overlap where the renderer permits it. A frame that is refined is cancelled
-// instead, but not before the first picture, so that it comes early.
-PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit) const {
+// instead, but not before the first picture, so that it comes early. Both hold for the frames of
+// other viewers, too.
+PictureLoop::Decision PictureLoop::decide(Need need, const Fit& fit) const {
   const RendererState state = renderer_.state();
   switch (state) {
   case RendererState::mapping: return Decision::wait;
   case RendererState::rendering:
   case RendererState::ready:
-    if (!outdated) return Decision::wait;
-    if (isMoving()) return state == RendererState::ready ? Decision::move : Decision::wait;
-    return hasShown() || fit.isWanted() ? Decision::cancel : Decision::wait;
+    if (need != Need::change) return Decision::wait;
+    if (shared_.isMoving()) return state == RendererState::ready ? Decision::move : Decision::wait;
+    return shared_.viewer() != viewer_ || hasShown() || fit.isWanted() ? Decision::cancel
+                                                                       : Decision::wait;
   case RendererState::idle: break;
   }
-  if (outdated) return Decision::move;
-  return isMoving() ? Decision::refine : Decision::wait;
+  return need == Need::change       ? Decision::move
+         : need == Need::refinement ? Decision::refine
+                                    : Decision::wait;
 }
 
 void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now) {
-  if (width_ <= 0) return;
-  switch (decide(isOutdated(pilot, fit), fit)) {
+  switch (decide(need(pilot, fit), fit)) {
   case Decision::wait: break;
-  case Decision::cancel: renderer_.cancel(); break;
+  case Decision::cancel: shared_.cancel(); break;
   case Decision::move: start(Phase::moving, pilot, fit, now); break;
   case Decision::refine: start(Phase::refining, pilot, fit, now); break;
   }
@@ -64,8 +76,13 @@ bool PictureLoop::isDrawing() const {
 }
 
 bool PictureLoop::isFinished(const Pilot& pilot) const {
-  return phase_ == Phase::refining && isIdle() && !browser_.hasChanges() &&
-         equal(pilot.camera(), camera_);
+  return phase_ == Phase::refining && shared_.isIdle() && !isInterrupted() &&
+         !shared_.isOutdated(world_) && equal(pilot.camera(), camera_);
+}
+
+bool PictureLoop::isRefining(const Pilot& pilot, const Fit& fit) const {
+  return phase_ == Phase::refining && shared_.viewer() == viewer_ && !shared_.isIdle() &&
+         !isInterrupted() && !isOutdated(pilot, fit);
 }
 
 // --- Frames ---
@@ -85,11 +102,27 @@ picture::View PictureLoop::viewOf(const Pilot& pilot, const Fit& fit) const {
   return view;
 }
 
-void PictureLoop::followHeadlight(const Pilot& pilot) {
-  if (headlight_ == pilot.headlight()) return;
-  headlight_ = pilot.headlight();
+xvrml::MapOptions::Headlight PictureLoop::headlightFor(const Pilot& pilot) const {
   const auto on = xvrml::MapOptions::Headlight::on, off = xvrml::MapOptions::Headlight::off;
-  const auto wanted = !headlight_ ? options_.render.headlight : *headlight_ ? on : off;
+  const std::optional<bool> chosen = pilot.headlight();
+  return !chosen ? options_.render.headlight : *chosen ? on : off;
+}
+
+picture::LiveFrame PictureLoop::frameFor(const Pilot& pilot) const {
+  picture::LiveFrame frame;
+  frame.view.shader = options_.view.shader;
+  frame.view.viewer = pilot.camera();
+  frame.width = width_;
+  frame.height = height_;
+  frame.samples = options_.render.samples;
+  frame.viewer = viewer_;
+  return frame;
+}
+
+// The renderer keeps the headlight of its last frame, which may have been another viewer's.
+void PictureLoop::followHeadlight(const Pilot& pilot) {
+  headlight_ = pilot.headlight();
+  const auto wanted = headlightFor(pilot);
   renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
 }
 
@@ -107,8 +140,11 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   frame.width = frame_.width;
   frame.height = frame_.height;
   frame.samples = frame_.samples;
+  frame.viewer = viewer_;
   if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
-  renderer_.start(frame);
+  ended_ = false;
+  cancellations_ = shared_.cancellations();
+  world_ = shared_.start(frame, moving);
   phase_ = phase;
   fit.begin();
 }
@@ -124,8 +160,7 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
   return true;
 }
 
-bool PictureLoop::look(picture::LivePicture& picture) {
-  if (!renderer_.look(picture)) return false;
+bool PictureLoop::note(const picture::LivePicture& picture) {
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();
   shown_ = Shown::something;
@@ -134,6 +169,7 @@ bool PictureLoop::look(picture::LivePicture& picture) {
   facts_.samples = picture.samples;
   facts_.finished = picture.finished;
   if (picture.finished) {
+    ended_ = true;
     pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
                  picture.overhead, picture.samples);
     facts_.stats = picture.stats;

@@ -1,5 +1,5 @@
-// picture_loop.h: Decides when the next frame of a running world is started, continued or
-// cancelled, and how large it is. It owns the renderer. Owned by a session. [the browser's thread]
+// picture_loop.h: Decides when the next frame of a viewer of a running world is started, continued
+// or cancelled, and how large it is. Owned by a session or its guests. [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "session/fit.h"
 #include "session/pacing.h"
 #include "session/pilot.h"
+#include "session/shared_renderer.h"
 
 namespace vv {
 
@@ -23,31 +24,35 @@ class PictureLoop {
     refining   // the last frame fills the window and gets all samples
   };
 
-  // The browser and the options must outlive the loop.
-  PictureLoop(xvrml::Browser& browser, const Options& options);
+  // The renderer and the options must outlive the loop. viewer: number for LiveFrame.
+  PictureLoop(SharedRenderer& shared, const Options& options, uint32_t viewer);
 
   void resize(int width, int height);
   int width() const { return width_; }
   int height() const { return height_; }
 
-  // Starts the next frame or cancels the one in flight, if that is due. now: time of any clock.
+  // What the loop would do if it were alone: make a picture of what has changed, refine the last
+  // one, or nothing.
+  enum class Need : uint8_t { nothing, refinement, change };
+  Need need(const Pilot& pilot, const Fit& fit) const;
+  // Starts the next frame or cancels the one in flight, if that is due. Of several loops, those
+  // that need the most are called first. now: time of any clock.
   void advance(const Pilot& pilot, Fit& fit, double now);
+  // Returns a frame of the viewer's present view with all samples, and its headlight.
+  picture::LiveFrame frameFor(const Pilot& pilot) const;
+  xvrml::MapOptions::Headlight headlightFor(const Pilot& pilot) const;
   // Places the viewer for a fit after its frame has read the world. Returns false if no fit waits
   // for that.
   bool placeViewer(Pilot& pilot, Fit& fit) const;
-  // Returns a newer picture than the last one; false if there is none.
-  bool look(picture::LivePicture& picture);
-  // Copies the picture for a file. Returns false before the first frame.
-  bool copy(picture::Picture& picture) { return renderer_.copy(picture); }
-  void cancel() { renderer_.cancel(); }
-  std::string takeFailure() { return renderer_.takeFailure(); }
+  // Notes a picture of this viewer that the renderer has returned. Returns whether it is to be
+  // shown.
+  bool note(const picture::LivePicture& picture);
 
   bool hasStarted() const { return phase_ != Phase::unstarted; }
   bool hasShown() const { return shown_ != Shown::nothing; }
   bool isMoving() const { return phase_ == Phase::moving; }
-  // The world is being read, so that nothing else may use it.
-  bool isMapping() const { return renderer_.state() == RendererState::mapping; }
-  bool isIdle() const { return renderer_.state() == RendererState::idle; }
+  // Tells whether the last frame is in flight, is refined, and shows the world as it is now.
+  bool isRefining(const Pilot& pilot, const Fit& fit) const;
   // Tells whether something moves and the next frame must wait for the current one.
   bool isDrawing() const;
   // Tells whether the picture shows the world as it is now, with all samples.
@@ -63,14 +68,17 @@ class PictureLoop {
 
   // Tells whether the last frame does not show the world as it is now.
   bool isOutdated(const Pilot& pilot, const Fit& fit) const;
-  Decision decide(bool outdated, const Fit& fit) const;
+  Decision decide(Need need, const Fit& fit) const;
+  // Tells whether a frame that is refined was cancelled for another viewer's.
+  bool isInterrupted() const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
   void followHeadlight(const Pilot& pilot);
 
-  xvrml::Browser& browser_;
+  SharedRenderer& shared_;
+  picture::LiveRenderer& renderer_;
   const Options& options_;
-  picture::LiveRenderer renderer_;
+  const uint32_t viewer_;
   Pacing pacing_;
   int width_ = 0, height_ = 0; // size of the window in pixels
 
@@ -80,6 +88,9 @@ class PictureLoop {
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
   FrameSize frame_;
+  uint64_t world_ = 0;         // state of the world that the last frame shows
+  uint64_t cancellations_ = 0; // of the shared renderer, when the last frame was started
+  bool ended_ = false;         // all samples of the last frame are taken
   // start of the last frame; smoothed time between frames while something moves
   double lastStart_ = 0, gap_ = 0;
   picture::LivePicture facts_; // state of the picture, without the pixels

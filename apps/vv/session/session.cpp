@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -51,7 +52,8 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
       problems_(problems), callbacks_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, problems)),
       pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov),
-      pictures_(*browser_, options_), channels_(options.render.channels),
+      shared_(*browser_, options_.render), pictures_(shared_, options_, 0),
+      channels_(options.render.channels),
       clock_(script || !options.recordInput.empty() ? SessionClock::Mode::stepped
                                                     : SessionClock::Mode::real,
              options.fps),
@@ -111,11 +113,13 @@ void Session::advance(double seconds) {
   clock_.read(seconds);
   if (!resting()) return;
   if (pictures_.placeViewer(pilot_, fit_) && replay_) replay_->resume();
+  guests_.placeViewers();
+  if (captures_.isWaiting()) return captures_.advance();
   step();
   takeEvents();
   loadSome();
   problems_.tell(browser_->world());
-  pictures_.advance(pilot_, fit_, clock_.reading());
+  takeTurns();
   saveIfFinished();
   // Meanwhile nothing else uses the world (resting()).
   if (pictures_.hasShown()) preparation_.begin(*browser_, pilot_.camera());
@@ -128,6 +132,7 @@ void Session::step() {
               [this](double time) {
                 if (replay_) return replay_->step(time);
                 pilot_.step(time);
+                guests_.step(time);
                 return true;
               }});
 }
@@ -135,15 +140,8 @@ void Session::step() {
 // Handles the user's input. In a scripted session only window commands are taken from the user.
 void Session::takeEvents() {
   const bool pointerWaits = preparation_.state() == PickPreparation::State::waiting && !replay_;
-  std::deque<InputEvent> later;
-  while (!waiting_.empty()) {
-    if (pointerWaits && waiting_.front().kind <= InputEvent::Kind::wheel) {
-      later.push_back(std::move(waiting_.front()));
-      waiting_.pop_front();
-      continue;
-    }
-    const InputEvent event = std::move(waiting_.front());
-    waiting_.pop_front();
+  InputEvent event;
+  while (takeEvent(waiting_, pointerWaits, event)) {
     Action action = Action::none;
     if (callbacks_.record) callbacks_.record(clock_.time(), event);
     if (!replay_)
@@ -156,7 +154,7 @@ void Session::takeEvents() {
     else if (ofWindow)
       callbacks_.onAction(event, action);
   }
-  waiting_ = std::move(later);
+  guests_.takeEvents(pointerWaits, callbacks_.onGuestAction);
 }
 
 // Loads Inlines after the first picture, a few at a time.
@@ -173,10 +171,50 @@ void Session::want(Action fit) {
   fit_.want(fit == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current);
 }
 
+// Lets the viewers draw: first those for whom something has changed, each in turn, then those whose
+// picture can be refined, in the order of their numbers.
+void Session::takeTurns() {
+  if (captures_.isPending()) return;
+  const double now = clock_.reading();
+  std::vector<std::pair<uint32_t, Guest*>> viewers{{0, nullptr}};
+  for (const auto& [viewer, guest] : guests_.all()) viewers.emplace_back(viewer, guest.get());
+  const auto needOf = [&](const Guest* guest) {
+    return guest ? guest->pictures.need(guest->pilot, guest->fit) : pictures_.need(pilot_, fit_);
+  };
+  const bool changed = std::any_of(viewers.begin(), viewers.end(), [&](const auto& one) {
+    return needOf(one.second) == PictureLoop::Need::change;
+  });
+  if (changed) { // begin after the viewer who had the last turn
+    const auto next = std::find_if(viewers.begin(), viewers.end(),
+                                   [&](const auto& one) { return one.first > shared_.viewer(); });
+    std::rotate(viewers.begin(), next, viewers.end());
+  }
+  for (const auto& [viewer, guest] : viewers) {
+    if (changed && needOf(guest) != PictureLoop::Need::change) continue;
+    if (guest)
+      guest->pictures.advance(guest->pilot, guest->fit, now);
+    else
+      pictures_.advance(pilot_, fit_, now);
+    if (shared_.isMapping()) return;
+  }
+}
+
+bool Session::look(picture::LivePicture& picture) {
+  const bool idle = shared_.isIdle();
+  while (shared_.live.look(picture)) {
+    if (captures_.note(picture)) continue;
+    Guest* const guest = guests_.find(picture.viewer);
+    if (guest ? guest->pictures.note(picture) : picture.viewer == 0 && pictures_.note(picture))
+      return true;
+  }
+  if (idle) captures_.noteIdle();
+  return false;
+}
+
 std::string Session::save(const std::string& path) {
   picture::Picture picture;
-  return pictures_.copy(picture) ? savePicture(picture, path, channels_)
-                                 : "there is no picture yet";
+  return shared_.live.copy(picture) ? savePicture(picture, path, channels_)
+                                    : "there is no picture yet";
 }
 
 void Session::saveIfFinished() {
@@ -187,43 +225,111 @@ void Session::saveIfFinished() {
 
 bool Session::stop(double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (preparation_.state() == PickPreparation::State::running || !pictures_.isIdle()) {
-    pictures_.cancel();
+  while (preparation_.state() == PickPreparation::State::running || !shared_.isIdle()) {
+    shared_.cancel();
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return true;
 }
 
+// --- Guests ---
+
+void Session::addGuest(uint32_t viewer, int width, int height) {
+  Guest& guest = guests_.add(viewer, pilot_, *browser_, shared_, options_);
+  guest.pilot.step(clock_.time());
+  resizeGuest(viewer, width, height);
+}
+
+void Session::resizeGuest(uint32_t viewer, int width, int height) {
+  Guest* const guest = guests_.find(viewer);
+  if (!guest) return;
+  guest->pictures.resize(width, height);
+  guest->pilot.setAspect(double(guest->pictures.width()) / guest->pictures.height());
+}
+
+void Session::handleFor(uint32_t viewer, const InputEvent& event) {
+  Guest* const guest = guests_.find(viewer);
+  if (!guest && viewer != 0) return;
+  lastActor_ = viewer;
+  (guest ? guest->waiting : waiting_).push_back(event);
+}
+
+const Pilot& Session::pilotOf(uint32_t viewer) const {
+  const Guest* const guest = guests_.find(viewer);
+  return guest ? guest->pilot : pilot_;
+}
+
+const PictureLoop& Session::picturesOf(uint32_t viewer) const {
+  const Guest* const guest = guests_.find(viewer);
+  return guest ? guest->pictures : pictures_;
+}
+
+void Session::capture(uint32_t viewer, Captures::Done done) {
+  const Guest* const guest = guests_.find(viewer);
+  const Pilot& pilot = pilotOf(viewer);
+  const PictureLoop& pictures = picturesOf(viewer);
+  const uint32_t number = guest ? viewer : 0;
+  if (!captures_.isPending() && shared_.viewer() == number) {
+    if (pictures.isRefining(pilot, guest ? guest->fit : fit_))
+      return captures_.adopt(number, std::move(done));
+    picture::Picture picture;
+    if (pictures.isFinished(pilot) && shared_.live.copy(picture)) return done(&picture);
+  }
+  Captures::Request request{pictures.frameFor(pilot), pictures.headlightFor(pilot),
+                            std::move(done)};
+  captures_.want(std::move(request));
+}
+
+bool Session::isQuiet() const {
+  const auto quiet = [](const Pilot& pilot, const PictureLoop& pictures, const Fit& fit) {
+    return !pilot.isSteering() && !fit.isPending() && pictures.isFinished(pilot);
+  };
+  return resting() && waiting_.empty() && !inlines_.isLoading() && !captures_.isPending() &&
+         quiet(pilot_, pictures_, fit_) &&
+         std::all_of(guests_.all().begin(), guests_.all().end(), [&](const auto& one) {
+           const Guest& guest = *one.second;
+           return guest.waiting.empty() && quiet(guest.pilot, guest.pictures, guest.fit);
+         });
+}
+
 // --- Reports ---
 
-std::string Session::command(const std::vector<std::string>& arguments) const {
-  std::optional<bool> headlight = pilot_.headlight();
+std::string Session::command(const std::vector<std::string>& arguments, uint32_t viewer) const {
+  const Pilot& pilot = pilotOf(viewer);
+  const PictureLoop& pictures = picturesOf(viewer);
+  std::optional<bool> headlight = pilot.headlight();
   if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
     headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
-  return viewCommand({browser_->world().path, pilot_.camera(), pictures_.width(),
-                      pictures_.height(), browser_->now(), options_.epoch, headlight},
+  return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
+                      browser_->now(), options_.epoch, headlight},
                      arguments);
+}
+
+std::string Session::takeMessageOf(uint32_t guest) {
+  Guest* const found = guests_.find(guest);
+  return found ? found->pilot.takeMessage() : std::string();
 }
 
 std::string Session::takeMessage() {
   std::string text = std::exchange(message_, {});
   std::string pilots = pilot_.takeMessage();
-  if (const std::string failure = pictures_.takeFailure(); !failure.empty()) {
+  if (const std::string failure = shared_.live.takeFailure(); !failure.empty()) {
     sayError(failure);
     return failure;
   }
   return pilots.empty() ? text : pilots;
 }
 
-SessionFacts Session::facts() const {
-  const picture::LivePicture& picture = pictures_.facts();
+SessionFacts Session::facts(uint32_t viewer) const {
+  const PictureLoop& pictures = picturesOf(viewer);
+  const picture::LivePicture& picture = pictures.facts();
   SessionFacts facts;
-  facts.frameRate = pictures_.frameRate();
+  facts.frameRate = pictures.frameRate();
   facts.width = picture.width;
   facts.height = picture.height;
   facts.samples = picture.samples;
-  facts.wanted = pictures_.isMoving() ? 0 : options_.render.samples;
+  facts.wanted = pictures.isMoving() ? 0 : options_.render.samples;
   facts.stats = picture.stats;
   facts.map = picture.map;
   facts.finished = picture.finished;
@@ -231,7 +337,7 @@ SessionFacts Session::facts() const {
   facts.errors = d.errors();
   facts.warnings = d.warnings();
   if (!d.list().empty()) facts.lastProblem = d.list().back().text();
-  facts.navigation = navigationName(browser_->navigation());
+  facts.navigation = navigationName(pilotOf(viewer).navigation());
   facts.description = browser_->description();
   facts.loading = inlines_.isLoading();
   if (const auto& cluster = options_.render.cluster) {

@@ -1,7 +1,8 @@
-// session.h: Owns a world that is shown in the window, and connects the parts that work on it: the
-// browser and its pilot, the clock, the picture loop, the Inlines and the fit. The states are in
-// the parts. It is independent of the windowing system. Each world has its own session. [the
-// browser's thread]
+// session.h: Owns a world that is shown, in the window or on a page, and connects the parts that
+// work on it: the browser and its pilot, the clock, the picture loop, the Inlines and the fit. The
+// states are in the parts. It is independent of the windowing system. Each world has its own
+// session. The viewer that the world knows has the number 0; guests have others. [the browser's
+// thread]
 #pragma once
 
 #include <deque>
@@ -14,7 +15,9 @@
 #include "libpicture/live.h"
 #include "options/options.h"
 #include "report/problems.h"
+#include "session/captures.h"
 #include "session/fit.h"
+#include "session/guests.h"
 #include "session/inline_queue.h"
 #include "session/input/replay.h"
 #include "session/pick_preparation.h"
@@ -50,6 +53,8 @@ class Session {
     std::function<void(const std::vector<std::string>& urls, const std::string& base)> openUrl;
     // Records the user's input; may be null.
     std::function<void(double time, const InputEvent&)> record;
+    // Receives the same as onAction for the keys of guests; null if there are none.
+    Guests::OnAction onGuestAction;
   };
   // script: replaces the user's events; may be null. Throws the errors of startWorld.
   Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
@@ -63,16 +68,36 @@ class Session {
   // Advances the session: events, the world's clock, pending Inlines, and the next frame. seconds:
   // time of any clock. Never waits.
   void advance(double seconds);
-  // Returns a newer picture than the last one; false if there is none.
-  bool look(picture::LivePicture& picture) { return pictures_.look(picture); }
+  // Returns a newer picture than the last one, of any viewer; false if there is none.
+  bool look(picture::LivePicture& picture);
   // Saves the current state of the picture. Returns a message for the user.
   std::string save(const std::string& path);
   // Saves the picture when all its samples are taken; the script waits until then.
   void saveWhenFinished(const std::string& path) { saveTo_ = path; }
 
+  // --- Guests --- [resting]
+  // Adds a guest who stands where viewer 0 stands. viewer: its number, not 0.
+  void addGuest(uint32_t viewer, int width, int height);
+  void removeGuest(uint32_t viewer) { guests_.remove(viewer); }
+  bool isGuest(uint32_t viewer) const { return guests_.find(viewer); }
+  void resizeGuest(uint32_t viewer, int width, int height);
+  // Input for a viewer that is neither 0 nor a guest is ignored.
+  void handleFor(uint32_t viewer, const InputEvent& event);
+  // Returns the pilot of a guest; for another number that of viewer 0.
+  const Pilot& pilotOf(uint32_t viewer) const;
+  // Returns the number of the viewer whose input was handled last.
+  uint32_t lastActor() const { return lastActor_; }
+
+  // Renders the true picture of this instant from a viewer's place, with all samples. [resting]
+  void capture(uint32_t viewer, Captures::Done done);
+  bool isCapturing() const { return captures_.isPending(); }
+  double capturedSamples() const { return captures_.samples(); }
+  // Tells whether nothing is being drawn, moved or loaded, so that steps may come more slowly.
+  bool isQuiet() const;
+
   // Returns whether the world can be used.
   bool resting() const {
-    return preparation_.state() != PickPreparation::State::running && !pictures_.isMapping();
+    return preparation_.state() != PickPreparation::State::running && !shared_.isMapping();
   }
   // Tells whether something moves and the next frame must wait for the current one.
   bool drawing() const { return pictures_.isDrawing(); }
@@ -81,15 +106,18 @@ class Session {
   xvrml::Browser& browser() { return *browser_; }
   const Pilot& pilot() const { return pilot_; }
   Place place() const;
-  std::string command(const std::vector<std::string>& arguments) const;
-  SessionFacts facts() const;
+  std::string command(const std::vector<std::string>& arguments, uint32_t viewer = 0) const;
+  SessionFacts facts(uint32_t viewer = 0) const;
   std::string takeMessage();
+  std::string takeMessageOf(uint32_t guest);
   // Cancels the frame in flight. Returns false if it still reads the world after `seconds`.
   bool stop(double seconds);
 
  private:
   void step();
   void takeEvents();
+  void takeTurns();
+  const PictureLoop& picturesOf(uint32_t viewer) const;
   void loadSome();
   void want(Action fit);
   void saveIfFinished();
@@ -101,12 +129,16 @@ class Session {
   Callbacks callbacks_;
   std::unique_ptr<xvrml::Browser> browser_;
   Pilot pilot_;
+  SharedRenderer shared_;
   PictureLoop pictures_;
+  Guests guests_;
+  Captures captures_{shared_};
   const uint32_t channels_; // channels of saved pictures
   SessionClock clock_;
   Fit fit_;
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
+  uint32_t lastActor_ = 0;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted
   InlineQueue inlines_;
   PickPreparation preparation_; // the last member: its destructor waits for a user of the others

@@ -1,0 +1,57 @@
+// captures.h: Renders the true pictures of instants, for files. The world stands still until a
+// capture has read it; then it goes on, and the session's pictures wait until the capture has all
+// its samples. Owned by a session. [the browser's thread]
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "session/shared_renderer.h"
+
+namespace vv {
+
+class Captures {
+ public:
+  // Receives the picture with the channels of the settings; null: it could not be rendered.
+  using Done = std::function<void(const picture::Picture* picture)>;
+  struct Request {
+    picture::LiveFrame frame; // its viewer is set by Captures
+    xvrml::MapOptions::Headlight headlight;
+    Done done;
+  };
+
+  // The renderer must outlive this object.
+  explicit Captures(SharedRenderer& shared) : shared_(shared) {}
+
+  void want(Request request);
+  // Takes the frame that is in flight as the capture. viewer: the one of that frame.
+  void adopt(uint32_t viewer, Done done);
+  // A capture has not read the world yet, so the world must not change.
+  bool isWaiting() const { return !waiting_.empty() && !inFlight_; }
+  // A capture is waiting or in flight, so no other frame may be started.
+  bool isPending() const { return inFlight_ || !waiting_.empty(); }
+  // Starts the next capture as soon as the renderer is free. [not while mapping]
+  void advance();
+  // Notes a picture that the renderer has returned. Returns true if it belongs to a capture alone.
+  bool note(const picture::LivePicture& picture);
+  // Notes that the renderer is idle and has no more pictures.
+  void noteIdle();
+  // Samples of the capture in flight, mean over the pixels.
+  double samples() const { return samples_; }
+
+ private:
+  void end(const picture::Picture* picture);
+
+  // Differs from the numbers of all viewers.
+  static constexpr uint32_t ownNumber = ~uint32_t(0);
+
+  SharedRenderer& shared_;
+  std::deque<Request> waiting_;
+  bool inFlight_ = false;
+  uint32_t viewer_ = ownNumber; // of the frame in flight
+  Done done_;                   // for the capture in flight
+  double samples_ = 0;
+};
+
+} // namespace vv
