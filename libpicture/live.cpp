@@ -1,7 +1,12 @@
 // live.cpp: Implements LiveRenderer. The browser's thread and the render thread share two things:
 // `state`, which says who may use the world, and, under `mutex`, the requested frame and the ended
 // frames. The settings belong to the browser's thread except while mapping; each frame in flight
-// has its own copy in its FrameInFlight.
+// has its own copy in its FrameInFlight. The render thread rebuilds previews (`previews`) when
+// their frame has ended; the browser's thread makes display bytes (`display`).
+//
+// A preview is rebuilt before its frame counts as ended. A thread of its own would not make the
+// frame rate higher: rebuilding uses all processors, as rendering does, and with a cluster the
+// other frame in flight is rendered by the workers meanwhile.
 #include "libpicture/live.h"
 
 #include <algorithm>
@@ -9,7 +14,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
-#include <map>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -17,12 +21,15 @@
 #include <thread>
 #include <utility>
 
+#include "libpicture/live/display.h"
+#include "libpicture/live/previews.h"
 #include "libpicture/stage.h"
 
 namespace picture {
 
 namespace {
 
+using Purpose = LiveFrame::Purpose;
 using Clock = std::chrono::steady_clock;
 double between(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double>(end - start).count();
@@ -40,26 +47,29 @@ constexpr size_t maxOverlapping = 2;
 constexpr std::chrono::milliseconds patience(1);
 
 struct FrameRequest {
-  LiveFrame frame;
+  live::ShownFrame facts;
+  View view;
   WorldChanges worldChanges;
   Clock::time_point started;
 };
 
 // A frame that has begun, and the facts that are known only at its start.
 struct FrameInFlight {
+  live::ShownFrame facts;
   RenderSettings settings;
-  uint32_t viewer;
   Clock::time_point started; // when start() was called
   xvrml::MapStats map;
-  std::vector<std::string> names;
+  std::vector<std::string> names; // of a still frame
+  live::FrameCamera camera;
+  live::WorldStep step;
 };
 
 // A frame that has finished or was cancelled.
 struct EndedFrame {
-  Picture picture;
-  RenderResult result;           // the picture in it is empty
-  double seconds = 0, alone = 0; // see LivePicture
-  uint32_t viewer = 0;
+  live::ShownFrame facts;
+  Picture picture;                               // a preview: the rebuilt picture
+  RenderResult result;                           // the picture in it is empty
+  double seconds = 0, alone = 0, rebuilding = 0; // see LivePicture
   bool whole = false;
 };
 
@@ -67,19 +77,27 @@ bool all(const std::vector<float>& samples, float least) {
   return std::all_of(samples.begin(), samples.end(), [least](float s) { return s >= least; });
 }
 
-// Fills pixels without a sample from the same place of the previous picture, whatever its size.
-void fillFrom(const LivePicture& before, const std::vector<float>& samples, LivePicture& out) {
-  if (before.rgb.empty()) return;
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      const size_t pixel = size_t(y) * size_t(out.width) + size_t(x);
-      if (samples[pixel] > 0) continue;
-      const size_t row = size_t(y) * size_t(before.height) / size_t(out.height);
-      const size_t from =
-          row * size_t(before.width) + size_t(x) * size_t(before.width) / size_t(out.width);
-      std::copy_n(before.rgb.begin() + std::ptrdiff_t(3 * from), 3,
-                  out.rgb.begin() + std::ptrdiff_t(3 * pixel));
-    }
+// Returns the settings of a frame. given: those of a still picture.
+RenderSettings settingsOf(const RenderSettings& given, const LiveFrame& frame) {
+  RenderSettings settings = given;
+  settings.width = frame.width;
+  settings.height = frame.height;
+  settings.samples = frame.samples;
+  settings.progressive = given.progressive && frame.samples > 1;
+  settings.channels |= shownChannels;
+  return settings;
+}
+
+// Changes the settings of a frame to those of a preview. number: that of the frame. Each preview
+// has a seed of its own: from the same samples again and again nothing could be accumulated.
+void makePreview(RenderSettings& settings, Purpose purpose, uint64_t number) {
+  const bool rebuilt = purpose == Purpose::preview;
+  settings.channels = rebuilt ? shownChannels | live::previewChannels : shownChannels;
+  settings.progressive = false;
+  settings.error = settings.timeLimit = 0;
+  const auto seed = uint32_t(settings.quality.whole(RT_SEED)) + uint32_t(number);
+  settings.quality.set(RT_SEED, int32_t(seed));
+  if (rebuilt) settings.quality.set(RT_FOLLOW_IMAGES, 1);
 }
 
 } // namespace
@@ -97,7 +115,7 @@ struct LiveRenderer::Impl {
   std::condition_variable changed;
   std::optional<FrameRequest> requested;
   bool ending = false;
-  std::shared_ptr<const EndedFrame> lastEnded; // the last frame that ended
+  std::shared_ptr<const EndedFrame> lastStill; // the last still frame that ended
   // Ended frames that look() has not returned yet; at most as many as may be in flight.
   std::deque<std::shared_ptr<const EndedFrame>> unpolled;
   std::string failure;
@@ -105,21 +123,24 @@ struct LiveRenderer::Impl {
   // Used by the render thread only.
   std::deque<FrameInFlight> inFlight; // frames in flight, oldest first
   Clock::time_point lastEnd;
+  live::WorldSteps steps;
+  live::Previews previews;
+  std::string unrebuilt;  // why the last preview could not be rebuilt, if that is to be told
+  bool rebuilding = true; // false: the last preview could not be rebuilt
 
   // Used by the browser's thread only.
+  live::ShownFrame current; // the frame that was started last
   Clock::time_point started;
   float progress = 0;         // progress of the frame in flight at the last poll
   Clock::time_point nextPoll; // earliest time of the next poll of a frame in flight
   Picture scratch;            // scratch storage of look()
-  uint32_t viewer = 0;        // of the frame that was started last
-  // For each viewer: size and rgb of the last picture that look() returned.
-  std::map<uint32_t, LivePicture> before;
+  live::Display display;
 
   std::thread thread;
 
   Impl(xvrml::Browser& browser, const RenderSettings& settings)
       : given(settings), stage(browser.world(), &browser, settings),
-        most(settings.cluster ? maxOverlapping : 1) {
+        most(settings.cluster ? maxOverlapping : 1), previews(settings.threads) {
     given.progressive = true;
   }
 
@@ -135,6 +156,7 @@ struct LiveRenderer::Impl {
         FrameRequest frame = *std::exchange(requested, {});
         lock.unlock();
         std::string wrong = failureOf([&] { begin(std::move(frame)); });
+        if (!wrong.empty()) steps.beginAnew(); // what the next frame's RT_MOTION means is unknown
         lock.lock();
         updateState(std::move(wrong));
       } else if (inFlight.empty()) {
@@ -145,9 +167,10 @@ struct LiveRenderer::Impl {
         lock.unlock();
         std::shared_ptr<const EndedFrame> result;
         std::string wrong = failureOf([&] { result = finish(); });
+        if (wrong.empty()) wrong = std::exchange(unrebuilt, {});
         lock.lock();
         if (result) {
-          lastEnded = result;
+          if (result->facts.purpose == Purpose::still) lastStill = result;
           unpolled.push_back(std::move(result));
           if (unpolled.size() > most) unpolled.pop_front();
         }
@@ -182,11 +205,13 @@ struct LiveRenderer::Impl {
   }
 
   void begin(FrameRequest frame) {
-    FrameInFlight flight{stage.settings, frame.frame.viewer, frame.started, {}, {}};
+    FrameInFlight flight{frame.facts, stage.settings, frame.started, {}, {}, {}, {}};
     try {
       map(std::move(frame));
       flight.map = stage.mapper()->stats();
-      if (flight.settings.channels & RT_NAME) flight.names = stage.mapper()->names();
+      flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height};
+      if (flight.facts.purpose == Purpose::still && (flight.settings.channels & RT_NAME))
+        flight.names = stage.mapper()->names();
     } catch (...) { // the world is only half mapped: the next frame starts with a new context
       stage.close();
       inFlight.clear();
@@ -196,6 +221,7 @@ struct LiveRenderer::Impl {
     if (cancelled) return; // cancelled before it began
     rtSwapBuffers();
     throwOnError("rendering");
+    flight.step = steps.begin();
     inFlight.push_back(std::move(flight));
     if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
   }
@@ -203,36 +229,64 @@ struct LiveRenderer::Impl {
   // Maps the world for a frame. All references to nodes are released when this returns, because the
   // browser uses the nodes from then on.
   void map(FrameRequest frame) {
+    const bool anew = !stage.context() || frame.worldChanges.otherWorld;
+    bool changed = !frame.worldChanges.changes.empty();
     if (!stage.context()) {
       stage.open([this] { return cancelled.load(); });
       frame.worldChanges.changes.clear(); // the new mapper already contains them
       frame.worldChanges.otherWorld = false;
     }
+    const uint64_t moved = stage.mapper()->stats().instancesMoved;
     stage.apply(frame.worldChanges);
-    stage.prepare(frame.frame.view);
+    stage.prepare(frame.view);
+    // Billboards follow the camera, without a change of the world's.
+    changed = changed || stage.mapper()->stats().instancesMoved != moved;
+    if (anew)
+      steps.beginAnew();
+    else if (changed)
+      steps.change();
     stage.setUpFrame();
     rtQuality(RT_FRAMES_IN_FLIGHT, int(most)); // so that rtSwapBuffers waits for none of them
   }
 
-  // Waits for the oldest frame and returns it.
+  // Waits for the oldest frame and returns it; null: a preview that was cancelled.
   std::shared_ptr<const EndedFrame> finish() {
     const FrameInFlight flight = std::move(inFlight.front());
     inFlight.pop_front();
     rtFinishFrame();
     throwOnError("rendering");
     auto result = std::make_shared<EndedFrame>();
-    result->viewer = flight.viewer;
+    result->facts = flight.facts;
     stage.readChannels(flight.settings, result->picture, &flight.names);
     stage.describe(flight.settings, result->result);
     result->result.map = flight.map;
     result->whole =
         !cancelled || all(result->picture.planes.at(RT_SAMPLES), float(flight.settings.samples));
+    const bool still = flight.facts.purpose == Purpose::still;
+    if (flight.facts.purpose == Purpose::preview && result->whole) rebuild(flight, *result);
+    if (still && result->whole) previews.forget(flight.facts.viewer);
     const Clock::time_point end = Clock::now();
     result->seconds = between(flight.started, end);
     result->alone = between(std::max(flight.started, lastEnd),
                             inFlight.empty() ? end : inFlight.front().started);
     lastEnd = end;
-    return result;
+    return still || result->whole ? result : nullptr;
+  }
+
+  // Replaces the samples of a preview by the rebuilt picture. If that fails, the samples are shown
+  // as they are, and the reason is told once until it succeeds again.
+  void rebuild(const FrameInFlight& flight, EndedFrame& frame) {
+    const Clock::time_point begin = Clock::now();
+    const std::string wrong = failureOf([&] {
+      Picture rebuilt =
+          previews.rebuild(flight.facts.viewer, frame.picture, flight.camera, flight.step);
+      rebuilt.planes[RT_SAMPLES] = std::move(frame.picture.planes[RT_SAMPLES]);
+      frame.picture = std::move(rebuilt);
+    });
+    frame.rebuilding = secondsSince(begin);
+    if (!wrong.empty()) frame.facts.purpose = Purpose::rawPreview;
+    if (!wrong.empty() && rebuilding) unrebuilt = "the preview cannot be rebuilt: " + wrong;
+    rebuilding = wrong.empty();
   }
 
   // --- The browser's thread ---
@@ -246,9 +300,9 @@ struct LiveRenderer::Impl {
     if (const RTcontext context = stage.context()) rtCancel(context);
   }
 
-  std::shared_ptr<const EndedFrame> last() {
+  std::shared_ptr<const EndedFrame> still() {
     const std::lock_guard lock(mutex);
-    return lastEnded;
+    return lastStill;
   }
 
   std::shared_ptr<const EndedFrame> nextUnpolled() {
@@ -266,22 +320,18 @@ struct LiveRenderer::Impl {
     return (now == State::rendering || now == State::ready) && framesInFlight == 1;
   }
 
-  void start(const LiveFrame& frame) {
+  uint64_t start(const LiveFrame& frame) {
     if (now() != State::idle && now() != State::ready)
       throw std::logic_error("a frame is in flight");
     stage.reportMessages();
-    stage.settings = given;
-    stage.settings.width = frame.width;
-    stage.settings.height = frame.height;
-    stage.settings.samples = frame.samples;
-    stage.settings.progressive = given.progressive && frame.samples > 1;
-    stage.settings.channels |= shownChannels;
+    current = {current.number + 1, frame.purpose, frame.viewer, frame.samples};
+    stage.settings = settingsOf(given, frame);
+    if (frame.purpose != Purpose::still) makePreview(stage.settings, frame.purpose, current.number);
     started = Clock::now();
-    viewer = frame.viewer;
     progress = 0;
     nextPoll = {};
     cancelled = false;
-    FrameRequest next{frame, stage.collectChanges(), started};
+    FrameRequest next{current, frame.view, stage.collectChanges(), started};
     {
       const std::lock_guard lock(mutex);
       failure.clear();
@@ -290,6 +340,7 @@ struct LiveRenderer::Impl {
       state = State::mapping;
     }
     changed.notify_all();
+    return current.number;
   }
 
   void end() {
@@ -302,38 +353,26 @@ struct LiveRenderer::Impl {
     thread.join();
   }
 
-  void show(const Picture& picture, uint32_t ofViewer, LivePicture& out) {
-    const std::vector<float>& samples = picture.planes.at(RT_SAMPLES);
+  void show(const Picture& picture, const live::ShownFrame& frame, bool whole, double seconds,
+            LivePicture& out) {
     out = {};
-    out.viewer = ofViewer;
-    out.width = picture.width;
-    out.height = picture.height;
-    out.rgb = displayBytes(picture);
-    double sum = 0;
-    size_t covered = 0;
-    for (const float s : samples) {
-      sum += double(s);
-      covered += s > 0;
-    }
-    out.samples = sum / double(samples.size());
-    out.covered = double(covered) / double(samples.size());
-    LivePicture& last = before[ofViewer];
-    if (covered < samples.size()) fillFrom(last, samples, out);
-    last.width = out.width;
-    last.height = out.height;
-    last.rgb = out.rgb;
+    out.number = frame.number;
+    out.purpose = frame.purpose;
+    out.seconds = seconds;
+    out.finished = whole;
+    display.show(picture, frame, whole, seconds, out);
   }
 
   bool look(LivePicture& out) {
     stage.reportMessages();
     const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
     if (!finished) return alone() && pollInFlight(out);
-    show(finished->picture, finished->viewer, out);
-    out.seconds = finished->seconds;
+    show(finished->picture, finished->facts, finished->whole, finished->seconds, out);
     out.alone = finished->alone;
-    out.finished = finished->whole;
     out.ended = true;
-    out.overhead = std::max(0.0, finished->seconds - finished->result.stats.renderSeconds);
+    out.rebuilding = finished->rebuilding;
+    out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
+                                     finished->result.stats.renderSeconds);
     out.map = finished->result.map;
     out.stats = finished->result.stats;
     return true;
@@ -342,7 +381,7 @@ struct LiveRenderer::Impl {
   // Returns the frame in flight, if it has new samples.
   bool pollInFlight(LivePicture& out) {
     const Clock::time_point begin = Clock::now();
-    if (begin < nextPoll) return false;
+    if (current.purpose == Purpose::preview || begin < nextPoll) return false;
     const RTcontext context = stage.context();
     const float now = rtProgress(context);
     if (now <= progress || !stage.snapshot(scratch, shownChannels)) return false;
@@ -350,21 +389,24 @@ struct LiveRenderer::Impl {
     if (!std::any_of(scratch.planes[RT_SAMPLES].begin(), scratch.planes[RT_SAMPLES].end(),
                      [](float s) { return s > 0; }))
       return false;
-    show(scratch, viewer, out);
+    show(scratch, current, false, secondsSince(started), out);
     const double took = secondsSince(begin), rest = std::max(minPollInterval, pausePerPoll * took);
     nextPoll = Clock::now() +
                std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(rest));
-    out.seconds = secondsSince(started);
     return true;
   }
 
-  bool copy(Picture& out) {
-    const std::shared_ptr<const EndedFrame> finished = last();
-    const bool begun = alone() && stage.snapshot(out, stage.settings.channels);
+  bool copy(Picture& out, uint64_t* number) {
+    const std::shared_ptr<const EndedFrame> finished = still();
+    const bool begun = current.purpose == Purpose::still && alone() &&
+                       stage.snapshot(out, stage.settings.channels);
+    uint64_t copied = current.number;
     if (!begun || (finished && !all(out.planes[RT_SAMPLES], 1))) {
       if (!finished) return false;
       out = finished->picture;
+      copied = finished->facts.number;
     }
+    if (number) *number = copied;
     if (!(given.channels & RT_SAMPLES)) out.planes.erase(RT_SAMPLES);
     if (!(given.channels & RT_RGBA)) out.planes.erase(RT_RGBA);
     return true;
@@ -380,7 +422,7 @@ LiveRenderer::~LiveRenderer() { impl_->end(); }
 
 LiveRenderer::State LiveRenderer::state() const { return impl_->now(); }
 
-void LiveRenderer::start(const LiveFrame& frame) { impl_->start(frame); }
+uint64_t LiveRenderer::start(const LiveFrame& frame) { return impl_->start(frame); }
 
 void LiveRenderer::cancel() {
   if (impl_->state != State::idle) impl_->cancel();
@@ -388,7 +430,7 @@ void LiveRenderer::cancel() {
 
 bool LiveRenderer::look(LivePicture& picture) { return impl_->look(picture); }
 
-bool LiveRenderer::copy(Picture& picture) { return impl_->copy(picture); }
+bool LiveRenderer::copy(Picture& picture, uint64_t* number) { return impl_->copy(picture, number); }
 
 void LiveRenderer::change(const std::function<void(RenderSettings&)>& change) {
   change(impl_->given);

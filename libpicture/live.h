@@ -1,7 +1,9 @@
 // live.h: Renders a running world while its user continues to interact. Frames are started and
-// polled; no call waits for one. With a cluster, frames overlap: the next one may start while the
-// last jobs of the previous one are outstanding. One OpenRT context and one mapper live on a thread
-// of their own, as in renderer.h. [one thread: the browser's]
+// polled; no call waits for one. While something moves, frames are previews, which are rebuilt from
+// few samples; once nothing moves, a still frame fades in over the last one of them. With a
+// cluster, frames overlap: the next one may start while the last jobs of the previous one are
+// outstanding. One OpenRT context and one mapper live on a thread of their own, as in renderer.h.
+// [one thread: the browser's]
 #pragma once
 
 #include <cstdint>
@@ -13,9 +15,9 @@
 
 namespace picture {
 
-// A frame to be rendered. Fewer pixels and samples finish sooner. The picture is refined from 1
-// sample per pixel on and can be polled at any time. Polling does not change the result: the
-// finished picture has the same bytes as Renderer::render with the same samples.
+// A frame to be rendered. Fewer pixels and samples finish sooner. A still picture is refined from 1
+// sample per pixel on and can be polled at any time. Neither polling nor earlier frames change the
+// result: the finished picture has the same bytes as Renderer::render with the same samples.
 struct LiveFrame {
   // The camera is `viewer` if set, otherwise the browser's viewer (the bound Viewpoint plus the
   // user's navigation).
@@ -25,30 +27,35 @@ struct LiveFrame {
   // still: refined from 1 sample per pixel on, with the bytes of Renderer::render.
   // preview: of something that moves; the picture is rebuilt from this frame and earlier previews
   //   of the same viewer (live/reconstruction.h) and is never part of a file or a still picture.
-  // rawPreview: the same, but the samples are shown as they are.
+  // rawPreview: of something that moves; its samples are shown as they are.
+  // The samples of both kinds of previews differ from frame to frame.
   enum class Purpose : uint8_t { still, preview, rawPreview };
   Purpose purpose = Purpose::still;
-  // Whom a preview is for. Each viewer has accumulated frames of its own.
+  // Whom the frame is for. Each viewer has accumulated frames of its own, and a still frame fades
+  // in over what its viewer was shown last. At most eight viewers are remembered.
   uint32_t viewer = 0;
 };
 
 // The state of a frame when it was polled.
 struct LivePicture {
   int width = 0, height = 0;
-  uint32_t viewer = 0; // LiveFrame::viewer of its frame
   // Display bytes, first row at the top. Pixels without a sample yet show the viewer's previous
-  // picture.
+  // picture. A still picture with few samples is mixed with the preview before it.
   std::vector<uint8_t> rgb;
+  uint64_t number = 0;                                    // what start() returned for the frame
+  LiveFrame::Purpose purpose = LiveFrame::Purpose::still; // of the frame
   double covered = 0;    // fraction of the pixels that have samples, 0 to 1
   double samples = 0;    // samples taken so far, mean over the pixels
   double seconds = 0;    // seconds since the frame was started
   double alone = 0;      // seconds of an ended frame during which no other frame was in flight
   bool finished = false; // all samples are taken
-  bool preview = false;  // rebuilt from previews: biased, and to be called a preview
+  // Rebuilt from few samples, or mixed with such a picture: biased, and to be called a preview.
+  bool preview = false;
   // Finished or cancelled; no more updates follow. overhead, map and stats are valid.
   bool ended = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.
   double overhead = 0;
+  double rebuilding = 0; // part of `seconds` after tracing: the time of the Reconstruction
   xvrml::MapStats map{};
   RTstats stats{};
 };
@@ -69,19 +76,23 @@ class LiveRenderer {
     ready      // same as rendering, but another frame may be started; happens only with a cluster
   };
   State state() const;
-  // Starts a frame from the browser's changes and returns at once. Throws std::logic_error unless
-  // the state is idle or ready. At most two frames are in flight, so the display lags by at most
-  // one frame.
-  void start(const LiveFrame& frame);
-  // Ends the frames in flight soon, including the older one. Finished parts stay visible. Does
-  // nothing without a frame.
+  // Starts a frame from the browser's changes and returns at once: the frame's number, from 1 on.
+  // Throws std::logic_error unless the state is idle or ready. At most two frames are in flight, so
+  // the display lags by at most one frame.
+  uint64_t start(const LiveFrame& frame);
+  // Ends the frames in flight soon, including the older one. Finished parts of still frames stay
+  // visible; previews are dropped. Does nothing without a frame.
   void cancel();
   // Returns each ended frame once, in order. Otherwise returns the frame in flight, if it is the
-  // only one and has new samples since the last call. Never waits.
+  // only one, is not a preview and has new samples since the last call. Never waits.
   bool look(LivePicture& picture);
-  // Copies the picture with all channels of the settings, for a file. Returns false before the
-  // first frame.
-  bool copy(Picture& picture);
+  // Copies a still picture with all channels of the settings, for a file: that of the frame in
+  // flight if it is a still one and every pixel has a sample, otherwise that of the last still
+  // frame that ended. So while something moves it is not the picture that is shown: start a still
+  // frame first. Previews, rebuilt or not, are never copied. Returns false before the first still
+  // frame.
+  // number: receives what start() returned for its frame.
+  bool copy(Picture& picture, uint64_t* number = nullptr);
   // Changes the quality of the following frames. [idle]
   void change(const std::function<void(RenderSettings&)>& change);
   // Valid after the first mapping. [not while mapping]

@@ -273,8 +273,8 @@ bool Stage::snapshot(Picture& picture, uint32_t channels) const {
 
 void Stage::readChannels(const RenderSettings& frame, Picture& picture,
                          const std::vector<std::string>* names) const {
-  describe(frame, picture, frame.channels);
-  if (names && (frame.channels & RT_NAME)) picture.names = *names;
+  describe(frame, picture, names ? frame.channels & ~uint32_t(RT_NAME) : frame.channels);
+  if (names) picture.names = *names;
   fillChannels(frame, frame.channels, picture, [](uint32_t channel, std::vector<float>& plane) {
     rtReadPixels(channel, plane.data(), plane.size());
     throwOnError("reading the picture");

@@ -6,11 +6,10 @@ namespace vv {
 
 void Captures::want(Request request) { waiting_.push_back(std::move(request)); }
 
-void Captures::adopt(uint32_t viewer, Done done) {
+void Captures::adopt(uint64_t number, Done done) {
   inFlight_ = true;
-  viewer_ = viewer;
+  number_ = number;
   done_ = std::move(done);
-  samples_ = 0;
 }
 
 void Captures::advance() {
@@ -21,22 +20,21 @@ void Captures::advance() {
   }
   Request next = std::move(waiting_.front());
   waiting_.pop_front();
-  adopt(ownNumber, std::move(next.done));
-  next.frame.viewer = ownNumber;
+  next.frame.viewer = ownViewer;
   next.frame.purpose = picture::LiveFrame::Purpose::still;
   shared_.live.change([&](picture::RenderSettings& s) { s.headlight = next.headlight; });
-  shared_.start(next.frame, false);
+  adopt(shared_.start(next.frame, false), std::move(next.done));
 }
 
-bool Captures::note(const picture::LivePicture& picture) {
-  if (!inFlight_ || picture.viewer != viewer_) return false;
-  const bool own = viewer_ == ownNumber;
-  samples_ = picture.samples;
-  if (picture.ended) {
+bool Captures::note(const picture::LivePicture& picture, uint32_t viewer) {
+  if (inFlight_ && picture.number == number_ && picture.ended) {
     picture::Picture copied;
-    end(picture.finished && shared_.live.copy(copied) ? &copied : nullptr);
+    uint64_t number = 0;
+    const bool complete =
+        picture.finished && shared_.live.copy(copied, &number) && number == number_;
+    end(complete ? &copied : nullptr);
   }
-  return own;
+  return viewer == ownViewer;
 }
 
 void Captures::noteIdle() {

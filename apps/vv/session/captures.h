@@ -25,33 +25,30 @@ class Captures {
   explicit Captures(SharedRenderer& shared) : shared_(shared) {}
 
   void want(Request request);
-  // Takes the frame that is in flight as the capture. viewer: the one of that frame.
-  void adopt(uint32_t viewer, Done done);
+  // Takes the still frame that is in flight as the capture. number: the one of that frame.
+  void adopt(uint64_t number, Done done);
   // A capture has not read the world yet, so the world must not change.
   bool isWaiting() const { return !waiting_.empty() && !inFlight_; }
   // A capture is waiting or in flight, so no other frame may be started.
   bool isPending() const { return inFlight_ || !waiting_.empty(); }
   // Starts the next capture as soon as the renderer is free. [not while mapping]
   void advance();
-  // Notes a picture that the renderer has returned. Returns true if it belongs to a capture alone.
-  bool note(const picture::LivePicture& picture);
+  // Notes a picture that the renderer has returned. Returns true if it is nobody's but a capture's.
+  bool note(const picture::LivePicture& picture, uint32_t viewer);
   // Notes that the renderer is idle and has no more pictures.
   void noteIdle();
-  // Samples of the capture in flight, mean over the pixels.
-  double samples() const { return samples_; }
 
  private:
   void end(const picture::Picture* picture);
 
   // Differs from the numbers of all viewers.
-  static constexpr uint32_t ownNumber = ~uint32_t(0);
+  static constexpr uint32_t ownViewer = ~uint32_t(0);
 
   SharedRenderer& shared_;
   std::deque<Request> waiting_;
   bool inFlight_ = false;
-  uint32_t viewer_ = ownNumber; // of the frame in flight
-  Done done_;                   // for the capture in flight
-  double samples_ = 0;
+  uint64_t number_ = 0; // of the frame in flight
+  Done done_;           // for the capture in flight
 };
 
 } // namespace vv

@@ -9,6 +9,11 @@ namespace {
 
 constexpr int smallest = -12; // scale 2^(-12/4): an eighth in each direction
 constexpr int best = 4;       // quality step with 2^4 samples
+// The step below which the frame rate falls before the picture shrinks: a quarter in each direction
+// if light is sampled, and the full size otherwise.
+constexpr int quarter = -8, whole = 0;
+constexpr double slower = 1.5;    // the budget of that step and of smaller ones, in budgets
+constexpr double settling = 0.09; // seconds of a frame between motion and rest
 constexpr double fill = 0.85; // fraction of a frame's time for rendering; the window needs the rest
 constexpr double tooLong = 1.15; // times the budget: a slower frame shrinks the next picture
 constexpr double roomFor = 0.9;  // multiple of the budget that a better step may take, as predicted
@@ -32,13 +37,18 @@ FrameSize Pacing::at(int step, int width, int height) const {
   return {int(std::ceil(width * scale)), int(std::ceil(height * scale)), 1};
 }
 
-double Pacing::predicted(const FrameSize& f) const {
-  return pixel_ > 0 ? overhead_ + pixel_ * f.width * f.height * f.samples : 0;
+double Pacing::seconds(const FrameSize& f) const {
+  const double pixel = pixel_ > 0 ? pixel_ : assumedPixel;
+  return overhead_ + (rebuilt_ + pixel * f.samples) * f.width * f.height;
 }
 
+double Pacing::predicted(const FrameSize& f) const { return pixel_ > 0 ? seconds(f) : 0; }
+
 void Pacing::took(const FrameSize& frame, double seconds, double alone, double overhead,
-                  double samples) {
-  if (!(seconds >= 0) || !(alone >= 0) || !(overhead >= 0) || overhead > seconds) return;
+                  double samples, double rebuilding) {
+  if (!(seconds >= 0) || !(alone >= 0) || !(overhead >= 0) || !(rebuilding >= 0) ||
+      overhead + rebuilding > seconds * (1 + 1e-9))
+    return;
   if (alone < seconds) {
     // Two frames in flight that follow each other closely end half of a frame's time apart. If
     // frames are started less often, the distance is (seconds + alone) / 2. Then they are on time,
@@ -55,38 +65,39 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
     value = value > 0 ? value + weight * (now - value) : now;
   };
   follow(overhead_, overhead);
-  const double work = double(frame.width) * frame.height * samples;
-  if (work > 0 && std::isfinite(work)) follow(pixel_, (seconds - overhead) / work);
+  const double pixels = double(frame.width) * frame.height, work = pixels * samples;
+  if (rebuilding > 0 && pixels > 0) follow(rebuilt_, rebuilding / pixels);
+  if (work > 0 && std::isfinite(work))
+    follow(pixel_, std::max(0.0, seconds - overhead - rebuilding) / work);
 }
 
-FrameSize Pacing::next(int width, int height, bool moving, int samples) {
+FrameSize Pacing::next(int width, int height, bool moving, int samples, Light light) {
   width = std::max(width, 1);
   height = std::max(height, 1);
   const bool begins = moving && !moving_;
   moving_ = moving;
   if (!moving) return {width, height, std::max(samples, 1)};
 
-  const double pixel = pixel_ > 0 ? pixel_ : assumedPixel;
-  const auto seconds = [&](int step) {
-    const FrameSize f = at(step, width, height);
-    return overhead_ + pixel * f.width * f.height * f.samples;
+  // Compares the time of a step with its budget. If reading the world takes all of it, half of that
+  // time is allowed in addition.
+  const int kept = light == Light::direct ? whole : quarter;
+  const auto load = [&](int step) {
+    const double budget = std::max(step <= kept ? slower * budget_ : budget_, 1.5 * overhead_);
+    return seconds(at(step, width, height)) / budget;
   };
-  // Find the best step within the budget. If reading the world takes all of it, allow half of that
-  // time in addition.
-  const double budget = std::max(budget_, 1.5 * overhead_);
   const auto fitting = [&] {
     int step = best;
-    while (step > smallest && seconds(step) > budget) --step;
+    while (step > smallest && load(step) > 1) --step;
     return step;
   };
-  const double now = seconds(step_) / budget;
+  const double now = load(step_);
   if (begins || now > 2) {
     step_ = fitting();
     framesWithRoom_ = 0;
   } else if (now > tooLong) {
     step_ = std::max(smallest, step_ - 1);
     framesWithRoom_ = 0;
-  } else if (step_ < best && seconds(step_ + 1) <= roomFor * budget) {
+  } else if (step_ < best && load(step_ + 1) <= roomFor) {
     if (++framesWithRoom_ >= patience) {
       ++step_;
       framesWithRoom_ = 0;
@@ -94,6 +105,17 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples) {
   } else
     framesWithRoom_ = 0;
   FrameSize frame = at(step_, width, height);
+  frame.samples = std::min(frame.samples, std::max(samples, 1));
+  return frame;
+}
+
+FrameSize Pacing::settle(int width, int height, int samples) const {
+  width = std::max(width, 1);
+  height = std::max(height, 1);
+  int step = best;
+  while (step > step_ && seconds(at(step, width, height)) > std::max(settling, 1.5 * overhead_))
+    --step;
+  FrameSize frame = at(step, width, height);
   frame.samples = std::min(frame.samples, std::max(samples, 1));
   return frame;
 }

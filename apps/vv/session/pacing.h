@@ -3,6 +3,8 @@
 // never the light transport. Pure arithmetic without clock, thread or window. Owned by a session.
 #pragma once
 
+#include <cstdint>
+
 namespace vv {
 
 struct FrameSize {
@@ -12,21 +14,33 @@ struct FrameSize {
 
 class Pacing {
  public:
+  // The light of a world: if none of it is sampled, a picture needs its full size more than it
+  // needs many samples.
+  enum class Light : uint8_t { sampled, direct };
+
   explicit Pacing(double framesPerSecond);
 
   // Records a frame that has ended or was cancelled.
   //
-  //   seconds:  from its start to its end
-  //   alone:    part of `seconds` while no other frame was in flight
-  //   overhead: part of `seconds` before tracing (the world is read, structures are built)
-  //   samples:  samples taken, mean over the pixels; 0: the cost of a pixel is unknown
-  void took(const FrameSize& frame, double seconds, double alone, double overhead, double samples);
+  //   seconds:    from its start to its end
+  //   alone:      part of `seconds` while no other frame was in flight
+  //   overhead:   part of `seconds` before tracing (the world is read, structures are built)
+  //   samples:    samples taken, mean over the pixels; 0: the cost of a pixel is unknown
+  //   rebuilding: part of `seconds` after tracing, in which the picture was rebuilt
+  void took(const FrameSize& frame, double seconds, double alone, double overhead, double samples,
+            double rebuilding = 0);
 
   // Returns the next frame for a window of this size. moving: the viewer or something in the world
-  // moves. A moving frame takes at most a frame's time, as predicted from earlier frames, but has
-  // at least an eighth of the window in each direction and 64 pixels. Otherwise the frame fills the
-  // window and gets all requested samples.
-  FrameSize next(int width, int height, bool moving, int samples);
+  // moves. A moving frame takes at most a frame's time, as predicted from earlier frames. Where
+  // that would make it smaller than a quarter of the window in each direction (Light::direct:
+  // smaller than the window), it may take half as long again before it shrinks further. It has at
+  // least an eighth of the window in each direction and 64 pixels. A frame that does not move fills
+  // the window and gets all requested samples.
+  FrameSize next(int width, int height, bool moving, int samples, Light light = Light::sampled);
+
+  // Returns a frame between motion and rest: larger than the frames of the motion, because it may
+  // take a tenth of a second.
+  FrameSize settle(int width, int height, int samples) const;
 
   double predicted(const FrameSize& frame) const; // in seconds; 0: unknown
 
@@ -34,10 +48,11 @@ class Pacing {
   // Returns the frame size of a quality step, from the smallest picture to the best. Steps are far
   // enough apart that small variations of the time do not change the step.
   FrameSize at(int step, int width, int height) const;
+  double seconds(const FrameSize& frame) const; // as predicted(), with a guess at first
 
   double budget_; // seconds per frame
-  // seconds per sample of a pixel, seconds per frame; both smoothed
-  double pixel_ = 0, overhead_ = 0;
+  // seconds per sample of a pixel, to rebuild a pixel, and per frame; all smoothed
+  double pixel_ = 0, rebuilt_ = 0, overhead_ = 0;
   int step_ = 0;
   int framesWithRoom_ = 0; // consecutive frames that left enough time for a better step
   bool moving_ = false;

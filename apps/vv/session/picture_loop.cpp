@@ -7,6 +7,19 @@ namespace vv {
 
 namespace {
 
+using Purpose = picture::LiveFrame::Purpose;
+
+// Seconds in which previews still follow each other when nothing moves any more. They are larger
+// and accumulate, so that the still picture begins over a good one.
+constexpr double settlingTime = 0.35;
+
+// Tells which light a world has, as the engine chose its transport.
+Pacing::Light lightOf(const RTstats& stats) {
+  const bool direct =
+      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
+  return stats.cameraRays > 0 && direct ? Pacing::Light::direct : Pacing::Light::sampled;
+}
+
 bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
   return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy &&
          a.height == b.height && a.shader == b.shader;
@@ -28,44 +41,63 @@ void PictureLoop::resize(int width, int height) {
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
          shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
-         (!isMoving() && (frame_.width != width_ || frame_.height != height_));
+         (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
-PictureLoop::Need PictureLoop::need(const Pilot& pilot, const Fit& fit) const {
-  if (width_ <= 0) return Need::nothing;
-  if (isOutdated(pilot, fit)) return Need::change;
-  return isMoving() || isInterrupted() ? Need::refinement : Need::nothing;
+// A world without sampled light needs no larger preview than one of full size.
+bool PictureLoop::isSettled(double now) const {
+  if (motion_ == Motion::samples) return true;
+  if (phase_ == Phase::settling) return now >= settlingEnds_;
+  return lightOf(facts_.stats) == Pacing::Light::direct && frame_.width >= width_ &&
+         frame_.height >= height_;
 }
 
 bool PictureLoop::isInterrupted() const {
-  return phase_ == Phase::refining && !ended_ && shared_.cancellations() != cancellations_;
+  return isRefining() && still_ != Still::finished && shared_.cancellations() != cancellations_;
 }
 
-// Moving frames overlap where the renderer permits it. A frame that is refined is cancelled
-// instead, but not before the first picture, so that it comes early. Both hold for the frames of
+PictureLoop::Urgency PictureLoop::urgency(const Pilot& pilot, const Fit& fit) const {
+  if (width_ <= 0) return Urgency::nothing;
+  if (cancelled_ || isOutdated(pilot, fit)) return Urgency::change;
+  return isRefining() && !isInterrupted() ? Urgency::nothing : Urgency::quality;
+}
+
+// Moving frames overlap where the renderer permits it. A frame of what has stopped is cancelled
+// instead, but not before the first picture, so that it comes early. That holds for the frames of
 // other viewers, too.
-PictureLoop::Decision PictureLoop::decide(Need need, const Fit& fit) const {
+PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double now,
+                                          Need need) const {
   const RendererState state = renderer_.state();
+  const Decision following = need == Need::stillPicture ? Decision::refine : Decision::move;
   switch (state) {
   case RendererState::mapping: return Decision::wait;
   case RendererState::rendering:
   case RendererState::ready:
-    if (need != Need::change) return Decision::wait;
-    if (shared_.isMoving()) return state == RendererState::ready ? Decision::move : Decision::wait;
+    if (!outdated) return Decision::wait;
+    if (shared_.isMoving()) return state == RendererState::ready ? following : Decision::wait;
     return shared_.viewer() != viewer_ || hasShown() || fit.isWanted() ? Decision::cancel
                                                                        : Decision::wait;
   case RendererState::idle: break;
   }
-  return need == Need::change       ? Decision::move
-         : need == Need::refinement ? Decision::refine
-                                    : Decision::wait;
+  if (outdated || cancelled_) return following;
+  if (isRefining()) return isInterrupted() ? Decision::refine : Decision::wait;
+  if (need == Need::stillPicture) return Decision::refine;
+  return isSettled(now) ? Decision::refine : Decision::settle;
 }
 
-void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now) {
-  switch (decide(need(pilot, fit), fit)) {
+void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now, Need need) {
+  if (width_ <= 0) return;
+  switch (decide(isOutdated(pilot, fit), fit, now, need)) {
   case Decision::wait: break;
-  case Decision::cancel: shared_.cancel(); break;
+  case Decision::cancel:
+    shared_.cancel();
+    cancelled_ = true;
+    break;
   case Decision::move: start(Phase::moving, pilot, fit, now); break;
+  case Decision::settle:
+    if (isMoving()) settlingEnds_ = now + settlingTime;
+    start(Phase::settling, pilot, fit, now);
+    break;
   case Decision::refine: start(Phase::refining, pilot, fit, now); break;
   }
 }
@@ -75,14 +107,14 @@ bool PictureLoop::isDrawing() const {
   return isMoving() && (state == RendererState::mapping || state == RendererState::rendering);
 }
 
-bool PictureLoop::isFinished(const Pilot& pilot) const {
-  return phase_ == Phase::refining && shared_.isIdle() && !isInterrupted() &&
-         !shared_.isOutdated(world_) && equal(pilot.camera(), camera_);
+bool PictureLoop::copyStill(picture::Picture& picture) {
+  uint64_t number = 0;
+  return hasStill() && renderer_.copy(picture, &number) && number == number_;
 }
 
-bool PictureLoop::isRefining(const Pilot& pilot, const Fit& fit) const {
-  return phase_ == Phase::refining && shared_.viewer() == viewer_ && !shared_.isIdle() &&
-         !isInterrupted() && !isOutdated(pilot, fit);
+bool PictureLoop::isFinished(const Pilot& pilot) const {
+  return isRefining() && still_ == Still::finished && !shared_.isOutdated(world_) &&
+         equal(pilot.camera(), camera_);
 }
 
 // --- Frames ---
@@ -102,13 +134,20 @@ picture::View PictureLoop::viewOf(const Pilot& pilot, const Fit& fit) const {
   return view;
 }
 
-xvrml::MapOptions::Headlight PictureLoop::headlightFor(const Pilot& pilot) const {
+xvrml::MapOptions::Headlight PictureLoop::headlightOf(const Pilot& pilot) const {
   const auto on = xvrml::MapOptions::Headlight::on, off = xvrml::MapOptions::Headlight::off;
   const std::optional<bool> chosen = pilot.headlight();
   return !chosen ? options_.render.headlight : *chosen ? on : off;
 }
 
-picture::LiveFrame PictureLoop::frameFor(const Pilot& pilot) const {
+// The renderer still has the headlight of its last frame, which may have been another viewer's.
+void PictureLoop::followHeadlight(const Pilot& pilot) {
+  headlight_ = pilot.headlight();
+  const auto wanted = headlightOf(pilot);
+  renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
+}
+
+picture::LiveFrame PictureLoop::stillOf(const Pilot& pilot) const {
   picture::LiveFrame frame;
   frame.view.shader = options_.view.shader;
   frame.view.viewer = pilot.camera();
@@ -119,11 +158,10 @@ picture::LiveFrame PictureLoop::frameFor(const Pilot& pilot) const {
   return frame;
 }
 
-// The renderer keeps the headlight of its last frame, which may have been another viewer's.
-void PictureLoop::followHeadlight(const Pilot& pilot) {
-  headlight_ = pilot.headlight();
-  const auto wanted = headlightFor(pilot);
-  renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
+FrameSize PictureLoop::sizeOf(Phase phase) {
+  const int samples = options_.render.samples;
+  if (phase == Phase::settling) return pacing_.settle(width_, height_, samples);
+  return pacing_.next(width_, height_, phase == Phase::moving, samples, lightOf(facts_.stats));
 }
 
 void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
@@ -136,15 +174,20 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
     gap_ = gap_ <= 0 ? now - lastStart_ : .9 * gap_ + .1 * (now - lastStart_);
   if (!moving) gap_ = 0;
   lastStart_ = now;
-  frame_ = pacing_.next(width_, height_, moving, options_.render.samples);
+  frame_ = sizeOf(phase);
   frame.width = frame_.width;
   frame.height = frame_.height;
   frame.samples = frame_.samples;
+  frame.purpose = phase == Phase::refining     ? Purpose::still
+                  : motion_ == Motion::rebuilt ? Purpose::preview
+                                               : Purpose::rawPreview;
   frame.viewer = viewer_;
-  if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
-  ended_ = false;
+  still_ = Still::none;
+  cancelled_ = false;
   cancellations_ = shared_.cancellations();
-  world_ = shared_.start(frame, moving);
+  if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
+  number_ = shared_.start(frame, moving);
+  world_ = shared_.world();
   phase_ = phase;
   fit.begin();
 }
@@ -164,18 +207,29 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();
   shown_ = Shown::something;
+  failure_.clear();
   facts_.width = picture.width;
   facts_.height = picture.height;
   facts_.samples = picture.samples;
   facts_.finished = picture.finished;
+  facts_.preview = picture.preview;
+  facts_.purpose = picture.purpose;
+  if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
+    still_ = picture.finished ? Still::finished : Still::covered;
   if (picture.finished) {
-    ended_ = true;
     pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
-                 picture.overhead, picture.samples);
+                 picture.overhead, picture.samples, picture.rebuilding);
     facts_.stats = picture.stats;
     facts_.map = picture.map;
   }
   return shown;
+}
+
+// A failure of many frames in a row is told once.
+std::string PictureLoop::takeFailure() {
+  std::string failure = renderer_.takeFailure();
+  if (failure == failure_) return {};
+  return failure.empty() ? failure : failure_ = std::move(failure);
 }
 
 } // namespace vv

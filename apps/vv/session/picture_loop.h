@@ -1,5 +1,6 @@
 // picture_loop.h: Decides when the next frame of a viewer of a running world is started, continued
-// or cancelled, and how large it is. Owned by a session or its guests. [the browser's thread]
+// or cancelled, how large it is, and whether it is a preview or a still picture. The loops of
+// several viewers share a renderer. Owned by a session or a guest. [the browser's thread]
 #pragma once
 
 #include <cstdint>
@@ -16,46 +17,70 @@ namespace vv {
 
 class PictureLoop {
  public:
-  // start() alone makes the transitions: to moving when something has changed, from moving to
-  // refining when nothing changes any more.
+  // start() alone makes the transitions: to moving when something has changed; from moving to
+  // settling and from there to refining when nothing changes any more. A picture that is wanted
+  // soon for a file goes to refining at once.
   enum class Phase : uint8_t {
     unstarted, // no frame has been started
     moving,    // the last frame is one of a sequence: small enough for the frame rate
-    refining   // the last frame fills the window and gets all samples
+    settling,  // the last frame is a preview of what has just stopped, larger than those before
+    refining   // the last frame is a still one: it fills the window and gets all samples
   };
+  // What is shown while something moves.
+  enum class Motion : uint8_t {
+    rebuilt, // previews
+    samples  // the samples as they are
+  };
+  // Whether a file waits for the still picture of the world as it is now.
+  enum class Need : uint8_t { none, stillPicture };
 
-  // The renderer and the options must outlive the loop. viewer: number for LiveFrame.
+  // How much a frame is needed: not at all, because the picture could be better, or because it does
+  // not show the world as it is now.
+  enum class Urgency : uint8_t { nothing, quality, change };
+
+  // The renderer and the options must outlive the loop. viewer: the number of its frames.
   PictureLoop(SharedRenderer& shared, const Options& options, uint32_t viewer);
 
   void resize(int width, int height);
   int width() const { return width_; }
   int height() const { return height_; }
+  void setMotion(Motion motion) { motion_ = motion; }
+  Motion motion() const { return motion_; }
 
-  // What the loop would do if it were alone: make a picture of what has changed, refine the last
-  // one, or nothing.
-  enum class Need : uint8_t { nothing, refinement, change };
-  Need need(const Pilot& pilot, const Fit& fit) const;
-  // Starts the next frame or cancels the one in flight, if that is due. Of several loops, those
-  // that need the most are called first. now: time of any clock.
-  void advance(const Pilot& pilot, Fit& fit, double now);
-  // Returns a frame of the viewer's present view with all samples, and its headlight.
-  picture::LiveFrame frameFor(const Pilot& pilot) const;
-  xvrml::MapOptions::Headlight headlightFor(const Pilot& pilot) const;
+  Urgency urgency(const Pilot& pilot, const Fit& fit) const;
+  // Starts the next frame or cancels the one in flight, if that is due. Of several loops, the one
+  // with the greatest urgency is called. now: time of any clock.
+  void advance(const Pilot& pilot, Fit& fit, double now, Need need);
   // Places the viewer for a fit after its frame has read the world. Returns false if no fit waits
   // for that.
   bool placeViewer(Pilot& pilot, Fit& fit) const;
-  // Notes a picture of this viewer that the renderer has returned. Returns whether it is to be
-  // shown.
+  // Returns a frame of the present view with all samples, and the headlight of this view.
+  picture::LiveFrame stillOf(const Pilot& pilot) const;
+  xvrml::MapOptions::Headlight headlightOf(const Pilot& pilot) const;
+  // Notes a picture of this viewer that the renderer has returned. Returns whether it is shown.
   bool note(const picture::LivePicture& picture);
+  // Copies the picture of the last frame that was started, for a file. Returns false unless it is a
+  // still one with samples everywhere, or for a moment while it ends.
+  bool copyStill(picture::Picture& picture);
+  std::string takeFailure();
 
   bool hasStarted() const { return phase_ != Phase::unstarted; }
   bool hasShown() const { return shown_ != Shown::nothing; }
   bool isMoving() const { return phase_ == Phase::moving; }
-  // Tells whether the last frame is in flight, is refined, and shows the world as it is now.
-  bool isRefining(const Pilot& pilot, const Fit& fit) const;
+  bool isRefining() const { return phase_ == Phase::refining; }
   // Tells whether something moves and the next frame must wait for the current one.
   bool isDrawing() const;
-  // Tells whether the picture shows the world as it is now, with all samples.
+  // Tells whether a frame can be started now without keeping to the frame rate: the one before was
+  // cancelled for it, or the motion has ended.
+  bool isDue() const { return shared_.isIdle() && (cancelled_ || phase_ == Phase::settling); }
+  // Tells whether the last frame does not show the world as it is now.
+  bool isOutdated(const Pilot& pilot, const Fit& fit) const;
+  // Tells whether the last frame that was started is a still one with samples everywhere.
+  bool hasStill() const { return isRefining() && still_ != Still::none; }
+  // Tells whether the still frame was cancelled for another viewer's.
+  bool isInterrupted() const;
+  uint64_t number() const { return number_; } // of the last frame
+  // Tells whether the still picture of the world as it is now has all its samples.
   bool isFinished(const Pilot& pilot) const;
   // The frames per second while something moves; 0: nothing moves.
   double frameRate() const { return isMoving() && gap_ > 0 ? 1 / gap_ : 0; }
@@ -64,14 +89,14 @@ class PictureLoop {
  private:
   using RendererState = picture::LiveRenderer::State;
   enum class Shown : uint8_t { nothing, something };
-  enum class Decision : uint8_t { wait, cancel, move, refine };
+  enum class Decision : uint8_t { wait, cancel, move, settle, refine };
+  // What is there of the still frame that was started last.
+  enum class Still : uint8_t { none, covered, finished };
 
-  // Tells whether the last frame does not show the world as it is now.
-  bool isOutdated(const Pilot& pilot, const Fit& fit) const;
-  Decision decide(Need need, const Fit& fit) const;
-  // Tells whether a frame that is refined was cancelled for another viewer's.
-  bool isInterrupted() const;
+  Decision decide(bool outdated, const Fit& fit, double now, Need need) const;
+  bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
+  FrameSize sizeOf(Phase phase);
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
   void followHeadlight(const Pilot& pilot);
 
@@ -81,19 +106,22 @@ class PictureLoop {
   const uint32_t viewer_;
   Pacing pacing_;
   int width_ = 0, height_ = 0; // size of the window in pixels
+  Motion motion_ = Motion::rebuilt;
 
   Phase phase_ = Phase::unstarted;
   Shown shown_ = Shown::nothing;
-  // The camera, headlight and size of the last frame.
+  Still still_ = Still::none;
+  bool cancelled_ = false; // the last frame was cancelled for a newer one
+  // The last frame: its number, the state of the world, the cancellations before it, the camera,
+  // headlight and size.
+  uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
   FrameSize frame_;
-  uint64_t world_ = 0;         // state of the world that the last frame shows
-  uint64_t cancellations_ = 0; // of the shared renderer, when the last frame was started
-  bool ended_ = false;         // all samples of the last frame are taken
-  // start of the last frame; smoothed time between frames while something moves
-  double lastStart_ = 0, gap_ = 0;
+  // Start of the last frame; end of settling; smoothed time between frames while something moves.
+  double lastStart_ = 0, settlingEnds_ = 0, gap_ = 0;
   picture::LivePicture facts_; // state of the picture, without the pixels
+  std::string failure_;        // the last failure that was told; "": a picture has come since
 };
 
 } // namespace vv

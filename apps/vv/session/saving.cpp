@@ -1,6 +1,8 @@
 #include "session/saving.h"
 
 #include <filesystem>
+#include <new>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,19 +31,49 @@ std::string freeName(const std::string& world, const std::string& suffix) {
   return fmt::format("{}.{}", stem, suffix);
 }
 
-std::string savePicture(const picture::Picture& picture, const std::string& path,
-                        uint32_t channels) {
-  std::string told;
-  try {
-    const picture::Format* format = picture::formatOf(path);
-    if (!format)
-      throw std::runtime_error(
-          fmt::format("{}: the suffix is none of {}", path, picture::formatSuffixes()));
-    picture::writeFile(path, format->encode(wantedPart(picture, channels)));
-    told = "saved as " + path;
-    say("vv: " + told);
-  } catch (const std::exception& error) { sayError(told = error.what()); }
-  return told;
+PictureWriter::~PictureWriter() {
+  wait();
+  takeMessage(); // says it on the terminal
+}
+
+void PictureWriter::begin(picture::Picture picture, const std::string& path, uint32_t channels,
+                          const std::string& note) {
+  wait();
+  takeMessage();
+  done_ = false;
+  thread_ = std::thread([this, picture = std::move(picture), path, channels, note] {
+    try {
+      const picture::Format* format = picture::formatOf(path);
+      if (!format)
+        throw std::runtime_error(
+            fmt::format("{}: the suffix is none of {}", path, picture::formatSuffixes()));
+      picture::writeFile(path, format->encode(wantedPart(picture, channels)));
+      told_ = "saved as " + path + note;
+      failed_ = false;
+    } catch (const std::bad_alloc&) {
+      told_ = path + " was not saved: not enough memory";
+      failed_ = true;
+    } catch (const std::exception& error) {
+      told_ = error.what();
+      failed_ = true;
+    }
+    done_ = true;
+  });
+}
+
+void PictureWriter::wait() {
+  if (thread_.joinable()) thread_.join();
+}
+
+std::string PictureWriter::takeMessage() {
+  if (!done_) return {};
+  wait();
+  if (told_.empty()) return {};
+  if (failed_)
+    sayError(told_);
+  else
+    say("vv: " + told_);
+  return std::exchange(told_, {});
 }
 
 } // namespace vv

@@ -1,7 +1,9 @@
-// saving.h: Saves pictures of the window as files. [any thread]
+// saving.h: Saves pictures of the window as files. [the browser's thread]
 #pragma once
 
+#include <atomic>
 #include <string>
+#include <thread>
 
 #include "options/options.h"
 
@@ -13,8 +15,30 @@ int samplesInWindow(const Options& options);
 // Returns an unused file name: world-1.png, world-2.png and so on in the working folder.
 std::string freeName(const std::string& world, const std::string& suffix);
 
-// Returns a message for the user: where the picture was saved, or why it was not.
-std::string savePicture(const picture::Picture& picture, const std::string& path,
-                        uint32_t channels);
+// Encodes and writes pictures on a thread of its own, one at a time: the window must not stand
+// still for a large file. Owned by a session.
+class PictureWriter {
+ public:
+  PictureWriter() = default;
+  ~PictureWriter(); // Waits for the file.
+  PictureWriter(const PictureWriter&) = delete;
+  PictureWriter& operator=(const PictureWriter&) = delete;
+
+  // Begins to write the channels of a picture; waits for an earlier file. note: is added to the
+  // message.
+  void begin(picture::Picture picture, const std::string& path, uint32_t channels,
+             const std::string& note = "");
+  // Returns, once and also on the terminal, where the picture was saved or why it was not; "" until
+  // that is known.
+  std::string takeMessage();
+  void wait(); // until the file is written
+
+ private:
+  std::thread thread_;
+  std::atomic<bool> done_{false};
+  // Written by the thread before `done_`: a message for the user, and whether it is an error.
+  std::string told_;
+  bool failed_ = false;
+};
 
 } // namespace vv

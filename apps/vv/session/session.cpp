@@ -9,7 +9,6 @@
 #include "report/describe.h"
 #include "report/messages.h"
 #include "session/input/view_command.h"
-#include "session/saving.h"
 #include "timeline.h"
 #include "world_start.h"
 
@@ -110,7 +109,8 @@ Session::Place Session::place() const {
 // --- Time ---
 
 void Session::advance(double seconds) {
-  clock_.read(seconds);
+  clock_.read(seconds,
+              isSaving() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
   if (!resting()) return;
   if (pictures_.placeViewer(pilot_, fit_) && replay_) replay_->resume();
   guests_.placeViewers();
@@ -126,6 +126,7 @@ void Session::advance(double seconds) {
 }
 
 void Session::step() {
+  if (isSaving()) return;
   if (!held()) clock_.pass();
   if (held() && !pictures_.hasStarted()) return;
   clock_.run({[this] { return held(); },
@@ -137,11 +138,44 @@ void Session::step() {
               }});
 }
 
+// While the world is held for a picture, only the window's keys act. What ends an action of the
+// user or moves the pointer is handled afterwards; what would begin one is dropped.
+Session::Passage Session::passageOf(const InputEvent& event) const {
+  using Kind = InputEvent::Kind;
+  if (!isSaving() || replay_) return Passage::passes;
+  switch (event.kind) {
+  case Kind::move:
+  case Kind::release:
+  case Kind::leave:
+  case Kind::up: return Passage::waits;
+  case Kind::down: return actionOf(event) >= Action::save ? Passage::passes : Passage::isDropped;
+  default: return Passage::isDropped;
+  }
+}
+
+// Adds an event to those that wait. Of moves that follow each other only the last one counts.
+void Session::postpone(InputEvent event, std::deque<InputEvent>& later) {
+  const bool moves = event.kind == InputEvent::Kind::move && !later.empty() &&
+                     later.back().kind == InputEvent::Kind::move;
+  if (moves)
+    later.back() = std::move(event);
+  else
+    later.push_back(std::move(event));
+}
+
 // Handles the user's input. In a scripted session only window commands are taken from the user.
 void Session::takeEvents() {
   const bool pointerWaits = preparation_.state() == PickPreparation::State::waiting && !replay_;
-  InputEvent event;
-  while (takeEvent(waiting_, pointerWaits, event)) {
+  std::deque<InputEvent> later;
+  while (!waiting_.empty()) {
+    const InputEvent event = std::move(waiting_.front());
+    waiting_.pop_front();
+    const Passage passage = passageOf(event);
+    if (passage == Passage::isDropped) continue;
+    if (passage == Passage::waits || (pointerWaits && event.kind <= InputEvent::Kind::wheel)) {
+      postpone(event, later);
+      continue;
+    }
     Action action = Action::none;
     if (callbacks_.record) callbacks_.record(clock_.time(), event);
     if (!replay_)
@@ -154,7 +188,8 @@ void Session::takeEvents() {
     else if (ofWindow)
       callbacks_.onAction(event, action);
   }
-  guests_.takeEvents(pointerWaits, callbacks_.onGuestAction);
+  waiting_ = std::move(later);
+  if (!isSaving()) guests_.takeEvents(pointerWaits, callbacks_.onGuestAction);
 }
 
 // Loads Inlines after the first picture, a few at a time.
@@ -171,18 +206,23 @@ void Session::want(Action fit) {
   fit_.want(fit == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current);
 }
 
-// Lets the viewers draw: first those for whom something has changed, each in turn, then those whose
-// picture can be refined, in the order of their numbers.
+// Lets the viewers draw: those for whom something has changed, each in turn, or else those whose
+// picture could be better, in the order of their numbers.
 void Session::takeTurns() {
+  using Urgency = PictureLoop::Urgency;
   if (captures_.isPending()) return;
   const double now = clock_.reading();
+  if (isSaving() || guests_.all().empty())
+    return pictures_.advance(
+        pilot_, fit_, now, isSaving() ? PictureLoop::Need::stillPicture : PictureLoop::Need::none);
   std::vector<std::pair<uint32_t, Guest*>> viewers{{0, nullptr}};
   for (const auto& [viewer, guest] : guests_.all()) viewers.emplace_back(viewer, guest.get());
-  const auto needOf = [&](const Guest* guest) {
-    return guest ? guest->pictures.need(guest->pilot, guest->fit) : pictures_.need(pilot_, fit_);
+  const auto urgencyOf = [&](const Guest* guest) {
+    return guest ? guest->pictures.urgency(guest->pilot, guest->fit)
+                 : pictures_.urgency(pilot_, fit_);
   };
   const bool changed = std::any_of(viewers.begin(), viewers.end(), [&](const auto& one) {
-    return needOf(one.second) == PictureLoop::Need::change;
+    return urgencyOf(one.second) == Urgency::change;
   });
   if (changed) { // begin after the viewer who had the last turn
     const auto next = std::find_if(viewers.begin(), viewers.end(),
@@ -190,37 +230,106 @@ void Session::takeTurns() {
     std::rotate(viewers.begin(), next, viewers.end());
   }
   for (const auto& [viewer, guest] : viewers) {
-    if (changed && needOf(guest) != PictureLoop::Need::change) continue;
+    if (changed && urgencyOf(guest) != Urgency::change) continue;
     if (guest)
-      guest->pictures.advance(guest->pilot, guest->fit, now);
+      guest->pictures.advance(guest->pilot, guest->fit, now, PictureLoop::Need::none);
     else
-      pictures_.advance(pilot_, fit_, now);
+      pictures_.advance(pilot_, fit_, now, PictureLoop::Need::none);
     if (shared_.isMapping()) return;
   }
 }
 
-bool Session::look(picture::LivePicture& picture) {
+bool Session::look(picture::LivePicture& picture, uint32_t& viewer) {
   const bool idle = shared_.isIdle();
   while (shared_.live.look(picture)) {
-    if (captures_.note(picture)) continue;
-    Guest* const guest = guests_.find(picture.viewer);
-    if (guest ? guest->pictures.note(picture) : picture.viewer == 0 && pictures_.note(picture))
-      return true;
+    viewer = shared_.viewerOf(picture.number);
+    const bool captured = captures_.note(picture, viewer);
+    Guest* const guest = guests_.find(viewer);
+    if (captured || (!guest && viewer != 0)) continue;
+    if (guest ? guest->pictures.note(picture) : pictures_.note(picture)) return true;
   }
   if (idle) captures_.noteIdle();
   return false;
 }
 
-std::string Session::save(const std::string& path) {
-  picture::Picture picture;
-  return shared_.live.copy(picture) ? savePicture(picture, path, channels_)
-                                    : "there is no picture yet";
+bool Session::look(picture::LivePicture& picture) {
+  uint32_t viewer = 0;
+  while (look(picture, viewer))
+    if (viewer == 0) return true;
+  return false;
 }
 
-void Session::saveIfFinished() {
-  if (saveTo_.empty() || !pictures_.isFinished(pilot_)) return;
-  message_ = save(std::exchange(saveTo_, {}));
+void Session::setMotion(PictureLoop::Motion motion, uint32_t viewer) {
+  Guest* const guest = guests_.find(viewer);
+  (guest ? guest->pictures : pictures_).setMotion(motion);
+}
+
+void Session::save(const std::string& path) {
+  picture::Picture picture;
+  if (isSaving()) {
+    message_ = fmt::format("{} is not saved: another picture is waited for", path);
+  } else if (!replay_ && !pictures_.isOutdated(pilot_, fit_) && pictures_.copyStill(picture)) {
+    writer_.begin(std::move(picture), path, channels_);
+  } else {
+    saveTo_ = path;
+    saver_ = Saver::user;
+  }
+}
+
+void Session::saveWhenFinished(const std::string& path) {
+  if (isSaving()) giveUp("another picture is wanted");
+  saveTo_ = path;
+  saver_ = Saver::script;
+}
+
+bool Session::giveUpSaving() {
+  if (!isSaving() || saver_ == Saver::script) return false;
+  giveUp("given up");
+  return true;
+}
+
+void Session::giveUp(const std::string& why) {
+  message_ = fmt::format("{} is not saved: {}", std::exchange(saveTo_, {}), why);
+  say("vv: " + message_);
   if (replay_) replay_->resume();
+}
+
+std::string Session::savingText() const {
+  if (!isSaving() || saver_ == Saver::script) return {};
+  const double taken = pictures_.hasStill() ? pictures_.facts().samples : 0;
+  return fmt::format("Saving the picture of this instant: {:.0f} of {} samples; Escape gives up",
+                     taken, options_.render.samples);
+}
+
+// A script continues, and a user's world goes on, when the picture has all its samples. Contents of
+// Inlines that are still to come belong to it.
+void Session::saveIfFinished() {
+  if (!isSaving() || inlines_.isLoading() || !pictures_.isFinished(pilot_)) return;
+  picture::Picture picture;
+  if (!pictures_.copyStill(picture)) return;
+  writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_);
+  if (replay_) replay_->resume();
+}
+
+std::string Session::endSaving() {
+  if (isSaving()) {
+    picture::Picture picture;
+    bool copied = pictures_.copyStill(picture);
+    // For a moment, while a frame ends, there is no copy.
+    for (int i = 0; i < 1000 && !copied && pictures_.hasStill(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      copied = pictures_.copyStill(picture);
+    }
+    if (copied)
+      writer_.begin(std::move(picture), std::exchange(saveTo_, {}), channels_,
+                    fmt::format(", with {:.0f} of {} samples", pictures_.facts().samples,
+                                options_.render.samples));
+    else
+      giveUp("its picture has not begun yet");
+  }
+  writer_.wait();
+  const std::string written = writer_.takeMessage();
+  return written.empty() ? std::exchange(message_, {}) : written;
 }
 
 bool Session::stop(double seconds) {
@@ -238,6 +347,7 @@ bool Session::stop(double seconds) {
 void Session::addGuest(uint32_t viewer, int width, int height) {
   Guest& guest = guests_.add(viewer, pilot_, *browser_, shared_, options_);
   guest.pilot.step(clock_.time());
+  guest.pictures.setMotion(pictures_.motion());
   resizeGuest(viewer, width, height);
 }
 
@@ -250,9 +360,10 @@ void Session::resizeGuest(uint32_t viewer, int width, int height) {
 
 void Session::handleFor(uint32_t viewer, const InputEvent& event) {
   Guest* const guest = guests_.find(viewer);
-  if (!guest && viewer != 0) return;
-  lastActor_ = viewer;
-  (guest ? guest->waiting : waiting_).push_back(event);
+  if (guest)
+    guest->waiting.push_back(event);
+  else if (viewer == 0)
+    handle(event);
 }
 
 const Pilot& Session::pilotOf(uint32_t viewer) const {
@@ -266,19 +377,21 @@ const PictureLoop& Session::picturesOf(uint32_t viewer) const {
 }
 
 void Session::capture(uint32_t viewer, Captures::Done done) {
-  const Guest* const guest = guests_.find(viewer);
-  const Pilot& pilot = pilotOf(viewer);
-  const PictureLoop& pictures = picturesOf(viewer);
-  const uint32_t number = guest ? viewer : 0;
-  if (!captures_.isPending() && shared_.viewer() == number) {
-    if (pictures.isRefining(pilot, guest ? guest->fit : fit_))
-      return captures_.adopt(number, std::move(done));
+  Guest* const guest = guests_.find(viewer);
+  const Pilot& pilot = guest ? guest->pilot : pilot_;
+  const Fit& fit = guest ? guest->fit : fit_;
+  PictureLoop& pictures = guest ? guest->pictures : pictures_;
+  // The picture that is shown may be the one that is wanted, or become it.
+  if (!captures_.isPending() && pictures.isRefining() && !pictures.isOutdated(pilot, fit)) {
     picture::Picture picture;
-    if (pictures.isFinished(pilot) && shared_.live.copy(picture)) return done(&picture);
+    if (pictures.isFinished(pilot)) {
+      if (pictures.copyStill(picture)) return done(&picture);
+    } else if (shared_.viewer() == (guest ? viewer : 0) && !pictures.isInterrupted() &&
+               !shared_.isIdle()) {
+      return captures_.adopt(pictures.number(), std::move(done));
+    }
   }
-  Captures::Request request{pictures.frameFor(pilot), pictures.headlightFor(pilot),
-                            std::move(done)};
-  captures_.want(std::move(request));
+  captures_.want({pictures.stillOf(pilot), pictures.headlightOf(pilot), std::move(done)});
 }
 
 bool Session::isQuiet() const {
@@ -314,22 +427,28 @@ std::string Session::takeMessageOf(uint32_t guest) {
 std::string Session::takeMessage() {
   std::string text = std::exchange(message_, {});
   std::string pilots = pilot_.takeMessage();
-  if (const std::string failure = shared_.live.takeFailure(); !failure.empty()) {
+  if (const std::string failure = pictures_.takeFailure(); !failure.empty()) {
     sayError(failure);
+    if (isSaving()) giveUp(failure);
     return failure;
   }
-  return pilots.empty() ? text : pilots;
+  const std::string written = writer_.takeMessage();
+  return !pilots.empty() ? pilots : !written.empty() ? written : text;
 }
 
 SessionFacts Session::facts(uint32_t viewer) const {
+  using Showing = SessionFacts::Showing;
   const PictureLoop& pictures = picturesOf(viewer);
   const picture::LivePicture& picture = pictures.facts();
+  const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
   SessionFacts facts;
+  facts.showing = picture.preview ? (still ? Showing::fading : Showing::preview)
+                                  : (still ? Showing::still : Showing::samples);
   facts.frameRate = pictures.frameRate();
   facts.width = picture.width;
   facts.height = picture.height;
   facts.samples = picture.samples;
-  facts.wanted = pictures.isMoving() ? 0 : options_.render.samples;
+  facts.wanted = pictures.isRefining() ? options_.render.samples : 0;
   facts.stats = picture.stats;
   facts.map = picture.map;
   facts.finished = picture.finished;

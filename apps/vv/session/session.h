@@ -23,12 +23,20 @@
 #include "session/pick_preparation.h"
 #include "session/picture_loop.h"
 #include "session/pilot.h"
+#include "session/saving.h"
 #include "session/session_clock.h"
 
 namespace vv {
 
 // The facts about a session that the overlay shows.
 struct SessionFacts {
+  enum class Showing : uint8_t {
+    still,   // the samples of the world as it is
+    fading,  // a still picture of few samples over a preview
+    preview, // rebuilt from few samples
+    samples  // the few samples themselves
+  };
+  Showing showing = Showing::still;
   double frameRate = 0; // pictures per second while something moves; 0: nothing moves
   int width = 0, height = 0;
   double samples = 0, wanted = 0;
@@ -68,31 +76,45 @@ class Session {
   // Advances the session: events, the world's clock, pending Inlines, and the next frame. seconds:
   // time of any clock. Never waits.
   void advance(double seconds);
-  // Returns a newer picture than the last one, of any viewer; false if there is none.
+  // Returns a newer picture than the last one, of viewer 0; false if there is none.
   bool look(picture::LivePicture& picture);
-  // Saves the current state of the picture. Returns a message for the user.
-  std::string save(const std::string& path);
-  // Saves the picture when all its samples are taken; the script waits until then.
-  void saveWhenFinished(const std::string& path) { saveTo_ = path; }
+  // Does the same for all viewers.
+  bool look(picture::LivePicture& picture, uint32_t& viewer);
 
-  // --- Guests --- [resting]
+  // Saves the true picture of this instant. If nothing moves, that is the picture as it is so far.
+  // Otherwise the world and the viewer are held until its still picture has all samples. A message
+  // follows (takeMessage).
+  void save(const std::string& path);
+  // Saves the picture for a script when all its samples are taken; the script waits until then.
+  void saveWhenFinished(const std::string& path);
+  // Gives up what save() waits for. Returns false if it waits for nothing.
+  bool giveUpSaving();
+  // Returns what save() waits for, as a line for the user; "" if it waits for nothing.
+  std::string savingText() const;
+  // Ends the saving before the session ends: what save() waits for is saved as it is so far, and
+  // the last file is complete when it returns. Returns the message about it, which has also been
+  // printed.
+  std::string endSaving();
+  // Waits for the last file, so that its name is taken.
+  void finishWriting() { writer_.wait(); }
+
+  // Chooses what is shown while something moves. A number that is no guest's means viewer 0.
+  void setMotion(PictureLoop::Motion motion, uint32_t viewer = 0);
+  PictureLoop::Motion motion(uint32_t viewer) const { return picturesOf(viewer).motion(); }
+
+  // --- Guests --- [while the world can be used]
   // Adds a guest who stands where viewer 0 stands. viewer: its number, not 0.
   void addGuest(uint32_t viewer, int width, int height);
   void removeGuest(uint32_t viewer) { guests_.remove(viewer); }
   bool isGuest(uint32_t viewer) const { return guests_.find(viewer); }
   void resizeGuest(uint32_t viewer, int width, int height);
-  // Input for a viewer that is neither 0 nor a guest is ignored.
+  // Takes input of viewer 0 or of a guest; that of others is ignored.
   void handleFor(uint32_t viewer, const InputEvent& event);
   // Returns the pilot of a guest; for another number that of viewer 0.
   const Pilot& pilotOf(uint32_t viewer) const;
-  // Returns the number of the viewer whose input was handled last.
-  uint32_t lastActor() const { return lastActor_; }
-
-  // Renders the true picture of this instant from a viewer's place, with all samples. [resting]
+  // Renders the true picture of this instant for a viewer, with all samples.
   void capture(uint32_t viewer, Captures::Done done);
-  bool isCapturing() const { return captures_.isPending(); }
-  double capturedSamples() const { return captures_.samples(); }
-  // Tells whether nothing is being drawn, moved or loaded, so that steps may come more slowly.
+  // Tells whether nothing moves or is to be done, so that steps may come more slowly.
   bool isQuiet() const;
 
   // Returns whether the world can be used.
@@ -101,6 +123,10 @@ class Session {
   }
   // Tells whether something moves and the next frame must wait for the current one.
   bool drawing() const { return pictures_.isDrawing(); }
+  // Tells whether advance() should be called soon: a frame can be started that does not wait for
+  // the frame rate.
+  bool due() const { return pictures_.isDue(); }
+  bool moving() const { return pictures_.isMoving(); }
   bool scripted() const { return replay_ != nullptr; }
   double time() const { return clock_.time(); } // time of the session's clock at the last step
   xvrml::Browser& browser() { return *browser_; }
@@ -121,8 +147,14 @@ class Session {
   void loadSome();
   void want(Action fit);
   void saveIfFinished();
+  void giveUp(const std::string& why);
   // Tells whether scripts wait: for a fit, or for a picture that is to be saved.
-  bool held() const { return fit_.isPending() || !saveTo_.empty(); }
+  bool held() const { return fit_.isPending() || isSaving(); }
+  bool isSaving() const { return !saveTo_.empty(); }
+  // Tells whether an event must wait, or is dropped, while the world is held for a picture.
+  enum class Passage : uint8_t { passes, waits, isDropped };
+  Passage passageOf(const InputEvent& event) const;
+  static void postpone(InputEvent event, std::deque<InputEvent>& later);
 
   Options options_;
   Problems& problems_;
@@ -138,8 +170,10 @@ class Session {
   Fit fit_;
   std::unique_ptr<Replay> replay_;
   std::deque<InputEvent> waiting_;
-  uint32_t lastActor_ = 0;
   std::string saveTo_, message_; // saveTo_: the file of the finished picture; "": none is wanted
+  enum class Saver : uint8_t { script, user };
+  Saver saver_ = Saver::script; // who wants that file
+  PictureWriter writer_;
   InlineQueue inlines_;
   PickPreparation preparation_; // the last member: its destructor waits for a user of the others
 };

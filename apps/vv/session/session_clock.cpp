@@ -11,10 +11,10 @@ constexpr double maxPassing = 0.25; // seconds; a slow picture does not cause a 
 
 } // namespace
 
-void SessionClock::read(double seconds) {
+void SessionClock::read(double seconds, Reading reading) {
   passed_ = reading_ ? std::max(0.0, seconds - *reading_) : 0;
   reading_ = seconds;
-  if (mode_ == Mode::real) due_ += passed_;
+  if (mode_ == Mode::real && reading == Reading::advances) due_ += passed_;
 }
 
 void SessionClock::pass() {

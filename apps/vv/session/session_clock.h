@@ -23,8 +23,11 @@ class SessionClock {
 
   SessionClock(Mode mode, double fps) : mode_(mode), fps_(fps) {}
 
-  // Takes a reading, in seconds. Only a real clock advances.
-  void read(double seconds);
+  // What a reading does to a real clock.
+  enum class Reading : uint8_t { advances, isHeld };
+
+  // Takes a reading, in seconds. Only a real clock advances, and only if it is not held.
+  void read(double seconds, Reading reading = Reading::advances);
   // Lets the time since the last reading pass, at most a quarter of a second. Does nothing to a
   // real clock, which has advanced already.
   void pass();

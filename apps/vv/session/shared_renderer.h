@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 
 #include "libpicture/live.h"
 
@@ -17,17 +18,27 @@ class SharedRenderer {
 
   picture::LiveRenderer live;
 
-  // Starts a frame as LiveRenderer::start does. moving: the next frame need not wait for its end
-  // where the renderer permits that; otherwise it is cancelled when its time is over. Returns the
-  // state of the world that the frame shows, for isOutdated().
+  // Starts a frame as LiveRenderer::start does, and returns its number. moving: the next frame
+  // waits for its end, or not even that where the renderer permits it; other frames are cancelled
+  // when their time is over.
   uint64_t start(const picture::LiveFrame& frame, bool moving) {
     if (browser_.hasChanges()) ++world_;
     moving_ = moving;
     viewer_ = frame.viewer;
-    live.start(frame);
-    return world_;
+    const uint64_t number = live.start(frame);
+    started_.push_back({number, frame.viewer});
+    if (started_.size() > remembered) started_.pop_front();
+    return number;
   }
-  // Tells whether the world has changed since start() returned this number.
+  // Returns the viewer of a frame that was started lately.
+  uint32_t viewerOf(uint64_t number) const {
+    for (const Started& one : started_)
+      if (one.number == number) return one.viewer;
+    return viewer_;
+  }
+  // Returns the state of the world that the last frame shows, for isOutdated().
+  uint64_t world() const { return world_; }
+  // Tells whether the world has changed since it had this state.
   bool isOutdated(uint64_t world) const { return world != world_ || browser_.hasChanges(); }
   // Cancels the frames in flight.
   void cancel() {
@@ -44,7 +55,14 @@ class SharedRenderer {
   bool isMapping() const { return live.state() == picture::LiveRenderer::State::mapping; }
 
  private:
+  struct Started {
+    uint64_t number;
+    uint32_t viewer;
+  };
+  static constexpr size_t remembered = 8; // more frames than can be in flight or unseen
+
   xvrml::Browser& browser_;
+  std::deque<Started> started_;
   uint64_t world_ = 0; // grows with each frame that shows changes of the world
   uint64_t cancellations_ = 0;
   uint32_t viewer_ = 0;

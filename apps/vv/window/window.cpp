@@ -19,12 +19,12 @@
 #include "report/cluster_report.h"
 #include "report/messages.h"
 #include "report/progress.h"
+#include "session/overlay.h"
 #include "session/saving.h"
 #include "session/session.h"
 #include "session/world_loader.h"
 #include "signals.h"
 #include "watched.h"
-#include "window/overlay.h"
 #include "window/screen.h"
 #include "window/sound/speaker.h"
 #include "world_start.h"
@@ -35,6 +35,9 @@ namespace vv {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// Seconds between two steps of a session for the sake of the user's input.
+constexpr double inputInterval = 0.004;
 
 class Window {
  public:
@@ -62,11 +65,11 @@ class Window {
       wait(std::max(0.0, next - now));
       passOn();
       takeWorld();
-      // Wait for a moving picture that is almost finished; the next one can then begin at once.
       const double period = 1 / options_.fps, time = seconds();
-      if (time >= next + (session_ && session_->drawing() ? period : 0)) {
+      if (isTime(time, next, period)) {
         advanceSession();
-        next = std::max(next + period, time);
+        next = time < next ? time + period : std::max(next + period, time);
+        advanced_ = time;
       }
       if (session_ && session_->look(picture_)) show();
       tell();
@@ -79,10 +82,21 @@ class Window {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   // Waits for events. The wait is short if a picture may be due, and longer if the window is
-  // hidden.
+  // hidden. It is never nothing: that would take the processor from the picture that is drawn.
   void wait(double time) {
-    const double most = session_ && screen_.visible() ? .004 : .05;
-    screen_.wait(std::min(time, most), events_);
+    const bool soon = session_ && (session_->drawing() || session_->due());
+    const double most = !session_ || !screen_.visible() ? .05 : .004;
+    screen_.wait(soon ? .001 : std::min(time, most), events_);
+  }
+
+  // Tells whether the session advances. next: the time that keeps the frame rate. A moving picture
+  // that is almost finished is waited for, since the next one can then begin at once. When nothing
+  // moves, the user's input does not wait for the frame rate.
+  bool isTime(double time, double next, double period) const {
+    if (!session_) return false;
+    if (time >= next + (session_->drawing() ? period : 0)) return true;
+    const bool urgent = session_->due() || (!input_.empty() && !session_->moving());
+    return urgent && time >= advanced_ + inputInterval;
   }
 
   void passOn() {
@@ -99,9 +113,7 @@ class Window {
 
   void show() {
     screen_.setPicture(picture_.width, picture_.height, picture_.rgb);
-    const bool first = std::exchange(first_, false);
-    if (first && !saveTo_.empty()) message(session_->save(std::exchange(saveTo_, {})), 4);
-    if (first && options_.verbose)
+    if (std::exchange(first_, false) && options_.verbose)
       say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height,
                       duration(seconds() - loadStart_)));
   }
@@ -175,12 +187,14 @@ class Window {
                                            options_.script.get());
     width_ = screen_.width();
     height_ = screen_.height();
+    fresh->setMotion(motion_);
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
+    const std::string saved = session_ ? session_->endSaving() : "";
     session_ = std::move(fresh); // ends the previous session
     failed_ = exitDone;
     first_ = true;
-    message("", 0);
+    message(saved, 6);
     const std::string& path = session_->browser().world().path;
     screen_.setTitle(path + " - vv");
     if (options_.watch && path != "-")
@@ -225,6 +239,7 @@ class Window {
     switch (action) {
     case Action::save:
     case Action::saveExr: save(event, action == Action::save ? "png" : "exr"); break;
+    case Action::samples: switchMotion(); break;
     case Action::command: command(); break;
     case Action::reload: reload(); break;
     case Action::overlay:
@@ -236,24 +251,29 @@ class Window {
     case Action::quit:
       if (help_ && event.text == "Escape")
         showHelp(false);
-      else
+      else if (event.text != "Escape" || !session_ || !session_->giveUpSaving())
         ended_ = true;
       break;
     default: break;
     }
   }
 
+  // A second S gives up what the first one waits for.
   void save(const InputEvent& event, const char* suffix) {
     if (!session_) return;
-    const bool named = event.kind == InputEvent::Kind::save;
-    const std::string path =
-        named ? event.text : freeName(session_->browser().world().path, suffix);
-    if (session_->scripted()) session_->saveWhenFinished(path);
-    // saved by a later call
-    else if (first_)
-      saveTo_ = path;
-    else
-      message(session_->save(path), 4);
+    if (event.kind == InputEvent::Kind::save) return session_->saveWhenFinished(event.text);
+    if (session_->giveUpSaving()) return;
+    session_->finishWriting();
+    session_->save(freeName(session_->browser().world().path, suffix));
+  }
+
+  void switchMotion() {
+    using Motion = PictureLoop::Motion;
+    motion_ = motion_ == Motion::rebuilt ? Motion::samples : Motion::rebuilt;
+    if (session_) session_->setMotion(motion_);
+    message(motion_ == Motion::rebuilt ? "rebuilt pictures while something moves"
+                                       : "raw samples while something moves",
+            3);
   }
 
   void command() {
@@ -278,6 +298,7 @@ class Window {
 
   std::string bottomLine() {
     if (!loading_.empty()) return fmt::format("loading {} ...", loading_);
+    if (const std::string text = session_ ? session_->savingText() : ""; !text.empty()) return text;
     if (!message_.empty() && seconds() < messageEnds_) return message_;
     if (!session_) return failed_ ? message_ : "drop a world file here; F1 lists the keys";
     if (!session_->resting()) return bottom_;
@@ -336,6 +357,7 @@ class Window {
     const int code = interrupted()                     ? exitInterrupted
                      : failed_ == exitDone && !record_ ? exitRender
                                                        : failed_;
+    if (session_) session_->endSaving();
     const bool stopped = !session_ || session_->stop(.5);
     if (stopped && !WorldLoader::working()) return code;
     picture::removeTemporary();
@@ -360,8 +382,9 @@ class Window {
   int width_ = 0, height_ = 0;
   int failed_ = exitDone; // exit code of a world that could not be loaded
   bool ended_ = false, keepPlace_ = false, help_ = false;
-  std::string saveTo_; // save the first picture of the world here
-  bool first_ = false; // the first picture of the world is still missing
+  bool first_ = false;  // the first picture of the world is still missing
+  double advanced_ = 0; // when the session advanced last
+  PictureLoop::Motion motion_ = PictureLoop::Motion::rebuilt;
   double nextLook_ = 0, loadStart_ = 0;
 
   OverlayLevel level_ = OverlayLevel::brief;

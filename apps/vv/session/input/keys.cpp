@@ -24,6 +24,7 @@ constexpr KeyInfo keys[] = {
     {Action::pause, "P", "pause or resume time"},
     {Action::save, "S", "save the picture as PNG"},
     {Action::saveExr, "Shift+S", "save the picture as OpenEXR"},
+    {Action::samples, "N", "raw samples or rebuilt pictures while something moves"},
     {Action::command, "C", "print the vv command that makes a picture of this view"},
     {Action::reload, "R", "reload the world and keep the view"},
     {Action::overlay, "I", "information about the picture: none, brief, all"},

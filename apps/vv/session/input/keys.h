@@ -28,6 +28,7 @@ enum class Action : uint8_t {
   pause,
   save,
   saveExr,
+  samples, // raw samples or rebuilt pictures
   command,
   reload,
   overlay,

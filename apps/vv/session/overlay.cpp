@@ -1,4 +1,4 @@
-#include "window/overlay.h"
+#include "session/overlay.h"
 
 #include <fmt/format.h>
 
@@ -20,12 +20,21 @@ double megaraysPerSecond(const RTstats& s) {
   return s.renderSeconds > 0 ? rays / s.renderSeconds * 1e-6 : 0;
 }
 
+// Says how the picture was made: "preview   29 fps", "12 of 256 samples".
 std::string sampling(const SessionFacts& f) {
-  if (f.frameRate > 0) return fmt::format("{:.{}f} fps", f.frameRate, f.frameRate < 9.95 ? 1 : 0);
+  using Showing = SessionFacts::Showing;
   if (f.stats.cameraRays == 0) return "first picture ...";
+  const std::string what = f.showing == Showing::preview   ? "preview"
+                           : f.showing == Showing::samples ? "raw samples"
+                                                           : "";
+  if (f.frameRate > 0)
+    return fmt::format("{}{}{:.{}f} fps", what, what.empty() ? "" : "   ", f.frameRate,
+                       f.frameRate < 9.95 ? 1 : 0);
+  if (!what.empty()) return what;
   if (f.wanted <= 0) return "moving";
-  return f.finished ? fmt::format("{:.0f} samples", f.samples)
-                    : fmt::format("{:.0f} of {:.0f} samples", f.samples, f.wanted);
+  if (f.finished) return fmt::format("{:.0f} samples", f.samples);
+  return fmt::format("{:.0f} of {:.0f} samples{}", f.samples, f.wanted,
+                     f.showing == Showing::fading ? " over a preview" : "");
 }
 
 std::string problems(const SessionFacts& f) {
@@ -63,7 +72,9 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
   std::string first = sampling(f);
   if (f.stats.cameraRays > 0) first += fmt::format("   {:.1f} Mray/s", megaraysPerSecond(f.stats));
   if (f.frameRate > 0) first += fmt::format("   {}x{}", f.width, f.height);
-  if (f.frameRate <= 0 && f.finished && f.stats.errorPixels > 0)
+  // Only a still picture has an error that means anything.
+  if (f.showing == SessionFacts::Showing::still && f.frameRate <= 0 && f.finished &&
+      f.stats.errorPixels > 0)
     first += fmt::format("   error {:.2g} %", 100 * f.stats.errorHalfWidth);
   if (f.cluster) first += "   " + workersText(f.workers);
   if (paused) first += "   paused";

@@ -1,0 +1,131 @@
+#include "libpicture/live/display.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace picture::live {
+
+namespace {
+
+// A still picture stands alone once it has a quarter of its samples, or this many.
+constexpr double enoughSamples = 64;
+// It also fades in by time, from `fadeBegins` to `fadeEnds` seconds after its start, so that what
+// is shown is unbiased soon. A picture of fewer samples than `leastSamples` is not shown alone
+// before it is finished: it would be worse than the preview.
+constexpr double fadeBegins = 0.5, fadeEnds = 4, leastSamples = 4;
+
+// Positions of a scaled row or column: the two neighbours, and the weight of the second one in
+// 1/256.
+struct Neighbours {
+  size_t first, second;
+  int weight;
+};
+
+std::vector<Neighbours> neighbours(int from, int to) {
+  std::vector<Neighbours> out(static_cast<size_t>(to));
+  for (int i = 0; i < to; ++i) {
+    const double at = std::clamp((i + 0.5) * from / to - 0.5, 0.0, double(from - 1));
+    const size_t first = size_t(at);
+    out[size_t(i)] = {first, std::min(first + 1, size_t(from) - 1),
+                      int((at - double(first)) * 256)};
+  }
+  return out;
+}
+
+// Returns a mixture of two bytes; weight: that of the second one, 0 to 256.
+int mix(int a, int b, int weight) { return (a * (256 - weight) + b * weight + 128) >> 8; }
+
+// Mixes a picture over another one of the same size. Pixels without a sample show the lower one.
+void fadeIn(const std::vector<uint8_t>& below, const std::vector<float>& samples, double weight,
+            std::vector<uint8_t>& rgb) {
+  const int w = int(std::lround(weight * 256));
+  for (size_t pixel = 0; pixel < samples.size(); ++pixel) {
+    const int own = samples[pixel] > 0 ? w : 0;
+    if (own == 256) continue;
+    for (size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) rgb[i] = uint8_t(mix(below[i], rgb[i], own));
+  }
+}
+
+// Sets `samples` and `covered`.
+void count(const std::vector<float>& samples, LivePicture& out) {
+  double sum = 0;
+  size_t covered = 0;
+  for (const float s : samples) {
+    sum += double(s);
+    covered += s > 0;
+  }
+  out.samples = sum / double(samples.size());
+  out.covered = double(covered) / double(samples.size());
+}
+
+} // namespace
+
+double stillWeight(double samples, int wanted, double seconds) {
+  const double enough = std::clamp(wanted / 4.0, 1.0, enoughSamples);
+  const double byTime =
+      std::min((seconds - fadeBegins) / (fadeEnds - fadeBegins), samples / leastSamples);
+  return std::clamp(std::max(samples / enough, byTime), 0.0, 1.0);
+}
+
+std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int height, int newWidth,
+                            int newHeight) {
+  if (width == newWidth && height == newHeight) return rgb;
+  const std::vector<Neighbours> columns = neighbours(width, newWidth),
+                                rows = neighbours(height, newHeight);
+  std::vector<uint8_t> out(3 * size_t(newWidth) * size_t(newHeight));
+  auto to = out.begin();
+  for (const Neighbours& row : rows) {
+    const uint8_t* const above = rgb.data() + 3 * row.first * size_t(width);
+    const uint8_t* const under = rgb.data() + 3 * row.second * size_t(width);
+    for (const Neighbours& column : columns)
+      for (size_t c = 0; c < 3; ++c) {
+        const size_t a = 3 * column.first + c, b = 3 * column.second + c;
+        *to++ = uint8_t(mix(mix(above[a], above[b], column.weight),
+                            mix(under[a], under[b], column.weight), row.weight));
+      }
+  }
+  return out;
+}
+
+Display::Viewer& Display::viewerOf(uint32_t viewer) {
+  if (!viewers_.contains(viewer) && viewers_.size() >= mostViewers) {
+    const auto older = [](const auto& a, const auto& b) { return a.second.used < b.second.used; };
+    viewers_.erase(std::min_element(viewers_.begin(), viewers_.end(), older));
+  }
+  Viewer& found = viewers_[viewer];
+  found.used = ++uses_;
+  return found;
+}
+
+void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
+                   LivePicture& out) {
+  const std::vector<float>& samples = picture.planes.at(RT_SAMPLES);
+  out.width = picture.width;
+  out.height = picture.height;
+  out.rgb = displayBytes(picture);
+  count(samples, out);
+  out.preview = frame.purpose == LiveFrame::Purpose::preview;
+
+  Viewer& viewer = viewerOf(frame.viewer);
+  if (frame.number != viewer.belowFrame) {
+    viewer.belowFrame = frame.number;
+    viewer.below = {};
+    if (!whole && !viewer.last.rgb.empty())
+      viewer.below = {
+          out.width, out.height,
+          scaled(viewer.last.rgb, viewer.last.width, viewer.last.height, out.width, out.height),
+          viewer.last.preview};
+  }
+  if (!whole && !viewer.below.rgb.empty()) {
+    const bool fades = frame.purpose == LiveFrame::Purpose::still && viewer.below.preview;
+    const double weight = fades ? stillWeight(out.samples, frame.samples, seconds) : 1;
+    if (weight < 1 || out.covered < 1) {
+      fadeIn(viewer.below.rgb, samples, weight, out.rgb);
+      out.preview = viewer.below.preview;
+    }
+  }
+  viewer.last = {out.width, out.height, out.rgb, out.preview};
+  if (whole) viewer.below = {};
+}
+
+} // namespace picture::live

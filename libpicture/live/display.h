@@ -1,0 +1,60 @@
+// display.h: Makes the bytes that a viewer is shown of a frame. A still picture begins with few
+// samples, so it fades in over what the viewer saw before; its finished picture is shown as it is.
+// Owned by a LiveRenderer. [the browser's thread]
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "libpicture/live.h"
+
+namespace picture::live {
+
+// The facts about a frame that decide how it is shown.
+struct ShownFrame {
+  uint64_t number = 0; // counts the frames that were started
+  LiveFrame::Purpose purpose = LiveFrame::Purpose::still;
+  uint32_t viewer = 0;
+  int samples = 1; // samples per pixel that the frame was started with
+};
+
+// Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the
+// preview that was shown before. It never decreases. wanted: the samples of the finished picture.
+// seconds: since the frame was started.
+double stillWeight(double samples, int wanted, double seconds);
+
+// Scales rows of red, green and blue bytes, linearly between the centres of pixels.
+std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int height, int newWidth,
+                            int newHeight);
+
+class Display {
+ public:
+  // Fills size, rgb, covered, samples and preview of `out`. picture: the finished part of the
+  // frame, with RT_RGBA and RT_SAMPLES. whole: the frame has all its samples.
+  void show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
+            LivePicture& out);
+
+  static constexpr size_t mostViewers =
+      8; // more than that: the one unused for longest is forgotten
+
+ private:
+  // A picture, and whether any of it is a preview.
+  struct Bytes {
+    int width = 0, height = 0;
+    std::vector<uint8_t> rgb;
+    bool preview = false;
+  };
+  struct Viewer {
+    Bytes last;              // the picture that was shown last
+    Bytes below;             // the picture that a still frame fades over, in that frame's size
+    uint64_t belowFrame = 0; // number of that frame
+    uint64_t used = 0;
+  };
+  Viewer& viewerOf(uint32_t viewer);
+
+  std::map<uint32_t, Viewer> viewers_;
+  uint64_t uses_ = 0;
+};
+
+} // namespace picture::live

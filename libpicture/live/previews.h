@@ -1,0 +1,73 @@
+// previews.h: Keeps the accumulated frames of each viewer whose previews are rebuilt. A
+// Reconstruction needs to know how far things have moved since the viewer's own last frame, but
+// RT_MOTION tells it since the last frame of the context, which may have been for somebody else.
+// The numbers of a WorldStep decide whether both are the same. Owned by a LiveRenderer. [the render
+// thread]
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "libpicture/live/reconstruction.h"
+
+namespace picture::live {
+
+// Two states of the world: that of the frame before in the same context, and that of this frame.
+// Equal numbers mean that nothing has moved in between.
+struct WorldStep {
+  uint64_t before = 0; // 0: there was no frame that RT_MOTION could refer to
+  uint64_t now = 0;
+};
+
+// Numbers the states of the world in a context.
+class WorldSteps {
+ public:
+  // Notes that the next frame shows the world after changes.
+  void change() { ++now_; }
+  // Notes that the next frame shows another world, or the world in another context.
+  void beginAnew() {
+    ++now_;
+    shown_ = 0;
+  }
+  // Notes that a frame of the world has begun.
+  WorldStep begin() {
+    const WorldStep step{shown_, now_};
+    shown_ = now_;
+    return step;
+  }
+
+ private:
+  uint64_t now_ = 1, shown_ = 0;
+};
+
+class Previews {
+ public:
+  // threads: 0: as many as the process may use.
+  explicit Previews(int threads) : threads_(threads) {}
+
+  // Adds a frame to what its viewer has accumulated and returns the rebuilt picture. Begins anew if
+  // the world has changed since the viewer's last preview by more than the frame's RT_MOTION says.
+  // If an exception leaves it, the viewer's accumulated frames are gone.
+  Picture rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera,
+                  const WorldStep& step);
+  // Frees what a viewer has accumulated.
+  void forget(uint32_t viewer) { viewers_.erase(viewer); }
+
+  static constexpr size_t mostViewers =
+      8; // more than that: the one unused for longest is forgotten
+  size_t viewers() const { return viewers_.size(); }
+
+ private:
+  struct Viewer {
+    std::unique_ptr<Reconstruction> reconstruction;
+    uint64_t world = 0; // the world of its last preview
+    uint64_t used = 0;
+  };
+  Viewer& viewerOf(uint32_t viewer);
+
+  int threads_;
+  std::map<uint32_t, Viewer> viewers_;
+  uint64_t uses_ = 0;
+};
+
+} // namespace picture::live
