@@ -38,6 +38,24 @@ TEST(WindowClock, RealTimeIsThatOfTheReadings) {
   EXPECT_EQ(clock.reading(), 6.0);
 }
 
+// While a picture of an instant is made, the time stands still and then goes on from there.
+TEST(WindowClock, AHeldClockGoesOnFromItsInstant) {
+  SessionClock clock(SessionClock::Mode::real, 10);
+  Steps steps;
+  const auto read = [&](double reading, SessionClock::Reading kind) {
+    clock.read(reading, kind);
+    if (kind == SessionClock::Reading::advances) clock.run(steps.driven());
+  };
+  read(1, SessionClock::Reading::advances);
+  read(2, SessionClock::Reading::advances);
+  read(50, SessionClock::Reading::isHeld);
+  read(99, SessionClock::Reading::isHeld);
+  EXPECT_EQ(clock.time(), 1);
+  EXPECT_EQ(clock.reading(), 99);
+  read(99.5, SessionClock::Reading::advances);
+  EXPECT_EQ(steps.times, (std::vector<double>{0, 1, 1.5}));
+}
+
 TEST(WindowClock, StepsAreMultiplesOfThePeriodAndTheirNumberIsLimited) {
   SessionClock clock(SessionClock::Mode::stepped, 8);
   Steps steps;

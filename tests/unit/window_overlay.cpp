@@ -1,0 +1,81 @@
+// window_overlay.cpp: Tests the lines of the window's overlay. They say how the picture was made,
+// and give an error only for a still picture.
+#include <gtest/gtest.h>
+
+#include "session/input/keys.h"
+#include "window/overlay.h"
+
+using namespace vv;
+using Showing = SessionFacts::Showing;
+
+namespace {
+
+// A world that moves, whose last picture has figures that mean nothing.
+SessionFacts facts(Showing showing, double frameRate) {
+  SessionFacts f;
+  f.showing = showing;
+  f.frameRate = frameRate;
+  f.width = 400;
+  f.height = 300;
+  f.samples = 12;
+  f.stats.cameraRays = 1000;
+  f.stats.renderSeconds = 1;
+  f.stats.errorPixels = 100;
+  f.stats.errorHalfWidth = 0.25;
+  f.finished = true;
+  return f;
+}
+
+std::string brief(const SessionFacts& f) {
+  const std::vector<std::string> lines = overlayLines(f, false, OverlayLevel::brief);
+  return lines.size() == 1 ? lines[0] : "";
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST(Overlay, aPreviewIsCalledOne) {
+  EXPECT_TRUE(brief(facts(Showing::preview, 29)).starts_with("preview   29 fps"));
+  EXPECT_TRUE(
+      brief(facts(Showing::preview, 0)).starts_with("preview")); // the motion has just ended
+  EXPECT_TRUE(brief(facts(Showing::samples, 29)).starts_with("raw samples   29 fps"));
+  SessionFacts fading = facts(Showing::fading, 0);
+  fading.wanted = 256;
+  fading.finished = false;
+  EXPECT_TRUE(brief(fading).starts_with("12 of 256 samples over a preview"));
+  SessionFacts still = facts(Showing::still, 0);
+  still.wanted = 256;
+  still.finished = false;
+  EXPECT_TRUE(brief(still).starts_with("12 of 256 samples"));
+  EXPECT_FALSE(has(brief(still), "preview"));
+}
+
+TEST(Overlay, onlyAStillPictureHasAnError) {
+  for (const Showing showing : {Showing::preview, Showing::samples, Showing::fading})
+    for (const double rate : {0.0, 30.0})
+      for (const OverlayLevel level : {OverlayLevel::brief, OverlayLevel::all})
+        for (const std::string& line : overlayLines(facts(showing, rate), false, level))
+          EXPECT_FALSE(has(line, "%")) << line;
+  SessionFacts still = facts(Showing::still, 0);
+  still.wanted = 12;
+  EXPECT_TRUE(has(brief(still), "error 25 %"));
+}
+
+TEST(Overlay, nothingIsSaidBeforeThereIsAPicture) {
+  EXPECT_EQ(brief(SessionFacts()), "first picture ...");
+  EXPECT_TRUE(overlayLines(SessionFacts(), false, OverlayLevel::none).empty());
+}
+
+TEST(Overlay, theHelpListsAllKeys) {
+  const std::vector<std::string> lines = helpLines();
+  EXPECT_EQ(lines.size(), keyTable().size() + mouseTable().size());
+  InputEvent key;
+  key.kind = InputEvent::Kind::down;
+  key.text = "N";
+  EXPECT_EQ(actionOf(key), Action::samples);
+  key.shift = true;
+  EXPECT_EQ(actionOf(key), Action::none);
+}
