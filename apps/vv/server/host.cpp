@@ -26,6 +26,7 @@ constexpr const char* socketPath = "/live";
 constexpr size_t bodyBlock = 65536; // bytes of a body that are written at once
 constexpr size_t mostTexts = 32;    // texts without a name that wait for a page
 constexpr size_t headerRoom = 4096; // for the headers of an answer
+constexpr auto tryAgainLater = static_cast<lws_close_status>(1013);
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -58,17 +59,20 @@ bool usesTls(lws* connection) {
 #endif
 }
 
-// A WebSocket of a page. [the host's thread]
-struct Page {
+// The WebSocket of a page. [the host's thread]
+struct Socket {
   lws* connection = nullptr;
   std::string partial; // the message that is arriving
   MessageRate rate;
   std::map<std::string, std::string> named; // texts that a later one replaces
   std::deque<std::string> texts;
   std::string picture;
-  bool full = false; // there were enough pages already
+  std::string refusal; // not empty: why the connection is closed as soon as possible
+  bool known = false;  // the server was told of it
 
-  bool isSending() const { return full || !named.empty() || !texts.empty() || !picture.empty(); }
+  bool isSending() const {
+    return !refusal.empty() || !named.empty() || !texts.empty() || !picture.empty();
+  }
 };
 
 // An HTTP request whose body is being sent. [the host's thread]
@@ -92,17 +96,18 @@ struct Host::Impl {
   std::mutex mutex;
   std::vector<HostEvent> events;
   struct Order {
+    enum class Kind : uint8_t { text, picture, close };
+    Kind kind;
     uint64_t page;
-    std::string name, text;
-    bool picture;
+    std::string name, bytes; // name: of a text
   };
   std::vector<Order> orders; // what the host's thread is to send
 
   // Used by the host's thread only.
-  std::map<uint64_t, Page> pages;
+  std::map<uint64_t, Socket> sockets;
   std::unordered_map<lws*, uint64_t> numbers;
   std::unordered_map<lws*, Transfer> transfers;
-  uint64_t lastPage = 0;
+  uint64_t lastSocket = 0;
 
   Impl(const HostOptions& wanted, std::function<void()> wakeOther)
       : options(wanted), wake(std::move(wakeOther)) {}
@@ -169,9 +174,9 @@ struct Host::Impl {
                                     &at, end))
       return -1;
     for (const auto& [name, value] : given.headers) {
-      const std::string full = name + ":";
+      const std::string field = name + ":";
       if (lws_add_http_header_by_name(
-              connection, reinterpret_cast<const unsigned char*>(full.c_str()),
+              connection, reinterpret_cast<const unsigned char*>(field.c_str()),
               reinterpret_cast<const unsigned char*>(value.c_str()), int(value.size()), &at, end))
         return -1;
     }
@@ -213,25 +218,24 @@ struct Host::Impl {
   }
 
   void join(lws* connection) {
-    const uint64_t number = ++lastPage;
-    Page& page = pages[number];
-    page.connection = connection;
+    const uint64_t number = ++lastSocket;
+    Socket& socket = sockets[number];
+    socket.connection = connection;
     numbers[connection] = number;
-    page.full = pages.size() > size_t(maxViewers);
-    if (page.full)
-      lws_callback_on_writable(connection); // sendNext() closes it
-    else
-      tell({HostEvent::Kind::joined, number, {}});
+    socket.known = sockets.size() <= size_t(maxViewers);
+    if (socket.known) return tell({HostEvent::Kind::joined, number, {}});
+    socket.refusal = fmt::format("there are {} pages already (maxViewers)", maxViewers);
+    lws_callback_on_writable(connection); // sendNext() closes it
   }
 
   void leave(lws* connection) {
     const auto found = numbers.find(connection);
     if (found == numbers.end()) return;
     const uint64_t number = found->second;
-    const bool wasFull = pages[number].full;
-    pages.erase(number);
+    const bool known = sockets[number].known;
+    sockets.erase(number);
     numbers.erase(found);
-    if (!wasFull) tell({HostEvent::Kind::left, number, {}});
+    if (known) tell({HostEvent::Kind::left, number, {}});
   }
 
   // Closes a connection with a reason of at most 123 bytes. Returns what the callback returns.
@@ -245,17 +249,18 @@ struct Host::Impl {
   int receive(lws* connection, std::string_view bytes) {
     const auto found = numbers.find(connection);
     if (found == numbers.end()) return -1;
-    Page& page = pages[found->second];
-    if (page.full) return 0;
+    Socket& socket = sockets[found->second];
+    if (!socket.refusal.empty()) return 0;
+    // A part of a message counts as one, too, because there may be many empty ones.
+    if (!socket.rate.allow(now()))
+      return close(connection, LWS_CLOSE_STATUS_POLICY_VIOLATION, "maxMessagesPerSecond");
     if (lws_frame_is_binary(connection))
       return close(connection, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "texts were expected");
-    if (page.partial.size() + bytes.size() > size_t(maxMessageBytes))
+    if (socket.partial.size() + bytes.size() > size_t(maxMessageBytes))
       return close(connection, LWS_CLOSE_STATUS_MESSAGE_TOO_LARGE, "maxMessageBytes");
-    page.partial += bytes;
+    socket.partial += bytes;
     if (!lws_is_final_fragment(connection)) return 0;
-    if (!page.rate.allow(now()))
-      return close(connection, LWS_CLOSE_STATUS_POLICY_VIOLATION, "maxMessagesPerSecond");
-    ReadMessage read = readMessage(std::exchange(page.partial, {}));
+    ReadMessage read = readMessage(std::exchange(socket.partial, {}));
     if (!read.message) return close(connection, LWS_CLOSE_STATUS_POLICY_VIOLATION, read.fault);
     tell({HostEvent::Kind::message, found->second, std::move(*read.message)});
     return 0;
@@ -265,20 +270,18 @@ struct Host::Impl {
   int sendNext(lws* connection) {
     const auto found = numbers.find(connection);
     if (found == numbers.end()) return -1;
-    Page& page = pages[found->second];
-    if (page.full)
-      return close(connection, static_cast<lws_close_status>(1013), // "try again later"
-                   fmt::format("there are {} pages already (maxViewers)", maxViewers));
+    Socket& socket = sockets[found->second];
+    if (!socket.refusal.empty()) return close(connection, tryAgainLater, socket.refusal);
     std::string bytes;
     bool picture = false;
-    if (!page.texts.empty()) {
-      bytes = std::move(page.texts.front());
-      page.texts.pop_front();
-    } else if (!page.named.empty()) {
-      bytes = std::move(page.named.begin()->second);
-      page.named.erase(page.named.begin());
-    } else if (!page.picture.empty()) {
-      bytes = std::exchange(page.picture, {});
+    if (!socket.texts.empty()) {
+      bytes = std::move(socket.texts.front());
+      socket.texts.pop_front();
+    } else if (!socket.named.empty()) {
+      bytes = std::move(socket.named.begin()->second);
+      socket.named.erase(socket.named.begin());
+    } else if (!socket.picture.empty()) {
+      bytes = std::exchange(socket.picture, {});
       picture = true;
     } else {
       return 0;
@@ -288,7 +291,7 @@ struct Host::Impl {
     if (lws_write(connection, room.data() + LWS_PRE, bytes.size(),
                   picture ? LWS_WRITE_BINARY : LWS_WRITE_TEXT) < 0)
       return -1;
-    if (page.isSending()) lws_callback_on_writable(connection);
+    if (socket.isSending()) lws_callback_on_writable(connection);
     return 0;
   }
 
@@ -299,17 +302,19 @@ struct Host::Impl {
       taken.swap(orders);
     }
     for (Order& order : taken) {
-      const auto found = pages.find(order.page);
-      if (found == pages.end()) continue;
-      Page& page = found->second;
-      if (order.picture)
-        page.picture = std::move(order.text);
+      const auto found = sockets.find(order.page);
+      if (found == sockets.end()) continue;
+      Socket& socket = found->second;
+      if (order.kind == Order::Kind::close)
+        socket.refusal = "vv has run out of memory";
+      else if (order.kind == Order::Kind::picture)
+        socket.picture = std::move(order.bytes);
       else if (!order.name.empty())
-        page.named[order.name] = std::move(order.text);
+        socket.named[order.name] = std::move(order.bytes);
       else
-        page.texts.push_back(std::move(order.text));
-      if (page.texts.size() > mostTexts) page.texts.pop_front();
-      lws_callback_on_writable(page.connection);
+        socket.texts.push_back(std::move(order.bytes));
+      if (socket.texts.size() > mostTexts) socket.texts.pop_front();
+      lws_callback_on_writable(socket.connection);
     }
   }
 
@@ -408,12 +413,14 @@ std::vector<HostEvent> Host::takeEvents() {
 }
 
 void Host::sendText(uint64_t page, const std::string& name, std::string text) {
-  impl_->order({page, name, std::move(text), false});
+  impl_->order({Impl::Order::Kind::text, page, name, std::move(text)});
 }
 
 void Host::sendPicture(uint64_t page, std::string bytes) {
-  impl_->order({page, {}, std::move(bytes), true});
+  impl_->order({Impl::Order::Kind::picture, page, {}, std::move(bytes)});
 }
+
+void Host::close(uint64_t page) { impl_->order({Impl::Order::Kind::close, page, {}, {}}); }
 
 std::string Host::offerDownload(std::string name, std::string type, std::string content) {
   return impl_->downloads.offer(std::move(name), std::move(type), std::move(content), now());

@@ -45,6 +45,8 @@ class Host {
   void sendText(uint64_t page, const std::string& name, std::string text);
   // Sends a binary message. The page must have acknowledged the previous one.
   void sendPicture(uint64_t page, std::string bytes);
+  // Ends the connection of a page that cannot be served; the page tries again.
+  void close(uint64_t page);
   // Keeps a file for a minute. Returns its path, relative to the page.
   std::string offerDownload(std::string name, std::string type, std::string content);
 

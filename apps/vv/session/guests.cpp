@@ -12,6 +12,15 @@ Guest& Guests::add(uint32_t viewer, const Pilot& leader, xvrml::Browser& browser
   return *guest;
 }
 
+void Guests::remove(uint32_t viewer) {
+  Guest* const guest = find(viewer);
+  if (!guest) return;
+  InputEvent leaving;
+  leaving.kind = InputEvent::Kind::leave;
+  guest->pilot.handle(leaving); // a sensor may be in its hand
+  guests_.erase(viewer);
+}
+
 Guest* Guests::find(uint32_t viewer) {
   const auto found = guests_.find(viewer);
   return found == guests_.end() ? nullptr : found->second.get();

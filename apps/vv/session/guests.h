@@ -30,7 +30,7 @@ class Guests {
   // Makes a guest at the place of `leader`. viewer: a number that no other viewer has, not 0.
   Guest& add(uint32_t viewer, const Pilot& leader, xvrml::Browser& browser, SharedRenderer& shared,
              const Options& options);
-  void remove(uint32_t viewer) { guests_.erase(viewer); }
+  void remove(uint32_t viewer);
   // Returns null if there is no such guest.
   Guest* find(uint32_t viewer);
   const Guest* find(uint32_t viewer) const;

@@ -351,6 +351,12 @@ void Session::addGuest(uint32_t viewer, int width, int height) {
   resizeGuest(viewer, width, height);
 }
 
+void Session::removeGuest(uint32_t viewer) {
+  if (!isGuest(viewer)) return;
+  guests_.remove(viewer);
+  shared_.forget(viewer);
+}
+
 void Session::resizeGuest(uint32_t viewer, int width, int height) {
   Guest* const guest = guests_.find(viewer);
   if (!guest) return;

@@ -105,7 +105,7 @@ class Session {
   // --- Guests --- [while the world can be used]
   // Adds a guest who stands where viewer 0 stands. viewer: its number, not 0.
   void addGuest(uint32_t viewer, int width, int height);
-  void removeGuest(uint32_t viewer) { guests_.remove(viewer); }
+  void removeGuest(uint32_t viewer);
   bool isGuest(uint32_t viewer) const { return guests_.find(viewer); }
   void resizeGuest(uint32_t viewer, int width, int height);
   // Takes input of viewer 0 or of a guest; that of others is ignored.

@@ -34,7 +34,13 @@ class SharedRenderer {
   uint32_t viewerOf(uint64_t number) const {
     for (const Started& one : started_)
       if (one.number == number) return one.viewer;
-    return viewer_;
+    return nobody;
+  }
+  // Makes the frames of a viewer who has left nobody's, because another may get the number.
+  void forget(uint32_t viewer) {
+    for (Started& one : started_)
+      if (one.viewer == viewer) one.viewer = nobody;
+    if (viewer_ == viewer) viewer_ = nobody;
   }
   // Returns the state of the world that the last frame shows, for isOutdated().
   uint64_t world() const { return world_; }
@@ -59,6 +65,7 @@ class SharedRenderer {
     uint64_t number;
     uint32_t viewer;
   };
+  static constexpr uint32_t nobody = ~uint32_t(0) - 1; // no viewer has this number
   static constexpr size_t remembered = 8; // more frames than can be in flight or unseen
 
   xvrml::Browser& browser_;

@@ -6,6 +6,7 @@ namespace vv {
 
 std::shared_ptr<SharedPointer> makeSharedPointer() { return std::make_shared<SharedPointer>(); }
 
+// The world may be gone already, so that it is told nothing.
 Pointer::~Pointer() {
   if (shared_->holder == this) shared_->holder = nullptr;
 }
