@@ -1,5 +1,6 @@
 #include "server/host.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstring>
@@ -222,7 +223,9 @@ struct Host::Impl {
     Socket& socket = sockets[number];
     socket.connection = connection;
     numbers[connection] = number;
-    socket.known = sockets.size() <= size_t(maxViewers);
+    const auto known = std::count_if(sockets.begin(), sockets.end(),
+                                     [](const auto& one) { return one.second.known; });
+    socket.known = known < maxViewers;
     if (socket.known) return tell({HostEvent::Kind::joined, number, {}});
     socket.refusal = fmt::format("there are {} pages already (maxViewers)", maxViewers);
     lws_callback_on_writable(connection); // sendNext() closes it
