@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-live bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -74,6 +74,14 @@ bench: build
 	@mkdir -p build/bench
 	@for b in $(R)/bin/bench_*; do [ -x $$b ] || continue; \
 	  $$b --benchmark_out=build/bench/$$(basename $$b).json --benchmark_out_format=json || exit 1; done
+
+## make bench-live    live pictures of five worlds beside the true ones (FLIP), frames a second, latency and stalls into
+##                   build/bench/live; STEPS=60 without the clock, for a busy machine; DOCS=1 also into docs/, WORLDS=a,b,FILE.wrl,
+##                   FULL=1 better true pictures
+bench-live:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target bench_live shaders scripts
+	@$(PYTHON) tests/bench/live_flip.py --bench $(R)/bin/bench_live --out build/bench/live $(if $(STEPS),--steps $(STEPS)) \
+	  $(if $(WORLDS),--worlds $(WORLDS)) $(if $(FULL),--pairs 6 --reference-spp 512) $(if $(DOCS),--docs)
 
 ## make bench-render  error over CPU time of the transports on twelve worlds (CSV, curves) into build/bench/render; FULL=1 for
 ##                   long runs, DOCS=1 also into docs/benchmarks.md, WORLDS=a,b,FILE.wrl, MITSUBA_PYTHON=... a Python that has

@@ -8,12 +8,14 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "libpicture/cluster.h"
+#include "libpicture/live/reconstruction.h"
 #include "libpicture/stage.h"
 
 namespace picture {
@@ -31,9 +33,27 @@ double secondsSince(Clock::time_point start) {
 
 // A started frame, and the facts that are known only at its start.
 struct FrameInFlight {
+  RenderSettings settings;
   RenderResult result{};
   std::vector<std::string> names;
+  xvrml::CameraSettings camera{}; // its shader is compared with null and not used
+  bool otherWorld = false;        // the first frame of another world
 };
+
+// Changes the settings of a frame to those of a preview, which is rebuilt from more channels than
+// it shows. number: counts the previews. Each has a seed of its own: from the same samples again
+// and again nothing could be accumulated.
+void makePreview(RenderSettings& frame, uint32_t number) {
+  frame.channels |= RT_RGBA | RT_SAMPLES | live::previewChannels;
+  frame.quality.set(RT_FOLLOW_IMAGES, 1);
+  const uint32_t seed = uint32_t(frame.quality.whole(RT_SEED)) + number;
+  frame.quality.set(RT_SEED, seed & 0x7fffffff);
+}
+
+std::string previewNote(int samples) {
+  return fmt::format("preview: rebuilt from {} sample{} per pixel, biased", samples,
+                     samples == 1 ? "" : "s");
+}
 
 } // namespace
 
@@ -62,7 +82,10 @@ struct Renderer::Impl {
 
   // Used by the calling thread, and by the render thread while the calling thread waits.
   std::deque<FrameInFlight> inFlight;
-  Clock::time_point lastEnd; // when the last frame ended
+  Clock::time_point lastEnd;                          // when the last frame ended
+  std::optional<live::Reconstruction> reconstruction; // none before the first preview
+  uint32_t previews = 0;                              // number of previews that were started
+  bool otherWorld = false; // the browser shows another world than in the last frame
 
   Impl(xvrml::World& world, xvrml::Browser* browser, const RenderSettings& settings,
        ProgressCallback w)
@@ -117,6 +140,33 @@ struct Renderer::Impl {
     result.hasCameraShader = std::exchange(result.camera.shader, nullptr) != nullptr;
   }
 
+  void apply(const WorldChanges& worldChanges) {
+    stage.apply(worldChanges);
+    otherWorld |= worldChanges.otherWorld;
+  }
+
+  // Returns the settings of the next frame.
+  RenderSettings nextFrame() {
+    RenderSettings frame = stage.settings;
+    if (frame.preview) makePreview(frame, previews++);
+    return frame;
+  }
+
+  // Replaces the samples of a frame by the picture that is rebuilt from them, if it is a preview.
+  void rebuild(const RenderSettings& frame, const xvrml::CameraSettings& camera, bool newWorld,
+               RenderResult& result) {
+    if (newWorld && reconstruction) reconstruction->reset();
+    if (!frame.preview || result.interrupted) return;
+    if (!reconstruction) reconstruction.emplace(frame.threads);
+    const bool transparent = result.picture.transparent;
+    result.picture =
+        reconstruction->add(result.picture, {camera, double(frame.width) / frame.height});
+    result.picture.transparent = transparent;
+    result.picture.note = previewNote(frame.samples);
+    result.renderSeconds += reconstruction->facts().seconds;
+    lastEnd = Clock::now();
+  }
+
   void start(const View& view) {
     const auto begin = Clock::now();
     doing = "mapping";
@@ -129,7 +179,10 @@ struct Renderer::Impl {
       flight.result.nodes = stage.mapper()->nodes();
     }
     noteCamera(flight.result);
-    stage.setUpFrame();
+    flight.camera = stage.shown();
+    flight.otherWorld = std::exchange(otherWorld, false);
+    flight.settings = nextFrame();
+    stage.setUpFrame(flight.settings);
     rtQuality(RT_FRAMES_IN_FLIGHT, maxInFlight);
     if (inFlight.empty()) lastEnd = Clock::now();
     doing = "building";
@@ -150,8 +203,9 @@ struct Renderer::Impl {
     lastEnd = Clock::now();
     stage.reportMessages();
     result.interrupted = cancelled;
-    stage.readChannels(stage.settings, result.picture, &flight.names);
-    stage.describe(stage.settings, result);
+    stage.readChannels(flight.settings, result.picture, &flight.names);
+    rebuild(flight.settings, flight.camera, flight.otherWorld, result);
+    stage.describe(flight.settings, result);
     result.map = flight.result.map;
   }
 
@@ -161,15 +215,17 @@ struct Renderer::Impl {
     // meshes are built once, with the first picture
     result.mapSeconds = secondsSince(start) + stage.takeMeshSeconds();
     noteCamera(result);
-    stage.setUpFrame();
+    const RenderSettings frame = nextFrame();
+    stage.setUpFrame(frame);
     start = Clock::now();
     rtRender();
     throwOnError("rendering");
     result.renderSeconds = secondsSince(start);
     stage.reportMessages(); // safe here: the browser's thread is waiting
     result.interrupted = cancelled;
-    stage.readChannels(stage.settings, result.picture);
-    stage.describe(stage.settings, result);
+    stage.readChannels(frame, result.picture);
+    rebuild(frame, stage.shown(), std::exchange(otherWorld, false), result);
+    stage.describe(frame, result);
     if (stage.settings.channels & RT_NAME) result.nodes = stage.mapper()->nodes();
   }
 };
@@ -226,7 +282,7 @@ void Renderer::setProgressCallback(ProgressCallback watch) { impl_->watch = std:
 
 const std::vector<xvrml::ViewpointInfo>& Renderer::viewpoints() {
   const WorldChanges worldChanges = impl_->stage.collectChanges();
-  impl_->run([&] { impl_->stage.apply(worldChanges); });
+  impl_->run([&] { impl_->apply(worldChanges); });
   return impl_->stage.mapper()->viewpoints();
 }
 
@@ -234,7 +290,7 @@ xvrml::Bounds Renderer::bounds() {
   xvrml::Bounds bounds;
   const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(worldChanges);
+    impl_->apply(worldChanges);
     bounds = impl_->stage.mapper()->bounds();
   });
   return bounds;
@@ -245,7 +301,7 @@ Renderer::Place Renderer::placeOf(const View& view) {
   Place place;
   const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(worldChanges);
+    impl_->apply(worldChanges);
     place.camera = impl_->stage.cameraOf(view);
     const xvrml::OpenRTMapper& mapper = *impl_->stage.mapper();
     place.up = upOf(mapper, view);
@@ -257,7 +313,7 @@ Renderer::Place Renderer::placeOf(const View& view) {
 void Renderer::prepare(const View& view) {
   const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(worldChanges);
+    impl_->apply(worldChanges);
     impl_->stage.prepare(view);
   });
 }
@@ -283,7 +339,7 @@ void Renderer::start(const View& view) {
   if (impl_->inFlight.empty()) impl_->cancelled = false;
   const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(worldChanges);
+    impl_->apply(worldChanges);
     impl_->start(view);
   });
 }
@@ -314,7 +370,7 @@ RenderResult Renderer::render(const View& view) {
   impl_->cancelled = false;
   const WorldChanges worldChanges = impl_->stage.collectChanges();
   impl_->run([&] {
-    impl_->stage.apply(worldChanges);
+    impl_->apply(worldChanges);
     impl_->render(view, result);
   });
   return result;

@@ -42,7 +42,12 @@ struct RenderSettings {
   std::string shaderPath;  // folders, separated by colons
   std::string environment; // Environment map (radiance.h) that replaces the world's Background.
   double environmentIntensity = 1;
-  Background background;            // Every kind except Kind::world excludes `environment`.
+  Background background; // Every kind except Kind::world excludes `environment`.
+  // Each picture is rebuilt from its samples and those of the renderer's earlier pictures
+  // (live/reconstruction.h). It has only the channel rgba, it is biased, and Picture::note says so.
+  // A picture that was interrupted has its samples as they are, and no note. For pictures of one
+  // sequence and one view at each moment, in the order of their time.
+  bool preview = false;
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
   bool operator==(const RenderSettings&) const = default;
@@ -102,8 +107,8 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   void setProgressCallback(ProgressCallback watch);
-  // Changes samples, seed, error, headlight and channels of the following pictures; no other
-  // setting may change. Call it between two calls of render().
+  // Changes samples, seed, error, preview, headlight and channels of the following pictures; no
+  // other setting may change. Call it between two calls of render().
   void change(const std::function<void(RenderSettings&)>& change);
   const std::vector<xvrml::ViewpointInfo>& viewpoints();
   xvrml::Bounds bounds();

@@ -237,13 +237,13 @@ void Stage::useEnvironment() {
   throwOnError("environment");
 }
 
-void Stage::setUpFrame() {
-  rtFrameBuffer(settings.width, settings.height, settings.channels);
-  QualityValues quality = settings.quality;
-  quality.set(RT_SAMPLES_PER_PIXEL, settings.samples);
-  quality.set(RT_TARGET_ERROR, settings.error);
-  quality.set(RT_TIME_LIMIT, settings.timeLimit);
-  quality.set(RT_PROGRESSIVE, settings.progressive ? 1 : 0);
+void Stage::setUpFrame(const RenderSettings& frame) {
+  rtFrameBuffer(frame.width, frame.height, frame.channels);
+  QualityValues quality = frame.quality;
+  quality.set(RT_SAMPLES_PER_PIXEL, frame.samples);
+  quality.set(RT_TARGET_ERROR, frame.error);
+  quality.set(RT_TIME_LIMIT, frame.timeLimit);
+  quality.set(RT_PROGRESSIVE, frame.progressive ? 1 : 0);
   applyQuality(quality);
   throwOnError("frame");
 }

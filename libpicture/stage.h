@@ -55,8 +55,9 @@ class Stage {
   xvrml::CameraSettings cameraOf(const View& view) const;
   // Maps the world for a view.
   void prepare(const View& view);
-  // Sets size, channels and quality of the next frame from the settings.
-  void setUpFrame();
+  // Sets size, channels and quality of the next frame, from the settings or from others.
+  void setUpFrame() { setUpFrame(settings); }
+  void setUpFrame(const RenderSettings& frame);
   // Reads the channels of the finished frame, which had these settings. `names` are the names at
   // its start; null: the current names.
   void readChannels(const RenderSettings& frame, Picture& picture,

@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -358,8 +359,8 @@ class Pictures {
       auto& film = films_[path];
       try {
         if (!film)
-          film =
-              std::make_unique<picture::Film>(output.film, made.width, made.height, options_.fps);
+          film = std::make_unique<picture::Film>(output.film, made.width, made.height, options_.fps,
+                                                 made.note);
         film->add(picture::displayBytes(made));
       } catch (const std::runtime_error& error) {
         throw Failure{exitRender, fmt::format("cannot make {}: {}", path, error.what())};
@@ -375,8 +376,15 @@ class Pictures {
     } catch (const std::exception& error) { sayWarning(error.what()); }
   }
 
+  // Says once that the pictures are previews.
+  void sayPreview(const picture::Picture& made) {
+    if (made.note.empty() || std::exchange(previewSaid_, true) || options_.quiet) return;
+    say(fmt::format("vv: {}; without --preview, pictures are unbiased", made.note));
+  }
+
   void finish(const Job& job, const Moment& moment, const picture::RenderResult& result) {
     const auto start = Clock::now();
+    sayPreview(result.picture);
     writePictures(job, result.picture);
     if (!result.interrupted) addToFilms(job, result.picture);
     const double writeSeconds = secondsSince(start);
@@ -474,6 +482,7 @@ class Pictures {
   size_t moments_ = 1, views_ = 1, done_ = 0; // moments; pictures per moment; finished pictures
   bool anythingShown_ = false;                // a picture has shown something
   bool saveWanted_ = false;
+  bool previewSaid_ = false;
   bool anyWorker_ = false;                                      // a worker has been connected
   std::map<std::string, std::unique_ptr<picture::Film>> films_; // indexed by path
   SequenceStats frames_;
@@ -488,6 +497,7 @@ picture::Picture wantedPart(const picture::Picture& made, uint32_t channels) {
   wanted.linear = made.linear;
   wanted.transparent = made.transparent;
   wanted.names = made.names;
+  wanted.note = made.note;
   for (const auto& [bit, plane] : made.planes)
     if (channels & bit) wanted.planes[bit] = plane;
   return wanted;

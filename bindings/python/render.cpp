@@ -217,7 +217,8 @@ void defineRender(py::object worldClass) {
                     qualityParameter<double>(RT_TIME_LIMIT), qualityParameter<double>(RT_CLAMP),
                     parameter("cluster", &A::cluster), parameter("progress", &A::progress),
                     parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
-                    parameter("background", &A::background), parameter("isa", &A::isa)),
+                    parameter("background", &A::background), parameter("isa", &A::isa),
+                    qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
       parameterList(),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "

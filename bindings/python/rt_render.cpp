@@ -144,6 +144,7 @@ void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
           qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
           qualityParameter<long long>(RT_MAX_DEPTH), qualityParameter<long long>(RT_SEED),
           qualityParameter<std::string>(RT_TRANSPORT), qualityParameter<Switch>(RT_SHADOWS),
-          parameter("channels", &A::channels), parameter("progress", &A::progress)),
+          parameter("channels", &A::channels), parameter("progress", &A::progress),
+          qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
       "Renders the scene. Returns a Picture, like World.render. seed: 0 to 2147483647.");
 }

@@ -20,6 +20,7 @@ namespace openrt {
 
 class ShaderRegistry;
 class LightSources;
+struct Motions;
 
 struct ShaderSlot {
   const RtsClass* shaderClass = nullptr;
@@ -105,6 +106,8 @@ struct RenderScene {
   Vec3f eye, viewAxis{0, 0, -1}; // render space; unit
   double origin[3] = {0, 0, 0};  // world position of render space's origin
   Emitters emitters;             // path tracing: emissive surfaces and the environment
+  // RT_MOTION (motion.h). Null: the frame lacks the channel, or nothing has moved.
+  std::shared_ptr<const Motions> motions;
   // Indexed by light set. Null: every light is evaluated at every hit.
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>

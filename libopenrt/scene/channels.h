@@ -9,8 +9,9 @@
 namespace openrt {
 
 inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
-                                        RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
-inline constexpr uint32_t channelBits = 10;
+                                        RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST |
+                                        RT_MOTION;
+inline constexpr uint32_t channelBits = 11;
 
 // Returns the floats per pixel of one channel; 0 if there is no such channel.
 constexpr uint32_t channelComponents(uint32_t channel) {
@@ -19,6 +20,7 @@ constexpr uint32_t channelComponents(uint32_t channel) {
   case RT_NORMAL:
   case RT_ALBEDO:
   case RT_POSITION:
+  case RT_MOTION:
   case RT_VARIANCE:
   case RT_ERROR: return 3;
   case RT_DEPTH:

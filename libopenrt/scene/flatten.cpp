@@ -11,7 +11,8 @@ namespace {
 
 class Flattener {
  public:
-  explicit Flattener(const Scene& scene) : scene_(scene) {
+  Flattener(const Scene& scene, bool paths) : scene_(scene), paths_(paths) {
+    if (paths) result_.paths.emplace_back();
     for (const auto& [id, light] : scene.lights)
       if (light.scope) scoped_[light.scope].push_back(id);
     result_.lightSet(unscopedLights(scene));
@@ -30,7 +31,8 @@ class Flattener {
     uint32_t object = 0;
     Inherited path;
     Matrix4d matrix;
-    size_t next = 0; // child to visit
+    uint32_t step = 0; // index into Flattened::paths
+    size_t next = 0;   // child to visit
   };
 
   // Returns true if an object or anything below it has geometry. Computed once per object, without
@@ -70,13 +72,13 @@ class Flattener {
 
   uint32_t partOf(uint32_t object) {
     const auto [found, fresh] = partOf_.try_emplace(object, uint32_t(result_.parts.size()));
-    if (fresh) result_.parts.push_back({object, {}, {}});
+    if (fresh) result_.parts.push_back({object, {}, {}, {}, {}});
     return found->second;
   }
 
   void walk(uint32_t part) {
     part_ = part;
-    push({result_.parts[part].object, {}, {}, 0});
+    push({result_.parts[part].object, {}, {}, 0, 0});
     while (!stack_.empty() && !result_.truncated) step();
   }
 
@@ -91,6 +93,7 @@ class Flattener {
       } else {
         items_++;
         result_.parts[part_].items.push_back({frame.object, frame.path, frame.matrix});
+        if (paths_) result_.parts[part_].itemPaths.push_back(frame.step);
       }
     }
     if (!scene_.childrenOf(frame.object).empty()) stack_.push_back(frame);
@@ -112,13 +115,21 @@ class Flattener {
     if (instance.dynamic || (object != scene_.objects.end() && object->second.dynamic)) {
       const uint32_t part = partOf(instance.object);
       result_.parts[part_].sockets.push_back({id, part, path, top.matrix});
+      if (paths_) result_.parts[part_].socketPaths.push_back(top.step);
       return;
     }
-    const Frame below{instance.object, path, top.matrix * instance.matrix, 0};
+    const Frame below{instance.object, path, top.matrix * instance.matrix, stepBelow(top.step, id),
+                      0};
     if (below.matrix.finite())
       push(below);
     else
       result_.rejected++;
+  }
+
+  uint32_t stepBelow(uint32_t above, uint32_t instance) {
+    if (!paths_) return 0;
+    result_.paths.push_back({instance, above});
+    return uint32_t(result_.paths.size() - 1);
   }
 
   uint32_t lightSetOf(uint32_t instance) {
@@ -178,6 +189,7 @@ class Flattener {
 
  private:
   const Scene& scene_;
+  const bool paths_;
   Flattened result_;
   uint32_t part_ = 0;
   size_t items_ = 0;
@@ -218,7 +230,25 @@ std::vector<uint32_t> unscopedLights(const Scene& scene) {
   return result;
 }
 
-Flattened flatten(const Scene& scene) { return Flattener(scene).run(); }
+Flattened flatten(const Scene& scene, bool paths) { return Flattener(scene, paths).run(); }
+
+void addPaths(const Scene& scene, Flattened& flat) {
+  Flattened again = flatten(scene, true);
+  flat.paths = std::move(again.paths);
+  for (size_t part = 0; part < flat.parts.size(); part++) {
+    flat.parts[part].itemPaths = std::move(again.parts[part].itemPaths);
+    flat.parts[part].socketPaths = std::move(again.parts[part].socketPaths);
+  }
+}
+
+void dropPaths(Flattened& flat) {
+  if (flat.paths.empty()) return;
+  std::vector<PathStep>().swap(flat.paths);
+  for (ScenePart& part : flat.parts) {
+    std::vector<uint32_t>().swap(part.itemPaths);
+    std::vector<uint32_t>().swap(part.socketPaths);
+  }
+}
 
 std::vector<uint32_t> updateClusters(const Scene& scene, Flattened& flat,
                                      const std::vector<uint32_t>& instances) {

@@ -43,6 +43,15 @@ struct ScenePart {
   uint32_t object = 0; // 0: the scene
   std::vector<Item> items;
   std::vector<Socket> sockets;
+  // With paths: by item, and by socket (to the object that holds its instance), an index into
+  // Flattened::paths.
+  std::vector<uint32_t> itemPaths, socketPaths;
+};
+
+// The last of the static instances on the way from a part's root to an item or a socket.
+struct PathStep {
+  uint32_t instance = 0;
+  uint32_t above = 0; // the step before, which has a smaller index; 0: the part's root
 };
 
 struct Cluster {
@@ -57,6 +66,7 @@ struct Flattened {
   std::vector<ScenePart> parts;
   std::vector<Cluster> clusters; // 0: the static scene; parents come before children
   std::vector<std::pair<uint32_t, uint32_t>> clustersOf; // pairs (instance, cluster), sorted
+  std::vector<PathStep> paths; // [0]: the root of any part; empty if they were not asked for
   // Ids of the lights that illuminate an item; set 0 holds the unscoped lights.
   std::vector<std::vector<uint32_t>> lightSets;
   uint64_t rejected = 0;  // items with an unusable matrix within their part
@@ -75,7 +85,11 @@ inline constexpr size_t maxClusters = 1'000'000;
 // Returns the ids of the lights that illuminate everything: light set 0.
 std::vector<uint32_t> unscopedLights(const Scene& scene);
 
-Flattened flatten(const Scene& scene);
+// paths: also tells by which instances the items and sockets have come into their parts.
+Flattened flatten(const Scene& scene, bool paths = false);
+// Add the paths of an unchanged scene to its flattened form, and remove them.
+void addPaths(const Scene& scene, Flattened& flat);
+void dropPaths(Flattened& flat);
 
 // Updates the clusters of these dynamic instances, and all below them, after changes of matrices or
 // visibility. Returns the affected clusters in ascending order.

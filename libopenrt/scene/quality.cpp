@@ -73,6 +73,11 @@ constexpr QualitySetting table[] = {
     {{size, RT_TILE_SIZE, "tile", 0, 4, largestTile, 0, 1, nullptr, "edge of tiles in pixels"},
      get<&Frame::tile>,
      set<&Frame::tile>},
+    {{size, RT_FOLLOW_IMAGES, "follow_images", 0, 0, 1, 0, 0, "off on",
+      "whether depth, normal, albedo, position, name and motion describe what mirrors and smooth "
+      "glass show"},
+     get<&Frame::followImages>,
+     set<&Frame::followImages>},
 };
 
 } // namespace

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/history.h"
+
 namespace openrt {
 namespace {
 
@@ -52,7 +54,9 @@ std::map<ArrayId, ArrayPtr> Scene::arrays() const {
   return alive;
 }
 
-SceneChanges Scene::apply(const Commit& commit) {
+SceneChanges Scene::apply(const Commit& commit, History* history) {
+  if (history) history->begin(commit);
+  history_ = history && history->watches() ? history : nullptr;
   // Only now and then, so that a commit costs what it changes.
   if (arrays_.size() > 2 * arraysSwept_ + 64) {
     std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });
@@ -67,6 +71,8 @@ SceneChanges Scene::apply(const Commit& commit) {
     if (edit) applyEdit(edit->any, changes);
   sortChildren();
   commitArrays_.clear();
+  history_ = nullptr;
+  if (history) history->finish(*this, commit);
   return changes;
 }
 
@@ -159,9 +165,11 @@ void Scene::placeInstance(const edit::InstanceT& edit, SceneChanges& changes) {
     if (!siblings.empty() && siblings.back() >= edit.id) unsorted_.push_back(edit.parent);
     siblings.push_back(edit.id);
     changes.structure = true;
+    if (history_) history_->addInstance(edit.id);
     return;
   }
   Instance& known = found->second;
+  if (history_) history_->changeInstance(edit.id, known);
   const bool placeOnly = known.dynamic && next.dynamic && known.parent == next.parent &&
                          known.object == next.object && known.shader == next.shader &&
                          known.userData == next.userData && known.name == next.name;
@@ -180,6 +188,11 @@ void Scene::deleteInstance(uint32_t id) {
   const auto found = instances.find(id);
   if (found == instances.end()) return;
   unsorted_.push_back(found->second.parent);
+  eraseInstance(id);
+}
+
+void Scene::eraseInstance(uint32_t id) {
+  if (history_) history_->changeInstance(id, instances.at(id));
   instances.erase(id);
 }
 
@@ -189,7 +202,7 @@ void Scene::dropChildren(uint32_t object) {
   for (uint32_t id : list->second)
     if (const auto found = instances.find(id);
         found != instances.end() && found->second.parent == object)
-      instances.erase(id);
+      eraseInstance(id);
   children_.erase(list);
 }
 
@@ -198,6 +211,8 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
   const bool leaf = children == children_.end() || children->second.empty();
   const auto [found, fresh] = objects.try_emplace(object.id);
   Object& target = found->second;
+  if (history_ && fresh) history_->addObject(object.id);
+  if (history_ && !fresh) history_->changeObject(object.id, target);
   if (!fresh && leaf && target.dynamic && object.dynamic)
     changes.redefined.push_back(object.id);
   else

@@ -15,6 +15,8 @@
 
 namespace openrt {
 
+class History;
+
 // A shader parameter with its own value for every vertex or primitive of a geometry. Each value has
 // as many floats as its type.
 struct GeometryParameter {
@@ -97,8 +99,8 @@ struct SceneChanges {
 class Scene {
  public:
   // Applies a commit. Edits that name unknown ids are ignored; the front end and the reader of
-  // recordings check them before.
-  SceneChanges apply(const Commit& commit);
+  // recordings check them before. history: gets what the commit changes; may be null.
+  SceneChanges apply(const Commit& commit, History* history = nullptr);
 
   std::map<uint32_t, TextureImage> textures;
   std::map<uint32_t, ShaderClassName> classes;
@@ -124,11 +126,13 @@ class Scene {
   void deleteObject(uint32_t id);
   void dropChildren(uint32_t object);
   void sortChildren();
+  void eraseInstance(uint32_t id);
   // Weak: an array lives as long as the scene uses it.
   std::map<ArrayId, std::weak_ptr<const Array>> arrays_;
   size_t arraysSwept_ = 0; // size of arrays_ after the last sweep
   uint64_t version_ = 0;
   std::map<ArrayId, ArrayPtr> commitArrays_; // arrays of the commit being applied
+  History* history_ = nullptr;               // set while a commit is applied that is to be watched
   std::map<uint32_t, std::vector<uint32_t>> children_;
   std::vector<uint32_t> unsorted_; // objects whose child lists are out of date
 };

@@ -62,6 +62,7 @@ Imf::Header makeHeader(const Picture& picture) {
                                                  OPENRT_VERSION_MINOR, OPENRT_VERSION_PATCH)));
   header.insert("colour", Imf::StringAttribute(picture.linear ? "linear" : "vrml97"));
   if (picture.linear) Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
+  if (!picture.note.empty()) Imf::addComments(header, picture.note);
   if (picture.planes.count(RT_NAME))
     header.insert("idNames", Imf::StringAttribute(nameTable(picture.names)));
   return header;

@@ -24,7 +24,7 @@ std::string whyNoFilm(FilmKind kind) {
          "it); a name that ends in .gif, or 'picture-{frame:4}.png' for single pictures, works";
 }
 
-Film::Film(FilmKind kind, int width, int height, double fps)
+Film::Film(FilmKind kind, int width, int height, double fps, const std::string& note)
     : bytes_(size_t(width) * size_t(height) * 3) {
   if (width < 1 || height < 1 || width > 16384 || height > 16384)
     throw std::runtime_error(
@@ -32,8 +32,8 @@ Film::Film(FilmKind kind, int width, int height, double fps)
   if (!(fps > 0) || !std::isfinite(fps))
     throw std::runtime_error("a film needs a number of pictures a second above 0");
   if (const std::string why = whyNoFilm(kind); !why.empty()) throw std::runtime_error(why);
-  encoder_ = kind == FilmKind::gif ? makeGifEncoder(width, height, fps)
-                                   : makeLibavEncoder(kind, width, height, fps);
+  encoder_ = kind == FilmKind::gif ? makeGifEncoder(width, height, fps, note)
+                                   : makeLibavEncoder(kind, width, height, fps, note);
 }
 
 void Film::add(std::span<const uint8_t> rgb) {

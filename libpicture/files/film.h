@@ -34,8 +34,9 @@ class Film {
  public:
   // width, height: size of all pictures, in pixels (1 to 16384); fps: pictures per second, above 0.
   // MP4 and WebM halve the resolution of colour, so an odd width or height gets a black column or
-  // row. Throws std::runtime_error.
-  Film(FilmKind kind, int width, int height, double fps);
+  // row. note: what the file says about its pictures, a line of ASCII; "": nothing. Throws
+  // std::runtime_error.
+  Film(FilmKind kind, int width, int height, double fps, const std::string& note = "");
   // Appends a picture: 8-bit red, green, blue, first row at the top, width * height * 3 bytes.
   // Throws std::runtime_error.
   void add(std::span<const uint8_t> rgb);
@@ -49,10 +50,12 @@ class Film {
 };
 
 // Returns an encoder of animated GIF.
-std::unique_ptr<FilmEncoder> makeGifEncoder(int width, int height, double fps);
+std::unique_ptr<FilmEncoder> makeGifEncoder(int width, int height, double fps,
+                                            const std::string& note);
 // Returns an encoder of MP4 or WebM, or null in a build without the ffmpeg libraries. Throws
 // std::runtime_error.
-std::unique_ptr<FilmEncoder> makeLibavEncoder(FilmKind kind, int width, int height, double fps);
+std::unique_ptr<FilmEncoder> makeLibavEncoder(FilmKind kind, int width, int height, double fps,
+                                              const std::string& note);
 // Returns whether makeLibavEncoder() can make this kind.
 bool libavEncodes(FilmKind kind);
 

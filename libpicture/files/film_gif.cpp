@@ -181,7 +181,8 @@ int append(GifFileType* gif, const GifByteType* bytes, int count) {
 
 class GifEncoder : public FilmEncoder {
  public:
-  GifEncoder(int width, int height, double fps) : width_(width), height_(height), fps_(fps) {
+  GifEncoder(int width, int height, double fps, const std::string& note)
+      : width_(width), height_(height), fps_(fps) {
     int error = 0;
     gif_ = EGifOpen(&bytes_, append, &error);
     if (!gif_) fail(error);
@@ -193,6 +194,7 @@ class GifEncoder : public FilmEncoder {
     check(EGifPutExtensionBlock(gif_, 11, "NETSCAPE2.0"));
     check(EGifPutExtensionBlock(gif_, sizeof forEver, forEver));
     check(EGifPutExtensionTrailer(gif_));
+    if (!note.empty()) check(EGifPutComment(gif_, note.c_str()));
   }
   ~GifEncoder() override {
     int error = 0;
@@ -246,8 +248,9 @@ class GifEncoder : public FilmEncoder {
 
 } // namespace
 
-std::unique_ptr<FilmEncoder> makeGifEncoder(int width, int height, double fps) {
-  return std::make_unique<GifEncoder>(width, height, fps);
+std::unique_ptr<FilmEncoder> makeGifEncoder(int width, int height, double fps,
+                                            const std::string& note) {
+  return std::make_unique<GifEncoder>(width, height, fps, note);
 }
 
 } // namespace picture

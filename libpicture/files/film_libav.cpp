@@ -6,7 +6,9 @@
 
 namespace picture {
 
-std::unique_ptr<FilmEncoder> makeLibavEncoder(FilmKind, int, int, double) { return nullptr; }
+std::unique_ptr<FilmEncoder> makeLibavEncoder(FilmKind, int, int, double, const std::string&) {
+  return nullptr;
+}
 bool libavEncodes(FilmKind) { return false; }
 
 } // namespace picture
@@ -101,7 +103,7 @@ struct Memory {
 
 class LibavEncoder : public FilmEncoder {
  public:
-  LibavEncoder(FilmKind kind, int width, int height, double fps)
+  LibavEncoder(FilmKind kind, int width, int height, double fps, const std::string& note)
       : width_(width), height_(height), row_(size_t(width) * 3) {
     av_log_set_level(AV_LOG_QUIET); // a library must not print
     const Codec& codec = *codecOf(kind);
@@ -121,6 +123,8 @@ class LibavEncoder : public FilmEncoder {
     stream_->time_base = codec_->time_base;
     stream_->avg_frame_rate = codec_->framerate;
     check(avcodec_parameters_from_context(stream_->codecpar, codec_.get()), "stream");
+    if (!note.empty())
+      check(av_dict_set(&format_->metadata, "comment", note.c_str(), 0), "metadata");
     check(avformat_write_header(format_.get(), nullptr), "header");
     openScaler();
   }
@@ -220,8 +224,9 @@ class LibavEncoder : public FilmEncoder {
 
 } // namespace
 
-std::unique_ptr<FilmEncoder> makeLibavEncoder(FilmKind kind, int width, int height, double fps) {
-  return std::make_unique<LibavEncoder>(kind, width, height, fps);
+std::unique_ptr<FilmEncoder> makeLibavEncoder(FilmKind kind, int width, int height, double fps,
+                                              const std::string& note) {
+  return std::make_unique<LibavEncoder>(kind, width, height, fps, note);
 }
 
 bool libavEncodes(FilmKind kind) { return codecOf(kind) != nullptr; }

@@ -11,11 +11,14 @@ namespace picture {
 
 namespace {
 
-// name, suffixes, keepsAlpha, appliesCurve, encode; in the order in which messages list them
+// name, suffixes, keepsAlpha, appliesCurve, keepsNote, encode; in the order in which messages list
+// them
 constexpr Format table[] = {
-    {"EXR", {"exr"}, true, false, encodeExr},           {"PNG", {"png"}, true, true, encodePng},
-    {"JPEG", {"jpg", "jpeg"}, false, true, encodeJpeg}, {"PPM", {"ppm"}, false, true, encodePpm},
-    {"PFM", {"pfm"}, false, false, encodePfm},
+    {"EXR", {"exr"}, true, false, true, encodeExr},
+    {"PNG", {"png"}, true, true, true, encodePng},
+    {"JPEG", {"jpg", "jpeg"}, false, true, true, encodeJpeg},
+    {"PPM", {"ppm"}, false, true, true, encodePpm},
+    {"PFM", {"pfm"}, false, false, false, encodePfm},
 };
 
 } // namespace

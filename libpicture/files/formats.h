@@ -17,6 +17,7 @@ struct Format {
   std::string_view suffixes[2]; // lower case; the first is the usual one, the second may be empty
   bool keepsAlpha;              // the file has alpha if Picture::transparent is set
   bool appliesCurve;            // linear colours are sRGB-encoded
+  bool keepsNote;               // the file has Picture::note
   // Returns the bytes of a file. Throws std::runtime_error that names the format.
   std::string (*encode)(const Picture& picture);
 };
@@ -40,7 +41,8 @@ std::string encodePng(const Picture& picture);
 std::string encodePpm(const Picture& picture);
 
 // Returns the bytes of a JPEG file for display bytes, first row at the top. quality: 1 to 100.
-// Throws std::runtime_error.
-std::string jpegOf(const std::vector<uint8_t>& rgb, int width, int height, int quality);
+// note: a comment in the file. Throws std::runtime_error.
+std::string jpegOf(const std::vector<uint8_t>& rgb, int width, int height, int quality,
+                   const std::string& note = {});
 
 } // namespace picture

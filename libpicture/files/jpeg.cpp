@@ -29,7 +29,7 @@ void silent(j_common_ptr, int) {}
 
 // Returns false on an error, with errors.message set. Holds only C values across libjpeg's longjmp.
 bool write(ErrorManager& errors, const uint8_t* bytes, int width, int height, int quality,
-           unsigned char** out, unsigned long* size) {
+           const std::string& note, unsigned char** out, unsigned long* size) {
   jpeg_compress_struct info;
   info.err = jpeg_std_error(&errors.base);
   errors.base.error_exit = fail;
@@ -49,6 +49,9 @@ bool write(ErrorManager& errors, const uint8_t* bytes, int width, int height, in
   // no chroma subsampling: thin coloured lines survive
   info.comp_info[0].h_samp_factor = info.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&info, TRUE);
+  if (!note.empty())
+    jpeg_write_marker(&info, JPEG_COM, reinterpret_cast<const JOCTET*>(note.data()),
+                      unsigned(note.size()));
   while (info.next_scanline < info.image_height) {
     // libjpeg does not change the row.
     auto* row = const_cast<JSAMPROW>(bytes + size_t(info.next_scanline) * size_t(width) * 3);
@@ -61,11 +64,12 @@ bool write(ErrorManager& errors, const uint8_t* bytes, int width, int height, in
 
 } // namespace
 
-std::string jpegOf(const std::vector<uint8_t>& rgb, int width, int height, int quality) {
+std::string jpegOf(const std::vector<uint8_t>& rgb, int width, int height, int quality,
+                   const std::string& note) {
   ErrorManager errors;
   unsigned char* data = nullptr;
   unsigned long size = 0;
-  const bool done = write(errors, rgb.data(), width, height, quality, &data, &size);
+  const bool done = write(errors, rgb.data(), width, height, quality, note, &data, &size);
   std::string out;
   if (done) out.assign(reinterpret_cast<char*>(data), size);
   std::free(data);
@@ -74,7 +78,7 @@ std::string jpegOf(const std::vector<uint8_t>& rgb, int width, int height, int q
 }
 
 std::string encodeJpeg(const Picture& picture) {
-  return jpegOf(displayBytes(picture), picture.width, picture.height, 95);
+  return jpegOf(displayBytes(picture), picture.width, picture.height, 95, picture.note);
 }
 
 } // namespace picture

@@ -37,6 +37,11 @@ constexpr Channel table[] = {
      {"error.R", "error.G", "error.B"},
      "half-width of the 95 % interval of each colour"},
     {"trust", RT_TRUST, 1, {"trust"}, "1 where that interval can be trusted, else 0"},
+    {"motion",
+     RT_MOTION,
+     3,
+     {"motion.X", "motion.Y", "motion.Z"},
+     "world-space motion of the first hit since the picture before; not a number where it is new"},
 };
 
 // Encodes a linear value with the curve of IEC 61966-2-1 (sRGB).

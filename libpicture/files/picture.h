@@ -31,6 +31,9 @@ struct Picture {
   // Indexed by Channel::bit; width*height*components floats, first row at the top.
   std::map<uint32_t, std::vector<float>> planes;
   std::vector<std::string> names; // names for the numbers of channel id; names[0] is ""
+  // What files of the picture say about it, a line of ASCII; "": nothing. Formats without
+  // Format::keepsNote do not say it.
+  std::string note;
 };
 
 // Returns the plane rgba. Throws std::runtime_error if the picture has none.

@@ -24,7 +24,7 @@ void silent(png_structp, png_const_charp) {}
 
 // Returns false on an error. Holds only C values across libpng's longjmp.
 bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, int width, int height,
-           bool alpha) {
+           bool alpha, png_textp note) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, out, append, nothing);
   png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
@@ -32,6 +32,7 @@ bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, in
                alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (note) png_set_text(png, info, note, 1);
   png_write_info(png, info);
   for (int y = 0; y < height; ++y)
     png_write_row(png, bytes + size_t(y) * size_t(width) * (alpha ? 4 : 3));
@@ -44,11 +45,17 @@ bool write(png_structp png, png_infop info, std::string* out, uint8_t* bytes, in
 std::string encodePng(const Picture& picture) {
   std::vector<uint8_t> bytes =
       picture.transparent ? displayBytesAlpha(picture) : displayBytes(picture);
-  std::string out;
+  std::string out, note = picture.note;
+  char keyword[] = "Comment";
+  png_text text{};
+  text.compression = PNG_TEXT_COMPRESSION_NONE;
+  text.key = keyword;
+  text.text = note.data();
+  text.text_length = note.size();
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, silent);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   const bool done = info && write(png, info, &out, bytes.data(), picture.width, picture.height,
-                                  picture.transparent);
+                                  picture.transparent, note.empty() ? nullptr : &text);
   png_destroy_write_struct(&png, &info);
   if (!done) throw std::runtime_error("PNG: the picture cannot be encoded");
   return out;

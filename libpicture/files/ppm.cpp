@@ -4,8 +4,9 @@
 namespace picture {
 
 std::string encodePpm(const Picture& picture) {
-  std::string out =
-      "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
+  std::string out = "P6\n";
+  if (!picture.note.empty()) out += "# " + picture.note + "\n";
+  out += std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
   std::vector<uint8_t> bytes = displayBytes(picture);
   out.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return out;

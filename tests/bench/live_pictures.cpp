@@ -9,6 +9,13 @@
 // the window and at full size as often as possible:
 //
 //   bench_live --workers=HOST:PORT,... [--local-threads=N] ...
+//
+// For live_flip.py it shows a scripted turn and keeps the pictures, and renders the true pictures
+// of some of its instants (live_show.h):
+//
+//   bench_live --show=DIR [--raw] [--speed=RADIANS] [--steps=N [--frame=WxHxS] [--still=S]] ...
+//   WORLD bench_live --converge=DIR --at=N,N,... [--speed=RADIANS] [--spp=N] [--error=E] [--seed=N]
+//   ... WORLD
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,6 +23,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,6 +32,7 @@
 
 #include "libpicture/cluster.h"
 #include "libpicture/live.h"
+#include "live_show.h"
 #include "session/pacing.h"
 
 using namespace picture;
@@ -37,7 +46,34 @@ struct Options {
   double fps = 30, seconds = 4;
   ClusterSettings cluster;
   std::vector<std::string> worlds;
+  ShowOptions show;         // its folder is empty: not asked for
+  ConvergeOptions converge; // the same
 };
+
+// Reads the options of --show and --converge. Returns false for others.
+bool readShow(const std::string& a, Options& o) {
+  const char* const text = a.c_str();
+  if (a.starts_with("--show=")) return o.show.folder = a.substr(7), true;
+  if (a.starts_with("--converge=")) return o.converge.folder = a.substr(11), true;
+  if (a == "--raw") return o.show.raw = true;
+  if (a.starts_with("--at=")) {
+    std::istringstream list(a.substr(5));
+    for (std::string one; std::getline(list, one, ',');)
+      o.converge.instants.push_back(std::atoi(one.c_str()));
+    return true;
+  }
+  if (std::sscanf(text, "--speed=%lf", &o.show.speed) == 1) {
+    o.converge.speed = o.show.speed;
+    return true;
+  }
+  vv::FrameSize& frame = o.show.frame;
+  return std::sscanf(text, "--frame=%dx%dx%d", &frame.width, &frame.height, &frame.samples) >= 2 ||
+         std::sscanf(text, "--steps=%d", &o.show.steps) == 1 ||
+         std::sscanf(text, "--still=%d", &o.show.stillSamples) == 1 ||
+         std::sscanf(text, "--spp=%d", &o.converge.samples) == 1 ||
+         std::sscanf(text, "--error=%lf", &o.converge.error) == 1 ||
+         std::sscanf(text, "--seed=%d", &o.converge.seed) == 1;
+}
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -48,6 +84,7 @@ Options read(int argc, char** argv) {
   Options o;
   for (int i = 1; i < argc; i++) {
     const std::string a = argv[i];
+    if (readShow(a, o)) continue;
     if (std::sscanf(a.c_str(), "--size=%dx%d", &o.width, &o.height) == 2) continue;
     if (std::sscanf(a.c_str(), "--fps=%lf", &o.fps) == 1 ||
         std::sscanf(a.c_str(), "--seconds=%lf", &o.seconds) == 1)
@@ -61,6 +98,11 @@ Options read(int argc, char** argv) {
       continue; // an option of `make bench`
     o.worlds.push_back(a);
   }
+  o.show.width = o.converge.width = o.width;
+  o.show.height = o.converge.height = o.height;
+  o.show.threads = o.converge.threads = o.threads;
+  o.show.fps = o.converge.fps = o.fps;
+  o.show.seconds = o.seconds;
   if (o.worlds.empty())
     for (const char* name : {"board", "globe", "still_life", "headlight", "car", "chess"})
       if (const std::string path = fmt::format("examples/scenes/{}.wrl", name);
@@ -104,8 +146,10 @@ class Looking {
       frame.width = size.width;
       frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(asked));
+      frame.purpose = LiveFrame::Purpose::preview;
       const LivePicture picture = finish(frame);
-      pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples);
+      pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples,
+                  picture.rebuilding);
       const double now = secondsSince(begin);
       const double frameTime = 1 / options_.fps;
       if (now - last < frameTime)
@@ -144,7 +188,7 @@ class Looking {
       while (live_.look(picture)) {
         if (!picture.finished) continue;
         pacing.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
-                    picture.overhead, picture.samples);
+                    picture.overhead, picture.samples, picture.rebuilding);
         if (now < settled) continue;
         ends.push_back(now);
         seconds.push_back(picture.seconds);
@@ -164,6 +208,7 @@ class Looking {
       frame.width = size.width;
       frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(now));
+      frame.purpose = LiveFrame::Purpose::preview;
       next = std::max(next + period, now);
       live_.start(frame);
     }
@@ -292,11 +337,44 @@ class Looking {
   xvrml::CameraSettings camera_;
 };
 
+// Returns what is wrong with the options of --show and --converge; "": nothing.
+std::string faultOf(const Options& o) {
+  if (o.worlds.size() != 1) return "--show and --converge take one world";
+  const vv::FrameSize& frame = o.show.frame;
+  if (frame.width < 1 || frame.height < 1 || frame.samples < 1)
+    return "--frame: WxHxS above 0 expected";
+  if (o.width < 1 || o.height < 1) return "--size: WxH above 0 expected";
+  if (!(o.fps > 0) || !(o.seconds > 0)) return "--fps, --seconds: numbers above 0 expected";
+  if (o.show.steps < 0 || o.show.stillSamples < 1) return "--steps, --still: above 0 expected";
+  for (const int instant : o.converge.instants)
+    if (instant < 0) return "--at: instants from 0 expected";
+  return "";
+}
+
+// Does what --show and --converge ask for. Returns the program's exit code.
+int keepPictures(Options options) {
+  if (const std::string fault = faultOf(options); !fault.empty()) {
+    fmt::print(stderr, "bench_live: {}\n", fault);
+    return 2;
+  }
+  options.show.world = options.converge.world = options.worlds[0];
+  try {
+    if (!options.show.folder.empty()) showTurn(options.show);
+    if (!options.converge.folder.empty()) convergeTurn(options.converge);
+    return 0;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}: {}\n", options.worlds[0], e.what());
+    return 1;
+  }
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 4096);
   const Options options = read(argc, argv);
+  if (!options.show.folder.empty() || !options.converge.folder.empty())
+    return keepPictures(options);
   std::shared_ptr<Cluster> cluster;
   if (options.cluster.used()) {
     RenderSettings rendering;

@@ -145,9 +145,10 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) { readSize(v, o.render.width, o.render.height); }},
     {"--channels", "LIST", "Picture",
      "Channels of an EXR file, separated by commas: rgba, z, normal, albedo, position, id, "
-     "samples, variance, error, trust (default rgba). error is the half-width of the 95 % interval "
-     "of each colour, trust is 1 where that interval can be trusted. With error or trust, other "
-     "sample positions are used.",
+     "samples, variance, error, trust, motion (default rgba). error is the half-width of the 95 % "
+     "interval of each colour, trust is 1 where that interval can be trusted. With error or trust, "
+     "other sample positions are used. motion is how far what is seen has moved since the picture "
+     "before.",
      setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
      "linear (default): colours of the file are decoded from sRGB, light is added linearly, and " +
@@ -220,6 +221,11 @@ const OptionInfo table[] = {
      "Make N pictures, once around the world's centre, beginning at the chosen view. The camera "
      "turns about the axis that points up (--up).",
      [](Options& o, const std::string& v) { o.turntable = int(readInteger(v, 1, 100000)); }},
+    {"--preview", "", "Time",
+     "Rebuild each picture of a sequence from few samples and from the pictures before it, as the "
+     "window does while something moves. Such pictures are biased and have no error bars, and "
+     "their files say so. They depend on the frame that the sequence begins with.",
+     [](Options& o, const std::string&) { o.render.preview = true; }},
     {"--input", "FILE", "Time",
      "Replay mouse and keyboard input from FILE, one event per line: SECONDS EVENT (move X Y, "
      "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). World time "

@@ -71,6 +71,8 @@ std::string missingValue(std::string_view last) {
 
 using picture::Background;
 
+constexpr int previewSamples = 4; // --spp of --preview where it is not given
+
 bool writesToStandardOutput(const Options& o) {
   return std::any_of(o.outputs.begin(), o.outputs.end(),
                      [](const Output& output) { return output.path == "-"; });
@@ -198,6 +200,31 @@ void checkCluster(const Options& options) {
       throw UsageError(fmt::format("{} needs --workers or --listen-workers", name));
 }
 
+// Refuses what a preview cannot be, or could not say of itself.
+void checkPreview(const Options& o) {
+  if (!o.render.preview) return;
+  const bool several =
+      o.frames ? o.frames->last - o.frames->first >= o.frames->step : o.turntable > 1;
+  const std::pair<bool, const char*> refused[] = {
+      {!several || o.outputs.empty(),
+       "--preview needs -o with several pictures: --frames FIRST-LAST or --turntable N"},
+      {o.allViewpoints(), "--preview follows one view: it cannot be used with --viewpoint all"},
+      {o.render.channels != RT_RGBA, "--preview rebuilds rgba only: it cannot be used with other "
+                                     "--channels"},
+      {o.render.error > 0 || o.render.timeLimit > 0,
+       "--preview takes --spp samples of each picture and knows no errors: it cannot be used with "
+       "--error or --time-limit"},
+      {!o.compare.empty(), "--compare needs pictures without bias: it cannot be used with "
+                           "--preview"}};
+  for (const auto& [isBroken, message] : refused)
+    if (isBroken) throw UsageError(message);
+  for (const Output& output : o.outputs)
+    if (output.film == picture::FilmKind::none && !output.format->keepsNote)
+      throw UsageError(fmt::format(
+          "--preview: {} files cannot say that they are previews; {} files and films can",
+          output.format->name, picture::formatsWith(&picture::Format::keepsNote)));
+}
+
 // Checks combinations of options.
 void checkTogether(const Options& options) {
   if (!options.isSequence())
@@ -207,6 +234,7 @@ void checkTogether(const Options& options) {
   checkCluster(options);
   for (const Rule& rule : rules)
     if (rule.broken(options)) throw UsageError(rule.message);
+  checkPreview(options);
 }
 
 } // namespace
@@ -289,6 +317,7 @@ Options readCommandLine(int argc, char** argv) {
   const picture::RenderSettings& render = options.render;
   options.render.samples = options.samples.value_or(render.timeLimit > 0 ? 65536
                                                     : render.error > 0   ? 4096
+                                                    : render.preview     ? previewSamples
                                                                          : render.samples);
   return options;
 }

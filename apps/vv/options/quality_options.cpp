@@ -30,7 +30,8 @@ struct Wording {
 // The order is that of --help. Settings without a row follow.
 const Wording wordings[] = {
     {RT_SAMPLES_PER_PIXEL, "--spp", nullptr,
-     "Samples per pixel, 1 to 65536 (default 16; in the window 256, added one after the other).",
+     "Samples per pixel, 1 to 65536 (default 16; with --preview 4; in the window 256, added one "
+     "after the other).",
      [](Options& o, const std::string& v) {
        o.samples = int(readQuality(RT_SAMPLES_PER_PIXEL, v));
      }},

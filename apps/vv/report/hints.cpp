@@ -19,6 +19,7 @@ picture::RenderResult probe(const Options& options, const picture::View& view,
   renderer.change([&](picture::RenderSettings& s) {
     s.samples = 1;
     s.error = 0;
+    s.preview = false;
     s.channels = RT_RGBA | RT_DEPTH;
     s.headlight = headlight;
   });
@@ -26,6 +27,7 @@ picture::RenderResult probe(const Options& options, const picture::View& view,
   renderer.change([&](picture::RenderSettings& s) {
     s.samples = options.render.samples;
     s.error = options.render.error;
+    s.preview = options.render.preview;
     s.channels = options.render.channels;
     s.headlight = options.render.headlight;
   });

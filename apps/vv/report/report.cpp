@@ -169,6 +169,7 @@ Json sceneStats(const Options& options, const std::string& commandLine, const Ru
                    {"spp", r.samples},
                    {"spp_mean", samples},
                    {"channels", channelNames(r.channels)}};
+  if (r.preview) json["image"]["preview"] = true;
   return json;
 }
 

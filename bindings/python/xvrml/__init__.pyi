@@ -488,6 +488,7 @@ class World:
         up: Optional[str] = ...,
         background: Union[None, str, "os.PathLike[str]", Sequence[float]] = ...,
         isa: str = ...,
+        follow_images: bool = ...,
     ) -> Picture:
         ...
 

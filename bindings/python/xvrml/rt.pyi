@@ -170,6 +170,7 @@ class Context:
         shadows: bool = ...,
         channels: Union[None, str, Sequence[str]] = ...,
         progress: Union[None, bool, Callable[[float], Any]] = ...,
+        follow_images: bool = ...,
     ) -> Picture:
         ...
 

@@ -25,7 +25,7 @@ class DebugBackend final : public Backend, public ForwardedQueries {
     for (const auto& entry : commit->edits.edits) {
       if (!entry) continue;
       if (const auto* object = entry->any.AsObject()) {
-        History& history = histories_[object->id];
+        ObjectHistory& history = histories_[object->id];
         if (history.definitions++ == 0) history.hinted = object->dynamic;
         uncheckedObjects_.insert(object->id);
       }
@@ -103,7 +103,7 @@ class DebugBackend final : public Backend, public ForwardedQueries {
 
   std::unique_ptr<Backend> renderer_;
   Scene scene_;
-  std::map<uint32_t, History> histories_;
+  std::map<uint32_t, ObjectHistory> histories_;
   UsageHistory memory_;
   std::set<uint32_t> uncheckedObjects_; // objects defined since the last check
   std::set<std::pair<std::string, uint32_t>> reported_;

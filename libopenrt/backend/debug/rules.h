@@ -16,7 +16,7 @@
 
 namespace openrt::debug {
 
-struct History { // definitions of one object
+struct ObjectHistory { // definitions of one object
   uint64_t definitions = 0;
   bool hinted = false; // dynamic at its first definition
 };
@@ -29,7 +29,7 @@ struct RuleContext {
   const Scene& scene;
   // Returns null if there is no such shader or its class is unknown.
   std::function<const RtsClass*(uint32_t shader)> classOf;
-  const std::map<uint32_t, History>& histories; // definitions by object
+  const std::map<uint32_t, ObjectHistory>& histories; // definitions by object
   UsageHistory& memory;
 };
 

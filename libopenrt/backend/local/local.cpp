@@ -4,9 +4,11 @@
 //   dynamic objects
 //   anything else                           it is rebuilt, reusing the parts that did not change
 #include "backend/local/local.h"
+#include "backend/local/motions.h"
 #include "backend/local/near_lamps.h"
 #include "shading/running.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -15,6 +17,7 @@
 #include <string>
 
 #include "render/lights/light_sources.h"
+#include "render/path/guides.h"
 #include "render/path/transport.h"
 #include "scene/transports.h"
 
@@ -35,7 +38,7 @@ LocalBackend::~LocalBackend() = default;
 
 void LocalBackend::apply(std::shared_ptr<const Commit> commit) {
   const double begin = now();
-  changes_.add(scene_.apply(*commit));
+  changes_.add(scene_.apply(*commit, &history_));
   commitSeconds_ = now() - begin;
 }
 
@@ -45,7 +48,9 @@ Vec3d LocalBackend::eye() const {
 }
 
 void LocalBackend::prepare() {
-  if (snapshot_ && accel_ && !changes_.any()) return;
+  // What moved in the last snapshot may rest in this one.
+  const bool rested = snapshot_ && snapshot_->motions && snapshotFrame_ != history_.number();
+  if (snapshot_ && accel_ && !changes_.any() && !rested) return;
   auto next = std::make_shared<RenderScene>();
   next->frame = scene_.frame;
   makeShaders(*next);
@@ -72,13 +77,14 @@ void LocalBackend::prepare() {
     warnedOfNearLamp_ = !warning.empty();
   }
   next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
-  if (tracesLamps(choice.transport) && next->camera.shader.shaderClass &&
-      next->camera.shader.shaderClass->project) {
+  if (tracesLamps(choice.transport) && !showsNoLight(next->frame) &&
+      next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {
     auto sources =
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
   snapshot_ = std::move(next);
+  snapshotFrame_ = history_.number();
   changes_ = {};
 }
 
@@ -95,7 +101,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
     layOut = !builder_.survey.resurveyObject(scene_, flat_, c.redefined[i]);
   std::vector<uint32_t> moved;
   if (layOut) {
-    flat_ = flatten(scene_);
+    flat_ = flatten(scene_, history_.watches());
     builder_.survey.take(scene_, flat_);
     if (flat_.truncated && options_.log)
       options_.log(3,
@@ -128,8 +134,30 @@ void LocalBackend::updateAccel(RenderScene& next) {
     builder_.update(*accel_, input, moved, c.redefined, pixel != footprint_);
   if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   footprint_ = pixel;
+  updateMotions(next, std::move(moved), layOut);
   buildSeconds_ = now() - begin;
   makeLights(next, flat_, origin);
+}
+
+// Finds out what has moved since the frame before, for RT_MOTION.
+//   moved  clusters that moved since the last prepare()
+//   all    anything may have moved
+void LocalBackend::updateMotions(RenderScene& next, std::vector<uint32_t> moved, bool all) {
+  if (!history_.watches()) return dropPaths(flat_);
+  if (!history_.any()) return;
+  if (flat_.paths.empty() && !history_.beginning()) addPaths(scene_, flat_);
+  // A prepare() between this frame and the one before has already taken note of other changes.
+  all |= snapshot_ && snapshotFrame_ == history_.number();
+  for (const uint32_t object : changes_.redefined) {
+    const uint32_t part = builder_.survey.partOf(object);
+    if (part == ~0u) continue;
+    const std::vector<uint32_t>& its = builder_.survey.parts()[part].clusters;
+    moved.insert(moved.end(), its.begin(), its.end());
+  }
+  std::sort(moved.begin(), moved.end());
+  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  next.motions =
+      makeMotions({scene_, history_, flat_, builder_.survey, *accel_}, all ? nullptr : &moved);
 }
 
 // Reuses the shaders and textures of the last snapshot if they did not change.

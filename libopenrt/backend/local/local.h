@@ -10,6 +10,7 @@
 #include "backend/local/accel/accel_build.h"
 #include "backend/surface_queries.h"
 #include "render/frame/renderer.h"
+#include "scene/history.h"
 
 namespace openrt {
 
@@ -41,6 +42,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
  private:
   void prepare(); // makes a new snapshot of the committed scene if anything changed since the last
   void updateAccel(RenderScene& next);
+  void updateMotions(RenderScene& next, std::vector<uint32_t> moved, bool all);
   void makeShaders(RenderScene& next) const;
   void makeLights(RenderScene& next, const Flattened& flat, const Vec3d& origin) const;
   void makeCamera(RenderScene& next, const Vec3d& origin) const;
@@ -62,7 +64,9 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::shared_ptr<EmbreeDevice> device_;
   AccelBuilder builder_;
   Scene scene_;
-  SceneChanges changes_; // since the last prepare()
+  History history_;            // what has changed since the frame before
+  uint64_t snapshotFrame_ = 0; // number of the history at the last prepare()
+  SceneChanges changes_;       // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;
   std::shared_ptr<Accel> accel_;
   Flattened flat_;

@@ -29,11 +29,13 @@ enum {
   RT_ERROR = 256,    /* 3: half-width of the 95 % confidence interval of each colour; infinite if
                            nothing is known */
   RT_TRUST = 512,    /* 1: 1 if that interval can be trusted, else 0 */
-  RT_MOTION = 1024   /* 3: world-space vector from where the hit point of the first sample was in the
-                         previous frame of this context to where it is now: how its instance
-                         moved, or its vertices. 0 0 0 if nothing moved or nothing is hit; not a
-                         number if the point did not exist in the previous frame. The motion of
-                         the camera is not part of it. */
+  /* 3: world-space vector from where the hit point of the first sample was in the previous frame of
+   * this context to where it is now: how its instance moved, or its vertices. 0 0 0 if nothing
+   * moved or nothing is hit; not a number if the point did not exist or was invisible in the
+   * previous frame, and everywhere in the first one. The motion of the camera is not part of it.
+   * Where an object was defined again, geometries and instances of the same name (rtLoadName) are
+   * the same if there are as many as before and their indices and objects are equal. */
+  RT_MOTION = 1024
 };
 
 /* Settings of rtQuality and rtQualityf. */
@@ -72,7 +74,9 @@ enum {
   /* 0 (default) or 1: RT_DEPTH, RT_NORMAL, RT_ALBEDO, RT_POSITION, RT_NAME and RT_MOTION tell about
    * what is seen in mirrors and through smooth glass instead of about the mirror or the glass. The
    * position is then that of the image: on the ray of the camera, as far away as the light has
-   * travelled. For callers that rebuild pictures from few samples. It changes no other channel. */
+   * travelled. Normal and motion are those of the image, the name is that of the shape that is
+   * seen, and the albedo is multiplied by what the mirrors and the glass let through. For callers
+   * that rebuild pictures from few samples. It changes no other channel. */
   RT_FOLLOW_IMAGES = 14
 };
 

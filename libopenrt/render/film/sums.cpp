@@ -19,7 +19,8 @@ static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout
 // Returns the bytes of PixelSums to store. Only the part that the frame needs is stored, because
 // there may be one for each pixel of the picture.
 size_t keptBytes(const RequiredSums& g) {
-  if (g.error) return sizeof(PixelSums);
+  if (g.motion) return sizeof(PixelSums);
+  if (g.error) return offsetof(PixelSums, motion);
   if (g.surface) return offsetof(PixelSums, closed);
   return g.spread ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
 }
@@ -53,6 +54,7 @@ RequiredSums requiredSums(const edit::FrameSettingsT& frame) {
   g.error = wantsError(frame);
   g.spread = g.error || (frame.channels & RT_VARIANCE);
   g.surface = frame.channels & (RT_NORMAL | RT_ALBEDO);
+  g.motion = frame.channels & RT_MOTION;
   return g;
 }
 

@@ -18,7 +18,8 @@ namespace openrt {
 struct RequiredSums {
   bool spread = false;  // true if first, delta and delta2 are needed
   bool surface = false; // true if normal and albedo are needed
-  bool error = false;   // true if all sums are needed
+  bool error = false;   // true if all sums but motion are needed
+  bool motion = false;  // true if motion is needed, and all sums with it
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
@@ -35,6 +36,7 @@ struct PixelSums { // sums of one pixel, samples added in order
   float largest[3] = {};
   uint32_t replicates = 0; // number of complete replicates
   bool random = false;     // a path has taken a random decision
+  float motion[3] = {};    // value of sample 0; last, because few frames need it
 
   void add(const float radiance[3], float alpha) {
     for (int k = 0; k < 3; k++) {

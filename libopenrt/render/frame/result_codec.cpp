@@ -31,6 +31,7 @@ std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
   if (frame.channels & RT_DEPTH) fields.push_back(FIELD(depth));
   if (frame.channels & RT_POSITION) fields.push_back(FIELD(position));
   if (frame.channels & RT_NAME) fields.push_back(FIELD(name));
+  if (frame.channels & RT_MOTION) fields.push_back(FIELD(motion));
   if (required.spread) fields.insert(fields.end(), {FIELD(first), FIELD(delta), FIELD(delta2)});
   if (frame.channels & RT_NORMAL) fields.push_back(FIELD(normal));
   if (frame.channels & RT_ALBEDO) fields.push_back(FIELD(albedo));

@@ -76,6 +76,8 @@ HWY_AFTER_NAMESPACE();
 #include <algorithm>
 #include <cmath>
 
+#include "render/path/guides.h"
+
 namespace openrt {
 HWY_EXPORT(lightOfHits);
 
@@ -107,8 +109,11 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
     const float covered = dot(ray.throughput, one - transmission),
                 through = dot(ray.throughput, transmission);
     if (!ray.flags.deflected()) found.alpha[ray.path] += covered / 3;
-    if (found.first[ray.path])
-      found.storeFirst(*batch.scene, *batch.points, i, ray.path, shaded.albedo);
+    if (found.first[ray.path]) {
+      found.first[ray.path] = 0;
+      if (!found.guides || !found.guides->takeShading(batch, i, transmission))
+        found.storeFirst(*batch.scene, *batch.points, i, ray.path, shaded.albedo);
+    }
     if (through <= 1e-6f)
       paths.ledger.cutByEnergy += double(through);
     else
@@ -130,8 +135,11 @@ void addSurface(const RtsBatch& batch, const RtsSurface& surface, const Boundari
     const uint32_t lane = batch.order[i], path = states.path[lane];
     store(load(found.radiance, path) + load(radiance, i), found.radiance, path);
     if (!states.flagsOf(lane).deflected()) found.alpha[path] += alpha[i];
-    if (found.first[path] && boundaries.visibleAt(i))
-      found.storeFirst(*batch.scene, *batch.points, i, path, surface.albedo);
+    if (found.first[path] && boundaries.visibleAt(i)) {
+      found.first[path] = 0;
+      if (!found.guides || !found.guides->takeSurface(batch, boundaries, i))
+        found.storeFirst(*batch.scene, *batch.points, i, path, surface.albedo);
+    }
   }
 }
 

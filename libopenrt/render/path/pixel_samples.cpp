@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "render/motion.h"
+
 namespace openrt {
 
 void PixelSamples::allocate(Arena& arena, uint32_t n) {
@@ -21,6 +23,7 @@ void PixelSamples::allocateFirst(Arena& arena, uint32_t n, uint32_t channels) {
     normal[k] = optional(RT_NORMAL);
     albedo[k] = optional(RT_ALBEDO);
     position[k] = optional(RT_POSITION);
+    motion[k] = optional(RT_MOTION);
   }
   depth = optional(RT_DEPTH);
   if (depth) std::fill_n(depth, size, std::numeric_limits<float>::infinity());
@@ -31,13 +34,15 @@ void PixelSamples::allocateFirst(Arena& arena, uint32_t n, uint32_t channels) {
 void PixelSamples::storeFirst(const RenderScene& scene, const Points& points, uint32_t i,
                               uint32_t path, float* const albedoOfHits[3]) {
   const RtsHits& h = points.hits;
-  first[path] = 0;
   name[path] = scene.records[points.record[i]].name;
   for (int k = 0; k < 3; k++) {
     if (normal[k]) normal[k][path] = h.normal[k][i];
     if (albedo[k]) albedo[k][path] = albedoOfHits[k][i];
     if (position[k]) position[k][path] = float(h.position[k][i] + scene.origin[k]);
   }
+  if (motion[0])
+    store(Vec3f(motionOf(scene, *points.rayHits, points.order[i], load(h.position, i))), motion,
+          path);
   if (depth) depth[path] = dot(load(h.position, i) - scene.eye, scene.viewAxis);
 }
 

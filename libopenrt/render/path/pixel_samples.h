@@ -8,12 +8,15 @@
 
 namespace openrt {
 
+class Guides;
+
 struct PixelSamples { // all arrays are indexed by path
   float *radiance[3], *alpha;
   uint8_t* first; // 1 until the first surface of the path has been shaded
   // The first surface; null if the frame does not have the channel.
-  float *normal[3] = {}, *albedo[3] = {}, *position[3] = {}, *depth = nullptr;
+  float *normal[3] = {}, *albedo[3] = {}, *position[3] = {}, *motion[3] = {}, *depth = nullptr;
   uint32_t* name = nullptr;
+  Guides* guides = nullptr; // RT_FOLLOW_IMAGES; null: first surfaces are recorded as they are
 
   // Allocates radiance and alpha, 0, of n paths. The first surfaces are not recorded.
   void allocate(Arena& arena, uint32_t n);

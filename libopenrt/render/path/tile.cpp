@@ -81,9 +81,20 @@ void TileRenderer::renderWave(uint32_t firstSample, uint32_t samples) {
     runTransportShader(wave.rays, found);
   } else {
     counters_.camera += n;
-    follow(wave, found);
+    renderPaths(wave, found);
   }
   addToPixels(found, firstSample, samples);
+}
+
+void TileRenderer::renderPaths(Wave& wave, PixelSamples& found) {
+  guides_.begin(wave.rays);
+  if (showsNoLight_) {
+    guides_.describe(context_, wave, found);
+  } else {
+    if (scene_.frame.followImages) found.guides = &guides_;
+    follow(wave, found);
+  }
+  guides_.finish(found);
 }
 
 // Traces the rays of a wave, then the rays that they spawn, bounce by bounce. Rays are processed in
@@ -204,6 +215,8 @@ void TileRenderer::addToPixels(const PixelSamples& found, uint32_t firstSample, 
       if (found.depth) sums.depth = found.depth[i];
       if (found.position[0])
         for (int k = 0; k < 3; k++) sums.position[k] = found.position[k][i];
+      if (found.motion[0])
+        for (int k = 0; k < 3; k++) sums.motion[k] = found.motion[k][i];
       sums.name = has(RT_NAME) ? float(found.name[i]) : 0.0f;
     }
   }

@@ -13,6 +13,7 @@
 #include "render/film/sums.h"
 #include "render/frame/tiles.h"
 #include "render/lights/unsampled_lights.h"
+#include "render/path/guides.h"
 #include "render/path/pixel_samples.h"
 #include "render/path/random_numbers.h"
 #include "render/path/spawn_rays.h"
@@ -49,6 +50,7 @@ class TileRenderer {
   bool has(uint32_t channel) const { return scene_.frame.channels & channel; }
 
   void renderWave(uint32_t firstSample, uint32_t samples);
+  void renderPaths(Wave& wave, PixelSamples& found);
   void follow(Wave& wave, PixelSamples& found);
   void traceWave(Wave& wave, PixelSamples& found);
   void runTransportShader(const Rays& rays, PixelSamples& found);
@@ -79,6 +81,8 @@ class TileRenderer {
   Arena arena_;
   RayCounters counters_;
   const StageContext context_{scene_, arena_, counters_, this};
+  const bool showsNoLight_{showsNoLight(scene_.frame)};
+  Guides guides_{scene_, arena_, counters_};
   Ledger ledger_;
   UnsampledLights unsampled_{scene_, ledger_};
   Tile tile_;

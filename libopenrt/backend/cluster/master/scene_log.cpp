@@ -1,5 +1,8 @@
 #include "backend/cluster/master/scene_log.h"
 
+#include <algorithm>
+
+#include "openrt/frame.h"
 #include "scene/whole_scene.h"
 
 namespace openrt::cluster {
@@ -7,7 +10,7 @@ namespace openrt::cluster {
 void SceneLog::add(Epoch epoch, std::shared_ptr<const Commit> commit) {
   for (const auto& entry : commit->edits.edits)
     if (const auto* settings = entry ? entry->any.AsFrameSettings() : nullptr) frame_ = *settings;
-  log_.push_back({epoch, packer_.pack(std::move(commit))});
+  log_.push_back({epoch, packer_.pack(std::move(commit)), (frame_.channels & RT_MOTION) != 0});
   bytes_ += log_.back().parcel->bytes;
 }
 
@@ -17,9 +20,21 @@ void SceneLog::dropFirst() {
   log_.pop_front();
 }
 
+// A worker that joins at a frame with RT_MOTION must know the scene of the frame before. So that
+// one is kept, and the worker gets the commits after it, too.
+Epoch SceneLog::baseFor(Epoch epoch) const {
+  const auto after = std::find_if(log_.begin(), log_.end(),
+                                  [epoch](const Entry& entry) { return entry.epoch > epoch; });
+  if (after == log_.begin() || !std::prev(after)->motion) return epoch;
+  for (auto entry = std::prev(after); entry != log_.begin();)
+    if ((--entry)->parcel->commit->edits.render) return entry->epoch;
+  return base_;
+}
+
 void SceneLog::settle(Epoch epoch) {
+  const Epoch base = baseFor(epoch);
   for (const Entry& entry : log_) {
-    if (entry.epoch <= base_ || entry.epoch > epoch) continue;
+    if (entry.epoch <= base_ || entry.epoch > base) continue;
     scene_.apply(*entry.parcel->commit);
     base_ = entry.epoch;
     whole_.reset();

@@ -1,5 +1,6 @@
 // scene_log.h: Keeps the commits that workers may still need, and the scene at the oldest of them.
-// A worker that joins in the middle of a frame gets the scene of that frame. One thread.
+// A worker that joins in the middle of a frame gets the scene of that frame; if the frame has
+// RT_MOTION, that of the frame before and the commits since. One thread.
 #pragma once
 
 #include <deque>
@@ -37,7 +38,10 @@ class SceneLog {
   struct Entry {
     Epoch epoch = 0;
     ParcelPtr parcel;
+    bool motion = false; // its frame has RT_MOTION
   };
+  // Returns the latest scene that a worker may begin with if it is to render the frame of `epoch`.
+  Epoch baseFor(Epoch epoch) const;
   void dropFirst();
 
   Packer packer_;

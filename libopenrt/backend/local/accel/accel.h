@@ -57,6 +57,8 @@ class Accel final : public Intersector {
   bool nearest(const Vec3d& place, double distance, std::span<const uint32_t> round,
                Nearest& out) const;
   std::vector<uint32_t> spheres() const; // returns the records of all visible spheres
+  // Returns the first record of a cluster; the entries of its part follow in order.
+  uint32_t firstRecord(uint32_t cluster) const { return placed_[cluster].firstRecord; }
 
  private:
   friend class AccelBuilder;

@@ -1,0 +1,262 @@
+#include "render/path/guides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/film/error.h"
+#include "render/motion.h"
+#include "render/surface/bsdf_samples.h"
+#include "render/surface/scatter.h"
+#include "render/surface/surface_shader.h"
+#include "scene/transports.h"
+#include "shading/running.h"
+
+namespace openrt {
+namespace {
+
+float mean(const Vec3f& v) { return (v.x + v.y + v.z) / 3; }
+
+// Returns the matrix of the reflection at a plane.
+Matrix4d reflectionAt(const Vec3d& point, const Vec3d& normal) {
+  Matrix4d m;
+  for (size_t column = 0; column < 3; column++)
+    for (size_t row = 0; row < 3; row++) m.m[4 * column + row] -= 2 * normal[row] * normal[column];
+  m.translate(normal * (2 * dot(normal, point)));
+  return m;
+}
+
+// Returns the smooth lobe that a narrow rough lobe is taken for.
+bool smoothLobe(const RtsLobe& rough, uint32_t i, RtsLobe& smooth) {
+  const bool glossy = rough.kind == RTS_LOBE_GLOSSY;
+  if (!glossy && rough.kind != RTS_LOBE_ROUGH_DIELECTRIC) return false;
+  if (!(rough.parameter[glossy ? 0 : 1][i] <= Guides::nearlySmooth)) return false;
+  smooth = rough;
+  smooth.kind = glossy ? RTS_LOBE_REFLECTION : RTS_LOBE_DIELECTRIC;
+  return true;
+}
+
+// Returns the Fresnel reflectance that a glossy lobe has in the direction of its mirror image.
+float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
+  const float eta = glossy.parameter[1][i];
+  if (!(eta > 0)) return 1;
+  double behind;
+  const double cosine = -double(dot(load(hits.direction, i), load(glossy.normal, i)));
+  return float(fresnel(std::clamp(cosine, 0.0, 1.0), eta, behind));
+}
+
+} // namespace
+
+bool showsNoLight(const edit::FrameSettingsT& frame) {
+  return !(frame.channels & (RT_RGBA | RT_VARIANCE)) && !wantsError(frame);
+}
+
+Guides::Guides(const RenderScene& scene, Arena& arena, RayCounters& counters)
+    : scene_(scene), arena_(arena), counters_(counters), follows_(scene.frame.followImages) {}
+
+void Guides::begin(const Rays& camera) {
+  for (int k = 0; k < 3; k++) {
+    origin_[k] = camera.org[k];
+    direction_[k] = camera.dir[k];
+  }
+  paths_ = camera.count;
+  next_.clear();
+  if (follows_ && images_.size() < paths_) images_.resize(paths_);
+}
+
+void Guides::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
+  visit(context, Coherence::coherent, wave, false, found);
+}
+
+void Guides::finish(PixelSamples& found) {
+  for (uint32_t surface = 1; !next_.empty(); surface++) {
+    std::swap(queue_, next_);
+    next_.clear();
+    const uint32_t n = uint32_t(queue_.size()); // at most one for each path
+    counters_.secondary += n;
+    ArenaScope scope(arena_);
+    Wave wave;
+    wave.rays.allocate(arena_, n);
+    loadWave(queue_, 0, n, wave);
+    visit(context_, Coherence::incoherent, wave, surface >= mostSurfaces, found);
+  }
+}
+
+// last: what is hit is described, whatever it is.
+void Guides::visit(const StageContext& context, Coherence coherence, Wave& wave, bool last,
+                   PixelSamples& found) {
+  ArenaScope scope(arena_);
+  intersectWave(context, coherence, wave);
+  for (const uint32_t lane : wave.missed) // the sky in a mirror has the tint of the mirror
+    if (found.albedo[0] && wave.states.flagsOf(lane).deflected())
+      openrt::store(load(wave.states.throughput, lane), found.albedo, wave.states.path[lane]);
+  forEachBucket(context, wave, [&](const Points& points, const Bucket& bucket) {
+    describeBucket(context, points, bucket, wave.states, last, found);
+  });
+}
+
+void Guides::describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
+                            const PathStates& states, bool last, PixelSamples& found) {
+  const RtsClass& shaderClass = *bucket.shaderClass;
+  const uint32_t n = points.hits.count;
+  const bool asks = has(RT_ALBEDO) || (follows_ && !last);
+  RtsBatch batch = makeBatch(context, points, states);
+  batch.lightSet = bucket.lightSet;
+  float* albedo[3] = {};
+  if (shaderClass.surface) {
+    if (asks) {
+      const RtsSurface surface = runSurfaceShader(batch, shaderClass, has(RT_ALBEDO));
+      sanitizeOutput(shaderClass, batch, surface);
+      std::copy_n(surface.albedo, 3, albedo);
+    }
+    const Boundaries boundaries = crossBoundaries(batch, shaderClass);
+    for (uint32_t i = 0; i < n; i++) {
+      if (!last && !boundaries.visibleAt(i))
+        queue(batch, i, {load(points.hits.direction, i)}, boundaries.crossing[i].behind,
+              Step::pass);
+      else if (last || !takeSurface(batch, boundaries, i))
+        store(batch, i, albedo, found);
+    }
+    return;
+  }
+  RtsShading shaded{};
+  if (asks) {
+    for (int k = 0; k < 3; k++) {
+      shaded.radiance[k] = arena_.takeZero<float>(padded(n));
+      shaded.transmission[k] = arena_.takeZero<float>(padded(n));
+      if (has(RT_ALBEDO)) shaded.albedo[k] = arena_.takeZero<float>(padded(n));
+    }
+    const RunningShader running(shaderClass);
+    shaderClass.shade(&scene_.host, &batch, &points.hits, &shaded);
+    sanitizeOutput(shaderClass, batch, shaded);
+  }
+  for (uint32_t i = 0; i < n; i++)
+    if (last || !follows_ || !takeShading(batch, i, load(shaded.transmission, i)))
+      store(batch, i, shaded.albedo, found);
+}
+
+// Finds the direction in which the image at a hit is seen. Returns false if none is.
+bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i,
+                      Lead& lead) const {
+  const RtsHits& hits = batch.points->hits;
+  const Vec3f g = load(hits.geometric, i);
+  const bool images = followsImages(scene_.frame.transport);
+  // The weights are those of a path from a lamp, which do not change where light enters a denser
+  // medium.
+  BsdfSamples samples(hits, i, boundaries.etaAt(i), 0, true);
+  float others = 0;
+  for (uint32_t l = 0; l < batch.lobeCount; l++) {
+    const RtsLobe& lobe = batch.lobes[l];
+    const uint32_t first = samples.count;
+    RtsLobe smooth;
+    Vec3f weight;
+    if (!weightAt(lobe, i, weight)) continue;
+    if (lobe.kind == RTS_LOBE_TRANSPARENT || (images && !nonSpecularFunctions(lobe)))
+      samples.add(l, lobe, nullptr);
+    else if (images && smoothLobe(lobe, i, smooth))
+      samples.add(l, smooth, nullptr);
+    else
+      others += mean(weight);
+    if (lobe.kind == RTS_LOBE_GLOSSY && samples.count > first)
+      samples.list[first].weight *= reflectanceOf(lobe, hits, i);
+  }
+  Vec3f sum[2]; // of transmission and reflection
+  const BsdfSample* heaviest[2] = {};
+  for (uint32_t s = 0; s < samples.count; s++) {
+    const BsdfSample& sample = samples.list[s];
+    const bool reflected = sample.deflected && dot(sample.direction, g) > 0;
+    sum[reflected] += sample.weight;
+    if (!heaviest[reflected] || mean(sample.weight) > mean(heaviest[reflected]->weight))
+      heaviest[reflected] = &sample;
+  }
+  if (!(mean(sum[0]) + mean(sum[1]) > others)) return false;
+  lead.reflected = mean(sum[1]) > mean(sum[0]);
+  lead.tint = sum[lead.reflected];
+  lead.direction = heaviest[lead.reflected]->direction;
+  return isFinite(lead.direction) && isFinite(lead.tint);
+}
+
+bool Guides::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i) {
+  Lead lead;
+  if (!follows_ || !findLead(batch, boundaries, i, lead)) return false;
+  const MediaStack& media = (*batch.states).media[batch.order[i]];
+  queue(batch, i, lead, mediaTowards(*batch.points, i, lead.direction, boundaries, media),
+        Step::image);
+  return true;
+}
+
+bool Guides::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission) {
+  constexpr Vec3f one{1, 1, 1};
+  const Vec3f tint = min(max(Vec3f(), transmission), one); // NaN: opaque
+  if (!follows_ || !(mean(tint) > 0.5f)) return false;
+  queue(batch, i, {load(batch.points->hits.direction, i), tint},
+        (*batch.states).media[batch.order[i]], Step::image);
+  return true;
+}
+
+// Queues the guide ray that leaves hit i.
+void Guides::queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const MediaStack& media,
+                   Step step) {
+  const RayState from = (*batch.states)[batch.order[i]];
+  RayState to{.throughput = from.throughput * lead.tint,
+              .travelled = batch.points->hits.distance[i],
+              .path = from.path,
+              .media = media,
+              .flags = from.flags};
+  if (step == Step::image) {
+    Image& image = images_[from.path];
+    if (!from.flags.deflected()) image = Image();
+    if (lead.reflected) reflect(batch, i, lead.direction, image);
+    to.flags.set(PathFlags::deflectedBit, true);
+  }
+  queueRay(*batch.points, i, lead.direction, to, next_);
+}
+
+// Adds the mirror at hit i, which sends the ray to `out`, to those that an image is seen in.
+void Guides::reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const {
+  const Points& points = *batch.points;
+  Plane now{Vec3d(load(points.hits.position, i)),
+            normalize(Vec3d(out) - Vec3d(load(points.hits.direction, i)))};
+  Plane before = now;
+  if (has(RT_MOTION)) {
+    image.mirrorNew |= !findMirrorPlanes(scene_, *points.rayHits, points.order[i], now, before);
+    image.mirrorMoved |= before != now;
+  }
+  image.now = image.now * reflectionAt(now.point, now.normal);
+  image.before = image.before * reflectionAt(before.point, before.normal);
+}
+
+// Records what is seen at hit i as the first surface of its path.
+void Guides::store(const RtsBatch& batch, uint32_t i, float* const albedo[3],
+                   PixelSamples& found) const {
+  const Points& points = *batch.points;
+  const RayState ray = (*batch.states)[batch.order[i]];
+  found.storeFirst(scene_, points, i, ray.path, albedo);
+  if (!ray.flags.deflected()) return; // it is seen directly
+  const RtsHits& hits = points.hits;
+  const Image& image = images_[ray.path];
+  const Vec3f position = load(hits.position, i);
+  const Vec3d along = Vec3d(load(direction_, ray.path)) * double(hits.distance[i]),
+              seen = Vec3d(load(origin_, ray.path)) + along;
+  if (found.normal[0])
+    openrt::store(Vec3f(image.now.direction(Vec3d(load(hits.normal, i)))), found.normal, ray.path);
+  if (found.albedo[0]) openrt::store(load(albedo, i) * ray.throughput, found.albedo, ray.path);
+  if (found.position[0])
+    openrt::store(Vec3f(seen + vectorOf(scene_.origin)), found.position, ray.path);
+  if (found.depth)
+    found.depth[ray.path] = float(dot(seen - Vec3d(scene_.eye), Vec3d(scene_.viewAxis)));
+  if (found.motion[0]) {
+    const Vec3d motion = motionOf(scene_, *points.rayHits, points.order[i], position);
+    openrt::store(Vec3f(motionOfImage(Vec3d(position), motion, image)), found.motion, ray.path);
+  }
+}
+
+// place and motion: of the point that is seen, in render space.
+Vec3d Guides::motionOfImage(const Vec3d& place, const Vec3d& motion, const Image& image) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (image.mirrorNew) return {nan, nan, nan};
+  if (!image.mirrorMoved) return image.now.direction(motion);
+  return image.now.point(place) - image.before.point(place - motion);
+}
+
+} // namespace openrt

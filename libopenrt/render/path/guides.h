@@ -1,0 +1,86 @@
+// guides.h: what the channels of the first hit describe (RT_DEPTH, RT_NORMAL, RT_ALBEDO,
+// RT_POSITION, RT_NAME, RT_MOTION), apart from the light that is followed. [render]
+//
+// With RT_FOLLOW_IMAGES they describe what is seen in smooth mirrors and through smooth glass.
+// Where the specular lobes of a hit carry more than its other lobes, a guide ray follows the
+// heavier one of reflection and transmission, without random numbers, up to `mostSurfaces` times.
+// The image that is seen lies on the ray of the camera, as far away as the light has travelled.
+// Its normal and its motion are those of the surface, taken back through the mirrors.
+//
+// In frames without any channel of light, this is all that is done.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/path/pixel_samples.h"
+#include "render/path/wave.h"
+#include "render/surface/surfaces.h"
+
+namespace openrt {
+
+// Returns whether a frame shows no light: its channels and settings need neither radiance nor
+// errors.
+bool showsNoLight(const edit::FrameSettingsT& frame);
+
+class Guides {
+ public:
+  Guides(const RenderScene& scene, Arena& arena, RayCounters& counters);
+
+  // Begins with the camera rays of a wave, by path. They must keep their place until finish().
+  void begin(const Rays& camera);
+  // Describes the first hits of the camera rays, for frames without light. context: with the
+  // renderer, because shaders may request something from it.
+  void describe(const StageContext& context, Wave& wave, PixelSamples& found);
+  // Take over the first hit of a path if an image is to be followed there; else return false.
+  // transmission: what `shade` has returned.
+  bool takeSurface(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i);
+  bool takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission);
+  // Follows the paths that were taken over, and records what they see.
+  void finish(PixelSamples& found);
+
+  static constexpr uint32_t mostSurfaces = 8;
+  // Rough lobes narrower than this (alpha) show images.
+  static constexpr float nearlySmooth = 0.05f;
+
+ private:
+  // How the space beyond the mirrors of a path appears in front of them, in render space.
+  struct Image {
+    Matrix4d now, before;
+    bool mirrorMoved = false; // before differs from now
+    bool mirrorNew = false;   // the image was not there in the frame before
+  };
+  struct Lead { // where an image is seen from a hit
+    Vec3f direction, tint{1, 1, 1};
+    bool reflected = false;
+  };
+  // What a guide ray does at a hit: it passes a boundary that has no effect, or follows an image.
+  enum class Step : uint8_t { pass, image };
+  void visit(const StageContext& context, Coherence coherence, Wave& wave, bool last,
+             PixelSamples& found);
+  void describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
+                      const PathStates& states, bool last, PixelSamples& found);
+  bool findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i, Lead& lead) const;
+  void queue(const RtsBatch& batch, uint32_t i, const Lead& lead, const MediaStack& media,
+             Step step);
+  void reflect(const RtsBatch& batch, uint32_t i, const Vec3f& out, Image& image) const;
+  void store(const RtsBatch& batch, uint32_t i, float* const albedo[3], PixelSamples& found) const;
+  Vec3d motionOfImage(const Vec3d& place, const Vec3d& motion, const Image& image) const;
+  bool has(uint32_t channel) const { return scene_.frame.channels & channel; }
+
+  const RenderScene& scene_;
+  Arena& arena_;
+  RayCounters& counters_;
+  // No renderer: shaders get the middle of every sequence of random points, and trace nothing.
+  const StageContext context_{scene_, arena_, counters_};
+  const bool follows_;
+  const float* origin_[3] = {};    // of the camera rays, by path
+  const float* direction_[3] = {}; // unit
+  uint32_t paths_ = 0;
+  // By path. Those that follow an image, and only those, are valid; the rays of such paths count as
+  // deflected (PathFlags).
+  std::vector<Image> images_;
+  RayQueue queue_, next_;
+};
+
+} // namespace openrt

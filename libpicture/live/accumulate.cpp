@@ -1,0 +1,234 @@
+// accumulate.cpp: Finds each pixel's surface in the frame before and adds this frame's illumination
+// to what was accumulated there.
+#include "libpicture/live/stages.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "libpicture/live/accumulate.cpp"
+#include <hwy/foreach_target.h>
+
+#include "libpicture/live/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace picture::live {
+namespace HWY_NAMESPACE {
+
+constexpr float mostFrames = 32;    // more are not worth the light that has changed since
+constexpr float recentFrames = 5;   // frames in Accumulated::recent
+constexpr float noiseMemory = 0.96f; // of Accumulated::noise from frame to frame
+constexpr float firmFrames = 4;     // from here on the variance over time is trusted
+
+// Up to four pixels of the frame before, and their weights, which sum up to 1 or are all 0.
+struct Taps {
+  Index index[4];
+  Lanes weight[4];
+  Mask found;
+
+  Lanes of(const Plane& plane) const {
+    Lanes sum = gather(plane.data(), index[0]) * weight[0];
+    for (int k = 1; k < 4; k++) sum = sum + gather(plane.data(), index[k]) * weight[k];
+    return sum;
+  }
+  Lanes3 of(const Plane3& planes) const { return {of(planes.x), of(planes.y), of(planes.z)}; }
+};
+
+// The surface of pixels of this frame, as it is expected in the frame before.
+struct Expected {
+  Lanes name, nearness, tolerance;
+  Lanes3 normal;
+
+  Mask matches(const Guides& guides, Index at) const {
+    const Mask near =
+        absolute(gather(guides.nearness.data(), at) - nearness) <= tolerance;
+    const Mask same = gather(guides.name.data(), at) == name;
+    return both(both(near, same), dot(gather(guides.normal, at), normal) > all(0.6f));
+  }
+};
+
+Expected expectedAt(const Moment& now, const Moment& before, const Work& work, size_t i) {
+  const Guides& guides = now.guides;
+  const Lanes nearness = load(work.pastNearness.data() + i);
+  const Lanes slope = absolute(load(guides.slopeX.data() + i)) +
+                      absolute(load(guides.slopeY.data() + i));
+  const Lanes scale = before.projection.parallel ? all(1) : nearness;
+  const float enlarged = float(now.layout.width) / float(std::max(1, before.layout.width));
+  return {load(guides.name.data() + i), nearness,
+          slope * all(1.5f * std::max(1.0f, enlarged)) + scale * all(0.01f),
+          load(guides.normal, i)};
+}
+
+// Weights of the four pixels around (x, y), those of other surfaces left out.
+Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, Lanes y) {
+  const Layout& layout = before.layout;
+  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
+                           both(y > all(-1), y < all(float(layout.height))));
+  const Lanes atX = where(inside, x), atY = where(inside, y);
+  const Lanes left = hn::Floor(atX), top = hn::Floor(atY);
+  const Lanes partX = atX - left, partY = atY - top;
+  const IndexTag tag;
+  const auto stride = int32_t(layout.stride);
+  const Index corner = (hn::ConvertTo(tag, top) + hn::Set(tag, Layout::border)) *
+                           hn::Set(tag, stride) +
+                       hn::ConvertTo(tag, left) + hn::Set(tag, Layout::border);
+  const Lanes acrossX[2] = {all(1) - partX, partX}, acrossY[2] = {all(1) - partY, partY};
+  Taps taps;
+  Lanes sum = all(0);
+  for (int k = 0; k < 4; k++) {
+    taps.index[k] = corner + hn::Set(tag, (k / 2) * stride + k % 2);
+    const Mask valid = both(inside, expected.matches(before.guides, taps.index[k]));
+    taps.weight[k] = where(valid, acrossX[k % 2] * acrossY[k / 2]);
+    sum = sum + taps.weight[k];
+  }
+  taps.found = sum > all(0.01f);
+  const Lanes per = where(taps.found, all(1) / sum);
+  for (Lanes& weight : taps.weight) weight = weight * per;
+  return taps;
+}
+
+// Gives pixels whose surface is in none of the four taps the nearest one that shows it, among the
+// nine around (x, y): at edges the random place of the sample decides which surface a pixel shows.
+void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes y, Taps& taps) {
+  const Layout& layout = before.layout;
+  const Lanes half = all(0.5f);
+  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
+                           both(y > all(-1), y < all(float(layout.height))));
+  const Mask missing = hn::AndNot(taps.found, inside);
+  if (hn::AllFalse(Tag(), missing)) return;
+  const Lanes middleX = hn::Floor(where(missing, x) + half),
+              middleY = hn::Floor(where(missing, y) + half);
+  const IndexTag tag;
+  const auto stride = int32_t(layout.stride);
+  const Index middle = (hn::ConvertTo(tag, middleY) + hn::Set(tag, Layout::border)) *
+                           hn::Set(tag, stride) +
+                       hn::ConvertTo(tag, middleX) + hn::Set(tag, Layout::border);
+  Lanes least = all(1e30f);
+  Index best = middle;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++) {
+      const Index at = middle + hn::Set(tag, dy * stride + dx);
+      const Lanes awayX = middleX + all(float(dx)) - x, awayY = middleY + all(float(dy)) - y;
+      const Lanes distance = awayX * awayX + awayY * awayY;
+      const Mask better = both(both(missing, expected.matches(before.guides, at)),
+                               distance < least);
+      least = select(better, distance, least);
+      best = hn::IfThenElse(hn::RebindMask(tag, better), at, best);
+    }
+  const Mask met = least < all(1e30f);
+  taps.index[0] = hn::IfThenElse(hn::RebindMask(tag, met), best, taps.index[0]);
+  taps.weight[0] = select(met, all(1), taps.weight[0]);
+  taps.found = either(taps.found, met);
+}
+
+Lanes3 mixed(const Lanes3& old, const Lanes3& fresh, Lanes part) {
+  return old + (fresh - old) * part;
+}
+Lanes mixed(Lanes old, Lanes fresh, Lanes part) { return old + (fresh - old) * part; }
+
+// Lowers the luma of samples beyond the limit, with their colour.
+Lanes3 limited(const Lanes3& light, Lanes limit) {
+  const Lanes scale = where(light.x > all(0), limit / larger(light.x, all(1e-20f)));
+  return light * select(light.x > limit, scale, all(1));
+}
+
+void accumulateRow(int y, const Moment& before, Moment& now, Work& work) {
+  const Layout& layout = now.layout;
+  const Accumulated& old = before.accumulated;
+  Accumulated& fresh = now.accumulated;
+  const size_t row = layout.row(y);
+  Lanes foundCount = all(0), frameCount = all(0);
+  const Lanes zero = all(0), one = all(1);
+  double found = 0, frames = 0;
+  for (int x = 0; x < layout.width; x += width()) {
+    const size_t i = row + size_t(x);
+    const Lanes pastX = load(work.pastX.data() + i), pastY = load(work.pastY.data() + i);
+    const Mask some = load(now.guides.name.data() + i) >= zero;
+    const Expected expected = expectedAt(now, before, work, i);
+    Taps taps = tapsAround(before, expected, pastX, pastY);
+    searchAround(before, expected, pastX, pastY, taps);
+
+    const Lanes oldFrames = taps.of(old.frames);
+    const Lanes count = smaller(oldFrames + one, all(mostFrames));
+    const Lanes noise = larger(load(work.noise.data() + i), taps.of(old.noise) * all(noiseMemory));
+    const Lanes trust = smaller(noise + noise, one); // 0: free of noise, nothing to average
+    const Lanes part = larger(one / count, one - trust),
+                recentPart = larger(part, all(1 / recentFrames));
+    const Lanes3 light = limited(load(work.light, i), select(trust > zero, load(work.limit.data() + i), all(1e30f)));
+    const Lanes luma = light.x;
+    store(mixed(taps.of(old.light), light, part), fresh.light, i);
+    store(mixed(taps.of(old.recent), light, recentPart), fresh.recent, i);
+    const Lanes mean = mixed(taps.of(old.mean), luma, part),
+                square = mixed(taps.of(old.square), luma * luma, part);
+    store(mean, fresh.mean.data() + i);
+    store(square, fresh.square.data() + i);
+    store(where(some, count), fresh.frames.data() + i);
+    store(where(some, noise), fresh.noise.data() + i);
+
+    // Variance of the accumulated illumination: over time where there are enough frames, else over
+    // the neighbours.
+    const Lanes overTime = larger(square - mean * mean, zero) * (count / larger(count - one, one));
+    const Lanes overSpace = load(work.variance.data() + i);
+    const Lanes firm = clamped((count - one) * all(1 / (firmFrames - 1)), zero, one);
+    const Lanes early = larger(overTime, overSpace);
+    store(mixed(early, overTime, firm * firm) / count * trust, work.variance.data() + i);
+
+    const Mask inPicture = both(some, present(x, layout.width));
+    foundCount = where(both(taps.found, inPicture), one);
+    frameCount = where(inPicture, count);
+    float lanes[2][Layout::widest];
+    store(foundCount, lanes[0]);
+    store(frameCount, lanes[1]);
+    for (int k = 0; k < width(); k++) {
+      found += double(lanes[0][k]);
+      frames += double(lanes[1][k]);
+    }
+  }
+  work.found[size_t(y)] = found;
+  work.frames[size_t(y)] = frames;
+}
+
+void boundRow(int y, Moment& now) {
+  constexpr int reach = 2;
+  const Layout& layout = now.layout;
+  Accumulated& sums = now.accumulated;
+  const float* name = now.guides.name.data();
+  const size_t row = layout.row(y);
+  const Lanes zero = all(0), one = all(1);
+  for (int x = 0; x < layout.width; x += width()) {
+    const size_t i = row + size_t(x);
+    const Lanes ownName = load(name + i);
+    Lanes pixels = zero;
+    Lanes3 sum{zero, zero, zero}, squares{zero, zero, zero};
+    for (int dy = -reach; dy <= reach; dy++)
+      for (int dx = -reach; dx <= reach; dx++) {
+        const size_t j = i + size_t(ptrdiff_t(layout.stride) * dy + dx);
+        const Lanes same = where(load(name + j) == ownName, one);
+        const Lanes3 other = load(sums.recent, j) * same;
+        pixels = pixels + same;
+        sum = sum + other;
+        squares = squares + other * other;
+      }
+    const Lanes per = one / larger(pixels, one);
+    const Lanes3 mean = sum * per, light = load(sums.light, i);
+    const auto bounded = [&](Lanes v, Lanes m, Lanes s) {
+      const Lanes spread = all(2.0f) * hn::Sqrt(larger(s * per - m * m, zero));
+      return clamped(v, m - spread, m + spread);
+    };
+    const Lanes3 inside{bounded(light.x, mean.x, squares.x), bounded(light.y, mean.y, squares.y),
+                        bounded(light.z, mean.z, squares.z)};
+    store(inside, sums.light, i);
+  }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace picture::live
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace picture::live {
+HWY_EXPORT(accumulateRow);
+HWY_EXPORT(boundRow);
+void accumulateRow(int y, const Moment& before, Moment& now, Work& work) {
+  HWY_DYNAMIC_DISPATCH(accumulateRow)(y, before, now, work);
+}
+void boundRow(int y, Moment& now) { HWY_DYNAMIC_DISPATCH(boundRow)(y, now); }
+} // namespace picture::live
+#endif

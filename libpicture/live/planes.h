@@ -1,0 +1,80 @@
+// planes.h: The planes that a Reconstruction computes with: one float per pixel, rows one after the
+// other, with a border around the picture. Filters read neighbours without testing whether they
+// exist: the border is empty (Guides::name), so such neighbours get the weight 0. Rows can be
+// written in whole vectors; what is written behind a row is part of the border. [any thread]
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace picture::live {
+
+// Where a pixel lies in a plane.
+struct Layout {
+  // The widest filter reaches 2 * 16 pixels; vectors have at most 16 elements.
+  static constexpr int border = 32, widest = 16;
+
+  Layout() = default;
+  Layout(int w, int h)
+      : width(w), height(h), stride((size_t(w) + 2 * border + 2 * widest - 1) / widest * widest) {}
+
+  size_t size() const { return stride * (size_t(height) + 2 * border); }
+  // Offset of the first pixel of a row; rows from -border to height + border - 1 exist.
+  size_t row(int y) const { return size_t(y + border) * stride + border; }
+  bool operator==(const Layout&) const = default;
+
+  int width = 0, height = 0;
+  size_t stride = 0;
+};
+
+using Plane = std::vector<float>;
+
+// Three planes: a colour as luma and two differences of colour, or a direction.
+struct Plane3 {
+  Plane x, y, z;
+  void assign(size_t n, float value) {
+    for (Plane* plane : {&x, &y, &z}) plane->assign(n, value);
+  }
+};
+
+// Numbers in Guides::name that are no name.
+constexpr float outsideName = -1; // the pixel does not exist
+constexpr float emptyName = -2;   // the pixel has no sample
+
+// What is known about the surface that a pixel's first sample shows.
+struct Guides {
+  void resize(const Layout& layout) {
+    name.assign(layout.size(), outsideName);
+    for (Plane* plane : {&nearness, &slopeX, &slopeY, &offsetX, &offsetY})
+      plane->assign(layout.size(), 0);
+    normal.assign(layout.size(), 0);
+  }
+
+  Plane name;
+  // Perspective: 1 / depth, since that is a linear function of the place in the picture on every
+  // plane; 0: the environment. Parallel: depth / height of the view.
+  Plane nearness;
+  Plane slopeX, slopeY;   // change of nearness from pixel to pixel
+  Plane offsetX, offsetY; // place of the sample relative to the pixel's centre, in pixels
+  Plane3 normal;          // of length 1
+};
+
+// What is accumulated over time for each pixel.
+struct Accumulated {
+  void resize(const Layout& layout) {
+    for (Plane3* planes : {&light, &recent}) planes->assign(layout.size(), 0);
+    for (Plane* plane : {&mean, &square, &frames, &noise}) plane->assign(layout.size(), 0);
+    shown.assign(layout.size() * 4, 0);
+  }
+
+  Plane3 light;       // illumination: radiance / albedo; luma and colour differences
+  Plane3 recent;      // the same over the last few frames only
+  Plane mean, square; // of the illumination's luma and of its square
+  Plane frames;       // number of frames in `light`; 0: nothing is known
+  Plane noise;        // 0 to 1: whether illumination was found to be noisy around here
+  // The picture that is shown, over time: red, green, blue, number of frames; one after the other.
+  std::vector<float> shown;
+};
+
+} // namespace picture::live

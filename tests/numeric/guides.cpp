@@ -1,0 +1,382 @@
+// guides.cpp: RT_FOLLOW_IMAGES against closed forms: what is seen in mirrors and through smooth
+// glass, how it moves, and that the light of a picture does not depend on it. Frames without light.
+#include <cstring>
+
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+constexpr uint32_t features = RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION;
+
+// What the pixel in the middle says about its surface.
+struct Surface {
+  float depth, name;
+  Vec normal, albedo, position, motion;
+};
+
+class Guides : public Scene {
+ protected:
+  void SetUp() override {
+    Scene::SetUp();
+    rtQuality(RT_FOLLOW_IMAGES, 1);
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED);
+  }
+  static Vec vector(RTenum channel) {
+    float v[3];
+    rtReadPixels(channel, v, 3);
+    return {v[0], v[1], v[2]};
+  }
+  // Looks straight down -z through (x, y), from a height of 20.
+  static Surface see(double x = .25, double y = .5) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(x, y, 20);
+    rtOrtho(1e-6);
+    rtPopMatrix();
+    rtFrameBuffer(1, 1, features | RT_RGBA);
+    rtRender();
+    Surface s{};
+    rtReadPixels(RT_DEPTH, &s.depth, 1);
+    rtReadPixels(RT_NAME, &s.name, 1);
+    s.normal = vector(RT_NORMAL);
+    s.albedo = vector(RT_ALBEDO);
+    s.position = vector(RT_POSITION);
+    s.motion = vector(RT_MOTION);
+    return s;
+  }
+  static void expectVector(const Vec& got, const Vec& expected, double tolerance = 1e-5) {
+    EXPECT_NEAR(got.x, expected.x, tolerance);
+    EXPECT_NEAR(got.y, expected.y, tolerance);
+    EXPECT_NEAR(got.z, expected.z, tolerance);
+  }
+  // Defines a square that bears a name.
+  static RTid namedSquare(uint32_t name, RTid shader, double half = 10) {
+    rtLoadName(name);
+    const RTid object = square(shader, half);
+    rtLoadName(0);
+    return object;
+  }
+  static RTid painted() { return Shader("Diffuse").set("reflectance", {.8, .4, .2}); }
+  static RTid mirror(double reflectance = .5) {
+    return Shader("Mirror").set("reflectance", {reflectance, reflectance, reflectance});
+  }
+  static void moveTo(RTid instance, double x, double y, double z, double turnX = 0,
+                     double turnY = 0) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtTranslated(x, y, z);
+    rtRotated(turnX, 1, 0, 0);
+    rtRotated(turnY, 0, 1, 0);
+    double m[16];
+    rtGetMatrixd(m);
+    rtPopMatrix();
+    rtInstanceMatrix(instance, m);
+  }
+};
+
+TEST_F(Guides, DescribeTheImageInAMirror) {
+  placeAt(0, namedSquare(1, mirror()));
+  placeAt(30, namedSquare(2, painted()), true); // above the camera, facing down
+  Surface s = see();
+  EXPECT_NEAR(s.depth, 50, 1e-4);
+  EXPECT_EQ(s.name, 2);
+  expectVector(s.position, {.25, .5, -30});
+  expectVector(s.normal, {0, 0, 1});
+  expectVector(s.albedo, {.4, .2, .1});
+  rtQuality(RT_FOLLOW_IMAGES, 0);
+  s = see();
+  EXPECT_NEAR(s.depth, 20, 1e-4);
+  EXPECT_EQ(s.name, 1);
+  expectVector(s.position, {.25, .5, 0});
+  expectVector(s.albedo, {.5, .5, .5});
+}
+
+TEST_F(Guides, DescribeNoImageThatTheTransportDoesNotShow) {
+  placeAt(0, namedSquare(1, mirror()));
+  placeAt(30, namedSquare(2, painted()), true);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_DIRECT);
+  EXPECT_EQ(see().name, 1);
+  for (const int transport : {RT_TRANSPORT_AUTO, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
+    rtQuality(RT_TRANSPORT, transport);
+    EXPECT_EQ(see().name, 2);
+  }
+}
+
+TEST_F(Guides, DescribeNothingInAMirrorOfTheSky) {
+  placeAt(0, namedSquare(1, mirror(.75)));
+  const Surface s = see();
+  EXPECT_TRUE(std::isinf(s.depth));
+  EXPECT_EQ(s.name, 0);
+  expectVector(s.normal, {0, 0, 0}, 0);
+  expectVector(s.position, {0, 0, 0}, 0);
+  expectVector(s.motion, {0, 0, 0}, 0);
+  expectVector(s.albedo, {.75, .75, .75});
+}
+
+TEST_F(Guides, LookThroughGlass) {
+  const RTid face = namedSquare(1, Shader("Glass"));
+  placeAt(2, face);
+  placeAt(1, face, true);
+  placeAt(0, namedSquare(2, painted()));
+  const Surface s = see();
+  EXPECT_NEAR(s.depth, 20, 1e-4);
+  EXPECT_EQ(s.name, 2);
+  expectVector(s.position, {.25, .5, 0});
+  expectVector(s.normal, {0, 0, 1});
+  const double clear = .96 * .96; // transmittance of two faces of index 1.5
+  expectVector(s.albedo, {.8 * clear, .4 * clear, .2 * clear});
+}
+
+TEST_F(Guides, LookThroughWhatIsTransparent) {
+  const auto sheet = [](double transparency) {
+    return Shader("VRML97").set("transparency", {transparency});
+  };
+  placeAt(1, namedSquare(1, sheet(.75)));
+  placeAt(0, namedSquare(2, painted()));
+  for (const int transport : {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH}) {
+    rtQuality(RT_TRANSPORT, transport);
+    const Surface s = see();
+    EXPECT_EQ(s.name, 2);
+    EXPECT_NEAR(s.depth, 20, 1e-4);
+    expectVector(s.albedo, {.6, .3, .15});
+  }
+  placeAt(3, namedSquare(3, sheet(.25)));
+  for (const int transport : {RT_TRANSPORT_DIRECT, RT_TRANSPORT_PATH}) {
+    rtQuality(RT_TRANSPORT, transport);
+    EXPECT_EQ(see().name, 3) << "most light comes from the sheet itself";
+  }
+}
+
+TEST_F(Guides, StayAtSurfacesThatReflectLittle) {
+  placeAt(0, namedSquare(1, Shader("Plastic")));
+  placeAt(30, namedSquare(2, painted()), true);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  const Surface s = see();
+  EXPECT_EQ(s.name, 1);
+  EXPECT_NEAR(s.depth, 20, 1e-4);
+}
+
+TEST_F(Guides, EndAfterEightSurfaces) {
+  const RTid plane = namedSquare(1, mirror());
+  placeAt(0, plane);
+  placeAt(40, plane, true);
+  const Surface s = see();
+  EXPECT_NEAR(s.depth, 20 + 8 * 40, 1e-2);
+  EXPECT_NEAR(s.albedo.x, std::pow(.5, 9), 1e-6) << "eight mirrors and the ninth's own";
+}
+
+TEST_F(Guides, ImagesMoveAsTheirShapes) {
+  placeAt(0, namedSquare(1, mirror()));
+  const RTid target = placeAt(30, namedSquare(2, painted()), true);
+  EXPECT_TRUE(std::isnan(see().motion.x)) << "nothing was there before";
+  expectVector(see().motion, {0, 0, 0}, 0);
+  moveTo(target, .25, -.125, 30.5, 180);
+  expectVector(see().motion, {.25, -.125, -.5});
+  expectVector(see().motion, {0, 0, 0}, 0);
+}
+
+TEST_F(Guides, ImagesMoveWithTheirMirrors) {
+  const RTid plane = placeAt(0, namedSquare(1, mirror()));
+  placeAt(30, namedSquare(2, painted()), true);
+  see();
+  moveTo(plane, .5, 0, .125); // along its plane, and by 1/8 across it
+  expectVector(see().motion, {0, 0, .25});
+  moveTo(plane, 0, 0, 0);
+  see();
+  const double angle = 2 * pi / 180;
+  moveTo(plane, 0, 0, 0, 0, 2);
+  see();
+  moveTo(plane, 0, 0, 0);
+  const Surface s = see();
+  // The image of the same point in the mirror as it was
+  const Vec n{std::sin(angle), 0, std::cos(angle)}, x{s.position.x, s.position.y, 30};
+  const double along = n.x * x.x + n.z * x.z;
+  const Vec before{x.x - 2 * n.x * along, x.y, x.z - 2 * n.z * along};
+  expectVector(s.motion,
+               {s.position.x - before.x, s.position.y - before.y, s.position.z - before.z}, 1e-4);
+  EXPECT_GT(std::fabs(s.motion.x), 1);
+}
+
+TEST_F(Guides, ImagesInANewMirrorAreNew) {
+  placeAt(30, namedSquare(2, painted()), true);
+  see();
+  placeAt(0, namedSquare(1, mirror()));
+  EXPECT_TRUE(std::isnan(see().motion.y));
+  expectVector(see().motion, {0, 0, 0}, 0);
+}
+
+TEST_F(Guides, AMirrorBallThatTurnsLeavesItsImagesWhereTheyAre) {
+  rtBindShader(mirror());
+  const RTid ball = rtBeginObject(0);
+  rtSphere(1);
+  rtEndObject();
+  rtBindShader(0);
+  const RTid placed = place(ball);
+  placeAt(30, namedSquare(2, painted(), 1000), true);
+  see(0, 0);
+  moveTo(placed, 0, 0, 0, 0, 30);
+  expectVector(see(0, 0).motion, {0, 0, 0}, 1e-4);
+}
+
+TEST_F(Guides, MotionSeenThroughGlassIsThatOfTheShape) {
+  const RTid face = namedSquare(1, Shader("Glass"));
+  const RTid pane = rtBeginObject(0);
+  placeAt(2, face);
+  placeAt(1, face, true);
+  rtEndObject();
+  const RTid placed = place(pane), target = placeAt(0, namedSquare(2, painted()));
+  see();
+  moveTo(target, .5, .25, -.125);
+  moveTo(placed, 1, 1, .5);
+  expectVector(see().motion, {.5, .25, -.125});
+}
+
+// Pictures of a scene with mirrors, glass and light of all kinds.
+class GuidedPictures : public testing::Test {
+ protected:
+  static constexpr int width = 30, height = 24;
+
+  struct Look {
+    int threads = 1, transport = RT_TRANSPORT_PATH, samples = 16, follow = 0, frames = 2;
+    uint32_t channels = RT_RGBA;
+    bool progressive = false;
+  };
+  // Returns the channels of the last of some frames, one after the other, and its statistics.
+  static std::vector<float> picture(const Look& look, uint32_t wanted, RTstats* stats = nullptr) {
+    const RTcontext context = rtNewContext(("threads=" + std::to_string(look.threads)).c_str());
+    std::vector<float> all;
+    if (!context) {
+      ADD_FAILURE() << (rtGetError(), rtGetErrorMessage());
+      return all;
+    }
+    draw(look);
+    for (uint32_t channel = 1; channel <= wanted; channel <<= 1) {
+      if (!(wanted & channel)) continue;
+      const size_t components =
+          channel == RT_RGBA ? 4
+          : channel & (RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR)
+              ? 3
+              : 1;
+      std::vector<float> plane(components * width * height);
+      rtReadPixels(channel, plane.data(), plane.size());
+      all.insert(all.end(), plane.begin(), plane.end());
+    }
+    if (stats) {
+      stats->size = sizeof *stats;
+      rtGetStats(stats);
+    }
+    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
+    rtDeleteContext(context);
+    return all;
+  }
+  static RTid square(RTid shader, float half) {
+    const RTid object = rtBeginObject(0);
+    rtBindShader(shader);
+    rtBegin(RT_QUADS);
+    rtNormal3f(0, 0, 1);
+    for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}})
+      rtVertex3f(c[0], c[1], 0);
+    rtEnd();
+    rtEndObject();
+    rtBindShader(0);
+    return object;
+  }
+  static RTid at(double x, double y, double z, RTid object, double turn = 0) {
+    rtPushMatrix();
+    rtTranslated(x, y, z);
+    rtRotated(turn, 1, 0, 0);
+    const RTid instance = rtInstantiateObject(object);
+    rtPopMatrix();
+    return instance;
+  }
+  static RTid ball(RTid shader, float radius) {
+    rtBindShader(shader);
+    const RTid object = rtBeginObject(0);
+    rtSphere(radius);
+    rtEndObject();
+    rtBindShader(0);
+    return object;
+  }
+  static void draw(const Look& look) {
+    rtLoadIdentity();
+    at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.8, .3, .2}), 4), -90);
+    at(0, 2.5, 0, square(Shader("Diffuse").set("emission", {9, 9, 8}), .3f), 90);
+    at(-1, 0, -1, square(Shader("Mirror"), .8f), 10);
+    at(.6, 0, 0, ball(Shader("Glass").set("abbe", {30}), .6f));
+    const RTid moving = at(-.6, -.6, .8, ball(Shader("VRML97").set("transparency", {.7}), .4f));
+    at(1.2, -.6, 1, square(Shader("VRML97").set("diffuseColor", {.2, .6, .3}), .4f), -30);
+    Shader lamp("VRML97DirectionalLight");
+    lamp.set("direction", {-.3, -1, -.4}).set("intensity", {.5});
+    rtUseLight(lamp);
+    rtPushMatrix();
+    rtLookAt(0, .5, 5, 0, 0, 0, 0, 1, 0);
+    rtPerspective(40);
+    rtPopMatrix();
+    rtFrameBuffer(width, height, look.channels);
+    rtQuality(RT_SAMPLES_PER_PIXEL, look.samples);
+    rtQuality(RT_TRANSPORT, look.transport);
+    rtQuality(RT_FOLLOW_IMAGES, look.follow);
+    rtQuality(RT_PROGRESSIVE, look.progressive);
+    for (int i = 0; i < look.frames; i++) {
+      const double m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -.6 + .1 * i, -.6, .8, 1};
+      rtInstanceMatrix(moving, m);
+      rtRender();
+    }
+  }
+  static void expectSame(const std::vector<float>& a, const std::vector<float>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(float)), 0);
+  }
+};
+
+TEST_F(GuidedPictures, HaveTheLightOfPicturesWithoutGuides) {
+  constexpr uint32_t light = RT_RGBA | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
+  for (const int transport :
+       {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
+    const Look plain{.transport = transport, .samples = 32, .channels = light | features};
+    Look guided = plain;
+    guided.follow = 1;
+    expectSame(picture(guided, light), picture(plain, light));
+    EXPECT_NE(picture(guided, features), picture(plain, features));
+  }
+}
+
+TEST_F(GuidedPictures, HaveTheSameBytesOnAnyNumberOfThreads) {
+  const Look one{.samples = 40, .follow = 1, .frames = 3, .channels = RT_RGBA | features};
+  const std::vector<float> expected = picture(one, one.channels);
+  for (const int threads : {2, 5}) {
+    Look more = one;
+    more.threads = threads;
+    expectSame(picture(more, one.channels), expected);
+    more.progressive = true;
+    expectSame(picture(more, one.channels), expected);
+  }
+}
+
+TEST_F(GuidedPictures, OfOneSampleDescribeTheFirstSample) {
+  constexpr uint32_t first = RT_DEPTH | RT_POSITION | RT_NAME | RT_MOTION;
+  const Look one{.samples = 1, .follow = 1, .channels = RT_RGBA | first};
+  Look many = one;
+  many.samples = 8;
+  expectSame(picture(many, first), picture(one, first));
+}
+
+TEST_F(GuidedPictures, WithoutLightFollowNone) {
+  for (const int follow : {0, 1})
+    for (const int transport :
+         {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
+      SCOPED_TRACE(transport);
+      const Look lit{.transport = transport, .follow = follow, .channels = RT_RGBA | features};
+      Look dark = lit;
+      dark.channels = features;
+      RTstats stats{};
+      expectSame(picture(dark, features, &stats), picture(lit, features));
+      EXPECT_EQ(stats.shadowRays, 0u);
+      EXPECT_EQ(stats.cameraRays, uint64_t(width * height * lit.samples));
+      EXPECT_EQ(stats.secondaryRays == 0, follow == 0);
+    }
+}
+
+} // namespace
+} // namespace numeric
