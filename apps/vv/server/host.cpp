@@ -42,9 +42,11 @@ std::string headerOf(lws* connection, lws_token_indexes token) {
   return text;
 }
 
+// Versions of the library differ in whether the answer begins with "=".
 std::string tokenOfQuery(lws* connection) {
   char buffer[maxTokenLength + 16];
-  const char* const value = lws_get_urlarg_by_name(connection, "token", buffer, int(sizeof buffer));
+  const char* value = lws_get_urlarg_by_name(connection, "token", buffer, int(sizeof buffer));
+  if (value && *value == '=') ++value;
   return value ? value : "";
 }
 

@@ -22,10 +22,7 @@ xvrml::LoadOptions ServedWorld::loadOptions() const {
 }
 
 void ServedWorld::openFirst() {
-  std::unique_ptr<xvrml::World> world;
-  try {
-    world = readWorld(options_.input, loadOptions());
-  } catch (const xvrml::LoadError& error) { throw Failure{exitInput, error.diagnostic.text()}; }
+  std::unique_ptr<xvrml::World> world = readWorld(options_.input, loadOptions());
   begin(std::move(world), "", {options_.render.width, options_.render.height});
 }
 

@@ -440,8 +440,13 @@ namespace vv {
 
 int runServer(const Options& options, const std::vector<std::string>& arguments) {
   for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
-  server::Server server(options, arguments);
-  return server.run();
+  try {
+    server::Server server(options, arguments);
+    return server.run();
+  } catch (const xvrml::LoadError& error) {
+    say(error.diagnostic.text());
+    return exitInput;
+  }
 }
 
 } // namespace vv

@@ -76,8 +76,8 @@ TEST(Guest, ExamineTurnsAroundTheWorld) {
             "Shape { geometry Box {} }");
   Guest guest(r.browser);
   guest.navigate({.turn = 1}, 1);
-  EXPECT_EQ(eyeOf(guest), "-10 0 0");
-  EXPECT_EQ(lookOf(guest), "1 0 0");
+  EXPECT_EQ(eyeOf(guest), "10 0 0");
+  EXPECT_EQ(lookOf(guest), "-1 0 0");
 }
 
 TEST(Guest, IsCarriedByItsViewpointUntilThatLeaves) {
