@@ -380,6 +380,18 @@ def test_saving_while_something_moves(serve):
     page.until(lambda p: len(page.pictures) > count + 5)
 
 
+def test_saving_can_be_given_up(serve):
+    page = serve(SPINNING, "--spp", 65536).join(*SIZE)
+    page.until(lambda p: p.facts["preview"])
+    page.send(type="save", format="png")
+    page.until_state(lambda s: "Escape gives up" in s["bottom"])
+    page.key("Escape")
+    page.until_state(lambda s: s["bottom"] == "the picture is not saved")
+    count = len(page.pictures)
+    page.until(lambda p: len(page.pictures) > count + 5)
+    assert page.of("saved") == []
+
+
 def test_the_command_gives_the_same_view(serve, vv):
     server = serve(SENSORS, "--spp", 2, "--shadows", "off")
     page = server.join(*SIZE)

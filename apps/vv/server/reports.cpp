@@ -42,7 +42,9 @@ void Reports::takeMessages(double now) {
 std::string Reports::bottomOf(const Page& page, double now) {
   Session& session = world_.session();
   if (!world_.loading().empty()) return fmt::format("loading {} ...", world_.loading());
-  if (page.isSaving) return "Rendering the picture of this instant ...";
+  if (page.isSaving)
+    return fmt::format("Rendering the picture of this instant: {:.0f} samples; Escape gives up",
+                       session.capturedSamples());
   const auto notice = notices_.find(page.view);
   if (notice != notices_.end() && now < notice->second.ends) return notice->second.text;
   if (const xvrml::ScriptCounts counts = session.browser().scripts(); counts.waiting > 0)

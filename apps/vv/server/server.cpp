@@ -61,9 +61,9 @@ class Server {
   int run() {
     world_.openFirst();
     host_ = std::make_unique<Host>(hostOptions_, [this] { wake(); });
+    deferInterrupt(true, interruptSeconds);
     writeOut(urlOf(options_.serve, hostOptions_, host_->port()) + "\n");
     std::fflush(stdout);
-    deferInterrupt(true, interruptSeconds);
     while (!interrupted()) {
       wait();
       takeHostEvents();
@@ -152,6 +152,7 @@ class Server {
   void leave(uint64_t number) {
     const Page* const page = pages_.find(number);
     if (!page) return;
+    world_.session().giveUpCapture(number);
     if (page->role == Page::Role::leader)
       world_.session().handleFor(0, leaving());
     else if (page->role == Page::Role::own)
@@ -211,6 +212,8 @@ class Server {
   }
 
   void input(uint64_t number, const Page& page, const InputEvent& event) {
+    const bool escapes = event.kind == InputEvent::Kind::down && event.text == "Escape";
+    if (page.isSaving && escapes) return world_.session().giveUpCapture(number);
     if (page.role == Page::Role::follower) return;
     if (event.kind == InputEvent::Kind::press || event.kind == InputEvent::Kind::release)
       clicked_ = number;
@@ -350,18 +353,19 @@ class Server {
     if (!page || page->isSaving) return;
     page->isSaving = true;
     const std::string suffix = format == Message::Format::exr ? "exr" : "png";
-    world_.session().capture(page->view, [this, number, suffix](const picture::Picture* picture) {
-      if (Page* const saver = pages_.find(number)) saver->isSaving = false;
-      reports_.hurry();
-      if (!picture) return notify(0, "the picture could not be rendered", 6);
-      std::string name = fileNamePart(
-          std::filesystem::path(world_.session().browser().world().path).stem().string());
-      name = fmt::format("{}-{}.{}", name.empty() ? "vv" : name, ++saved_, suffix);
-      auto wanted =
-          std::make_shared<picture::Picture>(wantedPart(*picture, options_.render.channels));
-      files_.post(
-          [this, number, name, wanted, suffix] { encodeFile(number, name, *wanted, suffix); });
-    });
+    world_.session().capture(
+        page->view, number, [this, number, suffix](const picture::Picture* picture) {
+          if (Page* const saver = pages_.find(number)) saver->isSaving = false;
+          reports_.hurry();
+          if (!picture) return notifyPage(number, "the picture is not saved", 6);
+          std::string name = fileNamePart(
+              std::filesystem::path(world_.session().browser().world().path).stem().string());
+          name = fmt::format("{}-{}.{}", name.empty() ? "vv" : name, ++saved_, suffix);
+          auto wanted =
+              std::make_shared<picture::Picture>(wantedPart(*picture, options_.render.channels));
+          files_.post(
+              [this, number, name, wanted, suffix] { encodeFile(number, name, *wanted, suffix); });
+        });
   }
 
   // [the thread for files]
@@ -380,6 +384,9 @@ class Server {
 
   // --- Reports ---
 
+  void notifyPage(uint64_t number, const std::string& text, double seconds) {
+    if (const Page* const page = pages_.find(number)) notify(page->view, text, seconds);
+  }
   void notify(uint32_t view, const std::string& text, double seconds) {
     reports_.notify(view, text, now() + seconds);
   }

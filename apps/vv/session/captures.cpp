@@ -1,15 +1,32 @@
 #include "session/captures.h"
 
 #include <utility>
+#include <vector>
 
 namespace vv {
 
 void Captures::want(Request request) { waiting_.push_back(std::move(request)); }
 
-void Captures::adopt(uint64_t number, Done done) {
+void Captures::adopt(uint64_t asker, uint64_t number, Done done) {
   inFlight_ = true;
+  asker_ = asker;
+  isOwn_ = false;
   number_ = number;
   done_ = std::move(done);
+  samples_ = 0;
+}
+
+void Captures::giveUp(uint64_t asker) {
+  std::vector<Done> dropped;
+  std::erase_if(waiting_, [&](Request& request) {
+    if (request.asker != asker) return false;
+    dropped.push_back(std::move(request.done));
+    return true;
+  });
+  for (const Done& done : dropped) done(nullptr);
+  if (!inFlight_ || asker_ != asker) return;
+  if (isOwn_) shared_.cancel();
+  end(nullptr);
 }
 
 void Captures::advance() {
@@ -23,10 +40,12 @@ void Captures::advance() {
   next.frame.viewer = ownViewer;
   next.frame.purpose = picture::LiveFrame::Purpose::still;
   shared_.live.change([&](picture::RenderSettings& s) { s.headlight = next.headlight; });
-  adopt(shared_.start(next.frame, false), std::move(next.done));
+  adopt(next.asker, shared_.start(next.frame, false), std::move(next.done));
+  isOwn_ = true;
 }
 
 bool Captures::note(const picture::LivePicture& picture, uint32_t viewer) {
+  if (inFlight_ && picture.number == number_) samples_ = picture.samples;
   if (inFlight_ && picture.number == number_ && picture.ended) {
     picture::Picture copied;
     uint64_t number = 0;

@@ -16,6 +16,7 @@ class Captures {
   // Receives the picture with the channels of the settings; null: it could not be rendered.
   using Done = std::function<void(const picture::Picture* picture)>;
   struct Request {
+    uint64_t asker;           // for giveUp()
     picture::LiveFrame frame; // its viewer is set by Captures
     xvrml::MapOptions::Headlight headlight;
     Done done;
@@ -25,8 +26,10 @@ class Captures {
   explicit Captures(SharedRenderer& shared) : shared_(shared) {}
 
   void want(Request request);
-  // Takes the still frame that is in flight as the capture. number: the one of that frame.
-  void adopt(uint64_t number, Done done);
+  // Takes the still frame that is in flight, and has this number, as the capture.
+  void adopt(uint64_t asker, uint64_t number, Done done);
+  // Gives up what somebody has asked for: there will be no picture.
+  void giveUp(uint64_t asker);
   // A capture has not read the world yet, so the world must not change.
   bool isWaiting() const { return !waiting_.empty() && !inFlight_; }
   // A capture is waiting or in flight, so no other frame may be started.
@@ -37,6 +40,8 @@ class Captures {
   bool note(const picture::LivePicture& picture, uint32_t viewer);
   // Notes that the renderer is idle and has no more pictures.
   void noteIdle();
+  // Samples of the capture in flight so far, mean over the pixels.
+  double samples() const { return samples_; }
 
  private:
   void end(const picture::Picture* picture);
@@ -47,8 +52,12 @@ class Captures {
   SharedRenderer& shared_;
   std::deque<Request> waiting_;
   bool inFlight_ = false;
-  uint64_t number_ = 0; // of the frame in flight
-  Done done_;           // for the capture in flight
+  // The capture in flight: who wants it, whether its frame is nobody else's, the frame's number.
+  uint64_t asker_ = 0;
+  bool isOwn_ = false;
+  uint64_t number_ = 0;
+  Done done_;
+  double samples_ = 0;
 };
 
 } // namespace vv

@@ -382,7 +382,7 @@ const PictureLoop& Session::picturesOf(uint32_t viewer) const {
   return guest ? guest->pictures : pictures_;
 }
 
-void Session::capture(uint32_t viewer, Captures::Done done) {
+void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
   Guest* const guest = guests_.find(viewer);
   const Pilot& pilot = guest ? guest->pilot : pilot_;
   const Fit& fit = guest ? guest->fit : fit_;
@@ -394,10 +394,10 @@ void Session::capture(uint32_t viewer, Captures::Done done) {
       if (pictures.copyStill(picture)) return done(&picture);
     } else if (shared_.viewer() == (guest ? viewer : 0) && !pictures.isInterrupted() &&
                !shared_.isIdle()) {
-      return captures_.adopt(pictures.number(), std::move(done));
+      return captures_.adopt(asker, pictures.number(), std::move(done));
     }
   }
-  captures_.want({pictures.stillOf(pilot), pictures.headlightOf(pilot), std::move(done)});
+  captures_.want({asker, pictures.stillOf(pilot), pictures.headlightOf(pilot), std::move(done)});
 }
 
 bool Session::isQuiet() const {

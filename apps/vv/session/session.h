@@ -112,8 +112,11 @@ class Session {
   void handleFor(uint32_t viewer, const InputEvent& event);
   // Returns the pilot of a guest; for another number that of viewer 0.
   const Pilot& pilotOf(uint32_t viewer) const;
-  // Renders the true picture of this instant for a viewer, with all samples.
-  void capture(uint32_t viewer, Captures::Done done);
+  // Renders the true picture of this instant for a viewer, with all samples. asker: any number, by
+  // which it can be given up.
+  void capture(uint32_t viewer, uint64_t asker, Captures::Done done);
+  void giveUpCapture(uint64_t asker) { captures_.giveUp(asker); }
+  double capturedSamples() const { return captures_.samples(); } // so far, mean over the pixels
   // Tells whether nothing moves or is to be done, so that steps may come more slowly.
   bool isQuiet() const;
 

@@ -310,7 +310,7 @@ class Page {
       "?": () => this.showHelp(),
       F11: () => this.toggleFullScreen(),
       Q: () => {}, // only the terminal ends vv
-      Escape: () => {},
+      Escape: () => this.giveUp(),
     };
     new Keys(own, (name) => this.known.has(name), send);
     $("own").onclick = () => send({ type: this.state.role === "own" ? "follow" : "own" });
@@ -426,6 +426,13 @@ class Page {
 
   save(format) {
     this.send({ type: "save", format });
+  }
+
+  // Gives up saving, which takes a while in worlds with much light.
+  giveUp() {
+    const key = { key: "Escape", shift: false, ctrl: false, alt: false };
+    this.send({ type: "down", ...key });
+    this.send({ type: "up", ...key });
   }
 
   nextLevel() {
