@@ -3,6 +3,7 @@
 #include <exception>
 #include <new>
 
+#include "control/unattended.h"
 #include "enough_stack.h"
 #include "headless.h"
 #include "inputs.h"
@@ -46,6 +47,7 @@ int run(int argc, char** argv) {
   }
   if (options.opensWindow()) {
     vv::checkInputs(options);
+    if (options.noWindow) return vv::control::runUnattended(options);
     return vv::runWindow(options, {argv + 1, argv + argc});
   }
   return vv::runHeadless(options, quoted(argc, argv));

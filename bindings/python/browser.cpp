@@ -154,6 +154,8 @@ template <class Kind> Kind named(const char* what, const std::string& name,
   throw py::value_error(fmt::format("{}: one of {} expected, not {}", what, known, name));
 }
 
+} // namespace
+
 Navigation navigationOf(const std::string& name) {
   return named<Navigation>("navigation", name,
                            {{"none", Navigation::none},
@@ -179,6 +181,8 @@ Key keyOf(const std::string& name) {
                      {"shift", Key::shift},
                      {"alt", Key::alt}});
 }
+
+namespace {
 
 struct NavigateArguments {
   double dt = 0;

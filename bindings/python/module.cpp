@@ -171,6 +171,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineFilm(module);
   defineWorld(module);
   defineBrowser(module);
+  defineViewer(module);
   defineScripts(module);
   defineShapes(module);
   defineRt(module);

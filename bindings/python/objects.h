@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <pybind11/pybind11.h>
 
 #include "gil.h"
+#include "libpicture/live.h"
 #include "libpicture/renderer.h"
 #include "xvrml/browser.h"
 #include "xvrml/world.h"
@@ -30,10 +32,14 @@ struct WorldLocks {
   WorldObject* callbacks = nullptr; // delivers the recorded events to callbacks; null: nobody does
   WorldMutex drawing;               // held while a picture is rendered, and for every change
   WorldMutex graph;                 // held for every change, and while fields are read
+  // Renders for the world's views (viewer.h); null: no view is open. Its thread reads the world
+  // while its state is `mapping`, and whoever takes `drawing` waits for the end of that.
+  std::unique_ptr<picture::LiveRenderer> live;
 };
 using LocksPtr = std::shared_ptr<WorldLocks>;
 
 using WorldPtr = std::shared_ptr<WorldObject>;
+struct Viewers;
 
 // A world. It is static until its time or its events are first used; from then on a Browser runs
 // it. A WorldObject may also stand for nodes that are not in a world yet ("loose"). It ends with
@@ -47,6 +53,8 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
   // Fields that are sent as events when the world begins to run.
   std::vector<std::pair<xvrml::NodeRef, std::string>> initialEvents;
   LocksPtr locks = std::make_shared<WorldLocks>();
+  std::shared_ptr<Viewers> viewers; // the open views of the world (viewer.h); null: none
+  uint64_t edits = 0;               // grows whenever Python may have changed the world
 
   virtual ~WorldObject();
   virtual xvrml::World& graph(); // raises ValueError for loose nodes
@@ -72,6 +80,9 @@ struct WorldObject : std::enable_shared_from_this<WorldObject> {
     std::unique_lock<WorldMutex> drawing, graph;
   };
   Changing lock();
+  // Does the same, but returns nothing instead of waiting for another thread or for a view's frame
+  // to have read the world.
+  std::optional<Changing> tryLock();
   std::unique_lock<WorldMutex> lockGraph();
   std::unique_lock<WorldMutex> lockDrawing();
   // True while this thread renders a picture; progress callbacks must not change the world then.
@@ -174,6 +185,14 @@ void raiseOsError(const std::string& failure);
 void interruptible(const std::function<void(picture::ProgressCallback watch)>& work,
                    const py::object& progress = py::none());
 
+// Convert the names of navigation types and keys; raise ValueError for an unknown name.
+xvrml::Navigation navigationOf(const std::string& name);
+const char* navigationName(xvrml::Navigation kind);
+xvrml::Key keyOf(const std::string& name);
+
+// Tells the views of a world that the world has changed. Never raises. (viewer.cpp)
+void wakeViews(Viewers& viewers) noexcept;
+
 // --- For the script engine of Python (plugins/script/python), see script.cpp ---
 //
 // Registers the locks of the world of a browser that is being created or runs; null: the browser
@@ -194,6 +213,7 @@ void defineNode(py::module_& module);
 void defineWorld(py::module_& module);
 void defineRender(py::object worldClass);
 void defineBrowser(py::module_& module);
+void defineViewer(py::module_& module);
 void definePicture(py::module_& module);
 void defineFilm(py::module_& module);
 void defineShapes(py::module_& module);

@@ -30,27 +30,6 @@ void measureAlongAxis(const picture::View::Pinhole& camera, picture::Picture& pi
   }
 }
 
-// Returns the index of the viewpoint with this name or number.
-size_t viewpointIndex(const std::vector<ViewpointInfo>& list, const py::object& wanted) {
-  if (py::isinstance<py::int_>(wanted) && !py::isinstance<py::bool_>(wanted)) {
-    int overflow = 0;
-    long long index = PyLong_AsLongLongAndOverflow(wanted.ptr(), &overflow);
-    if (index < 0) index += static_cast<long long>(list.size());
-    if (overflow || index < 0 || index >= static_cast<long long>(list.size()))
-      throw py::index_error(fmt::format("viewpoint: the world has {}", list.size()));
-    return size_t(index);
-  }
-  if (!py::isinstance<py::str>(wanted))
-    throw py::type_error("viewpoint: a name, a number or None expected");
-  const std::string name = fromText(wanted);
-  const int index = picture::findViewpoint(list, name);
-  if (index >= 0) return size_t(index);
-  std::vector<std::string> known;
-  for (const ViewpointInfo& v : list) known.push_back(v.name.empty() ? v.description : v.name);
-  throw py::key_error(
-      fmt::format("viewpoint: the world has no {}{}", name, didYouMean(name, known)));
-}
-
 py::dict statsOf(const World& world, const picture::RenderResult& result) {
   const RTstats& s = result.stats;
   py::dict stats;
@@ -205,20 +184,19 @@ void defineRender(py::object worldClass) {
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
   defineMethod(
       world, "render", render,
-      parameterList(parameter("size", &A::size), parameter("spp", &A::spp),
-                    parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
-                    parameter("fit", &A::fit), parameter("fov", &A::fov),
-                    qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
-                    qualityParameter<Switch>(RT_SHADOWS), parameter("colour", &A::colour),
-                    parameter("headlight", &A::headlight),
-                    qualityParameter<long long>(RT_MAX_DEPTH), parameter("channels", &A::channels),
-                    qualityParameter<std::string>(RT_TRANSPORT),
-                    qualityParameter<double>(RT_TARGET_ERROR),
-                    qualityParameter<double>(RT_TIME_LIMIT), qualityParameter<double>(RT_CLAMP),
-                    parameter("cluster", &A::cluster), parameter("progress", &A::progress),
-                    parameter("multiply_textures", &A::multiplyTextures), parameter("up", &A::up),
-                    parameter("background", &A::background), parameter("isa", &A::isa),
-                    qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
+      parameterList(
+          parameter("size", &A::size), parameter("spp", &A::spp),
+          parameter("viewpoint", &A::viewpoint), parameter("camera", &A::camera),
+          parameter("fit", &A::fit), parameter("fov", &A::fov),
+          qualityParameter<long long>(RT_SEED), parameter("threads", &A::threads),
+          qualityParameter<Switch>(RT_SHADOWS), parameter("colour", &A::colour),
+          parameter("headlight", &A::headlight), qualityParameter<long long>(RT_MAX_DEPTH),
+          parameter("channels", &A::channels), qualityParameter<std::string>(RT_TRANSPORT),
+          qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
+          qualityParameter<double>(RT_CLAMP), parameter("cluster", &A::cluster),
+          parameter("progress", &A::progress), parameter("multiply_textures", &A::multiplyTextures),
+          parameter("up", &A::up), parameter("background", &A::background),
+          parameter("isa", &A::isa), qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
       parameterList(),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "

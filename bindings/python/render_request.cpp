@@ -309,6 +309,26 @@ RenderRequest requestOf(const RenderArguments& given) {
   return request;
 }
 
+size_t viewpointIndex(const std::vector<ViewpointInfo>& list, const py::object& wanted) {
+  if (py::isinstance<py::int_>(wanted) && !py::isinstance<py::bool_>(wanted)) {
+    int overflow = 0;
+    long long index = PyLong_AsLongLongAndOverflow(wanted.ptr(), &overflow);
+    if (index < 0) index += static_cast<long long>(list.size());
+    if (overflow || index < 0 || index >= static_cast<long long>(list.size()))
+      throw py::index_error(fmt::format("viewpoint: the world has {}", list.size()));
+    return size_t(index);
+  }
+  if (!py::isinstance<py::str>(wanted))
+    throw py::type_error("viewpoint: a name, a number or None expected");
+  const std::string name = fromText(wanted);
+  const int index = picture::findViewpoint(list, name);
+  if (index >= 0) return size_t(index);
+  std::vector<std::string> known;
+  for (const ViewpointInfo& v : list) known.push_back(v.name.empty() ? v.description : v.name);
+  throw py::key_error(
+      fmt::format("viewpoint: the world has no {}{}", name, didYouMean(name, known)));
+}
+
 uint32_t channelsOf(const py::object& list) {
   uint32_t bits = RT_RGBA;
   const bool one = py::isinstance<py::str>(list);

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <pybind11/pybind11.h>
 
@@ -44,3 +45,7 @@ std::string checkedIsa(const std::string& isa);
 
 // Raises TypeError, ValueError or IndexError for the first argument that is wrong.
 RenderRequest requestOf(const RenderArguments& given);
+
+// Returns the index of the viewpoint with this name, description or number. Raises TypeError,
+// KeyError or IndexError.
+size_t viewpointIndex(const std::vector<xvrml::ViewpointInfo>& list, const py::object& wanted);

@@ -173,7 +173,8 @@ void setName(const WorldPtr& self, const NodeObject& node, const std::string& na
   const bool good = !name.empty() && std::ranges::none_of(name, cannotBeIn) &&
                     std::string_view("+-0123456789").find(name[0]) == std::string_view::npos &&
                     std::ranges::find(keywords, name) == std::end(keywords);
-  if (!good) throw py::value_error(
+  if (!good)
+    throw py::value_error(
         fmt::format("name: {} cannot be a DEF name", std::string(py::repr(py::str(name)))));
   if (const auto found = names.find(name); found != names.end() && found->second != node.node)
     throw py::value_error(fmt::format("name: the world has a node called {}", name));
@@ -297,6 +298,7 @@ void defineWorld(py::module_& module) {
           },
           "The world's own clock at time 0, in seconds since 1970. Assign epoch + time to a "
           "startTime to start something now.")
+      .def_property_readonly("_edits", [](const WorldPtr& self) { return self->edits; })
       .def("__getitem__",
            [](const WorldPtr& self, const py::object& name) {
              if (!py::isinstance<py::str>(name))

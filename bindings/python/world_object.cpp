@@ -1,7 +1,9 @@
 // world_object.cpp: Implements WorldObject: starting a world, the locks for its changes, and
 // callbacks after events.
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 #include <dlfcn.h>
@@ -19,6 +21,13 @@ struct Count {
   explicit Count(int& n) : number(n) { ++number; }
   ~Count() { --number; }
 };
+
+// Waits until the views' frame has read the world. The caller holds `drawing`, so that no other
+// frame begins. [GIL not held]
+void waitForReading(const WorldLocks& locks) {
+  while (locks.live && locks.live->state() == picture::LiveRenderer::State::mapping)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
 
 // Adds the folder of this module to the script engines' path: a wheel contains the engine for
 // Scripts in Python there, so that programs without Python do not find it.
@@ -39,6 +48,7 @@ WorldObject::~WorldObject() {
   const Browser* ending = running.get();
   if (locks->callbacks == this) locks->callbacks = nullptr;
   dropped_.clear();
+  if (ending) locks->live.reset();
   renderer_.reset();
   running.reset(); // shuts down the Scripts
   if (ending) scriptsLock(ending, nullptr);
@@ -82,6 +92,7 @@ void WorldObject::change(const std::function<void()>& work) {
   }
   if (failure) std::rethrow_exception(failure);
   WorldObject* own = locks->callbacks; // a Script's nodes may belong to a world of this module
+  if (own && own->viewers) wakeViews(*own->viewers);
   if (own && depth_ == 0 && own->depth_ == 0 && !own->delivering_) own->deliver();
 }
 
@@ -90,11 +101,13 @@ std::shared_ptr<picture::Renderer> WorldObject::renderer(const picture::RenderSe
   if (depth_ > 0)
     throw picture::RenderError("a Script cannot render: the events are still under way");
   if (!running) return std::make_shared<picture::Renderer>(graph(), settings, std::move(watch));
-  if (renderer_ && rendererSettings_ == settings) {
+  if (renderer_ && !locks->live && rendererSettings_ == settings) {
     renderer_->setProgressCallback(std::move(watch));
     return renderer_;
   }
-  renderer_.reset(); // only one renderer per browser: it consumes the changes
+  // Only one renderer per browser: it consumes the changes. The views make another one afterwards.
+  renderer_.reset();
+  locks->live.reset();
   renderer_ = std::make_shared<picture::Renderer>(*running, settings, std::move(watch));
   rendererSettings_ = settings;
   return renderer_;
@@ -110,12 +123,25 @@ WorldObject::Changing WorldObject::lock() {
   {
     const ReleaseGil release;
     locked.drawing = std::unique_lock(locks->drawing);
+    waitForReading(*locks);
     locked.graph = std::unique_lock(locks->graph);
     destroyDropped();
   }
   if (isRenderingHere)
     throw py::value_error("the world cannot be changed while a picture of it is made");
   if (const char* why = frozen()) throw py::value_error(why);
+  ++edits;
+  return locked;
+}
+
+std::optional<WorldObject::Changing> WorldObject::tryLock() {
+  Changing locked;
+  locked.drawing = std::unique_lock(locks->drawing, std::try_to_lock);
+  if (!locked.drawing) return {};
+  if (locks->live && locks->live->state() == picture::LiveRenderer::State::mapping) return {};
+  locked.graph = std::unique_lock(locks->graph, std::try_to_lock);
+  if (!locked.graph || isRenderingHere) return {};
+  destroyDropped();
   return locked;
 }
 
@@ -126,7 +152,9 @@ std::unique_lock<WorldMutex> WorldObject::lockGraph() {
 
 std::unique_lock<WorldMutex> WorldObject::lockDrawing() {
   const ReleaseGil release;
-  return std::unique_lock(locks->drawing);
+  std::unique_lock drawing(locks->drawing);
+  waitForReading(*locks);
+  return drawing;
 }
 
 uint64_t WorldObject::listen(const NodeRef& node, const std::string& event, py::function callback) {

@@ -62,7 +62,7 @@ void matchGroups(const std::vector<T>& a, const std::vector<T>& b, const Key& ke
 
 } // namespace
 
-void History::forget() {
+void SceneHistory::forget() {
   instances_.clear();
   newInstances_.clear();
   newObjects_.clear();
@@ -72,7 +72,7 @@ void History::forget() {
 
 // The channel may be asked for by the same commit that moves things. So its settings, which stand
 // at its end, are read before anything is changed.
-void History::begin(const Commit& commit) {
+void SceneHistory::begin(const Commit& commit) {
   if (std::exchange(framed_, false)) {
     forget();
     beginning_ = false;
@@ -82,24 +82,24 @@ void History::begin(const Commit& commit) {
   if (!watches_) forget();
 }
 
-void History::changeInstance(uint32_t id, const Instance& before) {
+void SceneHistory::changeInstance(uint32_t id, const Instance& before) {
   if (!beginning_ && !newInstances_.contains(id)) instances_.try_emplace(id, before);
 }
 
-void History::addInstance(uint32_t id) {
+void SceneHistory::addInstance(uint32_t id) {
   if (!beginning_) newInstances_.insert(id);
 }
 
-void History::changeObject(uint32_t id, Object& before) {
+void SceneHistory::changeObject(uint32_t id, Object& before) {
   if (!beginning_ && !newObjects_.contains(id) && !objects_.contains(id))
     objects_[id].geometries = std::move(before.geometries);
 }
 
-void History::addObject(uint32_t id) {
+void SceneHistory::addObject(uint32_t id) {
   if (!beginning_) newObjects_.insert(id);
 }
 
-void History::finish(const Scene& scene, const Commit& commit) {
+void SceneHistory::finish(const Scene& scene, const Commit& commit) {
   framed_ = commit.edits.render;
   if (objects_.empty()) return;
   matchInstances(scene);
@@ -110,7 +110,7 @@ void History::finish(const Scene& scene, const Commit& commit) {
   }
 }
 
-void History::matchInstances(const Scene& scene) {
+void SceneHistory::matchInstances(const Scene& scene) {
   struct Child {
     uint32_t parent, object, name, id;
     auto operator<=>(const Child&) const = default;
@@ -136,7 +136,7 @@ void History::matchInstances(const Scene& scene) {
       [&](const Child& was, const Child& is) { replaced_[is.id] = was.id; });
 }
 
-void History::matchGeometries(Past& past, const std::vector<Geometry>& now) {
+void SceneHistory::matchGeometries(Past& past, const std::vector<Geometry>& now) {
   struct Named {
     uint32_t name, index;
     auto operator<=>(const Named&) const = default;
@@ -156,13 +156,13 @@ void History::matchGeometries(Past& past, const std::vector<Geometry>& now) {
       });
 }
 
-const Instance* History::before(uint32_t instance) const {
+const Instance* SceneHistory::before(uint32_t instance) const {
   const auto replaced = replaced_.find(instance);
   const auto found = instances_.find(replaced == replaced_.end() ? instance : replaced->second);
   return found != instances_.end() && found->second.visible ? &found->second : nullptr;
 }
 
-const Geometry* History::before(uint32_t object, size_t geometry) const {
+const Geometry* SceneHistory::before(uint32_t object, size_t geometry) const {
   const auto found = objects_.find(object);
   return found != objects_.end() && geometry < found->second.matches.size()
              ? found->second.matches[geometry]

@@ -14,7 +14,7 @@
 
 namespace openrt {
 
-class History {
+class SceneHistory {
  public:
   // Scene::apply() calls these. Between begin() and finish(), if watches(), it tells what it is
   // about to change.

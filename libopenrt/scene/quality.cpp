@@ -78,6 +78,14 @@ constexpr QualitySetting table[] = {
       "glass show"},
      get<&Frame::followImages>,
      set<&Frame::followImages>},
+    {{size, RT_JITTER, "jitter", 0, 0, 1, 0, 0, "off on",
+      "whether one sample per pixel lies anywhere in its pixel instead of in the middle"},
+     get<&Frame::jitter>,
+     set<&Frame::jitter>},
+    {{size, RT_LIGHT_STRIDE, "light_stride", 0, 1, 4, 1, 0, nullptr,
+      "pixels each way of the blocks in which one pixel gets light"},
+     get<&Frame::lightStride>,
+     set<&Frame::lightStride>},
 };
 
 } // namespace

@@ -54,7 +54,7 @@ std::map<ArrayId, ArrayPtr> Scene::arrays() const {
   return alive;
 }
 
-SceneChanges Scene::apply(const Commit& commit, History* history) {
+SceneChanges Scene::apply(const Commit& commit, SceneHistory* history) {
   if (history) history->begin(commit);
   history_ = history && history->watches() ? history : nullptr;
   // Only now and then, so that a commit costs what it changes.

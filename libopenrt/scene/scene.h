@@ -15,7 +15,7 @@
 
 namespace openrt {
 
-class History;
+class SceneHistory;
 
 // A shader parameter with its own value for every vertex or primitive of a geometry. Each value has
 // as many floats as its type.
@@ -100,7 +100,7 @@ class Scene {
  public:
   // Applies a commit. Edits that name unknown ids are ignored; the front end and the reader of
   // recordings check them before. history: gets what the commit changes; may be null.
-  SceneChanges apply(const Commit& commit, History* history = nullptr);
+  SceneChanges apply(const Commit& commit, SceneHistory* history = nullptr);
 
   std::map<uint32_t, TextureImage> textures;
   std::map<uint32_t, ShaderClassName> classes;
@@ -132,7 +132,7 @@ class Scene {
   size_t arraysSwept_ = 0; // size of arrays_ after the last sweep
   uint64_t version_ = 0;
   std::map<ArrayId, ArrayPtr> commitArrays_; // arrays of the commit being applied
-  History* history_ = nullptr;               // set while a commit is applied that is to be watched
+  SceneHistory* history_ = nullptr;          // set while a commit is applied that is to be watched
   std::map<uint32_t, std::vector<uint32_t>> children_;
   std::vector<uint32_t> unsorted_; // objects whose child lists are out of date
 };

@@ -12,10 +12,12 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-constexpr float mostFrames = 32;    // more are not worth the light that has changed since
-constexpr float recentFrames = 5;   // frames in Accumulated::recent
+constexpr float mostFrames = 16;     // older light is not worth what has changed since
+constexpr float recentFrames = 5;    // frames in Accumulated::recent
+constexpr float recentSpread = 2;    // standard deviations around it that are allowed
 constexpr float noiseMemory = 0.96f; // of Accumulated::noise from frame to frame
-constexpr float firmFrames = 4;     // from here on the variance over time is trusted
+constexpr float firmFrames = 4;      // from here on the variance over time is trusted
+constexpr float certainty = 3;       // a change counts from sqrt(3) standard deviations on
 
 // Up to four pixels of the frame before, and their weights, which sum up to 1 or are all 0.
 struct Taps {
@@ -37,18 +39,17 @@ struct Expected {
   Lanes3 normal;
 
   Mask matches(const Guides& guides, Index at) const {
-    const Mask near =
-        absolute(gather(guides.nearness.data(), at) - nearness) <= tolerance;
+    const Mask near = absolute(gather(guides.nearness.data(), at) - nearness) <= tolerance;
     const Mask same = gather(guides.name.data(), at) == name;
     return both(both(near, same), dot(gather(guides.normal, at), normal) > all(0.6f));
   }
 };
 
-Expected expectedAt(const Moment& now, const Moment& before, const Work& work, size_t i) {
+inline Expected expectedAt(const Moment& now, const Moment& before, const Work& work, size_t i) {
   const Guides& guides = now.guides;
   const Lanes nearness = load(work.pastNearness.data() + i);
-  const Lanes slope = absolute(load(guides.slopeX.data() + i)) +
-                      absolute(load(guides.slopeY.data() + i));
+  const Lanes slope =
+      absolute(load(guides.slopeX.data() + i)) + absolute(load(guides.slopeY.data() + i));
   const Lanes scale = before.projection.parallel ? all(1) : nearness;
   const float enlarged = float(now.layout.width) / float(std::max(1, before.layout.width));
   return {load(guides.name.data() + i), nearness,
@@ -57,7 +58,7 @@ Expected expectedAt(const Moment& now, const Moment& before, const Work& work, s
 }
 
 // Weights of the four pixels around (x, y), those of other surfaces left out.
-Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, Lanes y) {
+inline Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, Lanes y) {
   const Layout& layout = before.layout;
   const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
                            both(y > all(-1), y < all(float(layout.height))));
@@ -66,9 +67,9 @@ Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, Lanes y
   const Lanes partX = atX - left, partY = atY - top;
   const IndexTag tag;
   const auto stride = int32_t(layout.stride);
-  const Index corner = (hn::ConvertTo(tag, top) + hn::Set(tag, Layout::border)) *
-                           hn::Set(tag, stride) +
-                       hn::ConvertTo(tag, left) + hn::Set(tag, Layout::border);
+  const Index corner =
+      (hn::ConvertTo(tag, top) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
+      hn::ConvertTo(tag, left) + hn::Set(tag, Layout::border);
   const Lanes acrossX[2] = {all(1) - partX, partX}, acrossY[2] = {all(1) - partY, partY};
   Taps taps;
   Lanes sum = all(0);
@@ -86,7 +87,8 @@ Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, Lanes y
 
 // Gives pixels whose surface is in none of the four taps the nearest one that shows it, among the
 // nine around (x, y): at edges the random place of the sample decides which surface a pixel shows.
-void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes y, Taps& taps) {
+inline void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes y,
+                         Taps& taps) {
   const Layout& layout = before.layout;
   const Lanes half = all(0.5f);
   const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
@@ -97,9 +99,9 @@ void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes
               middleY = hn::Floor(where(missing, y) + half);
   const IndexTag tag;
   const auto stride = int32_t(layout.stride);
-  const Index middle = (hn::ConvertTo(tag, middleY) + hn::Set(tag, Layout::border)) *
-                           hn::Set(tag, stride) +
-                       hn::ConvertTo(tag, middleX) + hn::Set(tag, Layout::border);
+  const Index middle =
+      (hn::ConvertTo(tag, middleY) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
+      hn::ConvertTo(tag, middleX) + hn::Set(tag, Layout::border);
   Lanes least = all(1e30f);
   Index best = middle;
   for (int dy = -1; dy <= 1; dy++)
@@ -107,8 +109,8 @@ void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes
       const Index at = middle + hn::Set(tag, dy * stride + dx);
       const Lanes awayX = middleX + all(float(dx)) - x, awayY = middleY + all(float(dy)) - y;
       const Lanes distance = awayX * awayX + awayY * awayY;
-      const Mask better = both(both(missing, expected.matches(before.guides, at)),
-                               distance < least);
+      const Mask better =
+          both(both(missing, expected.matches(before.guides, at)), distance < least);
       least = select(better, distance, least);
       best = hn::IfThenElse(hn::RebindMask(tag, better), at, best);
     }
@@ -118,49 +120,111 @@ void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes
   taps.found = either(taps.found, met);
 }
 
-Lanes3 mixed(const Lanes3& old, const Lanes3& fresh, Lanes part) {
+inline Lanes3 mixed(const Lanes3& old, const Lanes3& fresh, Lanes part) {
   return old + (fresh - old) * part;
 }
-Lanes mixed(Lanes old, Lanes fresh, Lanes part) { return old + (fresh - old) * part; }
+inline Lanes mixed(Lanes old, Lanes fresh, Lanes part) { return old + (fresh - old) * part; }
 
 // Lowers the luma of samples beyond the limit, with their colour.
-Lanes3 limited(const Lanes3& light, Lanes limit) {
+inline Lanes3 limited(const Lanes3& light, Lanes limit) {
   const Lanes scale = where(light.x > all(0), limit / larger(light.x, all(1e-20f)));
   return light * select(light.x > limit, scale, all(1));
 }
 
-void accumulateRow(int y, const Moment& before, Moment& now, Work& work) {
+void recallRow(int y, const Moment& before, Moment& now, Work& work) {
   const Layout& layout = now.layout;
   const Accumulated& old = before.accumulated;
   Accumulated& fresh = now.accumulated;
   const size_t row = layout.row(y);
-  Lanes foundCount = all(0), frameCount = all(0);
-  const Lanes zero = all(0), one = all(1);
-  double found = 0, frames = 0;
+  double found = 0;
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
     const Lanes pastX = load(work.pastX.data() + i), pastY = load(work.pastY.data() + i);
-    const Mask some = load(now.guides.name.data() + i) >= zero;
     const Expected expected = expectedAt(now, before, work, i);
     Taps taps = tapsAround(before, expected, pastX, pastY);
     searchAround(before, expected, pastX, pastY, taps);
+    const Lanes3 light = taps.of(old.light);
+    const Lanes frames = taps.of(old.frames);
+    store(light, fresh.light, i);
+    store(taps.of(old.recent), fresh.recent, i);
+    store(taps.of(old.mean), fresh.mean.data() + i);
+    store(taps.of(old.square), fresh.square.data() + i);
+    store(taps.of(old.noise), fresh.noise.data() + i);
+    store(frames, fresh.frames.data() + i);
 
-    const Lanes oldFrames = taps.of(old.frames);
-    const Lanes count = smaller(oldFrames + one, all(mostFrames));
-    const Lanes noise = larger(load(work.noise.data() + i), taps.of(old.noise) * all(noiseMemory));
+    const Mask some = load(now.guides.name.data() + i) >= all(0);
+    const Lanes noisy = load(work.noise.data() + i) + load(fresh.noise.data() + i);
+    const Mask known = both(both(taps.found, some), noisy > all(0));
+    const Lanes3 sample = limited(load(work.light, i), load(work.limit.data() + i));
+    store(where(known, sample.x - light.x), work.change.data() + i);
+    store(where(known, light.x), work.level.data() + i);
+    store(where(known, load(work.variance.data() + i)), work.doubt.data() + i);
+
+    float lanes[Layout::widest];
+    store(where(both(taps.found, both(some, present(x, layout.width))), all(1)), lanes);
+    for (int k = 0; k < width(); k++) found += double(lanes[k]);
+  }
+  work.found[size_t(y)] = found;
+}
+
+void changeRow(const ChangePass& pass, int y, const Moment& now) {
+  constexpr float weights[2] = {0.5f, 0.25f};
+  const Layout& layout = now.layout;
+  const float* name = now.guides.name.data();
+  const size_t row = layout.row(y);
+  for (int x = 0; x < layout.width; x += width()) {
+    const size_t i = row + size_t(x);
+    const Lanes ownName = load(name + i);
+    Lanes sums[3] = {all(0), all(0), all(0)};
+    for (int dy = -1; dy <= 1; dy++)
+      for (int dx = -1; dx <= 1; dx++) {
+        const size_t j = i + size_t((ptrdiff_t(layout.stride) * dy + dx) * pass.step);
+        const float weight = weights[std::abs(dx)] * weights[std::abs(dy)];
+        const Mask same = load(name + j) == ownName;
+        for (int k = 0; k < 3; k++)
+          sums[k] = sums[k] + where(same, load(pass.from[k]->data() + j)) *
+                                  all(k == 2 ? weight * weight : weight);
+      }
+    for (int k = 0; k < 3; k++) store(sums[k], pass.to[k]->data() + i);
+  }
+}
+
+void accumulateRow(int y, Moment& now, Work& work) {
+  const Layout& layout = now.layout;
+  Accumulated& sums = now.accumulated;
+  const size_t row = layout.row(y);
+  const Lanes zero = all(0), one = all(1);
+  double frames = 0;
+  for (int x = 0; x < layout.width; x += width()) {
+    const size_t i = row + size_t(x);
+    const Mask some = load(now.guides.name.data() + i) >= zero;
+
+    // How much brighter it has become around here: what is beyond doubt of the mean change.
+    const Lanes change = load(work.change.data() + i), level = load(work.level.data() + i),
+                doubt = load(work.doubt.data() + i);
+    const Lanes certain =
+        larger(one - all(certainty) * doubt / larger(change * change, all(1e-30f)), zero);
+    const Lanes brighter = certain * change;
+    const Lanes ratio = clamped(one + brighter / larger(level, all(1e-20f)), all(0.25f), all(4));
+    const Lanes lost = absolute(brighter) / larger(absolute(brighter) + level, all(1e-20f));
+
+    const Lanes count = smaller(load(sums.frames.data() + i) * (one - lost) + one, all(mostFrames));
+    const Lanes noise =
+        larger(load(work.noise.data() + i), load(sums.noise.data() + i) * all(noiseMemory));
     const Lanes trust = smaller(noise + noise, one); // 0: free of noise, nothing to average
     const Lanes part = larger(one / count, one - trust),
                 recentPart = larger(part, all(1 / recentFrames));
-    const Lanes3 light = limited(load(work.light, i), select(trust > zero, load(work.limit.data() + i), all(1e30f)));
+    const Lanes3 light =
+        limited(load(work.light, i), select(trust > zero, load(work.limit.data() + i), all(1e30f)));
     const Lanes luma = light.x;
-    store(mixed(taps.of(old.light), light, part), fresh.light, i);
-    store(mixed(taps.of(old.recent), light, recentPart), fresh.recent, i);
-    const Lanes mean = mixed(taps.of(old.mean), luma, part),
-                square = mixed(taps.of(old.square), luma * luma, part);
-    store(mean, fresh.mean.data() + i);
-    store(square, fresh.square.data() + i);
-    store(where(some, count), fresh.frames.data() + i);
-    store(where(some, noise), fresh.noise.data() + i);
+    store(mixed(load(sums.light, i) * ratio, light, part), sums.light, i);
+    store(mixed(load(sums.recent, i) * ratio, light, recentPart), sums.recent, i);
+    const Lanes mean = mixed(load(sums.mean.data() + i) * ratio, luma, part),
+                square = mixed(load(sums.square.data() + i) * (ratio * ratio), luma * luma, part);
+    store(mean, sums.mean.data() + i);
+    store(square, sums.square.data() + i);
+    store(where(some, count), sums.frames.data() + i);
+    store(where(some, noise), sums.noise.data() + i);
 
     // Variance of the accumulated illumination: over time where there are enough frames, else over
     // the neighbours.
@@ -170,18 +234,10 @@ void accumulateRow(int y, const Moment& before, Moment& now, Work& work) {
     const Lanes early = larger(overTime, overSpace);
     store(mixed(early, overTime, firm * firm) / count * trust, work.variance.data() + i);
 
-    const Mask inPicture = both(some, present(x, layout.width));
-    foundCount = where(both(taps.found, inPicture), one);
-    frameCount = where(inPicture, count);
-    float lanes[2][Layout::widest];
-    store(foundCount, lanes[0]);
-    store(frameCount, lanes[1]);
-    for (int k = 0; k < width(); k++) {
-      found += double(lanes[0][k]);
-      frames += double(lanes[1][k]);
-    }
+    float lanes[Layout::widest];
+    store(where(both(some, present(x, layout.width)), count), lanes);
+    for (int k = 0; k < width(); k++) frames += double(lanes[k]);
   }
-  work.found[size_t(y)] = found;
   work.frames[size_t(y)] = frames;
 }
 
@@ -209,7 +265,7 @@ void boundRow(int y, Moment& now) {
     const Lanes per = one / larger(pixels, one);
     const Lanes3 mean = sum * per, light = load(sums.light, i);
     const auto bounded = [&](Lanes v, Lanes m, Lanes s) {
-      const Lanes spread = all(2.0f) * hn::Sqrt(larger(s * per - m * m, zero));
+      const Lanes spread = all(recentSpread) * hn::Sqrt(larger(s * per - m * m, zero));
       return clamped(v, m - spread, m + spread);
     };
     const Lanes3 inside{bounded(light.x, mean.x, squares.x), bounded(light.y, mean.y, squares.y),
@@ -224,10 +280,18 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace picture::live {
+HWY_EXPORT(recallRow);
+HWY_EXPORT(changeRow);
 HWY_EXPORT(accumulateRow);
 HWY_EXPORT(boundRow);
-void accumulateRow(int y, const Moment& before, Moment& now, Work& work) {
-  HWY_DYNAMIC_DISPATCH(accumulateRow)(y, before, now, work);
+void recallRow(int y, const Moment& before, Moment& now, Work& work) {
+  HWY_DYNAMIC_DISPATCH(recallRow)(y, before, now, work);
+}
+void changeRow(const ChangePass& pass, int y, const Moment& now) {
+  HWY_DYNAMIC_DISPATCH(changeRow)(pass, y, now);
+}
+void accumulateRow(int y, Moment& now, Work& work) {
+  HWY_DYNAMIC_DISPATCH(accumulateRow)(y, now, work);
 }
 void boundRow(int y, Moment& now) { HWY_DYNAMIC_DISPATCH(boundRow)(y, now); }
 } // namespace picture::live

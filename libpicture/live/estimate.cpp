@@ -1,5 +1,5 @@
-// estimate.cpp: What one frame alone tells about its noise. Smooth shading, textures that the albedo
-// explains and the edges of sharp shadows are not noise: such pixels have neighbours like
+// estimate.cpp: What one frame alone tells about its noise. Smooth shading, textures that the
+// albedo explains and the edges of sharp shadows are not noise: such pixels have neighbours like
 // themselves. A sampled pixel rarely has.
 #include "libpicture/live/stages.h"
 
@@ -16,10 +16,18 @@ namespace HWY_NAMESPACE {
 // Two lumas are alike if they differ by less than this fraction and this amount, which cannot be
 // told on a screen.
 constexpr float alikeFraction = 0.02f, alikeAmount = 3e-4f;
+// A part of the picture is noisy if more than this fraction of its pixels is unlike its neighbours;
+// entirely if that many more are. Of samples that are either light or dark, 14 % are.
+constexpr float fewUnlike = 0.1f, moreUnlike = 0.2f;
+// A bright sample without any like it around counts as that many pixels.
+constexpr float lonelyWeight = 5;
+// Samples are limited to so many standard deviations of the samples around them.
+constexpr float limitSpread = 32;
 
-Lanes count(Mask condition) { return where(condition, all(1)); }
-Mask areAlike(Lanes a, Lanes b) {
-  return absolute(a - b) <= larger(absolute(a), absolute(b)) * all(alikeFraction) + all(alikeAmount);
+inline Lanes count(Mask condition) { return where(condition, all(1)); }
+inline Mask areAlike(Lanes a, Lanes b) {
+  return absolute(a - b) <=
+         larger(absolute(a), absolute(b)) * all(alikeFraction) + all(alikeAmount);
 }
 
 // The sums of a least-squares fit of a plane through the pixel's own nearness.
@@ -43,7 +51,8 @@ struct Fit {
 
 void compareRow(int y, Moment& now, Work& work) {
   // Opposite neighbours follow one another.
-  constexpr int around[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {-1, 1}, {1, -1}};
+  constexpr int around[8][2] = {{-1, 0},  {1, 0}, {0, -1}, {0, 1},
+                                {-1, -1}, {1, 1}, {-1, 1}, {1, -1}};
   const Layout& layout = now.layout;
   Guides& guides = now.guides;
   const float *name = guides.name.data(), *near = guides.nearness.data(),
@@ -56,8 +65,8 @@ void compareRow(int y, Moment& now, Work& work) {
                 ownX = load(offsetX + i), ownY = load(offsetY + i);
     const Lanes3 ownNormal = load(guides.normal, i);
     Fit fit;
-    Lanes neighbours = all(0), sum = all(0), alike = all(0), straight = all(0);
-    Mask oppositeValid = ownName < ownName;
+    Lanes neighbours = all(0), sum = all(0), most = all(0), alike = all(0), straight = all(0);
+    Mask oppositeValid = hn::FirstN(Tag(), 0);
     Lanes opposite = all(0);
     for (int k = 0; k < 8; k++) {
       const int dx = around[k][0], dy = around[k][1];
@@ -66,6 +75,7 @@ void compareRow(int y, Moment& now, Work& work) {
       const Mask same = load(name + j) == ownName;
       neighbours = neighbours + count(same);
       sum = sum + where(same, other);
+      most = larger(most, where(same, other));
       alike = alike + count(both(same, areAlike(other, ownLuma)));
       if (k % 2 == 1)
         straight = straight + count(both(both(same, oppositeValid),
@@ -81,12 +91,14 @@ void compareRow(int y, Moment& now, Work& work) {
     store(slopeX, guides.slopeX.data() + i);
     store(slopeY, guides.slopeY.data() + i);
     const Lanes difference = ownLuma - sum / larger(neighbours, all(1));
-    store(where(neighbours > all(0),
-                difference * difference * (neighbours / (neighbours + all(1)))),
-          work.deviation.data() + i);
-    const Mask explained = either(either(alike >= all(3), alike + alike >= neighbours),
-                                  straight >= all(2));
-    store(select(explained, all(0), all(1)), work.unlike.data() + i);
+    store(
+        where(neighbours > all(0), difference * difference * (neighbours / (neighbours + all(1)))),
+        work.deviation.data() + i);
+    const Mask explained =
+        either(either(alike >= all(3), alike + alike >= neighbours), straight >= all(2));
+    const Mask lonely = both(both(neighbours >= all(5), alike < all(1)), ownLuma > most + most);
+    store(select(explained, all(0), select(lonely, all(lonelyWeight), all(1))),
+          work.unlike.data() + i);
   }
 }
 
@@ -109,15 +121,17 @@ void estimateRow(int y, const Moment& now, Work& work) {
         sum = sum + other;
         squares = squares + other * other;
         deviations = deviations + where(same, load(deviation + j));
-        odd = odd + where(same, load(unlike + j));
+        odd = odd + load(unlike + j);
       }
     store(deviations / larger(pixels, all(1)), work.variance.data() + i);
-    store(smaller(odd, all(1)), work.noise.data() + i);
+    const Lanes fraction = odd * all(1.0f / 49);
+    store(clamped((fraction - all(fewUnlike)) * all(1 / moreUnlike), all(0), all(1)),
+          work.noise.data() + i);
     // The pixel itself does not widen its own limit.
     const Lanes others = larger(pixels - all(1), all(1));
     const Lanes mean = (sum - ownLuma) / others;
     const Lanes spread = larger((squares - ownLuma * ownLuma) / others - mean * mean, all(0));
-    store(select(pixels > all(4), mean + all(3) * hn::Sqrt(spread), all(1e30f)),
+    store(select(pixels > all(4), mean + all(limitSpread) * hn::Sqrt(spread), all(1e30f)),
           work.limit.data() + i);
   }
 }

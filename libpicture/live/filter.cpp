@@ -13,8 +13,9 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-constexpr float lumaSpread = 3;    // standard deviations at which a luma is e times less alike
+constexpr float lumaSpread = 4;  // standard deviations at which a luma is e times less alike
 constexpr float normalFall = 64; // about the power of the cosine between normals
+constexpr float otherName = 3;   // another shape on the same plane is exp(3) times less alike
 constexpr float bspline[3] = {3.0f / 8, 1.0f / 4, 1.0f / 16};
 
 void filterRow(const FilterPass& pass, int y, const Moment& now) {
@@ -36,14 +37,15 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
     Lanes spread = load(variance + i) * all(0.25f);
     for (int k = -1; k <= 1; k += 2) {
       spread = spread + (load(variance + i + k) + load(variance + i + k * stride)) * all(0.125f);
-      spread = spread + (load(variance + i + k * stride - 1) +
-                         load(variance + i + k * stride + 1)) *
-                            all(0.0625f);
+      spread =
+          spread + (load(variance + i + k * stride - 1) + load(variance + i + k * stride + 1)) *
+                       all(0.0625f);
     }
     const Lanes perLuma = one / (all(lumaSpread) * hn::Sqrt(spread) + all(1e-6f));
     const Lanes slope = absolute(slopeX) + absolute(slopeY);
     const Lanes scale = now.projection.parallel ? one : absolute(ownNear);
-    const Lanes perNear = one / (slope * all(1 + 0.1f * step) + scale * all(0.002f * step) + all(1e-20f));
+    const Lanes perNear =
+        one / (slope * all(1 + 0.1f * step) + scale * all(0.002f * step) + all(1e-20f));
 
     Lanes weights = all(bspline[0] * bspline[0]);
     Lanes3 sum = own * weights;
@@ -53,12 +55,15 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
         if (dx == 0 && dy == 0) continue;
         const size_t j = i + size_t((stride * dy + dx) * pass.step);
         const Lanes3 other = load(*pass.from, j);
-        const Lanes expected = ownNear + slopeX * all(float(dx) * step) + slopeY * all(float(dy) * step);
+        const Lanes expected =
+            ownNear + slopeX * all(float(dx) * step) + slopeY * all(float(dy) * step);
         const Lanes away = absolute(load(near + j) - expected) * perNear +
                            absolute(other.x - own.x) * perLuma +
-                           absolute(one - dot(load(guides.normal, j), normal)) * all(normalFall);
-        const Lanes weight = where(load(name + j) == ownName,
-                                   fallOff(away) * all(bspline[std::abs(dx)] * bspline[std::abs(dy)]));
+                           absolute(one - dot(load(guides.normal, j), normal)) * all(normalFall) +
+                           select(load(name + j) == ownName, zero, all(otherName));
+        const Lanes weight =
+            where(load(name + j) >= zero,
+                  fallOff(away) * all(bspline[std::abs(dx)] * bspline[std::abs(dy)]));
         weights = weights + weight;
         sum = sum + other * weight;
         varianceSum = varianceSum + load(variance + j) * (weight * weight);
@@ -66,17 +71,6 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
     const Lanes per = one / weights;
     store(sum * per, *pass.to, i);
     store(varianceSum * (per * per), pass.toVariance->data() + i);
-  }
-  (void)zero;
-}
-
-void colourRow(const Plane3& light, int y, const Moment& now, Work& work) {
-  const size_t row = now.layout.row(y);
-  const Lanes zero = all(0);
-  for (int x = 0; x < now.layout.width; x += width()) {
-    const size_t i = row + size_t(x);
-    const Lanes3 rgb = colourOf(load(light, i)) * load(work.albedo, i);
-    store(Lanes3{larger(rgb.x, zero), larger(rgb.y, zero), larger(rgb.z, zero)}, work.colour, i);
   }
 }
 
@@ -87,12 +81,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace picture::live {
 HWY_EXPORT(filterRow);
-HWY_EXPORT(colourRow);
 void filterRow(const FilterPass& pass, int y, const Moment& now) {
   HWY_DYNAMIC_DISPATCH(filterRow)(pass, y, now);
-}
-void colourRow(const Plane3& light, int y, const Moment& now, Work& work) {
-  HWY_DYNAMIC_DISPATCH(colourRow)(light, y, now, work);
 }
 } // namespace picture::live
 #endif

@@ -75,8 +75,7 @@ inline void store(const Lanes3& v, Plane3& to, size_t i) {
   store(v.z, to.z.data() + i);
 }
 inline Lanes3 gather(const Plane3& from, Index index) {
-  return {gather(from.x.data(), index), gather(from.y.data(), index),
-          gather(from.z.data(), index)};
+  return {gather(from.x.data(), index), gather(from.y.data(), index), gather(from.z.data(), index)};
 }
 
 // Returns the elements from i on of an array of n; 0 behind its end.

@@ -21,56 +21,55 @@ struct Place {
   Lanes x, y, depth;
 };
 
-Lanes3 toView(const Projection& p, const Lanes3& v) {
+inline Lanes3 toView(const Projection& p, const Lanes3& v) {
   const auto& m = p.rotation;
   return {v.x * all(m[0][0]) + v.y * all(m[0][1]) + v.z * all(m[0][2]),
           v.x * all(m[1][0]) + v.y * all(m[1][1]) + v.z * all(m[1][2]),
           v.x * all(m[2][0]) + v.y * all(m[2][1]) + v.z * all(m[2][2])};
 }
 
-Place project(const Projection& p, const Lanes3& direction) {
+inline Place project(const Projection& p, const Lanes3& direction) {
   const Lanes depth = hn::Neg(direction.z), half = all(0.5f);
   const Lanes per = p.parallel ? all(1) : all(1) / depth;
   return {half + direction.x * per * all(p.scale[0]), half + direction.y * per * all(p.scale[1]),
           depth};
 }
 
-Place placeOf(const Projection& p, const Lanes3& point) {
+inline Place placeOf(const Projection& p, const Lanes3& point) {
   const Lanes3 eye{all(p.eye[0]), all(p.eye[1]), all(p.eye[2])},
       rest{all(p.eyeRest[0]), all(p.eyeRest[1]), all(p.eyeRest[2])};
   return project(p, toView(p, point - eye - rest));
 }
 
 // Returns the place where the environment that is seen at (x, y) was seen by another camera.
-Place environmentAt(const Projection& now, const Projection& before, Lanes x, Lanes y) {
+inline Place environmentAt(const Projection& now, const Projection& before, Lanes x, Lanes y) {
   const Lanes half = all(0.5f);
   if (now.parallel || before.parallel) return {x, y, all(1)};
   const Lanes3 view{(x - half) * all(1 / now.scale[0]), (y - half) * all(1 / now.scale[1]),
                     all(-1)};
   const auto& m = now.rotation;
-  return project(before, toView(before, {view.x * all(m[0][0]) + view.y * all(m[1][0]) +
-                                             view.z * all(m[2][0]),
-                                         view.x * all(m[0][1]) + view.y * all(m[1][1]) +
-                                             view.z * all(m[2][1]),
-                                         view.x * all(m[0][2]) + view.y * all(m[1][2]) +
-                                             view.z * all(m[2][2])}));
+  return project(
+      before,
+      toView(before, {view.x * all(m[0][0]) + view.y * all(m[1][0]) + view.z * all(m[2][0]),
+                      view.x * all(m[0][1]) + view.y * all(m[1][1]) + view.z * all(m[2][1]),
+                      view.x * all(m[0][2]) + view.y * all(m[1][2]) + view.z * all(m[2][2])}));
 }
 
-Lanes nearnessOf(const Projection& p, Lanes depth) {
+inline Lanes nearnessOf(const Projection& p, Lanes depth) {
   return p.parallel ? depth * all(p.perHeight) : all(1) / depth;
 }
 
-Mask isPlace(const Projection& p, const Place& place) {
+inline Mask isPlace(const Projection& p, const Place& place) {
   const Mask finite = both(isFinite(place.x), isFinite(place.y));
   if (p.parallel) return both(finite, isFinite(place.depth));
   return both(finite, both(place.depth > all(1e-30f), place.depth < all(1e30f)));
 }
 
 // Returns a plane's numbers where they are finite and positive, otherwise 0.
-Lanes amount(Lanes v) { return where(both(isFinite(v), v > all(0)), v); }
-Lanes3 amounts(const Lanes3& v) { return {amount(v.x), amount(v.y), amount(v.z)}; }
+inline Lanes amount(Lanes v) { return where(both(isFinite(v), v > all(0)), v); }
+inline Lanes3 amounts(const Lanes3& v) { return {amount(v.x), amount(v.y), amount(v.z)}; }
 
-Lanes3 unitNormal(const Lanes3& v) {
+inline Lanes3 unitNormal(const Lanes3& v) {
   const Lanes length2 = dot(v, v), zero = all(0);
   const Mask known = both(isFinite(length2), length2 > all(1e-12f));
   const Lanes3 unit = v * (all(1) / hn::Sqrt(select(known, length2, all(1))));
@@ -80,7 +79,8 @@ Lanes3 unitNormal(const Lanes3& v) {
 // Maps pixels of this frame to pixels of the frame before that lie at the same place: pixel * ratio
 // + shift, which is exactly the pixel if the sizes are equal.
 struct Resampling {
-  Resampling(int now, int before) : ratio(float(double(before) / now)), shift(0.5f * ratio - 0.5f) {}
+  Resampling(int now, int before)
+      : ratio(float(double(before) / now)), shift(0.5f * ratio - 0.5f) {}
   Lanes operator()(Lanes pixel) const { return pixel * all(ratio) + all(shift); }
   float ratio, shift;
 };
@@ -150,7 +150,9 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
     const Lanes3 known = amounts(colour), floor{all(darkest), all(darkest), all(darkest)};
     const Lanes3 surface{larger(known.x, floor.x), larger(known.y, floor.y),
                          larger(known.z, floor.z)};
-    const Lanes3 albedo = select(hit, surface, Lanes3{one, one, one});
+    // The environment has an albedo only in mirrors and behind glass.
+    const Mask coloured = either(hit, known.x + known.y + known.z > zero);
+    const Lanes3 albedo = select(coloured, surface, Lanes3{one, one, one});
     const Lanes most = all(brightest);
     const Lanes3 light{smaller(radiance.x / albedo.x, most), smaller(radiance.y / albedo.y, most),
                        smaller(radiance.z / albedo.z, most)};

@@ -32,8 +32,7 @@ FramePlanes planesOf(const Picture& frame) {
   // as rtFrameBuffer allows
   if (frame.width < 1 || frame.height < 1 || frame.width > 65536 || frame.height > 65536)
     throw std::invalid_argument("a preview needs a frame of 1 to 65536 pixels each way, not " +
-                                std::to_string(frame.width) + " x " +
-                                std::to_string(frame.height));
+                                std::to_string(frame.width) + " x " + std::to_string(frame.height));
   return {planeOf(frame, RT_RGBA, 4),     planeOf(frame, RT_DEPTH, 1),
           planeOf(frame, RT_NORMAL, 3),   planeOf(frame, RT_ALBEDO, 3),
           planeOf(frame, RT_POSITION, 3), planeOf(frame, RT_NAME, 1),
@@ -43,8 +42,7 @@ FramePlanes planesOf(const Picture& frame) {
 } // namespace
 
 struct Reconstruction::Impl {
-  explicit Impl(int threads)
-      : arena(threads > 0 ? threads : tbb::task_arena::automatic) {}
+  explicit Impl(int threads) : arena(threads > 0 ? threads : tbb::task_arena::automatic) {}
 
   // Calls stage(y) for each row of the picture.
   template <class Stage> void rows(const Stage& stage) {
@@ -62,7 +60,19 @@ struct Reconstruction::Impl {
     now.projection = Projection(camera);
   }
 
-  // Filters with neighbours farther and farther away; the result is in work.light.
+  // Sums up changes of brightness over 31 x 31 pixels of the same surface. After the four passes
+  // the result is in work.change, level and doubt.
+  void findChanges() {
+    ChangePass pass{{&work.change, &work.level, &work.doubt},
+                    {&work.otherChange, &work.otherLevel, &work.otherDoubt},
+                    1};
+    for (; pass.step <= 8; pass.step *= 2) {
+      rows([&](int y) { changeRow(pass, y, now); });
+      std::swap(pass.from, pass.to);
+    }
+  }
+
+  // Filters with neighbours farther and farther away; `result` is what the last pass wrote.
   void filter() {
     FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
                     1};
@@ -71,8 +81,7 @@ struct Reconstruction::Impl {
       pass.from = pass.to;
       pass.variance = pass.toVariance;
       pass.to = pass.to == &work.filtered ? &work.light : &work.filtered;
-      pass.toVariance =
-          pass.toVariance == &work.variance ? &work.filteredVariance : &work.variance;
+      pass.toVariance = pass.toVariance == &work.variance ? &work.filteredVariance : &work.variance;
     }
     result = pass.from;
   }
@@ -84,7 +93,9 @@ struct Reconstruction::Impl {
     rows([&](int y) { readRow(planes, before, rests, y, now, work); });
     rows([&](int y) { compareRow(y, now, work); });
     rows([&](int y) { estimateRow(y, now, work); });
-    rows([&](int y) { accumulateRow(y, before, now, work); });
+    rows([&](int y) { recallRow(y, before, now, work); });
+    findChanges();
+    rows([&](int y) { accumulateRow(y, now, work); });
     rows([&](int y) { boundRow(y, now); });
     filter();
     rows([&](int y) { colourRow(*result, y, now, work); });

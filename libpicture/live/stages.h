@@ -4,6 +4,8 @@
 // instruction sets. [any thread]
 #pragma once
 
+#include <array>
+
 #include "libpicture/live/planes.h"
 #include "libpicture/live/projection.h"
 
@@ -33,8 +35,9 @@ struct Moment {
 struct Work {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&albedo, &light, &filtered, &colour}) planes->assign(layout.size(), 0);
-    for (Plane* plane : {&pastX, &pastY, &pastNearness, &deviation, &unlike, &variance,
-                         &filteredVariance, &limit, &noise})
+    for (Plane* plane :
+         {&pastX, &pastY, &pastNearness, &deviation, &unlike, &variance, &filteredVariance, &limit,
+          &noise, &change, &level, &doubt, &otherChange, &otherLevel, &otherDoubt})
       plane->assign(layout.size(), 0);
     found.assign(size_t(layout.height), 0);
     frames.assign(size_t(layout.height), 0);
@@ -51,6 +54,9 @@ struct Work {
   Plane variance; // of the illumination's luma as it goes into the filter
   Plane limit;    // luma beyond that is taken for a rare bright sample
   Plane noise;    // whether this frame's samples are noisy around here, 0 to 1
+  // By how much the luma differs from the accumulated one, the accumulated one, and the variance of
+  // the difference; each summed up around the pixel.
+  Plane change, level, doubt, otherChange, otherLevel, otherDoubt;
   Plane3 filtered;
   Plane filteredVariance;
   Plane3 colour; // red, green and blue of the frame before accumulation over time
@@ -66,12 +72,21 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
 void compareRow(int y, Moment& now, Work& work);
 // Sums up over 7 x 7 pixels of the same surface: `variance`, `limit` and `noise`.
 void estimateRow(int y, const Moment& now, Work& work);
-// Adds the illumination to what was accumulated on the same surfaces.
-void accumulateRow(int y, const Moment& before, Moment& now, Work& work);
+// Finds what was accumulated on the same surfaces, and by how much this frame differs from it.
+void recallRow(int y, const Moment& before, Moment& now, Work& work);
+// One pass of a filter that sums up these differences over neighbours, `step` pixels apart.
+struct ChangePass {
+  std::array<Plane*, 3> from, to; // change, level and doubt
+  int step;
+};
+void changeRow(const ChangePass& pass, int y, const Moment& now);
+// Adds the illumination to what was accumulated, brought to the present brightness.
+void accumulateRow(int y, Moment& now, Work& work);
 // Bounds what was accumulated by what the last few frames show around the pixel.
 void boundRow(int y, Moment& now);
 
-// One pass of the à-trous filter over illumination and variance. Neighbours are `step` pixels apart.
+// One pass of the à-trous filter over illumination and variance. Neighbours are `step` pixels
+// apart.
 struct FilterPass {
   const Plane3* from;
   const Plane* variance;
@@ -85,7 +100,7 @@ void filterRow(const FilterPass& pass, int y, const Moment& now);
 void colourRow(const Plane3& light, int y, const Moment& now, Work& work);
 // Accumulates the colours over time, which smooths edges and textures, and writes width * 4 floats
 // with the alpha of the frame.
-void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now, Work& work,
+void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now, const Work& work,
              float* rgba);
 
 } // namespace picture::live

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include <unistd.h>
@@ -56,6 +57,37 @@ TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
       EXPECT_EQ(jobsOf(workers()), stats.tilesLocal + stats.tilesRemote);
     }
   }
+}
+
+// The second worker joins between frames, and gets the scene of the frame before.
+TEST(ClusterProcesses, MotionIsTheSameOnAllMachines) {
+  const FrameOptions look{.channels = RT_RGBA | RT_POSITION | RT_NAME | RT_MOTION};
+  constexpr double times[] = {0, .3, .7, .7, 1.4, 2};
+  std::vector<Picture> expected;
+  const auto renderFrames = [&](const std::function<void(size_t frame)>& before,
+                                const std::function<void(size_t frame)>& after) {
+    World world;
+    world.look(look);
+    for (size_t i = 0; i < std::size(times); i++) {
+      before(i);
+      if (i > 0) world.move(times[i]);
+      rtRender();
+      after(i);
+    }
+  };
+  {
+    const Context context("threads=1");
+    renderFrames([](size_t) {}, [&](size_t) { expected.push_back(pixels(look)); });
+  }
+  const Workers helping = start(2);
+  helping[1]->kill();
+  const Context context("backend=cluster local=0 " + workersOption(helping));
+  renderFrames(
+      [&](size_t frame) {
+        if (frame == 2) helping[1]->start();
+        join(frame < 2 ? 1 : 2);
+      },
+      [&](size_t frame) { EXPECT_EQ(different(pixels(look), expected[frame]), 0u) << frame; });
 }
 
 TEST(ClusterProcesses, WithoutThreadsOfItsOwnTheMasterLeavesAllToTheWorkers) {

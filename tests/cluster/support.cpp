@@ -140,10 +140,9 @@ Picture pixels(const FrameOptions& look) {
   Picture all;
   for (uint32_t channel = 1; channel <= look.channels; channel <<= 1) {
     if (!(look.channels & channel)) continue;
-    const size_t components =
-        channel == RT_RGBA                                                           ? 4
-        : (channel & (RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_VARIANCE | RT_ERROR)) ? 3
-                                                                                     : 1;
+    constexpr uint32_t vectors =
+        RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR;
+    const size_t components = channel == RT_RGBA ? 4 : channel & vectors ? 3 : 1;
     const size_t before = all.size();
     all.resize(before + components * n);
     rtReadPixels(channel, all.data() + before, components * n);

@@ -18,6 +18,7 @@ namespace cluster_test {
 
 using namespace std::chrono_literals;
 
+// All channels that depend on the frame alone; RT_MOTION depends on the one before, too.
 inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
                                         RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST;
 

@@ -10,12 +10,14 @@
 namespace numeric {
 namespace {
 
-constexpr uint32_t everyChannel = (RT_TRUST << 1) - 1;
+constexpr uint32_t everyChannel = (RT_MOTION << 1) - 1;
 using Channels = std::map<uint32_t, std::vector<float>>;
 
 size_t componentsOf(uint32_t channel) {
   if (channel == RT_RGBA) return 4;
-  return channel & (RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_VARIANCE | RT_ERROR) ? 3 : 1;
+  constexpr uint32_t vectors =
+      RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR;
+  return channel & vectors ? 3 : 1;
 }
 
 struct Settings {

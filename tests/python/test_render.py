@@ -68,6 +68,40 @@ def test_channels(box):
     assert w.render(size=(4, 3), spp=1, channels="z")["z"].shape == (3, 4)
 
 
+def test_motion():
+    world = xvrml.loads("""#VRML V2.0 utf8
+        Viewpoint { position 0 0 8 }
+        DEF Clock TimeSensor { cycleInterval 100 loop TRUE }
+        DEF Way PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 100 50 0 ] }
+        DEF Car Transform { children Shape { geometry Box { } } }
+        ROUTE Clock.fraction_changed TO Way.set_fraction
+        ROUTE Way.value_changed TO Car.set_translation""")
+    frames = list(world.animate(0, 0.3, fps=10, size=(16, 12), spp=1, channels=("id", "motion")))
+    for number, frame in enumerate(frames):
+        hit, motion = frame["id"] != 0, frame["motion"]
+        assert hit.any() and not motion[~hit].any()
+        if number == 0:
+            assert np.isnan(motion[hit]).all(), "everything is new"
+        else:
+            assert motion[hit] == pytest.approx(np.tile([0.1, 0.05, 0], (hit.sum(), 1)), abs=1e-4)
+    assert len(frames) == 3
+
+
+def test_images_in_mirrors_are_followed():
+    world = xvrml.loads("""#VRML V2.0 utf8
+        Viewpoint { position 0 0 5 }
+        Shape { appearance ORTAppearance { shader ORTShader { name "Mirror" } }
+                geometry IndexedFaceSet { coordIndex [ 0 1 2 3 -1 ]
+                    coord Coordinate { point [ -1 -1 0, 1 -1 0, 1 1 0, -1 1 0 ] } } }
+        Transform { translation 0 0 9
+                    children DEF Wall Shape { geometry Box { size 90 90 2 } } }""")
+    options = {"size": (9, 9), "spp": 1, "channels": ("z", "id")}
+    seen = world.render(follow_images=True, **options)
+    assert seen["z"][4, 4] == pytest.approx(5 + 8, abs=1e-3)
+    assert seen.names[seen["id"][4, 4]] == "Wall"
+    assert world.render(**options)["z"][4, 4] == pytest.approx(5, abs=1e-3)
+
+
 def test_changes_show(box):
     w = xvrml.load(box)
     before = w.render(size=(40, 30), spp=1).array

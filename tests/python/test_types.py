@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 GOOD = '''
 import numpy as np
 import xvrml
-from xvrml import interop, rt
+from xvrml import interop, notebook, rt
 
 world = xvrml.load("car.wrl")
 for problem in world.warnings:
@@ -47,6 +47,13 @@ with rt.Context() as context:
     context.instance(context.mesh(np.zeros((3, 3)))).matrix = np.eye(4)
     print(context.render(size=(4, 3)).array.shape)
 print(interop.to_pil(image))
+with xvrml.LiveView(world, size=(64, 48), spp=4) as live:
+    live.event({"type": "wheel", "dy": 100})
+    delay = live.step() or 0.1
+    print(live.wait().shape, live.facts["samples"], delay)
+widget: notebook.View = world.view(size=(640, 480), transport="path")
+widget.update()
+widget.live.paused = True
 browser = xvrml.Browser("car.wrl", trust=True)
 browser.tick(1.0)
 '''
@@ -56,6 +63,7 @@ BAD = {
     "xvrml.load('a.wrl').tiem": "tiem",
     "xvrml.load('a.wrl').render(sice=(1, 2))": "sice",
     "xvrml.Sphere().radius = 'big'": "assignment",
+    "xvrml.LiveView(xvrml.load('a.wrl'), sice=(1, 2))": "sice",
 }
 
 

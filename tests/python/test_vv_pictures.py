@@ -58,13 +58,13 @@ def test_vrml97_colours_have_no_curve(vv):
 
 
 def test_exr_channels(vv):
-    done = vv("box.wrl", "-o", "out.exr", "--channels", "rgba,z,normal,albedo,position,id,samples",
-              *SMALL)
+    done = vv("box.wrl", "-o", "out.exr", "--channels",
+              "rgba,z,normal,albedo,position,id,samples,motion", "--follow-images", "on", *SMALL)
     assert done.returncode == 0, done.talk
     data = (vv.folder / "out.exr").read_bytes()
     expected = [
         "R", "G", "B", "A", "Z", "N.X", "N.Y", "N.Z", "albedo.R", "albedo.G", "albedo.B", "P.X",
-        "P.Y", "P.Z", "id", "samples"
+        "P.Y", "P.Z", "id", "samples", "motion.X", "motion.Y", "motion.Z"
     ]
     assert exr_channels(data) == {name: 2 for name in expected}
     header = exr_header(data)

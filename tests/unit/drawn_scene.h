@@ -56,7 +56,7 @@ struct Settings {
   int replicates = 0;
   bool progressive = false;
 };
-inline constexpr uint32_t everyChannel = (RT_TRUST << 1) - 1;
+inline constexpr uint32_t everyChannel = (RT_MOTION << 1) - 1;
 
 inline void set(const Settings& s) {
   rtFrameBuffer(s.width, s.height, s.channels);

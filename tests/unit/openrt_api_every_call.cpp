@@ -378,6 +378,7 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtQuality, RT_FRAMES_IN_FLIGHT, 65),
     WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 3),
     WRONG(VALUE, Outside, rtQuality, RT_TILE_SIZE, 129),
+    WRONG(VALUE, Outside, rtQuality, RT_FOLLOW_IMAGES, 2),
     WRONG(ENUM, Outside, rtQualityf, RT_SEED, 0),
     WRONG(VALUE, Outside, rtQualityf, RT_TARGET_ERROR, 1.5),
     WRONG(VALUE, Outside, rtQualityf, RT_TIME_LIMIT, -1),

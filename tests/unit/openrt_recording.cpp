@@ -382,7 +382,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"TextureWrap", [](Example& e) { e.texture.wrapS = edit::Wrap(5); }, "unknown wrap"},
         Fault{"FrameSize", [](Example& e) { e.frame.width = 70000; },
               "a frame has an impossible size"},
-        Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 10; }, "unknown channels"},
+        Fault{"FrameChannels", [](Example& e) { e.frame.channels = 1 << 20; }, "unknown channels"},
         Fault{"FrameSamples", [](Example& e) { e.frame.samples = 0; }, "impossible samples"},
         Fault{"DeletedUnknown", [](Example& e) { add(e.edits, edit::DeleteLightT()).id = 5; },
               "unknown id 5"},

@@ -59,6 +59,7 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
     if (frame.channels & RT_NAME) s.name = float(random() % 3);
     for (int k = 0; k < 3; k++) {
       if (frame.channels & RT_POSITION) s.position[k] = float(value());
+      if (frame.channels & RT_MOTION) s.motion[k] = float(value());
       if (frame.channels & RT_NORMAL) s.normal[k] = value();
       if (frame.channels & RT_ALBEDO) s.albedo[k] = value();
       if (g.spread) {
@@ -85,7 +86,8 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
 bool sameBytes(const std::vector<PixelSums>& a, const std::vector<PixelSums>& b) {
   if (a.size() != b.size()) return false;
   for (size_t i = 0; i < a.size(); i++)
-    if (std::memcmp(&a[i], &b[i], offsetof(PixelSums, random)) != 0 || a[i].random != b[i].random)
+    if (std::memcmp(&a[i], &b[i], offsetof(PixelSums, random)) != 0 || a[i].random != b[i].random ||
+        std::memcmp(a[i].motion, b[i].motion, sizeof a[i].motion) != 0)
       return false;
   return true;
 }

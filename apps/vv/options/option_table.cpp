@@ -391,6 +391,17 @@ const OptionInfo table[] = {
        o.serve.token = v;
        o.serve.given = true;
      }},
+    {"--control", "ADDRESS", "Control",
+     "Let programs read and change the world, by lines of JSON at this address: 127.0.0.1:PORT, "
+     ":PORT, unix:PATH, or with --key FILE also HOST:PORT for other machines; port 0 is any free "
+     "one. The address is printed (docs/control.md).",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "an address");
+       o.control = v;
+     }},
+    {"--no-window", "", "Control",
+     "With --control: run the world without a window; pictures are rendered when a program asks.",
+     [](Options& o, const std::string&) { o.noWindow = true; }},
     {"--limit", "NAME=VALUE", "Trust",
      "Raise or lower a limit on the memory and work that a world may need; a wrong NAME prints the "
      "list of limits. May be given several times.",

@@ -162,6 +162,15 @@ constexpr Rule rules[] = {
      "--write, --info or a list"},
     {[](const Options& o) { return o.serve.given && !o.has(Job::serve); },
      "--port, --address and --token need vv serve"},
+    // control by programs
+    {[](const Options& o) { return o.noWindow && o.control.empty(); },
+     "--no-window needs --control (-o makes a picture without a window)"},
+    {[](const Options& o) { return !o.control.empty() && !o.opensWindow(); },
+     "--control cannot be used with -o, --check, --write or a list"},
+    {[](const Options& o) {
+       return o.noWindow && (!o.inputScript.empty() || !o.recordInput.empty() || o.watch);
+     },
+     "--no-window cannot be used with --input, --record-input or --watch"},
     // the window
     {[](const Options& o) { return o.showsWorld() && o.allViewpoints(); },
      "--viewpoint all needs -o"},
@@ -195,8 +204,11 @@ void checkCluster(const Options& options) {
                                                 {!c.split.empty(), "--split"},
                                                 {c.require > 0, "--require-workers"},
                                                 {c.tolerant, "--tolerant"}};
+  const auto servesControl = [&](std::string_view name) { // keys protect the control channel, too
+    return !options.control.empty() && (name == "--key" || name == "--allow-keys");
+  };
   for (const auto& [isGiven, name] : given)
-    if (isGiven && !c.used())
+    if (isGiven && !c.used() && !servesControl(name))
       throw UsageError(fmt::format("{} needs --workers or --listen-workers", name));
 }
 

@@ -88,6 +88,8 @@ struct Options {
   xvrml::BrowserOptions running;
   xvrml::RunOptions run; // options of the Browser; startWorld sets the epoch
   bool quiet = false, verbose = false;
+  std::string control; // address where programs control the world; empty: none
+  bool noWindow = false;
 
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }

@@ -53,7 +53,7 @@ bool PictureLoop::isSettled(double now) const {
 }
 
 bool PictureLoop::isInterrupted() const {
-  return isRefining() && still_ != Still::finished && shared_.cancellations() != cancellations_;
+  return isRefining() && still_ != Progress::finished && shared_.cancellations() != cancellations_;
 }
 
 PictureLoop::Urgency PictureLoop::urgency(const Pilot& pilot, const Fit& fit) const {
@@ -80,13 +80,16 @@ PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double 
   case RendererState::idle: break;
   }
   if (outdated || cancelled_) return following;
-  if (isRefining()) return isInterrupted() ? Decision::refine : Decision::wait;
-  if (need == Need::stillPicture) return Decision::refine;
+  if (isRefining() && !isInterrupted() && !(isStillLost_ && need == Need::stillPicture))
+    return Decision::wait;
+  if (isInterrupted() || need == Need::stillPicture) return Decision::refine;
   return isSettled(now) ? Decision::refine : Decision::settle;
 }
 
 void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now, Need need) {
   if (width_ <= 0) return;
+  if (taker_.isBusy()) return advanceStill(pilot, fit);
+  if (!watched_ && hasShown()) return;
   switch (decide(isOutdated(pilot, fit), fit, now, need)) {
   case Decision::wait: break;
   case Decision::cancel:
@@ -113,7 +116,7 @@ bool PictureLoop::copyStill(picture::Picture& picture) {
 }
 
 bool PictureLoop::isFinished(const Pilot& pilot) const {
-  return isRefining() && still_ == Still::finished && !shared_.isOutdated(world_) &&
+  return isRefining() && still_ == Progress::finished && !shared_.isOutdated(world_) &&
          equal(pilot.camera(), camera_);
 }
 
@@ -182,13 +185,39 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
   frame.viewer = viewer_;
-  still_ = Still::none;
+  still_ = Progress::none;
+  isStillLost_ = false;
   cancelled_ = false;
   cancellations_ = shared_.cancellations();
   if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
   number_ = shared_.start(frame, moving);
   world_ = shared_.world();
   phase_ = phase;
+  fit.begin();
+}
+
+// Returns the view that `vv -o` would have: that of the options, or the viewer's place once it has
+// been moved.
+picture::View PictureLoop::stillViewOf(const Pilot& pilot, double aspect) const {
+  picture::View view = options_.view;
+  if (!pilot.hasViewerMoved()) return view;
+  view = {};
+  view.shader = options_.view.shader;
+  view.viewer = pilot.camera(aspect);
+  return view;
+}
+
+void PictureLoop::advanceStill(const Pilot& pilot, Fit& fit) {
+  if (taker_.isRendering()) return;
+  if (!shared_.isIdle()) {
+    shared_.cancel();
+    cancelled_ = true;
+    return;
+  }
+  followHeadlight(pilot);
+  taker_.start([&](double aspect) { return stillViewOf(pilot, aspect); });
+  still_ = Progress::none;
+  isStillLost_ = true;
   fit.begin();
 }
 
@@ -200,6 +229,12 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
   else
     pilot.frameAll(renderer_.bounds());
   fit.end();
+  return true;
+}
+
+bool PictureLoop::lookForStill() {
+  if (!taker_.isRendering()) return false;
+  taker_.look();
   return true;
 }
 
@@ -215,7 +250,7 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
   facts_.preview = picture.preview;
   facts_.purpose = picture.purpose;
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
-    still_ = picture.finished ? Still::finished : Still::covered;
+    still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {
     pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
                  picture.overhead, picture.samples, picture.rebuilding);
@@ -227,6 +262,7 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
 
 // A failure of many frames in a row is told once.
 std::string PictureLoop::takeFailure() {
+  if (taker_.isRendering()) return {}; // the failure belongs to a program
   std::string failure = renderer_.takeFailure();
   if (failure == failure_) return {};
   return failure.empty() ? failure : failure_ = std::move(failure);

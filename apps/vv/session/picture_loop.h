@@ -12,6 +12,7 @@
 #include "session/pacing.h"
 #include "session/pilot.h"
 #include "session/shared_renderer.h"
+#include "session/still.h"
 
 namespace vv {
 
@@ -62,6 +63,16 @@ class PictureLoop {
   // Copies the picture of the last frame that was started, for a file. Returns false unless it is a
   // still one with samples everywhere, or for a moment while it ends.
   bool copyStill(picture::Picture& picture);
+  // Asks for a picture of its own for a program; the frames wait meanwhile. takeStill() returns it
+  // once it is finished. One at a time.
+  void requestStill(const Still& still) { taker_.request(still); }
+  std::optional<StillAnswer> takeStill() { return taker_.take(); }
+  bool stillWaits() const { return taker_.isBusy() && !taker_.isRendering(); }
+  // Says whether anybody looks at the pictures. If not, only the first frame, which places the
+  // viewer, and still pictures are rendered.
+  void setWatched(bool watched) { watched_ = watched; }
+  // Looks for the end of such a picture. Returns whether one is being rendered.
+  bool lookForStill();
   std::string takeFailure();
 
   bool hasStarted() const { return phase_ != Phase::unstarted; }
@@ -76,7 +87,7 @@ class PictureLoop {
   // Tells whether the last frame does not show the world as it is now.
   bool isOutdated(const Pilot& pilot, const Fit& fit) const;
   // Tells whether the last frame that was started is a still one with samples everywhere.
-  bool hasStill() const { return isRefining() && still_ != Still::none; }
+  bool hasStill() const { return isRefining() && still_ != Progress::none; }
   // Tells whether the still frame was cancelled for another viewer's.
   bool isInterrupted() const;
   uint64_t number() const { return number_; } // of the last frame
@@ -91,27 +102,32 @@ class PictureLoop {
   enum class Shown : uint8_t { nothing, something };
   enum class Decision : uint8_t { wait, cancel, move, settle, refine };
   // What is there of the still frame that was started last.
-  enum class Still : uint8_t { none, covered, finished };
+  enum class Progress : uint8_t { none, covered, finished };
 
   Decision decide(bool outdated, const Fit& fit, double now, Need need) const;
   bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
   FrameSize sizeOf(Phase phase);
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
+  picture::View stillViewOf(const Pilot& pilot, double aspect) const;
+  void advanceStill(const Pilot& pilot, Fit& fit);
   void followHeadlight(const Pilot& pilot);
 
   SharedRenderer& shared_;
   picture::LiveRenderer& renderer_;
   const Options& options_;
   const uint32_t viewer_;
+  StillTaker taker_{renderer_};
   Pacing pacing_;
   int width_ = 0, height_ = 0; // size of the window in pixels
   Motion motion_ = Motion::rebuilt;
 
   Phase phase_ = Phase::unstarted;
   Shown shown_ = Shown::nothing;
-  Still still_ = Still::none;
-  bool cancelled_ = false; // the last frame was cancelled for a newer one
+  bool watched_ = true;
+  Progress still_ = Progress::none;
+  bool isStillLost_ = false; // the renderer has another still frame, of a program
+  bool cancelled_ = false;   // the last frame was cancelled for a newer one
   // The last frame: its number, the state of the world, the cancellations before it, the camera,
   // headlight and size.
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;

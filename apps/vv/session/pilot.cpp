@@ -67,9 +67,9 @@ void Pilot::setAspect(double aspect) {
   viewer_->setAspect(aspect);
 }
 
-xvrml::CameraSettings Pilot::camera() const {
-  xvrml::CameraSettings camera = viewer_->camera(aspect_);
-  if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect_);
+xvrml::CameraSettings Pilot::camera(double aspect) const {
+  xvrml::CameraSettings camera = viewer_->camera(aspect);
+  if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect);
   return camera;
 }
 
@@ -203,7 +203,26 @@ bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
   return view.fit || (!view.lookAt && !viewer_->viewpoint());
 }
 
-void Pilot::animateTransitions() { viewer_->setTransition(transition); }
+void Pilot::animateTransitions() {
+  animates_ = true;
+  viewer_->setTransition(transition);
+}
+
+void Pilot::setPaused(bool wanted) {
+  if (wanted == paused()) return;
+  time_.toggle();
+  // a paused transition would stand still
+  viewer_->setTransition(paused() || !animates_ ? 0 : transition);
+}
+
+void Pilot::skip(double seconds, double fps) {
+  const double begin = browser_.now();
+  time_.skip(seconds);
+  for (double passed = 0; passed < seconds;) {
+    passed = std::min(seconds, passed + 1 / fps);
+    browser_.tick(begin + passed);
+  }
+}
 
 void Pilot::putAt(const xvrml::CameraSettings& camera) {
   viewer_->place(camera.matrix);
@@ -219,6 +238,15 @@ bool Pilot::bindViewpoint(const std::string& name) {
   viewer_->goTo(*list[size_t(index)].node);
   gravityActs_ = false;
   return true;
+}
+
+bool Pilot::jumpToViewpoint(const std::string& name) {
+  const double usual = animates_ && !paused() ? transition : 0;
+  viewer_->setTransition(0);
+  const bool bound = bindViewpoint(name);
+  viewer_->setTransition(usual);
+  touched_ = touched_ || bound;
+  return bound;
 }
 
 void Pilot::jumpTo(size_t number) {
@@ -263,8 +291,7 @@ Action Pilot::press(Action action) {
       message_ = "only the viewer who leads stops the time";
       break;
     }
-    time_.toggle();
-    viewer_->setTransition(paused() ? 0 : transition); // a paused transition would stand still
+    setPaused(!paused());
     message_ = paused() ? "time stands still" : "time goes on";
     break;
   default: return action;

@@ -49,6 +49,12 @@ class Pilot {
   void animateTransitions();
   // Binds a viewpoint by DEF name, description or number from 0; returns false if there is none.
   bool bindViewpoint(const std::string& name);
+  // Does the same at once, without the animated transition.
+  bool jumpToViewpoint(const std::string& name);
+  // Pauses the world's time or lets it go on.
+  void setPaused(bool paused);
+  // Lets the world run for these seconds, in steps of 1/fps, although it is paused.
+  void skip(double seconds, double fps);
   void putAt(const xvrml::CameraSettings& camera); // restores the camera of another session
   // Sets the initial view of a world without a Viewpoint, and its up axis.
   void present(const xvrml::CameraSettings& camera, xvrml::Axis up);
@@ -56,7 +62,8 @@ class Pilot {
   // Viewpoint gives the direction; frameAll() applies then.
   std::optional<picture::View> initialView(const picture::View& view) const;
 
-  xvrml::CameraSettings camera() const;
+  xvrml::CameraSettings camera() const { return camera(aspect_); }
+  xvrml::CameraSettings camera(double aspect) const; // the same for a picture of another shape
   bool paused() const { return time_.isPaused(); }
   // the user's choice; none: not switched
   std::optional<bool> headlight() const { return headlight_; }
@@ -88,6 +95,7 @@ class Pilot {
   std::optional<double> fov_;
   double aspect_ = 4.0 / 3;
   bool touched_ = false;
+  bool animates_ = false;    // the viewer moves gradually between Viewpoints
   bool gravityActs_ = false; // gravity acts, because the user has walked
   std::optional<bool> headlight_;
   std::set<std::string> held_; // keys that are held down

@@ -240,6 +240,7 @@ void Session::takeTurns() {
 }
 
 bool Session::look(picture::LivePicture& picture, uint32_t& viewer) {
+  if (pictures_.lookForStill()) return false;
   const bool idle = shared_.isIdle();
   while (shared_.live.look(picture)) {
     viewer = shared_.viewerOf(picture.number);

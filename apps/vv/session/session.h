@@ -120,6 +120,23 @@ class Session {
   // Tells whether nothing moves or is to be done, so that steps may come more slowly.
   bool isQuiet() const;
 
+  // --- For programs (docs/control.md) [while the world can be used] ---
+  //
+  // Asks for a picture with the bytes of `vv -o`; takeStill() returns it once it is finished.
+  void requestStill(const Still& still) { pictures_.requestStill(still); }
+  std::optional<StillAnswer> takeStill() { return pictures_.takeStill(); }
+  bool stillWaits() const { return pictures_.stillWaits(); } // it begins when the session advances
+  // Shows a viewpoint at once. Returns false if there is none of this name or number.
+  bool jumpToViewpoint(const std::string& name) { return pilot_.jumpToViewpoint(name); }
+  void setPaused(bool paused) { pilot_.setPaused(paused); }
+  // Lets the paused world run for some seconds.
+  void skip(double seconds) { pilot_.skip(seconds, options_.fps); }
+  // Says whether anybody looks at the pictures; if not, none are rendered after the first one.
+  void setWatched(bool watched) { pictures_.setWatched(watched); }
+
+  // Returns whether programs may use the world: it is at rest, and not held for a picture.
+  bool isFree() const { return resting() && !isSaving(); }
+
   // Returns whether the world can be used.
   bool resting() const {
     return preparation_.state() != PickPreparation::State::running && !shared_.isMapping();

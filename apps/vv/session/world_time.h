@@ -24,6 +24,8 @@ class WorldTime {
   // Changes between running and paused.
   void toggle() { state_ = isPaused() ? State::running : State::paused; }
   bool isPaused() const { return state_ == State::paused; }
+  // Lets the world's time pass without the session's.
+  void skip(double seconds) { start_ += seconds; }
   // Returns the world's time while it runs.
   double time() const { return start_ + (session_ - pausedSeconds_); }
 

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "control/control.h"
 #include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
 #include "report/cluster_report.h"
@@ -54,6 +55,12 @@ class Window {
                       fmt::format("--record-input: cannot write {}", options_.recordInput)};
     }
     painter_ = std::make_unique<PanelPainter>(int(14 * screen_.scale()));
+    if (!options_.control.empty())
+      control_ = std::make_unique<control::Control>(
+          options_, control::Host{[this](const std::vector<std::string>& urls) {
+                                    open({urls, "", {}}, false);
+                                  },
+                                  [this] { ended_ = true; }});
   }
 
   int run() {
@@ -72,6 +79,7 @@ class Window {
         advanced_ = time;
       }
       if (session_ && session_->look(picture_)) show();
+      if (control_) control_->serve(session_.get(), loader_.busy());
       tell();
       screen_.present();
     }
@@ -81,11 +89,12 @@ class Window {
  private:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-  // Waits for events. The wait is short if a picture may be due, and longer if the window is
-  // hidden. It is never nothing: that would take the processor from the picture that is drawn.
+  // Waits for events. The wait is short if a picture or a command of a program may be due, and
+  // longer if the window is hidden. It is never nothing: that would take the processor from the
+  // picture that is drawn.
   void wait(double time) {
     const bool soon = session_ && (session_->drawing() || session_->due());
-    const double most = !session_ || !screen_.visible() ? .05 : .004;
+    const double most = (session_ && screen_.visible()) || control_ ? .004 : .05;
     screen_.wait(soon ? .001 : std::min(time, most), events_);
   }
 
@@ -167,6 +176,7 @@ class Window {
     if (wrong.empty()) return;
     sayError(wrong);
     message(wrong, 1e9);
+    if (control_) control_->loadFailed(wrong);
     if (!session_) failed_ = code;
   }
 
@@ -191,6 +201,7 @@ class Window {
     fresh->begin(width_, height_, place, fragment);
     mixer_.set({});
     const std::string saved = session_ ? session_->endSaving() : "";
+    if (control_) control_->detach();
     session_ = std::move(fresh); // ends the previous session
     failed_ = exitDone;
     first_ = true;
@@ -359,7 +370,10 @@ class Window {
                                                        : failed_;
     if (session_) session_->endSaving();
     const bool stopped = !session_ || session_->stop(.5);
-    if (stopped && !WorldLoader::working()) return code;
+    if (stopped && !WorldLoader::working()) {
+      control_.reset();
+      return code;
+    }
     picture::removeTemporary();
     std::fflush(nullptr);
     ::_exit(code);
@@ -374,7 +388,8 @@ class Window {
   WorldLoader loader_;
   std::ofstream record_;
   std::unique_ptr<PanelPainter> painter_;
-  std::unique_ptr<Session> session_; // null: no world has been loaded yet
+  std::unique_ptr<Session> session_;          // null: no world has been loaded yet
+  std::unique_ptr<control::Control> control_; // null: no program controls the world
   std::unique_ptr<Watched> watched_;
   picture::LivePicture picture_;
   std::vector<InputEvent> events_, input_;

@@ -15,7 +15,7 @@ A world has its own clock. The clock moves only when the program sets it:
 >>> for frame in world.animate(0, 10, fps=25): ...
 
 xvrml.rt is the renderer without VRML. xvrml.interop converts meshes and pictures to and from other
-packages.
+packages. xvrml.control controls a world that vv runs in another process.
 """
 import difflib as _difflib
 import importlib as _importlib
@@ -24,13 +24,14 @@ import warnings as _warnings
 from . import _arguments, _world
 from . import _xvrml
 from ._camera import Pinhole
+from ._live import LiveView
 from ._world import loads
 from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError,
                      Picture, RenderError, ViewpointInfo, Worker, World, load_node_plugins,
                      __version__)
 
 load = _arguments.explained(_xvrml.load)
-for _class in (World, Browser, Cluster, Film, Node, Picture):
+for _class in (World, Browser, Cluster, Film, Node, Picture, _xvrml.Viewer):
     _arguments.explain_class(_class)
 _world.complete(World, Node)
 
@@ -41,12 +42,12 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "Mesh", "Node", "ParseError",
-    "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Mesh", "Node",
+    "ParseError", "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
     "load_node_plugins", "loads", "__version__", *nodes.__all__
 ]
 
-_SUBMODULES = ("dask", "interop", "rt")
+_SUBMODULES = ("control", "dask", "interop", "notebook", "rt")
 
 
 def __getattr__(name):

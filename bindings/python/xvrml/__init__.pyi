@@ -25,6 +25,7 @@ import numpy.typing as npt
 
 from . import nodes as nodes
 from .nodes import *
+from .notebook import View as _View
 from .rt import Raycaster
 
 _Path = Union[str, "os.PathLike[str]"]
@@ -492,6 +493,12 @@ class World:
     ) -> Picture:
         ...
 
+    def view(self, size: Tuple[int, int] = ..., **options: Any) -> _View:
+        ...
+
+    def _repr_png_(self) -> Optional[bytes]:
+        ...
+
     def film(self,
              path: _Path,
              start: float,
@@ -617,6 +624,101 @@ class Browser(World):
         ...
 
     def load_inlines(self) -> int:
+        ...
+
+
+class LiveView:
+
+    raw: bool
+    on_wake: Optional[Callable[[], Any]]
+
+    def __init__(
+        self,
+        world: World,
+        size: Tuple[int, int] = ...,
+        *,
+        spp: Optional[int] = ...,
+        viewpoint: Union[None, str, int] = ...,
+        camera: Union[None, Sequence[Sequence[float]], npt.NDArray[Any]] = ...,
+        fit: bool = ...,
+        fov: Optional[float] = ...,
+        seed: int = ...,
+        threads: int = ...,
+        shadows: bool = ...,
+        colour: str = ...,
+        headlight: Union[str, bool] = ...,
+        depth: int = ...,
+        transport: str = ...,
+        clamp: float = ...,
+        multiply_textures: bool = ...,
+        up: Optional[str] = ...,
+        background: Union[None, str, "os.PathLike[str]", Sequence[float]] = ...,
+        isa: str = ...,
+    ) -> None:
+        ...
+
+    def step(self, now: Optional[float] = ...) -> Optional[float]:
+        ...
+
+    def look(self) -> Optional[npt.NDArray[np.uint8]]:
+        ...
+
+    def wait(self, timeout: float = ...) -> npt.NDArray[np.uint8]:
+        ...
+
+    def event(self, event: Dict[str, Any]) -> None:
+        ...
+
+    def resize(self, width: int, height: int) -> None:
+        ...
+
+    def close(self) -> None:
+        ...
+
+    def __enter__(self) -> LiveView:
+        ...
+
+    def __exit__(self, *exception: Any) -> None:
+        ...
+
+    @property
+    def world(self) -> World:
+        ...
+
+    @property
+    def is_open(self) -> bool:
+        ...
+
+    @property
+    def picture(self) -> Optional[npt.NDArray[np.uint8]]:
+        ...
+
+    @property
+    def is_finished(self) -> bool:
+        ...
+
+    @property
+    def facts(self) -> Dict[str, Any]:
+        ...
+
+    @property
+    def camera(self) -> Optional[npt.NDArray[np.float64]]:
+        ...
+
+    @property
+    def paused(self) -> bool:
+        ...
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        ...
+
+    @property
+    def visible(self) -> bool:
+        ...
+
+    @visible.setter
+    def visible(self, visible: bool) -> None:
         ...
 
 

@@ -145,6 +145,36 @@ def bounds(self):
     return np.array([np.min(corners, 0), np.max(corners, 0)]) if corners else None
 
 
+def view(self, size=(640, 480), **options):
+    """Returns a live view of the world for a notebook: a widget that shows the running world and
+    takes the mouse and the keys. The options are those of LiveView. Needs the package
+    jupyter_rfb."""
+    try:
+        from .notebook import View
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            f"world.view() needs the package {error.name}, which is not installed: pip install jupyter_rfb",
+            name=error.name) from error
+    return View(self, size, **options)
+
+
+_SMALL = dict(size=(320, 240), spp=16, time_limit=1)  # the picture of a world in a notebook
+
+
+def _repr_png_(self):
+    """Returns a small picture of the world, made anew after a change; None if there can be none
+    now."""
+    from ._xvrml import RenderError
+    known = self.__dict__.get("_small")
+    if known is None or known[0] != self._edits:
+        try:
+            picture = self.render(**_SMALL)
+        except RenderError:
+            return None
+        known = self.__dict__["_small"] = self._edits, picture._repr_png_()
+    return known[1]
+
+
 @contextlib.contextmanager
 def edit(self, field):
     """Gives write access to a copy of a field's numbers. The field is assigned when the block ends
@@ -162,7 +192,7 @@ def edit(self, field):
 
 
 def complete(world, node):
-    for function in (on, route, unroute, animate, film, raycaster):
+    for function in (on, route, unroute, animate, film, raycaster, view, _repr_png_):
         setattr(world, function.__name__, function)
     world.__reduce__ = _reduce
     world.bounds = bounds

@@ -18,7 +18,7 @@ namespace openrt {
 
 struct MotionInput {
   const Scene& scene;
-  const History& history;
+  const SceneHistory& history;
   const Flattened& flat; // with paths, unless there was no frame before
   const Survey& survey;
   const Accel& accel;

@@ -77,7 +77,16 @@ enum {
    * travelled. Normal and motion are those of the image, the name is that of the shape that is
    * seen, and the albedo is multiplied by what the mirrors and the glass let through. For callers
    * that rebuild pictures from few samples. It changes no other channel. */
-  RT_FOLLOW_IMAGES = 14
+  RT_FOLLOW_IMAGES = 14,
+  /* 0 (default) or 1: a picture with one sample per pixel takes it anywhere in the pixel, as chosen
+   * by the seed, and not in the middle. For callers that combine frames of several seeds. */
+  RT_JITTER = 15,
+  /* 1 (default) .. 4: light is followed in one pixel of each block of so many pixels each way. The
+   * others have RT_SAMPLES 0 and no colour unless they see the environment directly, but the
+   * channels of the first hit like all pixels. Consecutive seeds choose each pixel of a block in
+   * turn. For callers that rebuild pictures from few samples. Frames with error bars, a target
+   * error, a time limit or a transport of a plug-in follow light in every pixel. */
+  RT_LIGHT_STRIDE = 16
 };
 
 /* Light transports: how light is followed from surfaces whose shaders answer in lobes (openrts.h).

@@ -8,6 +8,7 @@
 #include "render/film/error.h"
 #include "render/film/light_image.h"
 #include "render/film/pilots.h"
+#include "render/path/light_stride.h"
 
 namespace openrt {
 namespace {
@@ -23,12 +24,13 @@ bool makesRounds(const edit::FrameSettingsT& frame) {
                              : frame.progressive && frame.samples >= fewestOfLeaves;
 }
 
-// Returns the number of light paths: as many as camera paths. If the number of camera paths is
+// Returns the number of light paths: as many as camera paths that get light. If the number of camera paths is
 // open, at most 64 per pixel.
 uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   constexpr uint32_t mostOfOpen = 64;
   const bool open = frame.targetError > 0 || frame.timeLimit > 0;
-  const double paths = double(frame.width) * frame.height *
+  const uint32_t stride = lightStrideOf(frame);
+  const double paths = double(frame.width) * frame.height / (stride * stride) *
                        (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
   return uint32_t(std::min(paths, 4e9));
 }
@@ -130,7 +132,7 @@ void FrameSchedule::giveBlock(Job& job, OutstandingJob out, uint32_t tile, uint3
   out.job.number = tile;
   out.job.first = from;
   out.job.count = blockFrom(from, end, largest);
-  out.job.centred = out.until == 1 && (pilot || !rounds_);
+  out.job.centred = out.until == 1 && !frame_.jitter && (pilot || !rounds_);
   if (pilot)
     out.job.replicates = replicatesOf(
         frame_, out.until, hash(frame_.seed, out.further ? furtherSeed + out.until : pilotSeed));

@@ -65,7 +65,8 @@ void Guides::begin(const Rays& camera) {
 }
 
 void Guides::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
-  visit(context, Coherence::coherent, wave, false, found);
+  intersectWave(context, Coherence::coherent, wave);
+  visit(context, wave, false, found);
 }
 
 void Guides::finish(PixelSamples& found) {
@@ -78,15 +79,14 @@ void Guides::finish(PixelSamples& found) {
     Wave wave;
     wave.rays.allocate(arena_, n);
     loadWave(queue_, 0, n, wave);
-    visit(context_, Coherence::incoherent, wave, surface >= mostSurfaces, found);
+    intersectWave(context_, Coherence::incoherent, wave);
+    visit(context_, wave, surface >= mostSurfaces, found);
   }
 }
 
 // last: what is hit is described, whatever it is.
-void Guides::visit(const StageContext& context, Coherence coherence, Wave& wave, bool last,
-                   PixelSamples& found) {
+void Guides::visit(const StageContext& context, Wave& wave, bool last, PixelSamples& found) {
   ArenaScope scope(arena_);
-  intersectWave(context, coherence, wave);
   for (const uint32_t lane : wave.missed) // the sky in a mirror has the tint of the mirror
     if (found.albedo[0] && wave.states.flagsOf(lane).deflected())
       openrt::store(load(wave.states.throughput, lane), found.albedo, wave.states.path[lane]);

@@ -29,8 +29,9 @@ class Guides {
 
   // Begins with the camera rays of a wave, by path. They must keep their place until finish().
   void begin(const Rays& camera);
-  // Describes the first hits of the camera rays, for frames without light. context: with the
-  // renderer, because shaders may request something from it.
+  // Describes the first hits of the camera rays, for frames and pixels without light. context: with
+  // the renderer, because shaders may request something from it. The wave lists the rays that
+  // missed until the arena is released.
   void describe(const StageContext& context, Wave& wave, PixelSamples& found);
   // Take over the first hit of a path if an image is to be followed there; else return false.
   // transmission: what `shade` has returned.
@@ -56,8 +57,7 @@ class Guides {
   };
   // What a guide ray does at a hit: it passes a boundary that has no effect, or follows an image.
   enum class Step : uint8_t { pass, image };
-  void visit(const StageContext& context, Coherence coherence, Wave& wave, bool last,
-             PixelSamples& found);
+  void visit(const StageContext& context, Wave& wave, bool last, PixelSamples& found);
   void describeBucket(const StageContext& context, const Points& points, const Bucket& bucket,
                       const PathStates& states, bool last, PixelSamples& found);
   bool findLead(const RtsBatch& batch, const Boundaries& boundaries, uint32_t i, Lead& lead) const;

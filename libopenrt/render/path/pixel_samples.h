@@ -16,6 +16,9 @@ struct PixelSamples { // all arrays are indexed by path
   // The first surface; null if the frame does not have the channel.
   float *normal[3] = {}, *albedo[3] = {}, *position[3] = {}, *motion[3] = {}, *depth = nullptr;
   uint32_t* name = nullptr;
+  // Pixels without light: 1 where the path has all of its light, because it leaves the scene at
+  // once. Null: all paths have theirs.
+  uint8_t* complete = nullptr;
   Guides* guides = nullptr; // RT_FOLLOW_IMAGES; null: first surfaces are recorded as they are
 
   // Allocates radiance and alpha, 0, of n paths. The first surfaces are not recorded.

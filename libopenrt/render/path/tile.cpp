@@ -6,9 +6,11 @@
 #include <bit>
 
 #include "render/lights/emitted.h"
+#include "render/lights/environment.h"
 #include "render/lights/lamps.h"
 #include "render/path/accumulate.h"
 #include "render/path/camera_rays.h"
+#include "render/path/light_stride.h"
 #include "render/surface/surface_shader.h"
 #include "shading/running.h"
 
@@ -26,10 +28,17 @@ void TileRenderer::begin(const Tile& tile) {
   tile_ = tile;
   pixels_.clear();
   places_.clear();
+  listPixels(tile, true);
+  lit_ = uint32_t(pixels_.size());
+  if (lightStride_ > 1) listPixels(tile, false);
+}
+
+void TileRenderer::listPixels(const Tile& tile, bool lit) {
   for (uint32_t by = tile.y0; by < tile.y1; by += 4)
     for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
       for (uint32_t y = by; y < std::min(by + 4, tile.y1); y++)
         for (uint32_t x = bx; x < std::min(bx + 4, tile.x1); x++) {
+          if (isLit(x, y, lightStride_, scene_.frame.seed) != lit) continue;
           pixels_.push_back(y * width_ + x);
           places_.push_back((y - tile.y0) * tile.width() + x - tile.x0);
         }
@@ -48,20 +57,27 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
   sums_ = sums;
   stop_ = &stop;
   ledger_.samples += samples;
-  const uint32_t most =
-      std::clamp(std::bit_floor(pathsInFlight / uint32_t(pixels_.size())), 1u, largestWave);
+  const auto all = uint32_t(pixels_.size());
+  return renderPixels({0, lit_, true}, first, samples) &&
+         renderPixels({lit_, all, false}, first, samples);
+}
+
+bool TileRenderer::renderPixels(const PixelRange& range, uint32_t first, uint32_t samples) {
+  if (range.count() == 0) return !stopped();
+  const uint32_t most = std::clamp(std::bit_floor(pathsInFlight / range.count()), 1u, largestWave);
   for (uint32_t s = first, end = first + samples; s < end;) {
     if (stopped()) return false;
     const uint32_t n = std::min(most, end - s);
-    renderWave(s, n);
+    renderWave(range, s, n);
     s += n;
   }
   return !stopped(); // a wave may have been interrupted
 }
 
-void TileRenderer::renderWave(uint32_t firstSample, uint32_t samples) {
+void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uint32_t samples) {
   ArenaScope scope(arena_);
-  const FilmSamples film{pixels_, width_, firstSample, samples, replicates_, centred_};
+  const auto pixels = std::span<const uint32_t>(pixels_).subspan(range.begin, range.count());
+  const FilmSamples film{pixels, width_, firstSample, samples, replicates_, centred_};
   const uint32_t n = film.count();
   PixelSamples found;
   found.allocate(arena_, n);
@@ -81,20 +97,30 @@ void TileRenderer::renderWave(uint32_t firstSample, uint32_t samples) {
     runTransportShader(wave.rays, found);
   } else {
     counters_.camera += n;
-    renderPaths(wave, found);
+    renderPaths(range.light, wave, found);
   }
-  addToPixels(found, firstSample, samples);
+  addToPixels(range, found, firstSample, samples);
 }
 
-void TileRenderer::renderPaths(Wave& wave, PixelSamples& found) {
+void TileRenderer::renderPaths(bool light, Wave& wave, PixelSamples& found) {
   guides_.begin(wave.rays);
   if (showsNoLight_) {
     guides_.describe(context_, wave, found);
+  } else if (!light) {
+    describe(wave, found);
   } else {
     if (scene_.frame.followImages) found.guides = &guides_;
     follow(wave, found);
   }
   guides_.finish(found);
+}
+
+// Finds what pixels without light see, and the light of the environment where they see it.
+void TileRenderer::describe(Wave& wave, PixelSamples& found) {
+  guides_.describe(context_, wave, found);
+  addEnvironment(context_, wave, unsampled_, found);
+  found.complete = arena_.takeZero<uint8_t>(wave.rays.count);
+  for (const uint32_t lane : wave.missed) found.complete[wave.states.path[lane]] = 1;
 }
 
 // Traces the rays of a wave, then the rays that they spawn, bounce by bounce. Rays are processed in
@@ -182,12 +208,19 @@ void TileRenderer::scatter(const Points& points, const Bucket& bucket, const Pat
   addSurface(batch, surface, boundaries, fogAt(context_, points, states), found);
 }
 
-void TileRenderer::addToPixels(const PixelSamples& found, uint32_t firstSample, uint32_t samples) {
+void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& found,
+                               uint32_t firstSample, uint32_t samples) {
   const float limit = scene_.frame.clamp;
-  for (size_t pixel = 0; pixel < pixels_.size(); pixel++) {
-    PixelSums& sums = sums_[places_[pixel]];
+  for (uint32_t pixel = 0; pixel < range.count(); pixel++) {
+    PixelSums& sums = sums_[places_[range.begin + pixel]];
     for (uint32_t s = 0; s < samples; s++) {
-      const size_t i = pixel * samples + s;
+      const uint32_t i = pixel * samples + s;
+      const bool first = firstSample + s == 0;
+      // A pixel without light has the surface of its first sample only.
+      if (found.complete && !found.complete[i]) {
+        if (first) addFirst(found, i, sums);
+        continue;
+      }
       float radiance[3] = {found.radiance[0][i], found.radiance[1][i], found.radiance[2][i]};
       for (float& r : radiance) {
         if (!(limit > 0 && r > limit)) continue;
@@ -207,19 +240,29 @@ void TileRenderer::addToPixels(const PixelSamples& found, uint32_t firstSample, 
             next - leaf_ >= replicates_.size())
           sums.closeReplicate();
       }
-      for (int k = 0; k < 3; k++) {
-        if (found.normal[k]) sums.normal[k] += found.normal[k][i];
-        if (found.albedo[k]) sums.albedo[k] += found.albedo[k][i];
-      }
-      if (firstSample + s) continue;
-      if (found.depth) sums.depth = found.depth[i];
-      if (found.position[0])
-        for (int k = 0; k < 3; k++) sums.position[k] = found.position[k][i];
-      if (found.motion[0])
-        for (int k = 0; k < 3; k++) sums.motion[k] = found.motion[k][i];
-      sums.name = has(RT_NAME) ? float(found.name[i]) : 0.0f;
+      if (first)
+        addFirst(found, i, sums);
+      else
+        addSurfaces(found, i, sums);
     }
   }
+}
+
+void TileRenderer::addSurfaces(const PixelSamples& found, uint32_t path, PixelSums& sums) {
+  for (int k = 0; k < 3; k++) {
+    if (found.normal[k]) sums.normal[k] += found.normal[k][path];
+    if (found.albedo[k]) sums.albedo[k] += found.albedo[k][path];
+  }
+}
+
+void TileRenderer::addFirst(const PixelSamples& found, uint32_t path, PixelSums& sums) {
+  addSurfaces(found, path, sums);
+  if (found.depth) sums.depth = found.depth[path];
+  if (found.position[0])
+    for (int k = 0; k < 3; k++) sums.position[k] = found.position[k][path];
+  if (found.motion[0])
+    for (int k = 0; k < 3; k++) sums.motion[k] = found.motion[k][path];
+  sums.name = has(RT_NAME) ? float(found.name[path]) : 0.0f;
 }
 
 } // namespace openrt

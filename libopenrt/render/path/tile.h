@@ -14,6 +14,7 @@
 #include "render/frame/tiles.h"
 #include "render/lights/unsampled_lights.h"
 #include "render/path/guides.h"
+#include "render/path/light_stride.h"
 #include "render/path/pixel_samples.h"
 #include "render/path/random_numbers.h"
 #include "render/path/spawn_rays.h"
@@ -46,15 +47,28 @@ class TileRenderer {
 
  private:
   void begin(const Tile& tile);
+  void listPixels(const Tile& tile, bool lit);
   bool stopped() const { return stop_->load(std::memory_order_relaxed); }
   bool has(uint32_t channel) const { return scene_.frame.channels & channel; }
 
-  void renderWave(uint32_t firstSample, uint32_t samples);
-  void renderPaths(Wave& wave, PixelSamples& found);
+  // Pixels of the tile with or without light, as positions in pixels_.
+  struct PixelRange {
+    uint32_t begin, end;
+    bool light;
+    uint32_t count() const { return end - begin; }
+  };
+  bool renderPixels(const PixelRange& range, uint32_t first, uint32_t samples);
+  void renderWave(const PixelRange& range, uint32_t firstSample, uint32_t samples);
+  void renderPaths(bool light, Wave& wave, PixelSamples& found);
+  void describe(Wave& wave, PixelSamples& found);
   void follow(Wave& wave, PixelSamples& found);
   void traceWave(Wave& wave, PixelSamples& found);
   void runTransportShader(const Rays& rays, PixelSamples& found);
-  void addToPixels(const PixelSamples& found, uint32_t firstSample, uint32_t samples);
+  void addToPixels(const PixelRange& range, const PixelSamples& found, uint32_t firstSample,
+                   uint32_t samples);
+  // Add what a path has found first: of any sample, of sample 0.
+  void addSurfaces(const PixelSamples& found, uint32_t path, PixelSums& sums);
+  void addFirst(const PixelSamples& found, uint32_t path, PixelSums& sums);
   CameraPaths pathsOf(const RtsBatch& batch) {
     return {batch, level_, samples_, unsampled_, ledger_, next_};
   }
@@ -82,12 +96,15 @@ class TileRenderer {
   RayCounters counters_;
   const StageContext context_{scene_, arena_, counters_, this};
   const bool showsNoLight_{showsNoLight(scene_.frame)};
+  const uint32_t lightStride_{lightStrideOf(scene_.frame)};
   Guides guides_{scene_, arena_, counters_};
   Ledger ledger_;
   UnsampledLights unsampled_{scene_, ledger_};
   Tile tile_;
-  // pixels_: y * width + x, in blocks of 4x4; places_: index in the tile, row by row.
+  // pixels_: y * width + x, in blocks of 4x4; places_: index in the tile, row by row. The first
+  // `lit_` of them get light, the others do not (RT_LIGHT_STRIDE).
   std::vector<uint32_t> pixels_, places_;
+  uint32_t lit_ = 0;
   std::span<PixelSums> sums_;
   Replicates replicates_;
   uint32_t leaf_ = 0; // first sample of the current leaf

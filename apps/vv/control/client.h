@@ -1,0 +1,35 @@
+// client.h: What the browser's thread knows about a client: its commands that wait, the numbers of
+// nodes that it has, and its subscriptions. [the browser's thread]
+#pragma once
+
+#include <deque>
+#include <map>
+#include <string>
+
+#include "control/mailbox.h"
+#include "control/node_numbers.h"
+#include "xvrml/browser.h"
+
+namespace vv::control {
+
+struct Client {
+  ClientId id = 0;
+  struct Waiting {
+    Letter letter;
+    uint64_t order = 0; // when it arrived, among those of all clients
+  };
+  std::deque<Waiting> waiting;
+  // The command under way, whose answer comes later; the next ones wait for it.
+  enum class Busy : uint8_t { no, rendering, loading } busy = Busy::no;
+  Letter underWay;
+  bool hasLeft = false;
+
+  NodeNumbers numbers;
+  struct Subscription {
+    xvrml::NodeRef node;
+    uint64_t number = 0; // of Browser::listen
+  };
+  std::map<std::string, Subscription> subscriptions; // by node and field as the client names them
+};
+
+} // namespace vv::control

@@ -1,0 +1,106 @@
+// command.h: The commands of the control channel, and their reader. A command is checked as far as
+// that is possible without a world: its members, their types and ranges. Values of fields stay
+// JSON until the field's type is known (field_json.h). [any thread]
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "control/json_line.h"
+
+namespace vv::control {
+
+// A node as a client names it: a DEF name of the world, or a number that the client was given.
+using NodeName = std::variant<std::string, uint64_t>;
+std::string shownNode(const NodeName& name);
+
+struct FieldName {
+  NodeName node;
+  std::string field;
+};
+
+struct Assignment {
+  FieldName to;
+  Json value;
+};
+
+struct Hello {};
+struct Get {
+  FieldName from;
+};
+struct Set {
+  std::vector<Assignment> values; // set in one step; at least one
+};
+struct Subscribe {
+  FieldName to;
+  bool on = true; // false: unsubscribe
+};
+struct Create {
+  std::string vrml;
+};
+struct ChangeRoots {
+  NodeName node;
+  bool add = true;
+};
+struct Release {
+  std::vector<uint64_t> nodes;
+};
+struct ChangeRoute {
+  FieldName from, to;
+  bool add = true;
+};
+struct Describe {
+  NodeName node;
+};
+struct ListNames {};
+struct ListViewpoints {};
+struct Bind {
+  std::string viewpoint; // a DEF name, a description or a number from 0
+};
+struct Load {
+  std::vector<std::string> urls;
+};
+struct Replace {
+  std::vector<NodeName> nodes;
+};
+struct Render {
+  std::optional<int> width, height, samples;
+  std::vector<std::string> channels; // empty: those of the command line
+  std::string file;                  // "": the answer holds the bytes
+  std::string format;                // its suffix; "": png, or that of the file
+};
+struct Time {
+  std::optional<bool> paused;
+  std::optional<double> skip; // seconds
+};
+struct Quit {};
+
+using Action =
+    std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute, Describe,
+                 ListNames, ListViewpoints, Bind, Load, Replace, Render, Time, Quit>;
+
+struct Command {
+  std::string id;     // the client's "id" as JSON text, for the answer; "": none
+  std::string name;   // "get", for messages
+  bool quiet = false; // no answer unless it fails
+  Action action;
+};
+
+// What the reader found: a command, or an error that is the answer.
+struct Line {
+  std::string id;
+  std::optional<Command> command;
+  std::string code, message; // without a command: why there is none
+};
+
+// Reads a line without its line feed. Never throws for anything that a client can send.
+Line readLine(std::string_view line, const Limits& allowed = limits);
+
+// Returns the answer to a command that failed, without a line feed.
+std::string errorAnswer(const std::string& id, std::string_view code, std::string_view message);
+
+} // namespace vv::control

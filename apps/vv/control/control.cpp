@@ -1,0 +1,309 @@
+#include "control/control.h"
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <map>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "control/client.h"
+#include "control/listener.h"
+#include "control/pictures_sent.h"
+#include "control/world_commands.h"
+#include "outputs.h"
+#include "report/describe.h"
+#include "report/messages.h"
+
+namespace vv::control {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int protocol = 1;
+// The longest time for the commands of one turn, so that pictures and input go on.
+constexpr std::chrono::milliseconds turn{50};
+
+KeyRing keysOf(const Options& options) {
+  return options.cluster.key.empty() ? KeyRing()
+                                     : readKeys(options.cluster.key, options.cluster.allow);
+}
+
+} // namespace
+
+struct Control::Impl {
+  const Options& options;
+  Host host;
+  Mailbox mailbox;
+  std::map<ClientId, Client> clients; // those that have sent something
+  uint64_t arrived = 0;               // letters so far
+
+  Session* session = nullptr;
+  uint64_t generation = 0; // of the session's browser
+  // The client whose picture is rendered or encoded; 0: none. Others wait for their turn.
+  ClientId renderer = 0;
+  uint32_t channels = 0; // of its picture
+  std::optional<std::future<Encoded>> encoding;
+
+  std::unique_ptr<Listener> listener; // destroyed first: its thread uses the mailbox
+
+  Impl(const Options& options, Host host)
+      : options(options), host(std::move(host)),
+        listener(listenAt(Place::parse(options.control), keysOf(options), mailbox)) {}
+
+  // --- Letters ---
+
+  void collect() {
+    while (std::optional<Letter> letter = mailbox.take()) {
+      Client& client = clients[letter->client];
+      client.id = letter->client;
+      if (letter->kind == Letter::Kind::left)
+        client.hasLeft = true;
+      else
+        client.waiting.push_back({std::move(*letter), ++arrived});
+    }
+  }
+
+  // Forgets clients that have left, with what they hold of the world. What they sent is done
+  // first.
+  void bury() {
+    for (auto at = clients.begin(); at != clients.end();) {
+      Client& client = at->second;
+      if (client.hasLeft && client.waiting.empty() && client.busy == Client::Busy::no) {
+        if (session) WorldCommands::unsubscribeAll(session->browser(), client);
+        at = clients.erase(at);
+      } else {
+        ++at;
+      }
+    }
+  }
+
+  // Returns the client whose command arrived first, of those that may go on.
+  Client* next(bool hasWorld, bool isLoading) {
+    Client* first = nullptr;
+    for (auto& [id, client] : clients) {
+      if (client.waiting.empty() || client.busy != Client::Busy::no) continue;
+      const Line& line = client.waiting.front().letter.line;
+      if (!hasWorld && isLoading && line.command && needsWorld(*line.command)) continue;
+      if (line.command && std::holds_alternative<Render>(line.command->action) && renderer != 0)
+        continue;
+      if (!first || client.waiting.front().order < first->waiting.front().order) first = &client;
+    }
+    return first;
+  }
+
+  static bool needsWorld(const Command& command) {
+    return !std::holds_alternative<Hello>(command.action) &&
+           !std::holds_alternative<Load>(command.action) &&
+           !std::holds_alternative<Quit>(command.action);
+  }
+
+  // --- Answers ---
+
+  void answer(const Letter& letter, const std::string& result) {
+    const Line& line = letter.line;
+    if (!line.command || !line.command->quiet)
+      send(letter.client, line.id,
+           fmt::format(R"({{"id":{},"result":{}}})", line.id.empty() ? "null" : line.id, result));
+    mailbox.processed(letter.client, letter.bytes);
+  }
+
+  void send(ClientId client, const std::string& id, const std::string& line) {
+    if (line.size() <= limits.unreadBytes) return mailbox.send(client, line);
+    mailbox.send(client, errorAnswer(id, "limit",
+                                     fmt::format("the answer has more than unreadBytes={} bytes",
+                                                 limits.unreadBytes)));
+  }
+
+  void refuse(const Letter& letter, std::string_view code, std::string_view message) {
+    std::string text(message);
+    // name the command where the message does not
+    if (letter.line.command && !message.starts_with(letter.line.command->name + ":"))
+      text = fmt::format("{}: {}", letter.line.command->name, message);
+    mailbox.send(letter.client, errorAnswer(letter.line.id, code, text));
+    mailbox.processed(letter.client, letter.bytes);
+  }
+
+  // Answers the command that a client waits for.
+  void finish(Client& client, const std::string& result, std::string_view code,
+              const std::string& failure) {
+    client.busy = Client::Busy::no;
+    const Letter letter = std::exchange(client.underWay, {});
+    if (failure.empty())
+      answer(letter, result);
+    else
+      refuse(letter, code, failure);
+  }
+
+  void tellAll(const std::string& line) {
+    for (const auto& [id, client] : clients) mailbox.send(id, line);
+  }
+
+  // --- Commands ---
+
+  // Does the first command of a client.
+  void doOne(Client& client) {
+    Letter letter = std::move(client.waiting.front().letter);
+    client.waiting.pop_front();
+    const Line& line = letter.line;
+    if (!line.command) return refuse(letter, line.code, line.message);
+    try {
+      perform(client, letter);
+    } catch (const CommandError& error) {
+      refuse(letter, error.code, error.what());
+    } catch (const Failure& failure) {
+      refuse(letter, "file", failure.text);
+    } catch (const std::bad_alloc&) {
+      refuse(letter, "limit", "not enough memory");
+    } catch (const std::exception& error) { refuse(letter, "failed", error.what()); }
+  }
+
+  void perform(Client& client, Letter& letter) {
+    const Command& command = *letter.line.command;
+    if (needsWorld(command) && !session)
+      throw CommandError("world", "no world is loaded; \"load\" loads one");
+    if (std::holds_alternative<Hello>(command.action)) {
+      answer(letter, hello());
+    } else if (std::holds_alternative<Quit>(command.action)) {
+      answer(letter, "null");
+      host.quit();
+    } else if (const auto* load = std::get_if<Load>(&command.action)) {
+      if (load->urls.empty()) throw CommandError("command", "load: url: the array is empty");
+      for (auto& [id, other] : clients)
+        if (other.busy == Client::Busy::loading)
+          finish(other, "", "world", "another client loads another world");
+      host.open(load->urls);
+      client.busy = Client::Busy::loading;
+      client.underWay = std::move(letter);
+    } else if (const auto* render = std::get_if<Render>(&command.action)) {
+      beginPicture(*render);
+      renderer = client.id;
+      client.busy = Client::Busy::rendering;
+      client.underWay = std::move(letter);
+    } else {
+      answer(letter, WorldCommands(*session, client, mailbox).perform(command));
+      noticeOtherWorld();
+    }
+  }
+
+  std::string hello() const {
+    return fmt::format(R"({{"program":"vv","version":{},"protocol":{},"world":{}}})",
+                       jsonText(version()), protocol,
+                       session ? jsonText(session->browser().world().path) : "null");
+  }
+
+  // --- Pictures ---
+
+  void beginPicture(const Render& render) {
+    static_cast<void>(formatOf(render));
+    channels = channelsOf(render, options.render.channels);
+    if (!render.file.empty()) protectFilesOf(session->browser().world(), render.file);
+    Still still;
+    still.width = render.width.value_or(options.render.width);
+    still.height = render.height.value_or(options.render.height);
+    still.samples = render.samples.value_or(options.render.samples);
+    still.channels = channels;
+    session->requestStill(still);
+  }
+
+  void followPicture() {
+    if (renderer == 0) return;
+    Client& client = clients.at(renderer); // busy clients stay
+    if (encoding) {
+      if (encoding->wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+      const Encoded encoded = encoding->get();
+      encoding.reset();
+      renderer = 0;
+      return finish(client, encoded.result, "render", encoded.failure);
+    }
+    std::optional<StillAnswer> still = session ? session->takeStill() : std::nullopt;
+    if (!still) return;
+    if (!still->failure.empty()) {
+      renderer = 0;
+      return finish(client, "", "render", still->failure);
+    }
+    encoding = encode(std::move(still->picture), channels,
+                      std::get<Render>(client.underWay.line.command->action));
+  }
+
+  // --- Worlds ---
+
+  void attach(Session* fresh) {
+    if (session == fresh) return;
+    session = fresh;
+    if (!session) return;
+    generation = session->browser().generation();
+    for (auto& [id, client] : clients)
+      if (client.busy == Client::Busy::loading)
+        finish(client, jsonText(session->browser().world().path), "", "");
+    tellWorld();
+  }
+
+  // A client or a Script may have replaced the nodes of the world.
+  void noticeOtherWorld() {
+    if (!session || session->browser().generation() == generation) return;
+    generation = session->browser().generation();
+    tellWorld();
+  }
+
+  void tellWorld() {
+    tellAll(fmt::format(R"({{"event":"world","world":{}}})",
+                        jsonText(session->browser().world().path)));
+  }
+
+  void detach() {
+    if (renderer != 0 && !encoding)
+      finish(clients.at(std::exchange(renderer, 0)), "", "render",
+             "the world was replaced before the picture was finished");
+    for (auto& [id, client] : clients) {
+      if (session) WorldCommands::unsubscribeAll(session->browser(), client);
+      client.numbers.releaseAll();
+    }
+    session = nullptr;
+  }
+
+  bool serve(Session* current, bool isLoading) {
+    collect();
+    if (current && !current->isFree()) return false;
+    attach(current);
+    noticeOtherWorld();
+    followPicture();
+    const Clock::time_point end = Clock::now() + turn;
+    while (Client* client = next(session != nullptr, isLoading)) {
+      doOne(*client);
+      if (Clock::now() > end) break;
+    }
+    bury();
+    return session && session->stillWaits();
+  }
+};
+
+Control::Control(const Options& options, Host host)
+    : impl_(std::make_unique<Impl>(options, std::move(host))) {
+  say("vv: control: listening at " + impl_->listener->address());
+}
+
+Control::~Control() { impl_->detach(); }
+
+bool Control::serve(Session* session, bool isLoading) { return impl_->serve(session, isLoading); }
+
+void Control::detach() { impl_->detach(); }
+
+void Control::loadFailed(const std::string& why) {
+  for (auto& [id, client] : impl_->clients)
+    if (client.busy == Client::Busy::loading) impl_->finish(client, "", "world", why);
+}
+
+void Control::wait(double seconds) { impl_->mailbox.wait(seconds); }
+
+bool Control::isBusy() const {
+  return std::any_of(impl_->clients.begin(), impl_->clients.end(), [](const auto& one) {
+    return !one.second.waiting.empty() || one.second.busy != Client::Busy::no;
+  });
+}
+
+} // namespace vv::control

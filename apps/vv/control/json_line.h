@@ -1,0 +1,34 @@
+// json_line.h: Reads one line of text as JSON, within limits, and quotes texts. [any thread]
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "control/limits.h"
+
+namespace vv::control {
+
+using Json = nlohmann::json;
+
+// Why a line cannot be obeyed. The codes are listed in docs/control.md.
+struct CommandError : std::runtime_error {
+  CommandError(std::string errorCode, const std::string& message)
+      : runtime_error(message), code(std::move(errorCode)) {}
+  std::string code; // "syntax", "command", "node", "field", "value", "limit", ...
+};
+
+// Reads a line that holds one JSON object. Throws CommandError: "syntax" if it is no JSON, holds
+// text that is not UTF-8 or a number beyond the range of a double, or if an object has a member
+// twice; "limit" if it is too deep or has too many values.
+Json readJsonLine(std::string_view line, const Limits& allowed = limits);
+
+// Returns a text as a JSON string. Bytes that are not UTF-8 become U+FFFD.
+std::string jsonText(std::string_view text);
+
+// Returns the beginning of a value, for messages.
+std::string shownJson(const Json& value);
+
+} // namespace vv::control

@@ -1,0 +1,83 @@
+#include "control/pictures_sent.h"
+
+#include <exception>
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "libpicture/files/atomic_file.h"
+#include "pictures.h"
+
+namespace vv::control {
+
+namespace {
+
+Encoded encoded(const picture::Picture& picture, uint32_t channels, const Render& render) {
+  try {
+    const picture::Format& format = formatOf(render);
+    const std::string bytes = format.encode(wantedPart(picture, channels));
+    const std::string facts =
+        fmt::format(R"("format":{},"width":{},"height":{})", jsonText(format.suffixes[0]),
+                    picture.width, picture.height);
+    if (render.file.empty())
+      return {fmt::format(R"({{{},"data":"{}"}})", facts, base64(bytes)), ""};
+    picture::writeFile(render.file, bytes);
+    return {fmt::format(R"({{{},"file":{}}})", facts, jsonText(render.file)), ""};
+  } catch (const std::bad_alloc&) {
+    return {"", "not enough memory for the picture"};
+  } catch (const std::exception& error) { return {"", error.what()}; }
+}
+
+} // namespace
+
+const picture::Format& formatOf(const Render& render) {
+  const picture::Format* format = !render.format.empty() ? picture::formatNamed(render.format)
+                                  : render.file.empty()  ? picture::formatNamed("png")
+                                                         : picture::formatOf(render.file);
+  if (format) return *format;
+  throw CommandError("command",
+                     fmt::format("render: {}: one of {} was expected, not {}",
+                                 render.format.empty() ? "file: a suffix of a format" : "format",
+                                 picture::formatSuffixes(),
+                                 shownJson(render.format.empty() ? render.file : render.format)));
+}
+
+uint32_t channelsOf(const Render& render, uint32_t usual) {
+  if (render.channels.empty()) return usual;
+  uint32_t channels = 0;
+  for (const std::string& name : render.channels) {
+    const picture::Channel* channel = picture::findChannel(name);
+    if (!channel) {
+      std::string known;
+      for (const picture::Channel& one : picture::channelTable())
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", one.name);
+      throw CommandError("command", fmt::format("render: channels: one of {} was expected, not {}",
+                                                known, shownJson(name)));
+    }
+    channels |= channel->bit;
+  }
+  return channels;
+}
+
+std::future<Encoded> encode(picture::Picture picture, uint32_t channels, const Render& render) {
+  return std::async(std::launch::async, [picture = std::move(picture), channels, render] {
+    return encoded(picture, channels, render);
+  });
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t three = 0; // 24 bits; missing bytes are 0
+    const size_t there = std::min<size_t>(3, bytes.size() - i);
+    for (size_t k = 0; k < 3; ++k)
+      three = three << 8 | (k < there ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k) text += k <= there ? letters[three >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+} // namespace vv::control

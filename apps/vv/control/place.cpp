@@ -1,0 +1,55 @@
+#include "control/place.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "options/values.h"
+
+namespace vv::control {
+
+namespace {
+
+[[noreturn]] void refuse(std::string_view text, std::string_view why) {
+  throw UsageError(fmt::format("HOST:PORT, :PORT or unix:PATH was expected, not \"{}\": {}",
+                               text.substr(0, 200), why));
+}
+
+} // namespace
+
+Place Place::parse(std::string_view text) {
+  constexpr std::string_view scheme = "unix:";
+  constexpr size_t longestPath = 107; // sockaddr_un
+  Place place;
+  if (text.starts_with(scheme)) {
+    place.path = text.substr(scheme.size());
+    if (place.path.empty()) refuse(text, "the path is missing");
+    if (place.path.size() > longestPath)
+      refuse(text, fmt::format("the path has more than {} bytes", longestPath));
+    if (place.path.find('\0') != place.path.npos) refuse(text, "the path contains a zero byte");
+    return place;
+  }
+  const size_t colon = text.rfind(':');
+  if (colon == text.npos) refuse(text, "the port is missing; 0 is any free one");
+  std::string_view host = text.substr(0, colon), digits = text.substr(colon + 1);
+  if (host.starts_with('[') && host.ends_with(']'))
+    host = host.substr(1, host.size() - 2);
+  else if (host.find(':') != host.npos)
+    refuse(text, "write [ADDRESS]:PORT for IPv6");
+  for (const char c : host)
+    if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f)
+      refuse(text, "it contains blanks or invisible characters");
+  const auto [end, error] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), place.port);
+  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+    refuse(text, "a port is a number from 0 to 65535");
+  place.host = host.empty() ? "127.0.0.1" : host;
+  return place;
+}
+
+std::string Place::text(uint16_t withPort) const {
+  if (isPath()) return "unix:" + path;
+  return fmt::format("{}:{}", host.find(':') == host.npos ? host : "[" + host + "]", withPort);
+}
+
+} // namespace vv::control

@@ -1,0 +1,131 @@
+// socket_listener.cpp: Listens with plain TCP or unix sockets. One thread waits for all of them.
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <list>
+#include <memory>
+#include <new>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "control/connection.h"
+#include "control/listener.h"
+#include "control/wake_up.h"
+
+namespace vv::control {
+
+namespace {
+
+double steadySeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Tells whether the other end of a unix socket belongs to this user, or to root. The folder may be
+// open to others.
+bool isOurs(int fd) {
+  ucred who{};
+  socklen_t size = sizeof who;
+  return ::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &size) == 0 &&
+         (who.uid == ::geteuid() || who.uid == 0);
+}
+
+class SocketListener final : public Listener {
+ public:
+  SocketListener(int fd, const Place& place, uint16_t port, Mailbox& mailbox)
+      : fd_(fd), place_(place), port_(port), mailbox_(mailbox), thread_([this] { run(); }) {}
+
+  ~SocketListener() override {
+    ending_ = true;
+    wake_->call();
+    thread_.join();
+    for (const auto& connection : connections_) connection->work(); // the last answers
+    connections_.clear();
+    ::close(fd_);
+    if (place_.isPath()) ::unlink(place_.path.c_str());
+  }
+
+  std::string address() const override { return place_.text(port_); }
+
+ private:
+  void run() {
+    while (!ending_) {
+      try {
+        step();
+      } catch (const std::bad_alloc&) { connections_.clear(); } // the clients see that they are cut
+    }
+  }
+
+  void step() {
+    constexpr int idle = 1000, soon = 50; // milliseconds
+    std::vector<pollfd> polled{{wake_->fd(), POLLIN, 0}, {fd_, POLLIN, 0}};
+    bool ending = false; // a connection that was cut waits for its end
+    for (const auto& connection : connections_) {
+      const bool reads = connection->wantsToRead(), writes = connection->wantsToWrite();
+      // a closed socket would wake the thread for ever while its commands wait for the world
+      polled.push_back({reads || writes ? connection->fd() : -1,
+                        short((reads ? POLLIN : 0) | (writes ? POLLOUT : 0)), 0});
+      ending = ending || connection->isEnding();
+    }
+    if (::poll(polled.data(), polled.size(), ending ? soon : idle) < 0) return;
+    if (polled[0].revents) wake_->clear();
+    size_t i = 2;
+    for (const auto& connection : connections_) {
+      const short events = polled[i++].revents;
+      if ((events & (POLLIN | POLLHUP | POLLERR)) && connection->wantsToRead()) connection->read();
+      connection->work();
+    }
+    const double now = steadySeconds();
+    connections_.remove_if([&](const auto& connection) { return connection->hasEnded(now); });
+    if (polled[1].revents) accept();
+  }
+
+  void accept() {
+    const int fd = ::accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd < 0) {
+      // out of file descriptors: do not ask again at once
+      if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM)
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      return;
+    }
+    std::string why;
+    ClientId client = 0;
+    const bool ours = !place_.isPath() || isOurs(fd);
+    if (!ours)
+      why = "this socket belongs to another user";
+    else
+      client = mailbox_.join([wake = wake_] { wake->call(); }, why);
+    if (client == 0) {
+      const std::string text = errorAnswer("", ours ? "limit" : "refused", why) + "\n";
+      static_cast<void>(!::send(fd, text.data(), text.size(), MSG_NOSIGNAL));
+      ::close(fd);
+      return;
+    }
+    const int on = 1; // answers must not wait for further ones
+    if (!place_.isPath()) ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    connections_.push_back(std::make_unique<Connection>(fd, client, mailbox_));
+  }
+
+  const int fd_;
+  const Place place_;
+  const uint16_t port_;
+  Mailbox& mailbox_;
+  std::shared_ptr<WakeUp> wake_ = std::make_shared<WakeUp>();
+  std::atomic<bool> ending_{false};
+  std::list<std::unique_ptr<Connection>> connections_;
+  std::thread thread_; // the last member, because it uses the others
+};
+
+} // namespace
+
+std::unique_ptr<Listener> listenPlain(int fd, const Place& place, uint16_t port, Mailbox& mailbox) {
+  return std::make_unique<SocketListener>(fd, place, port, mailbox);
+}
+
+} // namespace vv::control

@@ -1,0 +1,163 @@
+#include "control/unattended.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "control/control.h"
+#include "libpicture/files/atomic_file.h"
+#include "options/shader_text.h"
+#include "report/cluster_report.h"
+#include "report/messages.h"
+#include "report/problems.h"
+#include "session/session.h"
+#include "session/world_loader.h"
+#include "signals.h"
+#include "xvrml/node_plugin.h"
+
+namespace vv::control {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Unattended {
+ public:
+  explicit Unattended(const Options& options)
+      : options_(options), problems_(options_),
+        control_(
+            std::make_unique<Control>(options_, Host{[this](const std::vector<std::string>& urls) {
+                                                       open({urls, "", {}});
+                                                     },
+                                                     [this] { ended_ = true; }})) {
+    if (!options_.cameraShader.empty())
+      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
+                                        options_.render.shaderPath);
+  }
+
+  int run() {
+    deferInterrupt(true, 1);
+    if (!options_.input.empty()) open({{options_.input}, "", {}});
+    constexpr double shortest = .002; // while something is under way that tells nobody of its end
+    double next = 0;
+    while (!ended_ && !interrupted()) {
+      const bool busy = control_->isBusy() || loader_.busy() || (session_ && !session_->resting());
+      const double rest = std::max(0.0, next - seconds());
+      control_->wait(busy ? std::min(rest, shortest) : rest);
+      takeWorld();
+      if (seconds() >= next) {
+        advance();
+        next = std::max(next + 1 / options_.fps, seconds());
+      }
+      if (session_) session_->look(picture_);
+      if (control_->serve(session_.get(), loader_.busy()))
+        next = std::min(next, seconds() + shortest);
+      report();
+    }
+    return end();
+  }
+
+ private:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  void advance() {
+    if (!session_) return;
+    try {
+      session_->advance(seconds());
+    } catch (const std::exception& error) { sayError(error.what()); }
+  }
+
+  void open(LoadRequest request) {
+    request.options = options_.load;
+    loader_.begin(std::move(request));
+  }
+
+  void takeWorld() {
+    if (session_ && !session_->resting()) return; // the old session cannot end yet
+    LoadAnswer answer;
+    if (!loader_.take(answer)) return;
+    std::string wrong = std::move(answer.error);
+    int code = exitInput;
+    if (answer.world) {
+      try {
+        begin(std::move(answer.world), answer.fragment);
+      } catch (const Failure& failure) {
+        wrong = failure.text;
+        code = failure.code;
+      } catch (const UsageError& error) {
+        wrong = error.what();
+        code = exitUsage;
+      } catch (const std::exception& error) { wrong = error.what(); }
+    }
+    if (wrong.empty()) return;
+    sayError(wrong);
+    control_->loadFailed(wrong);
+    if (hadWorld_ || options_.input.empty()) return;
+    failed_ = code; // the world of the command line cannot be used
+    ended_ = true;
+  }
+
+  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+    Session::Callbacks calls;
+    calls.onAction = [](const InputEvent&, Action) {}; // nobody presses keys
+    calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) {
+      open({urls, base, {}});
+    };
+    auto fresh =
+        std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), nullptr);
+    if (options_.strict && Problems::any(fresh->browser().world()))
+      throw Failure{exitProblems, "the world is not used, because of --strict"};
+    fresh->setWatched(false);
+    fresh->begin(options_.render.width, options_.render.height, {}, fragment);
+    control_->detach();
+    session_ = std::move(fresh); // ends the previous session
+    hadWorld_ = true;
+  }
+
+  void report() {
+    if (options_.render.cluster)
+      for (const std::string& line : clusterMessageLines(options_.render.cluster->takeMessages(),
+                                                         options_.verbose, options_.quiet))
+        say(line);
+    if (session_ && session_->resting()) static_cast<void>(session_->takeMessage());
+  }
+
+  // Ends the process. Reading a world and building geometry cannot be cancelled; in those cases the
+  // process exits without cleanup.
+  int end() {
+    const int code = interrupted() ? exitInterrupted : failed_;
+    const bool stopped = !session_ || session_->stop(.5);
+    if (stopped && !WorldLoader::working()) {
+      control_.reset();
+      return code;
+    }
+    picture::removeTemporary();
+    std::fflush(nullptr);
+    ::_exit(code);
+  }
+
+  Options options_;
+  Problems problems_;
+  WorldLoader loader_;
+  std::unique_ptr<Session> session_; // null: no world has been loaded yet
+  std::unique_ptr<Control> control_; // refers to nodes of the session's world
+  picture::LivePicture picture_;
+  const Clock::time_point start_ = Clock::now();
+  int failed_ = exitDone; // exit code of a world that could not be loaded
+  bool ended_ = false, hadWorld_ = false;
+};
+
+} // namespace
+
+int runUnattended(const Options& options) {
+  for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
+  Unattended unattended(options);
+  return unattended.run();
+}
+
+} // namespace vv::control
