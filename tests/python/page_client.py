@@ -99,8 +99,7 @@ class Shown:
         assert (self.width, self.height) == (self.facts["width"], self.facts["height"])
 
     def at(self, x, y):
-        return self.image.getpixel(
-            (int((x + 1) / 2 * self.width), int((1 - y) / 2 * self.height)))
+        return self.image.getpixel((int((x + 1) / 2 * self.width), int((1 - y) / 2 * self.height)))
 
 
 class Refused(Exception):
@@ -247,7 +246,8 @@ class Page:
 
     def told(self, kind, count=1):
         """Returns the last text of a kind, once there are so many."""
-        return wait_for(lambda: self.of(kind)[count - 1:], lambda: (kind, self.texts, self.closed))[-1]
+        return wait_for(lambda: self.of(kind)[count - 1:], lambda:
+                        (kind, self.texts, self.closed))[-1]
 
     def of(self, kind):
         return [text for text in self.texts if text["type"] == kind]

@@ -29,8 +29,9 @@ def open_page(browser, server):
 
 
 def first_picture(browser):
-    browser.until(lambda: browser.script("return document.getElementById('picture').dataset.picture"),
-                  "a picture")
+    browser.until(
+        lambda: browser.script("return document.getElementById('picture').dataset.picture"),
+        "a picture")
 
 
 def pixel(browser, x, y):
@@ -197,9 +198,8 @@ def test_a_lost_connection_comes_back(browser, serve):
     keep(browser, "serve-lost")
     again = serve("world.wrl", "--spp", 1, "--port", server.port)
     assert again.port == server.port
-    browser.until(
-        lambda: browser.script("return document.body.dataset.connection") == "connected",
-        "the connection")
+    browser.until(lambda: browser.script("return document.body.dataset.connection") == "connected",
+                  "the connection")
     until_pixel(browser, -0.3, 0, red)  # a new process shows the world from its beginning
     assert browser.text("#lost") == ""
 
@@ -231,7 +231,6 @@ def test_a_moving_world_is_shown(browser, serve):
     until_state(browser, lambda s: s.get("facts", [""])[0].startswith("preview"), "a preview")
     seen = {browser.script("return document.getElementById('picture').dataset.picture")}
     browser.until(
-        lambda: seen.add(
-            browser.script("return document.getElementById('picture').dataset.picture")) or len(
-                seen) > 5, "pictures")
+        lambda: seen.add(browser.script("return document.getElementById('picture').dataset.picture")
+                        ) or len(seen) > 5, "pictures")
     keep(browser, "serve-moving")
