@@ -14,10 +14,11 @@ using Purpose = picture::LiveFrame::Purpose;
 constexpr double settlingTime = 0.35;
 
 // Tells which light a world has, as the engine chose its transport.
-Pacing::Light lightOf(const RTstats& stats) {
+Pacing::Light lightOf(const RTstats& stats, bool rebuilt) {
   const bool direct =
       stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
-  return stats.cameraRays > 0 && direct ? Pacing::Light::direct : Pacing::Light::sampled;
+  if (stats.cameraRays > 0 && direct) return Pacing::Light::direct;
+  return rebuilt ? Pacing::Light::sparse : Pacing::Light::sampled;
 }
 
 bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
@@ -48,7 +49,7 @@ bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
 bool PictureLoop::isSettled(double now) const {
   if (motion_ == Motion::samples) return true;
   if (phase_ == Phase::settling) return now >= settlingEnds_;
-  return lightOf(facts_.stats) == Pacing::Light::direct && frame_.width >= width_ &&
+  return lightOf(facts_.stats, true) == Pacing::Light::direct && frame_.width >= width_ &&
          frame_.height >= height_;
 }
 
@@ -164,7 +165,8 @@ picture::LiveFrame PictureLoop::stillOf(const Pilot& pilot) const {
 FrameSize PictureLoop::sizeOf(Phase phase) {
   const int samples = options_.render.samples;
   if (phase == Phase::settling) return pacing_.settle(width_, height_, samples);
-  return pacing_.next(width_, height_, phase == Phase::moving, samples, lightOf(facts_.stats));
+  return pacing_.next(width_, height_, phase == Phase::moving, samples,
+                      lightOf(facts_.stats, motion_ == Motion::rebuilt));
 }
 
 void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
@@ -181,6 +183,7 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   frame.width = frame_.width;
   frame.height = frame_.height;
   frame.samples = frame_.samples;
+  frame.lightStride = frame_.lightStride;
   frame.purpose = phase == Phase::refining     ? Purpose::still
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
@@ -252,8 +255,8 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
     still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {
-    pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
-                 picture.overhead, picture.samples, picture.rebuilding);
+    pacing_.took({picture.width, picture.height, 1, picture.lightStride}, picture.seconds,
+                 picture.alone, picture.overhead, picture.samples, picture.rebuilding);
     facts_.stats = picture.stats;
     facts_.map = picture.map;
   }
