@@ -166,7 +166,7 @@ constexpr Rule rules[] = {
     {[](const Options& o) { return o.noWindow && o.control.empty(); },
      "--no-window needs --control (-o makes a picture without a window)"},
     {[](const Options& o) { return !o.control.empty() && !o.opensWindow(); },
-     "--control cannot be used with -o, --check, --write or a list"},
+     "--control cannot be used with -o, vv serve, --check, --write or a list"},
     {[](const Options& o) {
        return o.noWindow && (!o.inputScript.empty() || !o.recordInput.empty() || o.watch);
      },

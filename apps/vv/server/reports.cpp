@@ -26,7 +26,6 @@ void Reports::notify(uint32_t view, const std::string& text, double ends) {
 void Reports::beginAnew() {
   told_.clear();
   notices_.clear();
-  viewpoints_.clear(); // they hold nodes of the old world
   hurry();
 }
 
@@ -62,7 +61,7 @@ std::string Reports::stateOf(const Page& page, double now) {
   state.role = page.role;
   state.pages = pages_.count();
   for (size_t i = 0; i < viewpoints_.size(); ++i)
-    if (viewpoints_[i].node.get() == pilot.viewpoint()) state.viewpoint = int(i);
+    if (viewpoints_[i] == pilot.viewpoint()) state.viewpoint = int(i);
   state.hand = page.role != Page::Role::follower && pilot.overSensor();
   state.bottom = bottomOf(page, now);
   state.facts = overlayLines(session.facts(page.view), session.pilot().paused(), OverlayLevel::all);
@@ -72,8 +71,10 @@ std::string Reports::stateOf(const Page& page, double now) {
 void Reports::tell(double now, bool changes, Host& host) {
   if (now < next_ || pages_.count() == 0) return;
   takeMessages(now);
-  viewpoints_ = world_.session().browser().viewpoints();
-  const std::string viewpoints = viewpointsText(viewpoints_);
+  const std::vector<xvrml::ViewpointName> list = world_.session().browser().viewpoints();
+  viewpoints_.clear();
+  for (const xvrml::ViewpointName& one : list) viewpoints_.push_back(one.node.get());
+  const std::string viewpoints = viewpointsText(list);
   for (const auto& [number, page] : pages_.all()) {
     Told& told = told_[number];
     if (told.viewpoints != viewpoints)

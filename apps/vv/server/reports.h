@@ -46,9 +46,9 @@ class Reports {
   Pages& pages_;
   ServedWorld& world_;
   std::map<uint64_t, Told> told_;
-  std::map<uint32_t, Notice> notices_; // by view
-  std::vector<xvrml::ViewpointName> viewpoints_;
-  double next_ = 0; // time of the next report
+  std::map<uint32_t, Notice> notices_;         // by view
+  std::vector<const xvrml::Node*> viewpoints_; // for comparison; they may be gone
+  double next_ = 0;                            // time of the next report
 };
 
 } // namespace vv::server
