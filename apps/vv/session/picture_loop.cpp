@@ -20,8 +20,8 @@ bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
 
 } // namespace
 
-PictureLoop::PictureLoop(xvrml::Browser& browser, const Options& options)
-    : browser_(browser), options_(options), renderer_(browser, options.render),
+PictureLoop::PictureLoop(SharedRenderer& shared, const Options& options, uint32_t viewer)
+    : shared_(shared), renderer_(shared.live), options_(options), viewer_(viewer),
       pacing_(options.fps) {}
 
 void PictureLoop::resize(int width, int height) {
@@ -33,7 +33,7 @@ void PictureLoop::resize(int width, int height) {
 
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
-         browser_.hasChanges() || pilot.headlight() != headlight_ ||
+         shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
@@ -45,8 +45,19 @@ bool PictureLoop::isSettled(double now) const {
          frame_.width >= width_ && frame_.height >= height_;
 }
 
+bool PictureLoop::isInterrupted() const {
+  return isRefining() && still_ != Progress::finished && shared_.cancellations() != cancellations_;
+}
+
+PictureLoop::Urgency PictureLoop::urgency(const Pilot& pilot, const Fit& fit) const {
+  if (width_ <= 0) return Urgency::nothing;
+  if (cancelled_ || isOutdated(pilot, fit)) return Urgency::change;
+  return isRefining() && !isInterrupted() ? Urgency::nothing : Urgency::quality;
+}
+
 // Moving frames overlap where the renderer permits it. A frame of what has stopped is cancelled
-// instead, but not before the first picture, so that it comes early.
+// instead, but not before the first picture, so that it comes early. That holds for the frames of
+// other viewers, too.
 PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double now,
                                           Need need) const {
   const RendererState state = renderer_.state();
@@ -56,13 +67,15 @@ PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double 
   case RendererState::rendering:
   case RendererState::ready:
     if (!outdated) return Decision::wait;
-    if (isMoving()) return state == RendererState::ready ? following : Decision::wait;
-    return hasShown() || fit.isWanted() ? Decision::cancel : Decision::wait;
+    if (shared_.isMoving()) return state == RendererState::ready ? following : Decision::wait;
+    return shared_.viewer() != viewer_ || hasShown() || fit.isWanted() ? Decision::cancel
+                                                                       : Decision::wait;
   case RendererState::idle: break;
   }
   if (outdated || cancelled_) return following;
-  if (isRefining() && !(isStillLost_ && need == Need::stillPicture)) return Decision::wait;
-  if (need == Need::stillPicture) return Decision::refine;
+  if (isRefining() && !isInterrupted() && !(isStillLost_ && need == Need::stillPicture))
+    return Decision::wait;
+  if (isInterrupted() || need == Need::stillPicture) return Decision::refine;
   return isSettled(now) ? Decision::refine : Decision::settle;
 }
 
@@ -73,7 +86,7 @@ void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now, Need need) {
   switch (decide(isOutdated(pilot, fit), fit, now, need)) {
   case Decision::wait: break;
   case Decision::cancel:
-    renderer_.cancel();
+    shared_.cancel();
     cancelled_ = true;
     break;
   case Decision::move: start(Phase::moving, pilot, fit, now); break;
@@ -96,7 +109,7 @@ bool PictureLoop::copyStill(picture::Picture& picture) {
 }
 
 bool PictureLoop::isFinished(const Pilot& pilot) const {
-  return isRefining() && still_ == Progress::finished && isIdle() && !browser_.hasChanges() &&
+  return isRefining() && still_ == Progress::finished && !shared_.isOutdated(world_) &&
          equal(pilot.camera(), camera_);
 }
 
@@ -117,12 +130,28 @@ picture::View PictureLoop::viewOf(const Pilot& pilot, const Fit& fit) const {
   return view;
 }
 
-void PictureLoop::followHeadlight(const Pilot& pilot) {
-  if (headlight_ == pilot.headlight()) return;
-  headlight_ = pilot.headlight();
+xvrml::MapOptions::Headlight PictureLoop::headlightOf(const Pilot& pilot) const {
   const auto on = xvrml::MapOptions::Headlight::on, off = xvrml::MapOptions::Headlight::off;
-  const auto wanted = !headlight_ ? options_.render.headlight : *headlight_ ? on : off;
+  const std::optional<bool> chosen = pilot.headlight();
+  return !chosen ? options_.render.headlight : *chosen ? on : off;
+}
+
+// The renderer still has the headlight of its last frame, which may have been another viewer's.
+void PictureLoop::followHeadlight(const Pilot& pilot) {
+  headlight_ = pilot.headlight();
+  const auto wanted = headlightOf(pilot);
   renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
+}
+
+picture::LiveFrame PictureLoop::stillOf(const Pilot& pilot) const {
+  picture::LiveFrame frame;
+  frame.view.shader = options_.view.shader;
+  frame.view.viewer = pilot.camera();
+  frame.width = width_;
+  frame.height = height_;
+  frame.samples = options_.render.samples;
+  frame.viewer = viewer_;
+  return frame;
 }
 
 picture::FrameSize PictureLoop::sizeOf(Phase phase) {
@@ -150,11 +179,14 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   frame.purpose = phase == Phase::refining     ? Purpose::still
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
+  frame.viewer = viewer_;
   still_ = Progress::none;
   isStillLost_ = false;
   cancelled_ = false;
+  cancellations_ = shared_.cancellations();
   if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
-  number_ = renderer_.start(frame);
+  number_ = shared_.start(frame, moving);
+  world_ = shared_.world();
   phase_ = phase;
   fit.begin();
 }
@@ -172,8 +204,8 @@ picture::View PictureLoop::stillViewOf(const Pilot& pilot, double aspect) const 
 
 void PictureLoop::advanceStill(const Pilot& pilot, Fit& fit) {
   if (taker_.isRendering()) return;
-  if (!isIdle()) {
-    renderer_.cancel();
+  if (!shared_.isIdle()) {
+    shared_.cancel();
     cancelled_ = true;
     return;
   }
@@ -195,12 +227,13 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
   return true;
 }
 
-bool PictureLoop::look(picture::LivePicture& picture) {
-  if (taker_.isRendering()) {
-    taker_.look();
-    return false;
-  }
-  if (!renderer_.look(picture)) return false;
+bool PictureLoop::lookForStill() {
+  if (!taker_.isRendering()) return false;
+  taker_.look();
+  return true;
+}
+
+bool PictureLoop::note(const picture::LivePicture& picture) {
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();
   shown_ = Shown::something;
