@@ -97,7 +97,7 @@ void makePreview(RenderSettings& settings, Purpose purpose, int lightStride, uin
   settings.progressive = false;
   settings.error = settings.timeLimit = 0;
   const auto seed = uint32_t(settings.quality.whole(RT_SEED)) + uint32_t(number);
-  settings.quality.set(RT_SEED, int32_t(seed));
+  settings.quality.set(RT_SEED, int32_t(seed & 0x7fffffff));
   settings.quality.set(RT_JITTER, 1);
   if (!rebuilt) return;
   settings.quality.set(RT_FOLLOW_IMAGES, 1);

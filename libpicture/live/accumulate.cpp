@@ -16,8 +16,9 @@ constexpr float mostFrames = 16;     // older light is not worth what has change
 constexpr float recentFrames = 5;    // frames in Accumulated::recent
 constexpr float recentSpread = 2;    // standard deviations around it that are allowed
 constexpr float noiseMemory = 0.96f; // of Accumulated::noise from frame to frame
-constexpr float firmFrames = 4;      // from here on the variance over time is trusted
-constexpr float certainty = 3;       // a change counts from sqrt(3) standard deviations on
+constexpr float forgottenNoise = 0.02f;
+constexpr float firmFrames = 4; // from here on the variance over time is trusted
+constexpr float certainty = 3;  // a change counts from sqrt(3) standard deviations on
 
 // Up to four pixels of the frame before, and their weights, which sum up to 1 or are all 0.
 struct Taps {
@@ -158,7 +159,10 @@ void recallRow(int y, const Moment& before, Moment& now, Work& work) {
     const Lanes3 sample = limited(load(work.light, i), load(work.limit.data() + i));
     store(where(known, sample.x - light.x), work.change.data() + i);
     store(where(known, light.x), work.level.data() + i);
-    store(where(known, load(work.variance.data() + i)), work.doubt.data() + i);
+    // The variance over time counts, too: a frame that happens to lack light looks less noisy.
+    const Lanes mean = load(fresh.mean.data() + i);
+    const Lanes overTime = load(fresh.square.data() + i) - mean * mean;
+    store(where(known, larger(load(work.variance.data() + i), overTime)), work.doubt.data() + i);
 
     float lanes[Layout::widest];
     store(where(both(taps.found, both(some, present(x, layout.width))), all(1)), lanes);
@@ -209,8 +213,9 @@ void accumulateRow(int y, Moment& now, Work& work) {
     const Lanes lost = absolute(brighter) / larger(absolute(brighter) + level, all(1e-20f));
 
     const Lanes count = smaller(load(sums.frames.data() + i) * (one - lost) + one, all(mostFrames));
+    const Lanes remembered = load(sums.noise.data() + i) * all(noiseMemory);
     const Lanes noise =
-        larger(load(work.noise.data() + i), load(sums.noise.data() + i) * all(noiseMemory));
+        larger(load(work.noise.data() + i), where(remembered > all(forgottenNoise), remembered));
     const Lanes trust = smaller(noise + noise, one); // 0: free of noise, nothing to average
     const Lanes part = larger(one / count, one - trust),
                 recentPart = larger(part, all(1 / recentFrames));
@@ -264,12 +269,14 @@ void boundRow(int y, Moment& now) {
       }
     const Lanes per = one / larger(pixels, one);
     const Lanes3 mean = sum * per, light = load(sums.light, i);
-    const auto bounded = [&](Lanes v, Lanes m, Lanes s) {
+    const Lanes3 own = load(sums.recent, i); // is always allowed
+    const auto bounded = [&](Lanes v, Lanes r, Lanes m, Lanes s) {
       const Lanes spread = all(recentSpread) * hn::Sqrt(larger(s * per - m * m, zero));
-      return clamped(v, m - spread, m + spread);
+      return clamped(v, smaller(m - spread, r), larger(m + spread, r));
     };
-    const Lanes3 inside{bounded(light.x, mean.x, squares.x), bounded(light.y, mean.y, squares.y),
-                        bounded(light.z, mean.z, squares.z)};
+    const Lanes3 inside{bounded(light.x, own.x, mean.x, squares.x),
+                        bounded(light.y, own.y, mean.y, squares.y),
+                        bounded(light.z, own.z, mean.z, squares.z)};
     store(inside, sums.light, i);
   }
 }

@@ -15,6 +15,7 @@ namespace HWY_NAMESPACE {
 
 constexpr float lumaSpread = 4;  // standard deviations at which a luma is e times less alike
 constexpr float normalFall = 64; // about the power of the cosine between normals
+constexpr float earlySpread = 6; // more of them in the first frame
 constexpr float otherName = 3;   // another shape on the same plane is exp(3) times less alike
 constexpr float bspline[3] = {3.0f / 8, 1.0f / 4, 1.0f / 16};
 
@@ -41,7 +42,11 @@ void filterRow(const FilterPass& pass, int y, const Moment& now) {
           spread + (load(variance + i + k * stride - 1) + load(variance + i + k * stride + 1)) *
                        all(0.0625f);
     }
-    const Lanes perLuma = one / (all(lumaSpread) * hn::Sqrt(spread) + all(1e-6f));
+    // Few samples are rarely like their mean: most lack the light that some have. Judged by what
+    // they have in common with their neighbours they would lose it.
+    const Lanes frames = larger(load(now.accumulated.frames.data() + i), one);
+    const Lanes tolerance = all(lumaSpread) + all(earlySpread) / frames;
+    const Lanes perLuma = one / (tolerance * hn::Sqrt(spread) + all(1e-6f));
     const Lanes slope = absolute(slopeX) + absolute(slopeY);
     const Lanes scale = now.projection.parallel ? one : absolute(ownNear);
     const Lanes perNear =

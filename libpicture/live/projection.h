@@ -21,7 +21,7 @@ struct Projection {
   float perHeight = 0;
   // False: a shader makes the rays, or the numbers are no camera. Nothing can be projected then.
   bool usable = false;
-  FrameCamera camera;
+  FrameCamera camera{}; // all 0, which no camera is
 };
 
 // Tells whether nothing of two cameras differs, so that what does not move stays where it is.

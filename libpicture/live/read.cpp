@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-constexpr float darkest = 0.03f;       // albedo below that is not divided by
+constexpr float darkest = 0.03f, lightest = 1e3f; // limits of what illumination is divided by
 constexpr float brightest = 1e8f;      // illumination is at most that, so that squares are finite
 constexpr float environmentFar = 1e6f; // nearness of the environment in parallel views
 
@@ -147,9 +147,10 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
     const Lanes name = select(some, amount(given), all(emptyName));
     store(select(present(x, w), name, all(outsideName)), guides.name.data() + i);
 
-    const Lanes3 known = amounts(colour), floor{all(darkest), all(darkest), all(darkest)};
-    const Lanes3 surface{larger(known.x, floor.x), larger(known.y, floor.y),
-                         larger(known.z, floor.z)};
+    const Lanes3 known = amounts(colour);
+    const Lanes least = all(darkest), greatest = all(lightest);
+    const Lanes3 surface{clamped(known.x, least, greatest), clamped(known.y, least, greatest),
+                         clamped(known.z, least, greatest)};
     // The environment has an albedo only in mirrors and behind glass.
     const Mask coloured = either(hit, known.x + known.y + known.z > zero);
     const Lanes3 albedo = select(coloured, surface, Lanes3{one, one, one});

@@ -49,8 +49,8 @@ class Reconstruction {
   // reset() and on nothing else, in particular not on the number of threads. `frame` must have the
   // planes of previewChannels, RT_RGBA and RT_SAMPLES; otherwise std::invalid_argument is thrown.
   //
-  // A frame without noise (accumulated frames and neighbours of the same surface agree) comes out
-  // unchanged but for anti-aliasing over time.
+  // A frame without noise comes out unchanged but for anti-aliasing over time: its illumination is
+  // that of neighbours on the same surface, or of straight edges.
   Picture add(const Picture& frame, const FrameCamera& camera);
 
   // Facts about the last add(), for reports and tests.

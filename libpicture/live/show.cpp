@@ -17,10 +17,9 @@ HWY_BEFORE_NAMESPACE();
 namespace picture::live {
 namespace HWY_NAMESPACE {
 
-// Frames that are accumulated where nothing moves; and elsewhere, where each frame blurs a little
-// what was accumulated.
-constexpr float framesAtRest = 256;
-constexpr float framesMoving = 4;
+// Frames that are accumulated: where nothing moves; where nothing moves but light is sampled, which
+// may change; and elsewhere, where each frame blurs a little what was accumulated.
+constexpr float framesAtRest = 256, framesSampled = 16, framesMoving = 4;
 // A neighbour that is nearer by this fraction is another surface.
 constexpr float nearer = 0.05f;
 
@@ -62,13 +61,23 @@ inline Past pastOf(const Moment& before, const Moment& now, const Work& work, si
   return past;
 }
 
-// The colours that 3 x 3 pixels allow.
+// Returns where the surface was seen in the frame before, or those of most pixels around it: thin
+// things are met by few samples, and what was hidden appears in larger parts.
+inline Mask wasSeen(const Plane& frames, size_t i, ptrdiff_t stride) {
+  Lanes seen = all(0);
+  for (ptrdiff_t dy = -1; dy <= 1; dy++)
+    for (ptrdiff_t dx = -1; dx <= 1; dx++)
+      seen = seen + where(load(frames.data() + i + size_t(dy * stride + dx)) > all(1), all(1));
+  return either(load(frames.data() + i) > all(1), seen >= all(5));
+}
+
+// The colours that the pixels around allow.
 struct Range {
   Lanes low, high;
 };
 
-inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask rests) {
-  const float* middle = colour.data() + i;
+// In motion, 3 x 3 pixels bound the colours, the closer the more they are alike.
+inline Range rangeInMotion(const float* middle, ptrdiff_t stride) {
   Lanes least = load(middle), most = least, sum = all(0), squares = all(0);
   for (ptrdiff_t dy = -1; dy <= 1; dy++)
     for (ptrdiff_t dx = -1; dx <= 1; dx++) {
@@ -78,11 +87,32 @@ inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask r
       sum = sum + v;
       squares = squares + v * v;
     }
-  const Lanes mean = sum * all(1.0f / 9), more = all(0.5f) * (most - least);
+  const Lanes mean = sum * all(1.0f / 9);
   const Lanes spread = hn::Sqrt(larger(squares * all(1.0f / 9) - mean * mean, all(0)));
-  // At rest a pixel may keep more than its neighbours happen to show in this frame.
-  return {select(rests, least - more, larger(least, mean - spread)),
-          select(rests, most + more, smaller(most, mean + spread))};
+  return {larger(least, mean - spread), smaller(most, mean + spread)};
+}
+
+// At rest, a pixel may keep what it showed in other frames, though its neighbours happen not to
+// show it now: 5 x 5 pixels, and half of their range more.
+inline Range rangeAtRest(const float* middle, ptrdiff_t stride) {
+  Lanes least = load(middle), most = least;
+  for (ptrdiff_t dy = -2; dy <= 2; dy++)
+    for (ptrdiff_t dx = -2; dx <= 2; dx++) {
+      const Lanes v = load(middle + dy * stride + dx);
+      least = smaller(least, v);
+      most = larger(most, v);
+    }
+  const Lanes more = all(0.5f) * (most - least);
+  return {least - more, most + more};
+}
+
+inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask rests) {
+  const float* middle = colour.data() + i;
+  if (hn::AllTrue(Tag(), rests)) return rangeAtRest(middle, stride);
+  const Range moving = rangeInMotion(middle, stride);
+  if (hn::AllFalse(Tag(), rests)) return moving;
+  const Range resting = rangeAtRest(middle, stride);
+  return {select(rests, resting.low, moving.low), select(rests, resting.high, moving.high)};
 }
 
 // Weights of four pixels in a row for a place `part` behind the second (E. Catmull, R. Rom, "A
@@ -163,22 +193,24 @@ void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now,
     const Past past = pastOf(before, now, work, i);
     const Mask inside = both(both(past.x > all(-0.5f), past.x < all(float(old.width) - 0.5f)),
                              both(past.y > all(-0.5f), past.y < all(float(old.height) - 0.5f)));
-    // A surface that is seen for the first time has no colours yet. A pixel without a sample takes
-    // what was there.
+    // A pixel without a sample takes what was there.
     const Mask known = both(both(inside, present(x, layout.width)),
-                            either(hn::Not(some), load(now.accumulated.frames.data() + i) > one));
+                            either(hn::Not(some), wasSeen(now.accumulated.frames, i, stride)));
     const Shown shown = recallShown(before, past, known);
 
     const Mask rests =
         both(both(known, same), both(past.x == countFrom(x), past.y == all(float(y))));
-    const Lanes frames =
-        smaller(shown.frames + one, select(rests, all(framesAtRest), all(framesMoving)));
+    // Where light is sampled, what was shown is filtered light, and may lag behind it.
+    const Mask quiet = both(rests, load(now.accumulated.noise.data() + i) <= all(0));
+    const Lanes most =
+        select(quiet, all(framesAtRest), select(rests, all(framesSampled), all(framesMoving)));
+    const Lanes frames = smaller(shown.frames + one, most);
     const Lanes part = one / frames;
     const Lanes3 fresh = load(work.colour, i);
     const Lanes3 bounded{
-        mixed(shown.colour.x, fresh.x, rangeAround(work.colour.x, i, stride, rests), part),
-        mixed(shown.colour.y, fresh.y, rangeAround(work.colour.y, i, stride, rests), part),
-        mixed(shown.colour.z, fresh.z, rangeAround(work.colour.z, i, stride, rests), part)};
+        mixed(shown.colour.x, fresh.x, rangeAround(work.colour.x, i, stride, quiet), part),
+        mixed(shown.colour.y, fresh.y, rangeAround(work.colour.y, i, stride, quiet), part),
+        mixed(shown.colour.z, fresh.z, rangeAround(work.colour.z, i, stride, quiet), part)};
     const Lanes zero = all(0);
     const Lanes3 kept{larger(shown.colour.x, zero), larger(shown.colour.y, zero),
                       larger(shown.colour.z, zero)};
@@ -191,7 +223,8 @@ void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now,
     loadQuadruples(frame.rgba + 4 * first, x, layout.width, alpha);
     float out[4 * Layout::widest];
     hn::StoreInterleaved4(colour.x, colour.y, colour.z,
-                          select(both(some, isFinite(alpha)), alpha, one), Tag(), out);
+                          select(both(some, isFinite(alpha)), clamped(alpha, zero, one), one),
+                          Tag(), out);
     std::copy_n(out, 4 * std::min(width(), layout.width - x), rgba + 4 * x);
   }
 }

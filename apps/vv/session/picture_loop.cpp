@@ -13,14 +13,6 @@ using Purpose = picture::LiveFrame::Purpose;
 // and accumulate, so that the still picture begins over a good one.
 constexpr double settlingTime = 0.35;
 
-// Tells which light a world has, as the engine chose its transport.
-Pacing::Light lightOf(const RTstats& stats, bool rebuilt) {
-  const bool direct =
-      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
-  if (stats.cameraRays > 0 && direct) return Pacing::Light::direct;
-  return rebuilt ? Pacing::Light::sparse : Pacing::Light::sampled;
-}
-
 bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
   return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy &&
          a.height == b.height && a.shader == b.shader;
@@ -49,8 +41,8 @@ bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
 bool PictureLoop::isSettled(double now) const {
   if (motion_ == Motion::samples) return true;
   if (phase_ == Phase::settling) return now >= settlingEnds_;
-  return lightOf(facts_.stats, true) == Pacing::Light::direct && frame_.width >= width_ &&
-         frame_.height >= height_;
+  return picture::lightOf(facts_.stats, true) == picture::Pacing::Light::direct &&
+         frame_.width >= width_ && frame_.height >= height_;
 }
 
 bool PictureLoop::isInterrupted() const {
@@ -162,11 +154,11 @@ picture::LiveFrame PictureLoop::stillOf(const Pilot& pilot) const {
   return frame;
 }
 
-FrameSize PictureLoop::sizeOf(Phase phase) {
+picture::FrameSize PictureLoop::sizeOf(Phase phase) {
   const int samples = options_.render.samples;
   if (phase == Phase::settling) return pacing_.settle(width_, height_, samples);
   return pacing_.next(width_, height_, phase == Phase::moving, samples,
-                      lightOf(facts_.stats, motion_ == Motion::rebuilt));
+                      picture::lightOf(facts_.stats, motion_ == Motion::rebuilt));
 }
 
 void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "libpicture/live.h"
+#include "libpicture/live/pacing.h"
 #include "options/options.h"
 #include "session/fit.h"
-#include "session/pacing.h"
 #include "session/pilot.h"
 #include "session/shared_renderer.h"
 #include "session/still.h"
@@ -107,7 +107,7 @@ class PictureLoop {
   Decision decide(bool outdated, const Fit& fit, double now, Need need) const;
   bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
-  FrameSize sizeOf(Phase phase);
+  picture::FrameSize sizeOf(Phase phase);
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
   picture::View stillViewOf(const Pilot& pilot, double aspect) const;
   void advanceStill(const Pilot& pilot, Fit& fit);
@@ -118,7 +118,7 @@ class PictureLoop {
   const Options& options_;
   const uint32_t viewer_;
   StillTaker taker_{renderer_};
-  Pacing pacing_;
+  picture::Pacing pacing_;
   int width_ = 0, height_ = 0; // size of the window in pixels
   Motion motion_ = Motion::rebuilt;
 
@@ -133,7 +133,7 @@ class PictureLoop {
   uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
-  FrameSize frame_;
+  picture::FrameSize frame_;
   // Start of the last frame; end of settling; smoothed time between frames while something moves.
   double lastStart_ = 0, settlingEnds_ = 0, gap_ = 0;
   picture::LivePicture facts_; // state of the picture, without the pixels

@@ -1,9 +1,9 @@
-#include "session/pacing.h"
+#include "libpicture/live/pacing.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace vv {
+namespace picture {
 
 namespace {
 
@@ -139,4 +139,11 @@ FrameSize Pacing::settle(int width, int height, int samples) const {
   return frame;
 }
 
-} // namespace vv
+Pacing::Light lightOf(const RTstats& stats, bool rebuilt) {
+  const bool direct =
+      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
+  if (stats.cameraRays > 0 && direct) return Pacing::Light::direct;
+  return rebuilt ? Pacing::Light::sparse : Pacing::Light::sampled;
+}
+
+} // namespace picture

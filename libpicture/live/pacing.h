@@ -1,11 +1,14 @@
 // pacing.h: Chooses the size and the samples of the next picture. While something moves, the frame
 // rate is kept; otherwise the picture becomes as good as possible. Only the resolution is reduced,
-// never the light transport. Pure arithmetic without clock, thread or window. Owned by a session.
+// never the light transport. Pure arithmetic without clock, thread or window. Owned by whoever
+// starts the frames.
 #pragma once
 
 #include <cstdint>
 
-namespace vv {
+#include "openrt/openrt.h"
+
+namespace picture {
 
 struct FrameSize {
   int width = 1, height = 1, samples = 1;
@@ -66,4 +69,8 @@ class Pacing {
   bool moving_ = false;
 };
 
-} // namespace vv
+// Tells which light a world has from the statistics of its last frame, as the engine chose its
+// transport. rebuilt: previews of it are rebuilt.
+Pacing::Light lightOf(const RTstats& stats, bool rebuilt);
+
+} // namespace picture
