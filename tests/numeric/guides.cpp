@@ -377,7 +377,6 @@ TEST_F(GuidedPictures, WithSparseLightHaveLightInTurn) {
       Look dense{.samples = 1,
                  .follow = 1,
                  .channels = RT_RGBA | RT_SAMPLES | features,
-                 .jitter = true,
                  .seed = 1000 + seed};
       Look sparse = dense;
       sparse.stride = stride;
