@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "libpicture/live/accumulate.cpp"
 #include <hwy/foreach_target.h>
 
-#include "libpicture/live/lanes-inl.h"
+#include "libpicture/live/past-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace picture::live {
@@ -20,107 +20,6 @@ constexpr float forgottenNoise = 0.02f;
 constexpr float firmFrames = 4; // from here on the variance over time is trusted
 constexpr float certainty = 3;  // a change counts from sqrt(3) standard deviations on
 
-// Up to four pixels of the frame before, and their weights, which sum up to 1 or are all 0.
-struct Taps {
-  Index index[4];
-  Lanes weight[4];
-  Mask found;
-
-  Lanes of(const Plane& plane) const {
-    Lanes sum = gather(plane.data(), index[0]) * weight[0];
-    for (int k = 1; k < 4; k++) sum = sum + gather(plane.data(), index[k]) * weight[k];
-    return sum;
-  }
-  Lanes3 of(const Plane3& planes) const { return {of(planes.x), of(planes.y), of(planes.z)}; }
-};
-
-// The surface of pixels of this frame, as it is expected in the frame before.
-struct Expected {
-  Lanes name, nearness, tolerance;
-  Lanes3 normal;
-
-  Mask matches(const Guides& guides, Index at) const {
-    const Mask near = absolute(gather(guides.nearness.data(), at) - nearness) <= tolerance;
-    const Mask same = gather(guides.name.data(), at) == name;
-    return both(both(near, same), dot(gather(guides.normal, at), normal) > all(0.6f));
-  }
-};
-
-inline Expected expectedAt(const Moment& now, const Moment& before, const Work& work, size_t i) {
-  const Guides& guides = now.guides;
-  const Lanes nearness = load(work.pastNearness.data() + i);
-  const Lanes slope =
-      absolute(load(guides.slopeX.data() + i)) + absolute(load(guides.slopeY.data() + i));
-  const Lanes scale = before.projection.parallel ? all(1) : nearness;
-  const float enlarged = float(now.layout.width) / float(std::max(1, before.layout.width));
-  return {load(guides.name.data() + i), nearness,
-          slope * all(1.5f * std::max(1.0f, enlarged)) + scale * all(0.01f),
-          load(guides.normal, i)};
-}
-
-// Weights of the four pixels around (x, y), those of other surfaces left out.
-inline Taps tapsAround(const Moment& before, const Expected& expected, Lanes x, Lanes y) {
-  const Layout& layout = before.layout;
-  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
-                           both(y > all(-1), y < all(float(layout.height))));
-  const Lanes atX = where(inside, x), atY = where(inside, y);
-  const Lanes left = hn::Floor(atX), top = hn::Floor(atY);
-  const Lanes partX = atX - left, partY = atY - top;
-  const IndexTag tag;
-  const auto stride = int32_t(layout.stride);
-  const Index corner =
-      (hn::ConvertTo(tag, top) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
-      hn::ConvertTo(tag, left) + hn::Set(tag, Layout::border);
-  const Lanes acrossX[2] = {all(1) - partX, partX}, acrossY[2] = {all(1) - partY, partY};
-  Taps taps;
-  Lanes sum = all(0);
-  for (int k = 0; k < 4; k++) {
-    taps.index[k] = corner + hn::Set(tag, (k / 2) * stride + k % 2);
-    const Mask valid = both(inside, expected.matches(before.guides, taps.index[k]));
-    taps.weight[k] = where(valid, acrossX[k % 2] * acrossY[k / 2]);
-    sum = sum + taps.weight[k];
-  }
-  taps.found = sum > all(0.01f);
-  const Lanes per = where(taps.found, all(1) / sum);
-  for (Lanes& weight : taps.weight) weight = weight * per;
-  return taps;
-}
-
-// Gives pixels whose surface is in none of the four taps the nearest one that shows it, among the
-// nine around (x, y): at edges the random place of the sample decides which surface a pixel shows.
-inline void searchAround(const Moment& before, const Expected& expected, Lanes x, Lanes y,
-                         Taps& taps) {
-  const Layout& layout = before.layout;
-  const Lanes half = all(0.5f);
-  const Mask inside = both(both(x > all(-1), x < all(float(layout.width))),
-                           both(y > all(-1), y < all(float(layout.height))));
-  const Mask missing = hn::AndNot(taps.found, inside);
-  if (hn::AllFalse(Tag(), missing)) return;
-  const Lanes middleX = hn::Floor(where(missing, x) + half),
-              middleY = hn::Floor(where(missing, y) + half);
-  const IndexTag tag;
-  const auto stride = int32_t(layout.stride);
-  const Index middle =
-      (hn::ConvertTo(tag, middleY) + hn::Set(tag, Layout::border)) * hn::Set(tag, stride) +
-      hn::ConvertTo(tag, middleX) + hn::Set(tag, Layout::border);
-  Lanes least = all(1e30f);
-  Index best = middle;
-  for (int dy = -1; dy <= 1; dy++)
-    for (int dx = -1; dx <= 1; dx++) {
-      const Index at = middle + hn::Set(tag, dy * stride + dx);
-      const Lanes awayX = middleX + all(float(dx)) - x, awayY = middleY + all(float(dy)) - y;
-      const Lanes distance = awayX * awayX + awayY * awayY;
-      const Mask better =
-          both(both(missing, expected.matches(before.guides, at)), distance < least);
-      least = select(better, distance, least);
-      best = hn::IfThenElse(hn::RebindMask(tag, better), at, best);
-    }
-  const Mask met = least < all(1e30f);
-  taps.index[0] = hn::IfThenElse(hn::RebindMask(tag, met), best, taps.index[0]);
-  taps.weight[0] = select(met, all(1), taps.weight[0]);
-  taps.found = either(taps.found, met);
-}
-
 inline Lanes3 mixed(const Lanes3& old, const Lanes3& fresh, Lanes part) {
   return old + (fresh - old) * part;
 }
@@ -132,7 +31,7 @@ inline Lanes3 limited(const Lanes3& light, Lanes limit) {
   return light * select(light.x > limit, scale, all(1));
 }
 
-void recallRow(int y, const Moment& before, Moment& now, Work& work) {
+void recallRow(const Reading& reading, int y, const Moment& before, Moment& now, Work& work) {
   const Layout& layout = now.layout;
   const Accumulated& old = before.accumulated;
   Accumulated& fresh = now.accumulated;
@@ -140,8 +39,10 @@ void recallRow(int y, const Moment& before, Moment& now, Work& work) {
   double found = 0;
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
-    const Lanes pastX = load(work.pastX.data() + i), pastY = load(work.pastY.data() + i);
-    const Expected expected = expectedAt(now, before, work, i);
+    const Lanes pastX = load(reading.pastX.data() + i), pastY = load(reading.pastY.data() + i);
+    const Lanes slope =
+        absolute(load(now.guides.slopeX.data() + i)) + absolute(load(now.guides.slopeY.data() + i));
+    const Expected expected = expectedAt(now, before, reading, slope, i);
     Taps taps = tapsAround(before, expected, pastX, pastY);
     searchAround(before, expected, pastX, pastY, taps);
     const Lanes3 light = taps.of(old.light);
@@ -156,7 +57,7 @@ void recallRow(int y, const Moment& before, Moment& now, Work& work) {
     const Mask some = load(now.guides.name.data() + i) >= all(0);
     const Lanes noisy = load(work.noise.data() + i) + load(fresh.noise.data() + i);
     const Mask known = both(both(taps.found, some), noisy > all(0));
-    const Lanes3 sample = limited(load(work.light, i), load(work.limit.data() + i));
+    const Lanes3 sample = limited(load(reading.light, i), load(work.limit.data() + i));
     store(where(known, sample.x - light.x), work.change.data() + i);
     store(where(known, light.x), work.level.data() + i);
     // The variance over time counts, too: a frame that happens to lack light looks less noisy.
@@ -193,7 +94,7 @@ void changeRow(const ChangePass& pass, int y, const Moment& now) {
   }
 }
 
-void accumulateRow(int y, Moment& now, Work& work) {
+void accumulateRow(const Reading& reading, int y, Moment& now, Work& work) {
   const Layout& layout = now.layout;
   Accumulated& sums = now.accumulated;
   const size_t row = layout.row(y);
@@ -219,8 +120,8 @@ void accumulateRow(int y, Moment& now, Work& work) {
     const Lanes trust = smaller(noise + noise, one); // 0: free of noise, nothing to average
     const Lanes part = larger(one / count, one - trust),
                 recentPart = larger(part, all(1 / recentFrames));
-    const Lanes3 light =
-        limited(load(work.light, i), select(trust > zero, load(work.limit.data() + i), all(1e30f)));
+    const Lanes3 light = limited(load(reading.light, i),
+                                 select(trust > zero, load(work.limit.data() + i), all(1e30f)));
     const Lanes luma = light.x;
     store(mixed(load(sums.light, i) * ratio, light, part), sums.light, i);
     store(mixed(load(sums.recent, i) * ratio, light, recentPart), sums.recent, i);
@@ -291,14 +192,14 @@ HWY_EXPORT(recallRow);
 HWY_EXPORT(changeRow);
 HWY_EXPORT(accumulateRow);
 HWY_EXPORT(boundRow);
-void recallRow(int y, const Moment& before, Moment& now, Work& work) {
-  HWY_DYNAMIC_DISPATCH(recallRow)(y, before, now, work);
+void recallRow(const Reading& reading, int y, const Moment& before, Moment& now, Work& work) {
+  HWY_DYNAMIC_DISPATCH(recallRow)(reading, y, before, now, work);
 }
 void changeRow(const ChangePass& pass, int y, const Moment& now) {
   HWY_DYNAMIC_DISPATCH(changeRow)(pass, y, now);
 }
-void accumulateRow(int y, Moment& now, Work& work) {
-  HWY_DYNAMIC_DISPATCH(accumulateRow)(y, now, work);
+void accumulateRow(const Reading& reading, int y, Moment& now, Work& work) {
+  HWY_DYNAMIC_DISPATCH(accumulateRow)(reading, y, now, work);
 }
 void boundRow(int y, Moment& now) { HWY_DYNAMIC_DISPATCH(boundRow)(y, now); }
 } // namespace picture::live

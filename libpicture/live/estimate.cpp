@@ -49,14 +49,14 @@ struct Fit {
   }
 };
 
-void compareRow(int y, Moment& now, Work& work) {
+void compareRow(const Reading& reading, int y, Moment& now, Work& work) {
   // Opposite neighbours follow one another.
   constexpr int around[8][2] = {{-1, 0},  {1, 0}, {0, -1}, {0, 1},
                                 {-1, -1}, {1, 1}, {-1, 1}, {1, -1}};
   const Layout& layout = now.layout;
   Guides& guides = now.guides;
   const float *name = guides.name.data(), *near = guides.nearness.data(),
-              *luma = work.light.x.data(), *offsetX = guides.offsetX.data(),
+              *luma = reading.light.x.data(), *offsetX = guides.offsetX.data(),
               *offsetY = guides.offsetY.data();
   const size_t row = layout.row(y);
   for (int x = 0; x < layout.width; x += width()) {
@@ -102,10 +102,10 @@ void compareRow(int y, Moment& now, Work& work) {
   }
 }
 
-void estimateRow(int y, const Moment& now, Work& work) {
+void estimateRow(const Reading& reading, int y, const Moment& now, Work& work) {
   constexpr int reach = 3;
   const Layout& layout = now.layout;
-  const float *name = now.guides.name.data(), *luma = work.light.x.data(),
+  const float *name = now.guides.name.data(), *luma = reading.light.x.data(),
               *deviation = work.deviation.data(), *unlike = work.unlike.data();
   const size_t row = layout.row(y);
   for (int x = 0; x < layout.width; x += width()) {
@@ -144,9 +144,11 @@ HWY_AFTER_NAMESPACE();
 namespace picture::live {
 HWY_EXPORT(compareRow);
 HWY_EXPORT(estimateRow);
-void compareRow(int y, Moment& now, Work& work) { HWY_DYNAMIC_DISPATCH(compareRow)(y, now, work); }
-void estimateRow(int y, const Moment& now, Work& work) {
-  HWY_DYNAMIC_DISPATCH(estimateRow)(y, now, work);
+void compareRow(const Reading& reading, int y, Moment& now, Work& work) {
+  HWY_DYNAMIC_DISPATCH(compareRow)(reading, y, now, work);
+}
+void estimateRow(const Reading& reading, int y, const Moment& now, Work& work) {
+  HWY_DYNAMIC_DISPATCH(estimateRow)(reading, y, now, work);
 }
 } // namespace picture::live
 #endif

@@ -1,7 +1,9 @@
 // planes.h: The planes that a Reconstruction computes with: one float per pixel, rows one after the
-// other, with a border around the picture. Filters read neighbours without testing whether they
-// exist: the border is empty (Guides::name), so such neighbours get the weight 0. Rows can be
-// written in whole vectors; what is written behind a row is part of the border. [any thread]
+// other, with a border around the picture. Where light is followed in one pixel of each block only
+// (RT_LIGHT_STRIDE), illumination has planes with one number per block: a grid of cells. Filters
+// read neighbours without testing whether they exist: the border is empty (Guides::name), so such
+// neighbours get the weight 0. Rows can be written in whole vectors; what is written behind a row
+// is part of the border. [any thread]
 #pragma once
 
 #include <algorithm>
@@ -60,12 +62,11 @@ struct Guides {
   Plane3 normal;          // of length 1
 };
 
-// What is accumulated over time for each pixel.
+// What is accumulated over time for each pixel, or for each cell.
 struct Accumulated {
   void resize(const Layout& layout) {
     for (Plane3* planes : {&light, &recent}) planes->assign(layout.size(), 0);
     for (Plane* plane : {&mean, &square, &frames, &noise}) plane->assign(layout.size(), 0);
-    shown.assign(layout.size() * 4, 0);
   }
 
   Plane3 light;       // illumination: radiance / albedo; luma and colour differences
@@ -73,8 +74,27 @@ struct Accumulated {
   Plane mean, square; // of the illumination's luma and of its square
   Plane frames;       // number of frames in `light`; 0: nothing is known
   Plane noise;        // 0 to 1: whether illumination was found to be noisy around here
-  // The picture that is shown, over time: red, green, blue, number of frames; one after the other.
-  std::vector<float> shown;
+};
+
+// The picture that is shown, over time, with a border like that of planes. The numbers of a pixel
+// follow one another, so that places between pixels are read quickly.
+struct Shown {
+  void resize(const Layout& wanted) {
+    layout = wanted;
+    for (auto* numbers : {&colour, &light}) numbers->assign(layout.size() * 4, 0);
+  }
+
+  Layout layout;
+  std::vector<float> colour; // red, green, blue, number of frames
+  std::vector<float> light;  // illumination: luma and colour differences; 0
+};
+
+// Maps pixels of a frame to pixels of another one that lie at the same place: pixel * ratio +
+// shift, which is exactly the pixel if the sizes are equal.
+struct Resampling {
+  Resampling(int from, int to) : ratio(float(double(to) / from)), shift(0.5f * ratio - 0.5f) {}
+  float operator()(float pixel) const { return pixel * ratio + shift; }
+  float ratio, shift;
 };
 
 } // namespace picture::live

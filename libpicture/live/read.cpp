@@ -76,23 +76,16 @@ inline Lanes3 unitNormal(const Lanes3& v) {
   return select(known, unit, Lanes3{zero, zero, all(1)});
 }
 
-// Maps pixels of this frame to pixels of the frame before that lie at the same place: pixel * ratio
-// + shift, which is exactly the pixel if the sizes are equal.
-struct Resampling {
-  Resampling(int now, int before)
-      : ratio(float(double(before) / now)), shift(0.5f * ratio - 0.5f) {}
-  Lanes operator()(Lanes pixel) const { return pixel * all(ratio) + all(shift); }
-  float ratio, shift;
-};
-
-void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, Moment& now,
-             Work& work) {
+void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
+  const FramePlanes& frame = pass.frame;
+  const Moment& before = pass.before;
   const int w = now.layout.width, h = now.layout.height;
   const size_t first = size_t(y) * size_t(w), row = now.layout.row(y);
   const Projection &p = now.projection, &q = before.projection;
   const bool projects = p.usable && q.usable;
   const Resampling alongX(w, std::max(1, before.layout.width)),
       alongY(h, std::max(1, before.layout.height));
+  const float stayY = alongY(float(y));
   const Lanes nan = all(std::numeric_limits<float>::quiet_NaN()), zero = all(0), one = all(1);
   Guides& guides = now.guides;
   for (int x = 0; x < w; x += width()) {
@@ -105,7 +98,11 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
     const Lanes depth = loadSome(frame.depth + first, x, w),
                 given = loadSome(frame.name + first, x, w),
                 samples = loadSome(frame.samples + first, x, w);
-    const Mask some = samples > zero, hit = both(some, isFinite(depth));
+    const Lanes3 known = amounts(colour);
+    // Without light, a pixel that shows the environment shows it in a mirror or through glass.
+    const Mask coloured = known.x + known.y + known.z > zero,
+               sparse = pass.sparse ? either(coloured, isFinite(depth)) : samples > zero;
+    const Mask some = either(samples > zero, sparse), hit = both(some, isFinite(depth));
 
     const Lanes centreX = countFrom(x), centreY = all(float(y));
     const Lanes filmX = (centreX + all(0.5f)) * all(1.0f / float(w)),
@@ -121,17 +118,17 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
                environment = hn::AndNot(hit, both(some, isPlace(q, far)));
     const Mask still = both(both(motion.x == zero, motion.y == zero), motion.z == zero);
     const Lanes wide = all(float(before.layout.width)), high = all(float(before.layout.height));
-    const Lanes stayX = alongX(centreX), stayY = alongY(centreY);
+    const Lanes stayX = centreX * all(alongX.ratio) + all(alongX.shift);
     Lanes pastX = nan, pastY = nan;
     if (projects) {
       pastX = select(moved, stayX + (past.x - place.x) * wide,
                      select(environment, stayX + (far.x - filmX) * wide, nan));
-      pastY = select(moved, stayY + (past.y - place.y) * high,
-                     select(environment, stayY + (far.y - filmY) * high, nan));
+      pastY = select(moved, all(stayY) + (past.y - place.y) * high,
+                     select(environment, all(stayY) + (far.y - filmY) * high, nan));
     }
-    const Mask stays = rests ? either(still, hn::Not(some)) : hn::Not(some);
-    store(select(stays, stayX, pastX), work.pastX.data() + i);
-    store(select(stays, stayY, pastY), work.pastY.data() + i);
+    const Mask stays = pass.rests ? either(still, hn::Not(some)) : hn::Not(some);
+    store(select(stays, stayX, pastX), reading.pastX.data() + i);
+    store(select(stays, all(stayY), pastY), reading.pastY.data() + i);
 
     // Without a projection that can be inverted, the depth of the frame itself must do.
     const Lanes none = all(p.parallel ? environmentFar : 0);
@@ -139,7 +136,7 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
         select(hit, amount(nearnessOf(p, select(own, place.depth, depth))), none);
     const Mask follows = both(moved, hn::Not(both(stays, hit)));
     store(select(follows, amount(nearnessOf(q, past.depth)), nearness),
-          work.pastNearness.data() + i);
+          reading.pastNearness.data() + i);
     store(nearness, guides.nearness.data() + i);
     store(where(own, offsetX), guides.offsetX.data() + i);
     store(where(own, offsetY), guides.offsetY.data() + i);
@@ -147,19 +144,17 @@ void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, 
     const Lanes name = select(some, amount(given), all(emptyName));
     store(select(present(x, w), name, all(outsideName)), guides.name.data() + i);
 
-    const Lanes3 known = amounts(colour);
     const Lanes least = all(darkest), greatest = all(lightest);
     const Lanes3 surface{clamped(known.x, least, greatest), clamped(known.y, least, greatest),
                          clamped(known.z, least, greatest)};
     // The environment has an albedo only in mirrors and behind glass.
-    const Mask coloured = either(hit, known.x + known.y + known.z > zero);
-    const Lanes3 albedo = select(coloured, surface, Lanes3{one, one, one});
+    const Lanes3 albedo = select(either(hit, coloured), surface, Lanes3{one, one, one});
     const Lanes most = all(brightest);
     const Lanes3 light{smaller(radiance.x / albedo.x, most), smaller(radiance.y / albedo.y, most),
                        smaller(radiance.z / albedo.z, most)};
     const Lanes nothing = zero;
-    store(albedo, work.albedo, i);
-    store(lumaOf(select(some, light, Lanes3{nothing, nothing, nothing})), work.light, i);
+    store(albedo, reading.albedo, i);
+    store(lumaOf(select(some, light, Lanes3{nothing, nothing, nothing})), reading.light, i);
   }
 }
 
@@ -170,9 +165,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace picture::live {
 HWY_EXPORT(readRow);
-void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, Moment& now,
-             Work& work) {
-  HWY_DYNAMIC_DISPATCH(readRow)(frame, before, rests, y, now, work);
+void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
+  HWY_DYNAMIC_DISPATCH(readRow)(pass, y, now, reading);
 }
 } // namespace picture::live
 #endif

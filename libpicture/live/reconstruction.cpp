@@ -44,20 +44,55 @@ FramePlanes planesOf(const Picture& frame) {
 struct Reconstruction::Impl {
   explicit Impl(int threads) : arena(threads > 0 ? threads : tbb::task_arena::automatic) {}
 
-  // Calls stage(y) for each row of the picture.
-  template <class Stage> void rows(const Stage& stage) {
+  // Calls stage(y) for each row of pixels or cells.
+  template <class Stage> void rows(const Moment& grid, const Stage& stage) {
     constexpr int together = 4; // rows that are worth a task
-    tbb::parallel_for(tbb::blocked_range<int>(0, now.layout.height, together),
+    tbb::parallel_for(tbb::blocked_range<int>(0, grid.layout.height, together),
                       [&](const tbb::blocked_range<int>& range) {
                         for (int y = range.begin(); y < range.end(); y++) stage(y);
                       });
   }
 
-  void start(const FrameCamera& camera, int width, int height) {
+  // Prepares the planes of a frame of width x height pixels. `now` and `reading` are those of
+  // cells.
+  void start(const FrameCamera& camera, int width, int height, int block) {
     std::swap(now, before);
-    if (const Layout layout(width, height); !(now.layout == layout)) now.resize(layout);
-    if (!(workLayout == now.layout)) work.resize(workLayout = now.layout);
+    std::swap(pixels, pixelsBefore);
+    std::swap(shown, shownBefore);
+    const Layout picture(width, height),
+        cells((width + block - 1) / block, (height + block - 1) / block);
+    now.block = block;
     now.projection = Projection(camera);
+    if (!(now.layout == cells)) now.resize(cells);
+    if (!(workLayout == cells)) {
+      work.resize(cells);
+      reading.resize(cells);
+      workLayout = cells;
+    }
+    if (!(shown.layout == picture)) shown.resize(picture);
+    if (!(freshLayout == picture)) fresh.resize(freshLayout = picture);
+    // Pixels and cells are the same planes if all cells are pixels, in the frame before, too.
+    sparse = block > 1 || before.block > 1;
+    if (!sparse) return;
+    pixels.projection = now.projection;
+    if (!(pixels.layout == picture)) pixels.resize(picture, false);
+    if (!(pixelLayout == picture)) pixelReading.resize(pixelLayout = picture);
+  }
+
+  // The surfaces of the frame before, by pixel.
+  const Moment& pixelsOfBefore() const { return before.block > 1 ? pixelsBefore : before; }
+
+  void read(const FramePlanes& planes) {
+    const Moment& old = pixelsOfBefore();
+    const ReadPass pass{planes, old, areEqual(now.projection.camera, before.projection.camera),
+                        now.block > 1};
+    if (!sparse) {
+      rows(now, [&](int y) { readRow(pass, y, now, reading); });
+      return;
+    }
+    rows(pixels, [&](int y) { readRow(pass, y, pixels, pixelReading); });
+    const CellPass cells{planes, pixels, old, pixelReading, before, shownBefore};
+    rows(now, [&](int y) { cellRow(cells, y, now, reading, work); });
   }
 
   // Sums up changes of brightness over 31 x 31 pixels of the same surface. After the four passes
@@ -67,7 +102,7 @@ struct Reconstruction::Impl {
                     {&work.otherChange, &work.otherLevel, &work.otherDoubt},
                     1};
     for (; pass.step <= 8; pass.step *= 2) {
-      rows([&](int y) { changeRow(pass, y, now); });
+      rows(now, [&](int y) { changeRow(pass, y, now); });
       std::swap(pass.from, pass.to);
     }
   }
@@ -77,28 +112,36 @@ struct Reconstruction::Impl {
     FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
                     1};
     for (; pass.step <= 16; pass.step *= 2) {
-      rows([&](int y) { filterRow(pass, y, now); });
+      rows(now, [&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
       pass.variance = pass.toVariance;
-      pass.to = pass.to == &work.filtered ? &work.light : &work.filtered;
+      pass.to = pass.to == &work.filtered ? &reading.light : &work.filtered;
       pass.toVariance = pass.toVariance == &work.variance ? &work.filteredVariance : &work.variance;
     }
     result = pass.from;
   }
 
-  Picture add(const Picture& frame, const FrameCamera& camera) {
+  // Writes `fresh` from the filtered illumination.
+  void colour(const FramePlanes& planes) {
+    const Moment& grid = sparse ? pixels : now;
+    const ColourPass pass{planes, grid,    pixelsOfBefore(), sparse ? pixelReading : reading,
+                          now,    *result, work.changed,     shownBefore};
+    rows(grid,
+         [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
+  }
+
+  Picture add(const Picture& frame, const FrameCamera& camera, int lightStride) {
     const FramePlanes planes = planesOf(frame);
-    start(camera, frame.width, frame.height);
-    const bool rests = areEqual(now.projection.camera, before.projection.camera);
-    rows([&](int y) { readRow(planes, before, rests, y, now, work); });
-    rows([&](int y) { compareRow(y, now, work); });
-    rows([&](int y) { estimateRow(y, now, work); });
-    rows([&](int y) { recallRow(y, before, now, work); });
+    start(camera, frame.width, frame.height, lightStride);
+    read(planes);
+    rows(now, [&](int y) { compareRow(reading, y, now, work); });
+    rows(now, [&](int y) { estimateRow(reading, y, now, work); });
+    rows(now, [&](int y) { recallRow(reading, y, before, now, work); });
     findChanges();
-    rows([&](int y) { accumulateRow(y, now, work); });
-    rows([&](int y) { boundRow(y, now); });
+    rows(now, [&](int y) { accumulateRow(reading, y, now, work); });
+    rows(now, [&](int y) { boundRow(y, now); });
     filter();
-    rows([&](int y) { colourRow(*result, y, now, work); });
+    colour(planes);
 
     Picture picture;
     picture.width = frame.width;
@@ -107,19 +150,29 @@ struct Reconstruction::Impl {
     picture.transparent = frame.transparent;
     std::vector<float>& rgba = picture.planes[RT_RGBA];
     rgba.resize(size_t(frame.width) * size_t(frame.height) * 4);
-    rows([&](int y) {
-      showRow(planes, y, before, now, work, rgba.data() + size_t(y) * size_t(frame.width) * 4);
+    const Moment& grid = sparse ? pixels : now;
+    rows(grid, [&](int y) {
+      showRow(planes, y, shownBefore.layout, grid, fresh, shown,
+              rgba.data() + size_t(y) * size_t(frame.width) * 4);
     });
-    const double pixels = double(frame.width) * frame.height;
-    facts.reprojected = std::accumulate(work.found.begin(), work.found.end(), 0.0) / pixels;
-    facts.history = std::accumulate(work.frames.begin(), work.frames.end(), 0.0) / pixels;
+    const double cells = double(now.layout.width) * now.layout.height;
+    facts.reprojected = std::accumulate(work.found.begin(), work.found.end(), 0.0) / cells;
+    facts.history = std::accumulate(work.frames.begin(), work.frames.end(), 0.0) / cells;
     return picture;
   }
 
   tbb::task_arena arena;
-  Moment now, before;
+  Moment now, before; // by cell
+  Reading reading;
   Work work;
   Layout workLayout;
+  bool sparse = false;         // the planes of pixels are not those of cells
+  Moment pixels, pixelsBefore; // surfaces; used only if `sparse`
+  Reading pixelReading;
+  Layout pixelLayout;
+  Fresh fresh;
+  Layout freshLayout;
+  Shown shown, shownBefore;
   const Plane3* result = nullptr; // filtered illumination
   Facts facts;
 };
@@ -130,11 +183,15 @@ Reconstruction::~Reconstruction() = default;
 void Reconstruction::reset() {
   impl_->now = Moment();
   impl_->before = Moment();
+  impl_->shown = Shown();
 }
 
-Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera) {
+Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera, int lightStride) {
+  if (lightStride < 1 || lightStride > mostLightStride)
+    throw std::invalid_argument("a preview cannot have light in one of " +
+                                std::to_string(lightStride) + " pixels each way");
   const auto start = std::chrono::steady_clock::now();
-  Picture picture = impl_->arena.execute([&] { return impl_->add(frame, camera); });
+  Picture picture = impl_->arena.execute([&] { return impl_->add(frame, camera, lightStride); });
   impl_->facts.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return picture;

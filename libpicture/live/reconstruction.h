@@ -33,6 +33,9 @@ struct FrameCamera {
   double aspect = 1; // width / height of the frame
 };
 
+// The largest RT_LIGHT_STRIDE.
+constexpr int mostLightStride = 4;
+
 class Reconstruction {
  public:
   // threads: 0: as many as the process may use.
@@ -51,7 +54,11 @@ class Reconstruction {
   //
   // A frame without noise comes out unchanged but for anti-aliasing over time: its illumination is
   // that of neighbours on the same surface, or of straight edges.
-  Picture add(const Picture& frame, const FrameCamera& camera);
+  //
+  // lightStride: RT_LIGHT_STRIDE of the frame, 1 to mostLightStride. From 2 on, pixels take their
+  // illumination from the blocks around them that show the same surface; edges and textures keep
+  // the size of the pixels. Frames may differ in it.
+  Picture add(const Picture& frame, const FrameCamera& camera, int lightStride = 1);
 
   // Facts about the last add(), for reports and tests.
   struct Facts {

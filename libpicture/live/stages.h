@@ -1,7 +1,7 @@
-// stages.h: The stages of Reconstruction::add, each a function of one row of pixels. A stage reads
-// what the stages before it wrote, of any row, and writes its own row only. So rows run in any
-// order and on any number of threads with the same result. Highway compiles each stage for several
-// instruction sets. [any thread]
+// stages.h: The stages of Reconstruction::add, each a function of one row of pixels or cells. A
+// stage reads what the stages before it wrote, of any row, and writes its own row only. So rows run
+// in any order and on any number of threads with the same result. Highway compiles most stages for
+// several instruction sets. [any thread]
 #pragma once
 
 #include <array>
@@ -16,77 +16,116 @@ struct FramePlanes {
   const float *rgba, *depth, *normal, *albedo, *position, *name, *motion, *samples;
 };
 
-// What is kept of a frame for the next one.
+// The surfaces of a frame, by pixel or by cell, and what is kept of them for the next frame.
 struct Moment {
   Moment() { resize(Layout(1, 1)); } // without a surface: nothing is found in it
-  void resize(const Layout& wanted) {
+  void resize(const Layout& wanted, bool accumulates = true) {
     layout = wanted;
     guides.resize(wanted);
-    accumulated.resize(wanted);
+    if (accumulates) accumulated.resize(wanted);
   }
 
   Layout layout;
+  int block = 1; // pixels of a cell each way; 1: cells are pixels
   Projection projection;
   Guides guides;
   Accumulated accumulated;
 };
 
-// What is computed of a frame and not kept.
+// What is read of a frame and not kept, by pixel or by cell.
+struct Reading {
+  void resize(const Layout& layout) {
+    for (Plane3* planes : {&albedo, &light}) planes->assign(layout.size(), 0);
+    for (Plane* plane : {&pastX, &pastY, &pastNearness}) plane->assign(layout.size(), 0);
+  }
+
+  // Where the surface was in the frame before, in its pixels or cells (0: centre of the first one),
+  // and its nearness there. Not a number: nowhere.
+  Plane pastX, pastY, pastNearness;
+  Plane3 albedo; // what the illumination is multiplied by; nowhere 0
+  Plane3 light;  // illumination of this frame's samples
+};
+
+// What is computed of the illumination and not kept, by cell.
 struct Work {
   void resize(const Layout& layout) {
-    for (Plane3* planes : {&albedo, &light, &filtered, &colour}) planes->assign(layout.size(), 0);
-    for (Plane* plane :
-         {&pastX, &pastY, &pastNearness, &deviation, &unlike, &variance, &filteredVariance, &limit,
-          &noise, &change, &level, &doubt, &otherChange, &otherLevel, &otherDoubt})
+    filtered.assign(layout.size(), 0);
+    for (Plane* plane : {&deviation, &unlike, &variance, &filteredVariance, &limit, &noise, &change,
+                         &level, &doubt, &otherChange, &otherLevel, &otherDoubt, &changed})
       plane->assign(layout.size(), 0);
     found.assign(size_t(layout.height), 0);
     frames.assign(size_t(layout.height), 0);
   }
 
-  // Where the surface was in the frame before, in its pixels (0: centre of the first pixel), and
-  // its nearness there. Not a number: nowhere.
-  Plane pastX, pastY, pastNearness;
-  Plane3 albedo; // what the illumination is multiplied by; nowhere 0
-  Plane3 light;  // illumination of this frame's samples
-  // Square of what a pixel's luma differs from its neighbours', scaled to the variance of noise
+  // Square of what a cell's luma differs from its neighbours', scaled to the variance of noise
   // without correlation; 1 where that is more than edges and smooth shading explain.
   Plane deviation, unlike;
   Plane variance; // of the illumination's luma as it goes into the filter
   Plane limit;    // luma beyond that is taken for a rare bright sample
   Plane noise;    // whether this frame's samples are noisy around here, 0 to 1
   // By how much the luma differs from the accumulated one, the accumulated one, and the variance of
-  // the difference; each summed up around the pixel.
+  // the difference; each summed up around the cell.
   Plane change, level, doubt, otherChange, otherLevel, otherDoubt;
+  // 1 where the sample is unlike the illumination that was shown around its place.
+  Plane changed;
   Plane3 filtered;
   Plane filteredVariance;
-  Plane3 colour; // red, green and blue of the frame before accumulation over time
-  // For each row: pixels that were found in the frame before, and their frames summed up.
+  // For each row: cells that were found in the frame before, and their frames summed up.
   std::vector<double> found, frames;
 };
 
-// Reads a row: guides, illumination, and where the surfaces were in the frame before. rests: no
-// number of the camera has changed since then.
-void readRow(const FramePlanes& frame, const Moment& before, bool rests, int y, Moment& now,
-             Work& work);
-// Compares each pixel with its eight neighbours: slopes, `deviation` and `unlike`.
-void compareRow(int y, Moment& now, Work& work);
-// Sums up over 7 x 7 pixels of the same surface: `variance`, `limit` and `noise`.
-void estimateRow(int y, const Moment& now, Work& work);
+// The picture of this frame before it is accumulated over time, and what was shown at its places.
+struct Fresh {
+  void resize(const Layout& layout) {
+    for (Plane3* planes : {&colour, &light, &oldColour}) planes->assign(layout.size(), 0);
+    for (Plane* plane : {&noise, &pastX, &pastY, &oldFrames}) plane->assign(layout.size(), 0);
+  }
+
+  Plane3 colour; // red, green and blue
+  Plane3 light;  // illumination
+  Plane noise;   // 0 to 1: of the illumination
+  // What moves here: where it was, not a number if it was not to be seen; and what was shown there.
+  Plane pastX, pastY, oldFrames;
+  Plane3 oldColour;
+};
+
+// Reads a row of pixels: guides, illumination, and where the surfaces were in the frame before.
+// rests: no number of the camera has changed since then. sparse: pixels without a sample of light
+// have guides.
+struct ReadPass {
+  const FramePlanes& frame;
+  const Moment& before;
+  bool rests, sparse;
+};
+void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading);
+// Reads a row of cells, each from the pixel of its block that has a sample of light.
+struct CellPass {
+  const FramePlanes& frame;
+  const Moment &pixels, &pixelsBefore; // surfaces by pixel
+  const Reading& reading;              // by pixel
+  const Moment& before;                // cells
+  const Shown& shown;                  // by the frame before
+};
+void cellRow(const CellPass& pass, int y, Moment& now, Reading& reading, Work& work);
+
+// Compares each cell with its eight neighbours: slopes, `deviation` and `unlike`.
+void compareRow(const Reading& reading, int y, Moment& now, Work& work);
+// Sums up over 7 x 7 cells of the same surface: `variance`, `limit` and `noise`.
+void estimateRow(const Reading& reading, int y, const Moment& now, Work& work);
 // Finds what was accumulated on the same surfaces, and by how much this frame differs from it.
-void recallRow(int y, const Moment& before, Moment& now, Work& work);
-// One pass of a filter that sums up these differences over neighbours, `step` pixels apart.
+void recallRow(const Reading& reading, int y, const Moment& before, Moment& now, Work& work);
+// One pass of a filter that sums up these differences over neighbours, `step` cells apart.
 struct ChangePass {
   std::array<Plane*, 3> from, to; // change, level and doubt
   int step;
 };
 void changeRow(const ChangePass& pass, int y, const Moment& now);
 // Adds the illumination to what was accumulated, brought to the present brightness.
-void accumulateRow(int y, Moment& now, Work& work);
-// Bounds what was accumulated by what the last few frames show around the pixel.
+void accumulateRow(const Reading& reading, int y, Moment& now, Work& work);
+// Bounds what was accumulated by what the last few frames show around the cell.
 void boundRow(int y, Moment& now);
 
-// One pass of the à-trous filter over illumination and variance. Neighbours are `step` pixels
-// apart.
+// One pass of the à-trous filter over illumination and variance. Neighbours are `step` cells apart.
 struct FilterPass {
   const Plane3* from;
   const Plane* variance;
@@ -96,11 +135,24 @@ struct FilterPass {
 };
 void filterRow(const FilterPass& pass, int y, const Moment& now);
 
-// Multiplies illumination by albedo again.
-void colourRow(const Plane3& light, int y, const Moment& now, Work& work);
+// What the stages of the picture read.
+struct ColourPass {
+  const FramePlanes& frame;
+  const Moment &pixels, &before; // surfaces by pixel
+  const Reading& reading;        // by pixel
+  const Moment& cells;
+  const Plane3& light; // illumination by cell, filtered
+  const Plane& changed;
+  const Shown& shown; // by the frame before
+};
+// Multiplies the illumination by albedo again where cells are pixels, and finds what was shown.
+void colourRow(const ColourPass& pass, int y, Fresh& fresh);
+// The same where cells have several pixels: each pixel takes its illumination from the cells around
+// it that show its surface, or from what was shown.
+void spreadRow(const ColourPass& pass, int y, Fresh& fresh);
 // Accumulates the colours over time, which smooths edges and textures, and writes width * 4 floats
 // with the alpha of the frame.
-void showRow(const FramePlanes& frame, int y, const Moment& before, Moment& now, const Work& work,
-             float* rgba);
+void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment& now,
+             const Fresh& fresh, Shown& shown, float* rgba);
 
 } // namespace picture::live

@@ -15,6 +15,7 @@
 #include "render/film/pilots.h"
 #include "render/flush_denormals.h"
 #include "render/frame/frame_schedule.h"
+#include "render/path/light_stride.h"
 
 namespace openrt {
 namespace {
@@ -110,6 +111,9 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
   else if (early && early->complete())
     early->read(tile, lights);
   const bool lamps = !lights.empty();
+  // Only pixels without light of their own show light paths then, so that callers can tell the two
+  // apart and use all light paths of a block.
+  const bool strides = lightStrideOf(frame) > 1;
   std::vector<PixelError> errors;
   if (!film.errors().empty()) {
     errors.resize(sums.size());
@@ -127,7 +131,8 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
         pilotPixels[i] = pilotPixel(errors[i], lamps ? &lights[i] : nullptr);
       else if (error && lamps)
         openrt::addLight(lights[i], *error);
-      if (show) film.store(x, y, sums[i], lamps ? &lights[i] : nullptr, error);
+      const bool adds = lamps && !(strides && sums[i].samples > 0);
+      if (show) film.store(x, y, sums[i], adds ? &lights[i] : nullptr, error);
     }
   if (pilot) decide(*pilot, pilotPixels, errors);
 }

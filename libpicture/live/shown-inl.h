@@ -1,0 +1,145 @@
+// shown-inl.h: Finds what was shown of this frame's surfaces in the frame before.
+
+#if defined(PICTURE_LIVE_SHOWN_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PICTURE_LIVE_SHOWN_INL_H
+#undef PICTURE_LIVE_SHOWN_INL_H
+#else
+#define PICTURE_LIVE_SHOWN_INL_H
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include "libpicture/live/lanes-inl.h"
+#include "libpicture/live/stages.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace picture::live {
+namespace HWY_NAMESPACE {
+
+// A neighbour that is nearer by this fraction is another surface.
+constexpr float nearer = 0.05f;
+
+// Where pixels were in the frame before, in its pixels.
+struct Past {
+  Lanes x, y;
+};
+
+// At the edge of something in front, its motion counts for the pixels beside it, too: the colours
+// of an edge move with what is in front.
+inline Past pastOf(const Moment& before, const Moment& now, const Reading& reading, size_t i) {
+  const Guides& guides = now.guides;
+  const auto stride = ptrdiff_t(now.layout.stride);
+  const float ratioX = float(before.layout.width) / float(now.layout.width),
+              ratioY = float(before.layout.height) / float(now.layout.height);
+  const Lanes own = load(guides.nearness.data() + i);
+  const Mask some = load(guides.name.data() + i) >= all(0);
+  Lanes nearest = own + all(nearer) * (now.projection.parallel ? all(1) : own);
+  Past past{load(reading.pastX.data() + i), load(reading.pastY.data() + i)};
+  for (ptrdiff_t dy = -1; dy <= 1; dy++)
+    for (ptrdiff_t dx = -1; dx <= 1; dx++) {
+      const size_t j = i + size_t(dy * stride + dx);
+      const Lanes other = load(guides.nearness.data() + j);
+      const Mask front = both(both(some, load(guides.name.data() + j) >= all(0)), other > nearest);
+      nearest = select(front, other, nearest);
+      past.x = select(front, load(reading.pastX.data() + j) - all(float(dx) * ratioX), past.x);
+      past.y = select(front, load(reading.pastY.data() + j) - all(float(dy) * ratioY), past.y);
+    }
+  return past;
+}
+
+// Weights of four pixels in a row for a place `part` behind the second (E. Catmull, R. Rom, "A
+// Class of Local Interpolating Splines", 1974): sharper than a linear weight.
+inline void splineWeights(float part, float weight[4]) {
+  const float p2 = part * part, p3 = p2 * part;
+  weight[0] = 0.5f * (-p3 + 2 * p2 - part);
+  weight[1] = 0.5f * (3 * p3 - 5 * p2 + 2);
+  weight[2] = 0.5f * (-3 * p3 + 4 * p2 + part);
+  weight[3] = 0.5f * (p3 - p2);
+}
+
+// Writes the four numbers of what was shown at a place between pixels; the last one is that of the
+// nearest pixel. Outside of the picture its border continues.
+inline void shownAt(const Layout& layout, const float* shown, float x, float y, float out[4]) {
+  const int left = int(std::floor(x)), top = int(std::floor(y));
+  const float partX = x - float(left), partY = y - float(top);
+  const auto column = [&](int at) { return size_t(std::clamp(at, 0, layout.width - 1)); };
+  const auto row = [&](int at) {
+    return shown + 4 * layout.row(std::clamp(at, 0, layout.height - 1));
+  };
+  if (partX == 0 && partY == 0) {
+    std::copy_n(row(top) + 4 * column(left), 4, out);
+    return;
+  }
+  float alongX[4], alongY[4];
+  splineWeights(partX, alongX);
+  splineWeights(partY, alongY);
+  const size_t columns[4] = {column(left - 1), column(left), column(left + 1), column(left + 2)};
+  float sum[4] = {};
+  for (int r = 0; r < 4; r++) {
+    const float* line = row(top + r - 1);
+    float across[4] = {};
+    for (int c = 0; c < 4; c++)
+      for (int k = 0; k < 4; k++) across[k] += line[4 * columns[c] + size_t(k)] * alongX[c];
+    for (int k = 0; k < 4; k++) sum[k] += across[k] * alongY[r];
+  }
+  std::copy_n(sum, 3, out);
+  out[3] = row(top + (partY >= 0.5f))[4 * columns[partX >= 0.5f ? 2 : 1] + 3];
+}
+
+// What was shown of some pixels.
+struct Recalled {
+  Past past;
+  Mask known; // the surface was to be seen
+};
+
+// Tells where pixels were. seen: their surfaces were found in the frame before.
+inline Recalled recalledAt(const ColourPass& pass, Mask seen, int x, size_t i) {
+  const Layout &layout = pass.pixels.layout, &old = pass.shown.layout;
+  const Mask some = load(pass.pixels.guides.name.data() + i) >= all(0);
+  const Past past = pastOf(pass.before, pass.pixels, pass.reading, i);
+  const Mask inside = both(both(past.x > all(-0.5f), past.x < all(float(old.width) - 0.5f)),
+                           both(past.y > all(-0.5f), past.y < all(float(old.height) - 0.5f)));
+  // A surface that is seen for the first time has no colours yet. A pixel without a sample takes
+  // what was there.
+  return {past, both(both(inside, present(x, layout.width)), either(hn::Not(some), seen))};
+}
+
+// Returns numbers that were shown; 0 where nothing is known. `last` receives the fourth ones.
+inline Lanes3 shownNumbers(const Layout& layout, const std::vector<float>& shown,
+                           const Recalled& recalled, Lanes& last) {
+  float x[Layout::widest], y[Layout::widest], known[Layout::widest],
+      numbers[4 * Layout::widest] = {};
+  store(recalled.past.x, x);
+  store(recalled.past.y, y);
+  store(where(recalled.known, all(1)), known);
+  for (int k = 0; k < width(); k++)
+    if (known[k] > 0) shownAt(layout, shown.data(), x[k], y[k], numbers + 4 * k);
+  Lanes3 v;
+  hn::LoadInterleaved4(Tag(), numbers, v.x, v.y, v.z, last);
+  return v;
+}
+
+// Keeps for showRow what was shown.
+inline void keepShown(const ColourPass& pass, const Recalled& recalled, size_t i, Fresh& fresh) {
+  const Lanes nowhere = all(std::numeric_limits<float>::quiet_NaN());
+  Lanes frames;
+  store(shownNumbers(pass.shown.layout, pass.shown.colour, recalled, frames), fresh.oldColour, i);
+  store(frames, fresh.oldFrames.data() + i);
+  store(select(recalled.known, recalled.past.x, nowhere), fresh.pastX.data() + i);
+  store(select(recalled.known, recalled.past.y, nowhere), fresh.pastY.data() + i);
+}
+
+// Multiplies illumination by albedo again.
+inline void storeColour(const Lanes3& light, const Reading& reading, size_t i, Fresh& fresh) {
+  const Lanes3 rgb = colourOf(light) * load(reading.albedo, i);
+  const Lanes zero = all(0);
+  store(Lanes3{larger(rgb.x, zero), larger(rgb.y, zero), larger(rgb.z, zero)}, fresh.colour, i);
+  store(light, fresh.light, i);
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace picture::live
+HWY_AFTER_NAMESPACE();
+
+#endif

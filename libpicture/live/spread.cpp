@@ -1,0 +1,216 @@
+// spread.cpp: Gives each pixel illumination from the cells around it that show its surface. So
+// edges and textures are as sharp as the pixels. Where illumination has no noise, the pixel's own
+// sample is the truth: it is shown, and followed with its surface until the pixel has the next one,
+// so that shadows become as sharp, too.
+#include "libpicture/live/stages.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "libpicture/live/spread.cpp"
+#include <hwy/foreach_target.h>
+
+#include "libpicture/live/past-inl.h"
+#include "libpicture/live/shown-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace picture::live {
+namespace HWY_NAMESPACE {
+
+constexpr float normalFall = 64;     // about the power of the cosine between normals
+constexpr float leastWeight = 0.01f; // a sum of weights below that shows nothing
+
+// The cells of neighbouring pixels: the first one, and the others counted from it.
+using Table = decltype(hn::IndicesFromVec(Tag(), hn::Zero(IndexTag())));
+
+// Where pixels from x on lie among the cells of one axis.
+struct Columns {
+  Columns(int x, int block) : first(x / block), table(hn::IndicesFromVec(Tag(), cells(x, block))) {
+    float places[Layout::widest];
+    for (int k = 0; k < width(); k++)
+      places[k] = (float(x + k) + 0.5f) / float(block) - 0.5f - float((x + k) / block);
+    part = load(places);
+  }
+  static Index cells(int x, int block) {
+    int32_t numbers[Layout::widest];
+    for (int k = 0; k < width(); k++) numbers[k] = (x + k) / block - x / block;
+    return hn::LoadU(IndexTag(), numbers);
+  }
+  // Returns the numbers of the pixels' cells, `at` being where the first cell's number lies.
+  Lanes of(const float* at) const { return hn::TableLookupLanes(load(at), table); }
+  Lanes3 of(const Plane3& planes, size_t at) const {
+    return {of(planes.x.data() + at), of(planes.y.data() + at), of(planes.z.data() + at)};
+  }
+
+  int first;
+  Table table;
+  Lanes part; // of the pixel's centre from the centre of its cell, in cells
+};
+
+// Weights of three cells for a place `part` from the middle one: the quadratic B-spline.
+template <class Number> inline void splineWeights3(Number part, Number half, Number weight[3]) {
+  weight[0] = half * (half - part) * (half - part);
+  weight[1] = half + half * half - part * part;
+  weight[2] = half * (half + part) * (half + part);
+}
+
+// What the cells around a pixel tell.
+struct Around {
+  Lanes3 light{all(0), all(0), all(0)};
+  Lanes3 least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f), all(-1e30f), all(-1e30f)};
+  Lanes weights = all(0), noise = all(0), slope = all(0), changed = all(0);
+
+  void add(const Lanes3& other, Lanes weight, Lanes otherNoise, Lanes otherSlope) {
+    const Mask counts = weight > all(1e-3f);
+    weights = weights + weight;
+    light = light + other * weight;
+    noise = noise + otherNoise * weight;
+    slope = slope + otherSlope * weight;
+    least = select(
+        counts,
+        Lanes3{smaller(least.x, other.x), smaller(least.y, other.y), smaller(least.z, other.z)},
+        least);
+    most = select(counts,
+                  Lanes3{larger(most.x, other.x), larger(most.y, other.y), larger(most.z, other.z)},
+                  most);
+  }
+  Mask found() const { return weights > all(leastWeight); }
+};
+
+// The surfaces of some pixels.
+struct Surface {
+  Lanes name, nearness, x, y; // x, y: the sample from the centre of the pixel's cell, in cells
+  Lanes3 normal;
+};
+
+inline Around cellsAround(const ColourPass& pass, const Columns& columns, const Surface& surface,
+                          int y) {
+  const Moment& cells = pass.cells;
+  const Guides& guides = cells.guides;
+  const auto block = float(cells.block);
+  const int cellY = y / cells.block;
+  float down[3];
+  splineWeights3((float(y) + 0.5f) / block - 0.5f - float(cellY), 0.5f, down);
+  Lanes across[3];
+  splineWeights3(columns.part, all(0.5f), across);
+  const Lanes scale = cells.projection.parallel ? all(1) : absolute(surface.nearness);
+  Around around;
+  for (int dy = -1; dy <= 1; dy++)
+    for (int dx = -1; dx <= 1; dx++) {
+      const size_t at = size_t(ptrdiff_t(cells.layout.row(cellY + dy)) + columns.first + dx);
+      const auto of = [&](const Plane& plane) { return columns.of(plane.data() + at); };
+      const Lanes slopeX = of(guides.slopeX), slopeY = of(guides.slopeY),
+                  slope = absolute(slopeX) + absolute(slopeY);
+      const Lanes expected = of(guides.nearness) +
+                             slopeX * (surface.x - all(float(dx)) - of(guides.offsetX)) +
+                             slopeY * (surface.y - all(float(dy)) - of(guides.offsetY));
+      const Lanes away =
+          absolute(surface.nearness - expected) /
+              (slope * all(0.5f) + scale * all(0.003f) + all(1e-20f)) +
+          absolute(all(1) - dot(columns.of(guides.normal, at), surface.normal)) * all(normalFall);
+      const Mask same = of(guides.name) == surface.name;
+      const Lanes weight = where(same, fallOff(away) * across[dx + 1] * all(down[dy + 1]));
+      around.add(columns.of(pass.light, at), weight, of(cells.accumulated.noise), slope);
+      around.changed = larger(around.changed, of(pass.changed));
+    }
+  const Lanes per = all(1) / larger(around.weights, all(1e-20f));
+  around.light = around.light * per;
+  around.noise = around.noise * per;
+  around.slope = around.slope * per;
+  return around;
+}
+
+// Returns the illumination of cells farther away: those with the pixel's name count, however they
+// lie, and the others only if there are none.
+inline Lanes3 lightFarAround(const ColourPass& pass, const Columns& columns, Lanes name, int y) {
+  constexpr int reach = 2;
+  constexpr float otherWeight = 1e-4f;
+  const Moment& cells = pass.cells;
+  const int cellY = y / cells.block;
+  Lanes weights = all(1e-20f);
+  Lanes3 sum{all(0), all(0), all(0)};
+  for (int dy = -reach; dy <= reach; dy++)
+    for (int dx = -reach; dx <= reach; dx++) {
+      const size_t at = size_t(ptrdiff_t(cells.layout.row(cellY + dy)) + columns.first + dx);
+      const Lanes other = columns.of(cells.guides.name.data() + at);
+      const float nearby = 1 / float(1 + dx * dx + dy * dy);
+      const Lanes weight =
+          where(other >= all(0), select(other == name, all(nearby), all(nearby * otherWeight)));
+      weights = weights + weight;
+      sum = sum + columns.of(pass.light, at) * weight;
+    }
+  return sum * (all(1) / weights);
+}
+
+inline Lanes3 bounded(const Lanes3& v, const Lanes3& least, const Lanes3& most) {
+  return {clamped(v.x, least.x, most.x), clamped(v.y, least.y, most.y),
+          clamped(v.z, least.z, most.z)};
+}
+
+void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
+  const Layout& layout = pass.pixels.layout;
+  const Guides& guides = pass.pixels.guides;
+  const auto block = float(pass.cells.block);
+  const size_t row = layout.row(y), first = size_t(y) * size_t(layout.width);
+  const float partY = (float(y) + 0.5f) / block - 0.5f - float(y / pass.cells.block);
+  const Lanes zero = all(0), one = all(1);
+  const bool sameSize = pass.shown.layout == layout;
+  for (int x = 0; x < layout.width; x += width()) {
+    const size_t i = row + size_t(x);
+    const Columns columns(x, pass.cells.block);
+    const Surface surface{load(guides.name.data() + i), load(guides.nearness.data() + i),
+                          columns.part + load(guides.offsetX.data() + i) * all(1 / block),
+                          all(partY) + load(guides.offsetY.data() + i) * all(1 / block),
+                          load(guides.normal, i)};
+    const Around around = cellsAround(pass, columns, surface, y);
+
+    const Expected expected =
+        expectedAt(pass.pixels, pass.before, pass.reading, around.slope * all(1 / block), i);
+    const Lanes pastX = load(pass.reading.pastX.data() + i),
+                pastY = load(pass.reading.pastY.data() + i);
+    Taps taps = tapsAround(pass.before, expected, pastX, pastY);
+    searchAround(pass.before, expected, pastX, pastY, taps);
+    const Mask seen = taps.found;
+    const Recalled recalled = recalledAt(pass, seen, x, i);
+    keepShown(pass, recalled, i, fresh);
+    Lanes unused;
+    const Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
+
+    // Where nothing has changed at rest, a surface keeps what it has shown, also what is too fine
+    // for the cells.
+    const Mask rests =
+        both(both(recalled.known, all(sameSize ? 1.0f : 0.0f) > zero),
+             both(recalled.past.x == countFrom(x), recalled.past.y == all(float(y))));
+    const Mask stays = both(rests, around.changed < all(0.5f));
+    const Lanes3 old = select(stays, shown, bounded(shown, around.least, around.most));
+
+    const Mask lit = loadSome(pass.frame.samples + first, x, layout.width) > zero;
+    const Mask environment =
+        hn::AndNot(isFinite(loadSome(pass.frame.depth + first, x, layout.width)), lit);
+    const Lanes trust = smaller(around.noise + around.noise, one); // 0: free of noise
+    const Lanes3 own = load(pass.reading.light, i);
+    store(where(hn::Not(environment), select(around.found(), around.noise, one)),
+          fresh.noise.data() + i);
+    const Lanes3 sharp = select(lit, own, select(recalled.known, old, around.light));
+    Lanes3 light = sharp + (around.light - sharp) * trust;
+    const Mask found = around.found();
+    light = select(found, light, select(lit, own, shown));
+    light = select(environment, own, light);
+    const Mask missing = hn::AndNot(either(found, either(lit, recalled.known)),
+                                    both(surface.name >= zero, present(x, layout.width)));
+    if (!hn::AllFalse(Tag(), missing))
+      light = select(missing, lightFarAround(pass, columns, surface.name, y), light);
+    storeColour(light, pass.reading, i, fresh);
+  }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace picture::live
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace picture::live {
+HWY_EXPORT(spreadRow);
+void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
+  HWY_DYNAMIC_DISPATCH(spreadRow)(pass, y, fresh);
+}
+} // namespace picture::live
+#endif
