@@ -139,16 +139,13 @@ struct Control::Impl {
       refuse(letter, code, failure);
   }
 
-  void tellAll(const std::string& line) {
-    for (const auto& [id, client] : clients) mailbox.send(id, line);
-  }
-
   // --- Commands ---
 
   // Does the first command of a client.
   void doOne(Client& client) {
     Letter letter = std::move(client.waiting.front().letter);
     client.waiting.pop_front();
+    client.isServed = true;
     const Line& line = letter.line;
     if (!line.command) return refuse(letter, line.code, line.message);
     try {
@@ -250,9 +247,13 @@ struct Control::Impl {
     tellWorld();
   }
 
+  // Tells the clients that have seen another world, or none. To the others it is no news: their
+  // first command waits.
   void tellWorld() {
-    tellAll(fmt::format(R"({{"event":"world","world":{}}})",
-                        jsonText(session->browser().world().path)));
+    const std::string line =
+        fmt::format(R"({{"event":"world","world":{}}})", jsonText(session->browser().world().path));
+    for (const auto& [id, client] : clients)
+      if (client.isServed) mailbox.send(id, line);
   }
 
   void detach() {
