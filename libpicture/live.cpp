@@ -282,8 +282,8 @@ struct LiveRenderer::Impl {
   void rebuild(const FrameInFlight& flight, EndedFrame& frame) {
     const Clock::time_point begin = Clock::now();
     const std::string wrong = failureOf([&] {
-      Picture rebuilt =
-          previews.rebuild(flight.facts.viewer, frame.picture, flight.camera, flight.step);
+      Picture rebuilt = previews.rebuild(flight.facts.viewer, frame.picture, flight.camera,
+                                         flight.facts.lightStride, flight.step);
       // Every pixel is covered, also where no sample has been taken.
       std::vector<float>& samples = rebuilt.planes[RT_SAMPLES];
       samples = std::move(frame.picture.planes[RT_SAMPLES]);
