@@ -30,6 +30,9 @@ pkg_check_modules(SECCOMP IMPORTED_TARGET libseccomp)
 if(OPENRT_WINDOW)
   pkg_check_modules(SDL2 IMPORTED_TARGET sdl2) # without it vv opens no window
 endif()
+if(OPENRT_SERVER)
+  pkg_check_modules(WEBSOCKETS IMPORTED_TARGET libwebsockets>=4.1) # without it vv serves no page
+endif()
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)

@@ -3,6 +3,7 @@
 # it. In a wheel the package itself is the prefix, and there are no links.
 if(OPENRT_WHEEL)
   set(OPENRT_WINDOW OFF) # SDL needs a desktop's libraries, which a wheel cannot bring
+  set(OPENRT_SERVER OFF) # libwebsockets links a TLS library
   set(OPENRT_FILMS OFF) # Debian's ffmpeg links a hundred libraries
   set(CMAKE_INSTALL_LIBDIR lib)
   set(CMAKE_INSTALL_BINDIR bin)

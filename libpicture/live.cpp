@@ -16,6 +16,7 @@
 #include <deque>
 #include <mutex>
 #include <new>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -90,14 +91,17 @@ RenderSettings settingsOf(const RenderSettings& given, const LiveFrame& frame) {
 
 // Changes the settings of a frame to those of a preview. number: that of the frame. Each preview
 // has a seed of its own: from the same samples again and again nothing could be accumulated.
-void makePreview(RenderSettings& settings, Purpose purpose, uint64_t number) {
+void makePreview(RenderSettings& settings, Purpose purpose, int lightStride, uint64_t number) {
   const bool rebuilt = purpose == Purpose::preview;
   settings.channels = rebuilt ? shownChannels | live::previewChannels : shownChannels;
   settings.progressive = false;
   settings.error = settings.timeLimit = 0;
   const auto seed = uint32_t(settings.quality.whole(RT_SEED)) + uint32_t(number);
-  settings.quality.set(RT_SEED, int32_t(seed));
-  if (rebuilt) settings.quality.set(RT_FOLLOW_IMAGES, 1);
+  settings.quality.set(RT_SEED, int32_t(seed & 0x7fffffff));
+  settings.quality.set(RT_JITTER, 1);
+  if (!rebuilt) return;
+  settings.quality.set(RT_FOLLOW_IMAGES, 1);
+  settings.quality.set(RT_LIGHT_STRIDE, lightStride);
 }
 
 } // namespace
@@ -278,9 +282,13 @@ struct LiveRenderer::Impl {
   void rebuild(const FrameInFlight& flight, EndedFrame& frame) {
     const Clock::time_point begin = Clock::now();
     const std::string wrong = failureOf([&] {
-      Picture rebuilt =
-          previews.rebuild(flight.facts.viewer, frame.picture, flight.camera, flight.step);
-      rebuilt.planes[RT_SAMPLES] = std::move(frame.picture.planes[RT_SAMPLES]);
+      Picture rebuilt = previews.rebuild(flight.facts.viewer, frame.picture, flight.camera,
+                                         flight.facts.lightStride, flight.step);
+      // Every pixel is covered, also where no sample has been taken.
+      std::vector<float>& samples = rebuilt.planes[RT_SAMPLES];
+      samples = std::move(frame.picture.planes[RT_SAMPLES]);
+      const double sum = std::accumulate(samples.begin(), samples.end(), 0.0);
+      std::fill(samples.begin(), samples.end(), float(sum / double(samples.size())));
       frame.picture = std::move(rebuilt);
     });
     frame.rebuilding = secondsSince(begin);
@@ -324,9 +332,10 @@ struct LiveRenderer::Impl {
     if (now() != State::idle && now() != State::ready)
       throw std::logic_error("a frame is in flight");
     stage.reportMessages();
-    current = {current.number + 1, frame.purpose, frame.viewer, frame.samples};
+    current = {current.number + 1, frame.purpose, frame.viewer, frame.samples, frame.lightStride};
     stage.settings = settingsOf(given, frame);
-    if (frame.purpose != Purpose::still) makePreview(stage.settings, frame.purpose, current.number);
+    if (frame.purpose != Purpose::still)
+      makePreview(stage.settings, frame.purpose, frame.lightStride, current.number);
     started = Clock::now();
     progress = 0;
     nextPoll = {};
@@ -358,6 +367,7 @@ struct LiveRenderer::Impl {
     out = {};
     out.number = frame.number;
     out.purpose = frame.purpose;
+    out.lightStride = frame.lightStride;
     out.seconds = seconds;
     out.finished = whole;
     display.show(picture, frame, whole, seconds, out);

@@ -24,6 +24,8 @@ struct LiveFrame {
   View view;
   int width = 0, height = 0;
   int samples = 1;
+  // Of a preview: pixels each way of the blocks in which one pixel gets light (RT_LIGHT_STRIDE).
+  int lightStride = 1;
   // still: refined from 1 sample per pixel on, with the bytes of Renderer::render.
   // preview: of something that moves; the picture is rebuilt from this frame and earlier previews
   //   of the same viewer (live/reconstruction.h) and is never part of a file or a still picture.
@@ -44,6 +46,7 @@ struct LivePicture {
   std::vector<uint8_t> rgb;
   uint64_t number = 0;                                    // what start() returned for the frame
   LiveFrame::Purpose purpose = LiveFrame::Purpose::still; // of the frame
+  int lightStride = 1;                                    // of the frame
   double covered = 0;    // fraction of the pixels that have samples, 0 to 1
   double samples = 0;    // samples taken so far, mean over the pixels
   double seconds = 0;    // seconds since the frame was started

@@ -46,6 +46,7 @@ struct FrameInFlight {
 void makePreview(RenderSettings& frame, uint32_t number) {
   frame.channels |= RT_RGBA | RT_SAMPLES | live::previewChannels;
   frame.quality.set(RT_FOLLOW_IMAGES, 1);
+  frame.quality.set(RT_JITTER, 1);
   const uint32_t seed = uint32_t(frame.quality.whole(RT_SEED)) + number;
   frame.quality.set(RT_SEED, seed & 0x7fffffff);
 }

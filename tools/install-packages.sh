@@ -19,8 +19,9 @@ build=(
   # script engines, each built if its library is installed; their sandbox
   duktape-dev tcl-dev tk-dev libffi-dev libseccomp-dev
   libsdl2-dev                                          # the window
+  libwebsockets-dev                                    # the page of vv serve
 )
-tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy)
+tests=(libgtest-dev librapidcheck-dev libbenchmark-dev python3-pytest python3-hypothesis python3-pil python3-zmq xvfb xdotool python3-yaml python3-distributed mypy chromium chromium-driver)
 dev=(clang-14 clang-format-14 clang-tidy-14 libclang-rt-14-dev llvm-14)
 docs=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton doxygen)
 

@@ -11,6 +11,7 @@
 #include "report/cluster_report.h"
 #include "report/describe.h"
 #include "report/messages.h"
+#include "server/server.h"
 #include "session/input/keys.h"
 #include "signals.h"
 #include "window/window.h"
@@ -40,6 +41,10 @@ int run(int argc, char** argv) {
   }
   vv::warnOfFolders(options);
   vv::joinCluster(options);
+  if (options.has(vv::Job::serve)) {
+    vv::checkInputs(options);
+    return vv::runServer(options, {argv + 1, argv + argc});
+  }
   if (options.opensWindow()) {
     vv::checkInputs(options);
     if (options.noWindow) return vv::control::runUnattended(options);

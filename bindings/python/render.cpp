@@ -196,7 +196,8 @@ void defineRender(py::object worldClass) {
           qualityParameter<double>(RT_CLAMP), parameter("cluster", &A::cluster),
           parameter("progress", &A::progress), parameter("multiply_textures", &A::multiplyTextures),
           parameter("up", &A::up), parameter("background", &A::background),
-          parameter("isa", &A::isa), qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
+          parameter("isa", &A::isa), qualityParameter<Switch>(RT_FOLLOW_IMAGES),
+          qualityParameter<Switch>(RT_JITTER), qualityParameter<long long>(RT_LIGHT_STRIDE)),
       parameterList(),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "

@@ -137,14 +137,15 @@ py::object render(const RtContextPtr& self, const FrameArguments& given) {
 
 void defineRtRender(py::class_<RtContext, RtContextPtr>& context) {
   using A = FrameArguments;
-  defineMethod(context, "render", render,
-               parameterList(parameter("size", &A::size), parameter("spp", &A::spp)),
-               parameterList(
-                   qualityParameter<double>(RT_TARGET_ERROR),
-                   qualityParameter<double>(RT_TIME_LIMIT),
-                   qualityParameter<long long>(RT_MAX_DEPTH), qualityParameter<long long>(RT_SEED),
-                   qualityParameter<std::string>(RT_TRANSPORT),
-                   qualityParameter<Switch>(RT_SHADOWS), parameter("channels", &A::channels),
-                   parameter("progress", &A::progress), qualityParameter<Switch>(RT_FOLLOW_IMAGES)),
-               "Renders the scene. Returns a Picture, like World.render. seed: 0 to 2147483647.");
+  defineMethod(
+      context, "render", render,
+      parameterList(parameter("size", &A::size), parameter("spp", &A::spp)),
+      parameterList(
+          qualityParameter<double>(RT_TARGET_ERROR), qualityParameter<double>(RT_TIME_LIMIT),
+          qualityParameter<long long>(RT_MAX_DEPTH), qualityParameter<long long>(RT_SEED),
+          qualityParameter<std::string>(RT_TRANSPORT), qualityParameter<Switch>(RT_SHADOWS),
+          parameter("channels", &A::channels), parameter("progress", &A::progress),
+          qualityParameter<Switch>(RT_FOLLOW_IMAGES), qualityParameter<Switch>(RT_JITTER),
+          qualityParameter<long long>(RT_LIGHT_STRIDE)),
+      "Renders the scene. Returns a Picture, like World.render. seed: 0 to 2147483647.");
 }

@@ -150,14 +150,17 @@ bool Viewer::start(bool moving, bool raw) {
   if (renderer.state() != State::idle) return false;
   for (picture::LivePicture old; renderer.look(old);) {} // of a view that was closed
   using Purpose = picture::LiveFrame::Purpose;
+  using Light = picture::Pacing::Light;
   picture::LiveFrame frame;
   frame.view = view();
   frame.viewer = number_;
   frame.purpose = !moving ? Purpose::still : raw ? Purpose::rawPreview : Purpose::preview;
-  frame_ = moving ? sizing_.next(width_, height_) : FrameSize{width_, height_, samples_};
+  if (raw && light_ == Light::sparse) light_ = Light::sampled;
+  frame_ = pacing_.next(width_, height_, moving, samples_, light_);
   frame.width = frame_.width;
   frame.height = frame_.height;
-  frame.samples = std::min(frame_.samples, samples_);
+  frame.samples = frame_.samples;
+  frame.lightStride = frame_.lightStride;
   viewers_->changes += browser().hasChanges();
   frameChanges_ = viewers_->changes;
   frameCamera_ = knownCamera();
@@ -191,9 +194,11 @@ py::object Viewer::look() {
   }
   if (!failure.empty()) throw picture::RenderError(failure);
   if (!found) return py::none();
-  if (picture->finished)
-    sizing_.took({picture->width, picture->height, 1}, picture->seconds, picture->overhead,
-                 picture->samples);
+  if (picture->finished) {
+    pacing_.took({picture->width, picture->height, 1, picture->lightStride}, picture->seconds,
+                 picture->alone, picture->overhead, picture->samples, picture->rebuilding);
+    light_ = picture::lightOf(picture->stats, true);
+  }
   // The gaps may show the picture of another view.
   if (viewers_->filling != this && picture->covered < 1) return py::none();
   viewers_->filling = this;

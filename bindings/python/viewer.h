@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "frame_sizing.h"
+#include "libpicture/live/pacing.h"
 #include "objects.h"
 #include "render_request.h"
 
@@ -82,10 +82,11 @@ class Viewer {
   std::optional<xvrml::CameraSettings> frozen_;
   std::optional<double> fovy_;
   std::optional<xvrml::CameraSettings> last_; // the camera of the last picture
-  FrameSizing sizing_;
+  picture::Pacing pacing_{30};
+  picture::Pacing::Light light_ = picture::Pacing::Light::sparse; // until the first picture tells
   // The last frame that began.
   bool begun_ = false, moving_ = false, wasOutdated_ = true;
-  FrameSize frame_;
+  picture::FrameSize frame_;
   uint64_t frameChanges_ = 0;
   std::optional<xvrml::CameraSettings> frameCamera_;
 };

@@ -15,9 +15,9 @@ proc command {members} {
   global vv last
   puts $vv "{\"id\":[incr last],$members}"
   while {[gets $vv line] >= 0} {
-    if {[string match {{"event":*} $line]} {
+    if {[string match "*\"event\":*" $line]} {
       puts $line
-    } elseif {[string match {*"error":*} $line]} {
+    } elseif {[string match "*\"error\":*" $line]} {
       error $line
     } else {
       return $line

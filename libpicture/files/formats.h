@@ -40,4 +40,9 @@ std::string encodePfm(const Picture& picture);
 std::string encodePng(const Picture& picture);
 std::string encodePpm(const Picture& picture);
 
+// Returns the bytes of a JPEG file for display bytes, first row at the top. quality: 1 to 100.
+// note: a comment in the file. Throws std::runtime_error.
+std::string jpegOf(const std::vector<uint8_t>& rgb, int width, int height, int quality,
+                   const std::string& note = {});
+
 } // namespace picture

@@ -16,7 +16,8 @@ struct ShownFrame {
   uint64_t number = 0; // counts the frames that were started
   LiveFrame::Purpose purpose = LiveFrame::Purpose::still;
   uint32_t viewer = 0;
-  int samples = 1; // samples per pixel that the frame was started with
+  int samples = 1;     // samples per pixel that the frame was started with
+  int lightStride = 1; // RT_LIGHT_STRIDE
 };
 
 // Returns the weight, 0 to 1, of a still picture with `samples` samples per pixel so far, over the

@@ -15,7 +15,7 @@ Previews::Viewer& Previews::viewerOf(uint32_t viewer) {
 }
 
 Picture Previews::rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera,
-                          const WorldStep& step) {
+                          int lightStride, const WorldStep& step) {
   Viewer& own = viewerOf(viewer);
   try {
     if (!own.reconstruction)
@@ -23,7 +23,7 @@ Picture Previews::rebuild(uint32_t viewer, const Picture& frame, const FrameCame
     else if (own.world != step.before)
       own.reconstruction->reset();
     own.world = step.now;
-    return own.reconstruction->add(frame, camera);
+    return own.reconstruction->add(frame, camera, lightStride);
   } catch (...) {
     forget(viewer);
     throw;

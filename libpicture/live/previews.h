@@ -48,7 +48,7 @@ class Previews {
   // Adds a frame to what its viewer has accumulated and returns the rebuilt picture. Begins anew if
   // the world has changed since the viewer's last preview by more than the frame's RT_MOTION says.
   // If an exception leaves it, the viewer's accumulated frames are gone.
-  Picture rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera,
+  Picture rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera, int lightStride,
                   const WorldStep& step);
   // Frees what a viewer has accumulated.
   void forget(uint32_t viewer) { viewers_.erase(viewer); }

@@ -32,8 +32,8 @@
 
 #include "libpicture/cluster.h"
 #include "libpicture/live.h"
+#include "libpicture/live/pacing.h"
 #include "live_show.h"
-#include "session/pacing.h"
 
 using namespace picture;
 using Clock = std::chrono::steady_clock;
@@ -66,7 +66,7 @@ bool readShow(const std::string& a, Options& o) {
     o.converge.speed = o.show.speed;
     return true;
   }
-  vv::FrameSize& frame = o.show.frame;
+  FrameSize& frame = o.show.frame;
   return std::sscanf(text, "--frame=%dx%dx%d", &frame.width, &frame.height, &frame.samples) >= 2 ||
          std::sscanf(text, "--steps=%d", &o.show.steps) == 1 ||
          std::sscanf(text, "--still=%d", &o.show.stillSamples) == 1 ||
@@ -133,21 +133,24 @@ class Looking {
   // The viewer turns back and forth. Frames follow each other; each shows the viewer's position at
   // its start.
   void move() {
-    vv::Pacing pacing(options_.fps);
+    Pacing pacing(options_.fps);
+    Pacing::Light light = Pacing::Light::sparse; // until the first picture tells
     std::vector<double> intervals, latencies;
-    std::vector<vv::FrameSize> sizes;
+    std::vector<FrameSize> sizes;
     double overhead = 0;
     const Clock::time_point begin = Clock::now();
     double last = 0;
     while (secondsSince(begin) < options_.seconds) {
       const double asked = secondsSince(begin);
-      const vv::FrameSize size = pacing.next(options_.width, options_.height, true, 64);
+      const FrameSize size = pacing.next(options_.width, options_.height, true, 64, light);
       LiveFrame frame = whole(size.samples);
+      frame.lightStride = size.lightStride;
       frame.width = size.width;
       frame.height = size.height;
       frame.view.viewer = turned(.2 * std::sin(asked));
       frame.purpose = LiveFrame::Purpose::preview;
       const LivePicture picture = finish(frame);
+      light = lightOf(picture.stats, true);
       pacing.took(size, picture.seconds, picture.alone, picture.overhead, picture.samples,
                   picture.rebuilding);
       const double now = secondsSince(begin);
@@ -163,7 +166,7 @@ class Looking {
       last = secondsSince(begin);
     }
     if (sizes.empty()) return;
-    const vv::FrameSize typical = sizes[sizes.size() / 2];
+    const FrameSize typical = sizes[sizes.size() / 2];
     fmt::print("  moving      {:5.1f} frames/s at {}x{}, {} samples; change to picture {:.0f} ms "
                "(longest {:.0f}), of these {:.1f} ms before light is traced; {} sizes\n",
                double(intervals.size()) / sum(intervals), typical.width, typical.height,
@@ -175,7 +178,7 @@ class Looking {
   // Measures as a window on a cluster works. paced: at most fps frames per second, in sizes that
   // allow it.
   void follow(bool overlapping, bool paced) {
-    vv::Pacing pacing(options_.fps);
+    Pacing pacing(options_.fps);
     // A refined picture, as the user has seen before moving.
     const double refined = finish(whole(16)).seconds;
     pacing.took({options_.width, options_.height, 16}, refined, refined, 0, 16);
@@ -202,7 +205,7 @@ class Looking {
         nap();
         continue;
       }
-      vv::FrameSize size = pacing.next(options_.width, options_.height, true, 64);
+      FrameSize size = pacing.next(options_.width, options_.height, true, 64);
       if (!paced) size = {options_.width, options_.height, 1};
       LiveFrame frame = whole(size.samples);
       frame.width = size.width;
@@ -322,7 +325,7 @@ class Looking {
     for (const double x : v) s += x;
     return s;
   }
-  static int changes(const std::vector<vv::FrameSize>& sizes) {
+  static int changes(const std::vector<FrameSize>& sizes) {
     int n = 0;
     for (size_t i = 1; i < sizes.size(); i++) n += !(sizes[i] == sizes[i - 1]);
     return n;
@@ -340,7 +343,7 @@ class Looking {
 // Returns what is wrong with the options of --show and --converge; "": nothing.
 std::string faultOf(const Options& o) {
   if (o.worlds.size() != 1) return "--show and --converge take one world";
-  const vv::FrameSize& frame = o.show.frame;
+  const FrameSize& frame = o.show.frame;
   if (frame.width < 1 || frame.height < 1 || frame.samples < 1)
     return "--frame: WxHxS above 0 expected";
   if (o.width < 1 || o.height < 1) return "--size: WxH above 0 expected";

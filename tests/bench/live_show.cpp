@@ -43,13 +43,6 @@ void writePpm(const std::string& path, const LivePicture& picture) {
   writeFile(path, bytes);
 }
 
-// Tells which light a world has, as session/picture_loop.cpp does.
-vv::Pacing::Light lightOf(const RTstats& stats) {
-  const bool direct =
-      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
-  return stats.cameraRays > 0 && direct ? vv::Pacing::Light::direct : vv::Pacing::Light::sampled;
-}
-
 // A picture that was shown. Times are seconds since the turn began.
 struct Shown {
   int instant = 0;
@@ -89,12 +82,13 @@ class Show {
     return settings;
   }
 
-  LiveFrame frameAt(int instant, LiveFrame::Purpose purpose, const vv::FrameSize& size) const {
+  LiveFrame frameAt(int instant, LiveFrame::Purpose purpose, const FrameSize& size) const {
     LiveFrame frame;
     frame.view.viewer = turn_.camera(instant);
     frame.width = size.width;
     frame.height = size.height;
     frame.samples = size.samples;
+    frame.lightStride = size.lightStride;
     frame.purpose = purpose;
     return frame;
   }
@@ -114,9 +108,9 @@ class Show {
   }
 
   void show(int instant) {
-    const vv::FrameSize size =
-        options_.steps > 0 ? options_.frame
-                           : pacing_.next(options_.width, options_.height, true, 64, light_);
+    const FrameSize size = options_.steps > 0
+                               ? options_.frame
+                               : pacing_.next(options_.width, options_.height, true, 64, light_);
     Shown one;
     one.instant = instant;
     one.asked = secondsSince(begin_);
@@ -124,7 +118,7 @@ class Show {
     one.picture = finish(frameAt(instant, moving(), size));
     one.shown = secondsSince(begin_);
     const LivePicture& p = one.picture;
-    light_ = lightOf(p.stats);
+    light_ = lightOf(p.stats, !options_.raw);
     pacing_.took(size, p.seconds, p.alone, p.overhead, p.samples, p.rebuilding);
     shown_.push_back(std::move(one));
   }
@@ -151,8 +145,8 @@ class Show {
   // Lets camera and time rest at the last instant, and keeps what is shown soon after.
   Json rest() {
     const int instant = shown_.back().instant;
-    const vv::FrameSize size{options_.width, options_.height,
-                             options_.steps > 0 ? options_.stillSamples : 256};
+    const FrameSize size{options_.width, options_.height,
+                         options_.steps > 0 ? options_.stillSamples : 256};
     const LiveFrame frame = frameAt(instant, LiveFrame::Purpose::still, size);
     LivePicture picture = shown_.back().picture;
     Json whole; // seconds until all of the picture was unbiased; null: longer
@@ -171,7 +165,7 @@ class Show {
   // Sets `picture` to what is shown after stillSeconds.
   Json refine(const LiveFrame& frame, LivePicture& picture) {
     const Clock::time_point stop = Clock::now();
-    if (!options_.raw && (light_ == vv::Pacing::Light::sampled || picture.width < options_.width))
+    if (!options_.raw && (light_ != Pacing::Light::direct || picture.width < options_.width))
       settle(stop, picture);
     LivePicture now;
     Json whole;
@@ -195,7 +189,7 @@ class Show {
   void settle(Clock::time_point stop, LivePicture& picture) {
     const int instant = shown_.back().instant;
     while (secondsSince(stop) < settlingTime) {
-      const vv::FrameSize size = pacing_.settle(options_.width, options_.height, 64);
+      const FrameSize size = pacing_.settle(options_.width, options_.height, 64);
       LivePicture next = finish(frameAt(instant, moving(), size));
       if (secondsSince(stop) < stillSeconds) picture = std::move(next);
     }
@@ -220,8 +214,8 @@ class Show {
   const ShowOptions& options_;
   Turn turn_;
   LiveRenderer live_;
-  vv::Pacing pacing_;
-  vv::Pacing::Light light_ = vv::Pacing::Light::sampled; // until the first picture tells
+  Pacing pacing_;
+  Pacing::Light light_ = Pacing::Light::sparse; // until the first picture tells
   Clock::time_point begin_;
   std::vector<Shown> shown_;
 };

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "session/pacing.h"
+#include "libpicture/live/pacing.h"
 
 struct ShowOptions {
   std::string world, folder;     // folder: for the pictures; it exists
@@ -17,7 +17,7 @@ struct ShowOptions {
   // Not 0: this many pictures at the instants 0, 1, 2 ... instead of those that the clock leaves
   // time for. Then all of them have the size `frame`, and nothing depends on the clock.
   int steps = 0;
-  vv::FrameSize frame{400, 300, 1};
+  picture::FrameSize frame{400, 300, 1};
   int stillSamples = 4; // with `steps`: samples of the picture after the stop
 };
 

@@ -240,7 +240,8 @@ class GuidedPictures : public testing::Test {
   struct Look {
     int threads = 1, transport = RT_TRANSPORT_PATH, samples = 16, follow = 0, frames = 2;
     uint32_t channels = RT_RGBA;
-    bool progressive = false;
+    bool progressive = false, jitter = false;
+    int stride = 1, seed = 0;
   };
   // Returns the channels of the last of some frames, one after the other, and its statistics.
   static std::vector<float> picture(const Look& look, uint32_t wanted, RTstats* stats = nullptr) {
@@ -318,6 +319,9 @@ class GuidedPictures : public testing::Test {
     rtQuality(RT_TRANSPORT, look.transport);
     rtQuality(RT_FOLLOW_IMAGES, look.follow);
     rtQuality(RT_PROGRESSIVE, look.progressive);
+    rtQuality(RT_SEED, look.seed);
+    rtQuality(RT_LIGHT_STRIDE, look.stride);
+    rtQuality(RT_JITTER, look.jitter); // else a single sample lies in the middle of its pixel
     for (int i = 0; i < look.frames; i++) {
       const double m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -.6 + .1 * i, -.6, .8, 1};
       rtInstanceMatrix(moving, m);
@@ -356,11 +360,41 @@ TEST_F(GuidedPictures, HaveTheSameBytesOnAnyNumberOfThreads) {
 
 TEST_F(GuidedPictures, OfOneSampleDescribeTheFirstSample) {
   constexpr uint32_t first = RT_DEPTH | RT_POSITION | RT_NAME | RT_MOTION;
-  const Look one{.samples = 1, .follow = 1, .channels = RT_RGBA | first};
+  const Look one{.samples = 1, .follow = 1, .channels = RT_RGBA | first, .jitter = true};
   Look many = one;
   many.samples = 8;
-  rtQuality(RT_JITTER, 1); // else the only sample would lie in the middle
   expectSame(picture(many, first), picture(one, first));
+}
+
+// Every pixel gets light in one of stride x stride frames of consecutive seeds, as much as
+// it has in a frame with light everywhere, and what it shows is described in all of them.
+TEST_F(GuidedPictures, WithSparseLightHaveLightInTurn) {
+  constexpr int pixels = width * height;
+  for (const int stride : {2, 3, 4}) {
+    SCOPED_TRACE(stride);
+    std::vector<int> lit(pixels);
+    for (int seed = 0; seed < stride * stride; seed++) {
+      Look dense{.samples = 1,
+                 .follow = 1,
+                 .channels = RT_RGBA | RT_SAMPLES | features,
+                 .seed = 1000 + seed};
+      Look sparse = dense;
+      sparse.stride = stride;
+      expectSame(picture(sparse, features), picture(dense, features));
+      const std::vector<float> colours = picture(dense, RT_RGBA), thin = picture(sparse, RT_RGBA),
+                               samples = picture(sparse, RT_SAMPLES);
+      for (int pixel = 0; pixel < pixels; pixel++) {
+        const bool light = samples[size_t(pixel)] > 0;
+        lit[size_t(pixel)] += light;
+        for (int k = 0; k < 3; k++) {
+          const auto i = size_t(4 * pixel + k);
+          const float expected = light ? colours[i] : 0;
+          EXPECT_NEAR(thin[i], expected, 1e-5 * (1 + expected)); // sums have another order
+        }
+      }
+    }
+    for (const int times : lit) EXPECT_TRUE(times == 1 || times == stride * stride) << times;
+  }
 }
 
 TEST_F(GuidedPictures, WithoutLightFollowNone) {

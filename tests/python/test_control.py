@@ -76,6 +76,28 @@ def test_a_step_with_an_error_changes_nothing(start):
     assert vv.get("Place", "translation") == [0, 0, 0]
 
 
+def test_nodes_that_would_hold_themselves(start):
+    vv = start().connect()
+    made = vv.create("DEF A Transform {} DEF B Transform {} DEF C Switch {}"
+                     " DEF S Script { eventIn SFNode in field SFNode known NULL"
+                     ' url "javascript: function known() {}" }')
+    a, b, c, s = (made.names[name] for name in "ABCS")
+    # only both together are a loop
+    refused("value", "would hold itself", vv.set_many, [(a, "children", [b]),
+                                                        (b, "addChildren", [a])])
+    refused("value", "would hold itself", vv.set_many, [(a, "children", [b]), (b, "children", [c]),
+                                                        (c, "choice", [a])])
+    assert vv.get(a, "children") == vv.get(b, "children") == []
+    # a Script may know a node that holds it, and what is removed is not held
+    vv.set(a, "children", [b, s])
+    vv.set(s, "known", a)
+    vv.set(s, "in", s)
+    vv.set(b, "removeChildren", [a])
+    assert vv.get(s, "known") == a and vv.get(a, "children") == [b, s]
+    vv.add_root(a)
+    assert vv.render().startswith(b"\x89PNG")
+
+
 def test_quiet_commands_are_not_lost_and_keep_their_order(start):
     vv = start().connect()
     seen = []
@@ -269,6 +291,17 @@ def test_worlds_are_loaded_and_replaced(start, tmp_path):
     vv.set(made.nodes[0], "translation", (1, 0, 0))
     assert vv.get(made.nodes[0], "translation") == [1, 0, 0]
     assert vv.render().startswith(b"\x89PNG")
+
+
+def test_loads_take_turns(start, tmp_path):
+    server = start()
+    clients = [server.raw() for _ in range(8)]
+    for i, raw in enumerate(clients):
+        (tmp_path / f"{i}.wrl").write_text(HEADER + f"DEF N{i} Group {{}}")
+        raw.send({"id": i, "command": "load", "url": f"{i}.wrl"})
+    for i, raw in enumerate(clients):
+        assert raw.ask(b"") == {"id": i, "result": f"{i}.wrl"}
+    assert len(server.connect().names()) == 1
 
 
 def test_without_a_world(start, tmp_path):

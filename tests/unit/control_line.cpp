@@ -96,6 +96,10 @@ TEST(ControlLine, MessagesSayWhereAndWhat) {
   bad(R"({"command":"render","size":[65536,65536]})", "limit", "pixels=");
   bad(R"({"command":"render","samples":18446744073709551615})", "command", "render: samples");
   bad(R"({"command":"render","samples":1.5})", "command", "render: samples");
+  bad(R"({"command":"render","file":"a.png\u0000b"})", "command",
+      "render: file: the path of a file");
+  bad(R"({"command":"render","file":""})", "command", "render: file: the path of a file");
+  bad(R"({"command":"load","url":["a.wrl","b\u0000.wrl"]})", "command", "load: url[1]: the path");
   bad(R"({"command":"time","skip":-1})", "command", "time: skip: seconds from 0");
   bad(R"({"command":"route","from":["A"],"to":["B","c"]})", "command", "route: from");
   bad(R"({"command":"release","nodes":["A"]})", "command",

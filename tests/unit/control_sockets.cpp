@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "control/connection.h"
 #include "control/listener.h"
 #include "control/place.h"
 #include "options/values.h"
@@ -197,8 +198,28 @@ TEST_F(ControlSockets, ALineWithoutAnEndIsCutOff) {
   part[0] = '{';
   size_t sent = 0;
   while (sent < 4 * limits.lineBytes && peer.send(part)) sent += part.size();
+  EXPECT_LT(sent, 4 * limits.lineBytes) << "it must not be read for ever";
   const std::string told = peer.line();
   EXPECT_NE(told.find("lineBytes="), std::string::npos) << told;
+}
+
+// A client that was cut off has time to read why, and then its place is free.
+TEST(ControlConnection, ACutConnectionEndsEvenIfTheClientDoesNotRead) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends), 0);
+  Mailbox mailbox;
+  std::string why;
+  const ClientId client = mailbox.join([] {}, why);
+  Connection connection(ends[0], client, mailbox);
+  mailbox.send(client, std::string(8 << 20, 'x')); // more than the socket holds
+  mailbox.cut(client, "limit", "why");
+  connection.work();
+  EXPECT_TRUE(connection.wantsToWrite());
+  EXPECT_TRUE(connection.isEnding());
+  EXPECT_FALSE(connection.hasEnded(100));
+  EXPECT_FALSE(connection.hasEnded(109));
+  EXPECT_TRUE(connection.hasEnded(111));
+  ::close(ends[1]);
 }
 
 TEST_F(ControlSockets, ClientsThatWaitForTheWorldAreNotReadOn) {
@@ -239,6 +260,42 @@ TEST_F(ControlSockets, TooManyClientsAreRefused) {
   Peer late(port);
   EXPECT_NE(late.line().find("clients="), std::string::npos);
   EXPECT_EQ(late.line(), "");
+}
+
+// Commands of clients that have gone wait for the world. A new client waits for one of their
+// places.
+TEST_F(ControlSockets, PlacesOfClientsThatHaveGoneBecomeFree) {
+  std::thread others([&] {
+    for (size_t i = 0; i < 2 * limits.clients; ++i) Peer(port).send(hello);
+  });
+  while (mailbox.waiting() < limits.clients) std::this_thread::yield();
+  for (size_t i = 0; i < 2 * limits.clients;) { // none was refused
+    const Letter one = letter();
+    if (one.kind == Letter::Kind::left) continue;
+    EXPECT_TRUE(one.line.command);
+    mailbox.processed(one.client, one.bytes);
+    ++i;
+  }
+  others.join();
+  Peer late(port);
+  late.send(hello);
+  Letter last = letter();
+  while (last.kind == Letter::Kind::left) last = letter();
+  mailbox.send(last.client, "welcome");
+  EXPECT_EQ(late.line(), "welcome");
+}
+
+TEST_F(ControlSockets, NobodyWaitsLongForAPlace) {
+  std::vector<std::unique_ptr<Peer>> peers;
+  for (size_t i = 0; i < limits.clients; ++i) {
+    peers.push_back(std::make_unique<Peer>(port));
+    peers.back()->send(hello); // never done
+    letter();
+  }
+  peers[0]->end();
+  Peer late(port), later(port);
+  EXPECT_NE(late.line().find("clients="), std::string::npos);
+  EXPECT_NE(later.line().find("clients="), std::string::npos);
 }
 
 TEST(ControlPlace, AddressesAreRead) {

@@ -208,8 +208,9 @@ TEST(LivePreview, rawSamplesAreShownAsTheyAre) {
     const LivePicture picture = finish(live, frame);
     EXPECT_FALSE(picture.preview);
     EXPECT_EQ(picture.rebuilding, 0);
-    EXPECT_EQ(picture.rgb,
-              displayBytes(headless(*other, settingsOf(RT_RGBA, 7 + int(picture.number)), frame)));
+    RenderSettings settings = settingsOf(RT_RGBA, 7 + int(picture.number));
+    settings.quality.set(RT_JITTER, 1);
+    EXPECT_EQ(picture.rgb, displayBytes(headless(*other, settings, frame)));
     EXPECT_NE(picture.rgb, before);
     before = picture.rgb;
   }
@@ -255,7 +256,7 @@ TEST(LivePreview, followsAnObjectThatMoves) {
     followed += errorAtTheEnd(seed, true);
     fresh += errorAtTheEnd(seed, false);
   }
-  EXPECT_LT(followed, 0.75 * fresh);
+  EXPECT_LT(followed, 0.9 * fresh);
 }
 
 // Two viewers of a world at rest: what one sees does not depend on the other.

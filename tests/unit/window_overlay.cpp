@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "session/input/keys.h"
-#include "window/overlay.h"
+#include "session/overlay.h"
 
 using namespace vv;
 using Showing = SessionFacts::Showing;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "session/pacing.h"
+#include "libpicture/live/pacing.h"
 
-using namespace vv;
+using namespace picture;
 
 namespace {
 

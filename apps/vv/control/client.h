@@ -23,6 +23,7 @@ struct Client {
   enum class Busy : uint8_t { no, rendering, loading } busy = Busy::no;
   Letter underWay;
   bool hasLeft = false;
+  bool isServed = false; // a command has been begun: it hears of other worlds
 
   NodeNumbers numbers;
   struct Subscription {

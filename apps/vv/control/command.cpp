@@ -63,6 +63,19 @@ std::vector<T> listOf(const std::string& where, const Json& json, const Read& re
   return list;
 }
 
+// Reads the path of a file. The system would cut it off at a zero byte.
+std::string pathOf(const std::string& where, const Json& json) {
+  std::string path = textOf(where, json);
+  if (path.empty() || path.find('\0') != path.npos) refuse(where, "the path of a file", json);
+  return path;
+}
+
+// Reads one path, or an array of them.
+std::vector<std::string> pathsOf(const std::string& where, const Json& json) {
+  if (json.is_string()) return {pathOf(where, json)};
+  return listOf<std::string>(where, json, pathOf);
+}
+
 // Reads one text, or an array of them.
 std::vector<std::string> textsOf(const std::string& where, const Json& json) {
   if (json.is_string()) return {json.get<std::string>()};
@@ -147,7 +160,7 @@ Action readRender(Members& m) {
   if (m.has("samples"))
     render.samples = wholeNumberOf(m.at("samples"), m.need("samples"), limits.samples);
   if (m.has("channels")) render.channels = textsOf(m.at("channels"), m.need("channels"));
-  if (m.has("file")) render.file = m.text("file");
+  if (m.has("file")) render.file = pathOf(m.at("file"), m.need("file"));
   if (m.has("format")) render.format = m.text("format");
   return render;
 }
@@ -212,7 +225,7 @@ constexpr Row table[] = {
     {"names", [](Members&) -> Action { return ListNames{}; }},
     {"viewpoints", [](Members&) -> Action { return ListViewpoints{}; }},
     {"bind", readBind},
-    {"load", [](Members& m) -> Action { return Load{textsOf(m.at("url"), m.need("url"))}; }},
+    {"load", [](Members& m) -> Action { return Load{pathsOf(m.at("url"), m.need("url"))}; }},
     {"replace_world",
      [](Members& m) -> Action {
        return Replace{listOf<NodeName>(m.at("nodes"), m.need("nodes"), nodeOf)};

@@ -13,7 +13,9 @@ namespace vv::control {
 namespace {
 
 constexpr size_t readBytes = 65'536;
-constexpr double lingering = 2; // seconds for a client to read why it was cut off
+// What a client that was cut off may take to read why: seconds, and bytes that it still sends.
+constexpr double lingering = 10;
+constexpr size_t lingeringBytes = size_t(64) << 20;
 
 } // namespace
 
@@ -33,8 +35,12 @@ void Connection::read() {
     if (errno != EAGAIN && errno != EINTR) isBroken_ = true;
     return;
   }
-  if (got == 0) inputEnded_ = true;
-  if (isCut_) return;
+  if (got == 0) endSeen_ = inputEnded_ = true;
+  if (isCut_) {
+    thrownAway_ += size_t(got);
+    if (thrownAway_ > lingeringBytes) isBroken_ = true;
+    return;
+  }
   input_.append(block, size_t(got));
   deliverLines();
 }

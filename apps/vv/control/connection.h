@@ -25,7 +25,10 @@ class Connection {
   // Delivers lines that had to wait, takes output from the mailbox, and sends what the socket
   // accepts.
   void work();
-  bool isEnding() const { return isCut_ || inputEnded_; }
+  // Notes that the client sends no more than what has arrived.
+  void noteEnd() { endSeen_ = true; }
+  // Tells whether no further commands can come.
+  bool isEnding() const { return isCut_ || endSeen_; }
   // Tells whether the connection has ended and can be destroyed. now: seconds of any clock.
   bool hasEnded(double now);
 
@@ -40,11 +43,13 @@ class Connection {
   size_t searched_ = 0; // bytes of input_ in which there is no line feed
   std::string output_;
   size_t sent_ = 0;         // bytes of output_
-  bool inputEnded_ = false; // the client sends no more
+  bool endSeen_ = false;    // the client sends no more
+  bool inputEnded_ = false; // and all that it has sent is read
   bool isBroken_ = false;   // nothing can be sent
   bool isCut_ = false;      // what arrives is thrown away
   bool isShut_ = false;     // we send no more
-  double giveUp_ = 0;       // time at which a connection that was shut is closed; 0: none
+  size_t thrownAway_ = 0;   // bytes that arrived after the cut
+  double giveUp_ = 0;       // time at which a connection that was cut is closed; 0: none
 };
 
 } // namespace vv::control

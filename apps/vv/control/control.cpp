@@ -47,6 +47,8 @@ struct Control::Impl {
   // The client whose picture is rendered or encoded; 0: none. Others wait for their turn.
   ClientId renderer = 0;
   uint32_t channels = 0; // of its picture
+  // A world is being read. Commands that load others wait, so that only one is read at a time.
+  bool loading = false;
   std::optional<std::future<Encoded>> encoding;
 
   std::unique_ptr<Listener> listener; // destroyed first: its thread uses the mailbox
@@ -83,12 +85,15 @@ struct Control::Impl {
   }
 
   // Returns the client whose command arrived first, of those that may go on.
-  Client* next(bool hasWorld, bool isLoading) {
+  Client* next() {
     Client* first = nullptr;
     for (auto& [id, client] : clients) {
       if (client.waiting.empty() || client.busy != Client::Busy::no) continue;
       const Line& line = client.waiting.front().letter.line;
-      if (!hasWorld && isLoading && line.command && needsWorld(*line.command)) continue;
+      if (loading && line.command &&
+          (std::holds_alternative<Load>(line.command->action) ||
+           (!session && needsWorld(*line.command))))
+        continue;
       if (line.command && std::holds_alternative<Render>(line.command->action) && renderer != 0)
         continue;
       if (!first || client.waiting.front().order < first->waiting.front().order) first = &client;
@@ -139,16 +144,13 @@ struct Control::Impl {
       refuse(letter, code, failure);
   }
 
-  void tellAll(const std::string& line) {
-    for (const auto& [id, client] : clients) mailbox.send(id, line);
-  }
-
   // --- Commands ---
 
   // Does the first command of a client.
   void doOne(Client& client) {
     Letter letter = std::move(client.waiting.front().letter);
     client.waiting.pop_front();
+    client.isServed = true;
     const Line& line = letter.line;
     if (!line.command) return refuse(letter, line.code, line.message);
     try {
@@ -173,10 +175,8 @@ struct Control::Impl {
       host.quit();
     } else if (const auto* load = std::get_if<Load>(&command.action)) {
       if (load->urls.empty()) throw CommandError("command", "load: url: the array is empty");
-      for (auto& [id, other] : clients)
-        if (other.busy == Client::Busy::loading)
-          finish(other, "", "world", "another client loads another world");
       host.open(load->urls);
+      loading = true;
       client.busy = Client::Busy::loading;
       client.underWay = std::move(letter);
     } else if (const auto* render = std::get_if<Render>(&command.action)) {
@@ -250,9 +250,13 @@ struct Control::Impl {
     tellWorld();
   }
 
+  // Tells the clients that have seen another world, or none. To the others it is no news: their
+  // first command waits.
   void tellWorld() {
-    tellAll(fmt::format(R"({{"event":"world","world":{}}})",
-                        jsonText(session->browser().world().path)));
+    const std::string line =
+        fmt::format(R"({{"event":"world","world":{}}})", jsonText(session->browser().world().path));
+    for (const auto& [id, client] : clients)
+      if (client.isServed) mailbox.send(id, line);
   }
 
   void detach() {
@@ -272,8 +276,9 @@ struct Control::Impl {
     attach(current);
     noticeOtherWorld();
     followPicture();
+    loading = isLoading;
     const Clock::time_point end = Clock::now() + turn;
-    while (Client* client = next(session != nullptr, isLoading)) {
+    while (Client* client = next()) {
       doOne(*client);
       if (Clock::now() > end) break;
     }

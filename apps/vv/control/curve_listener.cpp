@@ -154,7 +154,12 @@ class CurveListener final : public Listener {
   Client* clientOf(const std::string& route) {
     if (const auto found = clients_.find(route); found != clients_.end()) return &found->second;
     std::string why;
-    const ClientId id = mailbox_.join([wake = wake_] { wake->call(); }, why);
+    const auto join = [&] { return mailbox_.join([wake = wake_] { wake->call(); }, why); };
+    ClientId id = join();
+    if (id == 0) {
+      forgetGone();
+      id = join();
+    }
     if (id == 0) {
       static_cast<void>(sendTo(route, errorAnswer("", "limit", why)));
       return nullptr;
@@ -180,6 +185,18 @@ class CurveListener final : public Listener {
     }
   }
 
+  // Forgets clients whose connections have ended, without waiting for their next beat.
+  void forgetGone() {
+    for (auto at = clients_.begin(); at != clients_.end();) {
+      if (sendTo(at->first, "") != Sent::gone) {
+        ++at;
+        continue;
+      }
+      mailbox_.leave(at->second.id);
+      at = clients_.erase(at);
+    }
+  }
+
   // Sends what waits for a client. Returns false if it is gone.
   bool serve(const std::string& route, Client& client) try {
     if (!mailbox_.takeOutput(client.id, client.output)) client.isCut = true;
@@ -192,6 +209,8 @@ class CurveListener final : public Listener {
     }
     client.output.erase(0, begin);
     mailbox_.setUnsent(client.id, client.output.size());
+    // ZeroMQ cannot end its connection; it is ignored from now on, and takes no place
+    if (client.isCut && client.output.empty()) mailbox_.leave(client.id);
     if (sent == Sent::done && Clock::now() > client.nextBeat) {
       client.nextBeat = Clock::now() + beat;
       sent = sendTo(route, "");

@@ -1,4 +1,5 @@
 // socket_listener.cpp: Listens with plain TCP or unix sockets. One thread waits for all of them.
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -64,31 +65,49 @@ class SocketListener final : public Listener {
 
   void step() {
     constexpr int idle = 1000, soon = 50; // milliseconds
-    std::vector<pollfd> polled{{wake_->fd(), POLLIN, 0}, {fd_, POLLIN, 0}};
-    bool ending = false; // a connection that was cut waits for its end
+    const bool waits = waitingSince_ != 0;
+    // New clients come before the connections, so that a connection that a client has ended before
+    // it opened the next one is seen to end.
+    std::vector<pollfd> polled{{wake_->fd(), POLLIN, 0}, {waits ? -1 : fd_, POLLIN, 0}};
     for (const auto& connection : connections_) {
       const bool reads = connection->wantsToRead(), writes = connection->wantsToWrite();
       // a closed socket would wake the thread for ever while its commands wait for the world
       polled.push_back({reads || writes ? connection->fd() : -1,
-                        short((reads ? POLLIN : 0) | (writes ? POLLOUT : 0)), 0});
-      ending = ending || connection->isEnding();
+                        short((reads ? POLLIN | POLLRDHUP : 0) | (writes ? POLLOUT : 0)), 0});
     }
-    if (::poll(polled.data(), polled.size(), ending ? soon : idle) < 0) return;
+    if (::poll(polled.data(), polled.size(), waits || anyIsEnding() ? soon : idle) < 0) return;
     if (polled[0].revents) wake_->clear();
     size_t i = 2;
     for (const auto& connection : connections_) {
       const short events = polled[i++].revents;
+      if (events & POLLRDHUP) connection->noteEnd();
       if ((events & (POLLIN | POLLHUP | POLLERR)) && connection->wantsToRead()) connection->read();
       connection->work();
     }
     const double now = steadySeconds();
     connections_.remove_if([&](const auto& connection) { return connection->hasEnded(now); });
-    if (polled[1].revents) accept();
+    if (polled[1].revents) waitingSince_ = now;
+    if (waitingSince_ != 0 && !mustWait(now)) accept();
   }
 
+  bool anyIsEnding() const {
+    return std::any_of(connections_.begin(), connections_.end(),
+                       [](const auto& connection) { return connection->isEnding(); });
+  }
+
+  // Tells whether a new client waits in the socket's queue: all places are taken, and one of them
+  // becomes free as soon as the last commands of a client that has gone are done. If that takes
+  // long, the new client is told that there is no place.
+  bool mustWait(double now) const {
+    constexpr double patience = 2; // seconds
+    return connections_.size() >= limits.clients && anyIsEnding() && now < waitingSince_ + patience;
+  }
+
+  // Accepts one client, or refuses it.
   void accept() {
     const int fd = ::accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0) {
+      waitingSince_ = 0;
       // out of file descriptors: do not ask again at once
       if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM)
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -101,12 +120,13 @@ class SocketListener final : public Listener {
       why = "this socket belongs to another user";
     else
       client = mailbox_.join([wake = wake_] { wake->call(); }, why);
-    if (client == 0) {
+    if (client == 0) { // the next one that waits is refused at once, too
       const std::string text = errorAnswer("", ours ? "limit" : "refused", why) + "\n";
       static_cast<void>(!::send(fd, text.data(), text.size(), MSG_NOSIGNAL));
       ::close(fd);
       return;
     }
+    waitingSince_ = 0;
     const int on = 1; // answers must not wait for further ones
     if (!place_.isPath()) ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     connections_.push_back(std::make_unique<Connection>(fd, client, mailbox_));
@@ -119,7 +139,8 @@ class SocketListener final : public Listener {
   std::shared_ptr<WakeUp> wake_ = std::make_shared<WakeUp>();
   std::atomic<bool> ending_{false};
   std::list<std::unique_ptr<Connection>> connections_;
-  std::thread thread_; // the last member, because it uses the others
+  double waitingSince_ = 0; // time since which a client waits to be accepted; 0: none waits
+  std::thread thread_;      // the last member, because it uses the others
 };
 
 } // namespace

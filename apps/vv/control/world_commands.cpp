@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <new>
 #include <set>
@@ -59,20 +60,44 @@ const FieldInfo& writableField(const Node& node, const std::string& name) {
   return *field;
 }
 
-// Refuses a value by which a node would hold itself. The engine would drop it and only warn.
-void refuseLoop(const Node& owner, const FieldInfo& field, const Value& value) {
-  std::vector<Node*> open;
-  if (const auto* one = std::get_if<NodeRef>(&value)) open.push_back(one->get());
+// A value that has been checked and is to be set.
+struct Checked {
+  NodeRef node;
+  const FieldInfo* field;
+  Value value;
+};
+
+// Tells whether the nodes that are sent to it become part of the node. Scripts only know theirs.
+bool holdsWhatItGets(const Node& node, const FieldInfo& field) {
+  return !dynamic_cast<const ScriptNode*>(&node) && field.name != "removeChildren";
+}
+
+void appendNodes(const Value& value, std::vector<Node*>& out) {
+  if (const auto* one = std::get_if<NodeRef>(&value)) out.push_back(one->get());
   if (const auto* many = std::get_if<MFNode>(&value))
-    for (const NodeRef& one : *many) open.push_back(one.get());
-  const bool free =
-      open.empty() || walk(std::move(open), [&](Node& node, std::vector<Node*>& next) {
-        appendChildren(node, next);
-        return &node != &owner;
-      });
-  if (!free)
-    throw CommandError(
-        "value", fmt::format("{}.{}: the node would hold itself", owner.type().name, field.name));
+    for (const NodeRef& one : *many) out.push_back(one.get());
+}
+
+// Refuses values by which a node would hold itself, also by way of the other values. The engine
+// would drop them and only warn.
+void refuseLoops(const std::vector<Checked>& all) {
+  std::multimap<const Node*, const Checked*> fresh;
+  for (const Checked& one : all)
+    if (holdsWhatItGets(*one.node, *one.field)) fresh.emplace(one.node.get(), &one);
+  for (const auto& [owner, one] : fresh) {
+    std::vector<Node*> open;
+    appendNodes(one->value, open);
+    if (open.empty()) continue;
+    const bool free = walk(std::move(open), [&](Node& node, std::vector<Node*>& next) {
+      if (!dynamic_cast<ScriptNode*>(&node)) appendChildren(node, next);
+      const auto [begin, end] = fresh.equal_range(&node);
+      for (auto at = begin; at != end; ++at) appendNodes(at->second->value, next);
+      return &node != owner;
+    });
+    if (!free)
+      throw CommandError("value", fmt::format("{}.{}: the node would hold itself",
+                                              owner->type().name, one->field->name));
+  }
 }
 
 std::string keyOf(const FieldName& name) { return shownNode(name.node) + "." + name.field; }
@@ -166,12 +191,7 @@ std::string WorldCommands::get(const Get& get) {
 // All values are checked before the first one is set. The events are one cascade: they have one
 // time stamp, and what they cause comes after the last of them.
 std::string WorldCommands::set(const Set& set) {
-  struct Checked {
-    NodeRef node;
-    const FieldInfo* field;
-    Value value;
-  };
-  std::vector<Checked> fields, events;
+  std::vector<Checked> all;
   std::set<std::pair<const Node*, const FieldInfo*>> seen;
   const FindNode find = [this](const Json& name) {
     return name.is_string() ? nodeOf(name.get<std::string>()) : nodeOf(name.get<uint64_t>());
@@ -184,10 +204,12 @@ std::string WorldCommands::set(const Set& set) {
                          fmt::format("{}.{} of {} would be set twice in one step",
                                      node->type().name, field.name, shownNode(one.to.node)));
     Value value = readValue(one.value, *node, field, find);
-    refuseLoop(*node, field, value);
-    auto& list = field.access == Access::field ? fields : events;
-    list.push_back({std::move(node), &field, std::move(value)});
+    all.push_back({std::move(node), &field, std::move(value)});
   }
+  refuseLoops(all);
+  std::vector<Checked> fields, events;
+  for (Checked& one : all)
+    (one.field->access == Access::field ? fields : events).push_back(std::move(one));
   for (Checked& one : fields)
     if (!browser_.set(*one.node, one.field->name, std::move(one.value)))
       throw CommandError("value", fmt::format("{}.{}: the world refused the value",

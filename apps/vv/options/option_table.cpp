@@ -369,6 +369,28 @@ const OptionInfo table[] = {
        notEmpty(v, "a file name");
        o.render.record = v;
      }},
+    {"--port", "N", "Page",
+     "Port of the page of vv serve (default 8097); 0 is any free one. The address is printed.",
+     [](Options& o, const std::string& v) {
+       o.serve.port = int(readInteger(v, 0, 65535));
+       o.serve.given = true;
+     }},
+    {"--address", "ADDRESS", "Page",
+     "IP address of this machine at which vv serve can be reached, such as 0.0.0.0 for all. "
+     "Without it the page can be opened on this machine alone. Needs --token (docs/serve.md).",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "an IP address");
+       o.serve.address = v;
+       o.serve.given = true;
+     }},
+    {"--token", "new|@FILE|TOKEN", "Page",
+     "Show the page only to those who have a token: new makes one and prints it, @FILE reads it "
+     "from a file. $VV_TOKEN is used without this option.",
+     [](Options& o, const std::string& v) {
+       notEmpty(v, "new, @FILE or a token");
+       o.serve.token = v;
+       o.serve.given = true;
+     }},
     {"--control", "ADDRESS", "Control",
      "Let programs read and change the world, by lines of JSON at this address: 127.0.0.1:PORT, "
      ":PORT, unix:PATH, or with --key FILE also HOST:PORT for other machines; port 0 is any free "

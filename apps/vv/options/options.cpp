@@ -18,11 +18,11 @@ namespace {
 
 // If several jobs are asked for, the first of the table is done.
 constexpr JobInfo jobs[] = {
-    {Job::help, false, false},       {Job::version, false, false},
-    {Job::listKeys, false, false},   {Job::listShaders, true, false},
-    {Job::listEngines, true, false}, {Job::listNodes, true, false},
-    {Job::explain, true, true},      {Job::listViewpoints, true, true},
-    {Job::info, true, true},
+    {Job::help, false, false},         {Job::version, false, false},
+    {Job::serve, false, true},         {Job::listKeys, false, false},
+    {Job::listShaders, true, false},   {Job::listEngines, true, false},
+    {Job::listNodes, true, false},     {Job::explain, true, true},
+    {Job::listViewpoints, true, true}, {Job::info, true, true},
 };
 
 std::string longName(const OptionInfo& option) {
@@ -125,8 +125,8 @@ constexpr Rule rules[] = {
      "--frames and --turntable need -o (or --check, to test a world)"},
     {[](const Options& o) { return o.isSequence() && writesToStandardOutput(o); },
      "a sequence needs file names, not standard output"},
-    {[](const Options& o) { return o.watch && !o.makesPictures() && !o.opensWindow(); },
-     "--watch needs -o or the window"},
+    {[](const Options& o) { return o.watch && !o.makesPictures() && !o.showsWorld(); },
+     "--watch needs -o, the window or vv serve"},
     {[](const Options& o) { return o.watch && o.input == "-"; },
      "--watch needs a file, not standard input"},
     // files beside the picture
@@ -145,25 +145,34 @@ constexpr Rule rules[] = {
     // the cluster
     {[](const Options& o) { return !o.cluster.allow.empty() && o.cluster.key.empty(); },
      "--allow-keys needs --key"},
-    {[](const Options& o) { return o.cluster.used() && !o.makesPictures() && !o.opensWindow(); },
-     "--workers and --listen-workers need -o or the window"},
+    {[](const Options& o) { return o.cluster.used() && !o.makesPictures() && !o.showsWorld(); },
+     "--workers and --listen-workers need -o, the window or vv serve"},
     {[](const Options& o) { return o.check && o.makesPictures(); },
      "--check makes no picture: it cannot be used with -o"},
     {[](const Options& o) {
        return o.makesPictures() && o.allViewpoints() && writesToStandardOutput(o);
      },
      "--viewpoint all needs file names, not standard output"},
+    // the page
+    {[](const Options& o) {
+       return o.has(Job::serve) &&
+              (o.makesPictures() || o.check || !o.write.empty() || inspectionsOf(o) > 0);
+     },
+     "vv serve shows the world on a page: it cannot be used with -o, --compare, --audit, --check, "
+     "--write, --info or a list"},
+    {[](const Options& o) { return o.serve.given && !o.has(Job::serve); },
+     "--port, --address and --token need vv serve"},
     // control by programs
     {[](const Options& o) { return o.noWindow && o.control.empty(); },
      "--no-window needs --control (-o makes a picture without a window)"},
     {[](const Options& o) { return !o.control.empty() && !o.opensWindow(); },
-     "--control cannot be used with -o, --check, --write or a list"},
+     "--control cannot be used with -o, vv serve, --check, --write or a list"},
     {[](const Options& o) {
        return o.noWindow && (!o.inputScript.empty() || !o.recordInput.empty() || o.watch);
      },
      "--no-window cannot be used with --input, --record-input or --watch"},
     // the window
-    {[](const Options& o) { return o.opensWindow() && o.allViewpoints(); },
+    {[](const Options& o) { return o.showsWorld() && o.allViewpoints(); },
      "--viewpoint all needs -o"},
     {[](const Options& o) {
        return !o.recordInput.empty() && (!o.opensWindow() || !o.inputScript.empty());
@@ -254,11 +263,14 @@ bool isWholeNumber(std::string_view word) {
   return !word.empty() && word.find_first_not_of("0123456789") == word.npos;
 }
 
+// `vv serve` is the only command without dashes; a world of that name is ./serve.
+bool servesPage(int argc, char** argv) { return argc > 1 && std::string_view(argv[1]) == "serve"; }
+
 // Rewrites optional arguments as NAME=VALUE for the parser. The word after the option is taken as
 // its argument only if it is a whole number.
 std::vector<std::string> withOptionalArguments(int argc, char** argv) {
   std::vector<std::string> out;
-  for (int i = 1; i < argc; ++i) {
+  for (int i = servesPage(argc, argv) ? 2 : 1; i < argc; ++i) {
     out.emplace_back(argv[i]);
     for (const OptionInfo& option : optionTable()) {
       if (option.argument[0] != '[' || out.back() != longName(option)) continue;
@@ -298,6 +310,7 @@ Options readCommandLine(int argc, char** argv) {
   if (!app.remaining().empty())
     throw UsageError(fmt::format("\"{}\" was not expected", app.remaining()[0]));
   if (!inputs.empty()) options.input = inputs[0];
+  if (servesPage(argc, argv)) options.jobs.push_back(Job::serve);
   for (size_t i = 0; i < added.size(); ++i) {
     const OptionInfo& option = optionTable()[i];
     if (added[i]->count() == 0) continue;
@@ -354,6 +367,8 @@ std::string helpText() {
       "  vv world.wrl -o picture.png     writes a picture from the first viewpoint, or of the "
       "whole world\n"
       "  vv world.wrl --check            reports what is wrong with the world\n"
+      "  vv serve world.wrl              shows the world on a page for browsers; prints its "
+      "address\n"
       "\n"
       "FILE is .wrl, .wrz or .wrl.gz; - is standard input.\n";
   const char* group = "";

@@ -27,10 +27,12 @@ struct Output {
   picture::FilmKind film = picture::FilmKind::none;
 };
 
-// A job that prints something instead of making a picture or opening the window.
+// A job that is done instead of making a picture or opening the window: it prints something, or
+// serves a page.
 enum class Job : uint8_t {
   help,
   version,
+  serve,
   listKeys,
   listShaders,
   listEngines,
@@ -44,6 +46,15 @@ struct JobInfo {
   bool inspects;   // the job prints facts, as JSON with --json; only one such job can be asked for
   bool needsWorld; // the job needs a FILE
 };
+// Where `vv serve` shows its page.
+struct ServeOptions {
+  int port = 8097;     // 0: any free port
+  std::string address; // IP address; empty: this machine alone
+  // A text, @FILE, or "new" for random characters; empty: as the environment says, or none.
+  std::string token;
+  bool given = false; // one of these was given
+};
+
 struct Options {
   std::string input; // "-": standard input; empty: none given
   std::vector<Output> outputs;
@@ -69,8 +80,9 @@ struct Options {
   std::string inputScript, recordInput;      // files of user input; empty: none
   std::shared_ptr<const InputScript> script; // contents of inputScript
   std::string write, stats;
-  std::string compare;  // reference picture; empty: none
-  int audit = 0;        // number of pictures to check the error bars with; 0: none
+  std::string compare; // reference picture; empty: none
+  int audit = 0;       // number of pictures to check the error bars with; 0: none
+  ServeOptions serve;
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;
   xvrml::BrowserOptions running;
@@ -83,8 +95,10 @@ struct Options {
   bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
   bool opensWindow() const {
     return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
-           !has(Job::listKeys);
+           !has(Job::listKeys) && !has(Job::serve);
   }
+  // Tells whether the world runs and somebody looks at it, in the window or on a page.
+  bool showsWorld() const { return opensWindow() || has(Job::serve); }
   bool has(Job wanted) const { return std::find(jobs.begin(), jobs.end(), wanted) != jobs.end(); }
   // Returns the job to do; null if none was asked for.
   const JobInfo* job() const;

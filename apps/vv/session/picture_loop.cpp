@@ -13,13 +13,6 @@ using Purpose = picture::LiveFrame::Purpose;
 // and accumulate, so that the still picture begins over a good one.
 constexpr double settlingTime = 0.35;
 
-// Tells which light a world has, as the engine chose its transport.
-Pacing::Light lightOf(const RTstats& stats) {
-  const bool direct =
-      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
-  return stats.cameraRays > 0 && direct ? Pacing::Light::direct : Pacing::Light::sampled;
-}
-
 bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
   return std::memcmp(a.matrix, b.matrix, sizeof a.matrix) == 0 && a.fovy == b.fovy &&
          a.height == b.height && a.shader == b.shader;
@@ -27,8 +20,8 @@ bool equal(const xvrml::CameraSettings& a, const xvrml::CameraSettings& b) {
 
 } // namespace
 
-PictureLoop::PictureLoop(xvrml::Browser& browser, const Options& options)
-    : browser_(browser), options_(options), renderer_(browser, options.render),
+PictureLoop::PictureLoop(SharedRenderer& shared, const Options& options, uint32_t viewer)
+    : shared_(shared), renderer_(shared.live), options_(options), viewer_(viewer),
       pacing_(options.fps) {}
 
 void PictureLoop::resize(int width, int height) {
@@ -40,7 +33,7 @@ void PictureLoop::resize(int width, int height) {
 
 bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
   return phase_ == Phase::unstarted || fit.isWanted() || !equal(pilot.camera(), camera_) ||
-         browser_.hasChanges() || pilot.headlight() != headlight_ ||
+         shared_.isOutdated(world_) || pilot.headlight() != headlight_ ||
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
@@ -48,12 +41,23 @@ bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
 bool PictureLoop::isSettled(double now) const {
   if (motion_ == Motion::samples) return true;
   if (phase_ == Phase::settling) return now >= settlingEnds_;
-  return lightOf(facts_.stats) == Pacing::Light::direct && frame_.width >= width_ &&
-         frame_.height >= height_;
+  return picture::lightOf(facts_.stats, true) == picture::Pacing::Light::direct &&
+         frame_.width >= width_ && frame_.height >= height_;
+}
+
+bool PictureLoop::isInterrupted() const {
+  return isRefining() && still_ != Progress::finished && shared_.cancellations() != cancellations_;
+}
+
+PictureLoop::Urgency PictureLoop::urgency(const Pilot& pilot, const Fit& fit) const {
+  if (width_ <= 0) return Urgency::nothing;
+  if (cancelled_ || isOutdated(pilot, fit)) return Urgency::change;
+  return isRefining() && !isInterrupted() ? Urgency::nothing : Urgency::quality;
 }
 
 // Moving frames overlap where the renderer permits it. A frame of what has stopped is cancelled
-// instead, but not before the first picture, so that it comes early.
+// instead, but not before the first picture, so that it comes early. That holds for the frames of
+// other viewers, too.
 PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double now,
                                           Need need) const {
   const RendererState state = renderer_.state();
@@ -63,13 +67,15 @@ PictureLoop::Decision PictureLoop::decide(bool outdated, const Fit& fit, double 
   case RendererState::rendering:
   case RendererState::ready:
     if (!outdated) return Decision::wait;
-    if (isMoving()) return state == RendererState::ready ? following : Decision::wait;
-    return hasShown() || fit.isWanted() ? Decision::cancel : Decision::wait;
+    if (shared_.isMoving()) return state == RendererState::ready ? following : Decision::wait;
+    return shared_.viewer() != viewer_ || hasShown() || fit.isWanted() ? Decision::cancel
+                                                                       : Decision::wait;
   case RendererState::idle: break;
   }
   if (outdated || cancelled_) return following;
-  if (isRefining() && !(isStillLost_ && need == Need::stillPicture)) return Decision::wait;
-  if (need == Need::stillPicture) return Decision::refine;
+  if (isRefining() && !isInterrupted() && !(isStillLost_ && need == Need::stillPicture))
+    return Decision::wait;
+  if (isInterrupted() || need == Need::stillPicture) return Decision::refine;
   return isSettled(now) ? Decision::refine : Decision::settle;
 }
 
@@ -80,7 +86,7 @@ void PictureLoop::advance(const Pilot& pilot, Fit& fit, double now, Need need) {
   switch (decide(isOutdated(pilot, fit), fit, now, need)) {
   case Decision::wait: break;
   case Decision::cancel:
-    renderer_.cancel();
+    shared_.cancel();
     cancelled_ = true;
     break;
   case Decision::move: start(Phase::moving, pilot, fit, now); break;
@@ -103,7 +109,7 @@ bool PictureLoop::copyStill(picture::Picture& picture) {
 }
 
 bool PictureLoop::isFinished(const Pilot& pilot) const {
-  return isRefining() && still_ == Progress::finished && isIdle() && !browser_.hasChanges() &&
+  return isRefining() && still_ == Progress::finished && !shared_.isOutdated(world_) &&
          equal(pilot.camera(), camera_);
 }
 
@@ -124,18 +130,35 @@ picture::View PictureLoop::viewOf(const Pilot& pilot, const Fit& fit) const {
   return view;
 }
 
-void PictureLoop::followHeadlight(const Pilot& pilot) {
-  if (headlight_ == pilot.headlight()) return;
-  headlight_ = pilot.headlight();
+xvrml::MapOptions::Headlight PictureLoop::headlightOf(const Pilot& pilot) const {
   const auto on = xvrml::MapOptions::Headlight::on, off = xvrml::MapOptions::Headlight::off;
-  const auto wanted = !headlight_ ? options_.render.headlight : *headlight_ ? on : off;
+  const std::optional<bool> chosen = pilot.headlight();
+  return !chosen ? options_.render.headlight : *chosen ? on : off;
+}
+
+// The renderer still has the headlight of its last frame, which may have been another viewer's.
+void PictureLoop::followHeadlight(const Pilot& pilot) {
+  headlight_ = pilot.headlight();
+  const auto wanted = headlightOf(pilot);
   renderer_.change([&](picture::RenderSettings& s) { s.headlight = wanted; });
 }
 
-FrameSize PictureLoop::sizeOf(Phase phase) {
+picture::LiveFrame PictureLoop::stillOf(const Pilot& pilot) const {
+  picture::LiveFrame frame;
+  frame.view.shader = options_.view.shader;
+  frame.view.viewer = pilot.camera();
+  frame.width = width_;
+  frame.height = height_;
+  frame.samples = options_.render.samples;
+  frame.viewer = viewer_;
+  return frame;
+}
+
+picture::FrameSize PictureLoop::sizeOf(Phase phase) {
   const int samples = options_.render.samples;
   if (phase == Phase::settling) return pacing_.settle(width_, height_, samples);
-  return pacing_.next(width_, height_, phase == Phase::moving, samples, lightOf(facts_.stats));
+  return pacing_.next(width_, height_, phase == Phase::moving, samples,
+                      picture::lightOf(facts_.stats, motion_ == Motion::rebuilt));
 }
 
 void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
@@ -152,14 +175,18 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   frame.width = frame_.width;
   frame.height = frame_.height;
   frame.samples = frame_.samples;
+  frame.lightStride = frame_.lightStride;
   frame.purpose = phase == Phase::refining     ? Purpose::still
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
+  frame.viewer = viewer_;
   still_ = Progress::none;
   isStillLost_ = false;
   cancelled_ = false;
+  cancellations_ = shared_.cancellations();
   if (hasStarted()) phase_ = phase; // even if the renderer throws; a first frame is tried again
-  number_ = renderer_.start(frame);
+  number_ = shared_.start(frame, moving);
+  world_ = shared_.world();
   phase_ = phase;
   fit.begin();
 }
@@ -177,8 +204,8 @@ picture::View PictureLoop::stillViewOf(const Pilot& pilot, double aspect) const 
 
 void PictureLoop::advanceStill(const Pilot& pilot, Fit& fit) {
   if (taker_.isRendering()) return;
-  if (!isIdle()) {
-    renderer_.cancel();
+  if (!shared_.isIdle()) {
+    shared_.cancel();
     cancelled_ = true;
     return;
   }
@@ -200,12 +227,13 @@ bool PictureLoop::placeViewer(Pilot& pilot, Fit& fit) const {
   return true;
 }
 
-bool PictureLoop::look(picture::LivePicture& picture) {
-  if (taker_.isRendering()) {
-    taker_.look();
-    return false;
-  }
-  if (!renderer_.look(picture)) return false;
+bool PictureLoop::lookForStill() {
+  if (!taker_.isRendering()) return false;
+  taker_.look();
+  return true;
+}
+
+bool PictureLoop::note(const picture::LivePicture& picture) {
   // Partial pictures are not shown over the previous one while something moves: that would tear.
   const bool shown = picture.finished || !hasShown() || !isMoving();
   shown_ = Shown::something;
@@ -219,8 +247,8 @@ bool PictureLoop::look(picture::LivePicture& picture) {
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
     still_ = picture.finished ? Progress::finished : Progress::covered;
   if (picture.finished) {
-    pacing_.took({picture.width, picture.height, 1}, picture.seconds, picture.alone,
-                 picture.overhead, picture.samples, picture.rebuilding);
+    pacing_.took({picture.width, picture.height, 1, picture.lightStride}, picture.seconds,
+                 picture.alone, picture.overhead, picture.samples, picture.rebuilding);
     facts_.stats = picture.stats;
     facts_.map = picture.map;
   }

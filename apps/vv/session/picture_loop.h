@@ -1,16 +1,17 @@
-// picture_loop.h: Decides when the next frame of a running world is started, continued or
-// cancelled, how large it is, and whether it is a preview or a still picture. It owns the renderer.
-// Owned by a session. [the browser's thread]
+// picture_loop.h: Decides when the next frame of a viewer of a running world is started, continued
+// or cancelled, how large it is, and whether it is a preview or a still picture. The loops of
+// several viewers share a renderer. Owned by a session or a guest. [the browser's thread]
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
 #include "libpicture/live.h"
+#include "libpicture/live/pacing.h"
 #include "options/options.h"
 #include "session/fit.h"
-#include "session/pacing.h"
 #include "session/pilot.h"
+#include "session/shared_renderer.h"
 #include "session/still.h"
 
 namespace vv {
@@ -34,8 +35,12 @@ class PictureLoop {
   // Whether a file waits for the still picture of the world as it is now.
   enum class Need : uint8_t { none, stillPicture };
 
-  // The browser and the options must outlive the loop.
-  PictureLoop(xvrml::Browser& browser, const Options& options);
+  // How much a frame is needed: not at all, because the picture could be better, or because it does
+  // not show the world as it is now.
+  enum class Urgency : uint8_t { nothing, quality, change };
+
+  // The renderer and the options must outlive the loop. viewer: the number of its frames.
+  PictureLoop(SharedRenderer& shared, const Options& options, uint32_t viewer);
 
   void resize(int width, int height);
   int width() const { return width_; }
@@ -43,13 +48,18 @@ class PictureLoop {
   void setMotion(Motion motion) { motion_ = motion; }
   Motion motion() const { return motion_; }
 
-  // Starts the next frame or cancels the one in flight, if that is due. now: time of any clock.
+  Urgency urgency(const Pilot& pilot, const Fit& fit) const;
+  // Starts the next frame or cancels the one in flight, if that is due. Of several loops, the one
+  // with the greatest urgency is called. now: time of any clock.
   void advance(const Pilot& pilot, Fit& fit, double now, Need need);
   // Places the viewer for a fit after its frame has read the world. Returns false if no fit waits
   // for that.
   bool placeViewer(Pilot& pilot, Fit& fit) const;
-  // Returns a newer picture than the last one; false if there is none.
-  bool look(picture::LivePicture& picture);
+  // Returns a frame of the present view with all samples, and the headlight of this view.
+  picture::LiveFrame stillOf(const Pilot& pilot) const;
+  xvrml::MapOptions::Headlight headlightOf(const Pilot& pilot) const;
+  // Notes a picture of this viewer that the renderer has returned. Returns whether it is shown.
+  bool note(const picture::LivePicture& picture);
   // Copies the picture of the last frame that was started, for a file. Returns false unless it is a
   // still one with samples everywhere, or for a moment while it ends.
   bool copyStill(picture::Picture& picture);
@@ -61,25 +71,26 @@ class PictureLoop {
   // Says whether anybody looks at the pictures. If not, only the first frame, which places the
   // viewer, and still pictures are rendered.
   void setWatched(bool watched) { watched_ = watched; }
-  void cancel() { renderer_.cancel(); }
+  // Looks for the end of such a picture. Returns whether one is being rendered.
+  bool lookForStill();
   std::string takeFailure();
 
   bool hasStarted() const { return phase_ != Phase::unstarted; }
   bool hasShown() const { return shown_ != Shown::nothing; }
   bool isMoving() const { return phase_ == Phase::moving; }
   bool isRefining() const { return phase_ == Phase::refining; }
-  // The world is being read, so that nothing else may use it.
-  bool isMapping() const { return renderer_.state() == RendererState::mapping; }
-  bool isIdle() const { return renderer_.state() == RendererState::idle; }
   // Tells whether something moves and the next frame must wait for the current one.
   bool isDrawing() const;
   // Tells whether a frame can be started now without keeping to the frame rate: the one before was
   // cancelled for it, or the motion has ended.
-  bool isDue() const { return isIdle() && (cancelled_ || phase_ == Phase::settling); }
+  bool isDue() const { return shared_.isIdle() && (cancelled_ || phase_ == Phase::settling); }
   // Tells whether the last frame does not show the world as it is now.
   bool isOutdated(const Pilot& pilot, const Fit& fit) const;
   // Tells whether the last frame that was started is a still one with samples everywhere.
   bool hasStill() const { return isRefining() && still_ != Progress::none; }
+  // Tells whether the still frame was cancelled for another viewer's.
+  bool isInterrupted() const;
+  uint64_t number() const { return number_; } // of the last frame
   // Tells whether the still picture of the world as it is now has all its samples.
   bool isFinished(const Pilot& pilot) const;
   // The frames per second while something moves; 0: nothing moves.
@@ -96,17 +107,18 @@ class PictureLoop {
   Decision decide(bool outdated, const Fit& fit, double now, Need need) const;
   bool isSettled(double now) const;
   void start(Phase phase, const Pilot& pilot, Fit& fit, double now);
-  FrameSize sizeOf(Phase phase);
+  picture::FrameSize sizeOf(Phase phase);
   picture::View viewOf(const Pilot& pilot, const Fit& fit) const;
   picture::View stillViewOf(const Pilot& pilot, double aspect) const;
   void advanceStill(const Pilot& pilot, Fit& fit);
   void followHeadlight(const Pilot& pilot);
 
-  xvrml::Browser& browser_;
+  SharedRenderer& shared_;
+  picture::LiveRenderer& renderer_;
   const Options& options_;
-  picture::LiveRenderer renderer_;
+  const uint32_t viewer_;
   StillTaker taker_{renderer_};
-  Pacing pacing_;
+  picture::Pacing pacing_;
   int width_ = 0, height_ = 0; // size of the window in pixels
   Motion motion_ = Motion::rebuilt;
 
@@ -116,11 +128,12 @@ class PictureLoop {
   Progress still_ = Progress::none;
   bool isStillLost_ = false; // the renderer has another still frame, of a program
   bool cancelled_ = false;   // the last frame was cancelled for a newer one
-  // The number, the camera, headlight and size of the last frame.
-  uint64_t number_ = 0;
+  // The last frame: its number, the state of the world, the cancellations before it, the camera,
+  // headlight and size.
+  uint64_t number_ = 0, world_ = 0, cancellations_ = 0;
   xvrml::CameraSettings camera_{};
   std::optional<bool> headlight_;
-  FrameSize frame_;
+  picture::FrameSize frame_;
   // Start of the last frame; end of settling; smoothed time between frames while something moves.
   double lastStart_ = 0, settlingEnds_ = 0, gap_ = 0;
   picture::LivePicture facts_; // state of the picture, without the pixels

@@ -44,36 +44,38 @@ double speedOf(double way) {
   return std::copysign(far + 3 * far * far, way);
 }
 
-std::vector<xvrml::ViewpointName> described(std::vector<xvrml::ViewpointName> all) {
-  std::vector<xvrml::ViewpointName> some;
-  for (const xvrml::ViewpointName& one : all)
-    if (!one.description.empty()) some.push_back(one);
-  return some.empty() ? all : some;
-}
-
 } // namespace
 
 Pilot::Pilot(xvrml::Browser& browser, double start, std::optional<double> fov)
-    : browser_(browser), time_(start), fov_(fov) {
+    : browser_(browser), viewer_(makeWorldViewer(browser)), time_(start),
+      pointer_(
+          browser, [this] { return eye(); }, makeSharedPointer()),
+      fov_(fov) {
   const xvrml::BoundNodes bound = browser_.bound();
   // A world without Viewpoint and NavigationInfo is probably a model: start with EXAMINE.
-  if (!bound.viewpoint && !bound.navigationInfo) browser_.setNavigation(Navigation::examine);
+  if (!bound.viewpoint && !bound.navigationInfo) viewer_->setNavigation(Navigation::examine);
 }
+
+Pilot::Pilot(const Pilot& leader, xvrml::Browser& browser)
+    : browser_(browser), viewer_(makeGuestViewer(browser)), time_(0),
+      pointer_(
+          browser, [this] { return eye(); }, leader.pointer_.shared()),
+      fov_(leader.fov_), headlight_(leader.headlight_) {}
 
 void Pilot::setAspect(double aspect) {
   aspect_ = aspect;
-  browser_.setAspect(aspect);
+  viewer_->setAspect(aspect);
 }
 
 xvrml::CameraSettings Pilot::camera(double aspect) const {
-  xvrml::CameraSettings camera = browser_.camera(aspect);
+  xvrml::CameraSettings camera = viewer_->camera(aspect);
   if (fov_) camera.fovy = picture::verticalAngle(*fov_ * std::numbers::pi / 180, aspect);
   return camera;
 }
 
 void Pilot::step(double seconds) {
   const double passed = time_.advance(seconds);
-  browser_.tick(paused() ? browser_.now() : time_.time());
+  if (viewer_->isOfWorld()) browser_.tick(paused() ? browser_.now() : time_.time());
   move(passed);
   // The viewer may have moved below the pointer.
   if (pointer_.place() != Pointer::Place::outside && pointer_.drag() != Pointer::Drag::view)
@@ -85,7 +87,7 @@ void Pilot::step(double seconds) {
 // EXAMINE: the world follows the pointer. The other navigation types use the distance since the
 // press, in move().
 void Pilot::drag(const Pointer::Way& way) {
-  if (browser_.navigation() != Navigation::examine) return;
+  if (viewer_->navigation() != Navigation::examine) return;
   const double size = std::tan(camera().fovy / 2);
   switch (pointer_.button()) {
   case Button::left: return navigate({.turn = -way.x, .tilt = way.y}, 1);
@@ -111,16 +113,21 @@ std::string Pilot::hint() const {
 // --- The viewer ---
 
 void Pilot::navigate(const NavigationInput& input, double seconds) {
-  browser_.navigate(input, seconds);
+  viewer_->move(input, seconds);
   touched_ = true;
-  gravityActs_ = browser_.navigation() == Navigation::walk;
+  gravityActs_ = viewer_->navigation() == Navigation::walk;
+}
+
+bool Pilot::isSteering() const {
+  return !held_.empty() ||
+         (pointer_.drag() == Pointer::Drag::view && viewer_->navigation() != Navigation::examine);
 }
 
 void Pilot::move(double seconds) {
   if (!(seconds > 0)) return;
   NavigationInput input;
   bool wanted = false;
-  if (pointer_.drag() == Pointer::Drag::view && browser_.navigation() != Navigation::examine) {
+  if (pointer_.drag() == Pointer::Drag::view && viewer_->navigation() != Navigation::examine) {
     const Pointer::Way way = pointer_.sincePress();
     const double dx = speedOf(way.x), dy = speedOf(way.y);
     wanted = dx != 0 || dy != 0;
@@ -153,28 +160,28 @@ void Pilot::move(double seconds) {
   if (wanted)
     navigate(input, seconds);
   else if (gravityActs_)
-    browser_.navigate({}, seconds);
+    viewer_->move({}, seconds);
 }
 
 void Pilot::frameAll(const xvrml::Bounds& bounds) {
   const xvrml::CameraSettings now = camera();
-  browser_.placeViewer(xvrml::cameraAround(bounds, now.matrix, now.fovy, aspect_).matrix);
+  viewer_->place(xvrml::cameraAround(bounds, now.matrix, now.fovy, aspect_).matrix);
   gravityActs_ = false;
 }
 
 void Pilot::present(const xvrml::CameraSettings& camera, xvrml::Axis up) {
   double axis[3];
   xvrml::upVector(up, axis);
-  browser_.setUp(axis);
-  browser_.placeViewer(camera.matrix);
+  viewer_->setUp(axis);
+  viewer_->place(camera.matrix);
   gravityActs_ = false;
 }
 
 std::optional<picture::View> Pilot::initialView(const picture::View& view) const {
-  if (browser_.bound().viewpoint && !view.up && !view.lookAt) return {};
+  if (viewer_->viewpoint() && !view.up && !view.lookAt) return {};
   picture::View wanted = view;
   wanted.fit = true;
-  if (!wanted.fov && browser_.bound().viewpoint) { // keep the Viewpoint's field of view
+  if (!wanted.fov && viewer_->viewpoint()) { // keep the Viewpoint's field of view
     const double vertical = camera().fovy;
     const double smaller =
         aspect_ >= 1 ? vertical : 2 * std::atan(std::tan(vertical / 2) * aspect_);
@@ -190,22 +197,22 @@ bool Pilot::begin(const picture::View& view, const std::string& viewpoint) {
   if (view.up) {
     double up[3];
     xvrml::upVector(*view.up, up);
-    browser_.setUp(up);
+    viewer_->setUp(up);
   }
-  if (picture::lookAtMatrix(view, matrix)) browser_.placeViewer(matrix);
-  return view.fit || (!view.lookAt && !browser_.bound().viewpoint);
+  if (picture::lookAtMatrix(view, matrix)) viewer_->place(matrix);
+  return view.fit || (!view.lookAt && !viewer_->viewpoint());
 }
 
 void Pilot::animateTransitions() {
   animates_ = true;
-  browser_.setTransition(transition);
+  viewer_->setTransition(transition);
 }
 
 void Pilot::setPaused(bool wanted) {
   if (wanted == paused()) return;
   time_.toggle();
   // a paused transition would stand still
-  browser_.setTransition(paused() || !animates_ ? 0 : transition);
+  viewer_->setTransition(paused() || !animates_ ? 0 : transition);
 }
 
 void Pilot::skip(double seconds, double fps) {
@@ -218,7 +225,7 @@ void Pilot::skip(double seconds, double fps) {
 }
 
 void Pilot::putAt(const xvrml::CameraSettings& camera) {
-  browser_.placeViewer(camera.matrix);
+  viewer_->place(camera.matrix);
   touched_ = true;
 }
 
@@ -228,35 +235,30 @@ bool Pilot::bindViewpoint(const std::string& name) {
     list.push_back({one.name, one.description, one.node, {}});
   const int index = picture::findViewpoint(list, name);
   if (index < 0) return false;
-  if (browser_.bound().viewpoint == list[size_t(index)].node.get())
-    browser_.key(xvrml::Key::home, true);
-  browser_.set(*list[size_t(index)].node, "set_bind", true);
+  viewer_->goTo(*list[size_t(index)].node);
   gravityActs_ = false;
   return true;
 }
 
 bool Pilot::jumpToViewpoint(const std::string& name) {
   const double usual = animates_ && !paused() ? transition : 0;
-  browser_.setTransition(0);
+  viewer_->setTransition(0);
   const bool bound = bindViewpoint(name);
-  browser_.setTransition(usual);
+  viewer_->setTransition(usual);
   touched_ = touched_ || bound;
   return bound;
 }
 
 void Pilot::jumpTo(size_t number) {
-  const std::vector<xvrml::ViewpointName> list = described(browser_.viewpoints());
-  if (list.empty()) return;
-  const xvrml::NodeRef node = list[std::min(number, list.size() - 1)].node;
-  if (browser_.bound().viewpoint == node.get()) browser_.key(xvrml::Key::home, true);
-  browser_.set(*node, "set_bind", true);
+  const std::vector<xvrml::ViewpointName> list = visitedViewpoints(browser_);
+  if (!list.empty()) viewer_->goTo(*list[std::min(number, list.size() - 1)].node);
 }
 
 void Pilot::choose(Navigation type, const char* name) {
   gravityActs_ = false;
-  message_ = browser_.setNavigation(type) ? name
+  message_ = viewer_->setNavigation(type) ? name
                                           : fmt::format("the world does not allow it: {}",
-                                                        navigationName(browser_.navigation()));
+                                                        navigationName(viewer_->navigation()));
 }
 
 bool Pilot::hasHeadlight() const {
@@ -265,16 +267,16 @@ bool Pilot::hasHeadlight() const {
 }
 
 Action Pilot::press(Action action) {
-  const xvrml::Node* before = browser_.bound().viewpoint;
+  const xvrml::Node* before = viewer_->viewpoint();
   const bool nowhere =
       action == Action::firstViewpoint || action == Action::lastViewpoint || action == Action::back;
   if (nowhere && browser_.viewpoints().empty()) return Action::beginAgain;
   switch (action) {
   case Action::firstViewpoint: jumpTo(0); break;
   case Action::lastViewpoint: jumpTo(size_t(-1)); break;
-  case Action::previousViewpoint: browser_.key(xvrml::Key::pageUp, true); break;
-  case Action::nextViewpoint: browser_.key(xvrml::Key::pageDown, true); break;
-  case Action::back: browser_.key(xvrml::Key::home, true); break;
+  case Action::previousViewpoint: viewer_->step(Viewer::Step::previous); break;
+  case Action::nextViewpoint: viewer_->step(Viewer::Step::next); break;
+  case Action::back: viewer_->goBack(); break;
   case Action::examine: choose(Navigation::examine, "examine"); break;
   case Action::walk: choose(Navigation::walk, "walk"); break;
   case Action::fly: choose(Navigation::fly, "fly"); break;
@@ -285,12 +287,16 @@ Action Pilot::press(Action action) {
     headlight_ = headlight_ ? std::nullopt : std::optional(!hasHeadlight());
     break;
   case Action::pause:
+    if (!viewer_->isOfWorld()) {
+      message_ = "only the viewer who leads stops the time";
+      break;
+    }
     setPaused(!paused());
     message_ = paused() ? "time stands still" : "time goes on";
     break;
   default: return action;
   }
-  if (const xvrml::Node* now = browser_.bound().viewpoint; now && now != before) {
+  if (const xvrml::Node* now = viewer_->viewpoint(); now && now != before) {
     gravityActs_ = false;
     for (const xvrml::ViewpointName& one : browser_.viewpoints())
       if (one.node.get() == now) message_ = one.description.empty() ? one.name : one.description;

@@ -1,8 +1,10 @@
 // pilot.h: Applies user input to a running world: the pointer on its sensors, navigation by mouse
 // and keys, viewpoints, pausing. The same steps and events give the same world, with or without a
-// window. [the browser's thread]
+// window. A world has one pilot that moves its viewer, and may have more that move guests.
+// [the browser's thread]
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,6 +13,7 @@
 #include "libpicture/camera.h"
 #include "session/input/keys.h"
 #include "session/input/pointer.h"
+#include "session/viewer.h"
 #include "session/world_time.h"
 #include "xvrml/browser.h"
 
@@ -22,6 +25,9 @@ class Pilot {
  public:
   // start: the world's time at session time 0. fov: in degrees; replaces the viewpoints' angle.
   Pilot(xvrml::Browser& browser, double start, std::optional<double> fov);
+  // Makes the pilot of a guest, who begins where the viewer of `leader` is and shares the world's
+  // pointer and time with it.
+  explicit Pilot(const Pilot& leader, xvrml::Browser& browser);
   Pilot(const Pilot&) = delete; // the pointer refers to its pilot
   Pilot& operator=(const Pilot&) = delete;
 
@@ -63,10 +69,16 @@ class Pilot {
   std::optional<bool> headlight() const { return headlight_; }
   bool hasViewerMoved() const { return touched_; } // the user has moved the viewer
   bool overSensor() const { return pointer_.isOverSensor(); }
+  xvrml::Navigation navigation() const { return viewer_->navigation(); }
+  // The Viewpoint that the viewer stands at; null: none.
+  const xvrml::Node* viewpoint() const { return viewer_->viewpoint(); }
+  // Tells whether input that is held down moves the viewer: keys, or the pointer while walking.
+  bool isSteering() const;
   std::string hint() const; // description of the Anchor under the pointer
   std::string takeMessage() { return std::exchange(message_, {}); }
 
  private:
+  Pointer::Eye eye() const { return {camera(), aspect_}; }
   void drag(const Pointer::Way& way);
   void wheel(const InputEvent& event);
   Action press(Action action);
@@ -77,8 +89,9 @@ class Pilot {
   bool hasHeadlight() const;
 
   xvrml::Browser& browser_;
+  std::unique_ptr<Viewer> viewer_;
   WorldTime time_;
-  Pointer pointer_{browser_, [this] { return Pointer::Eye{camera(), aspect_}; }};
+  Pointer pointer_;
   std::optional<double> fov_;
   double aspect_ = 4.0 / 3;
   bool touched_ = false;

@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -50,7 +51,8 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
       problems_(problems), callbacks_(std::move(calls)),
       browser_(startWorld(std::move(world), options_, problems)),
       pilot_(*browser_, options.time && !script ? *options.time : 0, options.view.fov),
-      pictures_(*browser_, options_), channels_(options.render.channels),
+      shared_(*browser_, options_.render), pictures_(shared_, options_, 0),
+      channels_(options.render.channels),
       clock_(script || !options.recordInput.empty() ? SessionClock::Mode::stepped
                                                     : SessionClock::Mode::real,
              options.fps),
@@ -111,12 +113,13 @@ void Session::advance(double seconds) {
               isSaving() ? SessionClock::Reading::isHeld : SessionClock::Reading::advances);
   if (!resting()) return;
   if (pictures_.placeViewer(pilot_, fit_) && replay_) replay_->resume();
+  guests_.placeViewers();
+  if (captures_.isWaiting()) return captures_.advance();
   step();
   takeEvents();
   loadSome();
   problems_.tell(browser_->world());
-  pictures_.advance(pilot_, fit_, clock_.reading(),
-                    isSaving() ? PictureLoop::Need::stillPicture : PictureLoop::Need::none);
+  takeTurns();
   saveIfFinished();
   // Meanwhile nothing else uses the world (resting()).
   if (pictures_.hasShown()) preparation_.begin(*browser_, pilot_.camera());
@@ -130,6 +133,7 @@ void Session::step() {
               [this](double time) {
                 if (replay_) return replay_->step(time);
                 pilot_.step(time);
+                guests_.step(time);
                 return true;
               }});
 }
@@ -185,6 +189,7 @@ void Session::takeEvents() {
       callbacks_.onAction(event, action);
   }
   waiting_ = std::move(later);
+  if (!isSaving()) guests_.takeEvents(pointerWaits, callbacks_.onGuestAction);
 }
 
 // Loads Inlines after the first picture, a few at a time.
@@ -199,6 +204,65 @@ void Session::loadSome() {
 // Shows the whole world. fit: Action::frameAll or Action::beginAgain.
 void Session::want(Action fit) {
   fit_.want(fit == Action::beginAgain ? Fit::Direction::initial : Fit::Direction::current);
+}
+
+// Lets the viewers draw: those for whom something has changed, each in turn, or else those whose
+// picture could be better, in the order of their numbers.
+void Session::takeTurns() {
+  using Urgency = PictureLoop::Urgency;
+  if (captures_.isPending()) return;
+  const double now = clock_.reading();
+  if (isSaving() || guests_.all().empty())
+    return pictures_.advance(
+        pilot_, fit_, now, isSaving() ? PictureLoop::Need::stillPicture : PictureLoop::Need::none);
+  std::vector<std::pair<uint32_t, Guest*>> viewers{{0, nullptr}};
+  for (const auto& [viewer, guest] : guests_.all()) viewers.emplace_back(viewer, guest.get());
+  const auto urgencyOf = [&](const Guest* guest) {
+    return guest ? guest->pictures.urgency(guest->pilot, guest->fit)
+                 : pictures_.urgency(pilot_, fit_);
+  };
+  const bool changed = std::any_of(viewers.begin(), viewers.end(), [&](const auto& one) {
+    return urgencyOf(one.second) == Urgency::change;
+  });
+  if (changed) { // begin after the viewer who had the last turn
+    const auto next = std::find_if(viewers.begin(), viewers.end(),
+                                   [&](const auto& one) { return one.first > shared_.viewer(); });
+    std::rotate(viewers.begin(), next, viewers.end());
+  }
+  for (const auto& [viewer, guest] : viewers) {
+    if (changed && urgencyOf(guest) != Urgency::change) continue;
+    if (guest)
+      guest->pictures.advance(guest->pilot, guest->fit, now, PictureLoop::Need::none);
+    else
+      pictures_.advance(pilot_, fit_, now, PictureLoop::Need::none);
+    if (shared_.isMapping()) return;
+  }
+}
+
+bool Session::look(picture::LivePicture& picture, uint32_t& viewer) {
+  if (pictures_.lookForStill()) return false;
+  const bool idle = shared_.isIdle();
+  while (shared_.live.look(picture)) {
+    viewer = shared_.viewerOf(picture.number);
+    const bool captured = captures_.note(picture, viewer);
+    Guest* const guest = guests_.find(viewer);
+    if (captured || (!guest && viewer != 0)) continue;
+    if (guest ? guest->pictures.note(picture) : pictures_.note(picture)) return true;
+  }
+  if (idle) captures_.noteIdle();
+  return false;
+}
+
+bool Session::look(picture::LivePicture& picture) {
+  uint32_t viewer = 0;
+  while (look(picture, viewer))
+    if (viewer == 0) return true;
+  return false;
+}
+
+void Session::setMotion(PictureLoop::Motion motion, uint32_t viewer) {
+  Guest* const guest = guests_.find(viewer);
+  (guest ? guest->pictures : pictures_).setMotion(motion);
 }
 
 void Session::save(const std::string& path) {
@@ -271,23 +335,100 @@ std::string Session::endSaving() {
 
 bool Session::stop(double seconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (preparation_.state() == PickPreparation::State::running || !pictures_.isIdle()) {
-    pictures_.cancel();
+  while (preparation_.state() == PickPreparation::State::running || !shared_.isIdle()) {
+    shared_.cancel();
     if (std::chrono::steady_clock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return true;
 }
 
+// --- Guests ---
+
+void Session::addGuest(uint32_t viewer, int width, int height) {
+  Guest& guest = guests_.add(viewer, pilot_, *browser_, shared_, options_);
+  guest.pilot.step(clock_.time());
+  guest.pictures.setMotion(pictures_.motion());
+  resizeGuest(viewer, width, height);
+}
+
+void Session::removeGuest(uint32_t viewer) {
+  if (!isGuest(viewer)) return;
+  guests_.remove(viewer);
+  shared_.forget(viewer);
+}
+
+void Session::resizeGuest(uint32_t viewer, int width, int height) {
+  Guest* const guest = guests_.find(viewer);
+  if (!guest) return;
+  guest->pictures.resize(width, height);
+  guest->pilot.setAspect(double(guest->pictures.width()) / guest->pictures.height());
+}
+
+void Session::handleFor(uint32_t viewer, const InputEvent& event) {
+  Guest* const guest = guests_.find(viewer);
+  if (guest)
+    guest->waiting.push_back(event);
+  else if (viewer == 0)
+    handle(event);
+}
+
+const Pilot& Session::pilotOf(uint32_t viewer) const {
+  const Guest* const guest = guests_.find(viewer);
+  return guest ? guest->pilot : pilot_;
+}
+
+const PictureLoop& Session::picturesOf(uint32_t viewer) const {
+  const Guest* const guest = guests_.find(viewer);
+  return guest ? guest->pictures : pictures_;
+}
+
+void Session::capture(uint32_t viewer, uint64_t asker, Captures::Done done) {
+  Guest* const guest = guests_.find(viewer);
+  const Pilot& pilot = guest ? guest->pilot : pilot_;
+  const Fit& fit = guest ? guest->fit : fit_;
+  PictureLoop& pictures = guest ? guest->pictures : pictures_;
+  // The picture that is shown may be the one that is wanted, or become it.
+  if (!captures_.isPending() && pictures.isRefining() && !pictures.isOutdated(pilot, fit)) {
+    picture::Picture picture;
+    if (pictures.isFinished(pilot)) {
+      if (pictures.copyStill(picture)) return done(&picture);
+    } else if (shared_.viewer() == (guest ? viewer : 0) && !pictures.isInterrupted() &&
+               !shared_.isIdle()) {
+      return captures_.adopt(asker, pictures.number(), std::move(done));
+    }
+  }
+  captures_.want({asker, pictures.stillOf(pilot), pictures.headlightOf(pilot), std::move(done)});
+}
+
+bool Session::isQuiet() const {
+  const auto quiet = [](const Pilot& pilot, const PictureLoop& pictures, const Fit& fit) {
+    return !pilot.isSteering() && !fit.isPending() && pictures.isFinished(pilot);
+  };
+  return resting() && waiting_.empty() && !inlines_.isLoading() && !captures_.isPending() &&
+         quiet(pilot_, pictures_, fit_) &&
+         std::all_of(guests_.all().begin(), guests_.all().end(), [&](const auto& one) {
+           const Guest& guest = *one.second;
+           return guest.waiting.empty() && quiet(guest.pilot, guest.pictures, guest.fit);
+         });
+}
+
 // --- Reports ---
 
-std::string Session::command(const std::vector<std::string>& arguments) const {
-  std::optional<bool> headlight = pilot_.headlight();
+std::string Session::command(const std::vector<std::string>& arguments, uint32_t viewer) const {
+  const Pilot& pilot = pilotOf(viewer);
+  const PictureLoop& pictures = picturesOf(viewer);
+  std::optional<bool> headlight = pilot.headlight();
   if (!headlight && options_.render.headlight != xvrml::MapOptions::Headlight::automatic)
     headlight = options_.render.headlight == xvrml::MapOptions::Headlight::on;
-  return viewCommand({browser_->world().path, pilot_.camera(), pictures_.width(),
-                      pictures_.height(), browser_->now(), options_.epoch, headlight},
+  return viewCommand({browser_->world().path, pilot.camera(), pictures.width(), pictures.height(),
+                      browser_->now(), options_.epoch, headlight},
                      arguments);
+}
+
+std::string Session::takeMessageOf(uint32_t guest) {
+  Guest* const found = guests_.find(guest);
+  return found ? found->pilot.takeMessage() : std::string();
 }
 
 std::string Session::takeMessage() {
@@ -302,18 +443,19 @@ std::string Session::takeMessage() {
   return !pilots.empty() ? pilots : !written.empty() ? written : text;
 }
 
-SessionFacts Session::facts() const {
+SessionFacts Session::facts(uint32_t viewer) const {
   using Showing = SessionFacts::Showing;
-  const picture::LivePicture& picture = pictures_.facts();
+  const PictureLoop& pictures = picturesOf(viewer);
+  const picture::LivePicture& picture = pictures.facts();
   const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
   SessionFacts facts;
   facts.showing = picture.preview ? (still ? Showing::fading : Showing::preview)
                                   : (still ? Showing::still : Showing::samples);
-  facts.frameRate = pictures_.frameRate();
+  facts.frameRate = pictures.frameRate();
   facts.width = picture.width;
   facts.height = picture.height;
   facts.samples = picture.samples;
-  facts.wanted = pictures_.isRefining() ? options_.render.samples : 0;
+  facts.wanted = pictures.isRefining() ? options_.render.samples : 0;
   facts.stats = picture.stats;
   facts.map = picture.map;
   facts.finished = picture.finished;
@@ -321,7 +463,7 @@ SessionFacts Session::facts() const {
   facts.errors = d.errors();
   facts.warnings = d.warnings();
   if (!d.list().empty()) facts.lastProblem = d.list().back().text();
-  facts.navigation = navigationName(browser_->navigation());
+  facts.navigation = navigationName(pilotOf(viewer).navigation());
   facts.description = browser_->description();
   facts.loading = inlines_.isLoading();
   if (const auto& cluster = options_.render.cluster) {

@@ -1,7 +1,8 @@
-// session.h: Owns a world that is shown in the window, and connects the parts that work on it: the
-// browser and its pilot, the clock, the picture loop, the Inlines and the fit. The states are in
-// the parts. It is independent of the windowing system. Each world has its own session. [the
-// browser's thread]
+// session.h: Owns a world that is shown, in the window or on a page, and connects the parts that
+// work on it: the browser and its pilot, the clock, the picture loop, the Inlines and the fit. The
+// states are in the parts. It is independent of the windowing system. Each world has its own
+// session. The viewer that the world knows has the number 0; guests have others. [the browser's
+// thread]
 #pragma once
 
 #include <deque>
@@ -14,7 +15,9 @@
 #include "libpicture/live.h"
 #include "options/options.h"
 #include "report/problems.h"
+#include "session/captures.h"
 #include "session/fit.h"
+#include "session/guests.h"
 #include "session/inline_queue.h"
 #include "session/input/replay.h"
 #include "session/pick_preparation.h"
@@ -58,6 +61,8 @@ class Session {
     std::function<void(const std::vector<std::string>& urls, const std::string& base)> openUrl;
     // Records the user's input; may be null.
     std::function<void(double time, const InputEvent&)> record;
+    // Receives the same as onAction for the keys of guests; null if there are none.
+    Guests::OnAction onGuestAction;
   };
   // script: replaces the user's events; may be null. Throws the errors of startWorld.
   Session(std::unique_ptr<xvrml::World> world, const Options& options, Problems& problems,
@@ -71,8 +76,10 @@ class Session {
   // Advances the session: events, the world's clock, pending Inlines, and the next frame. seconds:
   // time of any clock. Never waits.
   void advance(double seconds);
-  // Returns a newer picture than the last one; false if there is none.
-  bool look(picture::LivePicture& picture) { return pictures_.look(picture); }
+  // Returns a newer picture than the last one, of viewer 0; false if there is none.
+  bool look(picture::LivePicture& picture);
+  // Does the same for all viewers.
+  bool look(picture::LivePicture& picture, uint32_t& viewer);
 
   // Saves the true picture of this instant. If nothing moves, that is the picture as it is so far.
   // Otherwise the world and the viewer are held until its still picture has all samples. A message
@@ -91,8 +98,27 @@ class Session {
   // Waits for the last file, so that its name is taken.
   void finishWriting() { writer_.wait(); }
 
-  // Chooses what is shown while something moves.
-  void setMotion(PictureLoop::Motion motion) { pictures_.setMotion(motion); }
+  // Chooses what is shown while something moves. A number that is no guest's means viewer 0.
+  void setMotion(PictureLoop::Motion motion, uint32_t viewer = 0);
+  PictureLoop::Motion motion(uint32_t viewer) const { return picturesOf(viewer).motion(); }
+
+  // --- Guests --- [while the world can be used]
+  // Adds a guest who stands where viewer 0 stands. viewer: its number, not 0.
+  void addGuest(uint32_t viewer, int width, int height);
+  void removeGuest(uint32_t viewer);
+  bool isGuest(uint32_t viewer) const { return guests_.find(viewer); }
+  void resizeGuest(uint32_t viewer, int width, int height);
+  // Takes input of viewer 0 or of a guest; that of others is ignored.
+  void handleFor(uint32_t viewer, const InputEvent& event);
+  // Returns the pilot of a guest; for another number that of viewer 0.
+  const Pilot& pilotOf(uint32_t viewer) const;
+  // Renders the true picture of this instant for a viewer, with all samples. asker: any number, by
+  // which it can be given up.
+  void capture(uint32_t viewer, uint64_t asker, Captures::Done done);
+  void giveUpCapture(uint64_t asker) { captures_.giveUp(asker); }
+  double capturedSamples() const { return captures_.samples(); } // so far, mean over the pixels
+  // Tells whether nothing moves or is to be done, so that steps may come more slowly.
+  bool isQuiet() const;
 
   // --- For programs (docs/control.md) [while the world can be used] ---
   //
@@ -113,7 +139,7 @@ class Session {
 
   // Returns whether the world can be used.
   bool resting() const {
-    return preparation_.state() != PickPreparation::State::running && !pictures_.isMapping();
+    return preparation_.state() != PickPreparation::State::running && !shared_.isMapping();
   }
   // Tells whether something moves and the next frame must wait for the current one.
   bool drawing() const { return pictures_.isDrawing(); }
@@ -126,15 +152,18 @@ class Session {
   xvrml::Browser& browser() { return *browser_; }
   const Pilot& pilot() const { return pilot_; }
   Place place() const;
-  std::string command(const std::vector<std::string>& arguments) const;
-  SessionFacts facts() const;
+  std::string command(const std::vector<std::string>& arguments, uint32_t viewer = 0) const;
+  SessionFacts facts(uint32_t viewer = 0) const;
   std::string takeMessage();
+  std::string takeMessageOf(uint32_t guest);
   // Cancels the frame in flight. Returns false if it still reads the world after `seconds`.
   bool stop(double seconds);
 
  private:
   void step();
   void takeEvents();
+  void takeTurns();
+  const PictureLoop& picturesOf(uint32_t viewer) const;
   void loadSome();
   void want(Action fit);
   void saveIfFinished();
@@ -152,7 +181,10 @@ class Session {
   Callbacks callbacks_;
   std::unique_ptr<xvrml::Browser> browser_;
   Pilot pilot_;
+  SharedRenderer shared_;
   PictureLoop pictures_;
+  Guests guests_;
+  Captures captures_{shared_};
   const uint32_t channels_; // channels of saved pictures
   SessionClock clock_;
   Fit fit_;

@@ -490,6 +490,8 @@ class World:
         background: Union[None, str, "os.PathLike[str]", Sequence[float]] = ...,
         isa: str = ...,
         follow_images: bool = ...,
+        jitter: bool = ...,
+        light_stride: int = ...,
     ) -> Picture:
         ...
 

@@ -171,6 +171,8 @@ class Context:
         channels: Union[None, str, Sequence[str]] = ...,
         progress: Union[None, bool, Callable[[float], Any]] = ...,
         follow_images: bool = ...,
+        jitter: bool = ...,
+        light_stride: int = ...,
     ) -> Picture:
         ...
 

@@ -24,8 +24,8 @@ bool makesRounds(const edit::FrameSettingsT& frame) {
                              : frame.progressive && frame.samples >= fewestOfLeaves;
 }
 
-// Returns the number of light paths: as many as camera paths that get light. If the number of camera paths is
-// open, at most 64 per pixel.
+// Returns the number of light paths: as many as camera paths that get light. If the number of
+// camera paths is open, at most 64 per pixel.
 uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
   constexpr uint32_t mostOfOpen = 64;
   const bool open = frame.targetError > 0 || frame.timeLimit > 0;

@@ -140,7 +140,7 @@ bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint3
                       Lead& lead) const {
   const RtsHits& hits = batch.points->hits;
   const Vec3f g = load(hits.geometric, i);
-  const bool images = followsImages(scene_.frame.transport);
+  const bool follows = followsImages(scene_.frame.transport);
   // The weights are those of a path from a lamp, which do not change where light enters a denser
   // medium.
   BsdfSamples samples(hits, i, boundaries.etaAt(i), 0, true);
@@ -151,9 +151,9 @@ bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint3
     RtsLobe smooth;
     Vec3f weight;
     if (!weightAt(lobe, i, weight)) continue;
-    if (lobe.kind == RTS_LOBE_TRANSPARENT || (images && !nonSpecularFunctions(lobe)))
+    if (lobe.kind == RTS_LOBE_TRANSPARENT || (follows && !nonSpecularFunctions(lobe)))
       samples.add(l, lobe, nullptr);
-    else if (images && smoothLobe(lobe, i, smooth))
+    else if (follows && smoothLobe(lobe, i, smooth))
       samples.add(l, smooth, nullptr);
     else
       others += mean(weight);
@@ -169,7 +169,8 @@ bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint3
     if (!heaviest[reflected] || mean(sample.weight) > mean(heaviest[reflected]->weight))
       heaviest[reflected] = &sample;
   }
-  if (!(mean(sum[0]) + mean(sum[1]) > others)) return false;
+  const float images = mean(sum[0]) + mean(sum[1]);
+  if (!(images > 0 && images >= dominant * (images + others))) return false;
   lead.reflected = mean(sum[1]) > mean(sum[0]);
   lead.tint = sum[lead.reflected];
   lead.direction = heaviest[lead.reflected]->direction;
@@ -188,7 +189,7 @@ bool Guides::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, ui
 bool Guides::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission) {
   constexpr Vec3f one{1, 1, 1};
   const Vec3f tint = min(max(Vec3f(), transmission), one); // NaN: opaque
-  if (!follows_ || !(mean(tint) > 0.5f)) return false;
+  if (!follows_ || !(mean(tint) >= dominant)) return false;
   queue(batch, i, {load(batch.points->hits.direction, i), tint},
         (*batch.states).media[batch.order[i]], Step::image);
   return true;

@@ -2,10 +2,10 @@
 // RT_POSITION, RT_NAME, RT_MOTION), apart from the light that is followed. [render]
 //
 // With RT_FOLLOW_IMAGES they describe what is seen in smooth mirrors and through smooth glass.
-// Where the specular lobes of a hit carry more than its other lobes, a guide ray follows the
-// heavier one of reflection and transmission, without random numbers, up to `mostSurfaces` times.
-// The image that is seen lies on the ray of the camera, as far away as the light has travelled.
-// Its normal and its motion are those of the surface, taken back through the mirrors.
+// Where the specular lobes of a hit clearly carry more than its other lobes, a guide ray follows
+// the heavier one of reflection and transmission, without random numbers, up to `mostSurfaces`
+// times. The image that is seen lies on the ray of the camera, as far away as the light has
+// travelled. Its normal and its motion are those of the surface, taken back through the mirrors.
 //
 // In frames without any channel of light, this is all that is done.
 #pragma once
@@ -41,6 +41,9 @@ class Guides {
   void finish(PixelSamples& found);
 
   static constexpr uint32_t mostSurfaces = 8;
+  // Least share of images in what the lobes of a hit carry. With less, as where varnished wood is
+  // seen at a low angle, the grain of the surface matters more than the image in it.
+  static constexpr float dominant = 0.7f;
   // Rough lobes narrower than this (alpha) show images.
   static constexpr float nearlySmooth = 0.05f;
 

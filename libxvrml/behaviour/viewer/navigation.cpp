@@ -10,12 +10,11 @@
 
 namespace xvrml {
 
-// Returns the avatar in world units. Lengths are in the coordinate system around the bound
-// Viewpoint (6.29); up is its y axis (6.53).
-Avatar Navigator::avatar() const {
+// Lengths are in the coordinate system around the Viewpoint (6.29); up is its y axis (6.53).
+Avatar Navigator::avatarAt(const Node* viewpoint, const Vector& upWithoutViewpoint) const {
   Avatar a;
   const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
-  const Matrix outside = interaction_.viewer.surroundings();
+  const Matrix outside = Viewer::surroundingsOf(viewpoint);
   const double scale = std::cbrt(std::abs(determinant(outside)));
   if (info) {
     const auto length = [&](size_t i, double otherwise) {
@@ -29,16 +28,16 @@ Avatar Navigator::avatar() const {
   }
   if (scale > 0 && std::isfinite(scale))
     for (double* v : {&a.distance, &a.height, &a.step, &a.speed, &a.gravity}) *v *= scale;
-  const bool guided = interaction_.binding.bound().viewpoint != nullptr;
-  const Vector up = guided ? transformDirection(outside, {0, 1, 0}) : up_;
+  const Vector up = viewpoint ? transformDirection(outside, {0, 1, 0}) : upWithoutViewpoint;
   if (up.length() > 0) a.up = up.normalized();
   return a;
 }
 
-bool Navigator::findObstacle(const PickRay& ray, bool touch, double& t, Vector& normal) {
+bool Navigator::findObstacle(const PickRay& ray, const Matrix& view, bool touch, double& t,
+                             Vector& normal) {
   Hit hit;
-  if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true},
-                                interaction_.viewer.view(), interaction_.scope->roots, hit))
+  if (!interaction_.picker.pick(ray, {.collision = true, .bothSides = true}, view,
+                                interaction_.scope->roots, hit))
     return false;
   t = hit.t;
   normal = hit.normal;
@@ -68,27 +67,34 @@ Vector Navigator::centerOf(const Matrix& view) {
   return (eye - center).length() > 0 ? center : eye - back;
 }
 
+Motion Navigator::moved(const Motion& from, Navigation type, const Avatar& avatar,
+                        const NavigationInput& input, double seconds, Touches touches) {
+  if (!interaction_.scope) return from;
+  const Obstacle obstacle = [&](const PickRay& ray, bool touch, double& t, Vector& normal) {
+    return findObstacle(ray, from.view, touch && touches == Touches::sent, t, normal);
+  };
+  Motion to = from;
+  switch (type) {
+  case Navigation::none: break;
+  case Navigation::walk: to = walk(from, input, seconds, avatar, obstacle); break;
+  case Navigation::fly: to = fly(from, input, seconds, avatar, obstacle); break;
+  case Navigation::examine:
+    if (!to.hasCenter) to.center = centerOf(to.view);
+    to.hasCenter = true;
+    to = examine(to, input, seconds, avatar);
+    break;
+  }
+  return finite(to.view) ? to : from;
+}
+
 void Navigator::move(const NavigationInput& input, double seconds) {
   if (!interaction_.scope || interaction_.viewer.inTransition()) return;
   motion_.view = interaction_.viewer.view();
-  const Obstacle obstacle = [this](const PickRay& ray, bool touch, double& t, Vector& normal) {
-    return findObstacle(ray, touch, t, normal);
-  };
-  Motion to = motion_;
-  switch (type()) {
-  case Navigation::none: return;
-  case Navigation::walk: to = walk(motion_, input, seconds, avatar(), obstacle); break;
-  case Navigation::fly: to = fly(motion_, input, seconds, avatar(), obstacle); break;
-  case Navigation::examine:
-    if (!hasCenter_) motion_.center = centerOf(motion_.view);
-    hasCenter_ = true;
-    to = examine(motion_, input, seconds, avatar());
-    break;
-  }
-  if (!finite(to.view)) return;
-  const bool moved = to.view != motion_.view;
+  const Avatar avatar = avatarAt(interaction_.binding.bound().viewpoint, up_);
+  const Motion to = moved(motion_, type(), avatar, input, seconds, Touches::sent);
+  const bool elsewhere = to.view != motion_.view;
   motion_ = to;
-  if (moved) interaction_.viewer.moveTo(to.view);
+  if (elsewhere) interaction_.viewer.moveTo(to.view);
 }
 
 namespace {
@@ -104,16 +110,18 @@ constexpr NavigationName known[] = {{"NONE", Navigation::none},
 
 } // namespace
 
-Navigation Navigator::type() const {
+Navigation Navigator::type() const { return typeFor(chosen_); }
+
+Navigation Navigator::typeFor(std::optional<Navigation> chosen) const {
   const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
   const MFString standard{"WALK", "ANY"};
   const MFString& list = info ? info->type : standard;
   const auto lists = [&](std::string_view name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
-  if (hasChosen_)
+  if (chosen)
     for (const NavigationName& k : known)
-      if (k.type == chosen_ && (lists(k.name) || lists("ANY"))) return chosen_;
+      if (k.type == *chosen && (lists(k.name) || lists("ANY"))) return *chosen;
   for (const std::string& name : list) {
     if (name == "ANY") return Navigation::walk;
     for (const NavigationName& k : known)
@@ -124,9 +132,7 @@ Navigation Navigator::type() const {
 
 bool Navigator::choose(Navigation wanted) {
   chosen_ = wanted;
-  hasChosen_ = true;
-  hasCenter_ = false;
-  motion_.fall = 0;
+  resetMotion();
   return type() == wanted;
 }
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "behaviour/viewer/pick.h"
@@ -28,6 +29,7 @@ struct Motion {
   Matrix view;      // camera to world, rigid
   double fall = 0;  // downward speed of WALK
   Vector center{0}; // centre of rotation of EXAMINE
+  bool hasCenter = false;
 };
 
 // Finds the nearest thing along a ray that the viewer cannot pass. t: its distance in units of the
@@ -53,24 +55,30 @@ class Navigator {
   // contains it or ANY.
   Navigation type() const;
   bool choose(Navigation type); // returns false if the bound NavigationInfo does not allow it
+  // Returns the same for another choice than the viewer's; none: nothing was chosen.
+  Navigation typeFor(std::optional<Navigation> chosen) const;
+  // Returns the avatar at a Viewpoint (null: none), in world units. up: used without a Viewpoint.
+  Avatar avatarAt(const Node* viewpoint, const Vector& up) const;
+  // Moves something as the viewer moves. touches: Collision nodes send their events.
+  enum class Touches : uint8_t { sent, ignored };
+  Motion moved(const Motion& from, Navigation type, const Avatar& avatar,
+               const NavigationInput& input, double seconds, Touches touches);
   // Sets the up direction used while no Viewpoint is bound.
   void setUp(const Vector& up) { up_ = up; }
+  const Vector& up() const { return up_; }
   // Called when the viewer has been placed by other means.
   void resetMotion() {
     motion_.fall = 0;
-    hasCenter_ = false;
+    motion_.hasCenter = false;
   }
 
  private:
-  Avatar avatar() const;
   Vector centerOf(const Matrix& view);
-  bool findObstacle(const PickRay& ray, bool touch, double& t, Vector& normal);
+  bool findObstacle(const PickRay& ray, const Matrix& view, bool touch, double& t, Vector& normal);
 
   Interaction& interaction_;
   Motion motion_;
-  bool hasCenter_ = false;
-  Navigation chosen_ = Navigation::none;
-  bool hasChosen_ = false;
+  std::optional<Navigation> chosen_;
   std::set<Key> held_;
   double lastTick_ = std::numeric_limits<double>::quiet_NaN();
   Vector up_{0, 1, 0};

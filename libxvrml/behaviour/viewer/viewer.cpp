@@ -42,11 +42,11 @@ Matrix above(const Node* node) {
 
 Node* Viewer::bound() const { return binding_.bound().viewpoint; }
 
-Matrix Viewer::surroundings() const { return above(bound()); }
+Matrix Viewer::surroundingsOf(const Node* viewpoint) { return above(viewpoint); }
 
 // Returns the Viewpoint's coordinate system. If it is singular, the rigid part is used, because the
 // offset needs the inverse.
-Matrix Viewer::placeOf(const Node* viewpoint) const {
+Matrix Viewer::placeOf(const Node* viewpoint) {
   const auto fields = viewpointFields(viewpoint);
   if (!fields) return translation({0, 0, 10}); // the default Viewpoint of 6.53
   const Matrix m = compose(above(viewpoint), compose(translation(vector(fields->position)),

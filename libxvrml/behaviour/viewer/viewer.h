@@ -23,7 +23,10 @@ class Viewer {
   CameraSettings camera(double aspect) const;
   // Returns the coordinate system around the bound Viewpoint, scale included. NavigationInfo's
   // lengths are in its units, and its y axis is up (6.29, 6.53).
-  Matrix surroundings() const;
+  Matrix surroundings() const { return surroundingsOf(bound()); }
+  // Returns the coordinate system around a Viewpoint, and its own. null: the default Viewpoint.
+  static Matrix surroundingsOf(const Node* viewpoint);
+  static Matrix placeOf(const Node* viewpoint);
   // Moves the viewer to a position in the world, as navigation does. A transition ends.
   void moveTo(const Matrix& view);
   // Returns the viewer to the bound Viewpoint.
@@ -49,7 +52,6 @@ class Viewer {
   double speed() const { return speed_; }
 
  private:
-  Matrix placeOf(const Node* viewpoint) const; // the Viewpoint's own coordinate system
   Matrix leavingPlace(const Node* viewpoint) const;
   Node* bound() const;
   Matrix target() const;                                // the view without a transition

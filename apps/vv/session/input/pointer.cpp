@@ -4,15 +4,31 @@
 
 namespace vv {
 
+std::shared_ptr<SharedPointer> makeSharedPointer() { return std::make_shared<SharedPointer>(); }
+
+// The world may be gone already, so that it is told nothing.
+Pointer::~Pointer() {
+  if (shared_->holder == this) shared_->holder = nullptr;
+}
+
+void Pointer::take() {
+  Pointer* const before = shared_->holder;
+  if (before == this || (before && before->drag_ == Drag::sensor)) return;
+  if (before) before->place_ = Place::inside;
+  shared_->holder = this;
+}
+
 Pointer::Way Pointer::moveTo(double x, double y) {
   const Way way{x - x_, y - y_};
   x_ = x;
   y_ = y;
   if (place_ == Place::outside) place_ = Place::inside;
+  take();
   return way;
 }
 
 void Pointer::send() {
+  if (shared_->holder != this) return;
   const Eye eye = eye_();
   const xvrml::CameraSettings& c = eye.camera;
   const double* m = c.matrix;
@@ -47,6 +63,8 @@ void Pointer::release(const InputEvent& event) {
 void Pointer::leave() {
   place_ = Place::outside;
   drag_ = Drag::none;
+  if (shared_->holder != this) return;
+  shared_->holder = nullptr;
   browser_.pointerLeave();
 }
 

@@ -4,12 +4,22 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <utility>
 
 #include "session/input/input.h"
 #include "xvrml/browser.h"
 
 namespace vv {
+
+class Pointer;
+
+// A world has one pointer. If several people use it, it belongs to the one who moved last, and to
+// nobody else while a sensor is dragged.
+struct SharedPointer {
+  Pointer* holder = nullptr; // null: nobody points
+};
+std::shared_ptr<SharedPointer> makeSharedPointer();
 
 class Pointer {
  public:
@@ -31,12 +41,16 @@ class Pointer {
   };
 
   // eye: is called for every ray, because an event may move the viewer.
-  Pointer(xvrml::Browser& browser, std::function<Eye()> eye)
-      : browser_(browser), eye_(std::move(eye)) {}
+  Pointer(xvrml::Browser& browser, std::function<Eye()> eye, std::shared_ptr<SharedPointer> shared)
+      : browser_(browser), eye_(std::move(eye)), shared_(std::move(shared)) {}
+  ~Pointer();
+  Pointer(const Pointer&) = delete; // the shared pointer refers to its holder
+  Pointer& operator=(const Pointer&) = delete;
 
-  // Moves the pointer, without an effect on the world. Returns the distance to its last place.
+  // Moves the pointer, without an effect on the world, and takes the world's pointer if it is free.
+  // Returns the distance to its last place.
   Way moveTo(double x, double y);
-  // Sends the pointer to the sensors.
+  // Sends the pointer to the sensors. Does nothing while somebody else has the world's pointer.
   void send();
   // Begins a drag, unless another button has begun one.
   void press(const InputEvent& event);
@@ -45,6 +59,7 @@ class Pointer {
   void leave();
 
   Place place() const { return place_; }
+  const std::shared_ptr<SharedPointer>& shared() const { return shared_; }
   Drag drag() const { return drag_; }
   bool isOverSensor() const { return place_ == Place::overSensor; }
   // Returns the button that began the drag; shift and control stand for other buttons.
@@ -53,8 +68,11 @@ class Pointer {
   Way sincePress() const { return {x_ - pressed_.x, y_ - pressed_.y}; }
 
  private:
+  void take();
+
   xvrml::Browser& browser_;
   std::function<Eye()> eye_;
+  std::shared_ptr<SharedPointer> shared_;
   Place place_ = Place::outside;
   Drag drag_ = Drag::none;
   double x_ = 0, y_ = 0;

@@ -1,17 +1,22 @@
-#include "session/pacing.h"
+#include "libpicture/live/pacing.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace vv {
+namespace picture {
 
 namespace {
 
-constexpr int smallest = -12; // scale 2^(-12/4): an eighth in each direction
-constexpr int best = 4;       // quality step with 2^4 samples
+constexpr int smallest = -12;    // scale 2^(-12/4): an eighth in each direction
+constexpr int mostDoublings = 4; // the best step has 2^4 samples
+// Light::sparse: pixels each way of the blocks in which one pixel gets light; there is a step of
+// the full size for each smaller number.
+constexpr int widestStride = 3;
+// Assumed cost of what a pixel without light shows, in costs of the light of a pixel.
+constexpr double unlit = 0.15;
 // The step below which the frame rate falls before the picture shrinks: a quarter in each direction
-// if light is sampled, and the full size otherwise.
-constexpr int quarter = -8, whole = 0;
+// if light is sampled, half if it is sparse, and the full size otherwise.
+constexpr int quarter = -8, half = -4, whole = 0;
 constexpr double slower = 1.5;    // the budget of that step and of smaller ones, in budgets
 constexpr double settling = 0.09; // seconds of a frame between motion and rest
 constexpr double fill = 0.85; // fraction of a frame's time for rendering; the window needs the rest
@@ -25,21 +30,33 @@ constexpr double assumedPixel = 2e-7; // initial guess in seconds: 800x600 in a 
 
 constexpr double leastSide = 64; // shortest side of a picture, in pixels
 
+// Returns the cost of a frame's pixel in costs of one with light.
+double costOf(const FrameSize& f) {
+  const double lit = 1.0 / (f.lightStride * f.lightStride);
+  return f.samples * (unlit + lit) / (unlit + 1);
+}
+
 } // namespace
 
 Pacing::Pacing(double framesPerSecond) : budget_(fill / std::clamp(framesPerSecond, 0.1, 1000.0)) {}
 
 FrameSize Pacing::at(int step, int width, int height) const {
-  if (step >= 0) return {width, height, 1 << step};
+  const int strides = light_ == Light::sparse ? widestStride - 1 : 0;
+  if (step >= strides) return {width, height, 1 << (step - strides)};
+  if (step >= 0) return {width, height, 1, widestStride - step};
   // Both sides have the same scale, so the aspect ratio is kept.
   const double scale =
       std::min(1.0, std::max(std::exp2(step / 4.0), leastSide / std::min(width, height)));
-  return {int(std::ceil(width * scale)), int(std::ceil(height * scale)), 1};
+  return {int(std::ceil(width * scale)), int(std::ceil(height * scale)), 1, strides + 1};
+}
+
+int Pacing::best() const {
+  return mostDoublings + (light_ == Light::sparse ? widestStride - 1 : 0);
 }
 
 double Pacing::seconds(const FrameSize& f) const {
   const double pixel = pixel_ > 0 ? pixel_ : assumedPixel;
-  return overhead_ + (rebuilt_ + pixel * f.samples) * f.width * f.height;
+  return overhead_ + (rebuilt_ + pixel * costOf(f)) * f.width * f.height;
 }
 
 double Pacing::predicted(const FrameSize& f) const { return pixel_ > 0 ? seconds(f) : 0; }
@@ -65,7 +82,8 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
     value = value > 0 ? value + weight * (now - value) : now;
   };
   follow(overhead_, overhead);
-  const double pixels = double(frame.width) * frame.height, work = pixels * samples;
+  const double pixels = double(frame.width) * frame.height,
+               work = pixels * (frame.lightStride > 1 ? costOf(frame) : samples);
   if (rebuilding > 0 && pixels > 0) follow(rebuilt_, rebuilding / pixels);
   if (work > 0 && std::isfinite(work))
     follow(pixel_, std::max(0.0, seconds - overhead - rebuilding) / work);
@@ -74,19 +92,20 @@ void Pacing::took(const FrameSize& frame, double seconds, double alone, double o
 FrameSize Pacing::next(int width, int height, bool moving, int samples, Light light) {
   width = std::max(width, 1);
   height = std::max(height, 1);
-  const bool begins = moving && !moving_;
+  const bool begins = moving && (!moving_ || light != light_);
+  light_ = light;
   moving_ = moving;
   if (!moving) return {width, height, std::max(samples, 1)};
 
   // Compares the time of a step with its budget. If reading the world takes all of it, half of that
   // time is allowed in addition.
-  const int kept = light == Light::direct ? whole : quarter;
+  const int kept = light == Light::direct ? whole : light == Light::sparse ? half : quarter;
   const auto load = [&](int step) {
     const double budget = std::max(step <= kept ? slower * budget_ : budget_, 1.5 * overhead_);
     return seconds(at(step, width, height)) / budget;
   };
   const auto fitting = [&] {
-    int step = best;
+    int step = best();
     while (step > smallest && load(step) > 1) --step;
     return step;
   };
@@ -97,7 +116,7 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
   } else if (now > tooLong) {
     step_ = std::max(smallest, step_ - 1);
     framesWithRoom_ = 0;
-  } else if (step_ < best && load(step_ + 1) <= roomFor) {
+  } else if (step_ < best() && load(step_ + 1) <= roomFor) {
     if (++framesWithRoom_ >= patience) {
       ++step_;
       framesWithRoom_ = 0;
@@ -112,7 +131,7 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
 FrameSize Pacing::settle(int width, int height, int samples) const {
   width = std::max(width, 1);
   height = std::max(height, 1);
-  int step = best;
+  int step = best();
   while (step > step_ && seconds(at(step, width, height)) > std::max(settling, 1.5 * overhead_))
     --step;
   FrameSize frame = at(step, width, height);
@@ -120,4 +139,11 @@ FrameSize Pacing::settle(int width, int height, int samples) const {
   return frame;
 }
 
-} // namespace vv
+Pacing::Light lightOf(const RTstats& stats, bool rebuilt) {
+  const bool direct =
+      stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
+  if (stats.cameraRays > 0 && direct) return Pacing::Light::direct;
+  return rebuilt ? Pacing::Light::sparse : Pacing::Light::sampled;
+}
+
+} // namespace picture

@@ -1,4 +1,4 @@
-// overlay.h: Formats the window's information about the picture as lines of text. Pure functions.
+// overlay.h: Formats information about the picture as lines of text. Pure functions.
 // [any thread]
 #pragma once
 

@@ -1,22 +1,29 @@
 // pacing.h: Chooses the size and the samples of the next picture. While something moves, the frame
 // rate is kept; otherwise the picture becomes as good as possible. Only the resolution is reduced,
-// never the light transport. Pure arithmetic without clock, thread or window. Owned by a session.
+// never the light transport. Pure arithmetic without clock, thread or window. Owned by whoever
+// starts the frames.
 #pragma once
 
 #include <cstdint>
 
-namespace vv {
+#include "openrt/openrt.h"
+
+namespace picture {
 
 struct FrameSize {
   int width = 1, height = 1, samples = 1;
+  int lightStride = 1; // RT_LIGHT_STRIDE
   bool operator==(const FrameSize&) const = default;
 };
 
 class Pacing {
  public:
-  // The light of a world: if none of it is sampled, a picture needs its full size more than it
-  // needs many samples.
-  enum class Light : uint8_t { sampled, direct };
+  // The light of a world, and what becomes of it.
+  enum class Light : uint8_t {
+    sampled, // every pixel gets light, shown as it is
+    sparse,  // sampled, and rebuilt: a picture needs its size more than it needs light everywhere
+    direct   // none is sampled: a picture needs its full size more than it needs many samples
+  };
 
   explicit Pacing(double framesPerSecond);
 
@@ -25,15 +32,17 @@ class Pacing {
   //   seconds:    from its start to its end
   //   alone:      part of `seconds` while no other frame was in flight
   //   overhead:   part of `seconds` before tracing (the world is read, structures are built)
-  //   samples:    samples taken, mean over the pixels; 0: the cost of a pixel is unknown
+  //   samples:    samples taken, mean over the pixels; 0: the cost of a pixel is unknown. Not used
+  //               where frame.lightStride is more than 1
   //   rebuilding: part of `seconds` after tracing, in which the picture was rebuilt
   void took(const FrameSize& frame, double seconds, double alone, double overhead, double samples,
             double rebuilding = 0);
 
   // Returns the next frame for a window of this size. moving: the viewer or something in the world
   // moves. A moving frame takes at most a frame's time, as predicted from earlier frames. Where
-  // that would make it smaller than a quarter of the window in each direction (Light::direct:
-  // smaller than the window), it may take half as long again before it shrinks further. It has at
+  // that would make it smaller than a quarter of the window in each direction (Light::sparse: than
+  // half of it, Light::direct: than the window), it may take half as long again before it shrinks
+  // further. With Light::sparse one pixel in 9 gets light unless there is time for more. It has at
   // least an eighth of the window in each direction and 64 pixels. A frame that does not move fills
   // the window and gets all requested samples.
   FrameSize next(int width, int height, bool moving, int samples, Light light = Light::sampled);
@@ -48,14 +57,20 @@ class Pacing {
   // Returns the frame size of a quality step, from the smallest picture to the best. Steps are far
   // enough apart that small variations of the time do not change the step.
   FrameSize at(int step, int width, int height) const;
+  int best() const;                             // the best step
   double seconds(const FrameSize& frame) const; // as predicted(), with a guess at first
 
   double budget_; // seconds per frame
   // seconds per sample of a pixel, to rebuild a pixel, and per frame; all smoothed
   double pixel_ = 0, rebuilt_ = 0, overhead_ = 0;
+  Light light_ = Light::sampled;
   int step_ = 0;
   int framesWithRoom_ = 0; // consecutive frames that left enough time for a better step
   bool moving_ = false;
 };
 
-} // namespace vv
+// Tells which light a world has from the statistics of its last frame, as the engine chose its
+// transport. rebuilt: previews of it are rebuilt.
+Pacing::Light lightOf(const RTstats& stats, bool rebuilt);
+
+} // namespace picture

@@ -1,4 +1,4 @@
-#include "window/overlay.h"
+#include "session/overlay.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,80 @@
+#include "server/address.h"
+
+#include <cstdlib>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "server/access.h"
+
+namespace vv::server {
+
+namespace {
+
+constexpr const char* variable = "VV_TOKEN";
+
+std::string readToken(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  if (!file || !std::getline(file, line))
+    throw Failure{exitInput, fmt::format("--token: cannot read {}", path)};
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+  return line;
+}
+
+std::string tokenOf(const ServeOptions& options) {
+  std::string where = "--token", token = options.token;
+  if (token == "new") return newToken();
+  if (token.starts_with('@')) token = readToken(token.substr(1));
+  if (options.token.empty()) {
+    const char* const value = std::getenv(variable);
+    token = value ? value : "";
+    where = std::string("$") + variable;
+    if (token.empty()) return {};
+  }
+  if (const std::string fault = faultOfToken(token); !fault.empty())
+    throw UsageError(fmt::format("{}: {}; --token new makes one", where, fault));
+  return token;
+}
+
+// Returns an address as a URL contains it.
+std::string inUrl(const std::string& address) {
+  return address.find(':') == address.npos ? address : "[" + address + "]";
+}
+
+bool isEveryAddress(const std::string& address) { return address == "0.0.0.0" || address == "::"; }
+
+std::string hostName() {
+  char name[256] = {};
+  return ::gethostname(name, sizeof name - 1) == 0 && *name ? name : "localhost";
+}
+
+} // namespace
+
+HostOptions hostOptionsOf(const ServeOptions& options) {
+  HostOptions host;
+  host.port = options.port;
+  host.token = tokenOf(options);
+  const bool local = options.address.empty() || isLoopbackHost(inUrl(options.address));
+  if (!local && host.token.empty())
+    throw UsageError(fmt::format("--address {} lets other machines see the world: it needs a token "
+                                 "(--token new makes one)",
+                                 options.address));
+  if (options.address.empty() || options.address == "localhost")
+    host.addresses = {"127.0.0.1", "::1"};
+  else
+    host.addresses = {options.address};
+  return host;
+}
+
+std::string urlOf(const ServeOptions& options, const HostOptions& host, int port) {
+  const std::string name =
+      isEveryAddress(host.addresses[0]) ? hostName() : inUrl(host.addresses[0]);
+  const std::string token = host.token.empty()       ? ""
+                            : options.token == "new" ? "?token=" + host.token
+                                                     : "?token=...";
+  return fmt::format("http://{}:{}/{}", name, port, token);
+}
+
+} // namespace vv::server

@@ -1,0 +1,61 @@
+// answer.h: What an HTTP request gets: a file of the page, a saved picture, or a refusal. Knows
+// nothing about connections. [the host's thread, except Downloads::offer]
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "server/access.h"
+
+namespace vv::server {
+
+// The files in apps/vv/server/page, which CMake puts into the program.
+struct PageFile {
+  std::string_view name, content;
+};
+std::span<const PageFile> pageFiles();
+
+// Pictures that wait to be fetched. Each has a path that cannot be guessed. [any thread]
+class Downloads {
+ public:
+  struct File {
+    std::string path, name, type;
+    std::shared_ptr<const std::string> content;
+    double offered = 0; // time in seconds of any clock
+  };
+  // Returns the path of the file, without a slash at its beginning.
+  std::string offer(std::string name, std::string type, std::string content, double seconds);
+  // Returns the file; its content is null if there is none, or not any more.
+  File find(std::string_view path, double seconds);
+
+ private:
+  void drop(double seconds);
+
+  std::mutex mutex_;
+  std::deque<File> files_; // the oldest first
+};
+
+struct Answer {
+  int status = 200;
+  std::string type;
+  std::vector<std::pair<std::string, std::string>> headers; // names in lower case
+  std::shared_ptr<const std::string> body;
+};
+
+struct Request {
+  std::string_view method, path; // path: as it came, "/" at the beginning
+  Verdict verdict = Verdict::tokenMissing;
+  std::string_view token;      // the one in use
+  std::string_view cookieName; // for the token
+  bool secure = false;         // the visitor uses TLS, with a proxy in between
+};
+// seconds: time of the clock of the downloads.
+Answer answerTo(const Request& request, Downloads& downloads, double seconds);
+
+} // namespace vv::server

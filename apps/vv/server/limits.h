@@ -1,0 +1,42 @@
+// limits.h: The limits of vv serve: what one page, and all together, may cost. docs/limits.md has
+// the same table; unit_server compares them. [any thread]
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace vv::server {
+
+struct Limit {
+  std::string_view name;
+  int value;
+  std::string_view text;
+};
+
+inline constexpr int maxViewers = 16;
+inline constexpr int maxMessageBytes = 4096;
+inline constexpr int maxMessagesPerSecond = 300;
+inline constexpr int maxMessageBurst = 600;
+inline constexpr int maxPictureSide = 4096;
+inline constexpr int maxPicturePixels = 4'194'304;
+inline constexpr int minTokenLength = 16;
+inline constexpr int maxTokenLength = 128;
+inline constexpr int maxDownloads = 8;
+inline constexpr int maxDownloadSeconds = 60;
+inline constexpr int maxRequests = 64;
+
+inline constexpr Limit limits[] = {
+    {"maxViewers", maxViewers, "pages that are connected at a time"},
+    {"maxMessageBytes", maxMessageBytes, "bytes of one message of a page"},
+    {"maxMessagesPerSecond", maxMessagesPerSecond, "messages of one page per second, on average"},
+    {"maxMessageBurst", maxMessageBurst, "messages of one page at once"},
+    {"maxPictureSide", maxPictureSide, "pixels of a picture's side; a larger page scales it"},
+    {"maxPicturePixels", maxPicturePixels, "pixels of a picture; a larger page scales it"},
+    {"minTokenLength", minTokenLength, "shortest token, in characters"},
+    {"maxTokenLength", maxTokenLength, "longest token, in characters"},
+    {"maxDownloads", maxDownloads, "saved pictures that wait to be fetched; the oldest one goes"},
+    {"maxDownloadSeconds", maxDownloadSeconds, "seconds for which a saved picture can be fetched"},
+    {"maxRequests", maxRequests, "HTTP connections at a time"},
+};
+
+} // namespace vv::server

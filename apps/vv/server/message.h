@@ -1,0 +1,43 @@
+// message.h: Reads the messages of a page. Everything in them is hostile: a message has exactly the
+// members of its type, each of its kind and within its range, or it is refused with a text that
+// says why. docs/serve.md lists the messages. [any thread]
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "session/input/input.h"
+
+namespace vv::server {
+
+struct Message {
+  enum class Type : uint8_t {
+    size,      // width, height: pixels of the device that the page has for the picture
+    shown,     // picture: the number of the picture that the page has shown
+    input,     // the user's mouse, finger or key
+    viewpoint, // number: the viewpoint of the list, from 0
+    own,       // the page wants a view of its own
+    follow,    // the page wants the view of the one who leads
+    save,      // format: the picture is wanted as a file
+    command    // the command of the view is wanted
+  };
+  enum class Format : uint8_t { png, exr };
+
+  Type type = Type::input;
+  int width = 0, height = 0;
+  uint32_t picture = 0;
+  InputEvent input;
+  int number = 0;
+  Format format = Format::png;
+};
+
+struct ReadMessage {
+  std::optional<Message> message; // none: it was refused
+  std::string fault;              // why
+};
+
+ReadMessage readMessage(std::string_view text);
+
+} // namespace vv::server

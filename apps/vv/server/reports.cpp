@@ -1,0 +1,89 @@
+#include "server/reports.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "server/texts.h"
+#include "session/overlay.h"
+
+namespace vv::server {
+
+namespace {
+
+// Seconds between two reports: while something changes, and while nothing does.
+constexpr double interval = 0.15, quietInterval = 1;
+constexpr double messageSeconds = 3;
+
+} // namespace
+
+void Reports::notify(uint32_t view, const std::string& text, double ends) {
+  notices_[view] = {text, ends};
+  hurry();
+}
+
+void Reports::beginAnew() {
+  told_.clear();
+  notices_.clear();
+  hurry();
+}
+
+void Reports::takeMessages(double now) {
+  Session& session = world_.session();
+  if (const std::string text = session.takeMessage(); !text.empty())
+    notify(0, text, now + messageSeconds);
+  for (uint32_t view = 1; view < maxViews; ++view)
+    if (const std::string text = session.takeMessageOf(view); !text.empty())
+      notify(view, text, now + messageSeconds);
+}
+
+std::string Reports::bottomOf(const Page& page, double now) {
+  Session& session = world_.session();
+  if (!world_.loading().empty()) return fmt::format("loading {} ...", world_.loading());
+  if (page.isSaving)
+    return fmt::format("Rendering the picture of this instant: {:.0f} samples; Escape gives up",
+                       session.capturedSamples());
+  const auto notice = notices_.find(page.view);
+  if (notice != notices_.end() && now < notice->second.ends) return notice->second.text;
+  if (const xvrml::ScriptCounts counts = session.browser().scripts(); counts.waiting > 0)
+    return fmt::format("starting Scripts: {} of {} ...", counts.scripts - counts.waiting,
+                       counts.scripts);
+  const std::string hint = session.pilotOf(page.view).hint();
+  return hint.empty() ? session.browser().description() : hint;
+}
+
+std::string Reports::stateOf(const Page& page, double now) {
+  Session& session = world_.session();
+  const Pilot& pilot = session.pilotOf(page.view);
+  PageState state;
+  state.world = std::filesystem::path(session.browser().world().path).filename().string();
+  state.role = page.role;
+  state.pages = pages_.count();
+  for (size_t i = 0; i < viewpoints_.size(); ++i)
+    if (viewpoints_[i] == pilot.viewpoint()) state.viewpoint = int(i);
+  state.hand = page.role != Page::Role::follower && pilot.overSensor();
+  state.bottom = bottomOf(page, now);
+  state.facts = overlayLines(session.facts(page.view), session.pilot().paused(), OverlayLevel::all);
+  return stateText(state);
+}
+
+void Reports::tell(double now, bool changes, Host& host) {
+  if (now < next_ || pages_.count() == 0) return;
+  takeMessages(now);
+  const std::vector<xvrml::ViewpointName> list = world_.session().browser().viewpoints();
+  viewpoints_.clear();
+  for (const xvrml::ViewpointName& one : list) viewpoints_.push_back(one.node.get());
+  const std::string viewpoints = viewpointsText(list);
+  for (const auto& [number, page] : pages_.all()) {
+    Told& told = told_[number];
+    if (told.viewpoints != viewpoints)
+      host.sendText(number, "viewpoints", told.viewpoints = viewpoints);
+    if (std::string state = stateOf(page, now); told.state != state)
+      host.sendText(number, "state", told.state = std::move(state));
+  }
+  std::erase_if(notices_, [&](const auto& one) { return now >= one.second.ends; });
+  next_ = now + (changes || !notices_.empty() ? interval : quietInterval);
+}
+
+} // namespace vv::server

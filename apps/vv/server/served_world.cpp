@@ -1,0 +1,100 @@
+#include "server/served_world.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "report/messages.h"
+#include "server/texts.h"
+#include "world_start.h"
+
+namespace vv::server {
+
+ServedWorld::ServedWorld(const Options& options, Callbacks callbacks)
+    : options_(options), callbacks_(std::move(callbacks)), problems_(options) {}
+
+// As in the window, Inlines are loaded after the first picture, unless an option needs all nodes.
+xvrml::LoadOptions ServedWorld::loadOptions() const {
+  xvrml::LoadOptions options = options_.load;
+  const bool whole = !options_.shaders.empty() || !options_.definitions.empty() || options_.strict;
+  if (!whole) options.loadInlines = false;
+  return options;
+}
+
+void ServedWorld::openFirst() {
+  std::unique_ptr<xvrml::World> world = readWorld(options_.input, loadOptions());
+  begin(std::move(world), "", {options_.render.width, options_.render.height});
+}
+
+void ServedWorld::reload() {
+  const std::string path = session_->browser().world().path;
+  if (path == "-") return callbacks_.onMessage("standard input cannot be read again");
+  open({{path}, "", {}}, true);
+}
+
+void ServedWorld::watch(double now) {
+  if (!watched_ || now < nextLook_) return;
+  nextLook_ = now + .2;
+  if (!watched_->changed()) return;
+  if (!options_.quiet) say("vv: a file has changed");
+  reload();
+}
+
+void ServedWorld::open(LoadRequest request, bool keepPlace) {
+  request.options = loadOptions();
+  keepPlace_ = keepPlace;
+  loading_ = request.urls.empty() ? "" : request.urls[0];
+  loader_.begin(std::move(request));
+}
+
+// The first URL decides: a page of the web is opened by the browser of the user, a file here.
+void ServedWorld::openUrls(const std::vector<std::string>& urls, const std::string& base) {
+  const std::string page = webUrlOf(urls);
+  if (!page.empty() && page == urls.front()) return callbacks_.openPage(page);
+  open({urls, base, {}}, false);
+}
+
+bool ServedWorld::take(PictureSize size) {
+  if (!session_->resting()) return false; // the old session cannot end yet
+  LoadAnswer answer;
+  if (!loader_.take(answer)) return false;
+  loading_.clear();
+  std::string wrong = std::move(answer.error);
+  if (answer.world) {
+    try {
+      begin(std::move(answer.world), answer.fragment, size);
+      return true;
+    } catch (const Failure& failure) { wrong = failure.text; } catch (const std::exception& error) {
+      wrong = error.what();
+    }
+  }
+  sayError(wrong);
+  callbacks_.onMessage(wrong);
+  return false;
+}
+
+void ServedWorld::begin(std::unique_ptr<xvrml::World> world, const std::string& fragment,
+                        PictureSize size) {
+  std::optional<Session::Place> place;
+  if (std::exchange(keepPlace_, false) && session_) place = session_->place();
+  world->options.loadInlines = true;
+  Session::Callbacks calls;
+  calls.onAction = [this](const InputEvent& event, Action action) {
+    callbacks_.onAction(0, event, action);
+  };
+  calls.onGuestAction = callbacks_.onAction;
+  calls.openUrl = [this](const std::vector<std::string>& urls, const std::string& base) {
+    openUrls(urls, base);
+  };
+  auto fresh =
+      std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), nullptr);
+  fresh->begin(size.width, size.height, place, fragment);
+  session_ = std::move(fresh); // ends the previous session
+  const std::string& path = session_->browser().world().path;
+  if (options_.watch && path != "-")
+    watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
+}
+
+bool ServedWorld::end() { return session_->stop(.5) && !WorldLoader::working(); }
+
+} // namespace vv::server

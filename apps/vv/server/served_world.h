@@ -1,0 +1,66 @@
+// served_world.h: The world that vv serve shows: reads the first one at once and others in the
+// background, and replaces its session. Owned by the server. [main thread]
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/problems.h"
+#include "server/flow.h"
+#include "session/session.h"
+#include "session/world_loader.h"
+#include "watched.h"
+
+namespace vv::server {
+
+class ServedWorld {
+ public:
+  struct Callbacks {
+    // Receives the keys' actions that are neither the pilot's nor the session's.
+    Guests::OnAction onAction;
+    // Opens a page of the web that an Anchor or a Script leads to.
+    std::function<void(const std::string& url)> openPage;
+    // Receives a message for everybody.
+    std::function<void(const std::string& text)> onMessage;
+  };
+  // The options must outlive this object.
+  ServedWorld(const Options& options, Callbacks callbacks);
+
+  // Reads the world of the options and begins it. Throws the errors of readWorld and Session.
+  void openFirst();
+  // Reads the world again, in the background, and keeps the leader's view.
+  void reload();
+  // Reloads the world if --watch is given and a file has changed. now: seconds of any clock.
+  void watch(double now);
+  // Takes over a world that has been read meanwhile. Returns true if there is a new session, which
+  // has no guests. size: of the leader's pictures.
+  bool take(PictureSize size);
+
+  Session& session() { return *session_; }
+  // Returns the name of the world that is being read; "": none.
+  const std::string& loading() const { return loading_; }
+  // Ends the session. Returns false if a thread still uses the world, so that the process must end
+  // without cleanup.
+  bool end();
+
+ private:
+  xvrml::LoadOptions loadOptions() const;
+  void open(LoadRequest request, bool keepPlace);
+  void openUrls(const std::vector<std::string>& urls, const std::string& base);
+  void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, PictureSize size);
+
+  const Options& options_;
+  Callbacks callbacks_;
+  Problems problems_;
+  WorldLoader loader_;
+  std::unique_ptr<Session> session_;
+  std::unique_ptr<Watched> watched_;
+  std::string loading_;
+  bool keepPlace_ = false;
+  double nextLook_ = 0;
+};
+
+} // namespace vv::server

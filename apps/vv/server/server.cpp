@@ -1,0 +1,459 @@
+// server.cpp: Runs the loop of `vv serve`: passes what pages send to the session of the world, and
+// the session's pictures to the pages. Three other threads help: the host's with the connections,
+// one that encodes pictures for pages, and one that encodes files.
+#include "server/server.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "libpicture/files/atomic_file.h"
+#include "libpicture/files/formats.h"
+#include "options/names.h"
+#include "options/shader_text.h"
+#include "pictures.h"
+#include "report/cluster_report.h"
+#include "report/messages.h"
+#include "server/address.h"
+#include "server/host.h"
+#include "server/pages.h"
+#include "server/reports.h"
+#include "server/served_world.h"
+#include "server/texts.h"
+#include "server/worker.h"
+#include "session/saving.h"
+#include "signals.h"
+#include "xvrml/node_plugin.h"
+
+namespace vv::server {
+
+namespace {
+
+// Seconds. Nothing wakes the loop for a signal: an idle loop looks for one now and then.
+constexpr double idleWait = 0.25, quietWait = 0.1, activeWait = 0.004, drawingWait = 0.001;
+constexpr int movingQuality = 80, stillQuality = 95; // of JPEG
+// Seconds from the first SIGINT until the process ends, even if a thread hangs.
+constexpr unsigned interruptSeconds = 5;
+
+// A picture of a view that pages get.
+struct Shot {
+  picture::LivePicture picture;
+  uint32_t number = 0;
+  int wanted = 0;
+  std::string jpeg; // made and used by the encoder's thread
+};
+
+class Server {
+ public:
+  Server(const Options& options, const std::vector<std::string>& arguments)
+      : options_(options), arguments_(arguments), hostOptions_(hostOptionsOf(options_.serve)),
+        world_(options_, callbacks()) {
+    if (!options_.cameraShader.empty())
+      options_.view.shader = readShader(options_.cameraShader, "--camera-shader", RT_CAMERA,
+                                        options_.render.shaderPath);
+  }
+
+  int run() {
+    world_.openFirst();
+    host_ = std::make_unique<Host>(hostOptions_, [this] { wake(); });
+    deferInterrupt(true, interruptSeconds);
+    writeOut(urlOf(options_.serve, hostOptions_, host_->port()) + "\n");
+    std::fflush(stdout);
+    while (!interrupted()) {
+      wait();
+      takeHostEvents();
+      takeWorld();
+      const double time = now();
+      watched_ = pages_.isWatched(time);
+      if (isTime(time)) advance(time);
+      takePictures();
+      sendPictures();
+      tellOfCluster();
+      if (world_.session().resting()) reports_.tell(time, watched_ && !isQuiet_, *host_);
+    }
+    return end();
+  }
+
+ private:
+  double now() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  // --- Waiting ---
+
+  void wake() {
+    {
+      const std::lock_guard lock(mutex_);
+      woken_ = true;
+    }
+    changed_.notify_all();
+  }
+
+  // Waits for an event, the next step, or a picture in flight.
+  void wait() {
+    const Session& session = world_.session();
+    const double most = !watched_                            ? idleWait
+                        : isQuiet_                           ? std::min(idleWait, next_ - now())
+                        : session.drawing() || session.due() ? drawingWait
+                                                             : activeWait;
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::duration<double>(std::max(most, 0.001)),
+                      [this] { return woken_; });
+    woken_ = false;
+  }
+
+  // Tells whether the session advances. As in the window, a moving picture that is almost finished
+  // is waited for, since the next one can then begin at once.
+  bool isTime(double time) {
+    const Session& session = world_.session();
+    if (time < next_) return session.due() && time >= advanced_ + activeWait;
+    return !session.drawing() || time >= next_ + 1 / options_.fps;
+  }
+
+  // --- Pages ---
+
+  void takeHostEvents() {
+    for (HostEvent& event : host_->takeEvents()) {
+      const bool shown =
+          event.kind == HostEvent::Kind::message && event.message.type == Message::Type::shown;
+      if (shown)
+        acknowledge(event.page, event.message.picture);
+      else
+        waiting_.push_back(std::move(event));
+    }
+    if (waiting_.empty() || !world_.session().resting()) return;
+    for (const HostEvent& event : std::exchange(waiting_, {})) handle(event);
+    isQuiet_ = false;
+    next_ = std::min(next_, now());
+    reports_.hurry();
+  }
+
+  void acknowledge(uint64_t number, uint32_t picture) {
+    Page* const page = pages_.find(number);
+    if (page && page->flow.acknowledge(picture)) page->answered = now();
+  }
+
+  void handle(const HostEvent& event) {
+    switch (event.kind) {
+    case HostEvent::Kind::joined:
+      pages_.join(event.page, now());
+      host_->sendText(event.page, "", helloText());
+      break;
+    case HostEvent::Kind::left: leave(event.page); break;
+    case HostEvent::Kind::message:
+      if (Page* const page = pages_.find(event.page)) handle(event.page, *page, event.message);
+      break;
+    }
+  }
+
+  void leave(uint64_t number) {
+    const Page* const page = pages_.find(number);
+    if (!page) return;
+    world_.session().giveUpCapture(number);
+    if (page->role == Page::Role::leader)
+      world_.session().handleFor(0, leaving());
+    else if (page->role == Page::Role::own)
+      endView(page->view);
+    reports_.leave(number);
+    pages_.leave(number);
+    // Another page may lead now: its own view ends, and the pictures get its size.
+    for (uint32_t view = 1; view < maxViews; ++view)
+      if (world_.session().isGuest(view) && pages_.ownerOf(view) == 0) endView(view);
+    const Page* const leader = pages_.find(pages_.leader());
+    if (leader && leader->sized) world_.session().resize(leader->size.width, leader->size.height);
+  }
+
+  static InputEvent leaving() {
+    InputEvent event;
+    event.kind = InputEvent::Kind::leave;
+    return event;
+  }
+
+  void endView(uint32_t view) {
+    world_.session().removeGuest(view);
+    shots_.erase(view);
+    reports_.endView(view);
+  }
+
+  void handle(uint64_t number, Page& page, const Message& message) {
+    switch (message.type) {
+    case Message::Type::size: resize(page, pictureSizeFor(message.width, message.height)); break;
+    case Message::Type::input: input(number, page, message.input); break;
+    case Message::Type::viewpoint:
+      if (const auto event = viewpointEvent(message.number)) input(number, page, *event);
+      break;
+    case Message::Type::own:
+      if (const uint32_t view = pages_.separate(number))
+        world_.session().addGuest(view, page.size.width, page.size.height);
+      else if (page.role == Page::Role::follower)
+        notify(0, fmt::format("there are {} views already", maxViews), 4);
+      break;
+    case Message::Type::follow: {
+      const uint32_t view = page.view;
+      if (pages_.follow(number)) endView(view);
+      break;
+    }
+    case Message::Type::save: save(number, message.format); break;
+    case Message::Type::command: sendCommand(number, page); break;
+    case Message::Type::shown: break; // acknowledge()
+    }
+  }
+
+  void resize(Page& page, PictureSize size) {
+    page.size = size;
+    page.sized = true;
+    if (page.role == Page::Role::leader)
+      world_.session().resize(size.width, size.height);
+    else if (page.role == Page::Role::own)
+      world_.session().resizeGuest(page.view, size.width, size.height);
+  }
+
+  void input(uint64_t number, const Page& page, const InputEvent& event) {
+    const bool escapes = event.kind == InputEvent::Kind::down && event.text == "Escape";
+    if (page.isSaving && escapes) return world_.session().giveUpCapture(number);
+    if (page.role == Page::Role::follower) return;
+    if (event.kind == InputEvent::Kind::press || event.kind == InputEvent::Kind::release)
+      clicked_ = number;
+    world_.session().handleFor(page.view, event);
+  }
+
+  // Returns the event that goes to a viewpoint of the list. Names are not always unique: the text
+  // must lead to this one.
+  std::optional<InputEvent> viewpointEvent(int number) {
+    std::vector<xvrml::ViewpointInfo> list;
+    for (const xvrml::ViewpointName& one : world_.session().browser().viewpoints())
+      list.push_back({one.name, one.description, one.node, {}});
+    if (size_t(number) >= list.size()) return {};
+    InputEvent event;
+    event.kind = InputEvent::Kind::viewpoint;
+    for (const std::string& text :
+         {std::to_string(number), list[size_t(number)].name, list[size_t(number)].description}) {
+      event.text = text;
+      if (picture::findViewpoint(list, text) == number) return event;
+    }
+    return {};
+  }
+
+  // --- The world ---
+
+  ServedWorld::Callbacks callbacks() {
+    ServedWorld::Callbacks calls;
+    calls.onAction = [this](uint32_t view, const InputEvent&, Action action) {
+      onAction(view, action);
+    };
+    calls.openPage = [this](const std::string& url) {
+      const uint64_t page = pages_.find(clicked_) ? clicked_ : pages_.leader();
+      host_->sendText(page, "", openText(url));
+    };
+    calls.onMessage = [this](const std::string& text) { notify(0, text, 10); };
+    return calls;
+  }
+
+  void onAction(uint32_t view, Action action) {
+    const uint64_t number = pages_.ownerOf(view);
+    const Page* const page = pages_.find(number);
+    if (!page) return;
+    Session& session = world_.session();
+    using Motion = PictureLoop::Motion;
+    switch (action) {
+    case Action::save: save(number, Message::Format::png); break;
+    case Action::saveExr: save(number, Message::Format::exr); break;
+    case Action::command: sendCommand(number, *page); break;
+    case Action::samples: {
+      const bool raw = session.motion(view) == Motion::rebuilt;
+      session.setMotion(raw ? Motion::samples : Motion::rebuilt, view);
+      notify(view, raw ? "raw samples while something moves" : "rebuilt pictures", 3);
+      break;
+    }
+    case Action::reload:
+      if (view == 0)
+        world_.reload();
+      else
+        notify(view, "only the page that leads reloads the world", 4);
+      break;
+    default: break; // the page shows help and facts, and vv ends in the terminal
+    }
+  }
+
+  void takeWorld() {
+    const Page* const leader = pages_.find(pages_.leader());
+    const PictureSize usual{options_.render.width, options_.render.height};
+    if (!world_.take(leader && leader->sized ? leader->size : usual)) return;
+    for (auto& [number, page] : pages_.all()) {
+      page.isSaving = false;
+      if (page.role == Page::Role::own)
+        world_.session().addGuest(page.view, page.size.width, page.size.height);
+    }
+    reports_.beginAnew();
+    isQuiet_ = false;
+  }
+
+  // Lets the world run while somebody looks; otherwise its time stands still.
+  void advance(double time) {
+    const double passed = time - advanced_;
+    advanced_ = time;
+    next_ = time + 1 / options_.fps;
+    if (!watched_) return;
+    time_ += steps_ ? passed : 0;
+    steps_ = true;
+    Session& session = world_.session();
+    try {
+      session.advance(time_);
+    } catch (const std::exception& error) { sayError(error.what()); }
+    if (!session.resting()) return;
+    world_.watch(time);
+    isQuiet_ = session.isQuiet();
+    if (isQuiet_) next_ = time + quietWait;
+  }
+
+  // --- Pictures ---
+
+  void takePictures() {
+    auto shot = std::make_shared<Shot>();
+    uint32_t view = 0;
+    while (world_.session().look(shot->picture, view)) {
+      shot->number = ++lastShot_;
+      shot->wanted = samplesInWindow(options_);
+      shots_[view] = std::move(shot);
+      shot = std::make_shared<Shot>();
+    }
+  }
+
+  // Gives each page that has acknowledged its last picture the newest one of its view.
+  void sendPictures() {
+    for (auto& [number, page] : pages_.all()) {
+      const auto found = shots_.find(page.view);
+      if (!page.sized || found == shots_.end()) continue;
+      page.flow.offer(found->second->number);
+      if (page.flow.take() == 0) continue;
+      page.answered = now();
+      encoder_.post([this, number = number, shot = found->second] { encode(number, *shot); });
+    }
+  }
+
+  // [the encoder's thread]
+  void encode(uint64_t page, Shot& shot) {
+    const picture::LivePicture& picture = shot.picture;
+    const bool still = picture.purpose == picture::LiveFrame::Purpose::still;
+    try {
+      if (shot.jpeg.empty())
+        shot.jpeg = picture::jpegOf(picture.rgb, picture.width, picture.height,
+                                    still ? stillQuality : movingQuality);
+      host_->sendPicture(page, pictureMessage(shot.number, picture, shot.wanted, shot.jpeg));
+    } catch (const std::exception&) { host_->close(page); } // it would wait for ever
+  }
+
+  // --- Files ---
+
+  void save(uint64_t number, Message::Format format) {
+    Page* const page = pages_.find(number);
+    if (!page || page->isSaving) return;
+    page->isSaving = true;
+    const std::string suffix = format == Message::Format::exr ? "exr" : "png";
+    world_.session().capture(
+        page->view, number, [this, number, suffix](const picture::Picture* picture) {
+          if (Page* const saver = pages_.find(number)) saver->isSaving = false;
+          reports_.hurry();
+          if (!picture) return notifyPage(number, "the picture is not saved", 6);
+          std::string name = fileNamePart(
+              std::filesystem::path(world_.session().browser().world().path).stem().string());
+          name = fmt::format("{}-{}.{}", name.empty() ? "vv" : name, ++saved_, suffix);
+          auto wanted =
+              std::make_shared<picture::Picture>(wantedPart(*picture, options_.render.channels));
+          files_.post(
+              [this, number, name, wanted, suffix] { encodeFile(number, name, *wanted, suffix); });
+        });
+  }
+
+  // [the thread for files]
+  void encodeFile(uint64_t page, const std::string& name, const picture::Picture& picture,
+                  const std::string& suffix) {
+    try {
+      const std::string path = host_->offerDownload(name, "image/" + suffix,
+                                                    picture::formatNamed(suffix)->encode(picture));
+      host_->sendText(page, "", savedText(path, name));
+    } catch (const std::exception&) { host_->close(page); }
+  }
+
+  void sendCommand(uint64_t number, const Page& page) {
+    host_->sendText(number, "", commandText(world_.session().command(arguments_, page.view)));
+  }
+
+  // --- Reports ---
+
+  void notifyPage(uint64_t number, const std::string& text, double seconds) {
+    if (const Page* const page = pages_.find(number)) notify(page->view, text, seconds);
+  }
+  void notify(uint32_t view, const std::string& text, double seconds) {
+    reports_.notify(view, text, now() + seconds);
+  }
+
+  void tellOfCluster() {
+    if (!options_.render.cluster) return;
+    const std::vector<picture::ClusterMessage> notes = options_.render.cluster->takeMessages();
+    for (const picture::ClusterMessage& note : notes)
+      if (note.level >= 2) notify(0, note.text, 6);
+    for (const std::string& line : clusterMessageLines(notes, options_.verbose, options_.quiet))
+      say(line);
+  }
+
+  // Ends the process. Reading a world and building geometry cannot be cancelled; in those cases the
+  // process exits without cleanup.
+  int end() {
+    const bool stopped = world_.end();
+    interruptHandled();
+    if (stopped) return exitDone;
+    picture::removeTemporary();
+    std::fflush(nullptr);
+    ::_exit(exitDone);
+  }
+
+  using Clock = std::chrono::steady_clock;
+
+  Options options_;
+  const std::vector<std::string>& arguments_;
+  const HostOptions hostOptions_;
+  const Clock::time_point start_ = Clock::now();
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool woken_ = false;
+
+  ServedWorld world_;
+  Pages pages_;
+  std::vector<HostEvent> waiting_; // until the world can be used
+  Reports reports_{pages_, world_};
+  std::map<uint32_t, std::shared_ptr<Shot>> shots_; // by view: its newest picture
+  uint32_t lastShot_ = 0;
+  int saved_ = 0;        // files that were made
+  uint64_t clicked_ = 0; // the page whose button went down or up last
+  bool watched_ = false; // somebody looks
+  bool isQuiet_ = false; // nothing moves, and the pictures are finished
+  bool steps_ = false;   // the world has begun to run
+  // Seconds: of the world's session, and of this process at its last step and at the next one.
+  double time_ = 0, advanced_ = 0, next_ = 0;
+
+  std::unique_ptr<Host> host_;
+  Worker encoder_, files_; // the last members: their tasks use the others
+};
+
+} // namespace
+
+} // namespace vv::server
+
+namespace vv {
+
+int runServer(const Options& options, const std::vector<std::string>& arguments) {
+  for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
+  try {
+    server::Server server(options, arguments);
+    return server.run();
+  } catch (const xvrml::LoadError& error) {
+    say(error.diagnostic.text());
+    return exitInput;
+  }
+}
+
+} // namespace vv

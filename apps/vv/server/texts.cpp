@@ -1,0 +1,99 @@
+#include "server/texts.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "report/describe.h"
+#include "session/input/keys.h"
+
+namespace vv::server {
+
+namespace {
+
+using Json = nlohmann::json;
+
+// Texts of worlds need not be UTF-8.
+std::string written(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string_view nameOf(Page::Role role) {
+  return role == Page::Role::leader ? "leader" : role == Page::Role::own ? "own" : "follower";
+}
+
+std::string nameOf(const xvrml::ViewpointName& viewpoint, size_t number) {
+  return !viewpoint.description.empty() ? viewpoint.description
+         : !viewpoint.name.empty()      ? viewpoint.name
+                                        : fmt::format("viewpoint {}", number);
+}
+
+} // namespace
+
+std::string helloText() {
+  Json keys = Json::array(), mouse = Json::array();
+  for (const KeyInfo& key : keyTable())
+    if (key.action != Action::quit) keys.push_back({key.keys, key.text});
+  for (const MouseInfo& one : mouseTable()) mouse.push_back({one.what, one.text});
+  return written({{"type", "hello"}, {"version", version()}, {"keys", keys}, {"mouse", mouse}});
+}
+
+std::string stateText(const PageState& state) {
+  return written({{"type", "state"},
+                  {"world", state.world},
+                  {"role", nameOf(state.role)},
+                  {"pages", state.pages},
+                  {"viewpoint", state.viewpoint},
+                  {"hand", state.hand},
+                  {"bottom", state.bottom},
+                  {"facts", state.facts}});
+}
+
+std::string viewpointsText(const std::vector<xvrml::ViewpointName>& viewpoints) {
+  Json list = Json::array();
+  for (const xvrml::ViewpointName& one : viewpoints) list.push_back(nameOf(one, list.size()));
+  return written({{"type", "viewpoints"}, {"list", list}});
+}
+
+std::string commandText(const std::string& line) {
+  return written({{"type", "command"}, {"text", line}});
+}
+
+std::string savedText(const std::string& path, const std::string& name) {
+  return written({{"type", "saved"}, {"path", path}, {"name", name}});
+}
+
+std::string openText(const std::string& url) { return written({{"type", "open"}, {"url", url}}); }
+
+std::string pictureMessage(uint32_t number, const picture::LivePicture& facts, int wanted,
+                           std::string_view jpeg) {
+  const bool still = facts.purpose == picture::LiveFrame::Purpose::still;
+  const std::string header = written({{"picture", number},
+                                      {"width", facts.width},
+                                      {"height", facts.height},
+                                      {"samples", facts.samples},
+                                      {"wanted", still ? wanted : 0},
+                                      {"preview", facts.preview},
+                                      {"finished", still && facts.finished}});
+  std::string message;
+  message.reserve(4 + header.size() + jpeg.size());
+  for (int i = 0; i < 4; ++i) message += char(header.size() >> (8 * i) & 255);
+  message += header;
+  message += jpeg;
+  return message;
+}
+
+std::string webUrlOf(std::span<const std::string> urls) {
+  for (const std::string& url : urls)
+    for (const std::string_view scheme : {"http://", "https://"}) {
+      const std::string_view begin = std::string_view(url).substr(0, scheme.size());
+      if (std::equal(begin.begin(), begin.end(), scheme.begin(), scheme.end(),
+                     [](unsigned char a, unsigned char b) { return std::tolower(a) == b; }))
+        return url;
+    }
+  return {};
+}
+
+} // namespace vv::server
