@@ -185,8 +185,11 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
     const Lanes3 old = select(stays, shown, bounded(shown, around.least, around.most));
 
     const Mask lit = loadSome(pass.frame.samples + first, x, layout.width) > zero;
-    const Mask environment =
-        hn::AndNot(isFinite(loadSome(pass.frame.depth + first, x, layout.width)), lit);
+    // The environment has an albedo only in mirrors and behind glass.
+    const Lanes3 albedo = loadTriples(pass.frame.albedo + 3 * first, x, layout.width);
+    const Mask far = hn::AndNot(isFinite(loadSome(pass.frame.depth + first, x, layout.width)), lit),
+               environment =
+                   both(far, absolute(albedo.x) + absolute(albedo.y) + absolute(albedo.z) <= zero);
     const Lanes trust = smaller(around.noise * all(4), one); // 0: free of noise
     const Lanes3 own = load(pass.reading.light, i);
     store(select(lit, own.x, select(recalled.known, sample, all(Shown::noSample))),
