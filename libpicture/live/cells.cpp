@@ -115,7 +115,7 @@ bool isSmooth(const Samples& samples, float luma) {
   const float across = (p * b - q * c) / determinant, down = (q * a - p * c) / determinant;
   const float middle = (sum - across * x - down * y) / n;
   return std::abs(luma - middle) <=
-         std::abs(across) + std::abs(down) + std::abs(middle) * alikeFraction + alikeAmount;
+         2 * (std::abs(across) + std::abs(down)) + std::abs(middle) * alikeFraction + alikeAmount;
 }
 
 // Judges a sample by those that the pixels around its place had last, as compareRow judges pixels

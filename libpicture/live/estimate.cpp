@@ -16,6 +16,7 @@ namespace HWY_NAMESPACE {
 // A part of the picture is noisy if more than this fraction of its pixels is unlike its neighbours;
 // entirely if that many more are. Of samples that are either light or dark, 14 % are.
 constexpr float fewUnlike = 0.1f, moreUnlike = 0.2f;
+constexpr float fewestPixels = 16; // of a shape
 // Samples are limited to so many standard deviations of the samples around them.
 constexpr float limitSpread = 32;
 
@@ -105,6 +106,8 @@ void estimateRow(const Reading& reading, int y, const Moment& now, Work& work) {
   const float *name = now.guides.name.data(), *luma = reading.light.x.data(),
               *deviation = work.deviation.data(), *unlike = work.unlike.data();
   const size_t row = layout.row(y);
+  // 7 x 7 cells of several pixels are a large part of the picture: its shapes are judged apart.
+  const Mask anyShape = now.block == 1 ? all(0) < all(1) : all(1) < all(0);
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
     const Lanes ownName = load(name + i), ownLuma = load(luma + i);
@@ -119,11 +122,12 @@ void estimateRow(const Reading& reading, int y, const Moment& now, Work& work) {
         sum = sum + other;
         squares = squares + other * other;
         deviations = deviations + where(same, load(deviation + j));
-        odd = odd + load(unlike + j);
+        odd = odd + where(either(same, anyShape), load(unlike + j));
         calm = calm + count(both(same, load(work.verdict.data() + j) == all(0)));
       }
     store(deviations / larger(pixels, all(1)), work.variance.data() + i);
-    const Lanes fraction = odd * all(1.0f / 49);
+    const Lanes fraction =
+        odd * select(anyShape, all(1.0f / 49), all(1) / larger(pixels, all(fewestPixels)));
     store(clamped((fraction - all(fewUnlike)) * all(1 / moreUnlike), all(0), all(1)),
           work.noise.data() + i);
     store(calm / larger(pixels, all(1)), work.calm.data() + i);
