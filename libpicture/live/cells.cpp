@@ -178,6 +178,9 @@ void cellRow(const CellPass& pass, int y, Moment& now, Reading& reading, Work& w
     to.normal.x[i] = from.normal.x[j];
     to.normal.y[i] = from.normal.y[j];
     to.normal.z[i] = from.normal.z[j];
+    reading.albedo.x[i] = pass.reading.albedo.x[j];
+    reading.albedo.y[i] = pass.reading.albedo.y[j];
+    reading.albedo.z[i] = pass.reading.albedo.z[j];
 
     // The middle of the cell moves as the pixel does.
     const float middleX = edge * float(x) + (edge - 1) / 2,

@@ -125,8 +125,10 @@ struct Reconstruction::Impl {
   // Writes `fresh` from the filtered illumination.
   void colour(const FramePlanes& planes) {
     const Moment& grid = sparse ? pixels : now;
-    const ColourPass pass{planes, grid,    pixelsOfBefore(), sparse ? pixelReading : reading,
-                          now,    *result, work.verdict,     shownBefore};
+    const ColourPass pass{
+        planes,     grid,           pixelsOfBefore(), sparse ? pixelReading : reading,
+        now,        reading.albedo, *result,          work.verdict,
+        shownBefore};
     rows(grid,
          [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
   }

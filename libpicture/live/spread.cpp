@@ -18,6 +18,9 @@ namespace HWY_NAMESPACE {
 constexpr float normalFall = 64;     // about the power of the cosine between normals
 constexpr float leastWeight = 0.01f; // a sum of weights below that shows nothing
 constexpr float noiseFall = 4; // from a quarter of noise on, a pixel's own sample does not count
+// Illumination is radiance divided by albedo. Where a surface also reflects like varnish that is no
+// illumination of another albedo, so cells of a like albedo count more, as long as there are some.
+constexpr float albedoFall = 9, mostAlbedoFall = 3, alikeAlbedo = 1;
 
 // The cells of neighbouring pixels: the first one, and the others counted from it.
 using Table = decltype(hn::IndicesFromVec(Tag(), hn::Zero(IndexTag())));
@@ -53,14 +56,19 @@ template <class Number> inline void splineWeights3(Number part, Number half, Num
   weight[2] = half * (half + part) * (half + part);
 }
 
+inline Lanes meanOf(const Lanes3& colour) {
+  return (colour.x + colour.y + colour.z) * all(1.0f / 3);
+}
+
 // What the cells around a pixel tell.
 struct Around {
   Lanes3 light{all(0), all(0), all(0)};
   Lanes3 least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f), all(-1e30f), all(-1e30f)};
   Lanes weights = all(0), noise = all(0), slope = all(0), changed = all(0);
 
-  void add(const Lanes3& other, Lanes weight, Lanes otherNoise, Lanes otherSlope) {
-    const Mask counts = weight > all(1e-3f);
+  // alike: the cell's albedo is like the pixel's, so that its light is a bound for the pixel's.
+  void add(const Lanes3& other, Lanes weight, Mask alike, Lanes otherNoise, Lanes otherSlope) {
+    const Mask counts = both(alike, weight > all(1e-3f));
     weights = weights + weight;
     light = light + other * weight;
     noise = noise + otherNoise * weight;
@@ -78,7 +86,8 @@ struct Around {
 
 // The surfaces of some pixels.
 struct Surface {
-  Lanes name, nearness, x, y; // x, y: the sample from the centre of the pixel's cell, in cells
+  Lanes name, nearness, albedo; // mean of the colours
+  Lanes x, y;                   // the sample from the centre of the pixel's cell, in cells
   Lanes3 normal;
 };
 
@@ -107,9 +116,14 @@ inline Around cellsAround(const ColourPass& pass, const Columns& columns, const 
           absolute(surface.nearness - expected) /
               (slope * all(0.5f) + scale * all(0.003f) + all(1e-20f)) +
           absolute(all(1) - dot(columns.of(guides.normal, at), surface.normal)) * all(normalFall);
+      const Lanes albedo = meanOf(columns.of(pass.cellAlbedo, at));
+      const Lanes unlike = smaller(absolute(albedo - surface.albedo) * all(albedoFall) /
+                                       (albedo + surface.albedo + all(1e-6f)),
+                                   all(mostAlbedoFall));
       const Mask same = of(guides.name) == surface.name;
-      const Lanes weight = where(same, fallOff(away) * across[dx + 1] * all(down[dy + 1]));
-      around.add(columns.of(pass.light, at), weight, of(cells.accumulated.noise), slope);
+      const Lanes weight = where(same, fallOff(away + unlike) * across[dx + 1] * all(down[dy + 1]));
+      around.add(columns.of(pass.light, at), weight, unlike < all(alikeAlbedo),
+                 of(cells.accumulated.noise), slope);
       const Mask exists = of(guides.name) >= all(0);
       around.changed =
           larger(around.changed, where(hn::AndNot(of(pass.verdict) == all(0), exists), all(1)));
@@ -122,8 +136,10 @@ inline Around cellsAround(const ColourPass& pass, const Columns& columns, const 
 }
 
 // Returns the illumination of cells farther away: those with the pixel's name count, however they
-// lie, and the others only if there are none.
-inline Lanes3 lightFarAround(const ColourPass& pass, const Columns& columns, Lanes name, int y) {
+// lie, and the others only if there are none. The light of a surface with a lower albedo is lowered
+// with it, because some of that light may be reflected as by varnish.
+inline Lanes3 lightFarAround(const ColourPass& pass, const Columns& columns, const Surface& surface,
+                             int y) {
   constexpr int reach = 2;
   constexpr float otherWeight = 1e-4f;
   const Moment& cells = pass.cells;
@@ -135,10 +151,12 @@ inline Lanes3 lightFarAround(const ColourPass& pass, const Columns& columns, Lan
       const size_t at = size_t(ptrdiff_t(cells.layout.row(cellY + dy)) + columns.first + dx);
       const Lanes other = columns.of(cells.guides.name.data() + at);
       const float nearby = 1 / float(1 + dx * dx + dy * dy);
-      const Lanes weight =
-          where(other >= all(0), select(other == name, all(nearby), all(nearby * otherWeight)));
+      const Lanes weight = where(
+          other >= all(0), select(other == surface.name, all(nearby), all(nearby * otherWeight)));
+      const Lanes albedo = meanOf(columns.of(pass.cellAlbedo, at));
+      const Lanes lower = smaller(albedo / larger(surface.albedo, all(1e-6f)), all(1));
       weights = weights + weight;
-      sum = sum + columns.of(pass.light, at) * weight;
+      sum = sum + columns.of(pass.light, at) * (weight * lower);
     }
   return sum * (all(1) / weights);
 }
@@ -193,15 +211,19 @@ inline Lanes3 ownLight(const ColourPass& pass, const Around& around, const Recal
   const Mask rests = both(both(recalled.known, same), both(recalled.past.x == countFrom(at.x),
                                                            recalled.past.y == all(float(at.y))));
   const Mask keeps = either(both(rests, around.changed <= all(0)), hn::Not(around.found()));
-  const Lanes3 old = select(keeps, shown, bounded(shown, around.least, around.most));
+  // What was shown may belong to another albedo: the sample lies anywhere in the pixel.
+  const Mask isBound = hn::Not(around.least.x > around.most.x);
+  const Lanes3 bound = select(isBound, bounded(shown, around.least, around.most), around.light);
+  const Lanes3 old = select(keeps, shown, bound);
   return select(lit, load(pass.reading.light, at.i), select(recalled.known, old, around.light));
 }
 
-inline Lanes3 spreadLight(const ColourPass& pass, const Around& around, const Columns& columns,
-                          const Recalled& recalled, const Pixels& at, Fresh& fresh) {
+inline Lanes3 spreadLight(const ColourPass& pass, const Columns& columns, const Surface& surface,
+                          const Around& around, const Recalled& recalled, const Pixels& at,
+                          Fresh& fresh) {
   const Lit lit = litPixels(pass, at);
-  const Lanes name = load(pass.pixels.guides.name.data() + at.i), zero = all(0), one = all(1);
-  const Mask some = both(name >= zero, present(at.x, pass.pixels.layout.width));
+  const Lanes one = all(1);
+  const Mask some = both(surface.name >= all(0), present(at.x, pass.pixels.layout.width));
   const Mask found = hn::AndNot(lit.environment, around.found());
   const Lanes noise = where(hn::Not(lit.environment), select(found, around.noise, one));
   store(noise, fresh.noise.data() + at.i);
@@ -217,7 +239,7 @@ inline Lanes3 spreadLight(const ColourPass& pass, const Around& around, const Co
   }
   const Mask missing = hn::AndNot(either(found, either(lit.all, recalled.known)), some);
   if (!hn::AllFalse(Tag(), missing))
-    light = select(missing, lightFarAround(pass, columns, name, at.y), light);
+    light = select(missing, lightFarAround(pass, columns, surface, at.y), light);
   return light;
 }
 
@@ -230,15 +252,17 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
     const Columns columns(x, pass.cells.block);
-    const Surface surface{load(guides.name.data() + i), load(guides.nearness.data() + i),
+    const Surface surface{load(guides.name.data() + i),
+                          load(guides.nearness.data() + i),
+                          meanOf(load(pass.reading.albedo, i)),
                           columns.part + load(guides.offsetX.data() + i) * all(1 / block),
                           all(partY) + load(guides.offsetY.data() + i) * all(1 / block),
                           load(guides.normal, i)};
     const Around around = cellsAround(pass, columns, surface, y);
     const Recalled recalled = recalledSurfaces(pass, around.slope, x, i);
     keepShown(pass, recalled, i, fresh);
-    storeColour(spreadLight(pass, around, columns, recalled, {x, y, i}, fresh), pass.reading, i,
-                fresh);
+    storeColour(spreadLight(pass, columns, surface, around, recalled, {x, y, i}, fresh),
+                pass.reading, i, fresh);
   }
 }
 

@@ -152,6 +152,7 @@ struct ColourPass {
   const Moment &pixels, &before; // surfaces by pixel
   const Reading& reading;        // by pixel
   const Moment& cells;
+  const Plane3& cellAlbedo;
   const Plane3& light; // illumination by cell, filtered
   const Plane& verdict;
   const Shown& shown; // by the frame before

@@ -293,6 +293,24 @@ def test_worlds_are_loaded_and_replaced(start, tmp_path):
     assert vv.render().startswith(b"\x89PNG")
 
 
+def test_worlds_change_while_a_picture_is_rendered(start, tmp_path):
+    (tmp_path / "other.wrl").write_text(HEADER + "DEF Only Group {}")
+    server = start()
+    painter, vv = server.raw(), server.connect()
+    endless = {"id": 1, "command": "render", "size": [1600, 1200], "samples": 65536}
+    painter.send(endless)
+    refused("world", "nothing.wrl", vv.load, "nothing.wrl")
+    assert vv.get("Cube", "size") == [2, 2, 2]
+    vv.load("other.wrl")
+    answer = painter.ask(b"")
+    assert "replaced before the picture" in answer["error"]["message"]
+    painter.send(endless)
+    vv.quit()
+    answer = painter.ask(b"")
+    assert "vv ended before the picture" in answer["error"]["message"]
+    assert painter.receive() is None and server.program.wait(PATIENCE) == 0
+
+
 def test_loads_take_turns(start, tmp_path):
     server = start()
     clients = [server.raw() for _ in range(8)]

@@ -40,6 +40,18 @@ def test_hostile_lines_are_answered(start):
     })["result"] == [1, 1, 1]
 
 
+def test_lines_may_come_in_any_parts(start):
+    raw = start().raw()
+    line = b'{"id":7,"command":"set","node":"Place","field":"translation","value":[1,2,3]}\r\n'
+    for i in range(1, len(line)):
+        raw.send(line[:i])
+        raw.send(line[i:])
+        assert raw.ask(b"") == {"id": 7, "result": None}
+    raw.send(line * 1000)
+    for _ in range(1000):
+        assert raw.receive() == {"id": 7, "result": None}
+
+
 def test_other_protocols_are_cut_off(start):
     server = start()
     raw = server.raw()
@@ -120,6 +132,9 @@ def test_a_unix_socket_belongs_to_the_user(start, tmp_path):
     (("--control", "127.0.0.1"), "the port is missing", 2),
     (("--control", ":70000"), "a port is a number", 2),
     (("--control", "0.0.0.0:0"), "a key is needed", 1),
+    (("--control", "unix:" + 200 * "x"), "more than 107 bytes", 2),
+    (("--control", "unix:box.wrl"), "there is a file of this name", 1),
+    (("--control", "unix:none/socket"), "No such file or directory", 1),
     (("--control", "0.0.0.0:0", "--key", "none.key"), "none.key", 3),
     (("--control", ":0", "-o", "x.png"), "--control cannot be used with -o", 2),
     (("--control", ":0", "--watch"), "--no-window cannot be used with", 2),
@@ -128,6 +143,11 @@ def test_addresses_that_cannot_be_used(vv, arguments, words, code):
     done = vv("box.wrl", *arguments, "--no-window")
     assert done.returncode == code and words in done.talk, done.talk
     assert len(done.talk.splitlines()) == 1
+
+
+def test_a_port_that_is_in_use(start, vv):
+    done = vv("box.wrl", "--control", start().address, "--no-window")
+    assert done.returncode == 1 and "Address already in use" in done.talk, done.talk
 
 
 def test_no_window_needs_control(vv):

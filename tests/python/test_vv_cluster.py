@@ -294,7 +294,7 @@ def test_it_says_that_no_worker_answered(vv):
 
 def test_workers_are_for_pictures(vv):
     done = vv("box.wrl", "--check", "--workers", "127.0.0.1")
-    assert done.returncode == 2 and "need -o or the window" in done.talk
+    assert done.returncode == 2 and "need -o, the window or vv serve" in done.talk
 
 
 @pytest.mark.parametrize("content, line", [("127.0.0.1:7447\nhost:port\n", 2),

@@ -120,7 +120,9 @@ def test_a_preview_is_nearer_to_the_true_picture(rolling):
     assert done.returncode == 0, done.talk
     true = bytes_of((rolling.folder / "true.ppm").read_bytes())
     assert rebuilt != raw
-    assert distance(rebuilt, true) < 0.6 * distance(raw, true)
+    floor = slice(40 * 64 * 3, None)  # without the ball, whose edges are alike in both
+    assert distance(rebuilt[floor], true[floor]) < 0.5 * distance(raw[floor], true[floor])
+    assert distance(rebuilt, true) < distance(raw, true)
     assert sum(rebuilt) == pytest.approx(sum(true), rel=0.05)
 
 

@@ -249,7 +249,7 @@ def test_a_second_page_follows_and_may_leave(serve):
     second.drag(0, -0.9, 0.5, -0.9)  # a follower moves nothing
     first.drag(0, -0.9, 0.3, -0.9)
     wait_for(lambda: second.camera()[0][0] < -0.5, "following")
-    assert second.camera()[0] == first.camera()[0]
+    wait_for(lambda: second.camera()[0] == first.camera()[0], "the same place")
 
     second.send(type="own")
     second.until_state(lambda s: s["role"] == "own")

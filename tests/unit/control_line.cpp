@@ -96,6 +96,7 @@ TEST(ControlLine, MessagesSayWhereAndWhat) {
   bad(R"({"command":"render","size":[65536,65536]})", "limit", "pixels=");
   bad(R"({"command":"render","samples":18446744073709551615})", "command", "render: samples");
   bad(R"({"command":"render","samples":1.5})", "command", "render: samples");
+  bad(R"({"command":"render","samples":65537})", "command", "render: samples");
   bad(R"({"command":"render","file":"a.png\u0000b"})", "command",
       "render: file: the path of a file");
   bad(R"({"command":"render","file":""})", "command", "render: file: the path of a file");

@@ -395,7 +395,7 @@ TEST(LivePreview, fewViewersAreRemembered) {
   live::FrameCamera camera;
   for (int k = 0; k < 16; ++k) camera.settings.matrix[k] = k % 5 == 0;
   for (uint32_t viewer = 0; viewer < 2 * live::Previews::mostViewers; ++viewer) {
-    previews.rebuild(viewer, frame, camera, {});
+    previews.rebuild(viewer, frame, camera, 1, {});
     EXPECT_LE(previews.viewers(), live::Previews::mostViewers);
   }
   const size_t before = previews.viewers();
@@ -403,7 +403,7 @@ TEST(LivePreview, fewViewersAreRemembered) {
   EXPECT_EQ(previews.viewers(), before - 1);
   // What cannot be rebuilt is forgotten, too.
   frame.planes.erase(RT_MOTION);
-  EXPECT_THROW(previews.rebuild(2 * live::Previews::mostViewers - 2, frame, camera, {}),
+  EXPECT_THROW(previews.rebuild(2 * live::Previews::mostViewers - 2, frame, camera, 1, {}),
                std::invalid_argument);
   EXPECT_EQ(previews.viewers(), before - 2);
 }

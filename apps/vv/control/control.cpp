@@ -259,10 +259,10 @@ struct Control::Impl {
       if (client.isServed) mailbox.send(id, line);
   }
 
-  void detach() {
+  void detach(const char* why) {
     if (renderer != 0 && !encoding)
       finish(clients.at(std::exchange(renderer, 0)), "", "render",
-             "the world was replaced before the picture was finished");
+             fmt::format("{} before the picture was finished", why));
     for (auto& [id, client] : clients) {
       if (session) WorldCommands::unsubscribeAll(session->browser(), client);
       client.numbers.releaseAll();
@@ -292,11 +292,11 @@ Control::Control(const Options& options, Host host)
   say("vv: control: listening at " + impl_->listener->address());
 }
 
-Control::~Control() { impl_->detach(); }
+Control::~Control() { impl_->detach("vv ended"); }
 
 bool Control::serve(Session* session, bool isLoading) { return impl_->serve(session, isLoading); }
 
-void Control::detach() { impl_->detach(); }
+void Control::detach() { impl_->detach("the world was replaced"); }
 
 void Control::loadFailed(const std::string& why) {
   for (auto& [id, client] : impl_->clients)

@@ -16,7 +16,7 @@ struct Limits {
   size_t subscriptions = 10'000;          // subscriptions of a client
   size_t pixels = size_t(64) << 20;       // pixels of one picture
   int side = 65'536;                      // pixels of a picture's side
-  int samples = 1'000'000;                // samples of each pixel
+  int samples = 65'536;                   // samples of each pixel
   double skip = 86'400;                   // seconds that one command lets the world run
 };
 

@@ -84,19 +84,19 @@ void refuseLoops(const std::vector<Checked>& all) {
   std::multimap<const Node*, const Checked*> fresh;
   for (const Checked& one : all)
     if (holdsWhatItGets(*one.node, *one.field)) fresh.emplace(one.node.get(), &one);
-  for (const auto& [owner, one] : fresh) {
+  for (const Checked& one : all) {
     std::vector<Node*> open;
-    appendNodes(one->value, open);
+    if (holdsWhatItGets(*one.node, *one.field)) appendNodes(one.value, open);
     if (open.empty()) continue;
     const bool free = walk(std::move(open), [&](Node& node, std::vector<Node*>& next) {
       if (!dynamic_cast<ScriptNode*>(&node)) appendChildren(node, next);
       const auto [begin, end] = fresh.equal_range(&node);
       for (auto at = begin; at != end; ++at) appendNodes(at->second->value, next);
-      return &node != owner;
+      return &node != one.node.get();
     });
     if (!free)
       throw CommandError("value", fmt::format("{}.{}: the node would hold itself",
-                                              owner->type().name, one->field->name));
+                                              one.node->type().name, one.field->name));
   }
 }
 

@@ -43,7 +43,7 @@ class Guides {
   static constexpr uint32_t mostSurfaces = 8;
   // Least share of images in what the lobes of a hit carry. With less, as where varnished wood is
   // seen at a low angle, the grain of the surface matters more than the image in it.
-  static constexpr float dominant = 0.7f;
+  static constexpr float dominant = 0.95f;
   // Rough lobes narrower than this (alpha) show images.
   static constexpr float nearlySmooth = 0.05f;
 
