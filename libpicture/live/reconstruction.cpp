@@ -109,9 +109,10 @@ struct Reconstruction::Impl {
 
   // Filters with neighbours farther and farther away; `result` is what the last pass wrote.
   void filter() {
+    constexpr int reach = 16; // of the last pass, in pixels
     FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
                     1};
-    for (; pass.step <= 16; pass.step *= 2) {
+    for (; pass.step <= reach / now.block; pass.step *= 2) {
       rows(now, [&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
       pass.variance = pass.toVariance;

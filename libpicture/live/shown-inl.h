@@ -75,15 +75,19 @@ inline void shownAt(const Layout& layout, const float* shown, float x, float y, 
   splineWeights(partX, alongX);
   splineWeights(partY, alongY);
   const size_t columns[4] = {column(left - 1), column(left), column(left + 1), column(left + 2)};
-  float sum[4] = {};
-  for (int r = 0; r < 4; r++) {
-    const float* line = row(top + r - 1);
-    float across[4] = {};
-    for (int c = 0; c < 4; c++)
-      for (int k = 0; k < 4; k++) across[k] += line[4 * columns[c] + size_t(k)] * alongX[c];
-    for (int k = 0; k < 4; k++) sum[k] += across[k] * alongY[r];
+  const hn::CappedTag<float, 4> tag;
+  for (size_t k = 0; k < 4; k += hn::Lanes(tag)) {
+    auto sum = hn::Zero(tag);
+    for (int r = 0; r < 4; r++) {
+      const float* line = row(top + r - 1) + k;
+      auto across = hn::Zero(tag);
+      for (int c = 0; c < 4; c++)
+        across = hn::Add(across,
+                         hn::Mul(hn::LoadU(tag, line + 4 * columns[c]), hn::Set(tag, alongX[c])));
+      sum = hn::Add(sum, hn::Mul(across, hn::Set(tag, alongY[r])));
+    }
+    hn::StoreU(sum, tag, out + k);
   }
-  std::copy_n(sum, 3, out);
   out[3] = row(top + (partY >= 0.5f))[4 * columns[partX >= 0.5f ? 2 : 1] + 3];
 }
 
@@ -118,6 +122,23 @@ inline Lanes3 shownNumbers(const Layout& layout, const std::vector<float>& shown
   Lanes3 v;
   hn::LoadInterleaved4(Tag(), numbers, v.x, v.y, v.z, last);
   return v;
+}
+
+// Returns the fourth numbers alone: those of the nearest pixels.
+inline Lanes lastNumbers(const Layout& layout, const std::vector<float>& shown,
+                         const Recalled& recalled, float unknown) {
+  float x[Layout::widest], y[Layout::widest], known[Layout::widest], numbers[Layout::widest];
+  store(recalled.past.x, x);
+  store(recalled.past.y, y);
+  store(where(recalled.known, all(1)), known);
+  for (int k = 0; k < width(); k++) {
+    numbers[k] = unknown;
+    if (!(known[k] > 0)) continue;
+    const int column = std::clamp(int(std::floor(x[k] + 0.5f)), 0, layout.width - 1),
+              line = std::clamp(int(std::floor(y[k] + 0.5f)), 0, layout.height - 1);
+    numbers[k] = shown[4 * (layout.row(line) + size_t(column)) + 3];
+  }
+  return load(numbers);
 }
 
 // Keeps for showRow what was shown.

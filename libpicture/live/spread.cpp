@@ -17,6 +17,7 @@ namespace HWY_NAMESPACE {
 
 constexpr float normalFall = 64;     // about the power of the cosine between normals
 constexpr float leastWeight = 0.01f; // a sum of weights below that shows nothing
+constexpr float noiseFall = 4; // from a quarter of noise on, a pixel's own sample does not count
 // Illumination is radiance divided by albedo. Where a surface also reflects like varnish that is no
 // illumination of another albedo, so cells of a like albedo count more, as long as there are some.
 constexpr float albedoFall = 9, mostAlbedoFall = 3, alikeAlbedo = 1;
@@ -85,8 +86,8 @@ struct Around {
 
 // The surfaces of some pixels.
 struct Surface {
-  Lanes name, nearness, albedo, x,
-      y; // albedo: its mean; x, y: the sample from the centre of the pixel's cell, in cells
+  Lanes name, nearness, albedo; // mean of the colours
+  Lanes x, y;                   // the sample from the centre of the pixel's cell, in cells
   Lanes3 normal;
 };
 
@@ -165,14 +166,89 @@ inline Lanes3 bounded(const Lanes3& v, const Lanes3& least, const Lanes3& most) 
           clamped(v.z, least.z, most.z)};
 }
 
+// Tells where the surfaces of pixels were shown. slope: change of nearness from cell to cell.
+inline Recalled recalledSurfaces(const ColourPass& pass, Lanes slope, int x, size_t i) {
+  const Expected expected = expectedAt(pass.pixels, pass.before, pass.reading,
+                                       slope * all(1 / float(pass.cells.block)), i);
+  const Lanes pastX = load(pass.reading.pastX.data() + i),
+              pastY = load(pass.reading.pastY.data() + i);
+  Taps taps = tapsAround(pass.before, expected, pastX, pastY);
+  searchAround(pass.before, expected, pastX, pastY, taps);
+  return recalledAt(pass, taps.found, x, i);
+}
+
+// Pixels of a row from x on, i being the place of the first one in planes.
+struct Pixels {
+  int x, y;
+  size_t i;
+};
+
+// Pixels that have a sample of light, and those of them that see the environment directly.
+struct Lit {
+  Mask all, environment;
+};
+
+inline Lit litPixels(const ColourPass& pass, const Pixels& at) {
+  const int w = pass.pixels.layout.width;
+  const size_t first = size_t(at.y) * size_t(w);
+  const Mask lit = loadSome(pass.frame.samples + first, at.x, w) > all(0);
+  // The environment has an albedo only in mirrors and behind glass.
+  const Lanes3 albedo = loadTriples(pass.frame.albedo + 3 * first, at.x, w);
+  const Mask untinted =
+      absolute(albedo.x) + absolute(albedo.y) + absolute(albedo.z) <= HWY_NAMESPACE::all(0);
+  const Mask far = hn::AndNot(isFinite(loadSome(pass.frame.depth + first, at.x, w)), lit);
+  return {lit, both(far, untinted)};
+}
+
+// Returns the illumination of pixels of which `around` may be noise or have no light.
+inline Lanes3 ownLight(const ColourPass& pass, const Around& around, const Recalled& recalled,
+                       Mask lit, const Pixels& at) {
+  Lanes unused;
+  const Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
+  // Where nothing has changed at rest, a surface keeps what it has shown, also what is too fine
+  // for the cells.
+  const Mask same = pass.shown.layout == pass.pixels.layout ? all(0) < all(1) : all(1) < all(0);
+  const Mask rests = both(both(recalled.known, same), both(recalled.past.x == countFrom(at.x),
+                                                           recalled.past.y == all(float(at.y))));
+  const Mask keeps = either(both(rests, around.changed <= all(0)), hn::Not(around.found()));
+  // What was shown may belong to another albedo: the sample lies anywhere in the pixel.
+  const Mask isBound = hn::Not(around.least.x > around.most.x);
+  const Lanes3 bound = select(isBound, bounded(shown, around.least, around.most), around.light);
+  const Lanes3 old = select(keeps, shown, bound);
+  return select(lit, load(pass.reading.light, at.i), select(recalled.known, old, around.light));
+}
+
+inline Lanes3 spreadLight(const ColourPass& pass, const Columns& columns, const Surface& surface,
+                          const Around& around, const Recalled& recalled, const Pixels& at,
+                          Fresh& fresh) {
+  const Lit lit = litPixels(pass, at);
+  const Lanes one = all(1);
+  const Mask some = both(surface.name >= all(0), present(at.x, pass.pixels.layout.width));
+  const Mask found = hn::AndNot(lit.environment, around.found());
+  const Lanes noise = where(hn::Not(lit.environment), select(found, around.noise, one));
+  store(noise, fresh.noise.data() + at.i);
+  const Lanes3 own = load(pass.reading.light, at.i);
+  const Lanes last = lastNumbers(pass.shown.layout, pass.shown.light, recalled, Shown::noSample);
+  store(select(lit.all, own.x, last), fresh.sample.data() + at.i);
+
+  const Lanes trust = where(found, smaller(noise * all(noiseFall), one)); // 0: free of noise
+  Lanes3 light = around.light;
+  if (!hn::AllTrue(Tag(), trust >= one)) {
+    const Lanes3 sharp = ownLight(pass, around, recalled, lit.all, at);
+    light = select(trust >= one, light, sharp + (light - sharp) * trust);
+  }
+  const Mask missing = hn::AndNot(either(found, either(lit.all, recalled.known)), some);
+  if (!hn::AllFalse(Tag(), missing))
+    light = select(missing, lightFarAround(pass, columns, surface, at.y), light);
+  return light;
+}
+
 void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
   const Layout& layout = pass.pixels.layout;
   const Guides& guides = pass.pixels.guides;
   const auto block = float(pass.cells.block);
-  const size_t row = layout.row(y), first = size_t(y) * size_t(layout.width);
+  const size_t row = layout.row(y);
   const float partY = (float(y) + 0.5f) / block - 0.5f - float(y / pass.cells.block);
-  const Lanes zero = all(0), one = all(1);
-  const bool sameSize = pass.shown.layout == layout;
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
     const Columns columns(x, pass.cells.block);
@@ -183,49 +259,10 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
                           all(partY) + load(guides.offsetY.data() + i) * all(1 / block),
                           load(guides.normal, i)};
     const Around around = cellsAround(pass, columns, surface, y);
-
-    const Expected expected =
-        expectedAt(pass.pixels, pass.before, pass.reading, around.slope * all(1 / block), i);
-    const Lanes pastX = load(pass.reading.pastX.data() + i),
-                pastY = load(pass.reading.pastY.data() + i);
-    Taps taps = tapsAround(pass.before, expected, pastX, pastY);
-    searchAround(pass.before, expected, pastX, pastY, taps);
-    const Mask seen = taps.found;
-    const Recalled recalled = recalledAt(pass, seen, x, i);
+    const Recalled recalled = recalledSurfaces(pass, around.slope, x, i);
     keepShown(pass, recalled, i, fresh);
-    Lanes sample;
-    const Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, sample);
-
-    // Where nothing has changed at rest, a surface keeps what it has shown, also what is too fine
-    // for the cells.
-    const Mask rests =
-        both(both(recalled.known, all(sameSize ? 1.0f : 0.0f) > zero),
-             both(recalled.past.x == countFrom(x), recalled.past.y == all(float(y))));
-    const Mask stays = both(rests, around.changed < all(0.5f));
-    // What was shown may belong to another albedo: the sample lies anywhere in the pixel.
-    const Mask isBound = hn::Not(around.least.x > around.most.x);
-    const Lanes3 old = select(
-        stays, shown, select(isBound, bounded(shown, around.least, around.most), around.light));
-
-    const Mask lit = loadSome(pass.frame.samples + first, x, layout.width) > zero;
-    const Mask environment =
-        hn::AndNot(isFinite(loadSome(pass.frame.depth + first, x, layout.width)), lit);
-    const Lanes trust = smaller(around.noise * all(4), one); // 0: free of noise
-    const Lanes3 own = load(pass.reading.light, i);
-    store(select(lit, own.x, select(recalled.known, sample, all(Shown::noSample))),
-          fresh.sample.data() + i);
-    store(where(hn::Not(environment), select(around.found(), around.noise, one)),
-          fresh.noise.data() + i);
-    const Lanes3 sharp = select(lit, own, select(recalled.known, old, around.light));
-    Lanes3 light = sharp + (around.light - sharp) * trust;
-    const Mask found = around.found();
-    light = select(found, light, select(lit, own, shown));
-    light = select(environment, own, light);
-    const Mask missing = hn::AndNot(either(found, either(lit, recalled.known)),
-                                    both(surface.name >= zero, present(x, layout.width)));
-    if (!hn::AllFalse(Tag(), missing))
-      light = select(missing, lightFarAround(pass, columns, surface, y), light);
-    storeColour(light, pass.reading, i, fresh);
+    storeColour(spreadLight(pass, columns, surface, around, recalled, {x, y, i}, fresh),
+                pass.reading, i, fresh);
   }
 }
 
