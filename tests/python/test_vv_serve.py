@@ -188,6 +188,21 @@ Anchor { url "other.wrl" children Transform { translation 2 0 0
     page.until_state(lambda s: s["world"] == "other.wrl")
 
 
+def test_the_viewpoint_of_the_command_line_is_of_its_world(serve, vv):
+    vv.write("other.wrl", coloured("0 0 1"))
+    page = serve(
+        HEADER + """
+Viewpoint { position 0 0 10 } Viewpoint { position 0 0 5 description "near" }
+Anchor { url "other.wrl" children Shape {
+  appearance Appearance { material Material { diffuseColor 1 0 0 } } geometry Box {} } }
+""", "--spp", 1, "--viewpoint", "near").join(*SIZE)
+    page.still()
+    assert page.camera()[0][2] == 5
+    page.click(0, 0)
+    page.still(lambda p: blue(*p.at(0, 0)))
+    page.until_state(lambda s: s["world"] == "other.wrl")
+
+
 def test_anchors_keep_to_the_rules_of_worlds(serve, vv):
     world = HEADER + """
 Viewpoint { position 0 0 5 }
@@ -369,6 +384,19 @@ def test_saved_pictures_have_the_bytes_of_vv(serve, vv, kind):
                   viewpoint, "--epoch", 0)
         assert done.returncode == 0, done.talk
         assert data == (vv.folder / f"x.{kind}").read_bytes()
+
+
+def test_a_page_saves_one_picture_at_a_time(serve):
+    server = serve(SENSORS, "--spp", 1)
+    page = server.join(1600, 1200)
+    page.still()
+    for _ in range(200):
+        page.send(type="save", format="exr")
+    page.command()  # all of them have been read
+    page.told("saved")
+    saved(server, page, "png")
+    # The file of the first takes longer to make than the others take to arrive.
+    assert len(page.of("saved")) < 20
 
 
 def test_saving_while_something_moves(serve):

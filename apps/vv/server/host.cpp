@@ -135,6 +135,9 @@ struct Host::Impl {
     case LWS_CALLBACK_RECEIVE: return receive(connection, {static_cast<char*>(in), length});
     case LWS_CALLBACK_SERVER_WRITEABLE: return sendNext(connection);
     case LWS_CALLBACK_CLOSED: leave(connection); return 0;
+    case LWS_CALLBACK_RAW_ADOPT: // CONNECT: such a connection would never be closed
+    case LWS_CALLBACK_RAW_CONNECTED:
+    case LWS_CALLBACK_RAW_RX: return -1;
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED: takeOrders(); return 0;
     default: return 0;
     }
@@ -150,7 +153,7 @@ struct Host::Impl {
 
   // Tells whether a connection may become a WebSocket: 0 yes, 1 no, -1 hang up.
   int confirm(lws* connection, const char* protocol) {
-    if (!protocol || std::strcmp(protocol, "websocket") != 0) return -1;
+    if (!protocol || ::strcasecmp(protocol, "websocket") != 0) return -1;
     const bool known = headerOf(connection, WSI_TOKEN_GET_URI) == socketPath;
     const std::string_view refusal = textOf(judgeRequest(connection));
     if (known && refusal.empty()) return 0;
