@@ -70,7 +70,10 @@ def test_options_that_do_not_fit(serve, vv):
                             (["serve", "box.wrl", "--input",
                               "x"], "--input"), (["serve", "box.wrl", "--token",
                                                   "short"], "16 to 128 characters"),
-                            (["serve", "box.wrl", "--address", "0.0.0.0"], "needs a token")):
+                            (["serve", "box.wrl", "--address", "0.0.0.0"], "needs a token"),
+                            (["serve", "box.wrl", "--address", "example.org", "--token", "new"],
+                             "an IP address"), (["serve", "box.wrl", "--token",
+                                                 "@/dev/zero"], "16 to 128")):
         done = vv(*arguments)
         assert done.returncode == 2 and text in done.talk, (arguments, done.talk)
     assert "vv serve" in vv("serve", "--help").text
@@ -81,6 +84,12 @@ def test_a_port_that_is_in_use(serve, vv):
     done = vv("serve", "box.wrl", "--port", server.port)
     assert done.returncode == 1 and str(server.port) in done.talk
     assert len(done.talk.splitlines()) == 1
+
+
+def test_an_address_of_another_machine(serve, vv):
+    for address in ("192.0.2.1", "2001:db8::1"):  # for documentation
+        done = vv("serve", "box.wrl", "--address", address, "--token", "new")
+        assert done.returncode == 1 and address in done.talk and done.text == ""
 
 
 # --- Pictures and input ---

@@ -370,7 +370,8 @@ class Server {
           if (Page* const saver = pages_.find(number)) saver->saving = Page::Saving::file;
           std::string name = fileNamePart(
               std::filesystem::path(world_.session().browser().world().path).stem().string());
-          name = fmt::format("{}-{}.{}", name.empty() ? "vv" : name, ++saved_, suffix);
+          name =
+              fmt::format("{}-{}.{}", name.empty() || name == "-" ? "vv" : name, ++saved_, suffix);
           auto wanted =
               std::make_shared<picture::Picture>(wantedPart(*picture, options_.render.channels));
           files_.post(
