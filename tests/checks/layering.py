@@ -142,7 +142,7 @@ PUBLIC = {"api-h", "shader-sdk", "script-sdk", "xvrml-h", "mapper-h"}
 FOREIGN = [
     (re.compile(r"embree\d/"), {"backend-local", "test"}, "Embree"),
     (re.compile(r"(sys/socket|netinet/|arpa/|netdb|zmq)"),
-     {"backend-cluster", "script-remote", "control", "test"}, "sockets"),
+     {"backend-cluster", "script-remote", "control", "server", "test"}, "sockets"),
     (re.compile(
         r"(png|jpeglib|turbojpeg|gif_lib|ft2build|freetype|hb|hb-ft|fontconfig/.*|GL/glu)(\.h)?$"),
      {"xvrml-geometry", "xvrml-image", "picture", "window", "test"}, "picture and font libraries"),

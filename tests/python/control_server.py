@@ -46,8 +46,9 @@ class Server:
                                         })
         self.err = []
         self.clients = []
-        threading.Thread(target=lambda: [self.err.append(x) for x in self.program.stderr],
-                         daemon=True).start()
+        self.reader = threading.Thread(
+            target=lambda: [self.err.append(x) for x in self.program.stderr], daemon=True)
+        self.reader.start()
         self.address = self.wait(self.told, "the address").split()[-1]
 
     def told(self):
@@ -58,7 +59,9 @@ class Server:
         while time.monotonic() < end:
             if found := test():
                 return found
-            assert self.program.poll() is None or test(), (what, self.err)
+            if (code := self.program.poll()) is not None:
+                self.reader.join(PATIENCE)  # its last lines
+                assert test(), (what, code, self.err)
             time.sleep(.005)
         raise AssertionError((what, self.err))
 
@@ -90,6 +93,7 @@ class Raw:
         else:
             host, _, port = address.rpartition(":")
             self.socket = socket.create_connection((host, int(port)))
+            self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.socket.settimeout(PATIENCE)
         self.file = self.socket.makefile("rb")
 

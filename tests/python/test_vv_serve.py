@@ -70,7 +70,10 @@ def test_options_that_do_not_fit(serve, vv):
                             (["serve", "box.wrl", "--input",
                               "x"], "--input"), (["serve", "box.wrl", "--token",
                                                   "short"], "16 to 128 characters"),
-                            (["serve", "box.wrl", "--address", "0.0.0.0"], "needs a token")):
+                            (["serve", "box.wrl", "--address", "0.0.0.0"], "needs a token"),
+                            (["serve", "box.wrl", "--address", "example.org", "--token", "new"],
+                             "an IP address"), (["serve", "box.wrl", "--token",
+                                                 "@/dev/zero"], "16 to 128")):
         done = vv(*arguments)
         assert done.returncode == 2 and text in done.talk, (arguments, done.talk)
     assert "vv serve" in vv("serve", "--help").text
@@ -81,6 +84,12 @@ def test_a_port_that_is_in_use(serve, vv):
     done = vv("serve", "box.wrl", "--port", server.port)
     assert done.returncode == 1 and str(server.port) in done.talk
     assert len(done.talk.splitlines()) == 1
+
+
+def test_an_address_of_another_machine(serve, vv):
+    for address in ("192.0.2.1", "2001:db8::1"):  # for documentation
+        done = vv("serve", "box.wrl", "--address", address, "--token", "new")
+        assert done.returncode == 1 and address in done.talk and done.text == ""
 
 
 # --- Pictures and input ---
@@ -184,6 +193,21 @@ Anchor { url "other.wrl" children Transform { translation 2 0 0
     page.click(-0.35, 0)
     assert page.told("open")["url"] == "https://example.org/a?b"
     page.click(0.35, 0)
+    page.still(lambda p: blue(*p.at(0, 0)))
+    page.until_state(lambda s: s["world"] == "other.wrl")
+
+
+def test_the_viewpoint_of_the_command_line_is_of_its_world(serve, vv):
+    vv.write("other.wrl", coloured("0 0 1"))
+    page = serve(
+        HEADER + """
+Viewpoint { position 0 0 10 } Viewpoint { position 0 0 5 description "near" }
+Anchor { url "other.wrl" children Shape {
+  appearance Appearance { material Material { diffuseColor 1 0 0 } } geometry Box {} } }
+""", "--spp", 1, "--viewpoint", "near").join(*SIZE)
+    page.still()
+    assert page.camera()[0][2] == 5
+    page.click(0, 0)
     page.still(lambda p: blue(*p.at(0, 0)))
     page.until_state(lambda s: s["world"] == "other.wrl")
 
@@ -369,6 +393,19 @@ def test_saved_pictures_have_the_bytes_of_vv(serve, vv, kind):
                   viewpoint, "--epoch", 0)
         assert done.returncode == 0, done.talk
         assert data == (vv.folder / f"x.{kind}").read_bytes()
+
+
+def test_a_page_saves_one_picture_at_a_time(serve):
+    server = serve(SENSORS, "--spp", 1)
+    page = server.join(1600, 1200)
+    page.still()
+    for _ in range(200):
+        page.send(type="save", format="exr")
+    page.command()  # all of them have been read
+    page.told("saved")
+    saved(server, page, "png")
+    # The file of the first takes longer to make than the others take to arrive.
+    assert len(page.of("saved")) < 20
 
 
 def test_saving_while_something_moves(serve):

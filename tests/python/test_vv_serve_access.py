@@ -1,10 +1,11 @@
 """Tests who may see and steer the world of `vv serve`, and what visitors cannot do to it: hostile
 messages, too many pages, pages of other sites, wrong tokens."""
 import re
+import socket
 
 import pytest
 
-from page_client import Refused, serve, wait_for  # noqa: F401
+from page_client import PATIENCE, Refused, serve, wait_for  # noqa: F401
 from window_driver import SENSORS
 
 SIZE = (160, 120)
@@ -12,7 +13,8 @@ SIZE = (160, 120)
 HOSTILE = [
     "{", "[]", "7", '{"type":"quit"}', '{"type":"size","width":0,"height":1}',
     '{"type":"leave","x":1}', '{"type":"leave","type":"leave"}', '{"type":"move","x":1e999,"y":0}',
-    '{"type":"size","width":{"a":1},"height":1}', b"\xff\xfe", "[" * 4000, "x" * 5000
+    '{"type":"size","width":{"a":1},"height":1}', b"\xff\xfe", '{"type":"leave"}\0{', "[" * 4000,
+    "x" * 5000
 ]
 
 
@@ -59,6 +61,22 @@ def test_the_number_of_pages_is_limited(serve):
     server.join(32, 24).still()
 
 
+def test_no_request_holds_a_connection(serve):
+    """libwebsockets would keep connections that ask with CONNECT for ever, whoever asks."""
+    server = serve("box.wrl")
+    held = []
+    for _ in range(100):
+        one = socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE)
+        one.sendall(b"CONNECT host:1 HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        held.append(one)
+    for one in held:
+        try:
+            assert one.recv(100) == b""
+        except ConnectionResetError:
+            pass
+    assert server.get("/").status == 200
+
+
 def test_foreign_pages_cannot_steer(serve):
     server = serve("box.wrl")
     for headers in ({
@@ -79,6 +97,7 @@ def test_foreign_pages_cannot_steer(serve):
         server.join(path="/other")
     assert caught.value.status == 404
     server.join(headers={"Origin": None}).still()
+    server.join(headers={"Upgrade": "WebSocket"}).still()  # letters may be large (RFC 6455)
 
 
 def test_a_token_opens_the_page_once_and_the_cookie_after_that(serve):

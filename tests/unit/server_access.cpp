@@ -61,7 +61,8 @@ TEST(ServerAccess, LoopbackHostsNameThisMachine) {
                            "[::1]", "[::1]:8097"})
     EXPECT_TRUE(isLoopbackHost(host)) << host;
   for (const char* host : {"", "example.org", "localhost.example.org", "127.0.0.1.example.org",
-                           "127.0.0", "127..0.1", "127.0.0.1.", "10.0.0.1", "[::2]", "[::1", "::1"})
+                           "127.0.0", "127..0.1", "localhost:", "localhost:a", "[::1].example.org",
+                           "[::1]:80a", "127.0.0.1.", "10.0.0.1", "[::2]", "[::1", "::1"})
     EXPECT_FALSE(isLoopbackHost(host)) << host;
 }
 

@@ -24,10 +24,11 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-// Returns the host without its port: "[::1]:80" gives "[::1]".
+// Returns the host without its port: "[::1]:80" gives "[::1]". What is no port stays.
 std::string_view withoutPort(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(0, std::min(host.find(']') + 1, host.size()));
-  return host.substr(0, host.find(':'));
+  const size_t digits = std::min(host.find_last_not_of("0123456789") + 1, host.size());
+  const bool hasPort = digits > 0 && host[digits - 1] == ':' && !host.ends_with(":");
+  return hasPort ? host.substr(0, digits - 1) : host;
 }
 
 // Returns the host with its port, which is left out where it is the scheme's own.

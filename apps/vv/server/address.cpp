@@ -3,10 +3,12 @@
 #include <cstdlib>
 #include <fstream>
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "server/access.h"
+#include "server/limits.h"
 
 namespace vv::server {
 
@@ -17,8 +19,9 @@ constexpr const char* variable = "VV_TOKEN";
 std::string readToken(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
-  if (!file || !std::getline(file, line))
-    throw Failure{exitInput, fmt::format("--token: cannot read {}", path)};
+  // A little more than the longest token, since a file like /dev/zero may have no end.
+  for (char c; line.size() < 2 * size_t(maxTokenLength) && file.get(c) && c != '\n';) line += c;
+  if (!file && line.empty()) throw Failure{exitInput, fmt::format("--token: cannot read {}", path)};
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
   return line;
 }
@@ -55,6 +58,12 @@ std::string hostName() {
 HostOptions hostOptionsOf(const ServeOptions& options) {
   HostOptions host;
   host.port = options.port;
+  const std::string& address = options.address;
+  unsigned char bytes[16];
+  if (!address.empty() && address != "localhost" &&
+      ::inet_pton(AF_INET, address.c_str(), bytes) != 1 &&
+      ::inet_pton(AF_INET6, address.c_str(), bytes) != 1)
+    throw UsageError(fmt::format("--address: an IP address was expected, not \"{}\"", address));
   host.token = tokenOf(options);
   const bool local = options.address.empty() || isLoopbackHost(inUrl(options.address));
   if (!local && host.token.empty())

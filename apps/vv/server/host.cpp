@@ -13,6 +13,9 @@
 
 #include <fmt/format.h>
 #include <libwebsockets.h>
+#include <netdb.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "options/values.h"
 #include "server/answer.h"
@@ -135,6 +138,9 @@ struct Host::Impl {
     case LWS_CALLBACK_RECEIVE: return receive(connection, {static_cast<char*>(in), length});
     case LWS_CALLBACK_SERVER_WRITEABLE: return sendNext(connection);
     case LWS_CALLBACK_CLOSED: leave(connection); return 0;
+    case LWS_CALLBACK_RAW_ADOPT: // CONNECT: such a connection would never be closed
+    case LWS_CALLBACK_RAW_CONNECTED:
+    case LWS_CALLBACK_RAW_RX: return -1;
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED: takeOrders(); return 0;
     default: return 0;
     }
@@ -150,7 +156,7 @@ struct Host::Impl {
 
   // Tells whether a connection may become a WebSocket: 0 yes, 1 no, -1 hang up.
   int confirm(lws* connection, const char* protocol) {
-    if (!protocol || std::strcmp(protocol, "websocket") != 0) return -1;
+    if (!protocol || ::strcasecmp(protocol, "websocket") != 0) return -1;
     const bool known = headerOf(connection, WSI_TOKEN_GET_URI) == socketPath;
     const std::string_view refusal = textOf(judgeRequest(connection));
     if (known && refusal.empty()) return 0;
@@ -339,6 +345,20 @@ struct Host::Impl {
 
 namespace {
 
+// The library would wait silently for an address that the machine might get later.
+bool isOfThisMachine(const std::string& address) {
+  addrinfo wanted{};
+  wanted.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (::getaddrinfo(address.c_str(), nullptr, &wanted, &found) != 0) return false;
+  const int probe = ::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool bound = probe >= 0 && ::bind(probe, found->ai_addr, found->ai_addrlen) == 0;
+  if (probe >= 0) ::close(probe);
+  ::freeaddrinfo(found);
+  return bound;
+}
+
 // The clients of a dead connection are found out by pings; a browser answers them by itself.
 constexpr lws_retry_bo_t idlePolicy = [] {
   lws_retry_bo_t policy{};
@@ -350,6 +370,7 @@ constexpr lws_retry_bo_t idlePolicy = [] {
 } // namespace
 
 bool Host::Impl::listenAt(const std::string& address) {
+  if (!isOfThisMachine(address)) return false;
   static const lws_protocols protocols[] = {
       {"vv", callback, 0, size_t(maxMessageBytes), 0, nullptr, 0},
       {nullptr, nullptr, 0, 0, 0, nullptr, 0}};

@@ -34,7 +34,8 @@ inline constexpr Limit limits[] = {
     {"maxPicturePixels", maxPicturePixels, "pixels of a picture; a larger page scales it"},
     {"minTokenLength", minTokenLength, "shortest token, in characters"},
     {"maxTokenLength", maxTokenLength, "longest token, in characters"},
-    {"maxDownloads", maxDownloads, "saved pictures that wait to be fetched; the oldest one goes"},
+    {"maxDownloads", maxDownloads,
+     "saved pictures that wait to be fetched, of which the oldest one goes; and that become files"},
     {"maxDownloadSeconds", maxDownloadSeconds, "seconds for which a saved picture can be fetched"},
     {"maxRequests", maxRequests, "HTTP connections at a time"},
 };

@@ -198,6 +198,8 @@ ReadMessage readMessage(std::string_view text) {
   try {
     if (text.size() > size_t(maxMessageBytes))
       throw Fault(fmt::format("it is longer than maxMessageBytes ({})", maxMessageBytes));
+    // The parser takes this for the end of the text.
+    if (text.find('\0') != text.npos) throw Fault("it is no JSON");
     FlatObject reader;
     if (!Json::sax_parse(text.begin(), text.end(), &reader)) throw Fault("it is no JSON");
     Members members(std::move(reader.object));

@@ -25,8 +25,10 @@ struct Page {
   PictureSize size;   // of its pictures
   bool sized = false; // the page has told its size; before, it gets no pictures
   PictureFlow flow;
-  double answered = 0;   // time of its last acknowledgement, or of the first picture
-  bool isSaving = false; // a picture for a file is being rendered
+  double answered = 0; // time of its last acknowledgement, or of the first picture
+  // What is being made of a picture that the page saves. One at a time.
+  enum class Saving : uint8_t { nothing, picture, file };
+  Saving saving = Saving::nothing;
 };
 
 class Pages {

@@ -41,7 +41,7 @@ void Reports::takeMessages(double now) {
 std::string Reports::bottomOf(const Page& page, double now) {
   Session& session = world_.session();
   if (!world_.loading().empty()) return fmt::format("loading {} ...", world_.loading());
-  if (page.isSaving)
+  if (page.saving == Page::Saving::picture)
     return fmt::format("Rendering the picture of this instant: {:.0f} samples; Escape gives up",
                        session.capturedSamples());
   const auto notice = notices_.find(page.view);

@@ -150,8 +150,9 @@ class Server {
   }
 
   void leave(uint64_t number) {
-    const Page* const page = pages_.find(number);
+    Page* const page = pages_.find(number);
     if (!page) return;
+    page->saving = Page::Saving::nothing; // nobody is to be told
     world_.session().giveUpCapture(number);
     if (page->role == Page::Role::leader)
       world_.session().handleFor(0, leaving());
@@ -213,7 +214,8 @@ class Server {
 
   void input(uint64_t number, const Page& page, const InputEvent& event) {
     const bool escapes = event.kind == InputEvent::Kind::down && event.text == "Escape";
-    if (page.isSaving && escapes) return world_.session().giveUpCapture(number);
+    if (page.saving == Page::Saving::picture && escapes)
+      return world_.session().giveUpCapture(number);
     if (page.role == Page::Role::follower) return;
     if (event.kind == InputEvent::Kind::press || event.kind == InputEvent::Kind::release)
       clicked_ = number;
@@ -282,12 +284,14 @@ class Server {
     const Page* const leader = pages_.find(pages_.leader());
     const PictureSize usual{options_.render.width, options_.render.height};
     if (!world_.take(leader && leader->sized ? leader->size : usual)) return;
+    std::vector<uint64_t> lost; // pages whose pictures have ended with the previous world
     for (auto& [number, page] : pages_.all()) {
-      page.isSaving = false;
+      if (page.saving == Page::Saving::picture) lost.push_back(number);
       if (page.role == Page::Role::own)
         world_.session().addGuest(page.view, page.size.width, page.size.height);
     }
     reports_.beginAnew();
+    for (const uint64_t number : lost) endSaving(number, ": the world has been replaced");
     isQuiet_ = false;
   }
 
@@ -349,18 +353,25 @@ class Server {
   // --- Files ---
 
   void save(uint64_t number, Message::Format format) {
+    takeMadeFiles();
     Page* const page = pages_.find(number);
-    if (!page || page->isSaving) return;
-    page->isSaving = true;
+    if (!page || page->saving != Page::Saving::nothing) return;
+    page->saving = Page::Saving::picture;
     const std::string suffix = format == Message::Format::exr ? "exr" : "png";
     world_.session().capture(
         page->view, number, [this, number, suffix](const picture::Picture* picture) {
-          if (Page* const saver = pages_.find(number)) saver->isSaving = false;
           reports_.hurry();
-          if (!picture) return notifyPage(number, "the picture is not saved", 6);
+          if (!picture) return endSaving(number);
+          // Pictures that wait here need much memory, and more than these would not be kept.
+          takeMadeFiles();
+          if (filesInMaking_ >= maxDownloads)
+            return endSaving(number, ": too many others are being saved");
+          ++filesInMaking_;
+          if (Page* const saver = pages_.find(number)) saver->saving = Page::Saving::file;
           std::string name = fileNamePart(
               std::filesystem::path(world_.session().browser().world().path).stem().string());
-          name = fmt::format("{}-{}.{}", name.empty() ? "vv" : name, ++saved_, suffix);
+          name =
+              fmt::format("{}-{}.{}", name.empty() || name == "-" ? "vv" : name, ++saved_, suffix);
           auto wanted =
               std::make_shared<picture::Picture>(wantedPart(*picture, options_.render.channels));
           files_.post(
@@ -371,11 +382,36 @@ class Server {
   // [the thread for files]
   void encodeFile(uint64_t page, const std::string& name, const picture::Picture& picture,
                   const std::string& suffix) {
+    std::string path;
     try {
-      const std::string path = host_->offerDownload(name, "image/" + suffix,
-                                                    picture::formatNamed(suffix)->encode(picture));
-      host_->sendText(page, "", savedText(path, name));
+      path = host_->offerDownload(name, "image/" + suffix,
+                                  picture::formatNamed(suffix)->encode(picture));
     } catch (const std::exception&) { host_->close(page); }
+    {
+      const std::lock_guard lock(mutex_);
+      madeFiles_.push_back(page); // before the page is told, because it may save again at once
+    }
+    if (!path.empty()) host_->sendText(page, "", savedText(path, name));
+  }
+
+  // Lets the pages whose files have been made save again.
+  void takeMadeFiles() {
+    std::vector<uint64_t> made;
+    {
+      const std::lock_guard lock(mutex_);
+      made.swap(madeFiles_);
+    }
+    filesInMaking_ -= int(made.size());
+    for (const uint64_t number : made)
+      if (Page* const page = pages_.find(number)) page->saving = Page::Saving::nothing;
+  }
+
+  // Tells a page that it gets no file.
+  void endSaving(uint64_t number, std::string_view why = "") {
+    Page* const page = pages_.find(number);
+    if (!page || page->saving == Page::Saving::nothing) return;
+    page->saving = Page::Saving::nothing;
+    notify(page->view, fmt::format("the picture is not saved{}", why), 6);
   }
 
   void sendCommand(uint64_t number, const Page& page) {
@@ -384,9 +420,6 @@ class Server {
 
   // --- Reports ---
 
-  void notifyPage(uint64_t number, const std::string& text, double seconds) {
-    if (const Page* const page = pages_.find(number)) notify(page->view, text, seconds);
-  }
   void notify(uint32_t view, const std::string& text, double seconds) {
     reports_.notify(view, text, now() + seconds);
   }
@@ -420,6 +453,7 @@ class Server {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool woken_ = false;
+  std::vector<uint64_t> madeFiles_; // the pages whose files have been made since the last save()
 
   ServedWorld world_;
   Pages pages_;
@@ -427,7 +461,8 @@ class Server {
   Reports reports_{pages_, world_};
   std::map<uint32_t, std::shared_ptr<Shot>> shots_; // by view: its newest picture
   uint32_t lastShot_ = 0;
-  int saved_ = 0;        // files that were made
+  int saved_ = 0; // files that were begun
+  int filesInMaking_ = 0;
   uint64_t clicked_ = 0; // the page whose button went down or up last
   bool watched_ = false; // somebody looks
   bool isQuiet_ = false; // nothing moves, and the pictures are finished

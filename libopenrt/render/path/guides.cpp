@@ -176,9 +176,10 @@ bool Guides::findLead(const RtsBatch& batch, const Boundaries& boundaries, uint3
     if (!heaviest[reflected] || mean(sample.weight) > mean(heaviest[reflected]->weight))
       heaviest[reflected] = &sample;
   }
-  const float images = mean(sum[0]) + mean(sum[1]);
-  if (!(images > 0 && images >= dominant * (images + others))) return false;
   lead.reflected = mean(sum[1]) > mean(sum[0]);
+  const float images = mean(sum[0]) + mean(sum[1]),
+              least = lead.reflected ? leastReflection : leastTransmission;
+  if (!(images > 0 && images >= least * (images + others))) return false;
   lead.tint = sum[lead.reflected];
   lead.direction = heaviest[lead.reflected]->direction;
   return isFinite(lead.direction) && isFinite(lead.tint);
@@ -196,7 +197,7 @@ bool Guides::takeSurface(const RtsBatch& batch, const Boundaries& boundaries, ui
 bool Guides::takeShading(const RtsBatch& batch, uint32_t i, const Vec3f& transmission) {
   constexpr Vec3f one{1, 1, 1};
   const Vec3f tint = min(max(Vec3f(), transmission), one); // NaN: opaque
-  if (!follows_ || !(mean(tint) >= dominant)) return false;
+  if (!follows_ || !(mean(tint) >= leastTransmission)) return false;
   queue(batch, i, {load(batch.points->hits.direction, i), tint},
         (*batch.states).media[batch.order[i]], Step::image);
   return true;

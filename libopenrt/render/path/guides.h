@@ -41,9 +41,9 @@ class Guides {
   void finish(PixelSamples& found);
 
   static constexpr uint32_t mostSurfaces = 8;
-  // Least share of images in what the lobes of a hit carry. With less, as where varnished wood is
-  // seen at a low angle, the grain of the surface matters more than the image in it.
-  static constexpr float dominant = 0.95f;
+  // Least share of images in what the lobes of a hit carry. Where less is reflected, as by
+  // varnished wood at a low angle, the grain of the surface matters more than the image in it.
+  static constexpr float leastTransmission = 0.7f, leastReflection = 0.95f;
   // Rough lobes narrower than this (alpha) show images.
   static constexpr float nearlySmooth = 0.05f;
 
