@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "unit/picture_live_frames.h"
+#include "unit/same_bytes.h"
 
 using namespace live_frames;
 using picture::live::Reconstruction;
@@ -238,6 +239,17 @@ TEST_P(SparseLight, TheSameBytesOnAnyNumberOfThreads) {
     EXPECT_EQ(valuesOf(one.add(frame, shot.camera, GetParam())),
               valuesOf(four.add(frame, shot.camera, GetParam())));
   }
+}
+
+TEST_P(SparseLight, TheSameBytesOnEveryInstructionSet) {
+  openrt::test::expectSameBytes([](std::vector<float>& results) {
+    Reconstruction reconstruction;
+    for (uint32_t k = 0; k < 5; k++) {
+      const Shot shot = shotAt({0.02 * k, 0, 3}, k, k % 2 == 0);
+      results = valuesOf(reconstruction.add(sparse(turningBall(k, 0.03, false), shot, GetParam()),
+                                            shot.camera, GetParam()));
+    }
+  });
 }
 
 TEST_P(SparseLight, PixelsWithoutLightAreOpaque) {
