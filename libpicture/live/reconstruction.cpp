@@ -107,12 +107,21 @@ struct Reconstruction::Impl {
     }
   }
 
-  // Filters with neighbours farther and farther away; `result` is what the last pass wrote.
+  double meanHistory() const {
+    const double cells = double(now.layout.width) * now.layout.height;
+    return std::accumulate(work.frames.begin(), work.frames.end(), 0.0) / cells;
+  }
+
+  // Filters with neighbours farther and farther away; `result` is what the last pass wrote. The
+  // last pass reaches as far in pixels whatever the size of cells, but after a jump, when there are
+  // few samples, as many cells.
   void filter() {
-    constexpr int reach = 16; // of the last pass, in pixels
+    constexpr int reach = 16;
+    constexpr double fewFrames = 4;
+    const int farthest = meanHistory() < fewFrames ? reach : reach / now.block;
     FilterPass pass{&now.accumulated.light, &work.variance, &work.filtered, &work.filteredVariance,
                     1};
-    for (; pass.step <= reach / now.block; pass.step *= 2) {
+    for (; pass.step <= farthest; pass.step *= 2) {
       rows(now, [&](int y) { filterRow(pass, y, now); });
       pass.from = pass.to;
       pass.variance = pass.toVariance;
@@ -160,7 +169,7 @@ struct Reconstruction::Impl {
     });
     const double cells = double(now.layout.width) * now.layout.height;
     facts.reprojected = std::accumulate(work.found.begin(), work.found.end(), 0.0) / cells;
-    facts.history = std::accumulate(work.frames.begin(), work.frames.end(), 0.0) / cells;
+    facts.history = meanHistory();
     return picture;
   }
 
