@@ -16,7 +16,8 @@ namespace picture::live {
 namespace HWY_NAMESPACE {
 
 constexpr float normalFall = 64;     // about the power of the cosine between normals
-constexpr float leastWeight = 0.01f; // a sum of weights below that shows nothing
+constexpr float leastWeight = 1e-3f; // a sum of weights below that shows nothing
+constexpr float almostNoNoise = 0.05f;
 constexpr float noiseFall = 4; // from a quarter of noise on, a pixel's own sample does not count
 // Illumination is radiance divided by albedo. Where a surface also reflects like varnish that is no
 // illumination of another albedo, so cells of a like albedo count more, as long as there are some.
@@ -65,13 +66,18 @@ struct Around {
   Lanes3 light{all(0), all(0), all(0)};
   Lanes3 least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f), all(-1e30f), all(-1e30f)};
   Lanes weights = all(0), noise = all(0), slope = all(0), changed = all(0);
+  // Of the cells with the pixel's name, however they lie: their largest noise; -1: there are none.
+  Lanes nameNoise = all(-1);
 
-  // alike: the cell's albedo is like the pixel's, so that its light is a bound for the pixel's.
-  void add(const Lanes3& other, Lanes weight, Mask alike, Lanes otherNoise, Lanes otherSlope) {
-    const Mask counts = both(alike, weight > all(1e-3f));
+  // same: the names are equal. alike: the cell's albedo is like the pixel's, so that its light is a
+  // bound for the pixel's.
+  void add(const Lanes3& other, Lanes weight, Mask same, Mask alike, Lanes otherNoise,
+           Lanes otherSlope) {
+    const Mask counts = both(alike, weight > all(0.1f * leastWeight));
     weights = weights + weight;
     light = light + other * weight;
     noise = noise + otherNoise * weight;
+    nameNoise = select(same, larger(nameNoise, otherNoise), nameNoise);
     slope = slope + otherSlope * weight;
     least = select(
         counts,
@@ -122,7 +128,7 @@ inline Around cellsAround(const ColourPass& pass, const Columns& columns, const 
                                    all(mostAlbedoFall));
       const Mask same = of(guides.name) == surface.name;
       const Lanes weight = where(same, fallOff(away + unlike) * across[dx + 1] * all(down[dy + 1]));
-      around.add(columns.of(pass.light, at), weight, unlike < all(alikeAlbedo),
+      around.add(columns.of(pass.light, at), weight, same, unlike < all(alikeAlbedo),
                  of(cells.accumulated.noise), slope);
       const Mask exists = of(guides.name) >= all(0);
       around.changed =
@@ -218,6 +224,17 @@ inline Lanes3 ownLight(const ColourPass& pass, const Around& around, const Recal
   return select(lit, load(pass.reading.light, at.i), select(recalled.known, old, around.light));
 }
 
+// Forgets colours that were shown while others lent their light: until the pixel's first sample of
+// its own, also where there is no noise, and once noise is found to have been none.
+inline void forgetLent(Mask unsampled, Mask lit, Mask found, Lanes noise, size_t i, Fresh& fresh) {
+  const Lanes frames = load(fresh.oldFrames.data() + i);
+  const Mask lent = both(unsampled, hn::Not(either(found, lit)));
+  const Mask quiet = either(hn::Not(found), noise < all(1 / noiseFall));
+  const Mask first = both(both(lit, unsampled), either(quiet, frames <= all(1)));
+  const Mask settles = both(noise > all(0), noise <= all(almostNoNoise));
+  store(where(hn::Not(either(lent, either(first, settles))), frames), fresh.oldFrames.data() + i);
+}
+
 inline Lanes3 spreadLight(const ColourPass& pass, const Columns& columns, const Surface& surface,
                           const Around& around, const Recalled& recalled, const Pixels& at,
                           Fresh& fresh) {
@@ -225,13 +242,17 @@ inline Lanes3 spreadLight(const ColourPass& pass, const Columns& columns, const 
   const Lanes one = all(1);
   const Mask some = both(surface.name >= all(0), present(at.x, pass.pixels.layout.width));
   const Mask found = hn::AndNot(lit.environment, around.found());
-  const Lanes noise = where(hn::Not(lit.environment), select(found, around.noise, one));
+  const Lanes last = lastNumbers(pass.shown.layout, pass.shown.light, recalled, Shown::noSample);
+  // Nobody knows about the noise of something thin that no cell shows: its samples are kept.
+  const Lanes nameNoise =
+      select(around.nameNoise >= all(0), around.nameNoise, where(last < all(0), one));
+  const Lanes noise = where(hn::Not(lit.environment), select(found, around.noise, nameNoise));
   store(noise, fresh.noise.data() + at.i);
   const Lanes3 own = load(pass.reading.light, at.i);
-  const Lanes last = lastNumbers(pass.shown.layout, pass.shown.light, recalled, Shown::noSample);
   store(select(lit.all, own.x, last), fresh.sample.data() + at.i);
 
   const Lanes trust = where(found, smaller(noise * all(noiseFall), one)); // 0: free of noise
+  forgetLent(last < all(0), lit.all, found, noise, at.i, fresh);
   Lanes3 light = around.light;
   if (!hn::AllTrue(Tag(), trust >= one)) {
     const Lanes3 sharp = ownLight(pass, around, recalled, lit.all, at);

@@ -84,8 +84,10 @@ enum {
   /* 1 (default) .. 4: light is followed in one pixel of each block of so many pixels each way. The
    * others have RT_SAMPLES 0 and no colour unless they see the environment directly, but the
    * channels of the first hit like all pixels. Consecutive seeds choose each pixel of a block in
-   * turn. For callers that rebuild pictures from few samples. Frames with error bars, a target
-   * error, a time limit or a transport of a plug-in follow light in every pixel. */
+   * turn. With RT_TRANSPORT_LIGHT, paths from lamps add their light to the others alone, so that
+   * the light of a block is that of its pixel plus the mean of the others. For callers that rebuild
+   * pictures from few samples. Frames with error bars, a target error, a time limit or a transport
+   * of a plug-in follow light in every pixel. */
   RT_LIGHT_STRIDE = 16
 };
 

@@ -45,6 +45,13 @@ float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
   return float(fresnel(std::clamp(cosine, 0.0, 1.0), eta, behind));
 }
 
+// Returns whether the hits of a class are described by lobes, as where their light is computed
+// (TileRenderer::shadeByLobes and shadeByShade).
+bool usesLobes(const RtsClass& shaderClass, RTenum transport) {
+  return shaderClass.surface &&
+         (!shaderClass.shade || traitsOf(transport).shading == Shading::byLobes);
+}
+
 } // namespace
 
 bool showsNoLight(const edit::FrameSettingsT& frame) {
@@ -103,7 +110,7 @@ void Guides::describeBucket(const StageContext& context, const Points& points, c
   RtsBatch batch = makeBatch(context, points, states);
   batch.lightSet = bucket.lightSet;
   float* albedo[3] = {};
-  if (shaderClass.surface) {
+  if (usesLobes(shaderClass, scene_.frame.transport)) {
     if (asks) {
       const RtsSurface surface = runSurfaceShader(batch, shaderClass, has(RT_ALBEDO));
       sanitizeOutput(shaderClass, batch, surface);
