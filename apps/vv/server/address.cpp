@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <fstream>
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -59,10 +58,7 @@ HostOptions hostOptionsOf(const ServeOptions& options) {
   HostOptions host;
   host.port = options.port;
   const std::string& address = options.address;
-  unsigned char bytes[16];
-  if (!address.empty() && address != "localhost" &&
-      ::inet_pton(AF_INET, address.c_str(), bytes) != 1 &&
-      ::inet_pton(AF_INET6, address.c_str(), bytes) != 1)
+  if (!address.empty() && address != "localhost" && !isIpAddress(address))
     throw UsageError(fmt::format("--address: an IP address was expected, not \"{}\"", address));
   host.token = tokenOf(options);
   const bool local = options.address.empty() || isLoopbackHost(inUrl(options.address));

@@ -13,9 +13,6 @@
 
 #include <fmt/format.h>
 #include <libwebsockets.h>
-#include <netdb.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include "options/values.h"
 #include "server/answer.h"
@@ -345,20 +342,6 @@ struct Host::Impl {
 
 namespace {
 
-// The library would wait silently for an address that the machine might get later.
-bool isOfThisMachine(const std::string& address) {
-  addrinfo wanted{};
-  wanted.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
-  wanted.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (::getaddrinfo(address.c_str(), nullptr, &wanted, &found) != 0) return false;
-  const int probe = ::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const bool bound = probe >= 0 && ::bind(probe, found->ai_addr, found->ai_addrlen) == 0;
-  if (probe >= 0) ::close(probe);
-  ::freeaddrinfo(found);
-  return bound;
-}
-
 // The clients of a dead connection are found out by pings; a browser answers them by itself.
 constexpr lws_retry_bo_t idlePolicy = [] {
   lws_retry_bo_t policy{};
@@ -370,7 +353,6 @@ constexpr lws_retry_bo_t idlePolicy = [] {
 } // namespace
 
 bool Host::Impl::listenAt(const std::string& address) {
-  if (!isOfThisMachine(address)) return false;
   static const lws_protocols protocols[] = {
       {"vv", callback, 0, size_t(maxMessageBytes), 0, nullptr, 0},
       {nullptr, nullptr, 0, 0, 0, nullptr, 0}};
@@ -383,6 +365,8 @@ bool Host::Impl::listenAt(const std::string& address) {
   info.retry_and_idle_policy = &idlePolicy;
   info.options = ip6 ? LWS_SERVER_OPTION_IPV6_V6ONLY_MODIFY | LWS_SERVER_OPTION_IPV6_V6ONLY_VALUE
                      : LWS_SERVER_OPTION_DISABLE_IPV6;
+  // Otherwise the library waits silently for an address that the machine might get later.
+  info.options |= LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND;
   lws_vhost* const host = lws_create_vhost(context, &info);
   if (!host) return false;
   if (const int used = lws_get_vhost_listen_port(host); used > 0) port = used;
@@ -409,6 +393,11 @@ void Host::Impl::listen() {
     first = false;
   }
   cookieName = fmt::format("vv-token-{}", port);
+}
+
+bool isIpAddress(const std::string& text) {
+  uint8_t bytes[16];
+  return lws_parse_numeric_address(text.c_str(), bytes, sizeof bytes) > 0;
 }
 
 Host::Host(const HostOptions& options, std::function<void()> wake)

@@ -27,6 +27,9 @@ struct HostEvent {
   Message message;
 };
 
+// Tells whether a text is an IP address in numbers. [any thread]
+bool isIpAddress(const std::string& text);
+
 class Host {
  public:
   // wake: is called on the host's thread when there are events. Throws Failure if nobody can listen
