@@ -45,17 +45,18 @@ float reflectanceOf(const RtsLobe& glossy, const RtsHits& hits, uint32_t i) {
   return float(fresnel(std::clamp(cosine, 0.0, 1.0), eta, behind));
 }
 
-// Returns whether the hits of a class are described by lobes, as where their light is computed
-// (TileRenderer::shadeByLobes and shadeByShade).
-bool usesLobes(const RtsClass& shaderClass, RTenum transport) {
-  return shaderClass.surface &&
-         (!shaderClass.shade || traitsOf(transport).shading == Shading::byLobes);
-}
-
 } // namespace
 
 bool showsNoLight(const edit::FrameSettingsT& frame) {
   return !(frame.channels & (RT_RGBA | RT_VARIANCE)) && !wantsError(frame);
+}
+
+// Returns whether the hits of a class are described by lobes: as where the light of a frame is
+// computed (TileRenderer::shadeByLobes and shadeByShade), and in frames without light wherever that
+// is possible, because `shade` would ask for light.
+static bool usesLobes(const RtsClass& shaderClass, const edit::FrameSettingsT& frame) {
+  const bool byLobes = traitsOf(frame.transport).shading == Shading::byLobes;
+  return shaderClass.surface && (!shaderClass.shade || byLobes || showsNoLight(frame));
 }
 
 Guides::Guides(const RenderScene& scene, Arena& arena, RayCounters& counters)
@@ -110,7 +111,7 @@ void Guides::describeBucket(const StageContext& context, const Points& points, c
   RtsBatch batch = makeBatch(context, points, states);
   batch.lightSet = bucket.lightSet;
   float* albedo[3] = {};
-  if (usesLobes(shaderClass, scene_.frame.transport)) {
+  if (usesLobes(shaderClass, scene_.frame)) {
     if (asks) {
       const RtsSurface surface = runSurfaceShader(batch, shaderClass, has(RT_ALBEDO));
       sanitizeOutput(shaderClass, batch, surface);
