@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "libpicture/live/display.h"
+#include "libpicture/live/preview_settings.h"
 #include "libpicture/live/previews.h"
 #include "libpicture/stage.h"
 
@@ -89,18 +90,14 @@ RenderSettings settingsOf(const RenderSettings& given, const LiveFrame& frame) {
   return settings;
 }
 
-// Changes the settings of a frame to those of a preview. number: that of the frame. Each preview
-// has a seed of its own: from the same samples again and again nothing could be accumulated.
+// Changes the settings of a frame to those of a preview. number: that of the frame.
 void makePreview(RenderSettings& settings, Purpose purpose, int lightStride, uint64_t number) {
-  const bool rebuilt = purpose == Purpose::preview;
-  settings.channels = rebuilt ? shownChannels | live::previewChannels : shownChannels;
+  settings.channels = shownChannels;
   settings.progressive = false;
   settings.error = settings.timeLimit = 0;
-  const auto seed = uint32_t(settings.quality.whole(RT_SEED)) + uint32_t(number);
-  settings.quality.set(RT_SEED, int32_t(seed & 0x7fffffff));
-  settings.quality.set(RT_JITTER, 1);
-  if (!rebuilt) return;
-  settings.quality.set(RT_FOLLOW_IMAGES, 1);
+  live::drawFreshSamples(settings, number);
+  if (purpose != Purpose::preview) return;
+  live::askForGuides(settings);
   settings.quality.set(RT_LIGHT_STRIDE, lightStride);
 }
 

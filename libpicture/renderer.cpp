@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "libpicture/cluster.h"
+#include "libpicture/live/preview_settings.h"
 #include "libpicture/live/reconstruction.h"
 #include "libpicture/stage.h"
 
@@ -39,17 +40,6 @@ struct FrameInFlight {
   xvrml::CameraSettings camera{}; // its shader is compared with null and not used
   bool otherWorld = false;        // the first frame of another world
 };
-
-// Changes the settings of a frame to those of a preview, which is rebuilt from more channels than
-// it shows. number: counts the previews. Each has a seed of its own: from the same samples again
-// and again nothing could be accumulated.
-void makePreview(RenderSettings& frame, uint32_t number) {
-  frame.channels |= RT_RGBA | RT_SAMPLES | live::previewChannels;
-  frame.quality.set(RT_FOLLOW_IMAGES, 1);
-  frame.quality.set(RT_JITTER, 1);
-  const uint32_t seed = uint32_t(frame.quality.whole(RT_SEED)) + number;
-  frame.quality.set(RT_SEED, seed & 0x7fffffff);
-}
 
 std::string previewNote(int samples) {
   return fmt::format("preview: rebuilt from {} sample{} per pixel, biased", samples,
@@ -149,7 +139,10 @@ struct Renderer::Impl {
   // Returns the settings of the next frame.
   RenderSettings nextFrame() {
     RenderSettings frame = stage.settings;
-    if (frame.preview) makePreview(frame, previews++);
+    if (frame.preview) {
+      live::drawFreshSamples(frame, previews++);
+      live::askForGuides(frame);
+    }
     return frame;
   }
 

@@ -110,7 +110,8 @@ bool isSmooth(const Samples& samples, float luma) {
   // The plane of least squares: its gradient and its value in the middle.
   const auto n = float(samples.count);
   const float a = xx - x * x / n, b = yy - y * y / n, c = xy - x * y / n, p = xv - x * sum / n,
-              q = yv - y * sum / n, determinant = a * b - c * c;
+              q = yv - y * sum / n;
+  const float determinant = a * b - c * c;
   if (determinant < 0.1f) return false;
   const float across = (p * b - q * c) / determinant, down = (q * a - p * c) / determinant;
   const float middle = (sum - across * x - down * y) / n;

@@ -87,16 +87,6 @@ std::vector<uint8_t> scaled(const std::vector<uint8_t>& rgb, int width, int heig
   return out;
 }
 
-Display::Viewer& Display::viewerOf(uint32_t viewer) {
-  if (!viewers_.contains(viewer) && viewers_.size() >= mostViewers) {
-    const auto older = [](const auto& a, const auto& b) { return a.second.used < b.second.used; };
-    viewers_.erase(std::min_element(viewers_.begin(), viewers_.end(), older));
-  }
-  Viewer& found = viewers_[viewer];
-  found.used = ++uses_;
-  return found;
-}
-
 void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
                    LivePicture& out) {
   const std::vector<float>& samples = picture.planes.at(RT_SAMPLES);
@@ -106,7 +96,7 @@ void Display::show(const Picture& picture, const ShownFrame& frame, bool whole, 
   count(samples, out);
   out.preview = frame.purpose == LiveFrame::Purpose::preview;
 
-  Viewer& viewer = viewerOf(frame.viewer);
+  Viewer& viewer = viewers_.of(frame.viewer);
   if (frame.number != viewer.belowFrame) {
     viewer.belowFrame = frame.number;
     viewer.below = {};

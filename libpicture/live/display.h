@@ -4,10 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <vector>
 
 #include "libpicture/live.h"
+#include "libpicture/live/recent_viewers.h"
 
 namespace picture::live {
 
@@ -36,9 +36,6 @@ class Display {
   void show(const Picture& picture, const ShownFrame& frame, bool whole, double seconds,
             LivePicture& out);
 
-  static constexpr size_t mostViewers =
-      8; // more than that: the one unused for longest is forgotten
-
  private:
   // A picture, and whether any of it is a preview.
   struct Bytes {
@@ -50,12 +47,9 @@ class Display {
     Bytes last;              // the picture that was shown last
     Bytes below;             // the picture that a still frame fades over, in that frame's size
     uint64_t belowFrame = 0; // number of that frame
-    uint64_t used = 0;
   };
-  Viewer& viewerOf(uint32_t viewer);
 
-  std::map<uint32_t, Viewer> viewers_;
-  uint64_t uses_ = 0;
+  RecentViewers<Viewer> viewers_;
 };
 
 } // namespace picture::live

@@ -6,8 +6,9 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <memory>
 
+#include "libpicture/live/recent_viewers.h"
 #include "libpicture/live/reconstruction.h"
 
 namespace picture::live {
@@ -51,23 +52,18 @@ class Previews {
   Picture rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera, int lightStride,
                   const WorldStep& step);
   // Frees what a viewer has accumulated.
-  void forget(uint32_t viewer) { viewers_.erase(viewer); }
+  void forget(uint32_t viewer) { viewers_.forget(viewer); }
 
-  static constexpr size_t mostViewers =
-      8; // more than that: the one unused for longest is forgotten
   size_t viewers() const { return viewers_.size(); }
 
  private:
   struct Viewer {
     std::unique_ptr<Reconstruction> reconstruction;
     uint64_t world = 0; // the world of its last preview
-    uint64_t used = 0;
   };
-  Viewer& viewerOf(uint32_t viewer);
 
   int threads_;
-  std::map<uint32_t, Viewer> viewers_;
-  uint64_t uses_ = 0;
+  RecentViewers<Viewer> viewers_;
 };
 
 } // namespace picture::live

@@ -168,7 +168,7 @@ TEST(LiveDisplay, viewersSeeTheirOwnPictures) {
   EXPECT_GT(show(display, uniform(100, 1), stillFrame(3, 256, 7), false).rgb[0], 190);
   EXPECT_LT(show(display, uniform(100, 1), stillFrame(4, 256, 8), false).rgb[0], 30);
   // The viewer that was away for longest is forgotten.
-  for (uint32_t viewer = 10; viewer < 10 + Display::mostViewers - 1; ++viewer)
+  for (uint32_t viewer = 10; viewer < 10 + live::mostRecentViewers - 1; ++viewer)
     show(display, uniform(200), preview(5 + viewer, viewer), true);
   EXPECT_EQ(show(display, uniform(100, 1), stillFrame(100, 256, 7), false).rgb[0], 100);
 }

@@ -394,16 +394,16 @@ TEST(LivePreview, fewViewersAreRemembered) {
       frame.planes[channel.bit].assign(size_t(64 * channel.components), 1);
   live::FrameCamera camera;
   for (int k = 0; k < 16; ++k) camera.settings.matrix[k] = k % 5 == 0;
-  for (uint32_t viewer = 0; viewer < 2 * live::Previews::mostViewers; ++viewer) {
+  for (uint32_t viewer = 0; viewer < 2 * live::mostRecentViewers; ++viewer) {
     previews.rebuild(viewer, frame, camera, 1, {});
-    EXPECT_LE(previews.viewers(), live::Previews::mostViewers);
+    EXPECT_LE(previews.viewers(), live::mostRecentViewers);
   }
   const size_t before = previews.viewers();
-  previews.forget(2 * live::Previews::mostViewers - 1);
+  previews.forget(2 * live::mostRecentViewers - 1);
   EXPECT_EQ(previews.viewers(), before - 1);
   // What cannot be rebuilt is forgotten, too.
   frame.planes.erase(RT_MOTION);
-  EXPECT_THROW(previews.rebuild(2 * live::Previews::mostViewers - 2, frame, camera, 1, {}),
+  EXPECT_THROW(previews.rebuild(2 * live::mostRecentViewers - 2, frame, camera, 1, {}),
                std::invalid_argument);
   EXPECT_EQ(previews.viewers(), before - 2);
 }

@@ -90,7 +90,7 @@ struct Command {
   Action action;
 };
 
-// What the reader found: a command, or an error that is the answer.
+// Holds what the reader found: a command, or an error that is the answer.
 struct Line {
   std::string id;
   std::optional<Command> command;

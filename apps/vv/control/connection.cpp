@@ -13,7 +13,8 @@ namespace vv::control {
 namespace {
 
 constexpr size_t readBytes = 65'536;
-// What a client that was cut off may take to read why: seconds, and bytes that it still sends.
+// These limits hold for a client that was cut off and reads why: seconds, and bytes that it still
+// sends.
 constexpr double lingering = 10;
 constexpr size_t lingeringBytes = size_t(64) << 20;
 

@@ -13,7 +13,7 @@
 
 namespace vv::control {
 
-// What a client may ask of the program.
+// Lists what a client may ask of the program.
 struct Host {
   std::function<void(const std::vector<std::string>& urls)> open; // loads another world
   std::function<void()> quit;

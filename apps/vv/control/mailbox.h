@@ -20,7 +20,7 @@ namespace vv::control {
 
 using ClientId = uint64_t;
 
-// What the browser's thread finds in the mailbox.
+// Lists what the browser's thread finds in the mailbox.
 struct Letter {
   enum class Kind : uint8_t { command, left } kind = Kind::command;
   ClientId client = 0;

@@ -17,7 +17,7 @@ const picture::Format& formatOf(const Render& render);
 // Returns the bits of the channels that it names; `usual` if it names none. Throws CommandError.
 uint32_t channelsOf(const Render& render, uint32_t usual);
 
-// What an encoded picture becomes: the result as JSON, or an error.
+// Makes the answer of an encoded picture: the result as JSON, or an error.
 struct Encoded {
   std::string result;
   std::string failure;

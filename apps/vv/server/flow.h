@@ -9,8 +9,8 @@
 
 namespace vv::server {
 
-// Which picture a page gets next. Pictures are numbered; a newer one has a higher number. A page
-// that is slow or silent misses pictures, and its next one is the newest.
+// Decides which picture a page gets next. Pictures are numbered; a newer one has a higher number. A
+// page that is slow or silent misses pictures, and its next one is the newest.
 class PictureFlow {
  public:
   // A newer picture exists.

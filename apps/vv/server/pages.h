@@ -26,7 +26,7 @@ struct Page {
   bool sized = false; // the page has told its size; before, it gets no pictures
   PictureFlow flow;
   double answered = 0; // time of its last acknowledgement, or of the first picture
-  // What is being made of a picture that the page saves. One at a time.
+  // The file that is being made of a picture for this page. There is one at a time.
   enum class Saving : uint8_t { nothing, picture, file };
   Saving saving = Saving::nothing;
 };

@@ -14,7 +14,7 @@
 
 namespace vv::server {
 
-// What a page is told about the world and its own place in it.
+// Says what a page is told about the world and its own place in it.
 struct PageState {
   std::string world; // name of the file
   Page::Role role = Page::Role::follower;
