@@ -22,7 +22,7 @@ Current current;
 // accuracy.md; V stands for the lighting of VRML97.
 const std::map<std::string, const char*> ids = {
     {"Watertight.NoRandomRayLeavesAClosedBall", "N3"},
-    {"Watertight.FewRaysAimedAtVerticesLeave", "N4"},
+    {"Watertight.NoRayAimedAtVerticesLeaves", "N4"},
     {"Rays.HostileRaysHitNothingAndAreCounted", "N8"},
     {"Rays.MatricesThatAreNotFiniteAreRefused", "N8"},
     {"Rays.SingularInstancesDrawNothing", "N12"},

@@ -57,6 +57,7 @@ void LocalBackend::prepare() {
   try {
     updateAccel(*next);
   } catch (...) { // incomplete: the next call rebuilds it
+    exact_ = nullptr;
     accel_ = nullptr;
     throw;
   }
@@ -126,6 +127,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
                          pixel};
+  exact_ = nullptr;
   const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
   recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)

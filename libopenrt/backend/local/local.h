@@ -8,6 +8,7 @@
 
 #include "backend/backend.h"
 #include "backend/local/accel/accel_build.h"
+#include "backend/local/accel/exact_scene.h"
 #include "backend/surface_queries.h"
 #include "render/frame/renderer.h"
 #include "scene/history.h"
@@ -54,9 +55,16 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   // Calls `use` for blocks of rays, converted to render space, on all threads.
   void forBatches(std::span<const RTray> rays,
                   const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
-  // Calls `take` for each ray with all its hits, in order of distance.
-  void forMultiHits(std::span<const RTray> rays,
-                    const std::function<void(size_t ray, std::span<const Accel::MultiHit>)>& take);
+  // Makes the scene for exact queries of what is committed, if it does not exist yet.
+  const ExactScene& exact();
+  // Calls `use` for every ray of which `some` is not 0 (null: all), on all threads. Rays that
+  // cannot be traced are counted and left out; `refuse` is called for them.
+  void forEachExact(std::span<const RTray> rays, const uint8_t* some,
+                    const std::function<void(size_t ray, const ExactRay& exact)>& use,
+                    const std::function<void(size_t ray)>& refuse = {});
+  // Makes the exact ray of a query; returns false if it cannot be traced.
+  bool loadExact(const RTray& ray, ExactRay& to) const;
+  RThit hitOf(const ExactScene::Hit& found, const ExactRay& ray, const RTray& asked) const;
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 
   BackendOptions options_;
@@ -69,6 +77,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   SceneChanges changes_;       // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;
   std::shared_ptr<Accel> accel_;
+  std::unique_ptr<const ExactScene> exact_; // of accel_; null until a query needs it
   Flattened flat_;
   PixelFootprint footprint_;
   // scopedLights_: some light has a scope. recordsUnmoved_: every record is in the same place as in

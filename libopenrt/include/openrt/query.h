@@ -35,15 +35,18 @@ typedef struct RThit {
  * the camera ray. Returns 1, or 0 if nothing is hit. Needs a frame buffer and a camera (else
  * RT_INVALID_OPERATION). [context-thread] */
 RT_API int rtPick(double x, double y, RThit* hit);
-/* Finds the nearest hits of count rays. A ray that is not finite hits nothing and is counted
- * (RTstats.rejectedRays). [context-thread] */
+/* Finds the nearest hits of count rays. No ray leaves a closed surface. A ray that is not finite
+ * hits nothing and is counted (RTstats.rejectedRays). [context-thread] */
 RT_API void rtCastRays(size_t count, const RTray* rays, RThit* hits);
 /* Writes occluded[i] = 1 if anything lies between tnear and tfar of ray i, else 0.
  * [context-thread] */
 RT_API void rtOccludedRays(size_t count, const RTray* rays, uint8_t* occluded);
 
-/* Counts the surfaces that each ray passes between tnear and tfar. Lines and points do not count. A
- * ray through the edge of two triangles may pass both. [context-thread] */
+/* Counts the surfaces that each ray crosses behind tnear, up to and including tfar. Lines and
+ * points do not count. Every crossing counts once: a ray exactly through an edge or a vertex
+ * crosses what it crosses with its origin moved by (e, e^2, e^3), e smaller than any number. So the
+ * number is odd exactly if the ray's ends lie on different sides of a closed surface.
+ * [context-thread] */
 RT_API void rtCountHits(size_t count, const RTray* rays, uint32_t* counts);
 /* Lists the surfaces that the rays pass, nearest first. first holds count + 1 numbers that never
  * fall (else RT_INVALID_VALUE); hits has room for first[count] hits. The hits of ray i begin at

@@ -20,6 +20,8 @@
 
 namespace openrt {
 
+struct Doubts;
+
 class Accel final : public Intersector {
  public:
   std::vector<Record> records;
@@ -35,17 +37,12 @@ class Accel final : public Intersector {
                 uint8_t* blocked) const override;
   bool cullsBacks() const override { return culls; }
   void occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const override;
+  // Like occluded(), but hits in doubt do not count. Sets doubted[i] to 1 for rays with such hits.
+  void occludedWithoutDoubt(const Rays& rays, const Doubts& doubts, uint8_t* blocked,
+                            uint8_t* doubted) const;
   void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const override;
   void bounds(float low[3], float high[3]) const override;
 
-  // One of all the hits along a ray.
-  struct MultiHit {
-    uint32_t ray, record, primitive;
-    float t, u, v;
-    Vec3f ng;
-  };
-  // Finds all hits along the rays, sorted by ray and distance. [any thread]
-  void allHits(const Rays& rays, std::vector<MultiHit>& out) const;
   struct Nearest {
     uint32_t record = noHit, primitive = 0;
     double distance = 0;
@@ -57,6 +54,13 @@ class Accel final : public Intersector {
   bool nearest(const Vec3d& place, double distance, std::span<const uint32_t> round,
                Nearest& out) const;
   std::vector<uint32_t> spheres() const; // returns the records of all visible spheres
+  struct Surface {
+    uint32_t record;
+    Matrix4d unitSphere; // of a sphere: unit sphere's frame to render space
+  };
+  // Returns the largest coordinate of an origin of a ray, in render space.
+  double reach() const { return 1e18 / double(scale_); }
+  std::vector<Surface> surfaces() const; // returns all visible triangle meshes and spheres
   // Returns the first record of a cluster; the entries of its part follow in order.
   uint32_t firstRecord(uint32_t cluster) const { return placed_[cluster].firstRecord; }
 
@@ -83,20 +87,23 @@ class Accel final : public Intersector {
   struct FilterContext {
     const Accel* accel;
     const Level* level;
-    const uint32_t* record = nullptr;     // for each ray the record to ignore
-    std::vector<MultiHit>* all = nullptr; // receives all hits
+    const uint32_t* record = nullptr; // for each ray the record to ignore
+    const Rays* rays = nullptr;
+    const Doubts* doubts = nullptr;
+    uint8_t* doubted = nullptr;
   };
   void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
-                         const uint32_t* record, RayHits& hits,
-                         std::vector<MultiHit>* all = nullptr) const;
-  static void collectHit(const RTCFilterFunctionNArguments* a);
-  void refineMultiHit(const Rays& rays, MultiHit& p) const;
+                         const uint32_t* record, RayHits& hits) const;
   struct PointSearch;
   bool updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& best) const;
   static bool visitNear(RTCPointQueryFunctionArguments* a);
   static PrimitiveId primitiveOfHit(const RTCFilterFunctionNArguments* a, unsigned i);
+  void occludedFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
+                        uint8_t* blocked, const Doubts* doubts = nullptr,
+                        uint8_t* doubted = nullptr) const;
   static void rejectBacks(const RTCFilterFunctionNArguments* a);
   static void rejectRecord(const RTCFilterFunctionNArguments* a);
+  static void rejectDoubtful(const RTCFilterFunctionNArguments* a);
 
   struct PlacedCluster {
     uint32_t firstRecord = 0, firstSlot = 0;
