@@ -187,3 +187,19 @@ def test_parts_of_a_ray_add_up():
         parts = sum(
             int(caster.count_intersections(ray, tnear=a, tfar=b)) for a, b in zip(ends, ends[1:]))
         assert parts == caster.count_intersections(ray)
+
+
+def test_one_ray_is_enough_for_occupancy():
+    """Points in the middle of cells, above the vertices and edges of those below."""
+    cells = 6
+    vertices, triangles = check_rays.boxes(cells, duplicated=True)
+    caster = rt.Raycaster()
+    caster.add_triangles(vertices, triangles)
+    at = np.stack(np.meshgrid(*3 * [np.arange(4 * cells)], indexing="ij"), -1).reshape(-1, 3)
+    at = at[(at % 4).min(1) > 0]  # not on a face
+    inside = (at // 4).sum(1) % 2 == 0
+    points = (at / (2 * cells) - 1).astype(np.float32)
+    assert np.array_equal(caster.compute_occupancy(points) > 0, inside)
+    for axis in np.eye(3, dtype=np.float32):
+        rays = np.concatenate([points, np.broadcast_to(axis, points.shape)], 1)
+        assert np.array_equal(caster.count_intersections(rays) % 2 == 1, inside)

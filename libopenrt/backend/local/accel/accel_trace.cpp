@@ -270,7 +270,11 @@ void Accel::occludedFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (level == &topLevel_ && !(level->masks & mask)) continue;
     const FilterContext filtered{this, level, nullptr, &rays, doubts, doubted};
-    occludedPackets<Packet8>(*level, rays, mask, {false, filter, &filtered}, first, blocked);
+    const QueryOptions options{false, filter, &filtered};
+    if (doubts && device_->hasNativePackets16 && !level->instances)
+      occludedPackets<Packet16>(*level, rays, mask, options, first, blocked);
+    else
+      occludedPackets<Packet8>(*level, rays, mask, options, first, blocked);
     first = false;
   }
 }
