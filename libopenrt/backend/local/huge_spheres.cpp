@@ -56,7 +56,7 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
     const Lane lane(a->ray, a->N, i);
     if (!sphere.intersectRay(lane, t)) continue;
     for (const double at : t)
-      if (lane.reaches(at) && storeOcclusion(a, i, at, 0, 0, sphere.normalAt(lane, at))) break;
+      if (lane.reaches(at) && storeOcclusion(a, i, at, sphere.normalAt(lane, at))) break;
   }
 }
 

@@ -15,6 +15,8 @@
 
 namespace openrt {
 
+struct Doubts;
+
 class LocalBackend final : public Backend, public SurfaceQueries {
  public:
   explicit LocalBackend(const BackendOptions& options);
@@ -64,6 +66,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
                     const std::function<void(size_t ray)>& refuse = {});
   // Makes the exact ray of a query; returns false if it cannot be traced.
   bool loadExact(const RTray& ray, ExactRay& to) const;
+  bool isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i, const RayHits& found) const;
   RThit hitOf(const ExactScene::Hit& found, const ExactRay& ray, const RTray& asked) const;
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 

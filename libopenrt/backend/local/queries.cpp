@@ -120,6 +120,12 @@ void LocalBackend::forEachExact(std::span<const RTray> rays, const uint8_t* some
   });
 }
 
+bool LocalBackend::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i,
+                              const RayHits& found) const {
+  if (found.record[i] == noHit) return doubts.miss(rays, i);
+  return doubts.hit(accel_->records[found.record[i]], rays, i, found);
+}
+
 void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
   prepare();
   const Doubts doubts(*accel_);
@@ -131,9 +137,7 @@ void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) 
     accel_->intersect(batch, maskAll, Coherence::incoherent, found);
     bool some = false;
     for (uint32_t i = 0; i < batch.count; i++) {
-      const bool doubt = found.record[i] == noHit
-                             ? doubts.miss(batch, i)
-                             : doubts.hit(accel_->records[found.record[i]], batch, i, found);
+      const bool doubt = isDoubtful(doubts, batch, i, found);
       RThit& hit = hits[first + i] = hitOf(found, i);
       hit.t *= directionScale(rays[first + i]);
       again[first + i] = doubt;
@@ -264,10 +268,16 @@ void LocalBackend::occludedRays(std::span<const RTray> rays, std::span<uint8_t> 
   const Doubts doubts(*accel_);
   std::vector<uint8_t> again(rays.size());
   std::atomic<bool> any{false};
-  forBatches(rays, [&](size_t first, Arena&, Rays& batch) {
-    accel_->occludedWithoutDoubt(batch, doubts, occluded.data() + first, again.data() + first);
+  forBatches(rays, [&](size_t first, Arena& arena, Rays& batch) {
+    // An occlusion query of Embree is a third faster, but does not say where it hit.
+    RayHits found;
+    found.allocate(arena, batch.count);
+    accel_->intersect(batch, maskAll, Coherence::incoherent, found);
     bool some = false;
-    for (uint32_t i = 0; i < batch.count; i++) some |= again[first + i] = !occluded[first + i];
+    for (uint32_t i = 0; i < batch.count; i++) {
+      occluded[first + i] = found.record[i] != noHit;
+      some |= again[first + i] = isDoubtful(doubts, batch, i, found);
+    }
     if (some) any = true;
   });
   if (!any) return;

@@ -100,7 +100,7 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
   for (unsigned i = 0; i < a->N; i++) {
     TriangleHit at;
     if (a->valid[i] == -1 && intersectsLane(part, a->primID, sliver, Lane(a->ray, a->N, i), at))
-      storeOcclusion(a, i, at.t, at.u, at.v, cross(sliver.b - sliver.a, sliver.c - sliver.a));
+      storeOcclusion(a, i, at.t, cross(sliver.b - sliver.a, sliver.c - sliver.a));
   }
 }
 

@@ -76,9 +76,9 @@ RTCHit hitOf(const Arguments* a, double u, double v, const Vec3d& normal) {
 
 // Marks lane i as occluded by a hit, unless the filter of the query rejects it. Returns whether the
 // lane was marked.
-inline bool storeOcclusion(const RTCOccludedFunctionNArguments* a, unsigned i, double t, double u,
-                           double v, const Vec3d& normal) {
-  if (!passesFilter(a, a->ray, i, t, hitOf(a, u, v, normal))) return false;
+inline bool storeOcclusion(const RTCOccludedFunctionNArguments* a, unsigned i, double t,
+                           const Vec3d& normal) {
+  if (!passesFilter(a, a->ray, i, t, hitOf(a, 0, 0, normal))) return false;
   RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
   return true;
 }

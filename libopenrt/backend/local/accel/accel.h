@@ -20,8 +20,6 @@
 
 namespace openrt {
 
-struct Doubts;
-
 class Accel final : public Intersector {
  public:
   std::vector<Record> records;
@@ -37,9 +35,6 @@ class Accel final : public Intersector {
                 uint8_t* blocked) const override;
   bool cullsBacks() const override { return culls; }
   void occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const override;
-  // Like occluded(), but hits in doubt do not count. Sets doubted[i] to 1 for rays with such hits.
-  void occludedWithoutDoubt(const Rays& rays, const Doubts& doubts, uint8_t* blocked,
-                            uint8_t* doubted) const;
   void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const override;
   void bounds(float low[3], float high[3]) const override;
 
@@ -88,9 +83,6 @@ class Accel final : public Intersector {
     const Accel* accel;
     const Level* level;
     const uint32_t* record = nullptr; // for each ray the record to ignore
-    const Rays* rays = nullptr;
-    const Doubts* doubts = nullptr;
-    uint8_t* doubted = nullptr;
   };
   void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
                          const uint32_t* record, RayHits& hits) const;
@@ -98,12 +90,8 @@ class Accel final : public Intersector {
   bool updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& best) const;
   static bool visitNear(RTCPointQueryFunctionArguments* a);
   static PrimitiveId primitiveOfHit(const RTCFilterFunctionNArguments* a, unsigned i);
-  void occludedFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
-                        uint8_t* blocked, const Doubts* doubts = nullptr,
-                        uint8_t* doubted = nullptr) const;
   static void rejectBacks(const RTCFilterFunctionNArguments* a);
   static void rejectRecord(const RTCFilterFunctionNArguments* a);
-  static void rejectDoubtful(const RTCFilterFunctionNArguments* a);
 
   struct PlacedCluster {
     uint32_t firstRecord = 0, firstSlot = 0;

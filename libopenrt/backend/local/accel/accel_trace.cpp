@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "backend/local/accel/accel.h"
-#include "backend/local/accel/doubts.h"
 #include "backend/local/accel/packet_lanes.h"
 #include "backend/local/exact.h"
 
@@ -94,27 +93,6 @@ void Accel::rejectBacks(const RTCFilterFunctionNArguments* a) {
                         RTCHitN_Ng_y(a->hit, a->N, i) * RTCRayN_dir_y(a->ray, a->N, i) +
                         RTCHitN_Ng_z(a->hit, a->N, i) * RTCRayN_dir_z(a->ray, a->N, i);
     if (r.flip ? along < 0 : along > 0) a->valid[i] = 0;
-  }
-}
-
-void Accel::rejectDoubtful(const RTCFilterFunctionNArguments* a) {
-  const FilterContext& self =
-      *static_cast<const FilterContext*>(static_cast<const QueryContext*>(a->context)->user);
-  for (unsigned i = 0; i < a->N; i++) {
-    if (a->valid[i] != -1) continue;
-    const float u = RTCHitN_u(a->hit, a->N, i), v = RTCHitN_v(a->hit, a->N, i),
-                t = RTCRayN_tfar(a->ray, a->N, i) / self.accel->scale_;
-    const uint32_t ray = RTCRayN_id(a->ray, a->N, i);
-    const Vec3f normal{RTCHitN_Ng_x(a->hit, a->N, i), RTCHitN_Ng_y(a->hit, a->N, i),
-                       RTCHitN_Ng_z(a->hit, a->N, i)},
-        direction{RTCRayN_dir_x(a->ray, a->N, i), RTCRayN_dir_y(a->ray, a->N, i),
-                  RTCRayN_dir_z(a->ray, a->N, i)};
-    if (self.doubts->isNearEnd(*self.rays, ray, t) || grazes(normal, direction) ||
-        (Doubts::isNearEdge(u, v) && self.accel->records[primitiveOfHit(a, i).record].primitive ==
-                                         edit::Primitive::Triangles)) {
-      a->valid[i] = 0;
-      self.doubted[ray] = 1;
-    }
   }
 }
 
@@ -264,28 +242,14 @@ void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8
   if (top) occludedLevel(topLevel_, rays, mask, coherent, !first, blocked);
 }
 
-void Accel::occludedFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
-                             uint8_t* blocked, const Doubts* doubts, uint8_t* doubted) const {
+void Accel::occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const {
   bool first = true;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (level == &topLevel_ && !(level->masks & mask)) continue;
-    const FilterContext filtered{this, level, nullptr, &rays, doubts, doubted};
-    const QueryOptions options{false, filter, &filtered};
-    if (doubts && device_->hasNativePackets16 && !level->instances)
-      occludedPackets<Packet16>(*level, rays, mask, options, first, blocked);
-    else
-      occludedPackets<Packet8>(*level, rays, mask, options, first, blocked);
+    const FilterContext filtered{this, level};
+    occludedPackets<Packet8>(*level, rays, mask, {false, rejectBacks, &filtered}, first, blocked);
     first = false;
   }
-}
-
-void Accel::occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const {
-  occludedFiltered(rays, mask, rejectBacks, blocked);
-}
-
-void Accel::occludedWithoutDoubt(const Rays& rays, const Doubts& doubts, uint8_t* blocked,
-                                 uint8_t* doubted) const {
-  occludedFiltered(rays, maskAll, rejectDoubtful, blocked, &doubts, doubted);
 }
 
 void Accel::bounds(float low[3], float high[3]) const {
