@@ -24,6 +24,13 @@ namespace picture {
 
 class Cluster;
 
+// What smooths the light of previews (live/reconstruction.h).
+enum class Denoiser : uint8_t {
+  own,      // the filter that is always there
+  oidn,     // Open Image Denoise 2, a library that may be installed
+  automatic // LiveRenderer: that library, where it is there and fast enough; Renderer: own
+};
+
 struct RenderSettings {
   int width = 800, height = 600;
   int samples = 16;         // RT_SAMPLES_PER_PIXEL
@@ -48,6 +55,7 @@ struct RenderSettings {
   // A picture that was interrupted has its samples as they are, and no note. For pictures of one
   // sequence and one view at each moment, in the order of their time.
   bool preview = false;
+  Denoiser denoiser = Denoiser::own;
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
   bool operator==(const RenderSettings&) const = default;
@@ -67,6 +75,8 @@ struct RenderError : std::runtime_error {
 // Throws RenderError if this machine does not have the instruction set; the message says what was
 // expected. Otherwise rendering would fail later.
 void checkIsa(const std::string& isa);
+// Throws RenderError if this machine does not have what the denoiser needs.
+void checkDenoiser(Denoiser denoiser);
 
 struct RenderResult {
   Picture picture;

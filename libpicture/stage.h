@@ -41,6 +41,8 @@ class Stage {
   WorldChanges collectChanges();
   // Adds the engine's messages since the last call to the world's diagnostics.
   void reportMessages();
+  // Adds a message to them. [any thread]
+  void warn(std::string text);
 
   // --- On the context's thread ---
   //

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "libpicture/live/denoise_choice.h"
 #include "parameters.h"
 #include "quality_parameters.h"
 
@@ -47,6 +48,7 @@ Viewer::Viewer(const ViewerArguments& given) : world_(given.world) {
   request.settings.samples = usual.settings.samples;
   request.settings.channels = RT_RGBA;
   request.settings.progressive = true;
+  request.settings.denoiser = picture::Denoiser::automatic;
 
   Browser& running = world_->live();
   const auto lock = world_->lock();
@@ -161,6 +163,7 @@ bool Viewer::start(bool moving, bool raw) {
   frame.height = frame_.height;
   frame.samples = frame_.samples;
   frame.lightStride = frame_.lightStride;
+  frame.denoising = picture::live::denoisingInMotion(framesPerSecond);
   viewers_->changes += browser().hasChanges();
   frameChanges_ = viewers_->changes;
   frameCamera_ = knownCamera();

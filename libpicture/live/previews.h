@@ -7,7 +7,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
+#include "libpicture/live/oidn_lender.h"
 #include "libpicture/live/recent_viewers.h"
 #include "libpicture/live/reconstruction.h"
 
@@ -44,13 +46,20 @@ class WorldSteps {
 class Previews {
  public:
   // threads: 0: as many as the process may use.
-  explicit Previews(int threads) : threads_(threads) {}
+  explicit Previews(int threads, Denoiser denoiser = Denoiser::own,
+                    OidnLender::Find find = OidnLibrary::find)
+      : threads_(threads), oidn_(denoiser, threads, find) {}
 
   // Adds a frame to what its viewer has accumulated and returns the rebuilt picture. Begins anew if
   // the world has changed since the viewer's last preview by more than the frame's RT_MOTION says.
   // If an exception leaves it, the viewer's accumulated frames are gone.
+  // denoising: seconds that Denoiser::automatic may take.
   Picture rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera, int lightStride,
-                  const WorldStep& step);
+                  const WorldStep& step, double denoising = 0);
+  // Returns the name of the library that has filtered the last preview; "": none has.
+  const std::string& denoisedBy() const { return denoisedBy_; }
+  // Returns, once, why a denoiser that was asked for is not used.
+  std::string takeProblem() { return oidn_.takeProblem(); }
   // Frees what a viewer has accumulated.
   void forget(uint32_t viewer) { viewers_.forget(viewer); }
 
@@ -60,9 +69,12 @@ class Previews {
   struct Viewer {
     std::unique_ptr<Reconstruction> reconstruction;
     uint64_t world = 0; // the world of its last preview
+    DenoiseSwitch denoised;
   };
 
   int threads_;
+  OidnLender oidn_;
+  std::string denoisedBy_;
   RecentViewers<Viewer> viewers_;
 };
 

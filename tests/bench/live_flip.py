@@ -4,6 +4,7 @@ often they come, how late, and whether they flicker.
 
 live_flip.py --bench PROGRAM --out FOLDER [--worlds a,b,FILE.wrl] [--seconds N] [--pairs N]
              [--steps N] [--frame WxH] [--size WxH] [--compare WxH] [--threads N]
+             [--denoiser own|oidn|auto]
              [--reference-spp N] [--reference-error E] [--strip FOLDER] [--docs] [--fresh]
 
 `make bench-live` runs it. PROGRAM is bench_live, which shows each world on a slow and on a fast turn,
@@ -200,7 +201,10 @@ class World:
         folder = self.options.out / self.name / f"{turn}-{kind}"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        how = [f"--show={folder}", f"--speed={TURNS[turn]}", f"--seconds={self.options.seconds}"]
+        how = [
+            f"--show={folder}", f"--speed={TURNS[turn]}", f"--seconds={self.options.seconds}",
+            f"--denoiser={self.options.denoiser}"
+        ]
         if kind == "raw":
             how.append("--raw")
         if self.options.steps:
@@ -358,6 +362,7 @@ def read_options():
     add("--compare", type=size, default=(400, 300))
     add("--fps", type=float, default=30)
     add("--threads", type=int, default=0)
+    add("--denoiser", choices=["own", "oidn", "auto"], default="own")
     add("--reference-spp", type=int, default=128)
     add("--reference-error", type=float, default=0.03)
     add("--strip", type=pathlib.Path)

@@ -13,7 +13,8 @@
 // For live_flip.py it shows a scripted turn and keeps the pictures, and renders the true pictures
 // of some of its instants (live_show.h):
 //
-//   bench_live --show=DIR [--raw] [--speed=RADIANS] [--steps=N [--frame=WxHxS] [--still=S]] ...
+//   bench_live --show=DIR [--raw] [--denoiser=own|oidn|auto] [--speed=RADIANS]
+//   [--steps=N [--frame=WxHxS] [--still=S]] ...
 //   WORLD bench_live --converge=DIR --at=N,N,... [--speed=RADIANS] [--spp=N] [--error=E] [--seed=N]
 //   ... WORLD
 #include <algorithm>
@@ -56,6 +57,11 @@ bool readShow(const std::string& a, Options& o) {
   if (a.starts_with("--show=")) return o.show.folder = a.substr(7), true;
   if (a.starts_with("--converge=")) return o.converge.folder = a.substr(11), true;
   if (a == "--raw") return o.show.raw = true;
+  if (a == "--denoiser=own") return true;
+  if (a == "--denoiser=oidn" || a == "--denoiser=auto") {
+    o.show.denoiser = a.ends_with("oidn") ? Denoiser::oidn : Denoiser::automatic;
+    return true;
+  }
   if (a.starts_with("--at=")) {
     std::istringstream list(a.substr(5));
     for (std::string one; std::getline(list, one, ',');)

@@ -14,6 +14,7 @@
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
 #include "libpicture/live.h"
+#include "libpicture/live/denoise_choice.h"
 #include "live_turn.h"
 
 using namespace picture;
@@ -79,6 +80,7 @@ class Show {
     settings.width = options.width;
     settings.height = options.height;
     settings.threads = options.threads;
+    settings.denoiser = options.denoiser;
     return settings;
   }
 
@@ -90,6 +92,7 @@ class Show {
     frame.samples = size.samples;
     frame.lightStride = size.lightStride;
     frame.purpose = purpose;
+    frame.denoising = live::denoisingInMotion(options_.fps);
     return frame;
   }
 
@@ -190,7 +193,9 @@ class Show {
     const int instant = shown_.back().instant;
     while (secondsSince(stop) < settlingTime) {
       const FrameSize size = pacing_.settle(options_.width, options_.height, 64);
-      LivePicture next = finish(frameAt(instant, moving(), size));
+      LiveFrame frame = frameAt(instant, moving(), size);
+      frame.denoising = live::denoisingAtRest;
+      LivePicture next = finish(frame);
       if (secondsSince(stop) < stillSeconds) picture = std::move(next);
     }
   }
@@ -204,7 +209,9 @@ class Show {
                         {"width", one.picture.width},
                         {"height", one.picture.height},
                         {"samples", one.picture.samples},
-                        {"preview", one.picture.preview}});
+                        {"preview", one.picture.preview},
+                        {"rebuilding", one.picture.rebuilding},
+                        {"denoised", one.picture.denoisedBy}});
     return {{"world", options_.world}, {"window", {options_.width, options_.height}},
             {"fps", options_.fps},     {"speed", options_.speed},
             {"raw", options_.raw},     {"steps", options_.steps},

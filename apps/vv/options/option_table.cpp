@@ -61,6 +61,18 @@ void setIsa(Options& o, const std::string& value) {
   o.render.isa = value;
 }
 
+void setDenoiser(Options& o, const std::string& value) {
+  using picture::Denoiser;
+  if (value != "auto" && value != "own" && value != "oidn")
+    throw UsageError(fmt::format("auto, own or oidn was expected, not \"{}\"", value));
+  o.render.denoiser = value == "auto"  ? Denoiser::automatic
+                      : value == "own" ? Denoiser::own
+                                       : Denoiser::oidn;
+  try {
+    picture::checkDenoiser(o.render.denoiser);
+  } catch (const picture::RenderError& error) { throw UsageError(error.what()); }
+}
+
 void setBackground(Options& o, const std::string& value) {
   try {
     o.render.background = picture::readBackground(value);
@@ -226,6 +238,11 @@ const OptionInfo table[] = {
      "window does while something moves. Such pictures are biased and have no error bars, and "
      "their files say so. They depend on the frame that the sequence begins with.",
      [](Options& o, const std::string&) { o.render.preview = true; }},
+    {"--denoiser", "auto|own|oidn", "Time",
+     "What smooths the light of previews: own, the filter that vv always has; oidn, Open Image "
+     "Denoise 2, which must be installed; auto (default), in windows and on pages that library "
+     "where it is there and fast enough, in files own, so that they do not depend on it.",
+     setDenoiser},
     {"--input", "FILE", "Time",
      "Replay mouse and keyboard input from FILE, one event per line: SECONDS EVENT (move X Y, "
      "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). World time "

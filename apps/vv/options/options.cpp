@@ -285,6 +285,7 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv) {
 
 Options readCommandLine(int argc, char** argv) {
   Options options;
+  options.render.denoiser = picture::Denoiser::automatic;
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();

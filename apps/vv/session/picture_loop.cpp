@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "libpicture/live/denoise_choice.h"
+
 namespace vv {
 
 namespace {
@@ -176,6 +178,8 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   frame.height = frame_.height;
   frame.samples = frame_.samples;
   frame.lightStride = frame_.lightStride;
+  frame.denoising =
+      moving ? picture::live::denoisingInMotion(options_.fps) : picture::live::denoisingAtRest;
   frame.purpose = phase == Phase::refining     ? Purpose::still
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
@@ -243,6 +247,7 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
   facts_.samples = picture.samples;
   facts_.finished = picture.finished;
   facts_.preview = picture.preview;
+  facts_.denoisedBy = picture.denoisedBy;
   facts_.purpose = picture.purpose;
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
     still_ = picture.finished ? Progress::finished : Progress::covered;

@@ -452,6 +452,7 @@ SessionFacts Session::facts(uint32_t viewer) const {
   SessionFacts facts;
   facts.showing = picture.preview ? (still ? Showing::fading : Showing::preview)
                                   : (still ? Showing::still : Showing::samples);
+  facts.denoisedBy = picture.denoisedBy;
   facts.frameRate = pictures.frameRate();
   facts.width = picture.width;
   facts.height = picture.height;

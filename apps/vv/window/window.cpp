@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -125,6 +126,13 @@ class Window {
     if (std::exchange(first_, false) && options_.verbose)
       say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height,
                       duration(seconds() - loadStart_)));
+    if (options_.verbose && picture_.purpose == picture::LiveFrame::Purpose::preview) sayFilter();
+  }
+
+  // Says once of each filter that it has made a preview.
+  void sayFilter() {
+    const std::string filter = filterText(picture_.denoisedBy);
+    if (filtersSaid_.insert(filter).second) say("vv: previews are " + filter);
   }
 
   void advanceSession() {
@@ -397,6 +405,7 @@ class Window {
   int width_ = 0, height_ = 0;
   int failed_ = exitDone; // exit code of a world that could not be loaded
   bool ended_ = false, keepPlace_ = false, help_ = false;
+  std::set<std::string> filtersSaid_;
   bool first_ = false;  // the first picture of the world is still missing
   double advanced_ = 0; // when the session advanced last
   PictureLoop::Motion motion_ = PictureLoop::Motion::rebuilt;
