@@ -144,7 +144,8 @@ struct Reconstruction::Impl {
     return std::any_of(noise.begin(), noise.end(), [](float n) { return n > 0; });
   }
 
-  // Lets a denoiser filter the illumination, to `result`. Returns whether it has.
+  // Lets a denoiser filter the illumination, too, and mixes what it makes of it into `result`.
+  // Returns whether it has succeeded.
   bool denoise(OidnFilter& denoiser) {
     const auto begin = Clock::now();
     try {
@@ -155,7 +156,7 @@ struct Reconstruction::Impl {
       facts.problem = error.what();
       return false;
     }
-    rows(now, [&](int y) { lightRow(now, reading, images, y, work.filtered); });
+    rows(now, [&](int y) { lightRow(now, reading, images, y, *result, work.filtered); });
     result = &work.filtered;
     facts.denoising = secondsSince(begin);
     return true;
@@ -184,8 +185,8 @@ struct Reconstruction::Impl {
     findChanges();
     rows(now, [&](int y) { accumulateRow(reading, y, now, work); });
     rows(now, [&](int y) { boundRow(y, now); });
+    filter();
     facts.denoised = denoiser && isNoisy() && denoise(*denoiser);
-    if (!facts.denoised) filter();
     colour(planes);
 
     Picture picture;

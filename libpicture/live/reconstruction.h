@@ -62,8 +62,8 @@ class Reconstruction {
   // illumination from the blocks around them that show the same surface; edges and textures keep
   // the size of the pixels. Frames may differ in it.
   //
-  // denoiser: filters the illumination instead of the filter of this class, where there is noise;
-  // null: none does. The bytes then depend on its library and on this machine.
+  // denoiser: filters the illumination beside the filter of this class, where there is noise; null:
+  // none does. The bytes then depend on its library and on this machine, too.
   Picture add(const Picture& frame, const FrameCamera& camera, int lightStride = 1,
               OidnFilter* denoiser = nullptr);
 
