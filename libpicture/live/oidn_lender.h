@@ -25,7 +25,7 @@ class OidnLender {
   OidnLender(Denoiser wanted, int threads, Find find = OidnLibrary::find);
   ~OidnLender(); // waits for a trial
   OidnLender(const OidnLender&) = delete;
-  Denoiser& operator=(const OidnLender&) = delete;
+  OidnLender& operator=(const OidnLender&) = delete;
 
   // Returns the filter for a viewer's next preview; null: the preview is filtered without the
   // library. pixels: of the images; allowed: seconds that it may take, for `automatic`.
