@@ -27,8 +27,8 @@ class Cluster;
 // What smooths the light of previews (live/reconstruction.h).
 enum class Denoiser : uint8_t {
   own,      // the filter that is always there
-  oidn,     // Open Image Denoise 2, a library that may be installed
-  automatic // LiveRenderer: that library, where it is there and fast enough; Renderer: own
+  oidn,     // beside it Open Image Denoise 2, a library that may be installed
+  automatic // LiveRenderer: that library, too, where it is there and fast enough; Renderer: own
 };
 
 struct RenderSettings {

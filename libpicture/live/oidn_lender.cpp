@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 #include <utility>
 
 namespace picture {
@@ -81,11 +82,13 @@ OidnLender::Trial OidnLender::tryOut(Trial made) {
 void OidnLender::beginTrial() {
   Trial known;
   known.filter = std::move(filter_);
-  trial_ = std::async(
-      std::launch::async, [find = find_, threads = threads_, known = std::move(known)]() mutable {
-        return tryOut(known.filter ? std::move(known) : make(find, threads, inTime));
-      });
-  state_ = State::trying;
+  try {
+    trial_ = std::async(
+        std::launch::async, [find = find_, threads = threads_, known = std::move(known)]() mutable {
+          return tryOut(known.filter ? std::move(known) : make(find, threads, inTime));
+        });
+    state_ = State::trying;
+  } catch (const std::system_error& error) { failed(error.what()); } // no thread can be started
 }
 
 void OidnLender::endTrial() {

@@ -48,8 +48,16 @@ def test_it_filters_previews_and_they_say_so(rolling, fake):
     note = NOTE.format("1 sample").replace("per pixel", f"per pixel by {NAME}")
     assert note.encode() in asked
     assert bytes_of(without_note(asked)) != bytes_of(without_note(own))
-    again = frames(rolling, "oidn.ppm", "--preview", "--spp", "1", "--denoiser", "oidn",
-                   "--threads", "1", last=2)
+    again = frames(rolling,
+                   "oidn.ppm",
+                   "--preview",
+                   "--spp",
+                   "1",
+                   "--denoiser",
+                   "oidn",
+                   "--threads",
+                   "1",
+                   last=2)
     assert asked == again, "the same bytes with any number of threads, as far as the library permits"
 
 

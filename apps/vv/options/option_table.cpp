@@ -239,8 +239,9 @@ const OptionInfo table[] = {
      "their files say so. They depend on the frame that the sequence begins with.",
      [](Options& o, const std::string&) { o.render.preview = true; }},
     {"--denoiser", "auto|own|oidn", "Time",
-     "What smooths the light of previews: own, the filter that vv always has; oidn, Open Image "
-     "Denoise 2, which must be installed; auto (default), in windows and on pages that library "
+     "What smooths the light of previews: own, the filter that vv always has; oidn, beside it "
+     "Open Image Denoise 2, which must be installed; auto (default), in windows and on pages that "
+     "library "
      "where it is there and fast enough, in files own, so that they do not depend on it.",
      setDenoiser},
     {"--input", "FILE", "Time",
