@@ -21,7 +21,7 @@ struct Rule {
   // The step below which the frame rate falls before the picture shrinks.
   int kept;
 };
-constexpr Rule rules[] = {{1, 0.15, quarter}, {3, 0.15, half}, {1, 0.5, whole}, {2, 0.5, whole}};
+constexpr Rule rules[] = {{1, 0.15, quarter}, {2, 0.15, half}, {1, 0.6, whole}, {2, 0.6, whole}};
 constexpr const Rule& ruleOf(Pacing::Light light) { return rules[size_t(light)]; }
 constexpr double slower = 1.5;    // the budget of that step and of smaller ones, in budgets
 constexpr double settling = 0.09; // seconds of a frame between motion and rest

@@ -43,10 +43,9 @@ class Pacing {
   // moves. A moving frame takes at most a frame's time, as predicted from earlier frames. Where
   // that would make it smaller than a quarter of the window in each direction (Light::sparse: than
   // half of it, without sampled light: than the window), it may take half as long again before it
-  // shrinks further. With Light::sparse one pixel in 9 gets light unless there is time for more,
-  // with Light::sparseDirect one in 4. It has at least an eighth of the window in each direction
-  // and 64 pixels. A frame that does not move fills
-  // the window and gets all requested samples.
+  // shrinks further. Where pictures are rebuilt, one pixel in 4 gets light unless there is time
+  // for more. It has at least an eighth of the window in each direction and 64 pixels. A frame that
+  // does not move fills the window and gets all requested samples.
   FrameSize next(int width, int height, bool moving, int samples, Light light = Light::sampled);
 
   // Returns a frame between motion and rest: larger than the frames of the motion, because it may
