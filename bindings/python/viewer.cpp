@@ -152,12 +152,11 @@ bool Viewer::start(bool moving, bool raw) {
   if (renderer.state() != State::idle) return false;
   for (picture::LivePicture old; renderer.look(old);) {} // of a view that was closed
   using Purpose = picture::LiveFrame::Purpose;
-  using Light = picture::Pacing::Light;
   picture::LiveFrame frame;
   frame.view = view();
   frame.viewer = number_;
   frame.purpose = !moving ? Purpose::still : raw ? Purpose::rawPreview : Purpose::preview;
-  if (raw && light_ == Light::sparse) light_ = Light::sampled;
+  if (raw) light_ = picture::rawOf(light_);
   frame_ = pacing_.next(width_, height_, moving, samples_, light_);
   frame.width = frame_.width;
   frame.height = frame_.height;

@@ -3,7 +3,7 @@
 often they come, how late, and whether they flicker.
 
 live_flip.py --bench PROGRAM --out FOLDER [--worlds a,b,FILE.wrl] [--seconds N] [--pairs N]
-             [--steps N] [--frame WxH] [--size WxH] [--compare WxH] [--threads N]
+             [--steps N] [--frame WxH[xS[xK]]] [--size WxH] [--compare WxH] [--threads N]
              [--denoiser own|oidn|auto]
              [--reference-spp N] [--reference-error E] [--strip FOLDER] [--docs] [--fresh]
 
@@ -208,7 +208,7 @@ class World:
         if kind == "raw":
             how.append("--raw")
         if self.options.steps:
-            how += [f"--steps={self.options.steps}", f"--frame={self.options.frame}x1"]
+            how += [f"--steps={self.options.steps}", f"--frame={self.options.frame}"]
         self.bench(*how)
         run = Run(folder, self.options.pairs)
         run.remove_rest()

@@ -397,6 +397,24 @@ TEST_F(GuidedPictures, WithSparseLightHaveLightInTurn) {
   }
 }
 
+// Whoever shades surfaces, the light of pixels that get none costs nothing.
+TEST_F(GuidedPictures, WithSparseLightTraceFewShadowRays) {
+  for (const int transport :
+       {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
+    SCOPED_TRACE(transport);
+    Look look{.transport = transport, .samples = 1, .channels = RT_RGBA | features};
+    RTstats plain{}, dense{}, sparse{};
+    picture(look, RT_RGBA, &plain);
+    look.follow = 1;
+    picture(look, RT_RGBA, &dense);
+    look.stride = 3;
+    picture(look, RT_RGBA, &sparse);
+    EXPECT_EQ(dense.shadowRays, plain.shadowRays);
+    EXPECT_GT(sparse.shadowRays, 0u);
+    EXPECT_LT(sparse.shadowRays, dense.shadowRays / 6);
+  }
+}
+
 TEST_F(GuidedPictures, WithoutLightFollowNone) {
   for (const int follow : {0, 1})
     for (const int transport :

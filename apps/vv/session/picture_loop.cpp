@@ -39,12 +39,13 @@ bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
-// A world without sampled light needs no larger preview than one of full size.
+// A world without sampled light needs no better preview than one of full size with light
+// everywhere.
 bool PictureLoop::isSettled(double now) const {
   if (motion_ == Motion::samples) return true;
   if (phase_ == Phase::settling) return now >= settlingEnds_;
-  return picture::lightOf(facts_.stats, true) == picture::Pacing::Light::direct &&
-         frame_.width >= width_ && frame_.height >= height_;
+  return picture::lightOf(facts_.stats, false) == picture::Pacing::Light::direct &&
+         frame_.width >= width_ && frame_.height >= height_ && frame_.lightStride == 1;
 }
 
 bool PictureLoop::isInterrupted() const {
