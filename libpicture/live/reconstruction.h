@@ -31,6 +31,8 @@ constexpr uint32_t previewChannels =
 struct FrameCamera {
   xvrml::CameraSettings settings;
   double aspect = 1; // width / height of the frame
+  // What is seen where nothing is hit has its place on the screen, wherever the camera looks.
+  bool fixedBackground = false;
 };
 
 // The largest RT_LIGHT_STRIDE.

@@ -70,6 +70,60 @@ TEST(Motion, HasTheSameBytesIfFramesAreSkipped) {
   }
 }
 
+// Frames of other views, of the same instant or of others, do not change what a view sees.
+TEST(Motion, OfAViewIsThatSinceItsOwnLastFrame) {
+  const std::vector<std::vector<int>> turns = {
+      {1, 2, 1, 2, 1, 2, 1}, {1, 1, 2, 2, 1, 2, 1}, {1, 2, 3, 1, 2, 3, 1}, {2, 1, 2, 2, 2, 2, 1}};
+  for (const std::vector<int>& views : turns)
+    for (const int view : {1, 2, 3}) {
+      std::vector<int> own = views;
+      std::replace_if(
+          own.begin(), own.end(), [&](int one) { return one != view; }, notDrawn);
+      Pictures seen = picturesOf(movingCommits(true, views)), expected;
+      if (std::count(own.begin(), own.end(), view) > 0)
+        expected = picturesOf(movingCommits(true, own));
+      for (size_t i = views.size(); i-- > 0;)
+        if (views[i] != view) seen.erase(seen.begin() + std::ptrdiff_t(i));
+      ASSERT_EQ(seen.size(), expected.size());
+      for (size_t i = 0; i < seen.size(); i++)
+        EXPECT_TRUE(sameBytes(seen[i], expected[i])) << "view " << view << ", frame " << i;
+    }
+}
+
+// Returns after how many frames of view 1, in each of which something moves, view 0 begins anew.
+// channels: of the first frame of view 0.
+uint64_t framesUntilForgotten(uint32_t channels) {
+  for (uint64_t between = 1; between < 100; between++) {
+    const Commits commits = drawn([&] {
+      set({.channels = channels});
+      rtBindShader(colored("Diffuse", nullptr, {}));
+      const RTid ball = rtBeginObject(0);
+      rtSphere(.3f);
+      rtEndObject();
+      const RTid moving = rtInstantiateObject(ball);
+      lookFrom(0, 1, 6);
+      rtRender();
+      set({.channels = RT_RGBA | RT_MOTION});
+      for (uint64_t i = 0; i <= between; i++) {
+        const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, double(i), 0, 0, 1};
+        rtInstanceMatrix(moving, matrix);
+        rtQuality(RT_VIEW, i < between);
+        rtRender();
+      }
+    });
+    Scene scene;
+    SceneHistory history;
+    for (const auto& commit : commits) scene.apply(*commit, &history);
+    if (history.view().beginning()) return between;
+  }
+  return 0;
+}
+
+TEST(Motion, OfAViewThatWasNotDrawnForLongBeginsAnew) {
+  EXPECT_EQ(framesUntilForgotten(RT_RGBA | RT_MOTION), maxFramesBetween);
+  EXPECT_EQ(framesUntilForgotten(RT_RGBA), 1u) << "what moved meanwhile was not noted";
+}
+
 // Applies the commits and returns whether the history has anything after each of them.
 std::vector<bool> watched(const Commits& commits) {
   Scene scene;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <new>
 #include <thread>
+#include <utility>
 
 #include "options/values.h"
 #include "world_start.h"
@@ -11,6 +12,7 @@ namespace vv {
 
 namespace {
 
+constexpr int mostThreads = 4; // that read at a time, whether their worlds are wanted or not
 std::atomic<int> threads{0};
 
 LoadAnswer load(const LoadRequest& request) {
@@ -49,8 +51,16 @@ struct WorldLoader::Job {
 WorldLoader::~WorldLoader() = default;
 
 void WorldLoader::begin(LoadRequest request) {
+  job_ = nullptr;
+  wanted_ = std::move(request);
+  startIfPossible();
+}
+
+// Reading cannot be cancelled, and Scripts may ask for worlds again and again.
+void WorldLoader::startIfPossible() {
+  if (!wanted_ || threads >= mostThreads) return;
   job_ = std::make_shared<Job>();
-  job_->request = std::move(request);
+  job_->request = *std::exchange(wanted_, {});
   ++threads;
   std::thread([job = job_] {
     job->answer = load(job->request);
@@ -60,6 +70,7 @@ void WorldLoader::begin(LoadRequest request) {
 }
 
 bool WorldLoader::take(LoadAnswer& answer) {
+  startIfPossible();
   if (!job_ || !job_->done) return false;
   answer = std::move(job_->answer);
   job_ = nullptr;

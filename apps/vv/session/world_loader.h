@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,12 +27,15 @@ class WorldLoader {
  public:
   ~WorldLoader();
   void begin(LoadRequest request); // discards an earlier request
-  bool busy() const { return job_ != nullptr; }
+  bool busy() const { return job_ || wanted_; }
   bool take(LoadAnswer& answer); // returns true once the answer is there
   static bool working();         // true while a thread still reads, wanted or not
 
  private:
   struct Job;
+  void startIfPossible();
+
+  std::optional<LoadRequest> wanted_; // waits until fewer threads read
   std::shared_ptr<Job> job_;
 };
 
