@@ -79,19 +79,11 @@ class Unattended {
     if (session_ && !session_->resting()) return; // the old session cannot end yet
     LoadAnswer answer;
     if (!loader_.take(answer)) return;
-    std::string wrong = std::move(answer.error);
-    int code = exitInput;
-    if (answer.world) {
-      try {
-        begin(std::move(answer.world), answer.fragment);
-      } catch (const Failure& failure) {
-        wrong = failure.text;
-        code = failure.code;
-      } catch (const UsageError& error) {
-        wrong = error.what();
-        code = exitUsage;
-      } catch (const std::exception& error) { wrong = error.what(); }
-    }
+    const auto [wrong, code] =
+        useWorld(std::move(answer),
+                 [this](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+                   begin(std::move(world), fragment);
+                 });
     if (wrong.empty()) return;
     sayError(wrong);
     control_->loadFailed(wrong);

@@ -47,15 +47,11 @@ bool ServedWorld::take(PictureSize size) {
   LoadAnswer answer;
   if (!loader_.take(answer)) return false;
   loading_.clear();
-  std::string wrong = std::move(answer.error);
-  if (answer.world) {
-    try {
-      begin(std::move(answer.world), answer.fragment, size);
-      return true;
-    } catch (const Failure& failure) { wrong = failure.text; } catch (const std::exception& error) {
-      wrong = error.what();
-    }
-  }
+  const std::string wrong = useWorld(std::move(answer), [&](std::unique_ptr<xvrml::World> world,
+                                                            const std::string& fragment) {
+                              begin(std::move(world), fragment, size);
+                            }).wrong;
+  if (wrong.empty()) return true;
   sayError(wrong);
   callbacks_.onMessage(wrong);
   return false;

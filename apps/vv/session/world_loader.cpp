@@ -5,7 +5,6 @@
 #include <thread>
 #include <utility>
 
-#include "options/values.h"
 #include "world_start.h"
 
 namespace vv {
@@ -41,6 +40,20 @@ LoadAnswer load(const LoadRequest& request) {
 }
 
 } // namespace
+
+LoadOutcome useWorld(LoadAnswer answer,
+                     const std::function<void(std::unique_ptr<xvrml::World> world,
+                                              const std::string& fragment)>& begin) {
+  if (!answer.world) return {answer.error, exitInput};
+  try {
+    begin(std::move(answer.world), answer.fragment);
+    return {};
+  } catch (const Failure& failure) {
+    return {failure.text, failure.code};
+  } catch (const UsageError& error) {
+    return {error.what(), exitUsage};
+  } catch (const std::exception& error) { return {error.what(), exitInput}; }
+}
 
 struct WorldLoader::Job {
   LoadRequest request;

@@ -2,11 +2,13 @@
 // one. A read that is no longer wanted runs to its end. [one thread]
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "options/values.h"
 #include "xvrml/world.h"
 
 namespace vv {
@@ -22,6 +24,16 @@ struct LoadAnswer {
   std::string fragment;                // fragment of the URL: a viewpoint
   std::string error;                   // why there is no world
 };
+
+// What became of the world of an answer.
+struct LoadOutcome {
+  std::string wrong;   // why it is not used; empty if it is
+  int code = exitDone; // of the process that cannot go on without it
+};
+// Gives the world of an answer to `begin`, whose errors mean that it cannot be used.
+LoadOutcome useWorld(LoadAnswer answer,
+                     const std::function<void(std::unique_ptr<xvrml::World> world,
+                                              const std::string& fragment)>& begin);
 
 class WorldLoader {
  public:

@@ -157,17 +157,12 @@ class Window {
     if (session_ && !session_->resting()) return; // the old session cannot end yet
     LoadAnswer answer;
     if (!loader_.take(answer)) return;
-    const std::string name = std::exchange(loading_, "");
-    std::string wrong = std::move(answer.error);
-    int code = exitInput;
-    if (answer.world) {
-      try {
-        begin(std::move(answer.world), answer.fragment);
-      } catch (const Failure& failure) {
-        wrong = failure.text;
-        code = failure.code;
-      } catch (const std::exception& error) { wrong = error.what(); }
-    }
+    loading_.clear();
+    const auto [wrong, code] =
+        useWorld(std::move(answer),
+                 [this](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+                   begin(std::move(world), fragment);
+                 });
     if (wrong.empty()) return;
     sayError(wrong);
     message(wrong, 1e9);
