@@ -90,6 +90,7 @@ RenderSettings settingsOf(const RenderSettings& given, const LiveFrame& frame) {
   settings.samples = frame.samples;
   settings.progressive = given.progressive && frame.samples > 1;
   settings.channels |= shownChannels;
+  settings.quality.set(RT_VIEW, int32_t(frame.viewer & 0x7fffffff)); // viewers take turns
   return settings;
 }
 
@@ -214,7 +215,8 @@ struct LiveRenderer::Impl {
     try {
       map(std::move(frame));
       flight.map = stage.mapper()->stats();
-      flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height};
+      flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height,
+                       flight.settings.background.kind == Background::Kind::file};
       if (flight.facts.purpose == Purpose::still && (flight.settings.channels & RT_NAME))
         flight.names = stage.mapper()->names();
     } catch (...) { // the world is only half mapped: the next frame starts with a new context
@@ -226,7 +228,7 @@ struct LiveRenderer::Impl {
     if (cancelled) return; // cancelled before it began
     rtSwapBuffers();
     throwOnError("rendering");
-    flight.step = steps.begin();
+    flight.step = steps.begin(flight.facts.viewer);
     inFlight.push_back(std::move(flight));
     if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
   }

@@ -86,6 +86,10 @@ constexpr QualitySetting table[] = {
       "pixels each way of the blocks in which one pixel gets light"},
      get<&Frame::lightStride>,
      set<&Frame::lightStride>},
+    {{size, RT_VIEW, "view", 0, 0, double(INT32_MAX), 0, 0, nullptr,
+      "number of the sequence of frames that motion refers to"},
+     get<&Frame::view>,
+     set<&Frame::view>},
 };
 
 } // namespace

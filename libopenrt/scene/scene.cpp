@@ -56,7 +56,7 @@ std::map<ArrayId, ArrayPtr> Scene::arrays() const {
 
 SceneChanges Scene::apply(const Commit& commit, SceneHistory* history) {
   if (history) history->begin(commit);
-  history_ = history && history->watches() ? history : nullptr;
+  history_ = history && history->records() ? history : nullptr;
   // Only now and then, so that a commit costs what it changes.
   if (arrays_.size() > 2 * arraysSwept_ + 64) {
     std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });

@@ -1,13 +1,14 @@
 // previews.h: Keeps the accumulated frames of each viewer whose previews are rebuilt. A
-// Reconstruction needs to know how far things have moved since the viewer's own last frame, but
-// RT_MOTION tells it since the last frame of the context, which may have been for somebody else.
-// The numbers of a WorldStep decide whether both are the same. Owned by a LiveRenderer. [the render
-// thread]
+// Reconstruction needs to know how far things have moved since the last frame that was added to it.
+// RT_MOTION tells how far since the viewer's last frame in the context (RT_VIEW), which may have
+// been cancelled or a still one. The numbers of a WorldStep decide whether both frames show the
+// same world. Owned by a LiveRenderer. [the render thread]
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "libpicture/live/oidn_lender.h"
 #include "libpicture/live/recent_viewers.h"
@@ -15,8 +16,8 @@
 
 namespace picture::live {
 
-// Two states of the world: that of the frame before in the same context, and that of this frame.
-// Equal numbers mean that nothing has moved in between.
+// Two states of the world: that of the viewer's frame before in the same context, and that of this
+// frame. Equal numbers mean that nothing has moved in between.
 struct WorldStep {
   uint64_t before = 0; // 0: there was no frame that RT_MOTION could refer to
   uint64_t now = 0;
@@ -30,17 +31,14 @@ class WorldSteps {
   // Notes that the next frame shows another world, or the world in another context.
   void beginAnew() {
     ++now_;
-    shown_ = 0;
+    shown_ = {};
   }
-  // Notes that a frame of the world has begun.
-  WorldStep begin() {
-    const WorldStep step{shown_, now_};
-    shown_ = now_;
-    return step;
-  }
+  // Notes that a frame for a viewer has begun.
+  WorldStep begin(uint32_t viewer) { return {std::exchange(shown_.of(viewer), now_), now_}; }
 
  private:
-  uint64_t now_ = 1, shown_ = 0;
+  uint64_t now_ = 1;
+  RecentViewers<uint64_t> shown_; // the world of each viewer's last frame
 };
 
 class Previews {

@@ -113,7 +113,12 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     // The camera is known to be what was said if the sample projects into its own pixel.
     const Mask own = both(both(hit, isPlace(p, place)),
                           both(absolute(offsetX) <= one, absolute(offsetY) <= one));
-    const Place past = placeOf(q, point - motion), far = environmentAt(p, q, filmX, filmY);
+    const Place past = placeOf(q, point - motion);
+    // A picture behind the world moves with the screen, but not what mirrors and glass show.
+    Place far = environmentAt(p, q, filmX, filmY);
+    if (p.camera.fixedBackground)
+      far = {select(coloured, far.x, filmX), select(coloured, far.y, filmY),
+             select(coloured, far.depth, one)};
     const Mask moved = both(own, isPlace(q, past)),
                environment = hn::AndNot(hit, both(some, isPlace(q, far)));
     const Mask still = both(both(motion.x == zero, motion.y == zero), motion.z == zero);

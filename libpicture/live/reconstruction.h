@@ -34,6 +34,8 @@ class OidnFilter;
 struct FrameCamera {
   xvrml::CameraSettings settings;
   double aspect = 1; // width / height of the frame
+  // What is seen where nothing is hit has its place on the screen, wherever the camera looks.
+  bool fixedBackground = false;
 };
 
 // The largest RT_LIGHT_STRIDE.

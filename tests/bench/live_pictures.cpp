@@ -13,10 +13,10 @@
 // For live_flip.py it shows a scripted turn and keeps the pictures, and renders the true pictures
 // of some of its instants (live_show.h):
 //
-//   bench_live --show=DIR [--raw] [--denoiser=own|oidn|auto] [--speed=RADIANS]
-//   [--steps=N [--frame=WxH[xS[xK]]] [--still=S]] ...
-//   WORLD bench_live --converge=DIR --at=N,N,... [--speed=RADIANS] [--spp=N] [--error=E] [--seed=N]
-//   ... WORLD
+//   bench_live --show=DIR [--raw] [--denoiser=own|oidn|auto] [--speed=RADIANS] [--steps=N]
+//              [--frame=WxH[xS[xK]]] [--still=S] ... WORLD
+//   bench_live --converge=DIR --at=N,N,... [--speed=RADIANS] [--spp=N] [--error=E] [--seed=N] ...
+//              WORLD
 #include <algorithm>
 #include <chrono>
 #include <cmath>

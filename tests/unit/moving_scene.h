@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstring>
+#include <functional>
+#include <vector>
 
 #include "scene/channels.h"
 #include "unit/drawn_scene.h"
@@ -13,7 +15,7 @@ namespace openrt::test {
 inline constexpr int movingFrames = 7;
 
 // Draws the frames. In each one something else has changed since the one before.
-inline void drawMovingFrames() {
+inline void drawMovingFrames(const std::function<void()>& render = rtRender) {
   const auto net = [](RTid object, float bulge, int cells) {
     std::vector<float> points;
     std::vector<uint32_t> corners;
@@ -62,34 +64,40 @@ inline void drawMovingFrames() {
   const RTid moving = rtInstantiateObject(pair), still = rtInstantiateObject(cloth);
   move(still, 1.5, .5, 30);
   lookFrom(0, 1, 6);
-  rtRender();
+  render();
   move(moving, .2, .3, 20);
-  rtRender();
+  render();
   net(cloth, .2f, 4); // other vertices
   move(moving, .1, .3, 10);
-  rtRender();
+  render();
   group(pair, .2); // other instances of the same objects
-  rtRender();
+  render();
   const RTid fresh = rtInstantiateObject(ball);
   net(cloth, .3f, 5); // other triangles
-  rtRender();
+  render();
   rtDeleteInstance(fresh);
   rtInstanceVisible(still, 0);
   move(moving, 0, 0, 0);
-  rtRender();
-  rtRender(); // nothing has changed
+  render();
+  render(); // nothing has changed
 }
 
-// followImages: RT_FOLLOW_IMAGES.
-inline Commits movingCommits(bool followImages) {
-  Commits commits = drawn([followImages] {
+// followImages: RT_FOLLOW_IMAGES. views: RT_VIEW of each frame; those that are missing have view 0.
+inline Commits movingCommits(bool followImages, const std::vector<int>& views = {}) {
+  Commits commits = drawn([&] {
     set({.samples = 2,
          .width = 30,
          .height = 22,
          .channels =
              RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION});
     rtQuality(RT_FOLLOW_IMAGES, followImages);
-    drawMovingFrames();
+    size_t frame = 0;
+    drawMovingFrames([&] {
+      const int view = frame < views.size() ? views[frame] : 0;
+      frame++;
+      rtQuality(RT_VIEW, view);
+      rtRender();
+    });
   });
   EXPECT_EQ(commits.size(), size_t(movingFrames));
   return commits;

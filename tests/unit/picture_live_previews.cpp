@@ -276,15 +276,38 @@ TEST(LivePreview, viewersAccumulateForThemselves) {
   EXPECT_EQ(see(true), see(false));
 }
 
-// RT_MOTION says how things moved since the frame of the other viewer. The own frames are older, so
-// nothing of them may be used.
-TEST(LivePreview, aViewerBeginsAnewIfTheWorldMovedForAnother) {
+// Two viewers of a moving world take turns at different instants, or each at every instant. What
+// one sees does not depend on the other: it has what it would have accumulated alone.
+TEST(LivePreview, viewersOfAMovingWorldAccumulateForThemselves) {
+  const auto see = [](bool two, double later) {
+    const auto browser = browserOf();
+    LiveRenderer live(*browser, settingsOf());
+    std::vector<std::vector<uint8_t>> pictures;
+    for (int i = 0; i < 6; ++i) {
+      moveTo(*browser, .4 * i - 1);
+      pictures.push_back(finish(live, previewOf(1)).rgb);
+      moveTo(*browser, .4 * i - 1 + later);
+      // Frames between take a number, and with it a seed.
+      finish(live, two ? previewOf(2, 80, 60) : frameOf(Purpose::rawPreview));
+    }
+    return pictures;
+  };
+  EXPECT_EQ(see(true, .2), see(false, .2));
+  EXPECT_EQ(see(true, 0), see(false, 0));
+}
+
+// The motion of a frame is that since the viewer's still frame. Its last preview is older, so
+// nothing of it may be used.
+TEST(LivePreview, aViewerBeginsAnewIfTheWorldMovedForAStillPicture) {
   const auto see = [](uint32_t last) {
     const auto browser = browserOf();
     LiveRenderer live(*browser, settingsOf());
     for (int i = 0; i < 4; ++i) finish(live, previewOf(1));
     moveTo(*browser, 1);
-    finish(live, previewOf(2));
+    LiveFrame still = frameOf(Purpose::still);
+    still.viewer = 1;
+    finish(live, still);
+    moveTo(*browser, 2);
     return finish(live, previewOf(last)).rgb;
   };
   EXPECT_EQ(see(1), see(3));
@@ -410,16 +433,19 @@ TEST(LivePreview, fewViewersAreRemembered) {
 
 TEST(LivePreview, stepsOfTheWorldAreNumbered) {
   live::WorldSteps steps;
-  EXPECT_EQ(steps.begin().before, 0u); // there is no frame before
-  const live::WorldStep rest = steps.begin();
+  EXPECT_EQ(steps.begin(0).before, 0u); // there is no frame before
+  const live::WorldStep rest = steps.begin(0);
   EXPECT_EQ(rest.before, rest.now);
   steps.change();
   steps.change(); // a frame that was cancelled before it began
-  const live::WorldStep moved = steps.begin();
+  const live::WorldStep other = steps.begin(7);
+  EXPECT_EQ(other.before, 0u); // another viewer's frames do not count
+  const live::WorldStep moved = steps.begin(0);
   EXPECT_EQ(moved.before, rest.now);
   EXPECT_NE(moved.now, rest.now);
+  EXPECT_EQ(moved.now, other.now);
   steps.beginAnew();
-  const live::WorldStep anew = steps.begin();
+  const live::WorldStep anew = steps.begin(0);
   EXPECT_EQ(anew.before, 0u);
   EXPECT_GT(anew.now, moved.now);
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -13,20 +12,19 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "control/control.h"
-#include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
 #include "report/cluster_report.h"
 #include "report/messages.h"
 #include "report/progress.h"
+#include "session/ending.h"
 #include "session/overlay.h"
 #include "session/saving.h"
 #include "session/session.h"
 #include "session/world_loader.h"
+#include "session/world_watch.h"
 #include "signals.h"
-#include "watched.h"
 #include "window/screen.h"
 #include "window/sound/speaker.h"
 #include "world_start.h"
@@ -149,16 +147,13 @@ class Window {
     if (session_->resting()) {
       screen_.setHand(session_->pilot().overSensor());
       sound();
-      watch();
+      if (watch_.changed(seconds())) reload();
     }
   }
 
   // --- Worlds ---
   void open(LoadRequest request, bool keepPlace) {
-    request.options = options_.load;
-    const bool whole = !options_.shaders.empty() || !options_.definitions.empty() ||
-                       options_.script || record_.is_open() || options_.strict;
-    if (!whole) request.options.loadInlines = false; // Inlines are loaded after the first picture
+    request.options = loadOptionsForShowing(options_);
     keepPlace_ = keepPlace && session_;
     loading_ = request.urls.empty() ? "" : request.urls[0];
     loadStart_ = seconds();
@@ -170,17 +165,12 @@ class Window {
     if (session_ && !session_->resting()) return; // the old session cannot end yet
     LoadAnswer answer;
     if (!loader_.take(answer)) return;
-    const std::string name = std::exchange(loading_, "");
-    std::string wrong = std::move(answer.error);
-    int code = exitInput;
-    if (answer.world) {
-      try {
-        begin(std::move(answer.world), answer.fragment);
-      } catch (const Failure& failure) {
-        wrong = failure.text;
-        code = failure.code;
-      } catch (const std::exception& error) { wrong = error.what(); }
-    }
+    loading_.clear();
+    const auto [wrong, code] =
+        useWorld(std::move(answer),
+                 [this](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+                   begin(std::move(world), fragment);
+                 });
     if (wrong.empty()) return;
     sayError(wrong);
     message(wrong, 1e9);
@@ -216,8 +206,7 @@ class Window {
     message(saved, 6);
     const std::string& path = session_->browser().world().path;
     screen_.setTitle(path + " - vv");
-    if (options_.watch && path != "-")
-      watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
+    watch_.follow(session_->browser().world());
   }
 
   // Records a line of input. After a failed write nothing more is written, because a script with a
@@ -243,14 +232,6 @@ class Window {
     const std::string path = session_->browser().world().path;
     if (path == "-") return message("standard input cannot be read again", 3);
     open({{path}, "", {}}, true);
-  }
-
-  void watch() {
-    if (!watched_ || seconds() < nextLook_) return;
-    nextLook_ = seconds() + .2;
-    if (!watched_->changed()) return;
-    if (!options_.quiet) say("vv: a file has changed");
-    reload();
   }
 
   // --- Keys ---
@@ -368,8 +349,6 @@ class Window {
     if (speaker_.tried()) mixer_.set(audible);
   }
 
-  // Ends the process. Reading a world and building geometry cannot be cancelled; in those cases the
-  // process exits without cleanup.
   int end() {
     errno = 0;
     if (record_.is_open() && record_ && (record_.close(), !record_)) recordingFailed(errno);
@@ -377,14 +356,9 @@ class Window {
                      : failed_ == exitDone && !record_ ? exitRender
                                                        : failed_;
     if (session_) session_->endSaving();
-    const bool stopped = !session_ || session_->stop(.5);
-    if (stopped && !WorldLoader::working()) {
-      control_.reset();
-      return code;
-    }
-    picture::removeTemporary();
-    std::fflush(nullptr);
-    ::_exit(code);
+    stopOrExit(session_.get(), code);
+    control_.reset();
+    return code;
   }
 
   Options options_;
@@ -398,7 +372,7 @@ class Window {
   std::unique_ptr<PanelPainter> painter_;
   std::unique_ptr<Session> session_;          // null: no world has been loaded yet
   std::unique_ptr<control::Control> control_; // null: no program controls the world
-  std::unique_ptr<Watched> watched_;
+  WorldWatch watch_{options_};
   picture::LivePicture picture_;
   std::vector<InputEvent> events_, input_;
   const Clock::time_point start_ = Clock::now();
@@ -409,7 +383,7 @@ class Window {
   bool first_ = false;  // the first picture of the world is still missing
   double advanced_ = 0; // when the session advanced last
   PictureLoop::Motion motion_ = PictureLoop::Motion::rebuilt;
-  double nextLook_ = 0, loadStart_ = 0;
+  double loadStart_ = 0;
 
   OverlayLevel level_ = OverlayLevel::brief;
   std::string loading_, message_, bottom_;

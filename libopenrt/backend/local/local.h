@@ -64,7 +64,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::shared_ptr<EmbreeDevice> device_;
   AccelBuilder builder_;
   Scene scene_;
-  SceneHistory history_;       // what has changed since the frame before
+  SceneHistory history_;       // what has changed since the last frame of each view
   uint64_t snapshotFrame_ = 0; // number of the history at the last prepare()
   SceneChanges changes_;       // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;

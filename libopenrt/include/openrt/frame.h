@@ -30,11 +30,12 @@ enum {
                            nothing is known */
   RT_TRUST = 512,    /* 1: 1 if that interval can be trusted, else 0 */
   /* 3: world-space vector from where the hit point of the first sample was in the previous frame of
-   * this context to where it is now: how its instance moved, or its vertices. 0 0 0 if nothing
-   * moved or nothing is hit; not a number if the point did not exist or was invisible in the
-   * previous frame, and everywhere in the first one. The motion of the camera is not part of it.
-   * Where an object was defined again, geometries and instances of the same name (rtLoadName) are
-   * the same if there are as many as before and their indices and objects are equal. */
+   * this context (with RT_VIEW: of this view) to where it is now: how its instance moved, or its
+   * vertices. 0 0 0 if nothing moved or nothing is hit; not a number if the point did not exist or
+   * was invisible in the previous frame, and everywhere in the first one. The motion of the camera
+   * is not part of it. Where an object was defined again, geometries and instances of the same name
+   * (rtLoadName) are the same if there are as many as before and their indices and objects are
+   * equal. */
   RT_MOTION = 1024
 };
 
@@ -88,7 +89,13 @@ enum {
    * the light of a block is that of its pixel plus the mean of the others. For callers that rebuild
    * pictures from few samples. Frames with error bars, a target error, a time limit or a transport
    * of a plug-in follow light in every pixel. */
-  RT_LIGHT_STRIDE = 16
+  RT_LIGHT_STRIDE = 16,
+  /* 0 (default) .. 2147483647: the sequence of frames that a frame belongs to. RT_MOTION tells the
+   * motion since the frame before of the same sequence, so that several views of a scene can be
+   * rendered in turns. A sequence begins anew, with everything new, after 32 frames of others, and
+   * if its last frame lacked RT_MOTION and something moved for a frame of another one. It changes
+   * no other channel. */
+  RT_VIEW = 17
 };
 
 /* Light transports: how light is followed from surfaces whose shaders answer in lobes (openrts.h).
