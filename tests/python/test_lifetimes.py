@@ -346,7 +346,7 @@ def test_two_threads_may_make_the_first_arrays():
         import sys, threading
         sys.setswitchinterval(1e-6)
         import xvrml
-        WORLD = b"#VRML V2.0 utf8\\nDEF Points Coordinate { point [0 0 0, 1 0 0, 0 1 0] }"
+        WORLD = b"#VRML V2.0 utf8\\nShape { geometry PointSet { coord DEF Points Coordinate { point [0 0 0, 1 0 0, 0 1 0] } } }"
         worlds = [xvrml.load(WORLD) for _ in range(4)]
         seen = []
         start = threading.Barrier(len(worlds))
