@@ -32,10 +32,6 @@ Viewer::Viewer(const ViewerArguments& given) : world_(given.world) {
   if (py::hasattr(given.camera, "_numbers"))
     throw py::value_error("camera: a Pinhole belongs to pictures of one size; a view takes a 4x4 "
                           "matrix, (position, target) or (position, target, up)");
-  // pybind11 looks numpy up on first use, under a lock of its own that a second thread would wait
-  // for with the GIL. Pictures come while other threads work, so this is done before.
-  py::module_::import("numpy");
-  const py::array_t<uint8_t> first(0);
   RenderRequest request = requestOf(given);
   asked_ = request.view;
   samples_ = request.settings.samples;

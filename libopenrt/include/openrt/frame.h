@@ -83,12 +83,12 @@ enum {
    * by the seed, and not in the middle. For callers that combine frames of several seeds. */
   RT_JITTER = 15,
   /* 1 (default) .. 4: light is followed in one pixel of each block of so many pixels each way. The
-   * others have RT_SAMPLES 0 and no colour unless they see the environment directly, but the
-   * channels of the first hit like all pixels. Consecutive seeds choose each pixel of a block in
-   * turn. With RT_TRANSPORT_LIGHT, paths from lamps add their light to the others alone, so that
-   * the light of a block is that of its pixel plus the mean of the others. For callers that rebuild
-   * pictures from few samples. Frames with error bars, a target error, a time limit or a transport
-   * of a plug-in follow light in every pixel. */
+   * others take one sample: they have the channels of its first hit, no colour and RT_SAMPLES 0, or
+   * the environment's colour and RT_SAMPLES 1 if they see it directly. Consecutive seeds choose
+   * each pixel of a block in turn. With RT_TRANSPORT_LIGHT, paths from lamps add their light to the
+   * others alone, so that the light of a block is that of its pixel plus the mean of the others.
+   * For callers that rebuild pictures from few samples. Frames with error bars, a target error, a
+   * time limit or a transport of a plug-in follow light in every pixel. */
   RT_LIGHT_STRIDE = 16,
   /* 0 (default) .. 2147483647: the sequence of frames that a frame belongs to. RT_MOTION tells the
    * motion since the frame before of the same sequence, so that several views of a scene can be

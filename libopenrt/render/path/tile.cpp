@@ -58,8 +58,10 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
   stop_ = &stop;
   ledger_.samples += samples;
   const auto all = uint32_t(pixels_.size());
+  // A pixel without light has its first sample only, so that what it sees and the light of the
+  // environment there belong together.
   return renderPixels({0, lit_, true}, first, samples) &&
-         renderPixels({lit_, all, false}, first, samples);
+         (first > 0 || renderPixels({lit_, all, false}, 0, 1));
 }
 
 bool TileRenderer::renderPixels(const PixelRange& range, uint32_t first, uint32_t samples) {
@@ -216,9 +218,8 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
     for (uint32_t s = 0; s < samples; s++) {
       const uint32_t i = pixel * samples + s;
       const bool first = firstSample + s == 0;
-      // A pixel without light has the surface of its first sample only.
-      if (found.complete && !found.complete[i]) {
-        if (first) addFirst(found, i, sums);
+      if (found.complete && !found.complete[i]) { // a surface, and no light
+        addFirst(found, i, sums);
         continue;
       }
       float radiance[3] = {found.radiance[0][i], found.radiance[1][i], found.radiance[2][i]};

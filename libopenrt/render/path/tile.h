@@ -96,7 +96,9 @@ class TileRenderer {
   RayCounters counters_;
   const StageContext context_{scene_, arena_, counters_, this};
   const bool showsNoLight_{showsNoLight(scene_.frame)};
-  const uint32_t lightStride_{lightStrideOf(scene_.frame)};
+  // 1 where there is no light to save, or a plug-in follows it
+  const uint32_t lightStride_{
+      showsNoLight_ || scene_.transport.shaderClass ? 1 : lightStrideOf(scene_.frame)};
   Guides guides_{scene_, arena_, counters_};
   Ledger ledger_;
   UnsampledLights unsampled_{scene_, ledger_};
