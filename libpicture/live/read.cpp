@@ -145,6 +145,7 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     store(nearness, guides.nearness.data() + i);
     store(where(own, offsetX), guides.offsetX.data() + i);
     store(where(own, offsetY), guides.offsetY.data() + i);
+    store(where(hn::AndNot(still, hit), all(1)), guides.moves.data() + i);
     store(unitNormal(loadTriples(frame.normal + 3 * first, x, w)), guides.normal, i);
     const Lanes name = select(some, amount(given), all(emptyName));
     store(select(present(x, w), name, all(outsideName)), guides.name.data() + i);

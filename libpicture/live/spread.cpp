@@ -304,10 +304,11 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
                           load(guides.normal, i)};
     const Around around = cellsAround(pass, columns, surface, y);
     const RecalledSurfaces recalled = recalledSurfaces(pass, around.slope, x, i);
-    keepShown(pass, recalled, i, fresh);
+    keepShown(pass, recalled, x, y, i, fresh);
     storeColour(spreadLight(pass, columns, surface, around, recalled, {x, y, i}, fresh),
                 pass.reading, i, fresh);
   }
+  continueBorder(layout, y, fresh.colour);
 }
 
 } // namespace HWY_NAMESPACE

@@ -89,11 +89,12 @@ class Window {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   // Waits for events. The wait is short if a picture or a command of a program may be due, and
-  // longer if the window is hidden. It is never nothing: that would take the processor from the
-  // picture that is drawn.
+  // longer if the window is hidden or shows a finished picture, since events end it. It is never
+  // nothing: that would take the processor from the picture that is drawn.
   void wait(double time) {
     const bool soon = session_ && (session_->drawing() || session_->due());
-    const double most = (session_ && screen_.visible()) || control_ ? .004 : .05;
+    const bool idle = !session_ || !screen_.visible() || (input_.empty() && session_->isQuiet());
+    const double most = idle && !control_ ? .05 : .004;
     screen_.wait(soon ? .001 : std::min(time, most), events_);
   }
 
