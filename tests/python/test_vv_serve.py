@@ -220,7 +220,7 @@ Anchor { url "other.wrl" children DEF Thing Shape { appearance Appearance {
   material DEF Paint Material { diffuseColor 1 0 0 } } geometry Box {} } }
 """)
     page = serve("first.wrl", "--spp", 1, "-D", "Paint.diffuseColor=0 1 0", "--shader",
-                 "Thing=default:specularColor=0 0 0").join(*SIZE)
+                 "Thing=Diffuse:reflectance=0,1,0").join(*SIZE)
     page.still(lambda p: green(*p.at(0, 0)))
     page.click(0, 0)
     page.still(lambda p: blue(*p.at(0, 0)))

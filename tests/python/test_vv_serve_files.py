@@ -56,11 +56,11 @@ def test_a_page_saves_one_picture_at_a_time(serve):
 
 
 def test_a_page_that_saves_all_the_time_leaves_the_others_their_pictures(serve):
-    server = serve(SPINNING, "--spp", 256)
+    server = serve(SPINNING, "--spp", 1024)
     page, saver = server.join(*SIZE), server.join(*SIZE)
     page.until(lambda p: p.facts["preview"])
     saved(server, saver, "png")
-    for _ in range(3):
+    for _ in range(2):
         count = len(page.pictures)
         saved(server, saver, "png")
         # Between two files there is time for as many samples, thus for many previews.
