@@ -41,7 +41,7 @@ struct SessionFacts {
   int width = 0, height = 0;
   double samples = 0, wanted = 0;
   std::string denoisedBy; // the library that has filtered the preview; "": none
-  RTstats stats{}; // statistics of the last finished picture
+  RTstats stats{};        // statistics of the last finished picture
   xvrml::MapStats map{};
   uint64_t errors = 0, warnings = 0;
   std::string lastProblem, navigation, description;
