@@ -63,11 +63,18 @@ inline Lanes meanOf(const Lanes3& colour) {
 
 // What the cells around a pixel tell.
 struct Around {
-  Lanes3 light{all(0), all(0), all(0)};
-  Lanes3 least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f), all(-1e30f), all(-1e30f)};
-  Lanes weights = all(0), noise = all(0), slope = all(0), changed = all(0);
+  Lanes3 light, least, most;
+  Lanes weights, noise, slope, changed;
   // Of the cells with the pixel's name, however they lie: their largest noise; -1: there are none.
-  Lanes nameNoise = all(-1);
+  Lanes nameNoise;
+
+  // Written out, because GCC compiles a constructor of its own making for the oldest instruction
+  // set, where vectors are returned in another way.
+  Around()
+      : light{all(0), all(0), all(0)}, least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f),
+                                                                                       all(-1e30f),
+                                                                                       all(-1e30f)},
+        weights(all(0)), noise(all(0)), slope(all(0)), changed(all(0)), nameNoise(all(-1)) {}
 
   // same: the names are equal. alike: the cell's albedo is like the pixel's, so that its light is a
   // bound for the pixel's.
