@@ -86,6 +86,11 @@ constexpr QualitySetting table[] = {
       "pixels each way of the blocks in which one pixel gets light"},
      get<&Frame::lightStride>,
      set<&Frame::lightStride>},
+    {{size, RT_MEASURE, "measure", 0, RT_MEASURE_NOTHING, RT_MEASURE_ILLUMINANCE,
+      RT_MEASURE_NOTHING, 0, "nothing luminance illuminance",
+      "whether pixels are photometric readings"},
+     get<&Frame::measure>,
+     set<&Frame::measure>},
 };
 
 } // namespace

@@ -65,12 +65,12 @@ TEST_F(StockLights, ATextThatIsNoProfileIsNotRenderedAndSaidSo) {
   rtLogCallback([](int, const char* text, void*) { said += text; }, nullptr);
   Shader s("Luminaire");
   rtBindShader(s);
-  rtParameterString(rtParameterHandle("profile"), "IESNA91\nTILT=INCLUDE\n1 2 3");
+  rtParameterString(rtParameterHandle("profile"), "IESNA91\nTILT=INCLUDE\n9 2 3");
   rtBindShader(0);
   use(s);
   expectGrey(look(), 0);
   EXPECT_NE(said.find("Luminaire"), std::string::npos) << said;
-  EXPECT_NE(said.find("line 2: TILT=INCLUDE"), std::string::npos) << said;
+  EXPECT_NE(said.find("line 3: TILT=INCLUDE"), std::string::npos) << said;
   rtBindShader(s); // with another value the light is there again
   rtParameterString(rtParameterHandle("profile"),
                     "IESNA91\nTILT=NONE\n1 1 1 1 1 1 1 0 0 0 1 1 1 0 0 3.14159265");

@@ -347,6 +347,17 @@ const OptionInfo table[] = {
        notEmpty(v, "an OpenEXR file");
        o.compare = v;
      }},
+    {"--measure", "FILE", "Inspect",
+     "Write what the ORTSensors of the world read, in lux and cd/m2 with their 95 % intervals, as "
+     ".csv or .json; - is CSV on standard output. --spp (default here 4096), --error and "
+     "--time-limit say how many samples each point gets (docs/photometry.md). -o is not needed.",
+     [](Options& o, const std::string& v) {
+       if (v != "-" && !v.ends_with(".csv") && !v.ends_with(".json"))
+         throw UsageError(fmt::format("a file name that ends in .csv or .json was expected, or -, "
+                                      "not \"{}\"",
+                                      v));
+       o.measure = v;
+     }},
     {"--audit", "[N]", "Inspect",
      "Test the error bars: render the picture with N seeds (default 20) and once with many more "
      "samples (or read the picture of --compare instead), and print how many of the 95 % intervals "

@@ -81,6 +81,7 @@ struct Options {
   std::shared_ptr<const InputScript> script; // contents of inputScript
   std::string write, stats;
   std::string compare; // reference picture; empty: none
+  std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
   int audit = 0;       // number of pictures to check the error bars with; 0: none
   ServeOptions serve;
   std::string nodePath; // folders, separated by colons
@@ -92,7 +93,10 @@ struct Options {
   bool noWindow = false;
 
   bool allViewpoints() const { return viewpoint == "all"; }
-  bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
+  bool makesPictures() const {
+    return !outputs.empty() || !compare.empty() || audit > 0 || measures();
+  }
+  bool measures() const { return !measure.empty(); }
   bool opensWindow() const {
     return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
            !has(Job::listKeys) && !has(Job::serve);

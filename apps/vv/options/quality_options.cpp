@@ -65,7 +65,7 @@ const Wording wordings[] = {
 
 // vv chooses RT_PROGRESSIVE and RT_FRAMES_IN_FLIGHT itself and leaves the others to the engine.
 constexpr RTenum withoutOption[] = {RT_REPLICATES, RT_PROGRESSIVE, RT_FRAMES_IN_FLIGHT,
-                                    RT_TILE_SIZE};
+                                    RT_TILE_SIZE, RT_MEASURE};
 
 // Keeps a text until the program ends.
 const char* keep(std::string text) {

@@ -30,6 +30,7 @@ enum class Kind : uint8_t {
   lod,
   directionalLight,
   localLight,
+  sensor,
   viewpoint,
   background,
   fog,
