@@ -13,8 +13,10 @@
 #include <unistd.h>
 
 #include "ending.h"
+#include "libpicture/false_colour.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
+#include "libpicture/measure.h"
 #include "libpicture/transport.h"
 #include "nearest.h"
 #include "options/names.h"
@@ -371,9 +373,13 @@ class Pictures {
 
   void writePictures(const Job& job, const picture::Picture& made) {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
+    std::optional<picture::Picture> coloured;
+    if (const std::optional<double>& most = options_.falseColour)
+      coloured = picture::falseColours(wanted, *most > 0 ? most : std::nullopt);
     for (const Output& output : options_.outputs) {
       if (output.film != picture::FilmKind::none) continue;
-      const std::string bytes = output.format->encode(wanted);
+      const bool shows = coloured && output.format->appliesCurve;
+      const std::string bytes = output.format->encode(shows ? *coloured : wanted);
       if (output.path == "-") {
         picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
         continue;

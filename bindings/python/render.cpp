@@ -143,9 +143,7 @@ py::object render(const WorldPtr& self, const RenderArguments& given) {
 std::vector<picture::Measurement> measure(const WorldPtr& self, const RenderArguments& given) {
   constexpr long long samples = 4096; // as vv --measure
   RenderArguments arguments = given;
-  const double* limits[] = {arguments.quality.find(RT_TARGET_ERROR),
-                            arguments.quality.find(RT_TIME_LIMIT)};
-  const bool limited = (limits[0] && *limits[0] > 0) || (limits[1] && *limits[1] > 0);
+  const bool limited = given.quality[RT_TARGET_ERROR] > 0 || given.quality[RT_TIME_LIMIT] > 0;
   if (!arguments.spp && !limited) arguments.spp = samples;
   RenderRequest request = requestOf(arguments);
   const py::object bar = progressOf(given.progress);

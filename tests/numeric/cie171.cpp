@@ -83,14 +83,14 @@ TEST_F(Cie171, Case54LuminousFluxIsConserved) {
     quad({s * .5, -.5, 3}, {s * 2, -.5, 3}, {s * 2, .5, 3}, {s * .5, .5, 3});
   }
   uniformSky(1000);
-  rtQuality(RT_SAMPLES_PER_PIXEL, 1024);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 8192);
   const double e = 1e-4;
   const std::pair<Grid, double> surfaces[] = {
-      {{{0, 0, e}, {4, 0, 0}, {0, -4, 0}, 16, 16}, 16},
-      {{{2 - e, 0, 1.5}, {0, 4, 0}, {0, 0, -3}, 16, 12}, 12},
-      {{{e - 2, 0, 1.5}, {0, -4, 0}, {0, 0, -3}, 16, 12}, 12},
-      {{{0, 2 - e, 1.5}, {-4, 0, 0}, {0, 0, -3}, 16, 12}, 12},
-      {{{0, e - 2, 1.5}, {4, 0, 0}, {0, 0, -3}, 16, 12}, 12}};
+      {{{0, 0, e}, {4, 0, 0}, {0, -4, 0}, 12, 12}, 16},
+      {{{2 - e, 0, 1.5}, {0, -4, 0}, {0, 0, -3}, 12, 9}, 12},
+      {{{e - 2, 0, 1.5}, {0, 4, 0}, {0, 0, -3}, 12, 9}, 12},
+      {{{0, 2 - e, 1.5}, {4, 0, 0}, {0, 0, -3}, 12, 9}, 12},
+      {{{0, e - 2, 1.5}, {-4, 0, 0}, {0, 0, -3}, 12, 9}, 12}};
   double flux = 0;
   for (const auto& [grid, area] : surfaces) {
     const std::vector<Reading> got = readGrid(grid);
@@ -98,7 +98,7 @@ TEST_F(Cie171, Case54LuminousFluxIsConserved) {
     for (const Reading& r : got) sum += r.value;
     flux += area * sum / double(got.size());
   }
-  EXPECT_NEAR(flux, 1000 * pi, .005 * 1000 * pi);
+  EXPECT_NEAR(flux, 1000 * pi, .007 * 1000 * pi);
 }
 
 // Directional transmittance of a clear pane: (1 - R) / (1 + R) with all reflections inside. The
@@ -123,6 +123,7 @@ TEST_F(Cie171, Case55DirectionalTransmittanceOfClearGlass) {
 // A matt patch under parallel light of 1000 lx sends rho E / pi; the illuminance at points around
 // it is that times the polygon's.
 TEST_F(Cie171, Case56ReflectionByADiffuseSurface) {
+  rtQuality(RT_SAMPLES_PER_PIXEL, 65536);
   const double rho = .3, e = 1000;
   const std::vector<Vec> patch = rectangle(2, 0);
   quad(patch[0], patch[1], patch[2], patch[3], rho);
@@ -140,6 +141,7 @@ TEST_F(Cie171, Case56ReflectionByADiffuseSurface) {
 // The same with a black plate that hides a part of the patch from the sensor. It is parallel to the
 // light, so it casts no shadow.
 TEST_F(Cie171, Case57DiffuseReflectionWithAnObstruction) {
+  rtQuality(RT_SAMPLES_PER_PIXEL, 65536);
   const double rho = .5, e = 1000;
   const std::vector<Vec> patch = rectangle(2, 0);
   quad(patch[0], patch[1], patch[2], patch[3], rho);
@@ -175,10 +177,10 @@ TEST_F(Cie171, Case58InternallyReflectedComponent) {
     double sum = 0;
     const Grid faces[] = {{{0, 0, e - 2}, {4, 0, 0}, {0, -4, 0}, 6, 6},
                           {{0, 0, 2 - e}, {4, 0, 0}, {0, 4, 0}, 6, 6},
-                          {{2 - e, 0, 0}, {0, 4, 0}, {0, 0, -4}, 6, 6},
-                          {{e - 2, 0, 0}, {0, -4, 0}, {0, 0, -4}, 6, 6},
-                          {{0, 2 - e, 0}, {-4, 0, 0}, {0, 0, -4}, 6, 6},
-                          {{0, e - 2, 0}, {4, 0, 0}, {0, 0, -4}, 6, 6}};
+                          {{2 - e, 0, 0}, {0, -4, 0}, {0, 0, -4}, 6, 6},
+                          {{e - 2, 0, 0}, {0, 4, 0}, {0, 0, -4}, 6, 6},
+                          {{0, 2 - e, 0}, {4, 0, 0}, {0, 0, -4}, 6, 6},
+                          {{0, e - 2, 0}, {-4, 0, 0}, {0, 0, -4}, 6, 6}};
     for (const Grid& face : faces) {
       const std::vector<Reading> got = readGrid(face);
       for (int i = 0; i < 36; i++) {

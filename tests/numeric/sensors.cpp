@@ -1,6 +1,6 @@
 // sensors.cpp: photometric sensors: units, what a reading includes, and the promise of its
 // interval.
-#include <cstring>
+#include <algorithm>
 
 #include "numeric/sensor_scene.h"
 
@@ -76,7 +76,9 @@ class Room : public Sensors {
     quad({2, -2, 0}, {2, 2, 0}, {2, 2, 3}, {2, -2, 3}, .6);
     quad({-2, 2, 0}, {2, 2, 0}, {2, 2, 3}, {-2, 2, 3}, .7);
     quad({-.5, -.5, 1.5}, {.5, -.5, 1.5}, {.5, .5, 1.5}, {-.5, .5, 1.5}, .3);
-    lamp(rectangle(.4, 2.9), 1000);
+    std::vector<Vec> panel = rectangle(.4, 2.95);
+    std::reverse(panel.begin(), panel.end()); // it faces down
+    lamp(panel, 1000, true);
   }
   static std::vector<Reading> table() {
     return readGrid({{0, 0, .75}, {3, 0, 0}, {0, -3, 0}, 6, 6});

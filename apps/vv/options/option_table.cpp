@@ -156,6 +156,14 @@ const OptionInfo table[] = {
          " files get the sRGB curve. vrml97: the standard's lighting equation is applied to the "
          "numbers as written, without any curve.",
      setColour},
+    {"--false-colour,--false-color", "auto|MAX", "Picture",
+     "Show luminance in colours, with isolines and a legend in cd/m2, in " +
+         picture::formatsWith(&picture::Format::appliesCurve) +
+         " files. MAX is the luminance at the end of the scale; auto chooses a round one. The file "
+         "is wider than --size by the legend.",
+     [](Options& o, const std::string& v) {
+       o.falseColour = v == "auto" ? 0 : readNumber(v, 1e-12, 1e12);
+     }},
     {"--background", "none|COLOUR|FILE", "Picture",
      "Replace the world's Background, which then is not seen in mirrors either. none: nothing; " +
          picture::formatsWith(&picture::Format::keepsAlpha) +

@@ -148,6 +148,15 @@ constexpr Rule rules[] = {
      },
      "--measure reads the sensors of one moment: it cannot be used with --audit, --frames, "
      "--turntable, --viewpoint all, --watch or --record"},
+    {[](const Options& o) {
+       return o.falseColour &&
+              std::none_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
+                return output.film == picture::FilmKind::none && output.format->appliesCurve;
+              });
+     },
+     "--false-colour needs -o with a file for a screen, such as .png"},
+    {[](const Options& o) { return o.falseColour && !o.render.linear; },
+     "--false-colour needs light that is added linearly: it cannot be used with --colour vrml97"},
     {[](const Options& o) { return o.audit && o.render.timeLimit > 0; },
      "--audit cannot be used with --time-limit, whose pictures differ from run to run"},
     // the cluster

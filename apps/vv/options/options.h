@@ -81,7 +81,6 @@ struct Options {
   std::shared_ptr<const InputScript> script; // contents of inputScript
   std::string write, stats;
   std::string compare; // reference picture; empty: none
-  std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
   int audit = 0;       // number of pictures to check the error bars with; 0: none
   ServeOptions serve;
   std::string nodePath; // folders, separated by colons
@@ -91,6 +90,9 @@ struct Options {
   bool quiet = false, verbose = false;
   std::string control; // address where programs control the world; empty: none
   bool noWindow = false;
+  // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen for the picture.
+  std::optional<double> falseColour;
+  std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
 
   bool allViewpoints() const { return viewpoint == "all"; }
   bool makesPictures() const {

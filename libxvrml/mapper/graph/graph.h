@@ -30,13 +30,13 @@ enum class Kind : uint8_t {
   lod,
   directionalLight,
   localLight,
-  sensor,
   viewpoint,
   background,
   fog,
-  navigationInfo
+  navigationInfo,
+  sensor
 };
-constexpr bool isBindable(Kind k) { return k >= Kind::viewpoint; }
+constexpr bool isBindable(Kind k) { return k >= Kind::viewpoint && k <= Kind::navigationInfo; }
 constexpr bool isLight(Kind k) { return k == Kind::directionalLight || k == Kind::localLight; }
 
 // The author's hint on a group: merge (ORTStatic) or instantiate (ORTInstance).
