@@ -169,6 +169,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineNode(module);
   definePicture(module);
   defineFilm(module);
+  defineMeasurement(module);
   defineWorld(module);
   defineBrowser(module);
   defineViewer(module);

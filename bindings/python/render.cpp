@@ -186,38 +186,6 @@ py::array_t<double> positionsOf(const picture::Measurement& m) {
   return out;
 }
 
-void defineMeasurement(py::module_& module) {
-  using M = picture::Measurement;
-  py::class_<M>(module, "Measurement",
-                "The readings of one ORTSensor. Arrays have a row for each row of the sensor; each "
-                "value lies within half_widths of the truth with a probability of 95 %.")
-      .def_property_readonly("name", [](const M& m) { return m.sensor.name; })
-      .def_property_readonly(
-          "quantity", [](const M& m) { return m.sensor.luminance ? "luminance" : "illuminance"; })
-      .def_property_readonly("unit", [](const M& m) { return m.sensor.luminance ? "cd/m2" : "lx"; })
-      .def_property_readonly("direction",
-                             [](const M& m) {
-                               const double* d = m.sensor.direction;
-                               return py::make_tuple(d[0], d[1], d[2]);
-                             })
-      .def_property_readonly("positions", positionsOf)
-      .def_property_readonly("values", [](const M& m) { return gridOf(m, m.value); })
-      .def_property_readonly("half_widths", [](const M& m) { return gridOf(m, m.halfWidth); })
-      .def_property_readonly("trusted",
-                             [](const M& m) { return gridOf(m, m.trusted).attr("astype")("bool"); })
-      .def_property_readonly("samples", [](const M& m) { return gridOf(m, m.samples); })
-      .def_property_readonly("stats",
-                             [](const M& m) {
-                               py::dict stats;
-                               describePicture(stats, m.stats);
-                               return stats;
-                             })
-      .def("__repr__", [](const M& m) {
-        return fmt::format("<xvrml.Measurement {}, {} x {} points>", m.sensor.name,
-                           m.sensor.columns, m.sensor.rows);
-      });
-}
-
 } // namespace
 
 py::object progressOf(const py::object& given) {
@@ -259,12 +227,41 @@ void interruptible(const std::function<void(picture::ProgressCallback watch)>& w
   if (failure) std::rethrow_exception(failure);
 }
 
+void defineMeasurement(py::module_& module) {
+  using M = picture::Measurement;
+  py::class_<M>(module, "Measurement",
+                "The readings of one ORTSensor. Arrays have a row for each row of the sensor; each "
+                "value lies within half_widths of the truth with a probability of 95 %.")
+      .def_property_readonly("name", [](const M& m) { return m.sensor.name; })
+      .def_property_readonly(
+          "quantity", [](const M& m) { return m.sensor.luminance ? "luminance" : "illuminance"; })
+      .def_property_readonly("unit", [](const M& m) { return m.sensor.luminance ? "cd/m2" : "lx"; })
+      .def_property_readonly("direction",
+                             [](const M& m) {
+                               const double* d = m.sensor.direction;
+                               return py::make_tuple(d[0], d[1], d[2]);
+                             })
+      .def_property_readonly("positions", positionsOf)
+      .def_property_readonly("values", [](const M& m) { return gridOf(m, m.value); })
+      .def_property_readonly("half_widths", [](const M& m) { return gridOf(m, m.halfWidth); })
+      .def_property_readonly("trusted",
+                             [](const M& m) { return gridOf(m, m.trusted).attr("astype")("bool"); })
+      .def_property_readonly("samples", [](const M& m) { return gridOf(m, m.samples); })
+      .def_property_readonly("stats",
+                             [](const M& m) {
+                               py::dict stats;
+                               describePicture(stats, m.stats);
+                               return stats;
+                             })
+      .def("__repr__", [](const M& m) {
+        return fmt::format("<xvrml.Measurement {}, {} x {} points>", m.sensor.name,
+                           m.sensor.columns, m.sensor.rows);
+      });
+}
+
 void defineRender(py::object worldClass) {
   using A = RenderArguments;
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
-  py::module_ module = py::reinterpret_borrow<py::module_>(
-      py::module_::import("sys").attr("modules")[worldClass.attr("__module__")]);
-  defineMeasurement(module);
   defineMethod(
       world, "measure", measure, parameterList(),
       parameterList(parameter("spp", &A::spp), qualityParameter<long long>(RT_SEED),
