@@ -341,7 +341,8 @@ class Pictures {
     for (const picture::Measurement& sensor : sensors) {
       if (options_.quiet) break;
       say("vv: " + oneLine(measurementText(sensor)));
-      for (const std::string& text : measurementWarnings(sensor, options_.render.error))
+      for (const std::string& text :
+           measurementWarnings(sensor, options_.render.error, uint32_t(options_.render.samples)))
         sayWarning(oneLine(text));
     }
     return interrupted() ? stopped("vv: interrupted; the readings so far are saved") : exitDone;

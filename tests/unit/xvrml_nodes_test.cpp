@@ -287,7 +287,8 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) ++roles[role];
   EXPECT_EQ(roles["child"],
-            32 + 6); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTSensor, ORTViewpoint, ORTBackground
+            32 + 6); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTSensor, ORTViewpoint,
+                     // ORTBackground
   EXPECT_EQ(roles["grouping"], 8 + 2);
   EXPECT_EQ(roles["geometry"], 10);
   EXPECT_EQ(roles["texture"], 3);

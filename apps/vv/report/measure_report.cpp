@@ -133,16 +133,18 @@ std::string measurementText(const Measurement& m) {
   return out;
 }
 
-std::vector<std::string> measurementWarnings(const Measurement& m, double target) {
+std::vector<std::string> measurementWarnings(const Measurement& m, double target,
+                                             uint32_t allowed) {
   std::vector<std::string> out;
   const Summary all(m);
   if (all.points == 0) return out;
   const auto add = [&](const std::string& text) { out.push_back(m.sensor.name + ": " + text); };
-  if (target > 0 && m.stats.errorHalfWidth > 1.001 * target)
-    add(fmt::format(
-        "--error promised {:.3g} %, reached {:.3g} %; --spp allows more samples than {}",
-        100 * target, 100 * m.stats.errorHalfWidth,
-        *std::max_element(m.samples.begin(), m.samples.end())));
+  if (target > 0 && m.stats.errorHalfWidth > 1.001 * target) {
+    const uint32_t taken = *std::max_element(m.samples.begin(), m.samples.end());
+    add(fmt::format("--error promised {:.3g} %, reached {:.3g} % with {} samples; {}", 100 * target,
+                    100 * m.stats.errorHalfWidth, taken,
+                    taken < allowed ? "a smaller --error takes more" : "--spp allows more"));
+  }
   if (const size_t doubtful = all.points - all.trusted)
     add(fmt::format("the intervals of {} of {} points are not trusted: too few paths have found "
                     "the light there (docs/error-bars.md)",

@@ -16,8 +16,9 @@ std::string measurementsJson(const std::vector<picture::Measurement>& sensors,
                              const std::string& commandLine);
 // Describes one sensor in a line: mean with its interval, range, uniformity.
 std::string measurementText(const picture::Measurement& sensor);
-// Returns what a reader of the readings must know, a sentence each: a missed --error (target),
-// light that is missing, readings that are not trusted.
-std::vector<std::string> measurementWarnings(const picture::Measurement& sensor, double target);
+// Returns what a reader of the readings must know, a sentence each: a missed --error (target, with
+// at most so many samples allowed), light that is missing, readings that are not trusted.
+std::vector<std::string> measurementWarnings(const picture::Measurement& sensor, double target,
+                                             uint32_t allowed);
 
 } // namespace vv
