@@ -18,6 +18,7 @@
 #include "libpicture/live/oidn.h"
 #include "libpicture/live/preview_settings.h"
 #include "libpicture/live/reconstruction.h"
+#include "libpicture/measure.h"
 #include "libpicture/stage.h"
 
 namespace picture {
@@ -217,6 +218,23 @@ struct Renderer::Impl {
     result.map = flight.result.map;
   }
 
+  void measure(const View& view, std::vector<Measurement>& out) {
+    doing = "mapping";
+    stage.prepareSensors(view);
+    std::vector<PlacedSensor> sensors;
+    for (const xvrml::SensorInfo& info : stage.mapper()->sensors())
+      sensors.push_back(placeSensor(info));
+    RenderSettings frame = stage.settings;
+    if (!sensors.empty()) frame.timeLimit /= double(sensors.size());
+    doing = "";
+    for (const PlacedSensor& sensor : sensors) {
+      if (cancelled) break;
+      out.push_back(stage.measure(sensor, frame));
+      out.back().interrupted = cancelled;
+    }
+    stage.reportMessages(); // safe here: the browser's thread is waiting
+  }
+
   void render(const View& view, RenderResult& result) {
     auto start = Clock::now();
     stage.prepare(view);
@@ -382,6 +400,18 @@ RenderResult Renderer::render(const View& view) {
     impl_->render(view, result);
   });
   return result;
+}
+
+std::vector<Measurement> Renderer::measure(const View& view) {
+  checkViewpoint(view);
+  std::vector<Measurement> out;
+  impl_->cancelled = false;
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
+  impl_->run([&] {
+    impl_->apply(worldChanges);
+    impl_->measure(view, out);
+  });
+  return out;
 }
 
 int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std::string& name) {

@@ -23,6 +23,7 @@
 namespace picture {
 
 class Cluster;
+struct Measurement;
 
 // What smooths the light of previews (live/reconstruction.h).
 enum class Denoiser : uint8_t {
@@ -141,6 +142,11 @@ class Renderer {
   bool snapshot(Picture& picture);
   // Throws RenderError. An exception of the progress callback ends the picture and propagates.
   RenderResult render(const View& view);
+
+  // Returns the readings of all ORTSensors, in the order of the file (libpicture/measure.h). The
+  // samples and limits are those of the settings; a time limit is shared by the sensors. The view
+  // chooses billboards and levels of detail. Throws SensorError if a sensor has wrong fields.
+  std::vector<Measurement> measure(const View& view);
 
   // Overlapping frames, for settings with a cluster. start() returns when the world is mapped and
   // the frame is under way; the world may then change. finish() waits for the oldest frame. Each

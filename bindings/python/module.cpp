@@ -182,6 +182,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineNode(module);
   definePicture(module);
   defineFilm(module);
+  defineMeasurement(module);
   defineWorld(module);
   defineBrowser(module);
   defineViewer(module);

@@ -90,6 +90,11 @@ constexpr QualitySetting table[] = {
       "number of the sequence of frames that motion refers to"},
      get<&Frame::view>,
      set<&Frame::view>},
+    {{size, RT_MEASURE, "measure", 0, RT_MEASURE_NOTHING, RT_MEASURE_ILLUMINANCE,
+      RT_MEASURE_NOTHING, 0, "nothing luminance illuminance",
+      "whether pixels are photometric readings"},
+     get<&Frame::measure>,
+     set<&Frame::measure>},
 };
 
 } // namespace

@@ -77,6 +77,7 @@ constexpr Interface interfaces[] = {
     {"", "ORTBackground", 1, 1, 0, 1},
     {"", "ORTInstance", 2, 1, 2, 0},
     {"", "ORTLight", 0, 2, 0, 0},
+    {"", "ORTSensor", 0, 7, 1, 0},
     {"", "ORTShader", 0, 3, 0, 0},
     {"", "ORTStatic", 2, 1, 2, 0},
     {"", "ORTViewpoint", 1, 5, 1, 2},
@@ -286,7 +287,8 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) ++roles[role];
   EXPECT_EQ(roles["child"],
-            32 + 5); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTViewpoint, ORTBackground
+            32 + 6); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTSensor, ORTViewpoint,
+                     // ORTBackground
   EXPECT_EQ(roles["grouping"], 8 + 2);
   EXPECT_EQ(roles["geometry"], 10);
   EXPECT_EQ(roles["texture"], 3);

@@ -168,6 +168,14 @@ const OptionInfo table[] = {
          " files get the sRGB curve. vrml97: the standard's lighting equation is applied to the "
          "numbers as written, without any curve.",
      setColour},
+    {"--false-colour,--false-color", "auto|MAX", "Picture",
+     "Show luminance in colours, with isolines and a legend in cd/m2, in " +
+         picture::formatsWith(&picture::Format::appliesCurve) +
+         " files. MAX is the luminance at the end of the scale; auto chooses a round one. The file "
+         "is wider than --size by the legend.",
+     [](Options& o, const std::string& v) {
+       o.falseColour = v == "auto" ? 0 : readNumber(v, 1e-12, 1e12);
+     }},
     {"--background", "none|COLOUR|FILE", "Picture",
      "Replace the world's Background, which then is not seen in mirrors either. none: nothing; " +
          picture::formatsWith(&picture::Format::keepsAlpha) +
@@ -364,6 +372,17 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        notEmpty(v, "an OpenEXR file");
        o.compare = v;
+     }},
+    {"--measure", "FILE", "Inspect",
+     "Write what the ORTSensors of the world read, in lux and cd/m2 with their 95 % intervals, as "
+     ".csv or .json; - is CSV on standard output. --spp (default here 4096), --error and "
+     "--time-limit say how many samples each point gets (docs/photometry.md). -o is not needed.",
+     [](Options& o, const std::string& v) {
+       if (v != "-" && !v.ends_with(".csv") && !v.ends_with(".json"))
+         throw UsageError(fmt::format("a file name that ends in .csv or .json was expected, or -, "
+                                      "not \"{}\"",
+                                      v));
+       o.measure = v;
      }},
     {"--audit", "[N]", "Inspect",
      "Test the error bars: render the picture with N seeds (default 20) and once with many more "

@@ -95,7 +95,31 @@ enum {
    * rendered in turns. A sequence begins anew, with everything new, after 32 frames of others, and
    * if its last frame lacked RT_MOTION and something moved for a frame of another one. It changes
    * no other channel. */
-  RT_VIEW = 17
+  RT_VIEW = 17,
+  /* One of RT_MEASURE_* below, default RT_MEASURE_NOTHING: each pixel is the reading of a
+   * photometric sensor instead of a part of a picture. */
+  RT_MEASURE = 18
+};
+
+/* What the pixels of a frame are (RT_MEASURE). Every sample of a sensor uses the camera's ray
+ * through the middle of its pixel, so that an orthographic camera is a grid of points. Red, green
+ * and blue of RT_RGBA are all the reading, and those of RT_ERROR its half-width. Units: a radiance
+ * of 1 in all three colours is a luminance of 1 cd/m2, and the unit of length is the metre. A
+ * colour counts as 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709, luminance of linear
+ * sRGB).
+ *
+ * The variance of a reading is that of its own replicates; it is not pooled with neighbouring
+ * pixels. Sensors follow paths (RT_TRANSPORT_PATH) where the transport is RT_TRANSPORT_AUTO or
+ * RT_TRANSPORT_LIGHT; the latter's paths from lamps do not reach them. Channels of first hits are 0
+ * for RT_MEASURE_ILLUMINANCE. */
+enum {
+  RT_MEASURE_NOTHING = 0, /* pixels are those of a picture */
+  /* Luminance in cd/m2 of the light that arrives at the origin of the ray against its direction. */
+  RT_MEASURE_LUMINANCE = 1,
+  /* Illuminance in lux at the origin of the ray, of a plane whose normal is the ray's direction:
+   * light of the half space that the ray points to. A point on a surface must lie a little off it.
+   */
+  RT_MEASURE_ILLUMINANCE = 2
 };
 
 /* Light transports: how light is followed from surfaces whose shaders answer in lobes (openrts.h).

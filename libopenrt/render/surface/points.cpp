@@ -271,6 +271,7 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
 }
 
 bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, Vec3f& out) {
+  if (points.record[i] == noHit) return false; // a sensor
   const Record& r = scene.records[points.record[i]];
   if (!r.normals || r.primitive != edit::Primitive::Triangles) return false;
   const uint32_t lane = points.order[i];
