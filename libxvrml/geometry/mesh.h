@@ -62,12 +62,12 @@ struct Mesh {
 struct MeshOptions {
   // The shape has a texture: make default texture coordinates if the node has none.
   bool needTexCoords = false;
-  // Cylinders and cones get exact surfaces beside their triangles.
-  bool exactShapes = false;
   const Limits* limits = nullptr;
   Diagnostics* diagnostics = nullptr;
   // The name of limits->triangles in messages; empty: the limit 'triangles'.
   std::string_view limitName = {};
+  // Cylinders and cones get exact surfaces beside their triangles.
+  bool exactShapes = false;
 };
 
 // Builds the mesh of any geometry node (Box ... Text). Its kind is empty for other nodes and if

@@ -45,9 +45,9 @@ void addRings(const nodes::ORTAsphere& node, Mesh& mesh) {
   for (uint32_t ring = 0; ring < uint32_t(rings); ring++)
     for (uint32_t i = 0; i < uint32_t(roundSegments); i++) {
       const uint32_t a = ring * row + i, b = a + 1, c = a + row, d = c + 1;
-      // aroundAxis turns clockwise seen from +z, from y = -1 to x = -1.
-      addTriangle(mesh, a, c, d);
-      addTriangle(mesh, a, d, b);
+      // aroundAxis turns clockwise seen from +z: from y = -1 to x = -1.
+      addTriangle(mesh, a, d, c);
+      addTriangle(mesh, a, b, d);
     }
 }
 

@@ -78,29 +78,25 @@ class Polygonizer {
   // The vertices run counter-clockwise seen from the front, where the gradient points to.
   bool triangle(const V3d& a, V3d b, V3d c) {
     if (mesh_.ownIndices.size() / 3 >= most_) return false;
-    if (dot(cross(b - a, c - a), gradientAt(a)) < 0) std::swap(b, c);
+    if ((b - a).cross(c - a).dot(gradientAt(a)) < 0) std::swap(b, c);
     const auto first = uint32_t(mesh_.ownPoints.size());
-    for (const V3d& p : {a, b, c}) addVertex(mesh_, toFloat(p), toFloat(unit(gradientAt(p))), {0, 0});
+    for (const V3d& p : {a, b, c})
+      addVertex(mesh_, toVec3f(p), toVec3f(unit(gradientAt(p))), {0, 0});
     addTriangle(mesh_, first, first + 1, first + 2);
     return true;
   }
-  static Vec3f toFloat(const V3d& v) { return {float(v.x), float(v.y), float(v.z)}; }
 
   const nodes::ORTQuadric& node_;
   Mesh& mesh_;
   uint64_t most_;
 };
 
-bool allFinite(std::span<const float> values) {
-  return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
-}
-
 } // namespace
 
 Mesh buildORTQuadric(const nodes::ORTQuadric& node, const MeshOptions& options, Faults& faults) {
   Mesh mesh;
   const Vec3f &low = node.low, &high = node.high;
-  if (node.coefficients.size() != 10 || !allFinite(node.coefficients)) {
+  if (node.coefficients.size() != 10 || !allFinite(std::span<const float>(node.coefficients))) {
     faults.note("coefficients must be ten finite numbers; nothing is drawn");
     return mesh;
   }

@@ -135,8 +135,8 @@ const Mesh& Meshes::get(int32_t mesh) {
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? quota_.budget().name() : std::string();
-  MeshOptions options{entry.textured, exactShapes_, &limits,
-                      entry.said ? &silent : &world_.diagnostics, name};
+  MeshOptions options{entry.textured, &limits, entry.said ? &silent : &world_.diagnostics, name,
+                      exactShapes_};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;

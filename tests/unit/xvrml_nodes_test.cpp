@@ -74,9 +74,11 @@ constexpr Interface interfaces[] = {
     {"6.54", "VisibilitySensor", 0, 3, 0, 3},
     {"6.55", "WorldInfo", 0, 0, 2, 0},
     {"", "ORTAppearance", 0, 4, 0, 0},
+    {"", "ORTAsphere", 0, 0, 7, 0},
     {"", "ORTBackground", 1, 1, 0, 1},
     {"", "ORTInstance", 2, 1, 2, 0},
     {"", "ORTLight", 0, 2, 0, 0},
+    {"", "ORTQuadric", 0, 0, 5, 0},
     {"", "ORTShader", 0, 3, 0, 0},
     {"", "ORTStatic", 2, 1, 2, 0},
     {"", "ORTViewpoint", 1, 5, 1, 2},
@@ -288,7 +290,7 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   EXPECT_EQ(roles["child"],
             32 + 5); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTViewpoint, ORTBackground
   EXPECT_EQ(roles["grouping"], 8 + 2);
-  EXPECT_EQ(roles["geometry"], 10);
+  EXPECT_EQ(roles["geometry"], 10 + 2);
   EXPECT_EQ(roles["texture"], 3);
   EXPECT_EQ(roles["light"], 3);
   EXPECT_EQ(roles["sensor"], 7);

@@ -58,7 +58,8 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
   if (!problem.empty()) throw std::runtime_error(problem);
   if (!hasVertices(g.primitive)) {
     demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors,
-           "a sphere or an analytic surface has vertices");
+           g.primitive == edit::Primitive::Sphere ? "a sphere has vertices"
+                                                  : "an analytic surface has vertices");
     return;
   }
   const size_t corners = cornersOf(g.primitive);
@@ -79,7 +80,7 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
 
 void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParameterT& own,
                           const Commit& commit, const RtsParam* param) {
-  demand(hasVertices(g.primitive), "a sphere or an analytic surface has parameters of its own");
+  demand(hasVertices(g.primitive), "a sphere has parameters of its own, or an analytic surface");
   const Array* values = arrayOf(commit, own.values);
   demand(values != nullptr, "a parameter has no values");
   const Array& counted = *arrayOf(commit, own.perVertex ? g.points : g.indices);
