@@ -34,6 +34,10 @@ RTray rayFrom(Vec from, Vec to) {
 
 class AnalyticQueries : public Scene {
  protected:
+  void SetUp() override {
+    Scene::SetUp();
+    rtOrtho(1); // rtRender, which commits, needs a camera
+  }
   std::mt19937 random_{11};
   std::uniform_real_distribution<double> unit_{-1, 1};
   Vec any(double size) {
@@ -80,7 +84,7 @@ TEST_F(AnalyticQueries, RaysMeetASphereWhereItIsUnderEveryMatrix) {
   for (const bool moving : {false, true})
     for (const Matrix& m : matrices) {
       const RTid placed = instance(unitSphere, m, moving);
-      rtCommit();
+      rtRender();
       std::vector<RTray> rays;
       std::vector<Vec> from, to;
       for (int i = 0; i < 5000; i++) {
@@ -114,7 +118,7 @@ TEST_F(AnalyticQueries, RaysMeetASphereWhereItIsUnderEveryMatrix) {
 TEST_F(AnalyticQueries, NoRayLeavesALensAtItsRim) {
   for (const bool moving : {false, true}) {
     const RTid placed = instance(lens, matrices[0], moving);
-    rtCommit();
+    rtRender();
     std::vector<RTray> inside, through;
     for (int i = 0; i < 100000; i++) {
       const Vec from = {.5 * unit_(random_), .5 * unit_(random_), .15 * unit_(random_)};
@@ -140,7 +144,7 @@ TEST_F(AnalyticQueries, NoRayLeavesALensAtItsRim) {
 TEST_F(AnalyticQueries, TheFrontFacesOutwardsAndNormalsAreUnit) {
   for (const Matrix& m : matrices) {
     const RTid placed = instance(lens, m, false);
-    rtCommit();
+    rtRender();
     for (int i = 0; i < 300; i++) {
       const Vec from = pointBy(m, any(4)), inside = pointBy(m, {.1, .1, 0});
       const RTray ray = rayFrom(from, inside);
@@ -220,7 +224,7 @@ TEST_F(AnalyticQueries, AConeAndACylinderAreThePartOfTheirRadii) {
         rtLoadName(0);
       },
       matrices[0], false);
-  rtCommit();
+  rtRender();
   for (const double y : {-1.9, -.9, 0., 1.5, 2.9}) {
     const RTray ray = rayFrom({10, y, 0}, {9, y, 0});
     const size_t first[2] = {0, 6};
@@ -251,7 +255,7 @@ TEST_F(AnalyticQueries, RaysOfAnyScaleMeetTheExactQuadratic) {
     Matrix m = matrices[0];
     m[0] = m[5] = m[10] = scale;
     const RTid placed = instance(unitSphere, m, false);
-    rtCommit();
+    rtRender();
     std::vector<RTray> rays;
     for (int i = 0; i < 25000; i++) {
       const Vec a = any(scale * std::pow(10, std::fabs(2 * unit_(random_)))), b = any(1.2 * scale);

@@ -274,6 +274,8 @@ TEST_F(Lenses, D10TheRainbowOfASphereIsAtItsAngle) {
   rtEndObject();
   rtBindShader(0);
   place(ball);
+  rtOrtho(1);
+  rtRender(); // commits
   const auto next = [](Vec& at, const Vec& d) {
     RTray ray{{float(at.x), float(at.y), float(at.z)},
               1e-4f,

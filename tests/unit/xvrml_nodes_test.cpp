@@ -239,6 +239,11 @@ TEST(Nodes, DefaultsAreThoseOfTheStandard) {
       {"Viewpoint", "position", SFVec3f{0, 0, 10}},
       {"Viewpoint", "jump", true},
       {"WorldInfo", "title", std::string()},
+      {"ORTAsphere", "conic", 0.0f},
+      {"ORTAsphere", "semiAperture", 1.0f},
+      {"ORTAsphere", "terms", MFFloat{}},
+      {"ORTQuadric", "coefficients", MFFloat{1, 1, 1, 0, 0, 0, 0, 0, 0, -1}},
+      {"ORTQuadric", "low", SFVec3f{-1, -1, -1}},
       {"ORTShader", "options", MFString{}},
   };
   for (const Default& expected : defaults)
