@@ -100,8 +100,7 @@ Mesh buildORTQuadric(const nodes::ORTQuadric& node, const MeshOptions& options, 
     faults.note("coefficients must be ten finite numbers; nothing is drawn");
     return mesh;
   }
-  if (!isFinite(low) || !isFinite(high) ||
-      !(low.x < high.x && low.y < high.y && low.z < high.z)) {
+  if (!isFinite(low) || !isFinite(high) || !(low.x < high.x && low.y < high.y && low.z < high.z)) {
     faults.note("low must be below high on every axis, and both finite; nothing is drawn");
     return mesh;
   }

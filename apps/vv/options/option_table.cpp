@@ -258,7 +258,8 @@ const OptionInfo table[] = {
      "texture multiplies diffuseColor, as in X3D). --explain says what they change.",
      setCompat},
     {"--exact-shapes", "", "Change",
-     "Draw Cylinder and Cone without facets, for lenses, pipes and mirrors. Spheres, ORTQuadric and "
+     "Draw Cylinder and Cone without facets, for lenses, pipes and mirrors. Spheres, ORTQuadric "
+     "and "
      "ORTAsphere never have facets.",
      [](Options& o, const std::string&) { o.render.exactShapes = true; }},
     {"--old-world", "", "Change",
