@@ -106,6 +106,13 @@ bool Meshes::needTexture(int32_t mesh) {
   return true;
 }
 
+void Meshes::setExactShapes(bool exact) {
+  if (exactShapes_ == exact) return;
+  exactShapes_ = exact;
+  for (size_t mesh = 0; mesh < entries_.size(); ++mesh)
+    if (entries_[mesh].geometry) changed(int32_t(mesh));
+}
+
 void Meshes::changed(int32_t mesh) {
   leave(mesh);
   forgetCorners();

@@ -17,8 +17,8 @@ namespace xvrml::mapper {
 class Meshes {
  public:
   explicit Meshes(World& world) : world_(world), quota_(world, "meshes") {}
-  // Cylinders and cones are drawn without facets. Call it before the first mesh is built.
-  void setExactShapes(bool exact) { exactShapes_ = exact; }
+  // Sets whether cylinders and cones are drawn without facets. Meshes are then built again.
+  void setExactShapes(bool exact);
   // Returns the mesh number of a geometry node and adds a user. textured: the user has a texture.
   int32_t add(Node& geometry, bool textured);
   void drop(int32_t mesh); // removes one user
