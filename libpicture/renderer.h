@@ -42,6 +42,7 @@ struct RenderSettings {
   int threads = 0;          // 0: as many threads as the process may use
   std::string isa = "auto"; // instruction set of the ray kernels (isa=NAME of rtNewContext)
   bool linear = true;
+  bool exactShapes = false;      // value of xvrml::OpenRTMapper::setExactShapes
   bool multiplyTextures = false; // value of xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;

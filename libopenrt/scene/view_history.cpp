@@ -20,6 +20,7 @@ bool sameBytes(const ArrayPtr& a, const ArrayPtr& b) {
 bool sameTopology(const Geometry& a, const Geometry& b) {
   if (a.primitive != b.primitive) return false;
   if (a.primitive == edit::Primitive::Sphere) return true;
+  if (a.surface || b.surface) return a.surface && b.surface && *a.surface == *b.surface;
   return a.points && b.points && a.points->size() == b.points->size() &&
          sameBytes(a.indices, b.indices);
 }

@@ -128,6 +128,8 @@ CameraSettings OpenRTMapper::fitCamera(double fovy) const {
   return cameraAround(impl_->bounds(), first.matrix, fovy, impl_->options.aspect);
 }
 
+void OpenRTMapper::setExactShapes(bool exact) { impl_->graph.meshes.setExactShapes(exact); }
+
 void OpenRTMapper::setMultiplyTextures(bool multiply) {
   impl_->surfaces.multiplyTextures = multiply;
 }

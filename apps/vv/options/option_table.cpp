@@ -283,6 +283,11 @@ const OptionInfo table[] = {
      "without directOutput TRUE may change nodes, as in the browsers of 1997), textures (a colour "
      "texture multiplies diffuseColor, as in X3D). --explain says what they change.",
      setCompat},
+    {"--exact-shapes", "", "Change",
+     "Draw Cylinder and Cone without facets, for lenses, pipes and mirrors. Spheres, ORTQuadric "
+     "and "
+     "ORTAsphere never have facets.",
+     [](Options& o, const std::string&) { o.render.exactShapes = true; }},
     {"--old-world", "", "Change",
      "Show the world as browsers of the nineties did: the same as --compat scripts,textures "
      "--colour vrml97 --shadows off.",

@@ -78,6 +78,11 @@ void LocalBackend::prepare() {
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
     warnedOfNearLamp_ = !warning.empty();
   }
+  if (!warnedOfAnalyticLamp_ && options_.log && !recordsUnmoved_) {
+    const std::string warning = warnOfAnalyticLamps(*next);
+    if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
+    warnedOfAnalyticLamp_ = !warning.empty();
+  }
   next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
   if (tracesLamps(choice.transport) && !showsNoLight(next->frame) &&
       next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {

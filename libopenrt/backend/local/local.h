@@ -76,7 +76,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   bool scopedLights_ = false, recordsUnmoved_ = false;
   std::string transportReason_; // why the snapshot's transport was chosen
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
-  bool warnedOfNearLamp_ = false;
+  bool warnedOfNearLamp_ = false, warnedOfAnalyticLamp_ = false;
   mutable std::mutex mutex_; // guards frame_ against cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;

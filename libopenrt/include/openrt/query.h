@@ -21,7 +21,7 @@ typedef struct RTray {
 } RTray;
 typedef struct RThit {
   float t;         /* along the ray's direction as given; infinite if nothing is hit */
-  float u, v;      /* barycentric coordinates */
+  float u, v;      /* barycentric coordinates; 0 for spheres, quadrics and aspheres */
   float normal[3]; /* unit geometric normal, not turned towards the ray */
   RTid instance;   /* the outermost instance; 0 if nothing is hit */
   uint32_t name;   /* see rtLoadName */

@@ -127,6 +127,9 @@ class OpenRTMapper {
   // If true, a colour texture multiplies diffuseColor (X3D's rule) instead of replacing it (clause
   // 4.14.3). Call it before the first map().
   void setMultiplyTextures(bool multiply);
+  // If true, Cylinder and Cone are drawn without facets (rtCylinder, rtCone). Call it before the
+  // first map().
+  void setExactShapes(bool exact);
   // If true, three soft lights around the camera replace the automatic headlight in a world that
   // leaves its lighting open: one without Viewpoint, NavigationInfo, lights and ORT nodes. Takes
   // effect with the next map(); false by default.

@@ -17,7 +17,7 @@ void Accel::collectHit(const RTCFilterFunctionNArguments* a) {
     a->valid[i] = 0;
     const PrimitiveId found = primitiveOfHit(a, i);
     const edit::Primitive kind = self.accel->records[found.record].primitive;
-    if (kind != edit::Primitive::Triangles && kind != edit::Primitive::Sphere) continue;
+    if (kind == edit::Primitive::Lines || kind == edit::Primitive::Points) continue;
     self.all->push_back({RTCRayN_id(a->ray, a->N, i),
                          found.record,
                          found.primitive,

@@ -69,6 +69,12 @@ void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_pt
   attach(to, geometry, {std::move(part)}, mask);
 }
 
+void attachAnalytic(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                    uint32_t mask) {
+  RTCGeometry geometry = newAnalytic(device, *part);
+  attach(to, geometry, {std::move(part)}, mask);
+}
+
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                  uint32_t mask, RTCGeometryType type, uint32_t slot) {
   RTCGeometry geometry = rtcNewGeometry(device.device, type);
