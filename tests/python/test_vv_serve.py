@@ -7,7 +7,6 @@ import time
 
 import pytest
 
-from cluster_tools import addresses, needs_worker, workers
 from conftest import HEADER, find_vv
 from page_client import Image, serve, wait_for  # noqa: F401
 from window_driver import SENSORS, SPINNING, blue, coloured, green, red
@@ -400,24 +399,15 @@ def test_the_command_gives_the_same_view(serve, vv):
     page = server.join(*SIZE)
     page.still()
     page.drag(0, -0.9, 0.3, -0.7)
-    wait_for(lambda: page.camera()[0][0] < -1, "turned")
+
+    def has_turned():
+        camera = page.camera()
+        time.sleep(0.3)  # the whole drag has been followed when the camera stands still
+        return camera[0][0] < -1 and page.camera() == camera
+
+    wait_for(has_turned, "turned")
     words = page.command()
     assert words[0] == "vv" and "off" in words and "serve" not in words
     done = vv(*words[1:-2], "-o", "again.png")
     assert done.returncode == 0, done.talk
-    assert looks_like(page.still(), vv.folder / "again.png")
-
-
-def test_a_cluster_renders_for_the_page(serve, vv):
-    needs_worker()
-    vv.write("world.wrl", SENSORS)
-    assert vv("world.wrl", "-o", "x.png", "--size", "%dx%d" % SIZE, "--spp", 4).returncode == 0
-    with workers(1) as ports:
-        server = serve("world.wrl", "--spp", 4, "--workers", addresses(ports))
-        page = server.join(*SIZE)
-        page.until_state(lambda s: "1 of 1" in s["facts"][0] or "worker" in s["facts"][0])
-        page.still()
-        assert saved(server, page, "png") == (vv.folder / "x.png").read_bytes()
-        page.click(-0.35, 0)
-        page.still(lambda p: green(*p.at(-0.35, 0)))
-        assert server.stop() == 0
+    page.still(lambda p: looks_like(p, vv.folder / "again.png"))

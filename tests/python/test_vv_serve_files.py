@@ -4,9 +4,10 @@ import re
 
 import pytest
 
+from cluster_tools import addresses, needs_worker, workers
 from conftest import exr_channels
 from page_client import Image, serve  # noqa: F401
-from window_driver import SENSORS, SPINNING
+from window_driver import SENSORS, SPINNING, green
 
 SIZE = (160, 120)
 
@@ -89,3 +90,18 @@ def test_saving_can_be_given_up(serve):
     count = len(page.pictures)
     page.until(lambda p: len(page.pictures) > count + 5)
     assert page.of("saved") == []
+
+
+def test_a_cluster_renders_for_the_page(serve, vv):
+    needs_worker()
+    vv.write("world.wrl", SENSORS)
+    assert vv("world.wrl", "-o", "x.png", "--size", "%dx%d" % SIZE, "--spp", 4).returncode == 0
+    with workers(1) as ports:
+        server = serve("world.wrl", "--spp", 4, "--workers", addresses(ports))
+        page = server.join(*SIZE)
+        page.until_state(lambda s: "1 of 1" in s["facts"][0] or "worker" in s["facts"][0])
+        page.still()
+        assert saved(server, page, "png") == (vv.folder / "x.png").read_bytes()
+        page.click(-0.35, 0)
+        page.still(lambda p: green(*p.at(-0.35, 0)))
+        assert server.stop() == 0

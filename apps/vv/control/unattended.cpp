@@ -119,8 +119,8 @@ class Unattended {
 
   int end() {
     const int code = interrupted() ? exitInterrupted : failed_;
+    control_.reset(); // sends the last answers, before the process may end
     stopOrExit(session_.get(), code);
-    control_.reset();
     return code;
   }
 

@@ -357,8 +357,8 @@ class Window {
                      : failed_ == exitDone && !record_ ? exitRender
                                                        : failed_;
     if (session_) session_->endSaving();
+    control_.reset(); // sends the last answers, before the process may end
     stopOrExit(session_.get(), code);
-    control_.reset();
     return code;
   }
 
