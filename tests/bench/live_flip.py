@@ -3,7 +3,8 @@
 often they come, how late, and whether they flicker.
 
 live_flip.py --bench PROGRAM --out FOLDER [--worlds a,b,FILE.wrl] [--seconds N] [--pairs N]
-             [--steps N] [--frame WxH] [--size WxH] [--compare WxH] [--threads N]
+             [--steps N] [--frame WxH[xS[xK]]] [--size WxH] [--compare WxH] [--threads N]
+             [--denoiser own|oidn|auto]
              [--reference-spp N] [--reference-error E] [--strip FOLDER] [--docs] [--fresh]
 
 `make bench-live` runs it. PROGRAM is bench_live, which shows each world on a slow and on a fast turn,
@@ -200,11 +201,14 @@ class World:
         folder = self.options.out / self.name / f"{turn}-{kind}"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        how = [f"--show={folder}", f"--speed={TURNS[turn]}", f"--seconds={self.options.seconds}"]
+        how = [
+            f"--show={folder}", f"--speed={TURNS[turn]}", f"--seconds={self.options.seconds}",
+            f"--denoiser={self.options.denoiser}"
+        ]
         if kind == "raw":
             how.append("--raw")
         if self.options.steps:
-            how += [f"--steps={self.options.steps}", f"--frame={self.options.frame}x1"]
+            how += [f"--steps={self.options.steps}", f"--frame={self.options.frame}"]
         self.bench(*how)
         run = Run(folder, self.options.pairs)
         run.remove_rest()
@@ -353,12 +357,13 @@ def read_options():
     add("--seconds", type=float, default=6)
     add("--steps", type=int, default=0)
     add("--frame", default="400x300")
-    add("--pairs", type=int, default=3)
+    add("--pairs", type=int, default=2)
     add("--size", type=size, default=(800, 600))
     add("--compare", type=size, default=(400, 300))
     add("--fps", type=float, default=30)
     add("--threads", type=int, default=0)
-    add("--reference-spp", type=int, default=128)
+    add("--denoiser", choices=["own", "oidn", "auto"], default="own")
+    add("--reference-spp", type=int, default=64)
     add("--reference-error", type=float, default=0.03)
     add("--strip", type=pathlib.Path)
     add("--docs", action="store_true")

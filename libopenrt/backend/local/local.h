@@ -75,7 +75,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::shared_ptr<EmbreeDevice> device_;
   AccelBuilder builder_;
   Scene scene_;
-  SceneHistory history_;       // what has changed since the frame before
+  SceneHistory history_;       // what has changed since the last frame of each view
   uint64_t snapshotFrame_ = 0; // number of the history at the last prepare()
   SceneChanges changes_;       // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;
@@ -88,7 +88,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   bool scopedLights_ = false, recordsUnmoved_ = false;
   std::string transportReason_; // why the snapshot's transport was chosen
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
-  bool warnedOfNearLamp_ = false;
+  bool warnedOfNearLamp_ = false, warnedOfAnalyticLamp_ = false;
   mutable std::mutex mutex_; // guards frame_ against cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;

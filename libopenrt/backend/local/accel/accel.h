@@ -51,11 +51,14 @@ class Accel final : public Intersector {
   std::vector<uint32_t> spheres() const; // returns the records of all visible spheres
   struct Surface {
     uint32_t record;
-    Matrix4d unitSphere; // of a sphere: unit sphere's frame to render space
+    // To render space: of a sphere from the unit sphere's frame, of an analytic surface from its
+    // own.
+    Matrix4d toRender;
   };
   // Returns the largest coordinate of an origin of a ray, in render space.
   double reach() const { return 1e18 / double(scale_); }
-  std::vector<Surface> surfaces() const; // returns all visible triangle meshes and spheres
+  // Returns all visible triangle meshes, spheres and analytic surfaces.
+  std::vector<Surface> surfaces() const;
   // Returns the first record of a cluster; the entries of its part follow in order.
   uint32_t firstRecord(uint32_t cluster) const { return placed_[cluster].firstRecord; }
 

@@ -45,6 +45,7 @@ struct Doubts {
   static bool isGrazing(const Record& r, const Vec3f& kernelNormal, const Vec3f& direction) {
     return grazes(r.instanced ? r.kernelNormal * kernelNormal : kernelNormal, direction);
   }
+  // Only triangles have edges. Analytic surfaces are met in double precision, at any angle.
   bool hit(const Record& r, const Rays& rays, uint32_t i, const RayHits& hits) const {
     return isNearEnd(rays, i, hits.t[i]) || (r.primitive == edit::Primitive::Triangles &&
                                              (isNearEdge(hits.u[i], hits.v[i]) ||

@@ -64,8 +64,10 @@ struct ExactScene::Mesh {
 // A placed geometry.
 struct ExactScene::Surface {
   uint32_t record;
-  const Mesh* mesh; // null for a sphere
-  // Render space -> the frame of the mesh, or of the unit sphere: inverse * (p - center).
+  const Mesh* mesh;                // null for spheres and analytic surfaces
+  const AnalyticSurface* analytic; // null for the others
+  // Render space -> the frame of the mesh, of the unit sphere or of the analytic surface:
+  // inverse * (p - center).
   Vec3d center;
   Matrix4d inverse;
   Span box; // in render space
@@ -159,16 +161,16 @@ ExactScene::ExactScene(const EmbreeDevice& device, const Accel& accel)
   std::map<std::tuple<const float*, const uint32_t*, uint32_t>, const Mesh*> known;
   for (const Accel::Surface& from : accel.surfaces()) {
     const Record& r = accel.records[from.record];
-    const bool sphere = r.primitive == edit::Primitive::Sphere;
-    if (!sphere && !r.vertices) continue; // was refused when the scene was built
+    const bool triangles = r.primitive == edit::Primitive::Triangles;
+    if (r.primitive != edit::Primitive::Sphere && r.instanced && !matrixOf(r.toRender).usable())
+      continue; // Embree has it not
     const Mesh* mesh = nullptr;
-    if (!sphere) {
+    if (triangles) {
       const Mesh*& place = known[{r.vertices, r.indices, r.primitives}];
       if (!place) place = meshes_.emplace_back(std::make_unique<Mesh>(device, r)).get();
       mesh = place;
     }
-    if (!sphere && r.instanced && !matrixOf(r.toRender).usable()) continue; // Embree has it not
-    Matrix4d toRender = sphere        ? from.unitSphere
+    Matrix4d toRender = !triangles    ? from.toRender
                         : r.instanced ? matrixOf(r.toRender)
                                       : uniformScale(r.scale);
     if (mesh) {
@@ -178,13 +180,20 @@ ExactScene::ExactScene(const EmbreeDevice& device, const Accel& accel)
     }
     const double determinant = toRender.determinant();
     if (!toRender.finite() || determinant == 0 || !std::isfinite(1 / determinant)) continue;
-    const Vec3d reach = mesh ? mesh->half * mesh->unit : Vec3d{1, 1, 1};
+    Span bounds{{-1, -1, -1}, {1, 1, 1}};
+    if (mesh) bounds = {-mesh->half * mesh->unit, mesh->half * mesh->unit};
+    if (r.surface) bounds = {r.surface->low(), r.surface->high()};
+    const Vec3d reach = (bounds.high - bounds.low) * 0.5,
+                middle = toRender.point((bounds.low + bounds.high) * 0.5);
     const Vec3d half = abs(toRender.column(0)) * reach.x + abs(toRender.column(1)) * reach.y +
                        abs(toRender.column(2)) * reach.z;
-    const Vec3d center = toRender.translation();
     surfaceOf_[from.record] = uint32_t(surfaces_.size());
-    surfaces_.push_back(
-        {from.record, mesh, center, inverse(toRender), {center - half, center + half}});
+    surfaces_.push_back({from.record,
+                         mesh,
+                         r.surface,
+                         toRender.translation(),
+                         inverse(toRender),
+                         {middle - half, middle + half}});
   }
   makeTop(device);
 }
@@ -217,6 +226,7 @@ void ExactScene::search(const ExactRay& ray, Collector& to) const {
 }
 
 double ExactScene::meet(const Surface& surface, const ExactRay& ray, Collector& to) const {
+  if (surface.analytic) return meetAnalytic(surface, ray, to);
   if (!surface.mesh) return meetSphere(surface, ray, to);
   FrameRay local = surface.frameRay(ray);
   local.far = std::min(local.far, to.far);
@@ -259,6 +269,17 @@ double ExactScene::meetSphere(const Surface& surface, const ExactRay& ray, Colle
   return to.far;
 }
 
+double ExactScene::meetAnalytic(const Surface& surface, const ExactRay& ray, Collector& to) const {
+  const FrameRay local = surface.frameRay(ray);
+  const AnalyticSurface::Crossings found =
+      surface.analytic->intersect(local.origin, local.direction);
+  for (size_t i = 0; i < size_t(found.count); i++) {
+    const double t = found.t[i];
+    if (t > ray.near && t <= ray.far) to.add({surface.record, 0, {t}});
+  }
+  return to.far;
+}
+
 bool ExactScene::nearest(const ExactRay& ray, Hit& hit) const {
   Nearest found;
   search(ray, found);
@@ -288,7 +309,7 @@ size_t ExactScene::count(const ExactRay& ray) const {
 
 Vec3d ExactScene::point(const Hit& hit, const ExactRay& ray) const {
   const Record& r = accel_.records[hit.record];
-  if (r.primitive == edit::Primitive::Sphere) return ray.origin + ray.direction * hit.at.t;
+  if (r.primitive != edit::Primitive::Triangles) return ray.origin + ray.direction * hit.at.t;
   const Vec3d a = r.placeOf(cornerOf(r, hit.primitive, 0));
   return a + (r.placeOf(cornerOf(r, hit.primitive, 1)) - a) * hit.at.u +
          (r.placeOf(cornerOf(r, hit.primitive, 2)) - a) * hit.at.v;
@@ -297,16 +318,22 @@ Vec3d ExactScene::point(const Hit& hit, const ExactRay& ray) const {
 Vec3d ExactScene::normal(const Hit& hit, const ExactRay& ray) const {
   const Record& r = accel_.records[hit.record];
   Vec3d n;
-  if (r.primitive == edit::Primitive::Sphere) {
+  if (r.primitive != edit::Primitive::Triangles) {
     const Surface& surface = surfaces_[surfaceOf_[hit.record]];
     const FrameRay local = surface.frameRay(ray);
-    n = surface.inverse.transposed(local.origin + local.direction * hit.at.t);
+    n = local.origin + local.direction * hit.at.t;
+    if (surface.analytic) {
+      Vec3d gradient;
+      surface.analytic->valueAt(n, gradient);
+      n = normalize(gradient);
+    }
+    n = surface.inverse.transposed(n);
   } else {
     const Vec3d a = cornerOf(r, hit.primitive, 0);
     n = cross(cornerOf(r, hit.primitive, 1) - a, cornerOf(r, hit.primitive, 2) - a);
     if (r.instanced) n = r.kernelNormal * n;
-    if (r.flip) n = -n;
   }
+  if (r.flip) n = -n;
   const double l = length(n);
   return l > 0 ? n * (1 / l) : Vec3d{};
 }

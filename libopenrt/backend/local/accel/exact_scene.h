@@ -14,7 +14,8 @@ namespace openrt {
 
 // The surface that is met is this: the vertices are floats, as Embree sees them. Those of an
 // instance are mapped to render space by its matrix, whose elements are floats, in double
-// precision. Equal vertices of one geometry have equal places.
+// precision. Equal vertices of one geometry have equal places. Spheres and analytic surfaces are
+// intersected in double precision, in frames of their own.
 class ExactScene {
  public:
   struct Hit {
@@ -50,6 +51,7 @@ class ExactScene {
   double meetTriangle(const Surface& surface, uint32_t triangle, const ExactRay& ray,
                       Collector& to) const;
   double meetSphere(const Surface& surface, const ExactRay& ray, Collector& to) const;
+  double meetAnalytic(const Surface& surface, const ExactRay& ray, Collector& to) const;
 
   const Accel& accel_;
   std::vector<std::unique_ptr<Mesh>> meshes_; // each once, however often it is placed

@@ -91,7 +91,9 @@ PartInfo Survey::measurePart(const Scene& scene, const ScenePart& part, bool roo
         if (!shared && !root && !similarity(item.matrix * geometries[g].matrix))
           drawn = DrawnAs::ellipsoid;
         break;
-      case edit::Primitive::Triangles: break;
+      case edit::Primitive::Triangles:
+      case edit::Primitive::Quadric:
+      case edit::Primitive::Asphere: break;
       }
       if (shared) drawn = DrawnAs::shared;
       if (drawn == DrawnAs::ellipsoid) info.ellipsoids.emplace_back(i, g);
