@@ -24,7 +24,6 @@ Vec pointBy(const Matrix& m, Vec p) {
           m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
           m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]};
 }
-double distance(Vec a, Vec b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
 RTray rayFrom(Vec from, Vec to) {
   return {{float(from.x), float(from.y), float(from.z)},
           0,
