@@ -217,6 +217,50 @@ TEST_F(AnalyticQueries, ListsHoldEveryCrossingOfManyBodiesOnce) {
   }
 }
 
+// An object with so many triangles that its copies share one acceleration structure, whose matrices
+// are floats: the three surfaces of a lens get the same one, so rays at its rims find no gap.
+TEST_F(AnalyticQueries, CopiesOfALargeObjectHaveNoGapAtTheirRims) {
+  const RTid object = rtBeginObject(0);
+  lens();
+  rtBegin(RT_TRIANGLES); // on the far side of the lens, out of the way
+  for (int i = 0; i < 30000; i++) {
+    const double x = i % 100, y = i / 100, z = -500;
+    rtVertex3d(x, y, z);
+    rtVertex3d(x + 1, y, z);
+    rtVertex3d(x, y + 1, z);
+  }
+  rtEnd();
+  rtEndObject();
+  std::vector<RTid> placed;
+  for (int i = 0; i < 3; i++) {
+    placed.push_back(rtInstantiateObject(object));
+    Matrix m = {.8, .6, 0, 0, -.6, .8, 0, 0, 0, 0, 1, 0, 5. * i, .7, .3, 1};
+    rtInstanceMatrix(placed.back(), m.data());
+  }
+  rtRender();
+  std::vector<RTray> rays;
+  for (int i = 0; i < 100000; i++) {
+    const double turn = pi * unit_(random_), x = .7 * std::cos(turn), y = .7 * std::sin(turn);
+    const Vec middle{5. * (i % 3), .7, .3 + .15 * unit_(random_)};
+    const double z = .3 + (i & 1 ? .5 : -.5) * thick, wide = rim / .7;
+    rays.push_back(rayFrom({middle.x + x * .3, middle.y - y * .3, middle.z},
+                           {5. * (i % 3) + wide * x, .7 + wide * y, z}));
+    rays.back().tfar = 2;
+  }
+  std::vector<uint32_t> counts(rays.size());
+  std::vector<RThit> hits(rays.size());
+  rtCountHits(rays.size(), rays.data(), counts.data());
+  rtCastRays(rays.size(), rays.data(), hits.data());
+  size_t none = 0, leaks = 0;
+  for (size_t i = 0; i < rays.size(); i++) {
+    none += counts[i] == 0;
+    leaks += !std::isfinite(hits[i].t);
+  }
+  EXPECT_EQ(none, 0u);
+  EXPECT_EQ(leaks, 0u);
+  for (const RTid one : placed) rtDeleteInstance(one);
+}
+
 TEST_F(AnalyticQueries, TheFrontFacesOutwardsAndNormalsAreUnit) {
   for (const Matrix& m : matrices) {
     const RTid placed = instance(lens, m, false);
