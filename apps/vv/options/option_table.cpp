@@ -1,6 +1,6 @@
 // option_table.cpp: Defines every option of vv: names, argument, help text and effect. The options
 // of the group Cluster are in cluster_options.cpp, those of quality settings in
-// quality_options.cpp.
+// quality_options.cpp. Longer than 500 lines because it is one table.
 #include "options.h"
 
 #include <algorithm>
