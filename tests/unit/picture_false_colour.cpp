@@ -85,6 +85,6 @@ TEST(FalseColour, OddPicturesAreShown) {
   Picture wrong = ramp(8, 8, 1);
   wrong.planes[RT_RGBA][4] = std::nanf("");
   wrong.planes[RT_RGBA][8] = INFINITY;
-  for (const float value : falseColours(wrong, {}).planes.at(RT_RGBA))
-    EXPECT_TRUE(value >= 0 && value <= 1);
+  const Picture shown = falseColours(wrong, {});
+  for (const float value : shown.planes.at(RT_RGBA)) EXPECT_TRUE(value >= 0 && value <= 1);
 }
