@@ -54,12 +54,12 @@ class RateLimit {
   bool begun_ = false;
 };
 
-// Of what one page sends.
+// Limits how much one page sends.
 struct MessageRate : RateLimit {
   MessageRate() : RateLimit(maxMessagesPerSecond, maxMessageBurst) {}
 };
 
-// Of the pages of the web that a world opens.
+// Limits how many pages of the web a world opens.
 struct OpenRate : RateLimit {
   OpenRate() : RateLimit(maxOpensPerMinute / 60.0, maxOpenBurst) {}
 };

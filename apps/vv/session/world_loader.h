@@ -25,7 +25,7 @@ struct LoadAnswer {
   std::string error;                   // why there is no world
 };
 
-// What became of the world of an answer.
+// Tells what became of the world of an answer.
 struct LoadOutcome {
   std::string wrong;   // why it is not used; empty if it is
   int code = exitDone; // of the process that cannot go on without it

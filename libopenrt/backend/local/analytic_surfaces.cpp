@@ -67,13 +67,7 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
 } // namespace
 
 RTCGeometry newAnalytic(const EmbreeDevice& device, Part& part) {
-  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(part.surfaces.size()));
-  rtcSetGeometryUserData(geometry, &part);
-  rtcSetGeometryBoundsFunction(geometry, boundsOf, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect);
-  rtcSetGeometryOccludedFunction(geometry, occluded);
-  return geometry;
+  return newUserGeometry(device, &part, part.surfaces.size(), boundsOf, intersect, occluded);
 }
 
 } // namespace openrt

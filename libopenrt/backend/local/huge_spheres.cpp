@@ -63,13 +63,7 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
 } // namespace
 
 RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part) {
-  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(part.spheres.size()));
-  rtcSetGeometryUserData(geometry, &part);
-  rtcSetGeometryBoundsFunction(geometry, boundsOf, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect);
-  rtcSetGeometryOccludedFunction(geometry, occluded);
-  return geometry;
+  return newUserGeometry(device, &part, part.spheres.size(), boundsOf, intersect, occluded);
 }
 
 } // namespace openrt

@@ -66,6 +66,10 @@ class LocalBackend final : public Backend, public SurfaceQueries {
                     const std::function<void(size_t ray)>& refuse = {});
   // Makes the exact ray of a query; returns false if it cannot be traced.
   bool loadExact(const RTray& ray, ExactRay& to) const;
+  // Finds the nearest hits of rays in single precision and calls take(ray, hits, index of its hit)
+  // for each, on all threads. Returns by ray whether it must be decided again; empty: none must.
+  template <class Take>
+  std::vector<uint8_t> findNearest(std::span<const RTray> rays, const Take& take);
   bool isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i, const RayHits& found) const;
   RThit hitOf(const ExactScene::Hit& found, const ExactRay& ray, const RTray& asked) const;
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;

@@ -126,7 +126,8 @@ bool LocalBackend::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i
   return doubts.hit(accel_->records[found.record[i]], rays, i, found);
 }
 
-void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+template <class Take>
+std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, const Take& take) {
   prepare();
   const Doubts doubts(*accel_);
   std::vector<uint8_t> again(rays.size());
@@ -137,15 +138,22 @@ void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) 
     accel_->intersect(batch, maskAll, Coherence::incoherent, found);
     bool some = false;
     for (uint32_t i = 0; i < batch.count; i++) {
-      const bool doubt = isDoubtful(doubts, batch, i, found);
-      RThit& hit = hits[first + i] = hitOf(found, i);
-      hit.t *= directionScale(rays[first + i]);
-      again[first + i] = doubt;
-      some |= doubt;
+      some |= again[first + i] = isDoubtful(doubts, batch, i, found);
+      take(first + i, found, i);
     }
     if (some) any = true;
   });
-  if (!any) return;
+  if (!any) again.clear();
+  return again;
+}
+
+void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+  const std::vector<uint8_t> again =
+      findNearest(rays, [&](size_t ray, const RayHits& found, uint32_t i) {
+        hits[ray] = hitOf(found, i);
+        hits[ray].t *= directionScale(rays[ray]);
+      });
+  if (again.empty()) return;
   const ExactScene& scene = exact();
   forEachExact(rays, again.data(), [&](size_t i, const ExactRay& ray) {
     ExactScene::Hit found;
@@ -263,24 +271,13 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
   return true;
 }
 
+// An occlusion query of Embree is a third faster, but does not say where it hit.
 void LocalBackend::occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) {
-  prepare();
-  const Doubts doubts(*accel_);
-  std::vector<uint8_t> again(rays.size());
-  std::atomic<bool> any{false};
-  forBatches(rays, [&](size_t first, Arena& arena, Rays& batch) {
-    // An occlusion query of Embree is a third faster, but does not say where it hit.
-    RayHits found;
-    found.allocate(arena, batch.count);
-    accel_->intersect(batch, maskAll, Coherence::incoherent, found);
-    bool some = false;
-    for (uint32_t i = 0; i < batch.count; i++) {
-      occluded[first + i] = found.record[i] != noHit;
-      some |= again[first + i] = isDoubtful(doubts, batch, i, found);
-    }
-    if (some) any = true;
-  });
-  if (!any) return;
+  const std::vector<uint8_t> again =
+      findNearest(rays, [&](size_t ray, const RayHits& found, uint32_t i) {
+        occluded[ray] = found.record[i] != noHit;
+      });
+  if (again.empty()) return;
   const ExactScene& scene = exact();
   forEachExact(rays, again.data(),
                [&](size_t i, const ExactRay& ray) { occluded[i] = scene.occluded(ray); });

@@ -90,7 +90,7 @@ class ExactScene::Nearest final : public Collector {
  public:
   Hit hit;
   double add(const Hit& h) override {
-    // Of several at the same place the first one wins, in whatever order they come.
+    // The first of several at the same place wins, in whatever order they come.
     const auto key = [](const Hit& x) { return std::tuple(x.at.t, x.record, x.primitive); };
     if (hit.record == noHit || key(h) < key(hit)) hit = h;
     return far = hit.at.t;
