@@ -2,7 +2,23 @@
 
 #include <algorithm>
 
+#include "render/path/light_stride.h"
+
 namespace openrt {
+
+uint32_t LightImage::partsOf(const edit::FrameSettingsT& frame) {
+  constexpr uint32_t ofPreviews = 4;
+  return lightStrideOf(frame) > 1 ? ofPreviews : parts;
+}
+
+LightImage::LightImage(uint32_t width, uint32_t height, uint32_t all, bool variance)
+    : width_(width), height_(height), all_(all), waiting_(all) {
+  const size_t pixels = size_t(width) * height;
+  if (variance)
+    pixels_.resize(pixels);
+  else
+    means_.resize(pixels);
+}
 
 void LightImage::add(uint32_t number, std::vector<float>&& part) {
   std::unique_lock turn(turn_);
@@ -21,6 +37,8 @@ void LightImage::add(uint32_t number, std::vector<float>&& part) {
 
 void LightImage::addNow(const std::vector<float>& part, double number) {
   std::unique_lock lock(sums_);
+  for (size_t i = 0; i < means_.size(); i++)
+    for (size_t k = 0; k < 3; k++) means_[i][k] += (part[3 * i + k] - means_[i][k]) / (number + 1);
   for (size_t i = 0; i < pixels_.size(); i++) // B. P. Welford, Technometrics 4(3), 1962
     for (int k = 0; k < 3; k++) {
       Pixel& p = pixels_[i];
@@ -64,7 +82,15 @@ void LightImage::read(const Tile& tile, std::vector<LightSums>& out) const {
   std::shared_lock lock(sums_);
   out.clear();
   for (uint32_t y = tile.y0; y < tile.y1; y++)
-    for (uint32_t x = tile.x0; x < tile.x1; x++) out.push_back(at(x, y));
+    for (uint32_t x = tile.x0; x < tile.x1; x++) {
+      if (means_.empty()) {
+        out.push_back(at(x, y));
+        continue;
+      }
+      LightSums mean;
+      std::copy_n(means_[size_t(y) * width_ + x].data(), 3, mean.mean);
+      out.push_back(mean);
+    }
 }
 
 } // namespace openrt

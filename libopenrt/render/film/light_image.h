@@ -1,9 +1,11 @@
 // light_image.h: the part of the picture made by light tracing. Light paths may contribute to any
 // pixel, so the picture is made in a fixed number of parts, each a whole picture rendered by one
-// thread. Their mean and its variance are kept. Parts are added in the order of their numbers, and
-// a part that arrives early waits. So the sums do not depend on threads. [any]
+// thread. Their mean and its variance are kept, or only their mean where no error is asked for.
+// Parts are added in the order of their numbers, and a part that arrives early waits. So the sums
+// do not depend on threads. [any]
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -17,28 +19,33 @@ namespace openrt {
 
 class LightImage {
  public:
-  static constexpr uint32_t parts = 16; // number of parts of a frame
-  LightImage(uint32_t width, uint32_t height, uint32_t all = parts)
-      : width_(width), height_(height), all_(all), pixels_(size_t(width) * height), waiting_(all) {}
+  static constexpr uint32_t parts = 16; // number of parts of a frame, at most
+  // Returns the number of parts of a frame. Those with light in few pixels are previews: their
+  // parts have few paths, and to add up whole pictures would cost more than to trace them.
+  static uint32_t partsOf(const edit::FrameSettingsT& frame);
+  // variance: whether it is kept.
+  LightImage(uint32_t width, uint32_t height, uint32_t all = parts, bool variance = true);
   // Adds a part: rgb by pixel, row by row. Each number may be added once.
   void add(uint32_t number, std::vector<float>&& part);
   uint32_t added() const { return added_.load(std::memory_order_acquire); }
   bool complete() const { return added() == all_; }
   // Returns a tile's sums, row by row, from the parts added so far. The variance is infinite with
-  // fewer than two parts.
+  // fewer than two parts, and 0 where it is not kept.
   void read(const Tile& tile, std::vector<LightSums>& out) const;
 
  private:
   struct Pixel {
     double mean[3] = {}, squares[3] = {}; // squares: sum of squared differences from the mean
   };
+  using Mean = std::array<double, 3>;
   void addNow(const std::vector<float>& part, double number);
   double variance(const Pixel& pixel, int k) const;
   LightSums at(uint32_t x, uint32_t y) const;
 
   uint32_t width_, height_, all_;
-  mutable std::shared_mutex sums_; // guards pixels_, and added_ for readers
-  std::vector<Pixel> pixels_;
+  mutable std::shared_mutex sums_; // guards pixels_ and means_, and added_ for readers
+  std::vector<Pixel> pixels_;      // where the variance is kept
+  std::vector<Mean> means_;        // where it is not
   std::atomic<uint32_t> added_{0};
   std::mutex turn_; // guards waiting_ and adding_
   std::vector<std::vector<float>> waiting_;

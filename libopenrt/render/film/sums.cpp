@@ -19,10 +19,10 @@ static_assert(std::is_trivially_copyable_v<PixelSums> && std::is_standard_layout
 // Returns the bytes of PixelSums to store. Only the part that the frame needs is stored, because
 // there may be one for each pixel of the picture.
 size_t keptBytes(const RequiredSums& g) {
-  if (g.motion) return sizeof(PixelSums);
-  if (g.error) return offsetof(PixelSums, motion);
-  if (g.surface) return offsetof(PixelSums, closed);
-  return g.spread ? offsetof(PixelSums, normal) : offsetof(PixelSums, first);
+  if (g.error) return sizeof(PixelSums);
+  if (g.spread) return offsetof(PixelSums, closed);
+  if (g.motion) return offsetof(PixelSums, first);
+  return g.surface ? offsetof(PixelSums, motion) : offsetof(PixelSums, normal);
 }
 
 // Merges the sums for error estimates. change: the shift that makes the differences of l relative

@@ -18,25 +18,27 @@ namespace openrt {
 struct RequiredSums {
   bool spread = false;  // true if first, delta and delta2 are needed
   bool surface = false; // true if normal and albedo are needed
-  bool error = false;   // true if all sums but motion are needed
-  bool motion = false;  // true if motion is needed, and all sums with it
+  bool motion = false;  // true if motion is needed
+  bool error = false;   // true if all sums are needed
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
-struct PixelSums { // sums of one pixel, samples added in order
+// Sums of one pixel, samples added in order. What most frames need comes first: a frame touches only
+// as much of each pixel as its channels need.
+struct PixelSums {
   double rgba[4] = {};
   float depth = 0, position[3] = {}, name = 0; // values of sample 0
   uint32_t samples = 0;
+  double normal[3] = {}, albedo[3] = {};
+  float motion[3] = {}; // value of sample 0
   // Sums of (x - first) and of its square. The difference avoids cancellation.
   double first[3] = {}, delta[3] = {}, delta2[3] = {};
-  double normal[3] = {}, albedo[3] = {};
   // Over the complete replicates: sums of their delta, and of its square, cube and fourth power.
   double closed[3] = {}, closed2[3] = {}, closed3[3] = {}, closed4[3] = {};
   double grey[3] = {}; // sums of (red + green + blue - first)^2, ^3 and ^4; see addTails()
   float largest[3] = {};
   uint32_t replicates = 0; // number of complete replicates
   bool random = false;     // a path has taken a random decision
-  float motion[3] = {};    // value of sample 0; last, because few frames need it
 
   void add(const float radiance[3], float alpha) {
     for (int k = 0; k < 3; k++) {

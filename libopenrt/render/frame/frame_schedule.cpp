@@ -53,10 +53,11 @@ FrameSchedule::FrameSchedule(const edit::FrameSettingsT& frame, const FrameFacts
   ahead_ = std::max(uint32_t(ahead), 4 * threadCount);
   all_ = double(frame.width) * frame.height * (double(frame.samples) + pilotSamples_);
   if (lamps_) {
-    partPaths_ = lightPathsOf(frame) / LightImage::parts + 1;
+    parts_ = LightImage::partsOf(frame);
+    partPaths_ = lightPathsOf(frame) / parts_ + 1;
     earlyPaths_ =
         frame.width * frame.height / 2 / earlyParts_ + 1; // altogether half a path per pixel
-    all_ += double(LightImage::parts) * partPaths_;
+    all_ += double(parts_) * partPaths_;
   }
   undone_ = all_;
   ended_ = tiles_ == 0;
@@ -288,8 +289,8 @@ void FrameSchedule::wantLight() {
   if (!lamps_) return;
   const uint32_t all = pilot_ ? pilotSamples_ : most_;
   const bool whole = !rounds_ || timed_ || first_ + samples_ >= all;
-  const auto share = uint32_t(double(first_) / most_ * LightImage::parts);
-  partsUntil_ = whole ? LightImage::parts : std::clamp(share, partsUntil_, LightImage::parts);
+  const auto share = uint32_t(double(first_) / most_ * parts_);
+  partsUntil_ = whole ? parts_ : std::clamp(share, partsUntil_, parts_);
 }
 
 float FrameSchedule::progress(double now) const {

@@ -52,9 +52,11 @@ struct FrameWork::Impl {
     if (frame.targetError > 0 && count > 0)
       pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
-    light = std::make_unique<LightImage>(frame.width, frame.height);
+    const bool errors = !film.errors().empty();
+    const auto parts = LightImage::partsOf(frame);
+    light = std::make_unique<LightImage>(frame.width, frame.height, parts, errors);
     if (schedule.rounds())
-      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts());
+      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts(), errors);
   }
 
   bool lightComplete() const { return !light || light->complete(); }

@@ -27,22 +27,25 @@ TileRenderer::TileRenderer(const RenderScene& scene)
 void TileRenderer::begin(const Tile& tile) {
   if (tile == tile_) return;
   tile_ = tile;
-  pixels_.clear();
-  places_.clear();
-  listPixels(tile, true);
-  lit_ = uint32_t(pixels_.size());
-  if (lightStride_ > 1) listPixels(tile, false);
+  listPixels(tile);
 }
 
-void TileRenderer::listPixels(const Tile& tile, bool lit) {
+// Lists the pixels of a tile in blocks of 4 x 4, those with light first.
+void TileRenderer::listPixels(const Tile& tile) {
+  pixels_.clear();
+  std::vector<uint32_t> unlit;
   for (uint32_t by = tile.y0; by < tile.y1; by += 4)
     for (uint32_t bx = tile.x0; bx < tile.x1; bx += 4)
       for (uint32_t y = by; y < std::min(by + 4, tile.y1); y++)
         for (uint32_t x = bx; x < std::min(bx + 4, tile.x1); x++) {
-          if (isLit(x, y, lightStride_, scene_.frame.seed) != lit) continue;
-          pixels_.push_back(y * width_ + x);
-          places_.push_back((y - tile.y0) * tile.width() + x - tile.x0);
+          const bool lit = isLit(x, y, lightStride_, scene_.frame.seed);
+          (lit ? pixels_ : unlit).push_back(y * width_ + x);
         }
+  lit_ = uint32_t(pixels_.size());
+  pixels_.insert(pixels_.end(), unlit.begin(), unlit.end());
+  places_.clear();
+  for (const uint32_t pixel : pixels_)
+    places_.push_back((pixel / width_ - tile.y0) * tile.width() + pixel % width_ - tile.x0);
 }
 
 // Where faces coincide, a ray's hit may depend on the other rays of its batch. So a leaf is always

@@ -47,7 +47,7 @@ class TileRenderer {
 
  private:
   void begin(const Tile& tile);
-  void listPixels(const Tile& tile, bool lit);
+  void listPixels(const Tile& tile);
   bool stopped() const { return stop_->load(std::memory_order_relaxed); }
   bool has(uint32_t channel) const { return scene_.frame.channels & channel; }
 
