@@ -60,6 +60,7 @@ const std::vector<Scenario>& scenarios() {
     std::vector<Scenario> v = firstScenes();
     v.insert(v.end(), trainingScenes().begin(), trainingScenes().end());
     v.insert(v.end(), judgingScenes().begin(), judgingScenes().end());
+    v.insert(v.end(), unseenScenes().begin(), unseenScenes().end());
     return v;
   }();
   return all;

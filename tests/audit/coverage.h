@@ -23,12 +23,14 @@ struct Scenario {
   const char* reason; // why `trusted` is below 1; "" if it is not
   void (*draw)();     // draws the scene into the current context
 };
-const std::vector<Scenario>& scenarios(); // all scenes of the three lists below
+const std::vector<Scenario>& scenarios(); // all scenes of the lists below
 // Limits and rules of the library may be chosen from the results of these two lists.
 const std::vector<Scenario>& firstScenes();
 const std::vector<Scenario>& trainingScenes();
 // Test set: no limit or rule of the library may be chosen from its results.
 const std::vector<Scenario>& judgingScenes();
+// Another test set, added after the limits and rules were set.
+const std::vector<Scenario>& unseenScenes();
 
 using Coverage = picture::Coverage;
 

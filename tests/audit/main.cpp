@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
   const int seeds = argc > 1 ? std::atoi(argv[1]) : 60, edge = argc > 2 ? std::atoi(argv[2]) : 16;
   const std::string only = argc > 3 ? argv[3] : "";
   if (seeds < 2 || edge < 1) {
-    std::fprintf(stderr, "usage: audit [SEEDS [EDGE [NAME|training|judging]]]\n");
+    std::fprintf(stderr, "usage: audit [SEEDS [EDGE [NAME|training|judging|unseen]]]\n");
     return 2;
   }
   std::printf("%-10s %-8s %5s %9s %7s %5s  %-16s  %-5s  %-6s  %-7s  %-18s  %-5s  %-20s  %s\n",
@@ -92,7 +92,8 @@ int main(int argc, char** argv) {
               "off by", "said", "in it", "bias", "cost");
   if (!run(audit::firstScenes(), "training", seeds, edge, only) ||
       !run(audit::trainingScenes(), "training", seeds, edge, only) ||
-      !run(audit::judgingScenes(), "judging", seeds, edge, only))
+      !run(audit::judgingScenes(), "judging", seeds, edge, only) ||
+      !run(audit::unseenScenes(), "unseen", seeds, edge, only))
     return 1;
   bool good = true;
   for (const Promise& h : {coverage, tiles, exact, whole, safe}) {
