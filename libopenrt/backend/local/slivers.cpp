@@ -1,10 +1,12 @@
 // slivers.cpp: an Embree user geometry for slivers, triangles that single precision cannot
-// intersect (sliver_edges.h). Embree traverses their bounding boxes; the triangles are intersected
-// here in double precision (exact.h). Called by render threads.
-#include <limits>
+// intersect (sliver_edges.h). Embree traverses the bounding boxes of their pieces
+// (sliver_pieces.h). Most rays of a box are rejected in single precision (sliver_lanes.h), the
+// others are intersected here in double precision (exact.h). Called by render threads.
+#include <bit>
 
 #include "backend/local/accel/embree_parts.h"
 #include "backend/local/exact.h"
+#include "backend/local/sliver_pieces.h"
 #include "backend/local/user_geometry.h"
 
 namespace openrt {
@@ -15,10 +17,18 @@ double reachOf(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return largest(max(max(abs(a), abs(b)), abs(c)));
 }
 
-Vec3d cornerOf(const Part& part, uint32_t triangle, int k) {
-  const uint32_t index = part.indices[3 * size_t(triangle) + size_t(k)];
-  return Vec3d(vectorOf(part.vertices.data() + 3 * size_t(index)));
-}
+struct Corners {
+  Vec3d a, b, c;
+  Corners(const Part& part, uint32_t primitive)
+      : a(cornerOf(part, primitive, 0)), b(cornerOf(part, primitive, 1)),
+        c(cornerOf(part, primitive, 2)) {}
+  Vec3d normal() const { return cross(b - a, c - a); }
+
+ private:
+  static Vec3d cornerOf(const Part& part, uint32_t primitive, uint32_t k) {
+    return Vec3d(vectorOf(&part.vertices[3 * size_t(part.indices[3 * size_t(primitive) + k])]));
+  }
+};
 
 // Returns whether a ray passes an open edge so closely that it counts as a hit. The neighbour
 // beyond the edge is intersected in single precision, whose rounding might also miss. The tolerance
@@ -30,85 +40,76 @@ bool closesGap(const RelativeTriangle& s, unsigned open, const Vec3d& d, double 
   return distance <= slack && intersectPlane(s, d) >= near;
 }
 
-// A triangle with precomputed values for isClearlyMissed(), which rejects most rays.
-struct Sliver {
-  Vec3d a, b, c;
-  // The edges c - a, a - b, b - c, and their cross products with the sums of their end points.
-  Vec3d edge[3], moment[3];
-  // The largest coordinate, and the factor of the float rounding error that does not depend on the
-  // ray.
-  double extent, doubt;
-  Sliver(const Part& part, uint32_t triangle)
-      : a(cornerOf(part, triangle, 0)), b(cornerOf(part, triangle, 1)),
-        c(cornerOf(part, triangle, 2)), edge{c - a, a - b, b - c}, moment{cross(edge[0], c + a),
-                                                                          cross(edge[1], a + b),
-                                                                          cross(edge[2], b + c)},
-        extent(reachOf(a, b, c)), doubt(0x1p-18 * reachOf(edge[0], edge[1], edge[2])) {}
-
-  // Returns whether the ray's line passes the triangle at such a distance that neither float
-  // rounding nor closesGap() could make it a hit.
-  bool isClearlyMissed(const Lane& ray) const {
-    const Vec3d m = cross(ray.direction, ray.origin) * 2;
-    const double slack = doubt * (extent + largest(abs(ray.origin))) * largest(abs(ray.direction));
-    const auto side = [&](int k) { return dot(moment[k], ray.direction) + dot(edge[k], m); };
-    const auto apart = [slack](double p, double q) {
-      return (p > slack && q < -slack) || (p < -slack && q > slack);
-    };
-    const double p = side(0), q = side(1);
-    if (apart(p, q)) return true;
-    const double r = side(2);
-    return apart(p, r) || apart(q, r);
-  }
-};
-
-bool intersectsLane(const Part& part, uint32_t triangle, const Sliver& s, const Lane& lane,
+// Finds where the ray of a lane hits the triangle of a primitive.
+bool intersectsLane(const Part& part, uint32_t primitive, const Corners& s, const Lane& lane,
                     TriangleHit& at) {
-  if (s.isClearlyMissed(lane)) return false;
   const RelativeTriangle seen{s.a - lane.origin, s.b - lane.origin, s.c - lane.origin};
   bool met = intersectTriangle(seen, lane.direction, at);
-  if (!met && part.openEdges[triangle])
-    met = closesGap(seen, part.openEdges[triangle], lane.direction, lane.near, at);
+  if (!met && part.openEdges[primitive])
+    met = closesGap(seen, part.openEdges[primitive], lane.direction, lane.near, at);
   if (met) return lane.reaches(at.t);
-  if (isHitInSinglePrecision(seen, lane.direction, lane.near, lane.far))
+  // The piece to which the wrong hit belongs counts it.
+  if (isHitInSinglePrecision(seen, lane.direction, lane.near, lane.far) &&
+      isInPiece(s.a, s.b, s.c, part.pieces[primitive],
+                lane.origin + lane.direction * intersectPlane(seen, lane.direction)))
     part.wrongHits->fetch_add(1, std::memory_order_relaxed);
   return false;
 }
 
+// Calls hit(lane, at, corners) for every ray of a packet that hits the primitive's triangle.
+template <class F> void forHits(const Part& part, uint32_t primitive, RTCRayN* rays, unsigned size,
+                                const int* valid, const F& hit) {
+  const PacketLines lines{
+      {&RTCRayN_org_x(rays, size, 0), &RTCRayN_org_y(rays, size, 0), &RTCRayN_org_z(rays, size, 0)},
+      {&RTCRayN_dir_x(rays, size, 0), &RTCRayN_dir_y(rays, size, 0), &RTCRayN_dir_z(rays, size, 0)},
+      valid,
+      size};
+  uint32_t left = mayHit(part.outlines[primitive], lines);
+  if (!left) return;
+  const Corners corners(part, primitive);
+  for (; left; left &= left - 1) {
+    const unsigned i = unsigned(std::countr_zero(left));
+    TriangleHit at;
+    if (intersectsLane(part, primitive, corners, Lane(rays, size, i), at)) hit(i, at, corners);
+  }
+}
+
+// The bounds are padded by the tolerance of closesGap() for rays that start within the part's
+// bounds.
 void boundsOf(const RTCBoundsFunctionArguments* a) {
   const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
-  const Vec3d p = cornerOf(part, a->primID, 0), q = cornerOf(part, a->primID, 1),
-              r = cornerOf(part, a->primID, 2);
-  // The bounds are padded by the tolerance of closesGap().
-  const Vec3d slack = 0x1p-21 * max(max(abs(p), abs(q)), abs(r));
-  storeBounds(Vec3f(min(min(p, q), r) - slack), Vec3f(max(max(p, q), r) + slack), *a->bounds_o);
+  const Corners s(part, a->primID);
+  const Box box = boundsOfPiece(s.a, s.b, s.c, part.pieces[a->primID]);
+  const Vec3d slack = 0x1p-21 * max(max(abs(s.a), abs(s.b)), abs(s.c));
+  storeBounds(Vec3f(box.low - slack), Vec3f(box.high + slack), *a->bounds_o);
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {
   const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
-  const Sliver sliver(part, a->primID);
-  RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
-  for (unsigned i = 0; i < a->N; i++) {
-    TriangleHit at;
-    if (a->valid[i] == -1 && intersectsLane(part, a->primID, sliver, Lane(rays, a->N, i), at))
-      storeHit(a, i, at.t, at.u, at.v, cross(sliver.b - sliver.a, sliver.c - sliver.a));
-  }
+  forHits(part, a->primID, RTCRayHitN_RayN(a->rayhit, a->N), a->N, a->valid,
+          [&](unsigned i, const TriangleHit& at, const Corners& s) {
+            storeHit(a, i, at.t, at.u, at.v, s.normal());
+          });
 }
 
 void occluded(const RTCOccludedFunctionNArguments* a) {
   const Part& part = *static_cast<const Part*>(a->geometryUserPtr);
-  const Sliver sliver(part, a->primID);
-  for (unsigned i = 0; i < a->N; i++) {
-    TriangleHit at;
-    if (a->valid[i] == -1 && intersectsLane(part, a->primID, sliver, Lane(a->ray, a->N, i), at))
-      storeOcclusion(a, i, at.t, cross(sliver.b - sliver.a, sliver.c - sliver.a));
-  }
+  forHits(part, a->primID, a->ray, a->N, a->valid,
+          [&](unsigned i, const TriangleHit& at, const Corners& s) {
+            storeOcclusion(a, i, at.t, s.normal());
+          });
 }
 
 } // namespace
 
 RTCGeometry newSlivers(const EmbreeDevice& device, Part& part) {
   part.wrongHits = &device.wrongHits;
-  return newUserGeometry(device, &part, part.indices.size() / 3, boundsOf, intersect, occluded);
+  part.outlines.clear();
+  for (uint32_t i = 0; i < part.pieces.size(); i++) {
+    const Corners s(part, i);
+    part.outlines.emplace_back(s.a, s.b, s.c);
+  }
+  return newUserGeometry(device, &part, part.pieces.size(), boundsOf, intersect, occluded);
 }
 
 } // namespace openrt

@@ -13,6 +13,8 @@
 
 namespace openrt {
 
+struct BakedTriangles;
+
 struct Blas : PartScene {
   Matrix4d fromKernel; // from the Embree scene's frame, scaled near 1, to that of its contents
   std::vector<const float*> vertices; // vertices of triangles by entry, in the Embree scene's frame
@@ -47,9 +49,12 @@ class BlasBuilder {
   void addSphere(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
   void addAnalytic(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry,
                    uint32_t mask);
-  Part& merge(const std::vector<float>& vertices, const uint32_t* index,
-              const std::vector<uint32_t>* which, size_t count, uint32_t entry, uint32_t mask,
-              bool slivers);
+  Part& extend(const std::vector<float>& vertices, uint32_t entry, uint32_t mask, bool slivers,
+               uint32_t& base);
+  void merge(const std::vector<float>& vertices, const uint32_t* index,
+             const std::vector<uint32_t>* which, size_t count, uint32_t entry, uint32_t mask);
+  void mergeSlivers(const BakedTriangles& baked, const uint32_t* index, uint32_t entry,
+                    uint32_t mask);
 
   const EmbreeDevice& device_;
   UnitSpheres& unitSpheres_;

@@ -9,6 +9,8 @@
 
 #include "backend/local/accel/embree_device.h"
 #include "backend/local/accel/primitive_runs.h"
+#include "backend/local/sliver_lanes.h"
+#include "backend/local/sliver_pieces.h"
 #include "scene/analytic.h"
 #include "scene/commit.h"
 #include "scene/matrix.h"
@@ -30,8 +32,12 @@ struct Part {
   std::vector<float> vertices; // in the layout that Embree reads
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;
-  std::vector<uint8_t> openEdges; // for each sliver bits of its open edges (sliver_edges.h)
-  std::vector<Matrix4d> spheres;  // for huge spheres: unit sphere's frame to the geometry's frame
+  // For slivers. A primitive is a piece of a triangle; the indices of all pieces are those of the
+  // triangle.
+  std::vector<uint8_t> openEdges; // bits of the open edges of the piece's triangle (sliver_edges.h)
+  std::vector<Piece> pieces;
+  std::vector<SliverOutline> outlines;
+  std::vector<Matrix4d> spheres; // for huge spheres: unit sphere's frame to the geometry's frame
   std::vector<PlacedSurface> surfaces;        // for analytic surfaces
   std::atomic<uint64_t>* wrongHits = nullptr; // for slivers: the device's; it outlives the part
 };
