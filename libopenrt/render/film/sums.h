@@ -18,8 +18,8 @@ namespace openrt {
 struct RequiredSums {
   bool spread = false;  // true if first, delta and delta2 are needed
   bool surface = false; // true if normal and albedo are needed
-  bool motion = false;  // true if motion is needed
   bool error = false;   // true if all sums are needed
+  bool motion = false;  // true if motion is needed
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
