@@ -111,7 +111,10 @@ struct RenderScene {
   // Indexed by light set. Null: every light is evaluated at every hit.
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>
-      lightSources;                // light tracing; null if there is nothing to trace
+      lightSources; // light tracing; null if there is nothing to trace
+  // By medium (ShaderTable::media): the light set that shines on it. Empty: the transport does not
+  // follow paths, or no medium of the scene scatters.
+  std::vector<uint32_t> scatteringLightSets;
   bool transparentShadows = false; // something transparent may lie between a point and a light
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.
   bool skyKnown = false, skyShines = false;

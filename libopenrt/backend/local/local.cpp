@@ -72,6 +72,7 @@ void LocalBackend::prepare() {
   unreachedLights_ = choice.unreached;
   transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
+  next->scatteringLightSets = lightSetsOfScatteringMedia(*next);
   next->emitters.build(*next, snapshot_.get(), recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
       next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {

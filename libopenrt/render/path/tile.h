@@ -23,6 +23,8 @@
 
 namespace openrt {
 
+struct Collisions;
+
 class TileRenderer {
  public:
   explicit TileRenderer(const RenderScene& scene);
@@ -65,6 +67,13 @@ class TileRenderer {
   void traceWave(Wave& wave, PixelSamples& found);
   // measure.cpp: the first wave of RT_MEASURE_ILLUMINANCE.
   void measureIlluminance(const Wave& wave, PixelSamples& found);
+  // medium/tile_media.cpp: scenes with media that scatter.
+  bool scattersInMedia() const { return !scene_.scatteringLightSets.empty(); }
+  void startInMedia(const Wave& wave);
+  void describeBehindMedia(const Wave& wave, PixelSamples& found);
+  void scatterInMedia(Wave& wave, PixelSamples& found);
+  void scatterInMedium(uint16_t medium, const Wave& wave, const Collisions& collisions,
+                       PixelSamples& found);
   void runTransportShader(const Rays& rays, PixelSamples& found);
   void addToPixels(const PixelRange& range, const PixelSamples& found, uint32_t firstSample,
                    uint32_t samples);
