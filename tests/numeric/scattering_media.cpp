@@ -238,6 +238,43 @@ TEST_F(ScatteringMedia, AirlightOfAPointLamp) {
              .03);
 }
 
+// In thin fog few rays collide. The ray passes so near to the lamp that its light differs by a
+// factor of 50 along it; places at equal angles cancel that, so few samples have a narrow interval.
+TEST_F(ScatteringMedia, AirlightNearALampHasLittleNoise) {
+  constexpr double ahead = 4, aside = 1.2, far = 10, s = 1e-3;
+  box(grey(s), {20, 20, 20});
+  placeAt(0, square(matt(0), 15));
+  use(point({aside, 0, far - ahead}, {0, 0, 1}));
+  rtQuality(RT_MAX_DEPTH, 0);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 256);
+  rtPushMatrix();
+  rtTranslated(0, 0, far);
+  rtOrtho(1e-6);
+  rtPopMatrix();
+  const double expected = airlight(s, s, 0, ahead, aside, far);
+  expectMean(means(4), {expected, expected, expected}, .005);
+}
+
+// Several lamps: one behind the camera, one beside the ray, one hidden by the floor.
+TEST_F(ScatteringMedia, AirlightOfSeveralLamps) {
+  constexpr double far = 6, s = .2, a = .1, g = -.4;
+  box(grey(s, a, g), {20, 20, 20});
+  placeAt(0, square(matt(0), 15));
+  const double lamps[3][2] = {{-2, 1.5}, {3, 2}, {8, 3}}; // ahead of the camera, aside
+  double expected = 0;
+  for (const auto& lamp : lamps) {
+    use(point({lamp[1], 0, far - lamp[0]}, {0, 0, 1}));
+    if (lamp[0] < far) expected += airlight(s, s + a, g, lamp[0], lamp[1], far);
+  }
+  rtQuality(RT_MAX_DEPTH, 0);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 1024);
+  rtPushMatrix();
+  rtTranslated(0, 0, far);
+  rtOrtho(1e-6);
+  rtPopMatrix();
+  expectMean(means(4), {expected, expected, expected}, .02);
+}
+
 // A parallel beam from the side crosses a layer of fog: L = scattering p(90 degrees) E int
 // exp(-extinction (t + aside)) dt. Camera and lamp are outside.
 TEST_F(ScatteringMedia, SingleScatteringOfAParallelBeam) {

@@ -270,7 +270,7 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
   if (n == 0) return;
   auto* blocked = arena.take<uint8_t>(padded(n));
   SeenThroughMedia seen;
-  if (!scene.scatteringLightSets.empty()) {
+  if (!scene.mediumLights.empty()) {
     seen = traceThroughMedia(batch, samples, boundaries, blocked);
   } else {
     context.counters.shadow += n;

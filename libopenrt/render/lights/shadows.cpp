@@ -168,7 +168,7 @@ ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena
   ShadowRays s{};
   s.rays.allocate(arena, capacity);
   s.lane = arena.take<uint32_t>(capacity);
-  if (!scene.scatteringLightSets.empty()) {
+  if (!scene.mediumLights.empty()) {
     s.media = arena.take<MediaStack>(capacity);
     std::fill_n(s.media, capacity, MediaStack{});
   }

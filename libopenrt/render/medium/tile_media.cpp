@@ -2,8 +2,9 @@
 // surfaces that have the phase function as their only lobe.
 #include <algorithm>
 
+#include "render/lights/lamps.h"
 #include "render/medium/containing_media.h"
-#include "render/medium/flights.h"
+#include "render/medium/lamp_places.h"
 #include "render/medium/phase_function.h"
 #include "render/path/tile.h"
 
@@ -30,48 +31,66 @@ void TileRenderer::describeBehindMedia(const Wave& wave, PixelSamples& found) {
   std::fill_n(found.first, n, uint8_t(0));
 }
 
-// Scatters the collisions of each medium together, in the order of the media and then of the rays.
 void TileRenderer::scatterInMedia(Wave& wave, PixelSamples& found) {
   ArenaScope scope(arena_);
-  const Collisions all = sampleFlights(context_, samples_, firstPair(), wave);
-  const std::span<const RtsMedium> media = scene_.shaders->media();
-  const size_t n = all.lanes.size();
-  auto* key = arena_.take<uint64_t>(n + 1); // the medium, then the place in `all`
-  for (size_t i = 0; i < n; i++)
-    key[i] = uint64_t(mediumOf(wave.states.media[all.lanes[i]], media)) << 32 | i;
-  std::sort(key, key + n);
-  auto* lane = arena_.take<uint32_t>(n + 1);
-  auto* distance = arena_.take<float>(n + 1);
-  for (size_t begin = 0, end; begin < n; begin = end) {
-    const uint64_t medium = key[begin] >> 32;
-    for (end = begin; end < n && key[end] >> 32 == medium; end++) {
-      lane[end] = all.lanes[uint32_t(key[end])];
-      distance[end] = all.distance[uint32_t(key[end])];
-    }
-    scatterInMedium(uint16_t(medium), wave, {{lane + begin, end - begin}, distance + begin}, found);
+  const std::span<const uint32_t> flights = listFlights(context_, wave);
+  if (flights.empty()) return;
+  forEachMedium(context_, wave, flights, [&](uint16_t medium, std::span<const uint32_t> lanes) {
+    gatherLamps(medium, wave, lanes, found);
+  });
+  const RayPlaces collisions = sampleFlights(context_, samples_, firstPair(), flights, wave);
+  forEachMedium(context_, wave, collisions.lanes,
+                [&](uint16_t medium, std::span<const uint32_t> lanes) {
+                  scatterInMedium(medium, wave, {lanes, collisions.distance}, found);
+                });
+}
+
+// Adds the phase function of a medium to the lobes of a batch.
+void TileRenderer::addPhaseLobe(uint16_t medium, RtsBatch& batch) const {
+  const RtsLobe& lobe = *scene_.host.customLobe(&batch, &phaseLobe, 1);
+  const uint32_t n = padded(batch.points->hits.count);
+  std::fill_n(lobe.data[0], n, scene_.shaders->media()[medium - 1].anisotropy);
+  for (float* weight : lobe.weight) std::fill_n(weight, n, 1.0f);
+}
+
+// The light of lamps is gathered at places of their own along each ray, and not where it collides.
+void TileRenderer::gatherLamps(uint16_t medium, const Wave& wave, std::span<const uint32_t> flights,
+                               PixelSamples& found) {
+  const uint32_t set = scene_.mediumLights[medium - 1].set;
+  if (scene_.lightSets[set].empty()) return;
+  ArenaScope scope(arena_);
+  const LampPlaces lamps = sampleLampPlaces(context_, samples_, firstPair(), medium, flights, wave);
+  if (lamps.places.lanes.empty()) return;
+  const Points points = pointsAlong(context_, wave, lamps.places);
+  RtsBatch batch = makeBatch(context_, points, wave.states);
+  batch.lightSet = set;
+  addPhaseLobe(medium, batch);
+  const uint32_t n = points.hits.count;
+  float* radiance[3];
+  for (auto& colour : radiance) colour = arena_.takeZero<float>(padded(n));
+  addLamps(batch, radiance);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t lane = lamps.places.lanes[i], path = wave.states.path[lane];
+    const Vec3f light = load(lamps.weight, lane) * load(radiance, i);
+    if (isFinite(light)) store(load(found.radiance, path) + light, found.radiance, path);
   }
 }
 
-void TileRenderer::scatterInMedium(uint16_t medium, const Wave& wave, const Collisions& collisions,
+void TileRenderer::scatterInMedium(uint16_t medium, const Wave& wave, const RayPlaces& collisions,
                                    PixelSamples& found) {
   ArenaScope scope(arena_);
-  const Points points = collisionPoints(context_, wave, collisions);
+  const Points points = pointsAlong(context_, wave, collisions);
   const uint32_t n = points.hits.count;
   RtsBatch batch = makeBatch(context_, points, wave.states);
-  batch.lightSet = scene_.scatteringLightSets[medium - 1];
-  const RtsLobe& lobe = *scene_.host.customLobe(&batch, &phaseLobe, 1);
-  std::fill_n(lobe.data[0], padded(n), scene_.shaders->media()[medium - 1].anisotropy);
+  addPhaseLobe(medium, batch);
   float* radiance[3];
-  for (int k = 0; k < 3; k++) {
-    std::fill_n(lobe.weight[k], padded(n), 1.0f);
-    radiance[k] = arena_.takeZero<float>(padded(n));
-  }
-  gatherLight(batch, {}, radiance);
+  for (auto& colour : radiance) colour = arena_.takeZero<float>(padded(n));
+  continueFromLobes(batch, {}, radiance);
   for (uint32_t i = 0; i < n; i++) {
-    const uint32_t at = collisions.lanes[i], path = wave.states.path[at];
-    const Vec3f throughput = load(wave.states.throughput, at);
+    const uint32_t lane = collisions.lanes[i], path = wave.states.path[lane];
+    const Vec3f throughput = load(wave.states.throughput, lane);
     store(load(found.radiance, path) + throughput * load(radiance, i), found.radiance, path);
-    if (!wave.states.flagsOf(at).deflected())
+    if (!wave.states.flagsOf(lane).deflected())
       found.alpha[path] += (throughput.x + throughput.y + throughput.z) / 3;
   }
 }

@@ -80,7 +80,7 @@ void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind
   const float pdf = batch.states->pdf[batch.order[i]];
   const size_t at = paths.next.size();
   spawnStraightRay(paths, i, {1, 1, 1}, behind);
-  if (!scene.scatteringLightSets.empty() && (traits & RTS_TRANSPARENT))
+  if (!scene.mediumLights.empty() && (traits & RTS_TRANSPARENT))
     paths.next.states().pdf[at] = pdf;
 }
 

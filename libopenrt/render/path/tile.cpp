@@ -214,6 +214,12 @@ void TileRenderer::scatter(const Points& points, const Bucket& bucket, const Pat
 void TileRenderer::gatherLight(RtsBatch& batch, const Boundaries& boundaries,
                                float* const radiance[3]) {
   addLamps(batch, radiance);
+  continueFromLobes(batch, boundaries, radiance);
+}
+
+// Does the same without the lamps.
+void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundaries,
+                                     float* const radiance[3]) {
   LobeSampling sampling;
   const bool path = tracesPaths(scene_.frame.transport);
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;

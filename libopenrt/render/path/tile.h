@@ -23,7 +23,7 @@
 
 namespace openrt {
 
-struct Collisions;
+struct RayPlaces;
 
 class TileRenderer {
  public:
@@ -68,11 +68,14 @@ class TileRenderer {
   // measure.cpp: the first wave of RT_MEASURE_ILLUMINANCE.
   void measureIlluminance(const Wave& wave, PixelSamples& found);
   // medium/tile_media.cpp: scenes with media that scatter.
-  bool scattersInMedia() const { return !scene_.scatteringLightSets.empty(); }
+  bool scattersInMedia() const { return !scene_.mediumLights.empty(); }
   void startInMedia(const Wave& wave);
   void describeBehindMedia(const Wave& wave, PixelSamples& found);
   void scatterInMedia(Wave& wave, PixelSamples& found);
-  void scatterInMedium(uint16_t medium, const Wave& wave, const Collisions& collisions,
+  void addPhaseLobe(uint16_t medium, RtsBatch& batch) const;
+  void gatherLamps(uint16_t medium, const Wave& wave, std::span<const uint32_t> flights,
+                   PixelSamples& found);
+  void scatterInMedium(uint16_t medium, const Wave& wave, const RayPlaces& collisions,
                        PixelSamples& found);
   void runTransportShader(const Rays& rays, PixelSamples& found);
   void addToPixels(const PixelRange& range, const PixelSamples& found, uint32_t firstSample,
@@ -99,6 +102,7 @@ class TileRenderer {
   void scatter(const Points& points, const Bucket& bucket, const PathStates& states,
                PixelSamples& found);
   void gatherLight(RtsBatch& batch, const Boundaries& boundaries, float* const radiance[3]);
+  void continueFromLobes(RtsBatch& batch, const Boundaries& boundaries, float* const radiance[3]);
 
   const RenderScene& scene_;
   const uint32_t width_; // width of the picture

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/transports.h"
-
 namespace openrt {
 
 Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& arena) {
@@ -174,31 +172,13 @@ void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& 
                      const PathStates& states) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   if (media.empty()) return;
-  const bool collide = !scene.scatteringLightSets.empty();
+  const bool collide = !scene.mediumLights.empty();
   // Light from infinity is fully absorbed in an absorbing medium.
   for (uint32_t i = 0; i < rays.count; i++) {
     const uint16_t medium = mediumOf(states.media[i], media);
     if (collide && medium && scatters(media[medium - 1])) continue; // sampleFlights() attenuates
     absorbAt(medium, std::min(hits.t[i], 1e30f), media, states, i);
   }
-}
-
-std::vector<uint32_t> lightSetsOfScatteringMedia(const RenderScene& scene) {
-  const std::span<const RtsMedium> media = scene.shaders->media();
-  std::vector<uint32_t> sets;
-  if (!tracesPaths(scene.frame.transport) || std::none_of(media.begin(), media.end(), scatters))
-    return sets;
-  constexpr uint32_t unknown = ~0u;
-  sets.assign(media.size(), unknown);
-  bool any = false;
-  for (const Record& record : scene.records) {
-    const uint16_t medium = (*scene.shaders)[record.shader].medium;
-    if (!medium || sets[medium - 1] != unknown) continue;
-    sets[medium - 1] = scene.buckets[record.bucket].lightSet;
-    any |= scatters(media[medium - 1]);
-  }
-  if (!any) sets.clear();
-  return sets;
 }
 
 } // namespace openrt

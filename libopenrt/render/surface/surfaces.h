@@ -39,10 +39,6 @@ struct Boundaries {
 // that of the colour that a ray carries.
 Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass);
 
-// Returns by medium the light set that shines on it: that of the first surface that bounds it.
-// Returns nothing if no medium of the scene scatters, or if the transport does not follow paths.
-std::vector<uint32_t> lightSetsOfScatteringMedia(const RenderScene& scene);
-
 // Returns the media on the side of hit i that a direction leads to. media: on the ray's side.
 inline const MediaStack& mediaTowards(const Points& points, uint32_t i, const Vec3f& direction,
                                       const Crossing* crossing, const MediaStack& media) {
