@@ -90,8 +90,8 @@ class Exporter:
                     twosided=True)
 
     def glass(self, p):
-        if any(p["absorption"]) or p.get("abbe"):
-            self.remark("Glass: absorption and dispersion are left out")
+        if any(p["absorption"]) or any(p.get("scattering", ())) or p.get("abbe"):
+            self.remark("Glass: absorption, scattering and dispersion are left out")
         if p["tint"] != [1, 1, 1]:
             self.remark("Glass: the tint is left out")
         return bsdf("dielectric", number("int_ior", p["index"]), number("ext_ior", 1))

@@ -40,6 +40,13 @@ struct RoleSlot {
   Affine toLocal, fromLocal;
 };
 
+// The lights that shine on a medium that scatters.
+struct MediumLights {
+  uint32_t set = 0; // index into RenderScene::lightSets
+  // Render space: the positions of its lights that declare one. Empty if they are many.
+  std::vector<Vec3f> lamps;
+};
+
 // The host table that shaders see, and the data that its functions need.
 struct RenderHost : RtsHost {
   const std::vector<Texture>* textures = nullptr;
@@ -111,7 +118,10 @@ struct RenderScene {
   // Indexed by light set. Null: every light is evaluated at every hit.
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>
-      lightSources;                // light tracing; null if there is nothing to trace
+      lightSources; // light tracing; null if there is nothing to trace
+  // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the
+  // scene scatters.
+  std::vector<MediumLights> mediumLights;
   bool transparentShadows = false; // something transparent may lie between a point and a light
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.
   bool skyKnown = false, skyShines = false;

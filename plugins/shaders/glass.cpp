@@ -30,12 +30,25 @@ struct Glass : rts::Surface<Glass> {
                                "where bodies overlap, the one with the highest priority counts"};
   rts::Param<int32_t> shadow{
       "shadow", 0, "1: blocks shadow rays; 0: lets shadow rays pass straight through", 0, 1};
+  rts::Param<rts::Color> scattering{
+      "scattering",
+      {0, 0, 0},
+      "scattering of light inside, per unit of length in the world: milky glass, plastic, wax",
+      0,
+      1e6f};
+  rts::Param<float> anisotropy{
+      "anisotropy", 0,
+      "mean cosine of the angle of that scattering (Henyey-Greenstein); 0: all directions alike",
+      -0.99f, 0.99f};
 
   rts::Medium medium() const {
     return {{indexAt(0.6114f, indexByColor->r), indexAt(0.5491f, indexByColor->g),
              indexAt(0.4642f, indexByColor->b)},
             absorption,
-            priority};
+            priority,
+            true,
+            scattering,
+            anisotropy};
   }
   template <class F> void surface(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out) const {
     // An engine that knows media uses their indices instead.

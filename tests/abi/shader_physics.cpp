@@ -94,6 +94,7 @@ const std::vector<Case> cases = {
     {"GlobalIllumination",
      "GlobalIllumination",
      {{"specularColor", {.5f, .5f, .5f}}, {"transparency", {.5f}}}},
+    {"Fog", "Fog", {}},
     {"RoughGlass", "RoughGlass", {{"roughness", {.05f}}}},
     {"RoughGlass40", "RoughGlass", {{"roughness", {.4f}}}},
     {"RoughGlass100", "RoughGlass", {{"roughness", {1}}}},

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "render/lights/light_sources.h"
+#include "render/medium/medium_lights.h"
 #include "render/path/guides.h"
 #include "render/path/transport.h"
 #include "scene/transports.h"
@@ -72,6 +73,7 @@ void LocalBackend::prepare() {
   unreachedLights_ = choice.unreached;
   transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
+  next->mediumLights = findMediumLights(*next);
   next->emitters.build(*next, snapshot_.get(), recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
       next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {

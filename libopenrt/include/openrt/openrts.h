@@ -30,7 +30,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 2 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 3 /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -204,6 +204,12 @@ typedef struct RtsMedium {
   float index[3];      /* index of refraction, > 0 */
   float absorption[3]; /* per world unit of length; transmittance is exp(-absorption x length) */
   int32_t priority;
+  /* Since 1.3; the host sets them to 0 before it calls `medium`. A medium scatters in transports
+   * that follow paths. In the others it attenuates light by both coefficients. */
+  float scattering[3]; /* per world unit of length, >= 0: light that goes on in other directions */
+  /* Mean cosine of the angle of scattering, -1 < g < 1; 0: all directions alike. The phase function
+   * is that of L. Henyey and J. Greenstein, "Diffuse Radiation in the Galaxy", ApJ 93, 1941. */
+  float anisotropy;
 } RtsMedium;
 
 /* Since 1.2. The position and strength of a light in its local space, for selecting one of many
@@ -279,7 +285,11 @@ enum {
   /* surface with RTS_EMISSIVE: each side emits the same radiance at all its points and in all
    * directions: it depends on the parameters only. The host then calls `surface` once for the light
    * samples of a shape. Has no effect on geometry with parameter values of its own. */
-  RTS_UNIFORM_EMISSION = 512
+  RTS_UNIFORM_EMISSION = 512,
+  /* Since 1.3. surface with `medium`: only its medium acts on light, as in a cloud. Where the
+   * indices of refraction on both sides are equal, the surface is invisible: no channel shows it,
+   * and light samples pass through it. */
+  RTS_MEDIUM_ONLY = 1024
 };
 
 /* Since 1.2: how often a parameter's value may change. Functions always find the value for a hit in

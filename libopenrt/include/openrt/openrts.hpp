@@ -275,7 +275,9 @@ struct Medium {
   Color index{1, 1, 1}; // index of refraction, > 0, by colour
   Color absorption;     // per world unit of length: transmittance is exp(-absorption x length)
   int32_t priority = 0;
-  bool present = true; // false: the body has no interior
+  bool present = true;  // false: the body has no interior
+  Color scattering;     // per world unit of length, >= 0
+  float anisotropy = 0; // mean cosine of the angle of scattering, between -1 and 1
 };
 // The position and strength of a light (RtsExtent), in its local space.
 struct Extent {

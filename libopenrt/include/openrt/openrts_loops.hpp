@@ -206,11 +206,14 @@ template <class T> void transmit(const RtsHost* host, RtsBatch* batch, const Rts
 template <class T> int medium(const RtsHost*, const void* params, RtsMedium* out) {
   const Medium m = static_cast<const T*>(params)->medium();
   const float index[3] = {m.index.r, m.index.g, m.index.b},
-              absorption[3] = {m.absorption.r, m.absorption.g, m.absorption.b};
+              absorption[3] = {m.absorption.r, m.absorption.g, m.absorption.b},
+              scattering[3] = {m.scattering.r, m.scattering.g, m.scattering.b};
   for (int k = 0; k < 3; k++) {
     out->index[k] = index[k];
     out->absorption[k] = absorption[k];
+    out->scattering[k] = scattering[k];
   }
+  out->anisotropy = m.anisotropy;
   out->priority = m.priority;
   return m.present;
 }

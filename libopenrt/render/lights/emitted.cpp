@@ -5,6 +5,7 @@
 
 #include "render/lights/environment.h"
 #include "render/lights/sampled_points.h"
+#include "render/lights/shadows.h"
 #include "render/surface/surface_shader.h"
 
 namespace openrt {
@@ -157,8 +158,10 @@ void weightLightSamples(const RtsBatch& batch, const LobeSampling& sampling,
 namespace {
 
 // Blocks the rays to shapes that may be hidden, or share their place with another surface, unless
-// the sampled shape is the one that the kernel reports.
-void blockUncertain(const StageContext& context, const LightSamples& samples, uint8_t* blocked) {
+// the sampled shape is the one that the kernel reports. origin: where the rays start, or where they
+// have left the last boundary without effect.
+void blockUncertain(const StageContext& context, const LightSamples& samples,
+                    const float* const origin[3], uint8_t* blocked) {
   const EmissiveShapes& shapes = *context.scene.emitters.shapes();
   if (!shapes.anyUncertain()) return;
   const Rays& rays = samples.rays;
@@ -172,7 +175,12 @@ void blockUncertain(const StageContext& context, const LightSamples& samples, ui
   }
   if (n == 0) return;
   const Rays again = copyRays(rays, lanes, n, arena);
-  for (uint32_t i = 0; i < n; i++) again.tfar[i] = samples.distance[lanes[i]] * (1 + 0x1p-10f);
+  for (uint32_t i = 0; i < n; i++) {
+    const Vec3f start = load(origin, lanes[i]);
+    const float passed = length(start - load(again.org, i));
+    again.tfar[i] = (samples.distance[lanes[i]] - passed) * (1 + 0x1p-10f);
+    store(start, again.org, i);
+  }
   const RayHits found = findNearest(context, again, Coherence::incoherent);
   for (uint32_t i = 0; i < n; i++)
     blocked[lanes[i]] = found.record[i] == noHit ||
@@ -207,6 +215,39 @@ template <class Add> void shadeSampledPoints(const StageContext& context,
   }
 }
 
+// What shadow rays to emitters find in scenes with media that scatter.
+struct SeenThroughMedia {
+  float* transmittance[3] = {};
+  float* origin[3] = {}; // where each ray has left the last boundary without effect
+};
+
+SeenThroughMedia traceThroughMedia(const RtsBatch& batch, const LightSamples& samples,
+                                   const Boundaries& boundaries, uint8_t* blocked) {
+  Arena& arena = *batch.arena;
+  const uint32_t n = samples.rays.count;
+  SeenThroughMedia seen;
+  for (int k = 0; k < 3; k++) {
+    seen.transmittance[k] = arena.take<float>(n);
+    std::fill_n(seen.transmittance[k], n, 1.0f);
+    seen.origin[k] = arena.take<float>(n);
+    std::copy_n(samples.rays.org[k], n, seen.origin[k]);
+  }
+  ArenaScope scope(arena);
+  ShadowRays shadows = allocateShadowRays(*batch.scene, n, arena);
+  shadows.toEmitters = true;
+  shadows.lastOrigin = seen.origin;
+  shadows.rays = copyRays(samples.rays, arena.takeNumbers(n), n, arena);
+  for (uint32_t r = 0; r < n; r++) {
+    const uint32_t i = samples.hit[r];
+    shadows.lane[r] = r;
+    shadows.media[r] = mediaTowards(*batch.points, i, load(samples.rays.dir, r), boundaries,
+                                    batch.states->media[batch.order[i]]);
+  }
+  traceTransmittance(batch, shadows, seen.transmittance);
+  for (uint32_t r = 0; r < n; r++) blocked[r] = !(largest(load(seen.transmittance, r)) > 0);
+  return seen;
+}
+
 uint32_t listUnblocked(uint32_t n, const uint8_t* blocked, uint32_t* rays) {
   uint32_t left = 0;
   for (uint32_t r = 0; r < n; r++)
@@ -227,17 +268,24 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
   const Rays& rays = samples.rays;
   const uint32_t n = rays.count;
   if (n == 0) return;
-  context.counters.shadow += n;
   auto* blocked = arena.take<uint8_t>(padded(n));
-  findBlocked(scene, rays, blocked);
-  blockUncertain(context, samples, blocked);
+  SeenThroughMedia seen;
+  if (!scene.mediumLights.empty()) {
+    seen = traceThroughMedia(batch, samples, boundaries, blocked);
+  } else {
+    context.counters.shadow += n;
+    findBlocked(scene, rays, blocked);
+  }
+  blockUncertain(context, samples, seen.origin[0] ? seen.origin : rays.org, blocked);
 
   const EmissiveShapes& shapes = *scene.emitters.shapes();
   const bool absorbs = !scene.shaders->media().empty();
   const auto add = [&](uint32_t ray, const Vec3f& light) {
     const uint32_t i = samples.hit[ray];
     Vec3f left = light;
-    if (absorbs) { // absorption of the medium between hit and emitter
+    if (seen.transmittance[0]) {
+      left *= load(seen.transmittance, ray);
+    } else if (absorbs) { // absorption of the medium between hit and emitter
       const MediaStack& media = mediaTowards(*batch.points, i, load(rays.dir, ray), boundaries,
                                              batch.states->media[batch.order[i]]);
       absorb(mediumOf(media, scene.shaders->media()), std::min(samples.distance[ray], 1e30f),

@@ -2,9 +2,11 @@
 // first. If the scene has transparent surfaces, the unoccluded rays then pass these one after the
 // other.
 #include "render/lights/shadows.h"
-#include "shading/running.h"
 
 #include <limits>
+
+#include "render/surface/surfaces.h"
+#include "shading/running.h"
 
 namespace openrt {
 namespace {
@@ -12,9 +14,7 @@ namespace {
 // Makes a shadow ray for every wanted lane that the light can reach.
 ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIllumination& light) {
   const RtsHits& hits = batch.points->hits;
-  ShadowRays s;
-  s.rays.allocate(*batch.arena, hits.count);
-  s.lane = batch.arena->take<uint32_t>(hits.count);
+  ShadowRays s = allocateShadowRays(*batch.scene, hits.count, *batch.arena);
   uint32_t n = 0;
   for (uint32_t i = 0; i < hits.count; i++) {
     if (!wanted[i] || !(batch.directional || batch.reach[i] > 0)) continue;
@@ -31,6 +31,9 @@ ShadowRays makeRays(RtsBatch& batch, const uint8_t* wanted, const RtsIlluminatio
     s.rays.tnear[n] = 0;
     s.rays.tfar[n] = batch.directional ? std::numeric_limits<float>::infinity()
                                        : batch.reach[i] * (1 - 0x1p-20f);
+    if (s.media && batch.order)
+      s.media[n] = mediaTowards(*batch.points, i, toLight, batch.crossing,
+                                batch.states->media[batch.order[i]]);
     s.lane[n++] = i;
   }
   s.rays.count = n;
@@ -50,9 +53,55 @@ void compact(ShadowRays& s, const uint8_t* drop) {
     store(load(s.rays.dir, i), s.rays.dir, n);
     s.rays.tnear[n] = s.rays.tnear[i];
     s.rays.tfar[n] = s.rays.tfar[i];
+    if (s.media) s.media[n] = s.media[i];
     s.lane[n++] = s.lane[i];
   }
   s.rays.count = n;
+}
+
+// Attenuates the colours by the media along the rays, up to their hits or ends. A ray that leaves
+// the scene is not inside a closed body (sampleFlights()).
+void attenuate(const RenderScene& scene, const ShadowRays& s, const RayHits& found,
+               float* const color[3]) {
+  const std::span<const RtsMedium> media = scene.shaders->media();
+  for (uint32_t i = 0; i < s.rays.count; i++) {
+    const uint16_t medium = mediumOf(s.media[i], media);
+    const float length = found.record[i] == noHit ? s.rays.tfar[i] : found.t[i];
+    if (!medium || (!std::isfinite(length) && scatters(media[medium - 1]))) continue;
+    Vec3f left = load(color, s.lane[i]);
+    absorb(medium, std::min(length, 1e30f), media, left);
+    store(left, color, s.lane[i]);
+  }
+}
+
+// Crosses the boundaries of media at hits of shadow rays.
+Boundaries crossWithMedia(const RtsBatch& batch, const ShadowRays& s, const Points& points,
+                          const RtsClass& shaderClass, float* const color[3]) {
+  PathStates states{};
+  states.media = s.media;
+  states.flags = batch.arena->takeZero<uint32_t>(s.rays.count);
+  for (auto& colour : states.throughput) {
+    colour = batch.arena->take<float>(s.rays.count);
+    std::fill_n(colour, s.rays.count, 1.0f);
+  }
+  RtsBatch inner = batch;
+  inner.tracer = nullptr;
+  inner.points = &points;
+  inner.states = &states;
+  inner.order = points.order;
+  inner.lobeCount = 0;
+  const Boundaries boundaries = crossBoundaries(inner, shaderClass);
+  for (uint32_t i = 0; i < points.hits.count; i++) // bodies that were left but never entered
+    scaleColor(color, s.lane[points.order[i]], load(states.throughput, points.order[i]));
+  return boundaries;
+}
+
+// Finds the nearest transparent surface along each ray.
+void intersectTransparent(const RenderScene& scene, const ShadowRays& s, RayHits& found) {
+  if (s.toEmitters && scene.kernel->cullsBacks())
+    scene.kernel->intersectFronts(s.rays, maskTransparent, found);
+  else
+    scene.kernel->intersect(s.rays, maskTransparent, Coherence::incoherent, found);
 }
 
 // Advances every ray by one transparent surface; rays that hit none are done.
@@ -61,12 +110,16 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
   const RenderScene& scene = *batch.scene;
   Arena& arena = *batch.arena;
   ArenaScope scope(arena);
-  scene.kernel->intersect(s.rays, maskTransparent, Coherence::incoherent, found);
+  intersectTransparent(scene, s, found);
+  if (s.media) attenuate(scene, s, found, color);
   uint32_t n = 0;
   auto* met = arena.take<uint32_t>(s.rays.count + 1);
   for (uint32_t i = 0; i < s.rays.count; i++) {
     done[i] = found.record[i] == noHit;
-    if (!done[i]) met[n++] = i;
+    if (!done[i])
+      met[n++] = i;
+    else if (s.lastOrigin)
+      store(load(s.rays.org, i), s.lastOrigin, s.lane[i]);
   }
   if (n == 0) return;
   auto* order = arena.take<uint32_t>(n);
@@ -78,19 +131,23 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
     float* through[3];
     for (auto& a : through) a = arena.takeZero<float>(padded(m));
     const RtsClass& shaderClass = *scene.buckets[range.bucket].shaderClass;
+    const Boundaries boundaries =
+        s.media ? crossWithMedia(batch, s, points, shaderClass, color) : Boundaries();
     RtsBatch inner = batch;
     inner.tracer = nullptr;
     inner.points = &points;
     // With light tracing, glass is opaque to shadow rays: light tracing follows the refracted
     // light.
-    if (shaderClass.transmit &&
+    if (shaderClass.transmit && !s.toEmitters &&
         !(scene.lightSources && shaderClass.surface && shaderClass.medium)) {
       const RunningShader running(shaderClass);
       shaderClass.transmit(&scene.host, &inner, &points.hits, through);
     }
     for (uint32_t i = 0; i < m; i++) {
       const uint32_t ray = order[range.begin + i];
-      const Vec3f t = min(max(Vec3f(), load(through, i)), {1, 1, 1}); // NaN: opaque
+      const Vec3f t = boundaries.visibleAt(i)
+                          ? min(max(Vec3f(), load(through, i)), {1, 1, 1}) // NaN: opaque
+                          : Vec3f{1, 1, 1};
       scaleColor(color, s.lane[ray], t);
       if (t.x + t.y + t.z < 1e-6f) {
         done[ray] = 1;
@@ -99,6 +156,7 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
       const Vec3f p = load(points.hits.position, i), behind = -load(points.hits.geometric, i);
       store(offsetPoint(p, behind, points.error[i]), s.rays.org, ray);
       s.rays.tfar[ray] -= found.t[ray];
+      if (boundaries.crossing) s.media[ray] = boundaries.crossing[i].behind;
       if (!(s.rays.tfar[ray] > 0)) done[ray] = 1;
     }
   }
@@ -106,20 +164,36 @@ void crossTransparentSurface(const RtsBatch& batch, ShadowRays& s, RayHits& foun
 
 } // namespace
 
+ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena& arena) {
+  ShadowRays s{};
+  s.rays.allocate(arena, capacity);
+  s.lane = arena.take<uint32_t>(capacity);
+  if (!scene.mediumLights.empty()) {
+    s.media = arena.take<MediaStack>(capacity);
+    std::fill_n(s.media, capacity, MediaStack{});
+  }
+  return s;
+}
+
 void traceTransmittance(const RtsBatch& batch, ShadowRays& s, float* const color[3]) {
   if (s.rays.count == 0) return;
   ArenaScope scope(*batch.arena);
   const RenderScene& scene = *batch.scene;
   batch.counters->shadow += s.rays.count;
   auto* blocked = batch.arena->take<uint8_t>(s.rays.count);
-  scene.kernel->occluded(s.rays, maskOpaque, Coherence::coherent, blocked);
+  if (s.toEmitters && scene.kernel->cullsBacks())
+    scene.kernel->occludedByFronts(s.rays, maskOpaque, blocked);
+  else
+    scene.kernel->occluded(s.rays, maskOpaque, Coherence::coherent, blocked);
   for (uint32_t i = 0; i < s.rays.count; i++)
     if (blocked[i]) scaleColor(color, s.lane[i], {});
-  if (!scene.transparentShadows) return;
+  if (!scene.transparentShadows && !s.media) return;
   compact(s, blocked);
   RayHits found;
   found.allocate(*batch.arena, s.rays.count);
-  for (uint32_t pass = 0; s.rays.count && pass < scene.frame.depth; pass++) {
+  // With media even a ray that meets no surface needs a pass.
+  const uint32_t passes = scene.frame.depth + (s.media ? 1 : 0);
+  for (uint32_t pass = 0; s.rays.count && pass < passes; pass++) {
     crossTransparentSurface(batch, s, found, blocked, color);
     compact(s, blocked);
   }

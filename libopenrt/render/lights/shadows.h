@@ -17,7 +17,16 @@ void castShadows(RtsBatch& batch, const uint8_t* wanted, RtsIllumination& light)
 struct ShadowRays {
   Rays rays;
   uint32_t* lane;
+  // The media at the rays' origins, in scenes with media that scatter. Null: no medium attenuates
+  // the rays.
+  MediaStack* media = nullptr;
+  // The rays pass only boundaries that have no effect on light. These are the ones where rays of
+  // paths keep the pdf of their directions, so that the MIS weights of both agree.
+  bool toEmitters = false;
+  float* const* lastOrigin = nullptr; // gets the origins of the rays' last parts, by `lane`
 };
+// Allocates shadow rays. Their number is still to be set.
+ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena& arena);
 // Multiplies colours by the transmittance along the rays. Overwrites the rays.
 void traceTransmittance(const RtsBatch& batch, ShadowRays& rays, float* const color[3]);
 

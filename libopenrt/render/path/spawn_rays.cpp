@@ -71,6 +71,19 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
   }
 }
 
+// Spawns a ray through a boundary that has no effect. Where light samples pass it, too, the ray
+// keeps the pdf of its direction (traceTransmittance(), SampledEmitters).
+void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind) {
+  const RtsBatch& batch = paths.batch;
+  const RenderScene& scene = *batch.scene;
+  const uint32_t traits = (*scene.shaders)[scene.records[batch.points->record[i]].shader].traits;
+  const float pdf = batch.states->pdf[batch.order[i]];
+  const size_t at = paths.next.size();
+  spawnStraightRay(paths, i, {1, 1, 1}, behind);
+  if (!scene.mediumLights.empty() && (traits & RTS_TRANSPARENT))
+    paths.next.states().pdf[at] = pdf;
+}
+
 } // namespace
 
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
@@ -92,9 +105,8 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                                  !followsImages(batch.scene->frame.transport));
   if (!samples.empty()) followSamples(paths, sampling, boundaries, samples);
   if (!boundaries.crossing) return;
-  constexpr Vec3f clear{1, 1, 1};
   for (uint32_t i = 0; i < batch.points->hits.count; i++)
-    if (!boundaries.visibleAt(i)) spawnStraightRay(paths, i, clear, boundaries.crossing[i].behind);
+    if (!boundaries.visibleAt(i)) passBoundary(paths, i, boundaries.crossing[i].behind);
 }
 
 } // namespace openrt

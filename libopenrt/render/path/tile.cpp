@@ -100,6 +100,7 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
   float* xy[2];
   sampleFilm(film, samples_, arena_, xy);
   makeCameraRays(context_, xy, wave.rays);
+  if (scattersInMedia()) startInMedia(wave);
   if (scene_.transport.shaderClass) {
     runTransportShader(wave.rays, found);
   } else {
@@ -118,6 +119,7 @@ void TileRenderer::renderPaths(bool light, Wave& wave, PixelSamples& found) {
     describe(wave, found);
   } else {
     if (scene_.frame.followImages) found.guides = &guides_;
+    if (scattersInMedia()) describeBehindMedia(wave, found);
     follow(wave, found);
   }
   guides_.finish(found);
@@ -157,6 +159,7 @@ void TileRenderer::follow(Wave& wave, PixelSamples& found) {
 void TileRenderer::traceWave(Wave& wave, PixelSamples& found) {
   ArenaScope scope(arena_);
   intersectWave(context_, level_ == 0 ? Coherence::coherent : Coherence::incoherent, wave);
+  if (scattersInMedia()) scatterInMedia(wave, found);
   addEnvironment(context_, wave, unsampled_, found);
   const auto shade = shadings[size_t(traitsOf(scene_.frame.transport).shading)];
   forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {
@@ -202,6 +205,7 @@ void TileRenderer::scatter(const Points& points, const Bucket& bucket, const Pat
   const RtsSurface surface = runSurfaceShader(batch, *bucket.shaderClass, has(RT_ALBEDO));
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
+  batch.crossing = boundaries.crossing;
   float* const* radiance = surface.emission; // all light that the hits send back
   weightEmission(batch, boundaries, unsampled_, radiance);
   gatherLight(batch, boundaries, radiance);
@@ -213,6 +217,12 @@ void TileRenderer::scatter(const Points& points, const Bucket& bucket, const Pat
 void TileRenderer::gatherLight(RtsBatch& batch, const Boundaries& boundaries,
                                float* const radiance[3]) {
   addLamps(batch, radiance);
+  continueFromLobes(batch, boundaries, radiance);
+}
+
+// Does the same without the lamps.
+void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundaries,
+                                     float* const radiance[3]) {
   LobeSampling sampling;
   const bool path = tracesPaths(scene_.frame.transport);
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;

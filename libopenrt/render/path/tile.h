@@ -23,6 +23,8 @@
 
 namespace openrt {
 
+struct RayPlaces;
+
 class TileRenderer {
  public:
   explicit TileRenderer(const RenderScene& scene);
@@ -65,6 +67,16 @@ class TileRenderer {
   void traceWave(Wave& wave, PixelSamples& found);
   // measure.cpp: the first wave of RT_MEASURE_ILLUMINANCE.
   void measureIlluminance(const Wave& wave, PixelSamples& found);
+  // medium/tile_media.cpp: scenes with media that scatter.
+  bool scattersInMedia() const { return !scene_.mediumLights.empty(); }
+  void startInMedia(const Wave& wave);
+  void describeBehindMedia(const Wave& wave, PixelSamples& found);
+  void scatterInMedia(Wave& wave, PixelSamples& found);
+  void addPhaseLobe(uint16_t medium, RtsBatch& batch) const;
+  void gatherLamps(uint16_t medium, const Wave& wave, std::span<const uint32_t> flights,
+                   PixelSamples& found);
+  void scatterInMedium(uint16_t medium, const Wave& wave, const RayPlaces& collisions,
+                       PixelSamples& found);
   void runTransportShader(const Rays& rays, PixelSamples& found);
   void addToPixels(const PixelRange& range, const PixelSamples& found, uint32_t firstSample,
                    uint32_t samples);
@@ -90,6 +102,7 @@ class TileRenderer {
   void scatter(const Points& points, const Bucket& bucket, const PathStates& states,
                PixelSamples& found);
   void gatherLight(RtsBatch& batch, const Boundaries& boundaries, float* const radiance[3]);
+  void continueFromLobes(RtsBatch& batch, const Boundaries& boundaries, float* const radiance[3]);
 
   const RenderScene& scene_;
   const uint32_t width_; // width of the picture

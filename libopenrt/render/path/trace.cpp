@@ -149,9 +149,11 @@ void TileRenderer::occluded(const RtsBatch& batch, const RtsRequest& request,
   for (int k = 0; k < 3; k++) std::fill_n(transmission[k], request.count, 1.0f);
   if (request.count == 0) return;
   ArenaScope scope(arena_);
-  ShadowRays rays;
-  rays.lane = arena_.take<uint32_t>(request.count);
+  ShadowRays rays = allocateShadowRays(scene_, request.count, arena_);
   rays.rays = raysOf(batch, request, rays.lane);
+  if (rays.media && batch.order)
+    for (uint32_t r = 0; r < rays.rays.count; r++)
+      rays.media[r] = batch.states->media[batch.order[request.hit[rays.lane[r]]]];
   traceTransmittance(batch, rays, transmission);
 }
 

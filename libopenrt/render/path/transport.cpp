@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "render/render_scene.h"
+#include "render/surface/media.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -30,6 +31,7 @@ constexpr Choice choices[] = {
      "{} scatters the light of the sky"},
     {RT_TRANSPORT_AUTO, hasScattering, hasLamps, RT_TRANSPORT_PATH,
      "{} scatters light of lamps from surface to surface"},
+    {RT_TRANSPORT_AUTO, hasFog, 0, RT_TRANSPORT_PATH, "{} scatters light inside"},
     {RT_TRANSPORT_AUTO, hasShading, hasEmitters, RT_TRANSPORT_PATH,
      "{} is lit by [], which emits light"},
     {RT_TRANSPORT_AUTO, hasShading, hasSkyLight, RT_TRANSPORT_PATH,
@@ -83,6 +85,15 @@ std::string reasonOf(const Choice& row, const SceneContents& contents) {
   return text;
 }
 
+// Paths from lamps are not scattered by media, so worlds with fog are followed from the camera.
+void avoidLightTracing(const SceneContents& contents, TransportChoice& choice) {
+  if (!(contents.bits & hasFog) || !traitsOf(choice.transport).tracesLamps) return;
+  choice.transport = RT_TRANSPORT_PATH;
+  choice.reason =
+      std::string(firstOf(contents, hasFog)) +
+      " scatters light inside, so paths are followed from the camera and not from lamps";
+}
+
 // Returns whether the environment emits light. It is evaluated on a coarse grid first. If that is
 // black, the full table is built, because a light source may lie between the grid points.
 bool shines(const RenderScene& scene, const RenderScene* before) {
@@ -116,7 +127,10 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
     // not.
     const bool scatters = values || !(shader.traits & (RTS_NO_SCATTER | RTS_UNLIT));
     const bool emits = shader.traits & RTS_EMISSIVE;
-    uint32_t bits = shader.traits & RTS_SPECULAR ? uint32_t(hasMirrors) : 0u;
+    const bool mirrors = (shader.traits & RTS_SPECULAR) && !(shader.traits & RTS_MEDIUM_ONLY);
+    uint32_t bits = mirrors ? uint32_t(hasMirrors) : 0u;
+    if (shader.medium && openrt::scatters(scene.shaders->media()[shader.medium - 1]))
+      bits |= hasFog | hasScattering;
     if (shaderClass.shade)
       bits |= (scatters ? hasShading : 0u) | (emits ? hasGlow : 0u);
     else
@@ -163,6 +177,7 @@ TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before) {
       choice.reason += reasonOf(row, contents);
     }
   }
+  avoidLightTracing(contents, choice);
   const TransportTraits& traits = traitsOf(choice.transport);
   for (const Omission& row : omissions)
     if ((row.leaves & traits.omits) && holds(contents.bits, row.all, row.any))

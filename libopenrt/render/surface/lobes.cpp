@@ -295,7 +295,7 @@ namespace {
 
 // Returns the class that added the lobes of a batch; null if it is not known.
 const RtsClass* classOf(const RtsBatch* batch) {
-  if (!batch || !batch->points) return nullptr;
+  if (!batch || !batch->points || batch->points->record[0] == noHit) return nullptr;
   return (*batch->scene->shaders)[batch->scene->records[batch->points->record[0]].shader]
       .shaderClass;
 }

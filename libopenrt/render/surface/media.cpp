@@ -31,7 +31,7 @@ Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
 void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, Vec3f& colour) {
   if (!medium) return;
   for (int k = 0; k < 3; k++) {
-    const float a = media[medium - 1].absorption[k];
+    const float a = extinctionOf(media[medium - 1], k);
     if (a != 0) colour[k] *= std::exp(-a * length);
   }
 }

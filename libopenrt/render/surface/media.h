@@ -41,7 +41,15 @@ Crossing cross(const MediaStack& stack, uint16_t medium, bool back,
 inline float indexOf(uint16_t medium, int colour, std::span<const RtsMedium> media) {
   return medium ? media[medium - 1].index[colour] : 1.0f;
 }
-// Attenuates `colour` by the absorption along `length` in a medium.
+// Returns whether a medium scatters light.
+inline bool scatters(const RtsMedium& medium) {
+  return medium.scattering[0] > 0 || medium.scattering[1] > 0 || medium.scattering[2] > 0;
+}
+// Returns the coefficient of extinction by colour: absorption and scattering.
+inline float extinctionOf(const RtsMedium& medium, int colour) {
+  return medium.absorption[colour] + medium.scattering[colour];
+}
+// Attenuates `colour` by the extinction along `length` in a medium.
 void absorb(uint16_t medium, float length, std::span<const RtsMedium> media, Vec3f& colour);
 
 } // namespace openrt

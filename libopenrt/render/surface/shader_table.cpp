@@ -168,6 +168,23 @@ bool ShaderTable::make(uint32_t number, const RtsClass& shaderClass, const Shade
   return true;
 }
 
+namespace {
+
+// Returns whether the medium does not scatter, or with coefficients and a phase function that can
+// be sampled.
+bool scattersSoundly(const RtsMedium& medium) {
+  constexpr float most = 1e30f;
+  bool any = false, sound = std::fabs(medium.anisotropy) < 1;
+  for (int k = 0; k < 3; k++) {
+    any |= medium.scattering[k] != 0;
+    sound &= medium.scattering[k] >= 0 && medium.scattering[k] <= most &&
+             medium.absorption[k] >= 0 && medium.absorption[k] <= most;
+  }
+  return !any || sound;
+}
+
+} // namespace
+
 // Stores the slot's medium; it keeps its number when its values change. A shader whose values are
 // out of range has no medium.
 void ShaderTable::setMedium(ShaderSlot& slot, const RtsHost& host) {
@@ -176,6 +193,15 @@ void ShaderTable::setMedium(ShaderSlot& slot, const RtsHost& host) {
   for (int k = 0; k < 3; k++)
     good = good && medium.index[k] > 0 && std::isfinite(medium.index[k]) &&
            std::isfinite(medium.absorption[k]);
+  if (good && !scattersSoundly(medium)) {
+    if (host.log)
+      host.log(&host, 2,
+               (std::string("shader ") + slot.shaderClass->name +
+                ": a medium that scatters needs absorption >= 0, scattering from 0 to 1e30 and an "
+                "anisotropy between -1 and 1; this one is left without scattering")
+                   .c_str());
+    std::fill_n(medium.scattering, 3, 0.0f);
+  }
   if (!good) {
     slot.medium = 0;
   } else if (slot.medium) {

@@ -150,6 +150,9 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
     float* eta = out.eta[i];
     for (int k = 0; k < 3; k++) eta[k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
     disperses[i] = channel == 0 && (eta[0] != eta[1] || eta[0] != eta[2]);
+    if (eta[0] == 1 && eta[1] == 1 && eta[2] == 1 &&
+        ((*scene.shaders)[scene.records[points.record[i]].shader].traits & RTS_MEDIUM_ONLY))
+      out.crossing[i].visible = false;
     any |= disperses[i] != 0;
     for (uint32_t l = 0; l < batch.lobeCount; l++) {
       if (!c.visible)
@@ -169,9 +172,13 @@ void absorbAlongRays(const RenderScene& scene, const Rays& rays, const RayHits& 
                      const PathStates& states) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   if (media.empty()) return;
+  const bool collide = !scene.mediumLights.empty();
   // Light from infinity is fully absorbed in an absorbing medium.
-  for (uint32_t i = 0; i < rays.count; i++)
-    absorbAt(mediumOf(states.media[i], media), std::min(hits.t[i], 1e30f), media, states, i);
+  for (uint32_t i = 0; i < rays.count; i++) {
+    const uint16_t medium = mediumOf(states.media[i], media);
+    if (collide && medium && scatters(media[medium - 1])) continue; // sampleFlights() attenuates
+    absorbAt(medium, std::min(hits.t[i], 1e30f), media, states, i);
+  }
 }
 
 } // namespace openrt
