@@ -11,6 +11,7 @@
 #include <shared_mutex>
 #include <vector>
 
+#include "render/film/error.h"
 #include "render/film/film.h"
 
 namespace openrt {
@@ -18,8 +19,11 @@ namespace openrt {
 class LightImage {
  public:
   static constexpr uint32_t parts = 16; // number of parts of a frame
-  LightImage(uint32_t width, uint32_t height, uint32_t all = parts)
-      : width_(width), height_(height), all_(all), pixels_(size_t(width) * height), waiting_(all) {}
+  // pooling: `none` if the pixels are sensors.
+  LightImage(uint32_t width, uint32_t height, uint32_t all = parts,
+             Pooling pooling = Pooling::neighbours)
+      : width_(width), height_(height), all_(all), pooling_(pooling),
+        pixels_(size_t(width) * height), waiting_(all) {}
   // Adds a part: rgb by pixel, row by row. Each number may be added once.
   void add(uint32_t number, std::vector<float>&& part);
   uint32_t added() const { return added_.load(std::memory_order_acquire); }
@@ -33,12 +37,19 @@ class LightImage {
     double mean[3] = {}, squares[3] = {}; // squares: sum of squared differences from the mean
   };
   void addNow(const std::vector<float>& part, double number);
+  void summarise();
   double variance(const Pixel& pixel, int k) const;
+  void addWindow(uint32_t x, uint32_t y, int k, LightSums& out) const;
   LightSums at(uint32_t x, uint32_t y) const;
+  LightSums ofSensor(uint32_t x, uint32_t y) const;
 
   uint32_t width_, height_, all_;
+  Pooling pooling_;
   mutable std::shared_mutex sums_; // guards pixels_, and added_ for readers
   std::vector<Pixel> pixels_;
+  // Of sensors: the mean that one path leaves in a cell, and the largest mean of all cells. 0 if no
+  // path has crossed any.
+  double ofOnePath_ = 0, brightest_ = 0;
   std::atomic<uint32_t> added_{0};
   std::mutex turn_; // guards waiting_ and adding_
   std::vector<std::vector<float>> waiting_;

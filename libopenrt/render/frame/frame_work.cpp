@@ -52,9 +52,11 @@ struct FrameWork::Impl {
     if (frame.targetError > 0 && count > 0)
       pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
-    light = std::make_unique<LightImage>(frame.width, frame.height);
+    const Pooling pooling = poolingOf(frame);
+    light = std::make_unique<LightImage>(frame.width, frame.height, LightImage::parts, pooling);
     if (schedule.rounds())
-      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts());
+      early =
+          std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts(), pooling);
   }
 
   bool lightComplete() const { return !light || light->complete(); }
@@ -119,8 +121,7 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
   if (!film.errors().empty()) {
     errors.resize(sums.size());
     if (required.error)
-      tileErrors(tile.width(), sums, replicates, errors,
-                 frame.measure ? Pooling::none : Pooling::neighbours);
+      tileErrors(tile.width(), sums, replicates, errors, poolingOf(frame));
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
   }
