@@ -104,7 +104,8 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
       !std::isfinite(length(position)))
     refuseThis("it stands in a coordinate system that is flat or not finite");
   store(direction * (1 / size), out.direction);
-  // A point has a cell, too, which gives the camera its axes.
+  out.cells = width > 0 && height > 0;
+  // A point without a size has a cell, too, which gives the camera its axes.
   const double cellWidth = width > 0 ? width / out.columns : 1,
                cellHeight = height > 0 ? height / out.rows : 1;
   store(u * cellWidth, out.column);
@@ -142,6 +143,9 @@ Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& giv
   frame.channels = RT_RGBA | RT_ERROR | RT_TRUST | RT_SAMPLES;
   frame.progressive = frame.preview = false;
   frame.quality.set(RT_MEASURE, sensor.luminance ? RT_MEASURE_LUMINANCE : RT_MEASURE_ILLUMINANCE);
+  // Light paths give means over cells. Points without cells follow paths alone.
+  if (!sensor.cells && frame.quality.whole(RT_TRANSPORT) == RT_TRANSPORT_LIGHT)
+    frame.quality.set(RT_TRANSPORT, RT_TRANSPORT_PATH);
   setUpFrame(frame);
   rtRender();
   throwOnError("measuring");

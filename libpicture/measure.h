@@ -20,6 +20,7 @@ struct PlacedSensor {
   std::string name;       // DEF name, else description, else "ORTSensor"
   bool luminance = false; // what is measured: luminance in cd/m2, or illuminance in lux
   int columns = 1, rows = 1;
+  bool cells = false; // the grid has a size, so that each point has a cell around it
   // World coordinates: the first point, the steps to the next column and to the next row, and the
   // unit normal of the plane (or the direction of view).
   double first[3], column[3], row[3], direction[3];

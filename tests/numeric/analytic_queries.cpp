@@ -409,5 +409,25 @@ TEST_F(AnalyticQueries, RaysOfAnyScaleMeetTheExactQuadratic) {
   }
 }
 
+// An answer that left the surface out would be wrong without a word.
+TEST_F(AnalyticQueries, ClosestPointsAreRefused) {
+  const RTid object = rtBeginObject(0);
+  unitSphere();
+  rtEndObject();
+  const RTid placed = place(object);
+  rtRender();
+  const float point[3] = {2, 0, 0};
+  RTclosest found{};
+  rtClosestPoints(1, point, infinity, &found);
+  EXPECT_EQ(rtGetError(), RTenum(RT_INVALID_OPERATION));
+  EXPECT_NE(std::string(rtGetErrorMessage()).find("quadric"), std::string::npos)
+      << rtGetErrorMessage();
+  rtDeleteInstance(placed);
+  rtRender();
+  rtClosestPoints(1, point, infinity, &found);
+  EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR));
+  EXPECT_TRUE(std::isinf(found.distance)) << "the scene is empty";
+}
+
 } // namespace
 } // namespace numeric

@@ -33,6 +33,42 @@ TEST_F(Ledger, WhatTheDepthLimitCuts) {
   }
 }
 
+// D16: a ray that meets 25 mirrors before the lamp. The depth limit counts surfaces: below 25 the
+// light is missing and the ledger has its throughput; from 25 on it is complete.
+TEST_F(Ledger, D16AChainOf25ReflectionsNeedsADepthOf25) {
+  constexpr double reflectance = .97;
+  const Shader mirror =
+      Shader("Mirror").set("reflectance", {reflectance, reflectance, reflectance});
+  // Mirrors at z = 0 and 1; the ray goes down at 45 degrees and meets one of them at x = i - 1/2.
+  const auto strip = [&](double z, bool down) {
+    rtPushMatrix();
+    rtTranslated(0, 0, z);
+    if (down) rtRotated(180, 1, 0, 0);
+    place(square(mirror, 1000));
+    rtPopMatrix();
+  };
+  strip(0, false);
+  strip(1, true);
+  rtPushMatrix(); // the lamp stands across, after the 25th reflection
+  rtTranslated(25, 0, .5);
+  rtRotated(-90, 0, 1, 0);
+  place(square(Shader("Diffuse").set("emission", {3, 3, 3}).set("reflectance", {0, 0, 0}), .5));
+  rtPopMatrix();
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtLookAt(0, 0, .5, .5, 0, 0, 0, 1, 0);
+  rtOrtho(1e-6);
+  rtPopMatrix();
+  const double throughput = std::pow(reflectance, 25);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED);
+  for (const int depth : {24, 25, 26, 50}) {
+    rtQuality(RT_MAX_DEPTH, depth);
+    const Rgba seen = render();
+    EXPECT_NEAR(double(seen.r), depth < 25 ? 0 : 3 * throughput, 1e-5 * 3 * throughput);
+    EXPECT_NEAR(stats().cutByDepth, depth < 25 ? 3 * throughput : 0, 1e-5 * 3 * throughput);
+  }
+}
+
 TEST_F(Ledger, WhatTheEnergyCutCuts) {
   mirrors(.5);
   rtQualityf(RT_ENERGY_CUT, .01);

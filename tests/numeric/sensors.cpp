@@ -53,13 +53,17 @@ TEST_F(Sensors, AnEmptySceneIsDark) {
   EXPECT_FALSE(dark.trusted && dark.halfWidth > 0);
 }
 
-TEST_F(Sensors, TransportsThatStartAtLampsDoNotReachThem) {
-  rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
+TEST_F(Sensors, TheyFollowPathsUnlessLightPathsAreAskedFor) {
   floor();
   lamp(rectangle(.5, 1));
-  expectReading(read({0, 0, .001}, up), pi * polygon(rectangle(.5, .999)));
+  const double expected = pi * polygon(rectangle(.5, .999));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_AUTO);
+  expectReading(read({0, 0, .001}, up), expected);
   EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
   EXPECT_STREQ(stats().transportReason, "sensors follow paths");
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT); // nothing mirrors or refracts
+  expectReading(read({0, 0, .001}, up), expected);
+  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
 }
 
 // A room with a lamp, a box and coloured walls.

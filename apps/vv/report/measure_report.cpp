@@ -151,8 +151,11 @@ std::vector<std::string> measurementWarnings(const Measurement& m, double target
                     doubtful, all.points));
   if (m.stats.unreachedLights > 0)
     add(fmt::format("the light that {} lamps without extent send through glass or mirrors is "
-                    "missing",
-                    m.stats.unreachedLights));
+                    "missing{}",
+                    m.stats.unreachedLights,
+                    m.sensor.luminance ? ""
+                    : m.sensor.cells   ? "; --transport light follows it"
+                                       : "; give the sensor a size and use --transport light"));
   return out;
 }
 

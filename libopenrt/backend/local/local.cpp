@@ -87,8 +87,10 @@ void LocalBackend::prepare() {
     warnedOfAnalyticLamp_ = !warning.empty();
   }
   next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
+  // Sensors that light paths do not reach do not have such a transport (transport.cpp).
   if (tracesLamps(choice.transport) && !showsNoLight(next->frame) &&
-      next->camera.shader.shaderClass && next->camera.shader.shaderClass->project) {
+      next->camera.shader.shaderClass &&
+      (next->camera.shader.shaderClass->project || next->frame.measure)) {
     auto sources =
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);

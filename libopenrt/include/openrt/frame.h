@@ -109,9 +109,14 @@ enum {
  * sRGB).
  *
  * The variance of a reading is that of its own replicates; it is not pooled with neighbouring
- * pixels. Sensors follow paths (RT_TRANSPORT_PATH) where the transport is RT_TRANSPORT_AUTO or
- * RT_TRANSPORT_LIGHT; the latter's paths from lamps do not reach them. Channels of first hits are 0
- * for RT_MEASURE_ILLUMINANCE. */
+ * pixels. Channels of first hits are 0 for RT_MEASURE_ILLUMINANCE.
+ *
+ * Sensors follow paths (RT_TRANSPORT_PATH) where the transport is RT_TRANSPORT_AUTO. Under
+ * RT_TRANSPORT_LIGHT, illuminances include light that lamps send by way of mirrors and glass: paths
+ * from lamps add their flux to the cells that they cross. A cell is the part of the camera's plane
+ * that a pixel covers, and this light is its mean over the cell; all other light is that at the
+ * point. The camera must have parallel rays that start in a plane across them, as an orthographic
+ * one. Other sensors follow paths then, too (RTstats.transport tells it). */
 enum {
   RT_MEASURE_NOTHING = 0, /* pixels are those of a picture */
   /* Luminance in cd/m2 of the light that arrives at the origin of the ray against its direction. */

@@ -71,8 +71,8 @@ typedef struct RTclosest {
   uint64_t userData;
 } RTclosest;
 /* Finds the place on a surface that is nearest to each of count points (3 floats each, in world
- * coordinates), up to a distance of radius (> 0; infinity is allowed). Triangles and spheres count,
- * lines and points do not. A point that is not finite has no nearest place. [context-thread] */
+ * coordinates), up to a distance of radius (> 0; infinity is allowed), on triangles and spheres.
+ * Points not finite have none. Quadrics and aspheres: RT_INVALID_OPERATION. [context-thread] */
 RT_API void rtClosestPoints(size_t count, const float* points, float radius, RTclosest* closest);
 
 #ifdef __cplusplus

@@ -289,6 +289,7 @@ class TileErrors {
       half += h;
     }
     finish(e);
+    e.dark = dark;
     e.trusted = enough && !dark && !p.few;
     // Some features are so rare that most windows have missed them. The means there lack their
     // light, and no variance shows it.
@@ -350,7 +351,22 @@ void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replica
   TileErrors(width, pixels, replicates, pooling, out).make();
 }
 
+// Bounds what a sensor may lack whose random paths have found nothing, if light paths have. Without
+// them the bound is infinite if nothing was found anywhere. With them it is that of the rule of
+// three and the brightest cell. The reading is trusted if this hardly counts.
+static void boundDark(const LightSums& light, PixelError& e) {
+  double bound = 0, lamps = 0;
+  for (int k = 0; k < 3; k++) {
+    if (std::isinf(e.halfWidth[k]))
+      e.halfWidth[k] = float(ruleOfThree / e.samples * light.brightest);
+    bound += double(e.halfWidth[k]);
+    lamps += student95(LightImage::parts - 1) * std::sqrt(light.variance[k]);
+  }
+  e.trusted = bound <= negligible * lamps;
+}
+
 void addLight(const LightSums& light, PixelError& e) {
+  if (e.dark && light.brightest > 0) boundDark(light, e);
   double half = 0, lamps = 0, own = 0;
   // Mean number of light paths per pixel.
   const double met = std::max(light.hits / windowOf(pictureReach), 1e-3);

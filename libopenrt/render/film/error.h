@@ -28,6 +28,9 @@ PixelError independentError(const PixelSums& sums);
 // Whether the variance of a pixel is pooled with those of the neighbouring pixels of its tile.
 // Pixels that are sensors (RT_MEASURE) have nothing in common with their neighbours.
 enum class Pooling : uint8_t { neighbours, none };
+inline Pooling poolingOf(const edit::FrameSettingsT& frame) {
+  return frame.measure ? Pooling::none : Pooling::neighbours;
+}
 
 // Estimates the errors of a tile's pixels, row by row (error.cpp).
 void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,

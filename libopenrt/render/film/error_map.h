@@ -26,6 +26,7 @@ struct PixelError {
   PixelNoise noise;
   uint32_t samples = 0;
   bool trusted = false;
+  bool dark = false; // no random path of the pixel or of its window has found light
   // All samples are equal and no path took a random decision: the pixel is exact unless an edge
   // cuts its corner.
   bool constant = false;

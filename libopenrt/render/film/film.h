@@ -20,6 +20,8 @@ struct LightSums {
   double mean[3] = {}, variance[3] = {};
   // Effective number of light paths that contributed to the pixel and its neighbours.
   double hits = 0;
+  // Of sensors: the largest mean of all cells. 0 in pictures.
+  double brightest = 0;
 };
 
 class Film {

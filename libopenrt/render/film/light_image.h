@@ -13,6 +13,7 @@
 #include <shared_mutex>
 #include <vector>
 
+#include "render/film/error.h"
 #include "render/film/film.h"
 
 namespace openrt {
@@ -23,8 +24,10 @@ class LightImage {
   // Returns the number of parts of a frame. Those with light in few pixels are previews: their
   // parts have few paths, and to add up whole pictures would cost more than to trace them.
   static uint32_t partsOf(const edit::FrameSettingsT& frame);
-  // variance: whether it is kept.
-  LightImage(uint32_t width, uint32_t height, uint32_t all = parts, bool variance = true);
+  // What is kept: means alone, or also the variances that errors need. A pixel shares its variance
+  // with its neighbours; a sensor has one of its own.
+  enum class Kept : uint8_t { means, pixels, sensors };
+  LightImage(uint32_t width, uint32_t height, uint32_t all = parts, Kept kept = Kept::pixels);
   // Adds a part: rgb by pixel, row by row. Each number may be added once.
   void add(uint32_t number, std::vector<float>&& part);
   uint32_t added() const { return added_.load(std::memory_order_acquire); }
@@ -39,13 +42,20 @@ class LightImage {
   };
   using Mean = std::array<double, 3>;
   void addNow(const std::vector<float>& part, double number);
+  void summarise();
   double variance(const Pixel& pixel, int k) const;
+  void addWindow(uint32_t x, uint32_t y, int k, LightSums& out) const;
   LightSums at(uint32_t x, uint32_t y) const;
+  LightSums ofSensor(uint32_t x, uint32_t y) const;
 
   uint32_t width_, height_, all_;
+  Kept kept_;
   mutable std::shared_mutex sums_; // guards pixels_ and means_, and added_ for readers
-  std::vector<Pixel> pixels_;      // where the variance is kept
-  std::vector<Mean> means_;        // where it is not
+  std::vector<Pixel> pixels_;      // where variances are kept
+  std::vector<Mean> means_;        // where they are not
+  // Of sensors: the mean that one path leaves in a cell, and the largest mean of all cells. 0 if no
+  // path has crossed any.
+  double ofOnePath_ = 0, brightest_ = 0;
   std::atomic<uint32_t> added_{0};
   std::mutex turn_; // guards waiting_ and adding_
   std::vector<std::vector<float>> waiting_;

@@ -24,14 +24,17 @@ bool makesRounds(const edit::FrameSettingsT& frame) {
                              : frame.progressive && frame.samples >= fewestOfLeaves;
 }
 
-// Returns the number of light paths: as many as camera paths that get light. If the number of
-// camera paths is open, at most 64 per pixel.
+// Returns the number of light paths: as many as camera paths that get light, and for sensors at
+// least as many as for 16x16 of them, because the light of few sensors is no easier to find. If the
+// number of camera paths is open, at most 64 per pixel.
 uint32_t lightPathsOf(const edit::FrameSettingsT& frame) {
+  constexpr double fewestSensors = 256;
   constexpr uint32_t mostOfOpen = 64;
   const bool open = frame.targetError > 0 || frame.timeLimit > 0;
   const uint32_t stride = lightStrideOf(frame);
-  const double paths = double(frame.width) * frame.height / (stride * stride) *
-                       (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
+  const double pixels = std::max(double(frame.width) * frame.height / (stride * stride),
+                                 frame.measure ? fewestSensors : 1.0);
+  const double paths = pixels * (open ? std::min(frame.samples, mostOfOpen) : frame.samples);
   return uint32_t(std::min(paths, 4e9));
 }
 

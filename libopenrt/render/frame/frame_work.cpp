@@ -52,11 +52,13 @@ struct FrameWork::Impl {
     if (frame.targetError > 0 && count > 0)
       pilots = std::make_unique<Pilots>(frame, grid, schedule.timed());
     if (!facts.lamps || count == 0) return;
-    const bool errors = !film.errors().empty();
-    const auto parts = LightImage::partsOf(frame);
-    light = std::make_unique<LightImage>(frame.width, frame.height, parts, errors);
+    const auto kept = film.errors().empty()               ? LightImage::Kept::means
+                      : poolingOf(frame) == Pooling::none ? LightImage::Kept::sensors
+                                                          : LightImage::Kept::pixels;
+    light =
+        std::make_unique<LightImage>(frame.width, frame.height, LightImage::partsOf(frame), kept);
     if (schedule.rounds())
-      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts(), errors);
+      early = std::make_unique<LightImage>(frame.width, frame.height, schedule.earlyParts(), kept);
   }
 
   bool lightComplete() const { return !light || light->complete(); }
@@ -121,8 +123,7 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
   if (!film.errors().empty()) {
     errors.resize(sums.size());
     if (required.error)
-      tileErrors(tile.width(), sums, replicates, errors,
-                 frame.measure ? Pooling::none : Pooling::neighbours);
+      tileErrors(tile.width(), sums, replicates, errors, poolingOf(frame));
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
   }

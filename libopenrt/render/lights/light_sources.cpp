@@ -6,6 +6,7 @@
 
 #include "render/frame.h"
 #include "render/surface/points.h"
+#include "scene/analytic.h"
 
 namespace openrt {
 namespace {
@@ -55,6 +56,13 @@ void LightSources::boundSpecularSurfaces(const RenderScene& scene) {
       const Vec3f half{length(m.row(0)), length(m.row(1)), length(m.row(2))};
       add(m.translation() - half);
       add(m.translation() + half);
+    } else if (r.surface) {
+      for (size_t corner = 0; corner < 8; corner++) {
+        Vec3d p;
+        for (size_t k = 0; k < 3; k++)
+          p[k] = corner >> k & 1 ? r.surface->high()[k] : r.surface->low()[k];
+        add(r.toRender.point(Vec3f(p)));
+      }
     } else if (r.primitive == edit::Primitive::Triangles && r.vertices) {
       for (uint32_t t = 0; t < r.primitives; t++)
         for (const Vec3f& p : cornersOf(r, t)) add(p);

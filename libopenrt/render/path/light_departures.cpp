@@ -80,17 +80,23 @@ bool LightDepartures::applyEmission(const Points& points, uint32_t i, RayState& 
   return largest(state.throughput) > 0;
 }
 
-void LightDepartures::updateAttenuation(uint32_t path) {
+Vec3f LightDepartures::attenuationAfter(uint32_t path, double length) {
   const LightSources::LightRay& start = rays_[path];
-  Departure& departure = departures_[path];
-  if (departure.attenuationKnown) return;
-  const Vec3f at(Vec3d(start.origin) + departure.pathLength * Vec3d(start.direction)),
+  const Departure& departure = departures_[path];
+  if (departure.attenuationKnown) return departure.attenuation;
+  const Vec3f at(Vec3d(start.origin) + (departure.pathLength + length) * Vec3d(start.direction)),
       flux = lampFlux(start, at);
+  Vec3f attenuation;
   for (int k = 0; k < 3; k++) {
     const float change = departure.flux[k] > 0 ? flux[k] / departure.flux[k] : 0.0f;
     const bool rounding = departure.flux[k] > 0 && start.endless && std::fabs(change - 1) < 1e-3f;
-    departure.attenuation[k] = rounding || !std::isfinite(change) ? 1.0f : change;
+    attenuation[k] = rounding || !std::isfinite(change) ? 1.0f : change;
   }
+  return attenuation;
+}
+
+void LightDepartures::updateAttenuation(uint32_t path) {
+  departures_[path].attenuation = attenuationAfter(path, 0);
 }
 
 void LightDepartures::applyAttenuation(RayState& state) {

@@ -31,6 +31,8 @@ class LightDepartures {
   // has left it. A light with inverse-square falloff has the same flux everywhere; a difference
   // below 1e-3 is then taken as rounding.
   void updateAttenuation(uint32_t path);
+  // Returns the attenuation that the path has after `length` more along its ray.
+  Vec3f attenuationAfter(uint32_t path, double length);
   // Returns the flux at the current surface over that in the throughput, by colour.
   const Vec3f& attenuation(uint32_t path) const { return departures_[path].attenuation; }
   // Multiplies the throughput by the attenuation of a path that is scattered.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/luminance.h"
 #include "render/path/camera_connections.h"
 #include "render/surface/adjoint.h"
 #include "render/surface/bsdf_choice.h"
@@ -17,7 +18,9 @@ constexpr uint32_t pathsInFlight = 4096, rouletteFrom = 4;
 } // namespace
 
 LightTracer::LightTracer(const RenderScene& scene, const LightSources& sources)
-    : scene_(scene), departures_(context_, sources) {
+    : scene_(scene), departures_(context_, sources),
+      sensors_(scene.frame.measure == RT_MEASURE_ILLUMINANCE ? SensorPlane::of(scene)
+                                                             : std::nullopt) {
   const double determinant = determinantOf(scene.camera.toLocal);
   cameraArea_ = std::cbrt(determinant * determinant);
 }
@@ -43,7 +46,7 @@ void LightTracer::tracePaths(uint32_t first, uint32_t n) {
   departures_.start(samples_, n, queue_);
   Wave wave;
   wave.rays.allocate(arena_, n);
-  // The surface that the camera sees counts as one more level.
+  // The surface that the camera sees, or the sensor, counts as one more level.
   while (!queue_.empty() && level_ < scene_.frame.depth) {
     next_.clear();
     counters_.secondary += queue_.size();
@@ -56,7 +59,9 @@ void LightTracer::tracePaths(uint32_t first, uint32_t n) {
 
 void LightTracer::traceWave(Wave& wave) {
   ArenaScope scope(arena_);
+  if (sensors_) findCrossings(wave);
   intersectWave(context_, Coherence::incoherent, wave);
+  if (sensors_) addCrossings(wave);
   selectMet(wave);
   forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {
     if (bucket.shaderClass->surface)
@@ -121,7 +126,7 @@ void LightTracer::scatter(const Points& points, const PathStates& states,
   if (count && scatters) {
     for (uint32_t c = 0; c < count; c++)
       departures_.updateAttenuation(states.path[points.order[deflected[c]]]);
-    connect(batch, random, deflected, count);
+    if (!sensors_) connect(batch, random, deflected, count);
     sampleLobes(batch, sampling);
   }
   for (uint32_t i = 0; i < n; i++) {
@@ -201,6 +206,32 @@ void LightTracer::connect(const RtsBatch& batch, const RandomNumbers& random, co
           double(state.throughput[k]) * attenuation[k] * scattered[k][i] * cameraArea_ * scale_;
       if (std::isfinite(light)) pixel[k] += float(light);
     }
+  }
+}
+
+// Lists where rays of paths that a mirror or a boundary has turned cross the sensors, with the flux
+// that is left there. The rays have not been traced yet: their throughput is that at their origins.
+void LightTracer::findCrossings(const Wave& wave) {
+  crossings_.clear();
+  const std::span<const RtsMedium> media = scene_.shaders->media();
+  for (uint32_t lane = 0; lane < wave.rays.count; lane++) {
+    if (wave.states.flagsOf(lane).pathClass() == PathClass::undeflected) continue;
+    const auto at = sensors_->crossing(load(wave.rays.org, lane), load(wave.rays.dir, lane));
+    if (!at) continue;
+    const RayState state = wave.states[lane];
+    Vec3f flux = state.throughput;
+    absorb(mediumOf(state.media, media), float(at->distance), media, flux);
+    crossings_.push_back({lane, at->pixel, at->distance, flux});
+  }
+}
+
+// Adds the crossings that no surface hides.
+void LightTracer::addCrossings(const Wave& wave) {
+  for (const Crossing& c : crossings_) {
+    if (!(c.distance < double(wave.hits.t[c.lane]))) continue;
+    const Vec3f attenuation = departures_.attenuationAfter(wave.states.path[c.lane], c.distance);
+    const double lux = luminance(c.flux * attenuation) * scale_ / sensors_->cellArea();
+    for (size_t k = 0; k < 3; k++) picture_[3 * size_t(c.pixel) + k] += float(lux);
   }
 }
 

@@ -4,6 +4,9 @@
 // connected to the camera: E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
 // 1997, chapter 10, with a camera subpath of one vertex. One instance per render thread.
 //
+// Illuminance sensors have no lens to connect to. There a path adds its flux to each cell of the
+// grid that it crosses (sensor_plane.h): "crossed" instead of "connected" below.
+//
 // The path tracer leaves out exactly these paths (RayState::pathClass): the surface seen by the
 // camera is non-specular, and the vertex next to the light is specular.
 #pragma once
@@ -12,6 +15,7 @@
 #include <vector>
 
 #include "render/path/light_departures.h"
+#include "render/path/sensor_plane.h"
 #include "render/path/wave.h"
 #include "render/surface/sample_lobes.h"
 #include "render/surface/surfaces.h"
@@ -38,6 +42,8 @@ class LightTracer {
   void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling& sampling,
                 const Boundaries& boundaries);
   void push(const Points& points, uint32_t i, const RayState& state, const Vec3f& direction);
+  void findCrossings(const Wave& wave);
+  void addCrossings(const Wave& wave);
 
   const RenderScene& scene_;
   uint32_t seed_ = 0;
@@ -50,6 +56,14 @@ class LightTracer {
   const StageContext context_{scene_, arena_, counters_};
   LightDepartures departures_;
   std::vector<float> picture_;
+  // The sensors' plane; none in pictures, which connect paths to the camera instead.
+  const std::optional<SensorPlane> sensors_;
+  struct Crossing { // of a ray of the wave with a cell of the sensors, if nothing is before it
+    uint32_t lane, pixel;
+    double distance;
+    Vec3f flux; // without the attenuation of lamps
+  };
+  std::vector<Crossing> crossings_;
   PathSamples samples_{}; // of the paths in flight
   RayQueue queue_, next_; // rays of the current wave, and of the next one
 };

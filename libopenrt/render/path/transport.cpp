@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "render/path/sensor_plane.h"
 #include "render/render_scene.h"
 #include "render/surface/media.h"
 #include "scene/transports.h"
@@ -143,7 +144,10 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
     set(hasLamps | (lamp.shader.shaderClass->extent ? hasStarts : 0u),
         lamp.shader.shaderClass->name);
   const RtsClass* camera = scene.camera.shader.shaderClass;
-  if (camera && camera->project) set(hasProjection, camera->name);
+  if (scene.frame.measure == RT_MEASURE_ILLUMINANCE) {
+    if (SensorPlane::of(scene)) set(hasProjection, "the sensor");
+  } else if (camera && camera->project && !scene.frame.measure)
+    set(hasProjection, camera->name);
   const ShaderSlot& environment = scene.environment.shader;
   const bool backdrop = environment.traits & RTS_BACKDROP;
   if (scene.frame.measure == RT_MEASURE_ILLUMINANCE) set(hasLobes | hasScattering, "the sensor");
@@ -158,14 +162,17 @@ TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before) {
   const SceneContents contents = contentsOf(scene, before);
   TransportChoice choice;
   choice.transport = scene.frame.transport;
-  const bool measures = scene.frame.measure != RT_MEASURE_NOTHING;
+  // Light paths reach sensors that fill a plane. They bring means over the sensors' cells, not
+  // readings at points, so they are followed only if the user has asked for them.
+  const bool measures = scene.frame.measure != RT_MEASURE_NOTHING,
+             reached = measures && (contents.bits & hasProjection);
   if (scene.transport.shaderClass) {
     if (!choice.transport) choice.transport = RT_TRANSPORT_PATH;
     choice.reason = std::string("the transport shader ") + scene.transport.shaderClass->name;
     return choice;
   }
-  if (measures &&
-      (choice.transport == RT_TRANSPORT_AUTO || traitsOf(choice.transport).tracesLamps)) {
+  if (measures && (choice.transport == RT_TRANSPORT_AUTO ||
+                   (traitsOf(choice.transport).tracesLamps && !reached))) {
     choice.transport = RT_TRANSPORT_PATH;
     choice.reason = "sensors follow paths";
   } else if (choice.transport != RT_TRANSPORT_AUTO) {
