@@ -85,15 +85,16 @@ class PreciseScene::Collector {
   double far = infinite;
 };
 
-// The true nearest hit is not before `least`, the least t that any crossing may truly have.
+// The least t that any other crossing may truly have is `others`.
 class PreciseScene::Nearest final : public Collector {
  public:
   Hit hit;
-  double least = infinite;
+  double others = infinite;
   double add(const Hit& h) override {
     // The first of several at the same place wins, in whatever order they come.
-    if (hit.record == noHit || keyOf(h) < keyOf(hit)) hit = h;
-    least = std::min(least, h.at.t - h.at.tError);
+    Hit other = h;
+    if (hit.record == noHit || keyOf(h) < keyOf(hit)) std::swap(hit, other);
+    if (other.record != noHit) others = std::min(others, other.at.t - other.at.tError);
     return far = hit.at.t + hit.at.tError;
   }
 };
@@ -309,10 +310,9 @@ bool PreciseScene::nearest(const PreciseRay& ray, Hit& hit) const {
   search(ray, found);
   hit = found.hit;
   if (hit.record == noHit) return false;
-  if (const double reach = hit.at.t - found.least; reach > hit.at.tError) {
-    hit.at.tError = reach * (1 + 0x1p-50);
-    hit.ambiguous = true;
-  }
+  // The true first crossing is not before the least of all.
+  hit.ambiguous = found.others <= hit.at.t + hit.at.tError;
+  hit.at.tError = std::max(hit.at.tError, (hit.at.t - found.others) * (1 + 0x1p-50));
   return true;
 }
 
