@@ -40,7 +40,8 @@ const RtShader* shaderOf(const RtContextPtr& context, const py::object& shader) 
 }
 
 struct ObjectDefinition { // begins and ends the definition of an object
-  RTid id = rtBeginObject(0);
+  RTid id;
+  explicit ObjectDefinition(RTid replaced = 0) : id(rtBeginObject(replaced)) {}
   ~ObjectDefinition() {
     rtVertexPointer(3, RT_FLOAT, 0, nullptr);
     rtNormalPointer(RT_FLOAT, 0, nullptr);
@@ -61,6 +62,7 @@ struct MeshArguments {
   py::object shader = py::none();
   uint32_t name = 0;
   bool cull = false;
+  py::object replaces = py::none();
 };
 
 RtObject mesh(const RtContextPtr& self, const MeshArguments& given) {
@@ -88,11 +90,17 @@ RtObject mesh(const RtContextPtr& self, const MeshArguments& given) {
   if (!given.texcoords.is_none()) t = rows<float>(given.texcoords, "texcoords", 2, count);
   if (!given.colors.is_none()) c = rows<float>(given.colors, "colors", 3, count);
   const RtShader* surface = shaderOf(self, given.shader);
+  RTid replaced = 0;
+  if (!given.replaces.is_none()) {
+    const auto& former = thing<RtObject>(given.replaces, "replaces", "an Object or None");
+    if (former.context != self) throw py::value_error("replaces: an object of another context");
+    replaced = former.id;
+  }
   const CurrentContext use(self);
   RtObject made;
   {
     const ReleaseGil release;
-    const ObjectDefinition opened;
+    const ObjectDefinition opened(replaced);
     made = {{self, opened.id}};
     if (surface) rtBindShader(surface->id);
     rtLoadName(given.name);
@@ -192,6 +200,31 @@ RtInstance instance(const RtContextPtr& self, const RtObject& object, const py::
   }
   use.check();
   return made;
+}
+
+// Moves instances. matrices: (n, 4, 4), for column vectors.
+void moveInstances(const RtContextPtr& self, const py::sequence& instances,
+                   const py::object& matrices) {
+  const Dense<double> all(numberArray(matrices, "matrices", "numbers of shape (n, 4, 4)"));
+  const auto count = py::ssize_t(py::len(instances));
+  if (all.ndim() != 3 || all.shape(0) != count || all.shape(1) != 4 || all.shape(2) != 4)
+    throw py::value_error(fmt::format("matrices: numbers of shape ({}, 4, 4) expected, not of "
+                                      "shape {}",
+                                      count, fromText(py::str(all.attr("shape")))));
+  std::vector<RTid> ids;
+  for (const py::handle each : instances) {
+    const auto& instance = thing<RtInstance>(each, "instances", "Instances");
+    if (instance.context != self) throw py::value_error("instances: one of another context");
+    ids.push_back(instance.id);
+  }
+  const CurrentContext use(self);
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const double* rows = all.data() + 16 * i;
+    double columns[16];
+    for (size_t k = 0; k < 16; ++k) columns[k] = rows[4 * (k % 4) + k / 4];
+    rtInstanceMatrix(ids[i], columns);
+  }
+  use.check();
 }
 
 struct BoundShader { // binds the shader that rtParameter* refers to
@@ -490,10 +523,12 @@ void defineRtScene(py::module_& module) {
       parameterList(requiredParameter("vertices", &M::vertices), parameter("faces", &M::faces)),
       parameterList(parameter("normals", &M::normals), parameter("texcoords", &M::texcoords),
                     parameter("colors", &M::colors), parameter("shader", &M::shader),
-                    parameter("name", &M::name), parameter("cull", &M::cull)),
+                    parameter("name", &M::name), parameter("cull", &M::cull),
+                    parameter("replaces", &M::replaces)),
       "Creates an object of triangles. vertices: (n, 3) in float32 or float64. faces: (m, 3); "
       "without faces, every three vertices are a triangle. normals, texcoords, colors: one per "
-      "vertex. cull: rays do not hit back faces.");
+      "vertex. cull: rays do not hit back faces. replaces: an Object of which this becomes the "
+      "definition, in all its instances.");
   context
       .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none,
            py::arg("name").noconvert() = 0,
@@ -504,6 +539,8 @@ void defineRtScene(py::module_& module) {
            py::arg("name").noconvert() = 0, py::arg("user_data").noconvert() = 0,
            "dynamic"_a = false,
            "Places an object in the scene. dynamic: the instance will move often.")
+      .def("move_instances", moveInstances, "instances"_a, "matrices"_a,
+           "Moves many instances at once. matrices: (n, 4, 4), for column vectors.")
       .def("shader", shader, "name"_a, "library"_a = none,
            "Creates a shader. name: a class of the stock shaders, or of the plug-in library. "
            "Keyword arguments are its parameters.")

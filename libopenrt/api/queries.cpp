@@ -1,5 +1,6 @@
-// queries.cpp: Implements the API functions rtCountHits, rtListHits and rtClosestPoints. They check
-// the arguments and call the backend. Runs on the application's thread.
+// queries.cpp: Implements the API functions rtCountHits, rtListHits, rtClosestPoints, and those in
+// double precision. They check the arguments and call the backend. Runs on the application's
+// thread.
 #include "api/guard.h"
 #include "backend/surface_queries.h"
 
@@ -22,12 +23,18 @@ void countHits(Context& c, size_t count, const RTray* rays, uint32_t* counts) {
   CommittedQueries(c).countHits({rays, count}, {counts, count});
 }
 
-void listHits(Context& c, size_t count, const RTray* rays, const size_t* first, RThit* hits) {
+// Checks the arguments of rtListHits; returns false if there is nothing to do.
+bool checkPlaces(size_t count, const void* rays, const size_t* first, const void* hits) {
   require((rays && first) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
-  if (count == 0) return;
+  if (count == 0) return false;
   for (size_t i = 0; i < count; i++)
     require(first[i] <= first[i + 1], RT_INVALID_VALUE, "the numbers of `first` fall");
   require(hits || first[count] == 0, RT_INVALID_VALUE, "a pointer is NULL");
+  return true;
+}
+
+void listHits(Context& c, size_t count, const RTray* rays, const size_t* first, RThit* hits) {
+  if (!checkPlaces(count, rays, first, hits)) return;
   CommittedQueries(c).listHits({rays, count}, {first, count + 1}, {hits, first[count]});
 }
 
@@ -36,6 +43,26 @@ void closestPoints(Context& c, size_t count, const float* points, float radius,
   require((points && closest) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
   require(radius > 0, RT_INVALID_VALUE, "the radius is not above 0");
   CommittedQueries(c).closestPoints({points, 3 * count}, radius, {closest, count});
+}
+
+void castRaysd(Context& c, size_t count, const RTrayd* rays, RThitd* hits) {
+  require((rays && hits) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
+  CommittedQueries(c).castPrecise({rays, count}, {hits, count});
+}
+
+void occludedRaysd(Context& c, size_t count, const RTrayd* rays, uint8_t* occluded) {
+  require((rays && occluded) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
+  CommittedQueries(c).occludePrecise({rays, count}, {occluded, count});
+}
+
+void countHitsd(Context& c, size_t count, const RTrayd* rays, uint32_t* counts) {
+  require((rays && counts) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
+  CommittedQueries(c).countPrecise({rays, count}, {counts, count});
+}
+
+void listHitsd(Context& c, size_t count, const RTrayd* rays, const size_t* first, RThitd* hits) {
+  if (!checkPlaces(count, rays, first, hits)) return;
+  CommittedQueries(c).listPrecise({rays, count}, {first, count + 1}, {hits, first[count]});
 }
 
 } // namespace
@@ -53,4 +80,20 @@ void rtListHits(size_t count, const RTray* rays, const size_t* first, RThit* hit
 
 void rtClosestPoints(size_t count, const float* points, float radius, RTclosest* closest) {
   guarded("rtClosestPoints", [&](Context& c) { closestPoints(c, count, points, radius, closest); });
+}
+
+void rtCastRaysd(size_t count, const RTrayd* rays, RThitd* hits) {
+  guarded("rtCastRaysd", [&](Context& c) { castRaysd(c, count, rays, hits); });
+}
+
+void rtOccludedRaysd(size_t count, const RTrayd* rays, uint8_t* occluded) {
+  guarded("rtOccludedRaysd", [&](Context& c) { occludedRaysd(c, count, rays, occluded); });
+}
+
+void rtCountHitsd(size_t count, const RTrayd* rays, uint32_t* counts) {
+  guarded("rtCountHitsd", [&](Context& c) { countHitsd(c, count, rays, counts); });
+}
+
+void rtListHitsd(size_t count, const RTrayd* rays, const size_t* first, RThitd* hits) {
+  guarded("rtListHitsd", [&](Context& c) { listHitsd(c, count, rays, first, hits); });
 }

@@ -19,6 +19,12 @@ class SurfaceQueries {
                         std::span<RThit> hits) = 0;
   virtual void closestPoints(std::span<const float> points, float radius,
                              std::span<RTclosest> closest) = 0;
+  // In double precision: as castRays() of Backend and so on.
+  virtual void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) = 0;
+  virtual void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) = 0;
+  virtual void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) = 0;
+  virtual void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
+                           std::span<RThitd> hits) = 0;
 };
 
 // For backends that wrap another backend: forwards the queries to it.
@@ -29,6 +35,11 @@ class ForwardedQueries : public SurfaceQueries {
                 std::span<RThit> hits) override;
   void closestPoints(std::span<const float> points, float radius,
                      std::span<RTclosest> closest) override;
+  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override;
+  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override;
+  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
+  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
+                   std::span<RThitd> hits) override;
 
  protected:
   virtual SurfaceQueries* target() const = 0; // null: the queries find no surface

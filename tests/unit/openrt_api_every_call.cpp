@@ -56,10 +56,12 @@ float floats[64];
 int kind;
 RTparameterInfo info;
 RThit hit;
+RThitd hitd;
+RTrayd rayd{{0, 0, 1}, 0, {0, 0, -1}, 1};
 RTray ray{{0, 0, 1}, 0, {0, 0, -1}, 1};
 uint8_t bytes[4];
 uint32_t number;
-const size_t places[2] = {0, 1};
+const size_t places[2] = {0, 1}, fallingPlaces[2] = {1, 0};
 RTclosest closest;
 double matrix[16];
 RTstats statistics;
@@ -173,6 +175,10 @@ const Named needContext[] = {
     CALL(rtOccludedRays, 1, &ray, bytes),
     CALL(rtCountHits, 1, &ray, &number),
     CALL(rtListHits, 1, &ray, places, &hit),
+    CALL(rtCastRaysd, 1, &rayd, &hitd),
+    CALL(rtOccludedRaysd, 1, &rayd, bytes),
+    CALL(rtCountHitsd, 1, &rayd, &number),
+    CALL(rtListHitsd, 1, &rayd, places, &hitd),
     CALL(rtClosestPoints, 1, floats, 1, &closest),
 };
 // Functions that need no context.
@@ -418,6 +424,12 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtOccludedRays, 1, &ray, nullptr),
     WRONG(VALUE, Outside, rtCountHits, 1, &ray, nullptr),
     WRONG(VALUE, Outside, rtListHits, 1, &ray, nullptr, &hit),
+    WRONG(VALUE, Outside, rtCastRaysd, 1, nullptr, &hitd),
+    WRONG(VALUE, Outside, rtCastRaysd, 1, &rayd, nullptr),
+    WRONG(VALUE, Outside, rtOccludedRaysd, 1, &rayd, nullptr),
+    WRONG(VALUE, Outside, rtCountHitsd, 1, &rayd, nullptr),
+    WRONG(VALUE, Outside, rtListHitsd, 1, &rayd, nullptr, &hitd),
+    WRONG(VALUE, Outside, rtListHitsd, 1, &rayd, fallingPlaces, &hitd),
     WRONG(VALUE, Outside, rtClosestPoints, 1, floats, 0, &closest),
     // Contexts.
     WRONG(VALUE, Outside, rtNewContext, "nonsense"),

@@ -30,18 +30,37 @@ for _class in (Context, Instance, Light, Object, Shader, Texture):
     _arguments.explain_class(_class)
 
 _FIVE = ("t_hit", "geometry_ids", "primitive_ids", "primitive_uvs", "primitive_normals")
+_ERRORS = ("t_errors", "uv_errors", "point_errors")
 
 
-def _corners(vertices, triangles):
+def _corners(vertices, triangles, method="add_triangles"):
     """Checks the triangles and returns them as vertex indices."""
-    count = len(_arguments.array("add_triangles(): vertices", vertices, (None, 3)))
-    corners = _arguments.array("add_triangles(): triangles", triangles, (None, 3))
+    count = len(_arguments.array(f"{method}(): vertices", vertices, (None, 3)))
+    corners = _arguments.array(f"{method}(): triangles", triangles, (None, 3))
     if corners.dtype.kind not in "iu":
         for odd in corners[corners != np.floor(corners)][:1]:  # also catches NaN
-            raise ValueError(f"add_triangles(): triangles: whole numbers expected, not {odd:g}")
+            raise ValueError(f"{method}(): triangles: whole numbers expected, not {odd:g}")
     for none in corners[(corners < 0) | (corners >= count)][:1]:
-        raise ValueError(f"add_triangles(): triangles: {none:.0f} is no vertex: there are {count}")
+        raise ValueError(f"{method}(): triangles: {none:.0f} is no vertex: there are {count}")
     return np.ascontiguousarray(corners, np.uint32)
+
+
+def _check_finite(vertices, corners):
+    """Checks the vertices that triangles use before anything is changed."""
+    good = np.abs(np.asarray(vertices, np.float64)).max(1, initial=0) <= 1e38  # false for NaN
+    for i in corners[~good[corners]][:1]:
+        raise ValueError(f"update(): vertices: numbers within 1e38 expected, not {vertices[i]}")
+
+
+def _check_precision(precision, errors):
+    if precision not in ("single", "double"):
+        raise ValueError(f"precision: 'single' or 'double' expected, not {precision!r}")
+    if errors and precision == "single":
+        raise ValueError("errors: bounds of errors are known with precision='double' only")
+
+
+def _is_mesh(thing):
+    return hasattr(thing, "kind") and hasattr(thing, "node")
 
 
 class Raycaster:
@@ -51,7 +70,10 @@ class Raycaster:
     Rays have shape (..., 6): origin and direction. The direction may have any length, which is the
     unit of t_hit. Results have the leading shape of the rays. geometry_ids are the numbers that
     add_triangles returned, primitive_ids are rows of its triangles. A ray that hits nothing has
-    INVALID_ID and t_hit = inf. Numbers are float32, like in the ray kernels.
+    INVALID_ID and t_hit = inf.
+
+    precision="single": rays and results are float32, as in the ray kernels. precision="double":
+    rays are taken as float64 and decided exactly, and results are float64.
     """
 
     INVALID_ID = 0xFFFFFFFF
@@ -59,11 +81,13 @@ class Raycaster:
     def __init__(self, threads=0):
         self._context = Context(_arguments.whole("Raycaster(): threads", threads, 0, 1024))
         self._kept = {}
+        self._instances, self._objects = [], []  # by number
         self.meshes = []
 
     def _place(self, thing, matrix, kept):
         number = len(self.meshes)
-        self._context.instance(thing, matrix, user_data=number)
+        self._instances.append(self._context.instance(thing, matrix, user_data=number))
+        self._objects.append(thing)
         if kept is not None:
             self._kept[number] = kept
         return number
@@ -103,6 +127,114 @@ class Raycaster:
         self.meshes.append(mesh)
         return number
 
+    def update(self, which=None, *, matrices=None, vertices=None, triangles=None):
+        """Moves or reshapes bodies in place. The next query sees them at their new places, at a
+        cost in proportion to what changed.
+
+        which: numbers of bodies; None: all. Or a Mesh of World.meshes(), or the list of all, after
+        the world has changed; then nothing else is given.
+        matrices: (n, 4, 4), or (4, 4) for one body: the new places, for column vectors.
+        vertices: (n, 3), the new shape of one body of triangles. triangles: (m, 3); None: those
+        that it has.
+        """
+        if _is_mesh(which) or (isinstance(which, (list, tuple)) and which and
+                               all(_is_mesh(each) for each in which)):
+            if matrices is not None or vertices is not None or triangles is not None:
+                raise TypeError(
+                    "update(): a Mesh brings its own matrix and vertices: give nothing else")
+            self._update_meshes([which] if _is_mesh(which) else which, _is_mesh(which))
+            return
+        numbers = self._bodies(which)
+        if matrices is None and vertices is None:
+            raise TypeError("update(): matrices or vertices must be given")
+        if matrices is not None:
+            matrices = self._places(numbers, matrices)
+        if vertices is not None:
+            self._reshape(numbers, vertices, triangles)
+        elif triangles is not None:
+            raise TypeError("update(): triangles: vertices must be given, too")
+        if matrices is not None:
+            self._context.move_instances([self._instances[i] for i in numbers], matrices)
+
+    def _bodies(self, which):
+        """Checks numbers of bodies and returns them as a list."""
+        if which is None:
+            return list(range(len(self.meshes)))
+        numbers = _arguments.array("update(): which", np.atleast_1d(np.asarray(which)), (None,))
+        if numbers.size and numbers.dtype.kind not in "iu":
+            raise TypeError(
+                f"update(): which: numbers of bodies expected, not {_arguments._short(which)}")
+        for none in numbers[(numbers < 0) | (numbers >= len(self.meshes))][:1]:
+            raise ValueError(
+                f"update(): which: {none} is no body: there are {len(self.meshes)}, from 0 on")
+        return numbers.tolist()
+
+    @staticmethod
+    def _places(numbers, matrices):
+        """Checks matrices and returns them as float64 of shape (n, 4, 4)."""
+        if np.ndim(matrices) == 2 and len(numbers) == 1:
+            matrices = np.asarray(matrices)[None]
+        given = _arguments.numbers("update(): matrices", matrices, (len(numbers), 4, 4))
+        odd = np.flatnonzero((given[:, 3] != (0, 0, 0, 1)).any(1))
+        for i in odd[:1]:
+            raise ValueError(
+                f"update(): matrices: a last row of 0 0 0 1 expected, not {given[i, 3]} (matrix {i}); "
+                "translations are in the last column")
+        return np.ascontiguousarray(given)
+
+    def _reshape(self, numbers, vertices, triangles):
+        """Gives a body of triangles another shape."""
+        if len(numbers) != 1:
+            raise ValueError(
+                f"update(): vertices: are those of one body: give its number, not {len(numbers)}")
+        number, = numbers
+        former = self.meshes[number]
+        if _is_mesh(former) or len(np.shape(former[1])) != 2:
+            raise ValueError(
+                f"update(): vertices: body {number} was not made by add_triangles(); give a Mesh")
+        vertices = _arguments.array("update(): vertices", vertices, (None, 3))
+        triangles = _corners(vertices, former[1] if triangles is None else triangles, "update")
+        _check_finite(vertices, triangles)
+        self._redefine(number, vertices, triangles)
+        self.meshes[number] = (vertices, triangles)
+
+    def _redefine(self, number, vertices, triangles):
+        self._context.mesh(vertices, triangles, replaces=self._objects[number])
+        kept = _rt._kept_triangles(vertices, triangles)
+        self._kept.pop(number, None)
+        if kept is not None:
+            self._kept[number] = kept
+
+    def _update_meshes(self, meshes, single):
+        """Brings bodies that add_mesh() made to the shapes and places of meshes."""
+        meshes = [mesh for mesh in meshes if mesh.kind in ("triangles", "sphere")]
+        if single:
+            numbers = [
+                i for i, mesh in enumerate(self.meshes)
+                if meshes and _is_mesh(mesh) and mesh.node == meshes[0].node
+            ]
+            if len(numbers) != 1:
+                raise ValueError(
+                    f"update(): {len(numbers)} bodies come from the Shape of this Mesh: give the "
+                    "list of all meshes")
+        else:
+            numbers = list(range(len(self.meshes)))
+        if len(numbers) != len(meshes) or any(
+                not _is_mesh(self.meshes[i]) or self.meshes[i].node != mesh.node or
+                self.meshes[i].kind != mesh.kind or
+            (mesh.kind == "sphere" and self.meshes[i].radius != mesh.radius)
+                for i, mesh in zip(numbers, meshes)):
+            raise ValueError("update(): other shapes are drawn now: make a new raycaster")
+        for i, mesh in zip(numbers, meshes):
+            former = self.meshes[i]
+            if mesh.kind == "triangles" and not (np.array_equal(mesh.vertices, former.vertices) and
+                                                 np.array_equal(mesh.faces, former.faces)):
+                self._redefine(i, mesh.vertices, mesh.faces)
+            self.meshes[i] = mesh
+        if numbers:
+            self._context.move_instances([self._instances[i] for i in numbers],
+                                         np.stack([mesh.matrix for mesh in meshes]))
+
     def _numbered(self, hits, keys):
         """Renumbers primitives to the rows of the given triangles; triangles without area are not
         in the scene."""
@@ -112,24 +244,52 @@ class Raycaster:
             primitives[here] = kept[primitives[here]]
         return {key: hits[key] for key in keys}
 
-    def cast_rays(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
+    @staticmethod
+    def _keys(precision, errors):
+        points = ("points",) if precision == "double" else ()
+        return (*_FIVE, *points, *(_ERRORS if errors else ()))
+
+    def cast_rays(self,
+                  rays,
+                  nthreads=0,
+                  *,
+                  tnear=0.0,
+                  tfar=np.inf,
+                  precision="single",
+                  errors=False):
         """Returns the nearest hits as a dict of t_hit, geometry_ids, primitive_ids, primitive_uvs
-        and primitive_normals. nthreads: accepted for Open3D; the constructor's threads are used."""
-        return self._numbered(self._context.cast_rays(rays, tnear=tnear, tfar=tfar), _FIVE)
+        and primitive_normals. nthreads: accepted for Open3D; the constructor's threads are used.
 
-    def test_occlusions(self, rays, tnear=0.0, tfar=np.inf, nthreads=0):
+        precision="double" adds points (..., 3); errors adds t_errors, uv_errors and point_errors:
+        no t_hit, no barycentric coordinate and no component of a point is farther from the truth.
+        """
+        _check_precision(precision, errors)
+        found = self._context.cast_rays(rays, tnear=tnear, tfar=tfar, precision=precision)
+        return self._numbered(found, self._keys(precision, errors))
+
+    def test_occlusions(self, rays, tnear=0.0, tfar=np.inf, nthreads=0, *, precision="single"):
         """Returns whether anything lies on each ray between tnear and tfar."""
-        return self._context.test_occlusions(rays, tnear=tnear, tfar=tfar)
+        _check_precision(precision, False)
+        return self._context.test_occlusions(rays, tnear=tnear, tfar=tfar, precision=precision)
 
-    def count_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
+    def count_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf, precision="single"):
         """Returns the number of crossings of surfaces on each ray. Every crossing counts once."""
-        return self._context.count_intersections(rays, tnear=tnear, tfar=tfar)
+        _check_precision(precision, False)
+        return self._context.count_intersections(rays, tnear=tnear, tfar=tfar, precision=precision)
 
-    def list_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
+    def list_intersections(self,
+                           rays,
+                           nthreads=0,
+                           *,
+                           tnear=0.0,
+                           tfar=np.inf,
+                           precision="single",
+                           errors=False):
         """Returns all hits, nearest first: the arrays of cast_rays, of shape (n,), and ray_ids and
         ray_splits. The hits of ray i are ray_splits[i] to ray_splits[i + 1]."""
-        return self._numbered(self._context.list_intersections(rays, tnear=tnear, tfar=tfar),
-                              (*_FIVE[:4], "primitive_normals", "ray_ids", "ray_splits"))
+        _check_precision(precision, errors)
+        found = self._context.list_intersections(rays, tnear=tnear, tfar=tfar, precision=precision)
+        return self._numbered(found, (*self._keys(precision, errors), "ray_ids", "ray_splits"))
 
     def compute_closest_points(self, query_points, nthreads=0, *, radius=np.inf):
         """Returns the surface points nearest to points (..., 3), as a dict of points, distances,
@@ -142,18 +302,20 @@ class Raycaster:
         """Returns the distances from points (..., 3) to the nearest surface."""
         return self.compute_closest_points(query_points)["distances"]
 
-    def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
+    def compute_occupancy(self, query_points, nthreads=0, nsamples=1, *, precision="single"):
         """Returns 1 for points (..., 3) inside closed surfaces, otherwise 0. A point is inside if a
         ray from it crosses an odd number of surfaces. nsamples: rays per point, an odd number; the
         majority decides."""
+        _check_precision(precision, False)
+        number = np.float32 if precision == "single" else np.float64
         points = _arguments.numbers("query_points", query_points, (..., 3),
-                                    finite=False).astype(np.float32)
+                                    finite=False).astype(number)
         nsamples = _arguments.whole("nsamples", nsamples, 1, 65535)
         votes = np.zeros(points.shape[:-1], np.int32)
         directions = np.random.default_rng(0).normal(size=(nsamples, 3)).astype(np.float32)
-        for direction in directions:
+        for direction in directions.astype(number):
             rays = np.concatenate([points, np.broadcast_to(direction, points.shape)], -1)
-            votes += self.count_intersections(rays) % 2
+            votes += self.count_intersections(rays, precision=precision) % 2
         return (votes * 2 > nsamples).astype(np.float32)
 
     def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):

@@ -61,6 +61,7 @@ void LocalBackend::prepare() {
     updateAccel(*next);
   } catch (...) { // incomplete: the next call rebuilds it
     exact_ = nullptr;
+    precise_ = nullptr;
     accel_ = nullptr;
     throw;
   }
@@ -138,7 +139,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
                          pixel};
-  exact_ = nullptr;
+  exactIsFormer_ = preciseIsFormer_ = true;
   const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
   recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)

@@ -9,6 +9,7 @@
 #include "backend/backend.h"
 #include "backend/local/accel/accel_build.h"
 #include "backend/local/accel/exact_scene.h"
+#include "backend/local/precise/precise_scene.h"
 #include "backend/surface_queries.h"
 #include "render/frame/renderer.h"
 #include "scene/history.h"
@@ -36,6 +37,11 @@ class LocalBackend final : public Backend, public SurfaceQueries {
                 std::span<RThit> hits) override;
   void closestPoints(std::span<const float> points, float radius,
                      std::span<RTclosest> closest) override;
+  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override;
+  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override;
+  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
+  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
+                   std::span<RThitd> hits) override;
   bool pick(double x, double y, RThit& hit) override;
 
   // Returns the committed scene as the threads render it; rebuilds it if anything changed. It stays
@@ -59,6 +65,11 @@ class LocalBackend final : public Backend, public SurfaceQueries {
                   const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
   // Makes the scene for exact queries of what is committed, if it does not exist yet.
   const ExactScene& exact();
+  // Makes the scene for queries in double precision, likewise (precise_queries.cpp).
+  const PreciseScene& precise();
+  template <class Use, class Refuse>
+  void forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse);
+  RThitd hitOf(const PreciseScene::Hit& found, const PreciseRay& ray) const;
   // Calls `use` for every ray of which `some` is not 0 (null: all), on all threads. Rays that
   // cannot be traced are counted and left out; `refuse` is called for them.
   void forEachExact(std::span<const RTray> rays, const uint8_t* some,
@@ -84,7 +95,10 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   SceneChanges changes_;       // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;
   std::shared_ptr<Accel> accel_;
-  std::unique_ptr<const ExactScene> exact_; // of accel_; null until a query needs it
+  // Of accel_; null until a query needs them. Those before a change are kept for their meshes.
+  std::unique_ptr<const ExactScene> exact_;
+  std::unique_ptr<const PreciseScene> precise_;
+  bool exactIsFormer_ = false, preciseIsFormer_ = false;
   Flattened flat_;
   PixelFootprint footprint_;
   // scopedLights_: some light has a scope. recordsUnmoved_: every record is in the same place as in

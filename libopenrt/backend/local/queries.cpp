@@ -79,12 +79,13 @@ void LocalBackend::forBatches(
 
 const ExactScene& LocalBackend::exact() {
   prepare();
-  if (!exact_) {
-    exact_ = std::make_unique<const ExactScene>(*device_, *accel_);
+  if (!exact_ || exactIsFormer_) {
+    exact_ = std::make_unique<const ExactScene>(*device_, *accel_, exact_.get());
     if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) {
       exact_ = nullptr;
       throw std::bad_alloc();
     }
+    exactIsFormer_ = false;
   }
   return *exact_;
 }

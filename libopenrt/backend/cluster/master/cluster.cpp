@@ -267,6 +267,19 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
                      std::span<RTclosest> closest) override {
     ask([&](Backend& backend) { surfaces(backend).closestPoints(points, radius, closest); });
   }
+  void castPrecise(std::span<const RTrayd> rays, std::span<RThitd> hits) override {
+    ask([&](Backend& backend) { surfaces(backend).castPrecise(rays, hits); });
+  }
+  void occludePrecise(std::span<const RTrayd> rays, std::span<uint8_t> occluded) override {
+    ask([&](Backend& backend) { surfaces(backend).occludePrecise(rays, occluded); });
+  }
+  void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override {
+    ask([&](Backend& backend) { surfaces(backend).countPrecise(rays, counts); });
+  }
+  void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
+                   std::span<RThitd> hits) override {
+    ask([&](Backend& backend) { surfaces(backend).listPrecise(rays, first, hits); });
+  }
 
  private:
   struct FrameInFlight { // a frame that was started

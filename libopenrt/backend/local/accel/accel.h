@@ -63,6 +63,8 @@ class Accel final : public Intersector {
   double reach() const { return 1e18 / double(scale_); }
   // Returns all visible triangle meshes, spheres and analytic surfaces.
   std::vector<Surface> surfaces() const;
+  // Returns the Embree scenes that own the vertices of all records.
+  std::vector<std::shared_ptr<const Blas>> owners() const;
   // Returns the first record of a cluster; the entries of its part follow in order.
   uint32_t firstRecord(uint32_t cluster) const { return placed_[cluster].firstRecord; }
 

@@ -60,6 +60,14 @@ std::vector<Accel::Surface> Accel::surfaces() const {
   return out;
 }
 
+std::vector<std::shared_ptr<const Blas>> Accel::owners() const {
+  std::vector<std::shared_ptr<const Blas>> out;
+  if (static_) out.push_back(static_);
+  for (const PartSlot& slot : top_.parts)
+    if (slot.object && (out.empty() || out.back() != slot.object)) out.push_back(slot.object);
+  return out;
+}
+
 std::vector<uint32_t> Accel::spheres() const {
   std::vector<uint32_t> out;
   for (const Surface& s : surfaces())

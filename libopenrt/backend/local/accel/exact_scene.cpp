@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <tuple>
 
 #include "backend/local/accel/bake.h"
@@ -156,20 +155,26 @@ class ExactScene::TopVisitor final : public CandidateVisitor {
   Collector& to_;
 };
 
-ExactScene::ExactScene(const EmbreeDevice& device, const Accel& accel)
-    : accel_(accel), surfaceOf_(accel.records.size(), ~0u) {
-  std::map<std::tuple<const float*, const uint32_t*, uint32_t>, const Mesh*> known;
+std::shared_ptr<const ExactScene::Mesh>
+ExactScene::meshOf(const EmbreeDevice& device, const Record& r, const ExactScene* former) {
+  const Key key{r.vertices, r.indices, r.primitives};
+  std::shared_ptr<const Mesh>& mesh = meshes_[key];
+  if (mesh) return mesh;
+  if (former)
+    if (const auto known = former->meshes_.find(key); known != former->meshes_.end())
+      mesh = known->second;
+  if (!mesh) mesh = std::make_shared<const Mesh>(device, r);
+  return mesh;
+}
+
+ExactScene::ExactScene(const EmbreeDevice& device, const Accel& accel, const ExactScene* former)
+    : accel_(accel), owners_(accel.owners()), surfaceOf_(accel.records.size(), ~0u) {
   for (const Accel::Surface& from : accel.surfaces()) {
     const Record& r = accel.records[from.record];
     const bool triangles = r.primitive == edit::Primitive::Triangles;
     if (r.primitive != edit::Primitive::Sphere && r.instanced && !matrixOf(r.toRender).usable())
       continue; // Embree has it not
-    const Mesh* mesh = nullptr;
-    if (triangles) {
-      const Mesh*& place = known[{r.vertices, r.indices, r.primitives}];
-      if (!place) place = meshes_.emplace_back(std::make_unique<Mesh>(device, r)).get();
-      mesh = place;
-    }
+    const Mesh* mesh = triangles ? meshOf(device, r, former).get() : nullptr;
     Matrix4d toRender = !triangles    ? from.toRender
                         : r.instanced ? matrixOf(r.toRender)
                                       : uniformScale(r.scale);

@@ -1,9 +1,12 @@
 // exact_scene.h: all surfaces of a scene for exact ray queries. A ray meets every triangle that it
 // crosses exactly once (crossing.h), whatever single precision makes of it. Made between frames
-// from an Accel, when the first query needs it; then immutable. [any thread]
+// from an Accel, when the first query needs it, and again after changes; then immutable. [any
+// thread]
 #pragma once
 
+#include <map>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "backend/local/accel/accel.h"
@@ -22,8 +25,9 @@ class ExactScene {
     uint32_t record = noHit, primitive = 0;
     CrossingPoint at;
   };
-  // The Accel must outlive the scene and stay as it is.
-  ExactScene(const EmbreeDevice& device, const Accel& accel);
+  // The Accel must outlive the scene and stay as it is. former: the scene before a change, whose
+  // meshes are kept where they are still in use; or null.
+  ExactScene(const EmbreeDevice& device, const Accel& accel, const ExactScene* former);
   ~ExactScene();
 
   bool nearest(const ExactRay& ray, Hit& hit) const; // false: the ray hits nothing
@@ -45,6 +49,9 @@ class ExactScene {
   class Counter;
   class MeshVisitor;
   class TopVisitor;
+  using Key = std::tuple<const float*, const uint32_t*, uint32_t>; // vertices, indices, number
+  std::shared_ptr<const Mesh> meshOf(const EmbreeDevice& device, const Record& r,
+                                     const ExactScene* former);
   void makeTop(const EmbreeDevice& device);
   void search(const ExactRay& ray, Collector& to) const;
   double meet(const Surface& surface, const ExactRay& ray, Collector& to) const;
@@ -54,7 +61,9 @@ class ExactScene {
   double meetAnalytic(const Surface& surface, const ExactRay& ray, Collector& to) const;
 
   const Accel& accel_;
-  std::vector<std::unique_ptr<Mesh>> meshes_; // each once, however often it is placed
+  std::map<Key, std::shared_ptr<const Mesh>> meshes_; // each once, however often it is placed
+  // Own the vertices, so that equal addresses mean the same meshes.
+  std::vector<std::shared_ptr<const Blas>> owners_;
   std::vector<Surface> surfaces_;
   std::vector<uint32_t> surfaceOf_; // by record
   // The frame of top_: render space minus `center_`, times `unit_`.

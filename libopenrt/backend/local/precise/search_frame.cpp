@@ -1,0 +1,73 @@
+// search_frame.cpp: the way of a ray through a SearchFrame, with the bound of its error.
+#include "backend/local/precise/search_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace openrt {
+namespace {
+
+using Long = Vec3<long double>;
+
+// A few units of the last place: more than the sums below round by.
+constexpr long double rounding = 8 * std::numeric_limits<long double>::epsilon();
+// What the boxes allow for (padding in candidates.cpp), less what the conversion to float takes.
+constexpr long double mostError = 0x1p-21L;
+// With an error below this, rays that pass the ball of radius 2 pass the cube within it.
+constexpr long double mostForBall = 0.125L;
+
+long double sumOf(const Long& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
+
+} // namespace
+
+SearchFrame::SearchFrame(const Matrix4d& toWorld, const Vec3d& center, double unit) {
+  const Long x(toWorld.column(0)), y(toWorld.column(1)), z(toWorld.column(2)), c(center);
+  const Long shift(toWorld.translation());
+  center_ = shift + x * c.x + y * c.y + z * c.z;
+  centerError_ = rounding * (largest(abs(shift)) + largest(abs(x)) * std::fabs(c.x) +
+                             largest(abs(y)) * std::fabs(c.y) + largest(abs(z)) * std::fabs(c.z));
+  const Long yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
+  const long double determinant = dot(x, yz), factor = unit / determinant;
+  inverse_ = {yz * factor, zx * factor, xy * factor};
+  const auto extent = [](const Long& v) { return largest(abs(v)); };
+  const long double products =
+      std::max({extent(y) * extent(z), extent(z) * extent(x), extent(x) * extent(y)});
+  size_ = std::max({sumOf(inverse_.x), sumOf(inverse_.y), sumOf(inverse_.z)});
+  // The determinant errs by its products, and so does every row by its own.
+  const long double relative =
+      rounding * 6 * extent(x) * extent(y) * extent(z) / std::fabs(determinant);
+  inverseError_ = 6 * rounding * products * std::fabs(factor) + 2 * relative * size_;
+}
+
+SearchFrame::Way SearchFrame::wayOf(const PreciseRay& ray, double far) const {
+  const Long from = Long(ray.origin) - center_, along(ray.direction);
+  const Long origin = inverse_ * from, direction = inverse_ * along;
+  const long double square = dot(direction, direction), middle = -dot(origin, direction) / square;
+  const Long closest = origin + direction * middle;
+  const long double half = 2 / std::sqrt(square);
+  // The errors of origin and direction, and what they make at the far end of the way.
+  const long double extent = largest(abs(Long(ray.origin))) + largest(abs(center_)),
+                    reach = std::min<long double>(far, std::fabs(middle) + half),
+                    error = inverseError_ * largest(abs(from)) +
+                            size_ * (centerError_ + rounding * extent) +
+                            reach * (inverseError_ + rounding * size_) * largest(abs(along));
+  Way way;
+  if (!(error <= mostForBall)) { // also where it is no number
+    way.search = Search::all;
+    return way;
+  }
+  if (!(dot(closest, closest) <= 4)) return way;
+  const long double start = std::max<long double>(ray.near, middle - half),
+                    end = std::min<long double>(far, middle + half);
+  if (!(start <= end)) return way;
+  way.search = error <= mostError ? Search::tree : Search::all;
+  way.start = double(start);
+  const long double length = std::sqrt(square);
+  way.length = double(length);
+  way.ray = {Vec3d(origin + direction * way.start), Vec3d(direction / length), 0,
+             way.fromWorld(double(end))};
+  return way;
+}
+
+} // namespace openrt

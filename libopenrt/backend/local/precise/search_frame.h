@@ -1,0 +1,44 @@
+// search_frame.h: brings a ray given in double to the frame in which a CandidateScene finds
+// candidates in single precision, and tells when that would lose some. Pure functions. [any thread]
+#pragma once
+
+#include "backend/local/accel/candidates.h"
+#include "backend/local/precise/crossings.h"
+
+namespace openrt {
+
+// A frame in which a body lies within [-1, 1]^3. It computes in long double, which has 64 bits of
+// mantissa on x86, so that rays may start 2^30 sizes of the body away.
+class SearchFrame {
+ public:
+  SearchFrame() = default;
+  // The body lies within center +- 1 / unit, in a space that the matrix maps to the world.
+  SearchFrame(const Matrix4d& toWorld, const Vec3d& center, double unit);
+
+  enum class Search {
+    none, // the ray passes the body
+    tree, // the boxes along `ray` hold all candidates
+    all   // rounding is too large for the boxes: everything in the body is a candidate
+  };
+  struct Way {
+    Search search = Search::none;
+    FrameRay ray;      // begins at `start`; its direction has unit length
+    double start = 0;  // in the world's t
+    double length = 1; // of `ray` for each unit of the world's t
+    // Converts t of the world, beyond which nothing is of interest, to t of `ray`, and not too low.
+    double fromWorld(double t) const {
+      return (t - start + 0x1p-50 * (std::fabs(t) + std::fabs(start))) * length;
+    }
+  };
+  // far: as the ray's, or nearer.
+  Way wayOf(const PreciseRay& ray, double far) const;
+
+ private:
+  using Long = Vec3<long double>;
+  Rows<long double> inverse_; // from the world, after the subtraction of center_
+  Long center_;               // in the world
+  // Bounds of the errors, as sums over a row: of inverse_, and of center_.
+  long double size_ = 0, inverseError_ = 0, centerError_ = 0;
+};
+
+} // namespace openrt
