@@ -91,7 +91,6 @@ bool Accel::mayHaveLeaked(const Rays& rays, uint32_t i) const {
 template <class Open, class Found> void Accel::searchLost(const Rays& rays, const Open& isOpen,
                                                           const Trace& trace,
                                                           const Found& found) const {
-  if (off) return;
   Again again;
   const auto flush = [&] {
     const Rays turnedRays = again.rays();
