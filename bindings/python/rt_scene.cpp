@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include "degenerate.h"
+#include "local_origin.h"
 #include "numbers.h"
 #include "objects.h"
 #include "parameters.h"
@@ -121,9 +122,35 @@ RtObject mesh(const RtContextPtr& self, const MeshArguments& given) {
   return made;
 }
 
+// Returns points that are given in double as libopenrt stores them: as floats, about an origin of
+// those that are used unless all fit floats.
+Dense<float> storedPoints(const Dense<double>& points, const Dense<uint32_t>& corners) {
+  const double* from = points.data();
+  double low[3] = {}, high[3] = {}, origin[3] = {};
+  bool exact = true;
+  for (py::ssize_t i = 0; i < corners.size(); ++i) {
+    const size_t vertex = corners.data()[i];
+    if (py::ssize_t(vertex) >= points.shape(0)) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      const double x = from[3 * vertex + k];
+      exact = exact && openrt::fitsFloat(x);
+      low[k] = i == 0 ? x : std::min(low[k], x);
+      high[k] = i == 0 ? x : std::max(high[k], x);
+    }
+  }
+  for (size_t k = 0; k < 3 && !exact; ++k) origin[k] = openrt::localOrigin(low[k], high[k]);
+  Dense<float> stored({points.shape(0), py::ssize_t(3)});
+  for (size_t i = 0; i < size_t(points.size()); ++i)
+    stored.mutable_data()[i] = float(from[i] - origin[i % 3]);
+  return stored;
+}
+
 // Returns the numbers of the triangles that a mesh of these arrays keeps, or None if it keeps all.
 py::object keptTriangles(const py::object& vertices, const py::object& faces) {
-  const auto points = rows<float>(vertices, "vertices", 3);
+  const bool wide = py::isinstance<py::array_t<double>>(vertices);
+  const auto points =
+      wide ? storedPoints(rows<double>(vertices, "vertices", 3), rows<uint32_t>(faces, "faces", 3))
+           : rows<float>(vertices, "vertices", 3);
   const auto corners = rows<uint32_t>(faces, "faces", 3);
   std::vector<uint32_t> kept;
   const auto total = size_t(corners.shape(0));

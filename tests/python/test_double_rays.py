@@ -385,3 +385,15 @@ def test_what_is_wrong_is_said(call, text):
     for bad in ("rays", [["a"] * 6], np.zeros((2, 6), complex), object()):
         with pytest.raises((TypeError, ValueError), match="rays: numbers of shape"):
             rt.Raycaster(threads=1).cast_rays(bad, precision="double")
+
+
+def test_vertices_in_double_are_numbered_as_they_are_stored():
+    """Triangles that have no area as float32, but do about the middle of their mesh."""
+    caster = rt.Raycaster(threads=1)
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]) * .25 + 1e8 + .1
+    caster.add_triangles(corners, [[0, 1, 1], [0, 1, 2], [1, 3, 2]])
+    rays = [[1e8 + .1 + x, 1e8 + .1 + x, 1e8 + 5, 0, 0, -1] for x in (.2, .05)]
+    assert caster.cast_rays(rays, precision="double")["primitive_ids"].tolist() == [2, 1]
+    caster.update(0, vertices=corners + .5, triangles=[[1, 3, 2], [2, 2, 2], [0, 1, 2]])
+    rays = np.array(rays) + [.5, .5, 0, 0, 0, 0]
+    assert caster.cast_rays(rays, precision="double")["primitive_ids"].tolist() == [0, 2]

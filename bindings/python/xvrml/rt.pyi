@@ -96,6 +96,7 @@ class Context:
         shader: Optional[Shader] = ...,
         name: int = ...,
         cull: bool = ...,
+        replaces: Optional[Object] = ...,
     ) -> Object:
         ...
 
@@ -115,6 +116,9 @@ class Context:
         user_data: int = ...,
         dynamic: bool = ...,
     ) -> Instance:
+        ...
+
+    def move_instances(self, instances: Sequence[Instance], matrices: npt.ArrayLike) -> None:
         ...
 
     def shader(self, name: str, library: Optional[str] = ..., **parameters: Any) -> Shader:
@@ -176,28 +180,36 @@ class Context:
     ) -> Picture:
         ...
 
-    def cast_rays(self, rays: npt.ArrayLike, *, tnear: float = ..., tfar: float = ...) -> _Hits:
+    def cast_rays(self,
+                  rays: npt.ArrayLike,
+                  *,
+                  tnear: float = ...,
+                  tfar: float = ...,
+                  precision: str = ...) -> _Hits:
         ...
 
     def test_occlusions(self,
                         rays: npt.ArrayLike,
                         *,
                         tnear: float = ...,
-                        tfar: float = ...) -> npt.NDArray[np.bool_]:
+                        tfar: float = ...,
+                        precision: str = ...) -> npt.NDArray[np.bool_]:
         ...
 
     def count_intersections(self,
                             rays: npt.ArrayLike,
                             *,
                             tnear: float = ...,
-                            tfar: float = ...) -> npt.NDArray[np.int32]:
+                            tfar: float = ...,
+                            precision: str = ...) -> npt.NDArray[np.int32]:
         ...
 
     def list_intersections(self,
                            rays: npt.ArrayLike,
                            *,
                            tnear: float = ...,
-                           tfar: float = ...) -> _Hits:
+                           tfar: float = ...,
+                           precision: str = ...) -> _Hits:
         ...
 
     def compute_closest_points(self, query_points: npt.ArrayLike, *, radius: float = ...) -> _Hits:
@@ -223,19 +235,31 @@ class Raycaster:
     def add_mesh(self, mesh: Mesh) -> Optional[int]:
         ...
 
+    def update(self,
+               which: Union[None, int, npt.ArrayLike, Mesh, Sequence[Mesh]] = ...,
+               *,
+               matrices: Optional[npt.ArrayLike] = ...,
+               vertices: Optional[npt.ArrayLike] = ...,
+               triangles: Optional[npt.ArrayLike] = ...) -> None:
+        ...
+
     def cast_rays(self,
                   rays: npt.ArrayLike,
                   nthreads: int = ...,
                   *,
                   tnear: float = ...,
-                  tfar: float = ...) -> _Hits:
+                  tfar: float = ...,
+                  precision: str = ...,
+                  errors: bool = ...) -> _Hits:
         ...
 
     def test_occlusions(self,
                         rays: npt.ArrayLike,
                         tnear: float = ...,
                         tfar: float = ...,
-                        nthreads: int = ...) -> npt.NDArray[np.bool_]:
+                        nthreads: int = ...,
+                        *,
+                        precision: str = ...) -> npt.NDArray[np.bool_]:
         ...
 
     def count_intersections(self,
@@ -243,7 +267,8 @@ class Raycaster:
                             nthreads: int = ...,
                             *,
                             tnear: float = ...,
-                            tfar: float = ...) -> npt.NDArray[np.int32]:
+                            tfar: float = ...,
+                            precision: str = ...) -> npt.NDArray[np.int32]:
         ...
 
     def list_intersections(self,
@@ -251,7 +276,9 @@ class Raycaster:
                            nthreads: int = ...,
                            *,
                            tnear: float = ...,
-                           tfar: float = ...) -> _Hits:
+                           tfar: float = ...,
+                           precision: str = ...,
+                           errors: bool = ...) -> _Hits:
         ...
 
     def compute_closest_points(self,
@@ -269,7 +296,9 @@ class Raycaster:
     def compute_occupancy(self,
                           query_points: npt.ArrayLike,
                           nthreads: int = ...,
-                          nsamples: int = ...) -> npt.NDArray[np.float32]:
+                          nsamples: int = ...,
+                          *,
+                          precision: str = ...) -> npt.NDArray[np.float32]:
         ...
 
     def compute_signed_distance(self,

@@ -7,6 +7,7 @@
 #include <xxhash.h>
 
 #include "api/geometry/transform.h"
+#include "local_origin.h"
 #include "scene/analytic.h"
 
 namespace openrt {
@@ -23,8 +24,6 @@ void reserveMore(std::vector<uint32_t>& indices, size_t more) {
     indices.reserve(std::max(indices.size() + more, 2 * indices.capacity()));
 }
 
-bool fitsFloat(double v) { return static_cast<double>(static_cast<float>(v)) == v; }
-
 } // namespace
 
 void WideBounds::add(const Vec3d& p) {
@@ -38,14 +37,7 @@ void WideBounds::add(const Vec3d& p) {
 }
 
 Vec3d WideBounds::origin() const {
-  const auto snapped = [](double a, double b) {
-    const double centre = a + 0.5 * (b - a);
-    if (b == a) return a;
-    const double grid = std::exp2(std::ceil(std::log2(b - a)));
-    const double rounded = std::round(centre / grid) * grid;
-    return std::isfinite(rounded) ? rounded : centre;
-  };
-  return {snapped(low.x, high.x), snapped(low.y, high.y), snapped(low.z, high.z)};
+  return {localOrigin(low.x, high.x), localOrigin(low.y, high.y), localOrigin(low.z, high.z)};
 }
 
 double WideBounds::reach(const Vec3d& from) const {

@@ -95,10 +95,10 @@ typedef struct RThitd {
   uint32_t unused; /* 0 */
 } RThitd;
 /* These answer as rtCastRays, rtOccludedRays, rtCountHits and rtListHits, for rays in double
- * precision. Every ray is decided exactly; they take about three times as long or, for rays exactly
- * through edges and vertices, a hundred times. The first query after a change makes boxes of the
- * meshes that are new, which take about 100 bytes a triangle. Queries in single precision neither
- * make nor use them. [context-thread] */
+ * precision. Every ray is decided exactly; nearest hits take two to nine times as long, rays
+ * exactly through vertices twice that. The first query after a change makes boxes of the meshes
+ * that are new, which take about 100 bytes a triangle. Queries in single precision neither make nor
+ * use them. [context-thread] */
 RT_API void rtCastRaysd(size_t count, const RTrayd* rays, RThitd* hits);
 RT_API void rtOccludedRaysd(size_t count, const RTrayd* rays, uint8_t* occluded);
 RT_API void rtCountHitsd(size_t count, const RTrayd* rays, uint32_t* counts);
