@@ -1,5 +1,6 @@
 // analytic.cpp: the equations of analytic surfaces: checks, bounds, values, tangents.
-// analytic_crossings.cpp intersects them with lines. Pure functions, any thread.
+// analytic_crossings.cpp intersects them with lines, analytic_area.cpp samples them. Pure
+// functions, any thread.
 #include "scene/analytic.h"
 
 #include <cmath>
@@ -109,6 +110,7 @@ AnalyticSurface::AnalyticSurface(edit::Primitive kind, std::span<const double> n
     std::copy_n(numbers_.begin(), 10, form_.begin());
   }
   setBounds();
+  axis_ = axisOfRevolution();
 }
 
 void AnalyticSurface::setBounds() {

@@ -67,6 +67,14 @@ class AnalyticSurface {
   // ray, or along the normal where the ray grazes. The residual is that of double precision.
   Vec3d settle(const Vec3d& point, const Vec3d& direction) const;
 
+  // Sampling by area, for surfaces of revolution about an axis of their own frame: aspheres, and
+  // quadrics like cylinders and cones. pointAt() maps the unit square to the surface. areaAt()
+  // returns the area of an element about a point of the surface over that of its element in the
+  // unit square: 1 / pdf by area; 0 where pointAt() has left the surface.
+  bool samplable() const { return axis_ >= 0; }
+  Vec3d pointAt(double u, double v) const;
+  double areaAt(const Vec3d& p) const;
+
   // Returns the texture coordinates of a point. Quadrics: as VRML's Cylinder and Cone (ISO/IEC
   // 14772-1 6.11, 6.14), s around the y axis from the back, t along y from the lower to the upper
   // side of the box. Aspheres: a square about the aperture, s along x and t along y.
@@ -84,6 +92,8 @@ class AnalyticSurface {
     double offset, length; // distance from the origin = (offset + t) / length of the direction
   };
   void setBounds();
+  int axisOfRevolution() const;
+  double squaredRadius(double t, double& slope) const; // slope: its derivative
   double number(size_t i) const { return numbers_[i]; }
   double curvature() const { return numbers_[0]; }
   double conic() const { return numbers_[1]; }
@@ -105,6 +115,7 @@ class AnalyticSurface {
   std::array<double, 10> form_{}; // of a quadric, and of an asphere without a polynomial
   Vec3d low_, high_;
   double size_ = 0; // largest edge of the bounds
+  int axis_ = -1;   // of revolution; -1: none that is known
 };
 
 } // namespace openrt

@@ -65,7 +65,7 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   const auto count = uint32_t(shapes->size()), stride = std::max(1u, count / most);
   for (uint32_t i = 0; i < count; i += stride) {
     const EmissiveShapes::Shape& shape = (*shapes)[i];
-    if (!(shape.power > 0)) continue;
+    if (!(shape.power > 0) || shape.surface) continue;
     if (shape.sphere)
       addSphere(shape, scene.records[shape.record], probes);
     else
@@ -111,9 +111,12 @@ std::string warnOfNearLamps(const RenderScene& scene) {
 
 std::string warnOfAnalyticLamps(const RenderScene& scene) {
   for (const Record& r : scene.records)
-    if (r.surface && ((*scene.shaders)[r.shader].traits & RTS_EMISSIVE))
-      return "a quadric or an asphere emits light, which is found only by paths that meet it by "
-             "chance: make lamps of triangles or spheres";
+    if (r.surface && !r.surface->samplable() && ((*scene.shaders)[r.shader].traits & RTS_EMISSIVE))
+      return "a quadric emits light that is no surface of revolution about an axis of its frame: "
+             "the "
+             "light is found only by paths that meet it by chance; make lamps of triangles, "
+             "spheres, "
+             "cylinders, cones or aspheres";
   return {};
 }
 

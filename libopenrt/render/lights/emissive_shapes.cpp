@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/emissive_surfaces.h"
 #include "render/lights/luminance.h"
 #include "render/surface/batch.h"
+#include "scene/analytic.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -152,6 +154,47 @@ Brightness sphereEmission(const RenderScene& scene, uint32_t record, Arena& aren
   return mean;
 }
 
+// The emission of the two sides of an analytic surface, and its area.
+struct SurfaceEmission {
+  Brightness front, back;
+  double area = 0;
+};
+
+// Computes means from 16 points, weighted by the area that each stands for.
+SurfaceEmission surfaceEmission(const RenderScene& scene, uint32_t record, Arena& arena) {
+  constexpr uint32_t along = 4, around = 4;
+  const Record& r = scene.records[record];
+  ArenaScope scope(arena);
+  SurfaceEmission out;
+  for (const bool otherSide : {false, true}) {
+    ProbeRays probes(arena, along * around);
+    double areas[along * around];
+    for (uint32_t i = 0; i < along * around; i++) {
+      const SurfacePlace p = sampledPlace(r, (i / around + .5) / along, (i % around + .5) / around);
+      if (!(p.area > 0)) continue;
+      const uint32_t at = probes.count;
+      areas[at] = p.area;
+      const Vec3f normal(p.normal);
+      store(normal, probes.hits.ng, at);
+      probes.hits.u[at] = probes.hits.v[at] = 0;
+      probes.hits.record[at] = record;
+      probes.hits.primitive[at] = 0;
+      probes.add(Vec3f(p.position), otherSide ? -normal : normal);
+    }
+    if (probes.count == 0) return {};
+    Brightness each[along * around];
+    emittedBrightness(scene, record, probes, arena, each);
+    double all = 0;
+    for (uint32_t i = 0; i < probes.count; i++) all += areas[i];
+    for (uint32_t i = 0; i < probes.count; i++)
+      (otherSide ? out.back : out.front).add(each[i], areas[i] / all);
+    out.area = all / (along * around);
+  }
+  // As for triangles, nobody sees the back of a solid surface.
+  if (r.cull) (r.flip ? out.front : out.back) = {};
+  return out;
+}
+
 // Returns whether the points that emit light samples have one radiance. It is finite, so that light
 // from such a shape needs no checks.
 bool emitsOneRadiance(const EmissiveShapes::Shape& s) {
@@ -186,6 +229,20 @@ LightBounds sphereBounds(const Record& r, double outside) {
   return b;
 }
 
+LightBounds surfaceBounds(const Record& r, double luminance) {
+  LightBounds b;
+  const Vec3d &low = r.surface->low(), &high = r.surface->high();
+  const Vec3d middle = r.toRender.point((low + high) / 2), half = (high - low) / 2;
+  Vec3d reach;
+  for (size_t k = 0; k < 3; k++) reach[k] = dot(abs(Vec3d(r.toRender.row(k))), half);
+  b.low = Vec3f(middle - reach);
+  b.high = Vec3f(middle + reach);
+  const double projected = 4 * std::max({reach.x * reach.y, reach.y * reach.z, reach.z * reach.x});
+  const double intensity = luminance * projected;
+  b.intensity = std::isfinite(intensity) ? float(std::min(intensity, 1e30)) : 0;
+  return b;
+}
+
 } // namespace
 
 // For an instance that is the normal in the instance's frame, mapped by the transpose of toRender:
@@ -207,7 +264,7 @@ EmissiveShapes::EmissiveShapes(const RenderScene& scene) : firstOf_(scene.record
     for (size_t c = 0; c < 3; c++)
       for (size_t k = 0; k < 3; k++) corners_[c][k].push_back(shape.corner[c][k]);
     const bool instanced = scene.records[shape.record].instanced;
-    sides_.push_back(shape.sides | (shape.sphere ? ShapeArrays::sphere : 0) |
+    sides_.push_back(shape.sides | (shape.curved() ? ShapeArrays::sphere : 0) |
                      (instanced ? ShapeArrays::instanced : 0) |
                      (emitsOneRadiance(shape) ? ShapeArrays::oneRadiance : 0));
     for (int k = 0; k < 3; k++)
@@ -225,10 +282,30 @@ ShapeArrays EmissiveShapes::arrays() const {
   return arrays;
 }
 
+void EmissiveShapes::addSurface(const RenderScene& scene, uint32_t id,
+                                std::vector<LightBounds>& bounds) {
+  const Record& r = scene.records[id];
+  Arena arena;
+  const SurfaceEmission emission = surfaceEmission(scene, id, arena);
+  const double front = emission.front.luminance, back = emission.back.luminance;
+  firstOf_[id] = uint32_t(shapes_.size());
+  brightest_ = std::max({brightest_, emission.front.sum, emission.back.sum});
+  bounds.push_back(surfaceBounds(r, std::max(front, back)));
+  Shape& s = shapes_.emplace_back(Shape{id, 0, 0, false, {}, false, 0});
+  s.surface = true;
+  if (bounds.back().intensity > 0) s.sides = uint8_t((front > 0 ? 1 : 0) | (back > 0 ? 2 : 0));
+  const double power = (front + back) * emission.area;
+  s.power = std::isfinite(power) ? float(std::min(power, 1e30)) : 0;
+  s.uniform = emitsUniformly(scene, r);
+  s.radiance[0] = Vec3f(emission.front.radiance);
+  s.radiance[1] = Vec3f(emission.back.radiance);
+}
+
 void EmissiveShapes::add(const RenderScene& scene, uint32_t id, std::vector<LightBounds>& bounds) {
   const Record& r = scene.records[id];
   const ShaderSlot& shader = (*scene.shaders)[r.shader];
   if (!(shader.traits & RTS_EMISSIVE) || !shader.shaderClass->surface) return;
+  if (r.surface && r.surface->samplable()) return addSurface(scene, id, bounds);
   Arena arena;
   if (r.primitive == edit::Primitive::Sphere) {
     const Brightness emission = sphereEmission(scene, id, arena);
@@ -281,6 +358,13 @@ EmissiveShapes::Place EmissiveShapes::place(const RenderScene& scene, uint32_t n
                                             float v) const {
   const Shape& s = shapes_[number];
   Place p{};
+  if (s.surface) {
+    const SurfacePlace sampled = sampledPlace(scene.records[s.record], u, v);
+    p.position = Vec3f(sampled.position);
+    p.normal = Vec3f(sampled.normal);
+    p.area = sampled.area;
+    return p;
+  }
   if (!s.sphere) {
     const float root = std::sqrt(u); // uniform on the triangle
     p.u = root * (1 - v);
@@ -310,7 +394,7 @@ Vec3f EmissiveShapes::radiance(const RenderScene& scene, uint32_t number, const 
   }
   ArenaScope scope(arena);
   ProbeRays probes(arena, 1);
-  store(s.sphere ? place.normal : kernelNormal(scene.records[s.record], place.normal),
+  store(s.curved() ? place.normal : kernelNormal(scene.records[s.record], place.normal),
         probes.hits.ng, 0);
   probes.hits.u[0] = s.swapped ? place.v : place.u;
   probes.hits.v[0] = s.swapped ? place.u : place.v;

@@ -1,6 +1,6 @@
-// emissive_shapes.h: area lights: triangles and spheres with emission, and a light tree over them.
-// Rebuilt between frames if transforms, shaders or textures have changed; read by all render
-// threads.
+// emissive_shapes.h: area lights: triangles, spheres and surfaces of revolution with emission, and
+// a light tree over them. Rebuilt between frames if transforms, shaders or textures have changed;
+// read by all render threads.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ class EmissiveShapes {
  public:
   struct Shape {
     uint32_t record, primitive;
-    // 1: the side from which the corners turn counter-clockwise emits (the outside of a sphere); 2:
-    // the other side
+    // 1: the side from which the corners turn counter-clockwise emits (the outside of a sphere, the
+    // side of a surface's gradient); 2: the other side
     uint8_t sides;
     bool sphere;
     std::array<Vec3f, 3> corner; // triangle in render space, in the order of the kernel's normal
@@ -33,6 +33,8 @@ class EmissiveShapes {
     // The shape may be hidden, or have another surface in the same place: it counts only where rays
     // report it.
     bool uncertain = false;
+    bool surface = false; // a quadric or an asphere (emissive_surfaces.h)
+    bool curved() const { return sphere || surface; }
   };
 
   explicit EmissiveShapes(const RenderScene& scene);
@@ -47,8 +49,8 @@ class EmissiveShapes {
   // Returns the shapes as structure of arrays, for vector code.
   ShapeArrays arrays() const;
   // A point sampled on a shape. u, v: barycentric coordinates on a triangle. area: 1 / pdf by area,
-  // which is the area of a triangle, and for an ellipsoid also corrects the uneven distribution of
-  // points.
+  // which is the area of a triangle, and for a curved shape also corrects the uneven distribution
+  // of points. It is 0 if the shape has no such point.
   struct Place {
     Vec3f position, normal;
     float u, v;
@@ -69,6 +71,7 @@ class EmissiveShapes {
 
  private:
   void add(const RenderScene& scene, uint32_t record, std::vector<LightBounds>& bounds);
+  void addSurface(const RenderScene& scene, uint32_t record, std::vector<LightBounds>& bounds);
   void markUncertain(const RenderScene& scene); // uncertain_shapes.cpp
   std::vector<Shape> shapes_;                   // all primitives of a record are consecutive
   std::vector<uint32_t> firstOf_;               // index of a record's first shape, by record

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/lights/emissive_surfaces.h"
 #include "render/lights/spherical.h"
 #include "render/render_scene.h"
 #include "render/surface/points.h"
@@ -72,6 +73,9 @@ double Emitters::sampleShape(const EmissiveShapes::Shape& shape, const LightSamp
     if (!(shape.sides & 1) || !seen.sample(u, v, direction, distance)) return 0;
     return seen.pdf(direction);
   }
+  if (shape.surface)
+    return pdfOfPlace(sampledPlace(scene_->records[shape.record], u, v), shape.sides, from.position,
+                      direction, distance);
   const SphericalTriangle seen(shape.corner, from.position);
   if (!(shape.sides & (seen.front() ? 1 : 2)) || !seen.sample(u, v, direction, distance)) return 0;
   return seen.pdf(direction);
@@ -188,6 +192,8 @@ float Emitters::pdfOf(const LightSampleContext& from, uint32_t number,
     const Record& r = scene_->records[shape.record];
     const SphericalEllipsoid seen(r.fromRender, r.toRender, from.position);
     if (shape.sides & 1) alone = seen.pdf(towards);
+  } else if (shape.surface) {
+    alone = pdfAlong(scene_->records[shape.record], shape.sides, from.position, towards);
   } else {
     const SphericalTriangle seen(shape.corner, from.position);
     if (shape.sides & (seen.front() ? 1 : 2)) alone = seen.pdf(towards);
@@ -219,7 +225,7 @@ bool Emitters::startsLightPaths(uint32_t record, uint32_t primitive, const Vec3f
   const uint32_t number = shapes_ ? shapes_->find(record, primitive) : EmissiveShapes::none;
   if (number == EmissiveShapes::none) return false;
   const EmissiveShapes::Shape& s = (*shapes_)[number];
-  if (s.sphere || !(s.power > 0)) return s.power > 0;
+  if (s.curved() || !(s.power > 0)) return s.power > 0;
   const Vec3d n =
       cross(Vec3d(s.corner[1]) - Vec3d(s.corner[0]), Vec3d(s.corner[2]) - Vec3d(s.corner[0]));
   return s.sides & (dot(n, Vec3d(direction)) < 0 ? 1 : 2);

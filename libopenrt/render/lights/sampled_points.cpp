@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/analytic.h"
+
 namespace openrt {
 namespace {
 
@@ -58,6 +60,21 @@ Rounding roundingOfSphere(const Record& r, const Vec3f& direction, const Vec3f& 
           std::fabs(cosineOf(r.fromRender.transposed(local), direction))};
 }
 
+// As for a sphere, whose normal is another.
+Rounding roundingOfSurface(const Record& r, const Vec3f& direction, const Vec3f& origin,
+                           double distance) {
+  const AnalyticSurface& surface = *r.surface;
+  const Vec3d centre = r.toRender.point((surface.low() + surface.high()) / 2),
+              local =
+                  r.fromRender.pointFromTranslation(Vec3d(origin) + distance * Vec3d(direction));
+  const double size = std::sqrt(squaredNormOf(r.toRender)) * length(surface.high() - surface.low());
+  Vec3d gradient;
+  surface.valueAt(local, gradient);
+  return {roundings(24) * (length(centre - Vec3d(origin)) + size) +
+              roundings(8) * (length(centre) + length(Vec3d(origin))),
+          std::fabs(cosineOf(r.fromRender.transposed(gradient), direction))};
+}
+
 } // namespace
 
 float shadowRayEnd(const RenderScene& scene, const LightSample& sample, const Vec3f& eye,
@@ -66,8 +83,9 @@ float shadowRayEnd(const RenderScene& scene, const LightSample& sample, const Ve
   const EmissiveShapes::Shape& s = (*scene.emitters.shapes())[sample.shape];
   const Record& r = scene.records[s.record];
   const double distance = sample.distance;
-  const Rounding rounding = s.sphere ? roundingOfSphere(r, sample.direction, origin, distance)
-                                     : roundingOf(s, r, sample.direction, origin);
+  const Rounding rounding = s.sphere    ? roundingOfSphere(r, sample.direction, origin, distance)
+                            : s.surface ? roundingOfSurface(r, sample.direction, origin, distance)
+                                        : roundingOf(s, r, sample.direction, origin);
   // An error along the normal, or across the direction, moves the intersection by at most this.
   const double error =
       (rounding.bound + distanceBetween(eye, origin)) / rounding.cosine + roundings(8) * distance;
@@ -77,6 +95,10 @@ float shadowRayEnd(const RenderScene& scene, const LightSample& sample, const Ve
 const Vec3f* uniformRadiance(const EmissiveShapes::Shape& s, const Vec3f& direction) {
   if (!s.uniform) return nullptr;
   if (s.sphere || s.sides == 1) return &s.radiance[0];
+  if (s.surface) // the side depends on the point
+    return s.sides == 2                     ? &s.radiance[1]
+           : s.radiance[0] == s.radiance[1] ? &s.radiance[0]
+                                            : nullptr;
   return &s.radiance[s.sides == 2 || cosineOf(Edges(s).normal, direction) > 0 ? 1 : 0];
 }
 
@@ -87,7 +109,7 @@ void writeSampledHit(const RenderScene& scene, const LightSample& sample, const 
   hits.primitive[lane] = s.primitive;
   hits.t[lane] = sample.distance;
   hits.u[lane] = hits.v[lane] = 0;
-  if (s.sphere) { // makePoints() finds everything from the position
+  if (s.curved()) { // makePoints() finds everything from the position
     store(-load(rays.dir, lane), hits.ng, lane);
     return;
   }

@@ -29,6 +29,7 @@ struct Probes {
   }
   // Adds a ray that passes a point against the normal, from just before it to just behind it.
   void add(uint32_t number, const EmissiveShapes::Place& place, bool otherSide) {
+    if (!(place.area > 0)) return;
     const double coordinates = largest(abs(place.position));
     // The rounding errors of the point and of the kernel, also in an instance.
     const auto reach = float(std::max(coordinates, std::sqrt(place.area)) * 0x1p-19);
