@@ -417,6 +417,21 @@ TEST_F(ScatteringMedia, FogChoosesPathsFromTheCamera) {
   }
 }
 
+// A medium cannot amplify light and scatter it. The message says what was expected, and the body
+// is clear of scattering.
+TEST_F(ScatteringMedia, GainWithScatteringIsRefused) {
+  static std::string said;
+  said.clear();
+  rtLogCallback([](int, const char* text, void*) { said += text; }, nullptr);
+  Shader gain("Glass");
+  gain.set("index", {1}).set("absorption", {-.5, 0, 0}).set("scattering", {1, 1, 1});
+  box(gain, {5, 5, 1});
+  placeAt(-3, square(glowing(1)));
+  expectColor(look(0, 0, 10), {std::exp(1.), 1, 1});
+  rtLogCallback(nullptr, nullptr);
+  EXPECT_NE(said.find("a medium that scatters needs absorption >= 0"), std::string::npos) << said;
+}
+
 // A fixture without a context, for tests that make several.
 class ScatteringThreads : public ScatteringMedia {
  protected:

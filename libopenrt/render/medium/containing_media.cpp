@@ -12,7 +12,7 @@ namespace {
 // The direction of the probe rays has no relation to the axes, so that they do not run along faces.
 const Vec3f probeDirection = normalize(Vec3f{0.5377f, 0.8018f, 0.2604f});
 // A probe that passes more surfaces than this gives up.
-constexpr int mostSurfaces = 10000;
+constexpr int mostSurfaces = 1000;
 
 // What a probe ray has passed.
 struct Probe {
