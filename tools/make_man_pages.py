@@ -24,6 +24,8 @@ NAMES = {
     "textures": "textures",
     "frames": "frames",
     "queries": "queries",
+    "double": "double_queries",
+    "nearest": "nearest_places",
     "workers": "workers"
 }
 TITLES = {
@@ -38,6 +40,8 @@ TITLES = {
     "textures": "textures",
     "frames": "frames, quality, pixels, statistics",
     "queries": "ray queries and picking",
+    "double_queries": "ray queries in double precision",
+    "nearest_places": "the nearest places of a scene",
     "workers": "the workers of a cluster"
 }
 

@@ -60,7 +60,7 @@ RT_API void rtCountHits(size_t count, const RTray* rays, uint32_t* counts);
  * places get an infinite t. [context-thread] */
 RT_API void rtListHits(size_t count, const RTray* rays, const size_t* first, RThit* hits);
 
-/* Queries in double precision ------------------------------------------------------------------ */
+/* Double precision ----------------------------------------------------------------------------- */
 
 /* A ray in world coordinates. t is measured along direction as it is given, of any length up to
  * 1e18; origins lie within 1e18. */
