@@ -72,7 +72,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
 }
 
 // Spawns a ray through a boundary that has no effect. Where light samples pass it, too, the ray
-// keeps the pdf of its direction (traceTransmittance(), SampledEmitters).
+// keeps the pdf of its direction (ShadowRays::toEmitters).
 void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind) {
   const RtsBatch& batch = paths.batch;
   const RenderScene& scene = *batch.scene;
@@ -80,8 +80,7 @@ void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind
   const float pdf = batch.states->pdf[batch.order[i]];
   const size_t at = paths.next.size();
   spawnStraightRay(paths, i, {1, 1, 1}, behind);
-  if (!scene.mediumLights.empty() && (traits & RTS_TRANSPARENT))
-    paths.next.states().pdf[at] = pdf;
+  if (!scene.mediumLights.empty() && (traits & RTS_TRANSPARENT)) paths.next.states().pdf[at] = pdf;
 }
 
 } // namespace
