@@ -135,7 +135,7 @@ std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, cons
   forBatches(rays, [&](size_t first, Arena& arena, Rays& batch) {
     RayHits found;
     found.allocate(arena, batch.count);
-    accel_->intersect(batch, maskAll, Coherence::incoherent, found);
+    accel_->intersectInSinglePrecision(batch, maskAll, Coherence::incoherent, found);
     bool some = false;
     for (uint32_t i = 0; i < batch.count; i++) {
       some |= again[first + i] = isDoubtful(doubts, batch, i, found);

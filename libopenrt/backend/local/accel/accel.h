@@ -10,6 +10,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -30,6 +31,9 @@ class Accel final : public Intersector {
 
   void intersect(const Rays& rays, uint32_t mask, Coherence coherence,
                  RayHits& hits) const override;
+  // Intersects without the search for hits that are lost at vertices.
+  void intersectInSinglePrecision(const Rays& rays, uint32_t mask, Coherence coherence,
+                                  RayHits& hits) const;
   void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const override;
   void occluded(const Rays& rays, uint32_t mask, Coherence coherence,
                 uint8_t* blocked) const override;
@@ -79,6 +83,14 @@ class Accel final : public Intersector {
                       bool first, RayHits& hits) const;
   void occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
                      uint8_t* blocked) const;
+  // Hits that Embree lost at vertices (accel_leaks.cpp). trace: intersects rays as the query does.
+  using Trace = std::function<void(const Rays& rays, RayHits& hits)>;
+  void measure(); // sets low_ and high_
+  bool mayHaveLeaked(const Rays& rays, uint32_t i) const;
+  template <class Open, class Found> void searchLost(const Rays& rays, const Open& isOpen,
+                                                     const Trace& trace, const Found& found) const;
+  void findLostHits(const Rays& rays, const Trace& trace, RayHits& hits) const;
+  void findLostBlockers(const Rays& rays, const Trace& trace, uint8_t* blocked) const;
   // Maps Embree's ids to record and primitive.
   static PrimitiveId find(const PartScene& scene, uint32_t instance, uint32_t geometry,
                           uint32_t primitive);
@@ -107,6 +119,7 @@ class Accel final : public Intersector {
   Level staticLevel_, topLevel_;
   std::vector<PlacedCluster> placed_; // by cluster
   Vec3d origin_;                      // of render space, in the world
+  Vec3f low_, high_;                  // bounds in render space, with a margin
   float scale_ = 1; // render space x scale = the space of both Embree scenes; a power of two
 };
 

@@ -222,6 +222,7 @@ void AccelBuilder::finish() {
     rtcCommitScene(a.top_.scene);
     topLevelBuilds++;
   }
+  a.measure();
   changed_ = false;
   input_ = nullptr;
   accel_ = nullptr;

@@ -209,7 +209,8 @@ void Accel::occludedLevel(const Level& level, const Rays& rays, uint32_t mask, b
     occludedPackets<Packet8>(level, rays, mask, {coherent && !level.instances}, first, blocked);
 }
 
-void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
+void Accel::intersectInSinglePrecision(const Rays& rays, uint32_t mask, Coherence coherence,
+                                       RayHits& hits) const {
   const bool coherent = coherence == Coherence::coherent, top = topLevel_.masks & mask;
   const bool first = staticLevel_.masks || !top;
   if (first) intersectLevel(staticLevel_, rays, mask, coherent, true, hits);
@@ -227,8 +228,23 @@ void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunction
   }
 }
 
+void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayHits& hits) const {
+  intersectInSinglePrecision(rays, mask, coherence, hits);
+  if (coherence == Coherence::incoherent) return;
+  findLostHits(
+      rays,
+      [&](const Rays& again, RayHits& found) {
+        intersectInSinglePrecision(again, mask, coherence, found);
+      },
+      hits);
+}
+
 void Accel::intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const {
-  intersectFiltered(rays, mask, rejectBacks, nullptr, hits);
+  const auto trace = [&](const Rays& some, RayHits& found) {
+    intersectFiltered(some, mask, rejectBacks, nullptr, found);
+  };
+  trace(rays, hits);
+  findLostHits(rays, trace, hits);
 }
 
 void Accel::intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const {
@@ -240,6 +256,13 @@ void Accel::occluded(const Rays& rays, uint32_t mask, Coherence coherence, uint8
   const bool first = staticLevel_.masks || !top;
   if (first) occludedLevel(staticLevel_, rays, mask, coherent, true, blocked);
   if (top) occludedLevel(topLevel_, rays, mask, coherent, !first, blocked);
+  if (!coherent) return;
+  findLostBlockers(
+      rays,
+      [&](const Rays& again, RayHits& found) {
+        intersectInSinglePrecision(again, mask, coherence, found);
+      },
+      blocked);
 }
 
 void Accel::occludedByFronts(const Rays& rays, uint32_t mask, uint8_t* blocked) const {
