@@ -3,6 +3,7 @@
 // process.
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <random>
 
@@ -127,6 +128,50 @@ TEST_P(Watertight, NoRayAimedAtVerticesLeaves) {
         std::count_if(counts.begin(), counts.end(), [](uint32_t n) { return n % 2 == 0; });
     EXPECT_EQ(even, 0);
   }
+}
+
+// Rays side by side are traced in packets. Their answers are those of the same rays in any order.
+TEST_P(Watertight, BundlesHaveTheAnswersOfSingleRays) {
+  const double offset = GetParam();
+  Ball(offset).place();
+  Ball(offset, .25).place();
+  rtRender();
+  constexpr int size = 256;
+  std::vector<RTray> rays;
+  for (int y = 0; y < size; y++) // a pinhole
+    for (int x = 0; x < size; x++)
+      rays.push_back(ray({offset + .1, offset + .2, offset + .9},
+                         {(x - size / 2) / 256., (y - size / 2) / 256., -1}));
+  for (int y = 0; y < size; y++) // a grid, parallel to an axis and partly in the planes of faces
+    for (int x = 0; x < size; x++)
+      rays.push_back(ray({offset + (x - size / 2) / 64., offset + (y - size / 2) / 64., offset + 3},
+                         {0, 0, -1}));
+  for (int y = 0; y < size; y++) // scan lines
+    for (int x = 0; x < size; x++) {
+      const double a = 2 * pi * x / size, b = pi * (y - size / 2) / size;
+      rays.push_back(ray({offset - .5, offset + .5, offset},
+                         {std::cos(a) * std::cos(b), std::sin(b), std::sin(a) * std::cos(b)}));
+    }
+  std::vector<size_t> order(rays.size());
+  for (size_t i = 0; i < order.size(); i++) order[i] = i;
+  std::shuffle(order.begin(), order.end(), random_);
+  std::vector<RTray> mixed;
+  for (const size_t i : order) mixed.push_back(rays[i]);
+  std::vector<RThit> hits(rays.size()), mixedHits(rays.size());
+  rtCastRays(rays.size(), rays.data(), hits.data());
+  rtCastRays(mixed.size(), mixed.data(), mixedHits.data());
+  std::vector<uint8_t> blocked(rays.size()), mixedBlocked(rays.size());
+  rtOccludedRays(rays.size(), rays.data(), blocked.data());
+  rtOccludedRays(mixed.size(), mixed.data(), mixedBlocked.data());
+  size_t different = 0;
+  for (size_t i = 0; i < order.size(); i++) {
+    const RThit &a = hits[order[i]], &b = mixedHits[i];
+    different += std::memcmp(&a.t, &b.t, sizeof a.t) || a.primitive != b.primitive || a.u != b.u ||
+                 a.v != b.v || a.instance != b.instance ||
+                 !std::equal(a.normal, a.normal + 3, b.normal) ||
+                 blocked[order[i]] != mixedBlocked[i];
+  }
+  EXPECT_EQ(different, 0u) << "of " << rays.size();
 }
 
 INSTANTIATE_TEST_SUITE_P(Offsets, Watertight, testing::Values(0.0, 1e3, 148376.0),

@@ -13,6 +13,7 @@ namespace openrt {
 
 struct Doubts {
   Vec3f low, high; // bounds of the scene in render space, with a margin
+  float size = 0;  // the largest extent of the bounds
   float error = 0; // what Embree errs by along a ray within the scene
 
   explicit Doubts(const Intersector& scene) {
@@ -20,7 +21,8 @@ struct Doubts {
     scene.bounds(lowest, highest);
     low = vectorOf(lowest);
     high = vectorOf(highest);
-    error = 0x1p-20f * largest(high - low);
+    size = largest(high - low);
+    error = 0x1p-20f * size;
     const float margin = error + 0x1p-22f * std::max(largest(abs(low)), largest(abs(high)));
     low = low - Vec3f{margin, margin, margin};
     high = high + Vec3f{margin, margin, margin};
