@@ -5,6 +5,7 @@
 // by Embree, and again exactly where its single precision may have decided wrongly: see
 // accel/doubts.h.
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -86,8 +87,11 @@ void LocalBackend::forBatches(
     std::span<const RTray> rays,
     const std::function<void(size_t first, Arena& arena, Rays& batch)>& use) {
   prepare();
+  // Memory that is given back after each block would cost a tenth of the time of coherent rays.
+  tbb::enumerable_thread_specific<Arena> arenas;
   parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
-    Arena arena;
+    Arena& arena = arenas.local();
+    ArenaScope scope(arena);
     Rays batch;
     batch.allocate(arena, uint32_t(n));
     loadRays(rays, first, batch);

@@ -24,6 +24,7 @@ class PrimitiveRuns {
   }
   // Returns what the primitive with this number is. It must have been added.
   PrimitiveId find(uint32_t number) const {
+    if (runs_.size() == 1) return {runs_[0].record, runs_[0].first + number}; // a whole geometry
     const Run* run = runs_.data() + runOfBlock_[number / blockSize];
     const Run* const last = runs_.data() + runs_.size() - 1;
     while (run != last && run[1].begin <= number) ++run;
