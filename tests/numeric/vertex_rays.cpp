@@ -1,5 +1,5 @@
 // vertex_rays.cpp: rays of pictures that are aimed exactly at vertices of closed meshes: no camera
-// ray and no ray to a lamp leaves one (decision 57).
+// ray and no ray to a lamp leaves one (decision 54).
 #include <cstdint>
 #include <vector>
 
