@@ -1,6 +1,7 @@
 // vertex_rays.cpp: rays of pictures that are aimed exactly at vertices of closed meshes: no camera
 // ray and no ray to a lamp leaves one (decision 54).
 #include <cstdint>
+#include <ostream>
 #include <vector>
 
 #include "numeric/support.h"
@@ -48,6 +49,7 @@ struct Placement {
   double offset, turn, scale;
   bool moving;
 };
+void PrintTo(const Placement& p, std::ostream* out) { *out << p.name; }
 
 class VertexRays : public Scene, public testing::WithParamInterface<Placement> {
  protected:
