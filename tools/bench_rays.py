@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Compares ray queries from numpy: xvrml.rt's cast_rays, raw Embree (tests/bench/raw_rays.cpp, one
 rtcIntersect1 per ray), and Open3D and embreex if they are installed. All use the same mesh and the
-same incoherent rays, in alternating rounds; the best round of each counts.
+same rays, in alternating rounds; the best round of each counts.
 
 PYTHONPATH=build/release/python tools/bench_rays.py --raw build/release/lib/libraw_rays.so
-    [--rays 2000000] [--threads 2]
+    [--rays 2000000] [--threads 2] [--pattern incoherent|pinhole|lidar|grid]
 """
 import argparse
 import ctypes
@@ -32,6 +32,28 @@ def incoherent(count):
     rays = np.empty((count, 6), np.float32)
     rays[:, :3] = random.uniform((-5, 0, -5), (5, 3, 5), (count, 3))
     rays[:, 3:] = random.uniform((-5, -0.5, -5), (5, 0.5, 5), (count, 3)) - rays[:, :3]
+    return rays
+
+
+def bundle(count, pattern):
+    """Returns rays whose neighbours run side by side: of a camera, a lidar's scan lines, a grid."""
+    width = int(np.sqrt(count * 1.6))
+    y, x = np.divmod(np.arange(count), width)
+    u, v = x / width - 0.5, y * width / count - 0.5
+    rays = np.zeros((count, 6), np.float32)
+    if pattern == "pinhole":
+        rays[:, :3] = 0, 4, 7
+        rays[:, 3:] = np.stack([u, 0.6 * v - 0.6, np.full(count, -1)], -1)
+    elif pattern == "lidar":
+        around, down = 2 * np.pi * u, -0.4 + 0.4 * v
+        rays[:, 1] = 2
+        rays[:, 3:] = np.stack(
+            [np.cos(around) * np.cos(down),
+             np.sin(down),
+             np.sin(around) * np.cos(down)], -1)
+    else:
+        rays[:, :3] = np.stack([9.8 * u, np.full(count, 5), 9.8 * v], -1)
+        rays[:, 4] = -1
     return rays
 
 
@@ -95,10 +117,15 @@ def main():
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--raw", help="libraw_rays.so of the build")
+    parser.add_argument("--pattern",
+                        choices=["incoherent", "pinhole", "lidar", "grid"],
+                        default="incoherent")
     parser.add_argument("--without-ours", action="store_true")
     arguments = parser.parse_args()
     vertices, triangles = terrain(arguments.edge)
-    rays = incoherent(arguments.rays)
+    pattern = arguments.pattern
+    rays = incoherent(arguments.rays) if pattern == "incoherent" else bundle(
+        arguments.rays, pattern)
     casters = list(contenders(arguments, vertices, triangles))
     best, answers = {}, {}
     for _ in range(arguments.rounds):

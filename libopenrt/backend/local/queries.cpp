@@ -162,8 +162,12 @@ std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, cons
         areCoherent(batch, doubts.size) ? Coherence::coherent : Coherence::incoherent;
     accel_->intersectInSinglePrecision(batch, maskAll, coherence, found);
     bool some = false;
+    auto* suspects = arena.take<uint8_t>(batch.count);
+    doubts.suspect(batch, found, suspects);
     for (uint32_t i = 0; i < batch.count; i++) {
-      some |= again[first + i] = isDoubtful(doubts, batch, i, found);
+      // A ray that hits nothing is a suspect: its t is infinite.
+      if (suspects[i] || accel_->records[found.record[i]].instanced)
+        some |= again[first + i] = isDoubtful(doubts, batch, i, found);
       take(first + i, found, i);
     }
     if (some) any = true;

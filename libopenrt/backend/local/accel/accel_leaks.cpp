@@ -1,6 +1,6 @@
 // accel_leaks.cpp: finds what Embree lost at vertices. Its robust mode is watertight along edges,
 // but where a ray passes exactly through a vertex, the rounded tests of all triangles around it may
-// fail (decision 57). Random rays hardly ever do; rays of a regular grid aimed at regular geometry
+// fail (decision 54). Random rays hardly ever do; rays of a regular grid aimed at regular geometry
 // do. Called by render threads.
 //
 // Rays that may have passed a surface in this way are traced again with a direction turned by

@@ -47,6 +47,24 @@ struct Doubts {
   static bool isGrazing(const Record& r, const Vec3f& kernelNormal, const Vec3f& direction) {
     return grazes(r.instanced ? r.kernelNormal * kernelNormal : kernelNormal, direction);
   }
+  // Writes for each ray whether hit() or miss() may hold. It knows no records: where the record of
+  // a hit is instanced, only hit() tells. A loop without branches, which the compiler vectorizes.
+  void suspect(const Rays& rays, const RayHits& hits, uint8_t* __restrict suspects) const {
+    const float *ox = rays.org[0], *oy = rays.org[1], *oz = rays.org[2], *dx = rays.dir[0],
+                *dy = rays.dir[1], *dz = rays.dir[2], *nx = hits.ng[0], *ny = hits.ng[1],
+                *nz = hits.ng[2], *us = hits.u, *vs = hits.v, *ts = hits.t, *near = rays.tnear,
+                *far = rays.tfar;
+    for (uint32_t i = 0; i < rays.count; i++) {
+      const Vec3f d{dx[i], dy[i], dz[i]}, n{nx[i], ny[i], nz[i]};
+      const float u = us[i], v = vs[i], t = ts[i], along = dot(n, d);
+      const float slack = error + 0x1p-22f * largest(abs(Vec3f{ox[i], oy[i], oz[i]})),
+                  size = largest(abs(d));
+      const bool inside = std::min(std::min(u, v), 1 - u - v) >= 0x1p-12f,
+                 apart = ((t - near[i]) * size > slack) & ((far[i] - t) * size > slack),
+                 steep = along * along > 0x1p-12f * dot(n, n) * dot(d, d);
+      suspects[i] = !(inside & apart & steep);
+    }
+  }
   // Only triangles have edges. Analytic surfaces are met in double precision, at any angle.
   bool hit(const Record& r, const Rays& rays, uint32_t i, const RayHits& hits) const {
     return isNearEnd(rays, i, hits.t[i]) || (r.primitive == edit::Primitive::Triangles &&

@@ -25,6 +25,14 @@ bool isInRange(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return most <= 1e18 && std::isfinite(a.x + a.y + a.z + b.x + b.y + b.z + c.x + c.y + c.z);
 }
 
+// Returns a ray for callers that do not ask where it crosses something, but only whether. Its
+// weights need no digits, but must be finite.
+ExactRay withoutPlaces(const ExactRay& ray) {
+  ExactRay out = ray;
+  out.tolerance = 0x1p20;
+  return out;
+}
+
 // Returns the power of two that brings a length below 1.
 double unitOf(double size) {
   return size > 0 && std::isfinite(size) ? std::exp2(-std::ilogb(size) - 1) : 1;
@@ -294,7 +302,7 @@ bool ExactScene::nearest(const ExactRay& ray, Hit& hit) const {
 
 bool ExactScene::occluded(const ExactRay& ray) const {
   Any found;
-  search(ray, found);
+  search(withoutPlaces(ray), found);
   return found.met;
 }
 
@@ -308,7 +316,7 @@ void ExactScene::all(const ExactRay& ray, std::vector<Hit>& hits) const {
 
 size_t ExactScene::count(const ExactRay& ray) const {
   Counter found;
-  search(ray, found);
+  search(withoutPlaces(ray), found);
   return found.count;
 }
 
