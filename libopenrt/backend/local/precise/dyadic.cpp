@@ -65,6 +65,7 @@ Dyadic operator+(const Dyadic& a, const Dyadic& b) {
 
 Dyadic operator*(const Dyadic& a, const Dyadic& b) {
   Dyadic product;
+  if (a.limbs_.empty() || b.limbs_.empty()) return product;
   product.limbs_.assign(a.limbs_.size() + b.limbs_.size(), 0);
   for (size_t i = 0; i < a.limbs_.size(); i++) {
     uint64_t carry = 0;
