@@ -397,3 +397,25 @@ def test_vertices_in_double_are_numbered_as_they_are_stored():
     caster.update(0, vertices=corners + .5, triangles=[[1, 3, 2], [2, 2, 2], [0, 1, 2]])
     rays = np.array(rays) + [.5, .5, 0, 0, 0, 0]
     assert caster.cast_rays(rays, precision="double")["primitive_ids"].tolist() == [0, 2]
+
+
+def test_bodies_far_smaller_than_their_distance_lose_nothing():
+    """Bodies that single precision cannot find: rays aimed at their vertices, and rays beside."""
+    random = np.random.default_rng(12)
+    for size in (1e-3, 1e-9, 1e-13):
+        corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
+        faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        cut = np.concatenate([faces, faces + 4, faces + 8, faces + 12])  # more than are tried alone
+        points = np.concatenate([corners + 2 * i for i in range(4)])
+        matrix = matrix_of(turn(random) * size, random.normal(size=3) * 1e6)
+        caster = rt.Raycaster(threads=1)
+        caster.add_triangles(points, cut, matrix)
+        exact = [rational(row) for row in matrix[:3]]
+        world = [moved(exact, rational(p)) for p in points]
+        to = np.array([[float(x) for x in p] for p in world])
+        to = np.concatenate([to, matrix[:3, 3] + random.normal(size=(10, 3)) * 30 * size])
+        start = matrix[:3, 3] + random.normal(size=to.shape) * 1e5
+        rays = np.concatenate([start, to - start], 1)
+        counts = caster.count_intersections(rays, precision="double")
+        assert counts.tolist() == [len(crossings(ray, world, cut)) for ray in rays]
+        assert not np.any(counts % 2)

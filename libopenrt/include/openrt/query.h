@@ -96,9 +96,9 @@ typedef struct RThitd {
 } RThitd;
 /* These answer as rtCastRays, rtOccludedRays, rtCountHits and rtListHits, for rays in double
  * precision. Every ray is decided exactly; nearest hits take two to nine times as long, rays
- * exactly through vertices twice that. The first query after a change makes boxes of the meshes
- * that are new, which take about 100 bytes a triangle. Queries in single precision neither make nor
- * use them. [context-thread] */
+ * exactly through vertices twice that, and rays in the planes of many faces fifty times. The first
+ * query after a change makes boxes of the meshes that are new, which take about 100 bytes a
+ * triangle. Queries in single precision neither make nor use them. [context-thread] */
 RT_API void rtCastRaysd(size_t count, const RTrayd* rays, RThitd* hits);
 RT_API void rtOccludedRaysd(size_t count, const RTrayd* rays, uint8_t* occluded);
 RT_API void rtCountHitsd(size_t count, const RTrayd* rays, uint32_t* counts);

@@ -1,7 +1,6 @@
 // dyadic.cpp: arithmetic of Dyadic numbers, as one does it by hand, with digits of 32 bits.
 #include "backend/local/precise/dyadic.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace openrt {
@@ -14,15 +13,19 @@ Dyadic::Dyadic(double value) : negative_(value < 0) {
   first_ = exponent >= 0 ? exponent / 32 : -((31 - exponent) / 32);
   const int shift = exponent - 32 * first_; // 0 to 31
   const uint64_t low = digits << shift;
-  limbs_ = {uint32_t(low), uint32_t(low >> 32), shift == 0 ? 0 : uint32_t(digits >> (64 - shift))};
+  limbs_.reset(3);
+  limbs_[0] = uint32_t(low);
+  limbs_[1] = uint32_t(low >> 32);
+  limbs_[2] = shift == 0 ? 0 : uint32_t(digits >> (64 - shift));
   trim();
 }
 
 void Dyadic::trim() {
-  while (!limbs_.empty() && limbs_.back() == 0) limbs_.pop_back();
-  const auto used = std::find_if(limbs_.begin(), limbs_.end(), [](uint32_t l) { return l != 0; });
-  first_ = limbs_.empty() ? 0 : first_ + int(used - limbs_.begin());
-  limbs_.erase(limbs_.begin(), used);
+  size_t first = 0, last = limbs_.size();
+  while (last > 0 && limbs_[last - 1] == 0) last--;
+  while (first < last && limbs_[first] == 0) first++;
+  limbs_.keep(first, last);
+  first_ = limbs_.empty() ? 0 : first_ + int(first);
   if (limbs_.empty()) negative_ = false;
 }
 
@@ -41,7 +44,7 @@ Dyadic operator+(const Dyadic& a, const Dyadic& b) {
   sum.negative_ = a.negative_;
   sum.first_ = std::min(a.first_, b.first_);
   const int end = std::max(a.first_ + int(a.limbs_.size()), b.first_ + int(b.limbs_.size())) + 1;
-  sum.limbs_.assign(size_t(end - sum.first_), 0);
+  sum.limbs_.reset(size_t(end - sum.first_));
   std::copy(a.limbs_.begin(), a.limbs_.end(), sum.limbs_.begin() + (a.first_ - sum.first_));
   const int64_t factor = a.negative_ == b.negative_ ? 1 : -1;
   int64_t carry = 0;
@@ -65,7 +68,8 @@ Dyadic operator+(const Dyadic& a, const Dyadic& b) {
 
 Dyadic operator*(const Dyadic& a, const Dyadic& b) {
   Dyadic product;
-  product.limbs_.assign(a.limbs_.size() + b.limbs_.size(), 0);
+  if (a.limbs_.empty() || b.limbs_.empty()) return product;
+  product.limbs_.reset(a.limbs_.size() + b.limbs_.size());
   for (size_t i = 0; i < a.limbs_.size(); i++) {
     uint64_t carry = 0;
     for (size_t k = 0; k < b.limbs_.size(); k++) {

@@ -3,12 +3,43 @@
 // times slower than a double. Pure functions. [any thread]
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "backend/local/precise/bounded.h"
 
 namespace openrt {
+
+// The digits of a Dyadic, lowest first. A few of them need no memory of their own.
+class Limbs {
+ public:
+  size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  uint32_t* begin() { return many_.empty() ? few_ : many_.data(); }
+  const uint32_t* begin() const { return many_.empty() ? few_ : many_.data(); }
+  uint32_t* end() { return begin() + size_; }
+  const uint32_t* end() const { return begin() + size_; }
+  uint32_t& operator[](size_t i) { return begin()[i]; }
+  uint32_t operator[](size_t i) const { return begin()[i]; }
+  // Makes `size` digits of 0.
+  void reset(size_t size) {
+    if (size > std::size(few_)) many_.resize(size);
+    size_ = size;
+    std::fill(begin(), end(), 0u);
+  }
+  // Keeps the digits from `first` on, up to `last`.
+  void keep(size_t first, size_t last) {
+    std::copy(begin() + first, begin() + last, begin());
+    size_ = last - first;
+  }
+
+ private:
+  uint32_t few_[16];
+  std::vector<uint32_t> many_; // in use if it is not empty
+  size_t size_ = 0;
+};
 
 class Dyadic {
  public:
@@ -26,7 +57,6 @@ class Dyadic {
   friend Bounded quotient(const Dyadic& a, const Dyadic& b);
 
  private:
-  using Limbs = std::vector<uint32_t>;
   // Returns m with |m| from 1 to 2^32, so that the number is m * 2^exponent within 2^-51 |m|.
   double mantissa(int& exponent) const;
   void trim();

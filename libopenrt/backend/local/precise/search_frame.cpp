@@ -43,27 +43,33 @@ SearchFrame::SearchFrame(const Matrix4d& toWorld, const Vec3d& center, double un
 SearchFrame::Way SearchFrame::wayOf(const PreciseRay& ray, double far) const {
   const Long from = Long(ray.origin) - center_, along(ray.direction);
   const Long origin = inverse_ * from, direction = inverse_ * along;
-  const long double square = dot(direction, direction), middle = -dot(origin, direction) / square;
+  const long double length = std::sqrt(dot(direction, direction)),
+                    middle = -dot(origin, direction) / (length * length);
   const Long closest = origin + direction * middle;
-  const long double half = 2 / std::sqrt(square);
   // The errors of origin and direction, and what they make at the far end of the way.
   const long double extent = largest(abs(Long(ray.origin))) + largest(abs(center_)),
-                    reach = std::min<long double>(far, std::fabs(middle) + half),
+                    reach = std::min<long double>(far, std::fabs(middle) + 2 / length),
+                    turn = (inverseError_ + rounding * size_) * largest(abs(along)),
                     error = inverseError_ * largest(abs(from)) +
-                            size_ * (centerError_ + rounding * extent) +
-                            reach * (inverseError_ + rounding * size_) * largest(abs(along));
+                            size_ * (centerError_ + rounding * extent) + reach * turn;
   Way way;
-  if (!(error <= mostForBall)) { // also where it is no number
-    way.search = Search::all;
+  way.search = Search::all;
+  if (!(error <= mostForBall)) {
+    // A ball that is larger by twice the error holds the true way, unless the direction errs by
+    // more than a quarter; or nothing is known.
+    const long double radius = 2 + 2 * error;
+    const bool passes = 4 * turn <= length && dot(closest, closest) > radius * radius;
+    if (passes) way.search = Search::none;
     return way;
   }
-  if (!(dot(closest, closest) <= 4)) return way;
-  const long double start = std::max<long double>(ray.near, middle - half),
-                    end = std::min<long double>(far, middle + half);
-  if (!(start <= end)) return way;
-  way.search = error <= mostError ? Search::tree : Search::all;
+  const long double start = std::max<long double>(ray.near, middle - 2 / length),
+                    end = std::min<long double>(far, middle + 2 / length);
+  if (!(dot(closest, closest) <= 4) || !(start <= end)) {
+    way.search = Search::none;
+    return way;
+  }
+  if (error <= mostError) way.search = Search::tree;
   way.start = double(start);
-  const long double length = std::sqrt(square);
   way.length = double(length);
   way.ray = {Vec3d(origin + direction * way.start), Vec3d(direction / length), 0,
              way.fromWorld(double(end))};

@@ -19,19 +19,27 @@ template <class T> Vec3<T> turned(const Matrix4d& m, const Vec3<T>& p) {
   return column<T>(m, 0) * p.x + column<T>(m, 1) * p.y + column<T>(m, 2) * p.z;
 }
 
-// A triangle in the world, relative to the ray's origin, with its edges from a.
-template <class T> struct Seen {
-  Vec3<T> a, b, c, ab, ac, normal, direction;
+// The plane of a triangle in the world, with the edges from a.
+template <class T> struct Plane {
+  Vec3<T> ab, ac, normal, direction;
 
-  Seen(const PreciseRay& ray, const PlacedTriangle& s) : direction(ray.direction) {
-    const Vec3<T> from = column<T>(s.world, 3) - Vec3<T>(ray.origin), pa(s.a), pb(s.b), pc(s.c);
-    a = from + turned(s.world, pa);
-    b = from + turned(s.world, pb);
-    c = from + turned(s.world, pc);
-    ab = turned(s.world, pb - pa);
-    ac = turned(s.world, pc - pa);
-    normal = cross(ab, ac);
-  }
+  Plane(const PreciseRay& ray, const PlacedTriangle& s)
+      : ab(turned(s.world, Vec3<T>(s.b) - Vec3<T>(s.a))),
+        ac(turned(s.world, Vec3<T>(s.c) - Vec3<T>(s.a))), normal(cross(ab, ac)),
+        direction(ray.direction) {}
+  // A face that contains the direction of the ray has 0 here.
+  T along() const { return dot(normal, direction); }
+};
+
+// A triangle in the world, relative to the ray's origin.
+template <class T> struct Seen : Plane<T> {
+  using Plane<T>::ab, Plane<T>::ac, Plane<T>::normal, Plane<T>::direction;
+  Vec3<T> a, b, c;
+
+  Seen(const PreciseRay& ray, const PlacedTriangle& s, const Plane<T>& plane)
+      : Plane<T>(plane),
+        a(column<T>(s.world, 3) - Vec3<T>(ray.origin) + turned(s.world, Vec3<T>(s.a))), b(a + ab),
+        c(a + ac) {}
   // Returns on which side of edge k, opposite corner k, the line of the ray passes. The three sides
   // add up to normal . direction.
   T side(int k) const {
@@ -51,18 +59,23 @@ int sideOfMovedRay(const Seen<Dyadic>& s, int k) {
   return by.z.sign();
 }
 
-// The triangle in exact numbers, made when it is needed.
+// The triangle in exact numbers, of which each part is made when it is needed.
 class Exact {
  public:
   Exact(const PreciseRay& ray, const PlacedTriangle& s) : ray_(ray), triangle_(s) {}
+  const Plane<Dyadic>& plane() {
+    if (!plane_) plane_.emplace(ray_, triangle_);
+    return *plane_;
+  }
   const Seen<Dyadic>& get() {
-    if (!seen_) seen_.emplace(ray_, triangle_);
+    if (!seen_) seen_.emplace(ray_, triangle_, plane());
     return *seen_;
   }
 
  private:
   const PreciseRay& ray_;
   const PlacedTriangle& triangle_;
+  std::optional<Plane<Dyadic>> plane_;
   std::optional<Seen<Dyadic>> seen_;
 };
 
@@ -77,7 +90,7 @@ struct Located {
 // t = normal . a / normal . d. The point, relative to a, is h / (normal . d); its coordinates along
 // the edges follow from the two axes that are best across the normal, numbered by i and k.
 template <class T> Located locate(const Seen<T>& s, size_t i, size_t k) {
-  const T height = dot(s.normal, s.a), along = dot(s.normal, s.direction);
+  const T height = dot(s.normal, s.a), along = s.along();
   const Vec3<T> h = s.direction * height - s.a * along;
   const T area = (s.ab[i] * s.ac[k] - s.ab[k] * s.ac[i]) * along;
   return {quotientOf(height, along), quotientOf(h[i] * s.ac[k] - h[k] * s.ac[i], area),
@@ -99,25 +112,28 @@ std::array<size_t, 2> axesAcross(const Vec3<Bounded>& n) {
 } // namespace
 
 bool crosses(const PreciseRay& ray, const PlacedTriangle& triangle, PreciseCrossing& at) {
-  const Seen<Bounded> rough(ray, triangle);
-  int signs[3];
+  const Seen<Bounded> rough(ray, triangle, Plane<Bounded>(ray, triangle));
+  // The three sides of a ray that crosses have the sign of their sum, which is that of
+  // normal . direction. Most triangles are rejected by two certain signs that differ.
+  int along = rough.along().sign(), signs[3];
   for (int k = 0; k < 3; k++) signs[k] = rough.side(k).sign();
-  // Most triangles are rejected by two certain signs that differ.
-  if (*std::max_element(signs, signs + 3) > 0 && *std::min_element(signs, signs + 3) < 0)
+  if (std::max({along, signs[0], signs[1], signs[2]}) > 0 &&
+      std::min({along, signs[0], signs[1], signs[2]}) < 0)
     return false;
   Exact exact(ray, triangle);
+  if (along == 0) along = exact.plane().along().sign();
+  if (along == 0) return false;
   for (int k = 0; k < 3; k++) {
     if (signs[k] == 0) signs[k] = exact.get().side(k).sign();
     if (signs[k] == 0) signs[k] = sideOfMovedRay(exact.get(), k);
-    if (signs[k] == 0 || signs[k] != signs[0]) return false;
+    if (signs[k] != along) return false;
   }
   const auto sideOfPoint = [&](double t) {
     const int sign = rough.sideOfPoint(t).sign();
     return sign != 0 ? sign : exact.get().sideOfPoint(t).sign();
   };
-  // All signs are that of normal . direction.
-  if (sideOfPoint(ray.near) != signs[0]) return false;
-  if (std::isfinite(ray.far) && sideOfPoint(ray.far) == signs[0]) return false;
+  if (sideOfPoint(ray.near) != along) return false;
+  if (std::isfinite(ray.far) && sideOfPoint(ray.far) == along) return false;
   const auto [i, k] = axesAcross(rough.normal);
   Located found = locate(rough, i, k);
   if (!isGood(found)) {
