@@ -76,7 +76,7 @@ RT_API void rtSphere(float radius);
  * RT_INVALID_VALUE, and nothing is added. Lengths are in units of the current matrix; nothing is
  * kept of the arrays. Like spheres they latch shader, name, matrix and capabilities; RT_CW_FRONT
  * exchanges front and back. Light that they emit is found only by paths that meet them: make
- * lamps of triangles or spheres. rtQueryClosestPoints does not see them. */
+ * lamps of triangles or spheres. rtClosestPoints refuses scenes that have them. */
 
 /* Adds the part of a quadric that lies in a box: the points between `low` and `high`, within 1e12
  * of the origin, where
