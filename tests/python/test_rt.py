@@ -260,6 +260,13 @@ def test_surfaces_without_facets():
         assert np.allclose(context.cast_rays(rays)["t_hit"], expected, rtol=1e-6)
 
 
+def test_closest_points_are_refused_on_surfaces_without_facets():
+    with rt.Context(threads=1) as context:
+        context.instance(context.cylinder(1, -1, 1))
+        with pytest.raises(rt.Error, match="quadric"):
+            context.compute_closest_points([[0, 0, 5]])
+
+
 def test_front_and_back_of_surfaces_without_facets():
     with rt.Context(threads=1) as context:
 
