@@ -139,6 +139,8 @@ LuminanceScale luminanceScale(double most) {
   return scale;
 }
 
+double mostLuminance(const Picture& picture) { return mostOf(luminancesOf(picture)); }
+
 Picture falseColours(const Picture& picture, std::optional<double> most) {
   const int width = picture.width, height = picture.height;
   const std::vector<float> luminance = luminancesOf(picture);

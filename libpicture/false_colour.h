@@ -15,9 +15,12 @@ struct LuminanceScale {
 // Returns a scale of 5 to 10 steps up to `most` or the next round value above it. most: above 0.
 LuminanceScale luminanceScale(double most);
 
+// Returns the luminance that 99.5 % of the pixels stay below; 1 if the picture is black.
+double mostLuminance(const Picture& picture);
+
 // Returns a picture in display colours (Picture::linear is false), wider than the given one by its
 // legend. The given picture holds linear radiance, where 1 is 1 cd/m2. most: the luminance at the
-// end of the scale; none: one that 99.5 % of the pixels stay below.
+// end of the scale; none: mostLuminance() of the picture.
 Picture falseColours(const Picture& picture, std::optional<double> most);
 
 } // namespace picture

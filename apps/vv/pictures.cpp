@@ -372,11 +372,20 @@ class Pictures {
     return exitInterrupted;
   }
 
-  void writePictures(const Job& job, const picture::Picture& made) {
+  // Returns the picture in false colours, if they are wanted. All pictures of a run have one scale,
+  // so that they can be compared and have one size: the given one, or that of the first picture.
+  std::optional<picture::Picture> inFalseColours(const picture::Picture& made, bool complete) {
+    if (!options_.falseColour) return {};
+    double most = *options_.falseColour > 0 ? *options_.falseColour : endOfScale_;
+    if (!(most > 0)) most = picture::mostLuminance(made);
+    if (complete) endOfScale_ = most;
+    return picture::falseColours(made, most);
+  }
+
+  // coloured: the picture in false colours, for files that are made for screens.
+  void writePictures(const Job& job, const picture::Picture& made,
+                     const std::optional<picture::Picture>& coloured) {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
-    std::optional<picture::Picture> coloured;
-    if (const std::optional<double>& most = options_.falseColour)
-      coloured = picture::falseColours(wanted, *most > 0 ? most : std::nullopt);
     for (const Output& output : options_.outputs) {
       if (output.film != picture::FilmKind::none) continue;
       const bool shows = coloured && output.format->appliesCurve;
@@ -411,7 +420,7 @@ class Pictures {
   // Saves the picture so far. A failure to write this copy does not stop the picture.
   void savePart(const Job& job, const picture::Picture& soFar) {
     try {
-      writePictures(job, soFar);
+      writePictures(job, soFar, inFalseColours(soFar, false));
       if (!options_.quiet) say("vv: the picture so far is saved");
     } catch (const std::exception& error) { sayWarning(error.what()); }
   }
@@ -425,8 +434,9 @@ class Pictures {
   void finish(const Job& job, const Moment& moment, const picture::RenderResult& result) {
     const auto start = Clock::now();
     sayPreview(result.picture);
-    writePictures(job, result.picture);
-    if (!result.interrupted) addToFilms(job, result.picture);
+    const auto coloured = inFalseColours(result.picture, !result.interrupted);
+    writePictures(job, result.picture, coloured);
+    if (!result.interrupted) addToFilms(job, coloured ? *coloured : result.picture);
     const double writeSeconds = secondsSince(start);
     if (!options_.compare.empty() && !result.interrupted)
       writeOut(compareText(result.picture, options_.compare));
@@ -526,6 +536,7 @@ class Pictures {
   bool anyWorker_ = false;                                      // a worker has been connected
   std::map<std::string, std::unique_ptr<picture::Film>> films_; // indexed by path
   SequenceStats frames_;
+  double endOfScale_ = 0; // of false colours, in cd/m2; 0: no picture has been made
 };
 
 } // namespace

@@ -262,19 +262,19 @@ void defineMeasurement(py::module_& module) {
 void defineRender(py::object worldClass) {
   using A = RenderArguments;
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
-  defineMethod(
-      world, "measure", measure, parameterList(),
-      parameterList(parameter("spp", &A::spp), qualityParameter<long long>(RT_SEED),
-                    parameter("threads", &A::threads), qualityParameter<long long>(RT_MAX_DEPTH),
-                    qualityParameter<std::string>(RT_TRANSPORT),
-                    qualityParameter<double>(RT_TARGET_ERROR),
-                    qualityParameter<double>(RT_TIME_LIMIT), parameter("cluster", &A::cluster),
-                    parameter("progress", &A::progress)),
-      "Reads the ORTSensors of the world in its current state and returns a list of "
-      "Measurement, in the order of the file: lux or cd/m2 with 95 % intervals. The "
-      "options are those of vv --measure. spp: samples per point (default 4096; with "
-      "error and time_limit the maximum). error: the mean relative half-width at which "
-      "sampling ends.");
+  defineMethod(world, "measure", measure, parameterList(),
+               parameterList(
+                   parameter("spp", &A::spp), qualityParameter<long long>(RT_SEED),
+                   parameter("threads", &A::threads), qualityParameter<long long>(RT_MAX_DEPTH),
+                   qualityParameter<std::string>(RT_TRANSPORT),
+                   qualityParameter<double>(RT_TARGET_ERROR),
+                   qualityParameter<double>(RT_TIME_LIMIT), parameter("cluster", &A::cluster),
+                   parameter("progress", &A::progress), parameter("exact_shapes", &A::exactShapes)),
+               "Reads the ORTSensors of the world in its current state and returns a list of "
+               "Measurement, in the order of the file: lux or cd/m2 with 95 % intervals. The "
+               "options are those of vv --measure. spp: samples per point (default 4096; with "
+               "error and time_limit the maximum). error: the mean relative half-width at which "
+               "sampling ends.");
   defineMethod(
       world, "render", render,
       parameterList(
@@ -290,7 +290,8 @@ void defineRender(py::object worldClass) {
           parameter("progress", &A::progress), parameter("multiply_textures", &A::multiplyTextures),
           parameter("up", &A::up), parameter("background", &A::background),
           parameter("isa", &A::isa), qualityParameter<Switch>(RT_FOLLOW_IMAGES),
-          qualityParameter<Switch>(RT_JITTER), qualityParameter<long long>(RT_LIGHT_STRIDE)),
+          qualityParameter<Switch>(RT_JITTER), qualityParameter<long long>(RT_LIGHT_STRIDE),
+          parameter("exact_shapes", &A::exactShapes)),
       parameterList(),
       "Renders the world in its current state. While a world runs, the scene is kept between "
       "pictures. The options are those of the program vv. spp: samples per pixel (default 16); "

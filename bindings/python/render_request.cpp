@@ -279,6 +279,7 @@ constexpr Rule rules[] = {
     {"isa", setIsa},
     {"quality settings", setQuality},
     {"multiply_textures", setFlag<&Given::multiplyTextures, &Settings::multiplyTextures>},
+    {"exact_shapes", setFlag<&Given::exactShapes, &Settings::exactShapes>},
     {"colour", setColour},
     {"headlight", setHeadlight},
     {"spp", setSamples},

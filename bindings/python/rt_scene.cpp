@@ -168,7 +168,9 @@ py::object keptTriangles(const py::object& vertices, const py::object& faces) {
   return py::array_t<uint32_t>(py::ssize_t(kept.size()), kept.data());
 }
 
-RtObject sphere(const RtContextPtr& self, float radius, const py::object& shader, uint32_t name) {
+// Makes an object of one surface that draw() adds. ccw: false exchanges its front and back.
+template <class F> RtObject surfaceObject(const RtContextPtr& self, bool ccw,
+                                          const py::object& shader, uint32_t name, const F& draw) {
   const RtShader* surface = shaderOf(self, shader);
   const CurrentContext use(self);
   RtObject made;
@@ -177,11 +179,42 @@ RtObject sphere(const RtContextPtr& self, float radius, const py::object& shader
     made = {{self, opened.id}};
     if (surface) rtBindShader(surface->id);
     rtLoadName(name);
-    rtSphere(radius);
+    if (!ccw) rtEnable(RT_CW_FRONT);
+    draw();
+    rtDisable(RT_CW_FRONT);
     rtLoadName(0);
   }
   use.check();
   return made;
+}
+
+RtObject sphere(const RtContextPtr& self, float radius, const py::object& shader, uint32_t name) {
+  return surfaceObject(self, true, shader, name, [&] { rtSphere(radius); });
+}
+
+RtObject quadric(const RtContextPtr& self, const std::array<double, 10>& coefficients,
+                 const std::array<double, 3>& low, const std::array<double, 3>& high, bool ccw,
+                 const py::object& shader, uint32_t name) {
+  return surfaceObject(self, ccw, shader, name,
+                       [&] { rtQuadric(coefficients.data(), low.data(), high.data()); });
+}
+
+RtObject cylinder(const RtContextPtr& self, double radius, double low, double high, bool ccw,
+                  const py::object& shader, uint32_t name) {
+  return surfaceObject(self, ccw, shader, name, [&] { rtCylinder(radius, low, high); });
+}
+
+RtObject cone(const RtContextPtr& self, double lowRadius, double highRadius, double low,
+              double high, bool ccw, const py::object& shader, uint32_t name) {
+  return surfaceObject(self, ccw, shader, name, [&] { rtCone(lowRadius, highRadius, low, high); });
+}
+
+RtObject asphere(const RtContextPtr& self, double curvature, double semiAperture, double conic,
+                 const std::vector<double>& terms, double innerRadius, bool ccw,
+                 const py::object& shader, uint32_t name) {
+  return surfaceObject(self, ccw, shader, name, [&] {
+    rtAsphere(curvature, conic, terms.size(), terms.data(), innerRadius, semiAperture);
+  });
 }
 
 RtObject group(const RtContextPtr& self, const py::iterable& parts) {
@@ -560,6 +593,24 @@ void defineRtScene(py::module_& module) {
       .def("sphere", sphere, "radius"_a, py::kw_only(), "shader"_a = none,
            py::arg("name").noconvert() = 0,
            "Creates an object that is an exact sphere around the origin.")
+      .def("quadric", quadric, "coefficients"_a, "low"_a, "high"_a, py::kw_only(), "ccw"_a = true,
+           "shader"_a = none, py::arg("name").noconvert() = 0,
+           "Creates the part of a quadric in the box from low to high: where c[0] x^2 + c[1] y^2 + "
+           "c[2] z^2 + c[3] xy + c[4] yz + c[5] zx + c[6] x + c[7] y + c[8] z + c[9] is 0. Its "
+           "front is where that is positive; ccw=False exchanges front and back.")
+      .def("cylinder", cylinder, "radius"_a, "low"_a, "high"_a, py::kw_only(), "ccw"_a = true,
+           "shader"_a = none, py::arg("name").noconvert() = 0,
+           "Creates the side of a cylinder about the y axis, from y = low to y = high, without "
+           "facets.")
+      .def("cone", cone, "low_radius"_a, "high_radius"_a, "low"_a, "high"_a, py::kw_only(),
+           "ccw"_a = true, "shader"_a = none, py::arg("name").noconvert() = 0,
+           "Creates the side of a truncated cone about the y axis, without facets.")
+      .def("asphere", asphere, "curvature"_a, "semi_aperture"_a, py::kw_only(), "conic"_a = 0.0,
+           "terms"_a = std::vector<double>{}, "inner_radius"_a = 0.0, "ccw"_a = true,
+           "shader"_a = none, py::arg("name").noconvert() = 0,
+           "Creates a surface of revolution about the z axis, without facets (rtAsphere). "
+           "curvature: 1 / radius at the vertex. terms: factors of r^4, r^6 and so on, at most 8. "
+           "The front faces +z.")
       .def("group", group, "parts"_a,
            "Creates an object from other objects. parts: pairs of an object and its matrix.")
       .def("instance", instance, "object"_a, "matrix"_a = none, py::kw_only(), "shader"_a = none,

@@ -59,6 +59,42 @@ TEST(ClusterProcesses, AnyNumberOfWorkersMakesTheSameBytes) {
   }
 }
 
+// Adds a body of surfaces without facets to the scene.
+void addReflector() {
+  const double terms[] = {.02, -.001}, sphere[] = {1, 1, 1, 0, 0, 0, 0, 0, 0, -.3},
+               low[] = {-.5, -.2, -.5}, high[] = {.5, .5, .5};
+  const RTid reflector = rtBeginObject(0);
+  rtAsphere(.5, -1, 2, terms, .2, .9);
+  rtQuadric(sphere, low, high);
+  rtEndObject();
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtTranslated(-2, 1.2, -1);
+  rtRotated(-50, 1, 0, 0);
+  rtInstantiateObject(reflector);
+  rtPopMatrix();
+}
+
+TEST(ClusterProcesses, SurfacesWithoutFacetsHaveTheSameBytes) {
+  const FrameOptions look;
+  Picture one;
+  {
+    const Context alone("threads=1");
+    const World world;
+    addReflector();
+    rtRender();
+    one = pixels(look);
+  }
+  EXPECT_GT(different(one, expected(look)), 0u) << "they are in the picture";
+  const Workers helping = start(2);
+  const Context context("backend=cluster threads=1 " + workersOption(helping));
+  const World world;
+  addReflector();
+  join(2);
+  rtRender();
+  EXPECT_EQ(different(pixels(look), one), 0u);
+}
+
 // The second worker joins between frames, and gets the scene of the frame before.
 TEST(ClusterProcesses, MotionIsTheSameOnAllMachines) {
   const FrameOptions look{.channels = RT_RGBA | RT_POSITION | RT_NAME | RT_MOTION};

@@ -1,5 +1,5 @@
-"""Runs the code blocks of docs/python.md and docs/ray-queries.md in order. Blocks marked
-needs=PACKAGE run if it is installed."""
+"""Runs the code blocks of docs/python.md, docs/ray-queries.md and docs/photometry.md in order.
+Blocks marked needs=PACKAGE run if it is installed; worlds marked file=NAME are written before."""
 import importlib.util
 import pathlib
 import re
@@ -13,11 +13,13 @@ pytest.importorskip("xvrml")
 DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
 
 
-@pytest.mark.parametrize("page", ["python.md", "ray-queries.md"])
+@pytest.mark.parametrize("page", ["python.md", "ray-queries.md", "photometry.md"])
 def test_blocks_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     text = (DOCS / page).read_text()
+    for name, world in re.findall(r"```vrml file=([\w.]+)\n(.*?)```", text, re.S):
+        (tmp_path / name).write_text(world)
     blocks = re.findall(r"```python([^\n]*)\n(.*?)```", text, re.S)
     assert len(blocks) >= 3
     names = {"__name__": "docs"}

@@ -218,6 +218,31 @@ def test_same_bytes_as_vv(box, vv):
     assert (vv.folder / "python.exr").read_bytes() == (vv.folder / "vv.exr").read_bytes()
 
 
+def test_shapes_without_facets(vv):
+    """exact_shapes is the option of vv: the same bytes, and another picture than without."""
+    path = vv.folder / "can.wrl"
+    path.write_text("""#VRML V2.0 utf8
+Shape { geometry Cylinder { } appearance DEF A Appearance { material Material { } } }
+Transform { translation 3 0 0 children Shape { geometry Cone { } appearance USE A } }
+ORTSensor { position 0 5 0 }""")
+    world = xvrml.load(path)
+    options = {"size": (64, 48), "spp": 1}
+    facets = world.render(**options)
+    exact = world.render(exact_shapes=True, **options)
+    assert facets.stats["triangles"] > 0 and exact.stats["triangles"] == 0
+    assert (facets.array != exact.array).any()
+    assert (world.render(**options).array == facets.array).all(), "it holds for one picture"
+    exact.save(path.with_suffix(".png"))
+    done = vv("can.wrl", "-o", "vv.png", "--exact-shapes", "--size", "64x48", "--spp", "1")
+    assert done.returncode == 0, done.talk
+    image = pytest.importorskip("PIL.Image")
+    with image.open(vv.folder / "vv.png") as a, image.open(path.with_suffix(".png")) as b:
+        assert a.tobytes() == b.tobytes()
+    assert len(world.measure(spp=1, exact_shapes=True)) == 1
+    with pytest.raises(TypeError, match="exact_shapes"):
+        world.render(exact_shapes="yes")
+
+
 def test_instruction_sets(box):
     w = xvrml.load(box)
     size = {"size": (40, 30), "spp": 8, "transport": "path"}

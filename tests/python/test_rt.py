@@ -236,6 +236,64 @@ def test_triangles_without_area_keep_their_numbers():
     assert hits["primitive_ids"].tolist() == [1, 3]
 
 
+def test_surfaces_without_facets():
+    """Rays meet quadrics and aspheres where their equations say."""
+    with rt.Context(threads=1) as context:
+        context.instance(context.cylinder(2, -1, 1, name=7), user_data=1)
+        hits = context.cast_rays([[9, .5, 0, -1, 0, 0], [9, 1.5, 0, -1, 0, 0]])
+        assert hits["t_hit"].tolist() == [7, np.inf]
+        assert np.allclose(hits["primitive_normals"][0], (1, 0, 0))
+    with rt.Context(threads=1) as context:
+        context.instance(context.cone(2, 1, -1, 1))
+        assert context.cast_rays([[9, 0, 0, -1, 0, 0]])["t_hit"][0] == pytest.approx(7.5)
+    with rt.Context(threads=1) as context:
+        ellipsoid = (1 / 4, 1, 1 / 9, 0, 0, 0, 0, 0, 0, -1)
+        context.instance(context.quadric(ellipsoid, (-2, -1, -3), (2, 1, 3)))
+        rays = [[9, 0, 0, -1, 0, 0], [0, 9, 0, 0, -1, 0], [0, 0, 9, 0, 0, -1]]
+        assert np.allclose(context.cast_rays(rays)["t_hit"], (7, 8, 6))
+        assert context.count_intersections(rays).tolist() == [2, 2, 2]
+    with rt.Context(threads=1) as context:
+        context.instance(context.asphere(1 / 4, 2, conic=-1, terms=(.01, .002), inner_radius=.5))
+        x = np.array([.4, .6, 1.5, 2.1])
+        rays = np.column_stack([x, 0 * x, 0 * x + 9, 0 * x, 0 * x, 0 * x - 1])
+        expected = np.where((x > .5) & (x < 2), 9 - (x**2 / 8 + .01 * x**4 + .002 * x**6), np.inf)
+        assert np.allclose(context.cast_rays(rays)["t_hit"], expected, rtol=1e-6)
+
+
+def test_closest_points_are_refused_on_surfaces_without_facets():
+    with rt.Context(threads=1) as context:
+        context.instance(context.cylinder(1, -1, 1))
+        with pytest.raises(rt.Error, match="quadric"):
+            context.compute_closest_points([[0, 0, 5]])
+
+
+def test_front_and_back_of_surfaces_without_facets():
+    with rt.Context(threads=1) as context:
+
+        def normal(ccw):
+            thing = context.instance(context.asphere(0, 1, ccw=ccw))
+            hit = context.cast_rays([[0, 0, 5, 0, 0, -1]])
+            thing.delete()
+            return hit["primitive_normals"][0].tolist()
+
+        assert normal(True) == [0, 0, 1] and normal(False) == [0, 0, -1]
+
+
+@pytest.mark.parametrize("wrong", [
+    lambda c: c.cylinder(-1, 0, 1), lambda c: c.cylinder(1, 1, 0), lambda c: c.cone(0, 0, 0, 1),
+    lambda c: c.quadric((0,) * 10, (-1, -1, -1), (1, 1, 1)), lambda c: c.quadric(
+        (1,) * 10, (1, 1, 1),
+        (-1, -1, -1)), lambda c: c.asphere(1, 2), lambda c: c.asphere(np.nan, 1),
+    lambda c: c.asphere(0, 1, terms=[0] * 9), lambda c: c.asphere(0, 1, inner_radius=2)
+])
+def test_surfaces_that_make_no_sense_are_refused(wrong):
+    with rt.Context(threads=1) as context:
+        with pytest.raises(ValueError):
+            wrong(context)
+        with pytest.raises(TypeError):
+            context.quadric((1, 2), (-1, -1, -1), (1, 1, 1))
+
+
 def test_closest_points(cloud):
     vertices, triangles = cloud
     caster = rt.Raycaster(threads=1)

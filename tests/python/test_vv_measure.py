@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from conftest import read_pfm
 
 import xvrml
 
@@ -118,6 +119,36 @@ def test_false_colours_widen_the_picture_and_leave_exr_alone(room):
                 "-q").returncode == 0, "the EXR file holds the picture itself"
 
 
+def test_the_pictures_of_a_film_have_one_scale_of_false_colours(vv):
+    """A lamp that grows brighter: the scale is that of the first picture, in files and films."""
+    (vv.folder / "film.wrl").write_text("""#VRML V2.0 utf8
+Shape { geometry Box { size 9 9 1 } appearance Appearance { material DEF M Material {
+  diffuseColor 0 0 0 emissiveColor .1 .1 .1 } } }
+DEF T TimeSensor { cycleInterval 4 loop TRUE startTime 1 }
+DEF I ColorInterpolator { key [ 0 1 ] keyValue [ .1 .1 .1 .9 .9 .9 ] }
+ROUTE T.fraction_changed TO I.set_fraction ROUTE I.value_changed TO M.emissiveColor""")
+    common = ("film.wrl", "--size", "48x40", "--spp", "1", "--frames", "0-2", "--fps", "1", "-q")
+    done = vv(*common, "-o", "x.gif", "-o", "x.ppm", "-o", "x.pfm", "--false-colour", "auto")
+    assert done.returncode == 0, done.talk
+    read = lambda name: (vv.folder / name).read_bytes()
+    frames = sorted(path.name for path in vv.folder.glob("x*.ppm"))
+    assert len(frames) == 3
+    first = read(frames[0])
+    # The same end of the scale, given as a number: the box has one luminance.
+    most = str(max(np.ravel(read_pfm(read("x-0000.pfm"))[2])))
+    assert vv(*common, "-o", "y.ppm", "--false-colour", most).returncode == 0
+    others = sorted(path.name for path in vv.folder.glob("y*.ppm"))
+    assert [read(name) for name in others] == [read(name) for name in frames]
+    width, height = map(int, first.split(b"\n")[1].split()[:2])
+    data = read("x.gif")
+    assert (data[6] + 256 * data[7], data[8] + 256 * data[9]) == (width, height) and width > 48
+    image = pytest.importorskip("PIL.Image")
+    with image.open(vv.folder / "x.gif") as film, image.open(vv.folder / frames[0]) as picture:
+        # GIF has 256 colours.
+        shown = np.asarray(film.convert("RGB")).astype(int)
+        assert abs(shown - np.asarray(picture.convert("RGB"))).mean() < 8
+
+
 def test_python_reads_the_same(room):
     world = xvrml.load(room.folder / "room.wrl")
     desk, glare = world.measure(spp=256)
@@ -143,3 +174,39 @@ def test_python_places_sensors(room):
     assert np.allclose(sensor.direction, (0, 0, 1), atol=1e-6)
     assert np.allclose(sensor.positions[:, 0], [(0, 2.5, 0), (0, 1.5, 0)], atol=1e-5)
     assert math.isclose(float(sensor.values[0, 0]), 0)
+
+
+MIRROR = """#VRML V2.0 utf8
+NavigationInfo { headlight FALSE }
+Transform { translation 0 3 0 children ORTLight { shader ORTShader {
+  name "Luminaire" file "luminaire" options "1f lumen 1256.6371" } } }
+Shape {
+  appearance ORTAppearance { shader ORTShader { name "Mirror" file "mirror"
+    options "color reflectance .8 .8 .8" } }
+  geometry IndexedFaceSet { solid FALSE coordIndex [ 0 1 2 3 ]
+    coord Coordinate { point [ -9 0 9, 9 0 9, 9 0 -9, -9 0 -9 ] } }
+}
+DEF Grid ORTSensor { position 0 2 0 direction 0 -1 0 size 2 2 columns 2 rows 2 }
+DEF Point ORTSensor { position 0 2 0 direction 0 -1 0 }
+"""
+
+
+def test_light_paths_reach_sensors_that_have_cells(vv):
+    """100 cd, mirrored: the grid looks away from the lamp and sees its image at a distance of 5."""
+    (vv.folder / "mirror.wrl").write_text(MIRROR)
+    arguments = ("mirror.wrl", "--measure", "out.json", "--spp", "1024")
+    done = vv(*arguments, "--transport", "light")
+    assert done.returncode == 0, done.talk
+    grid, point = json.loads((vv.folder / "out.json").read_text())["sensors"]
+    steps = np.linspace(-1, 1, 101)
+    x, y = np.meshgrid(steps, steps)
+    expected = .8 * np.mean(100 * 5 / (x**2 + y**2 + 25)**1.5)
+    assert grid["mean"] == pytest.approx(expected, abs=3 * grid["mean_half_width"])
+    assert grid["mean_half_width"] < .03 * expected and grid["unreached_lamps"] == 0
+    assert point["mean"] == 0 and point["unreached_lamps"] == 1
+    assert "Point: the light that 1 lamps" in done.talk and "give the sensor a size" in done.talk
+    done = vv(*arguments)
+    assert "Grid: the light that 1 lamps" in done.talk and "--transport light" in done.talk
+    (other, _) = xvrml.load(vv.folder / "mirror.wrl").measure(spp=1024, transport="light")
+    values = [p["value"] for p in grid["points"]]
+    assert other.values.flatten().tolist() == pytest.approx(values, rel=1e-6)

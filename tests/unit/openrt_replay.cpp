@@ -99,6 +99,24 @@ std::vector<Picture> recordFrames(const fs::path& recording) {
   rtEnd();
   rtEndObject();
   rtInstantiateObject(floor);
+  // A body of surfaces without facets; the arrays are gone once they are drawn.
+  const RTid glass = rtNewShader(rtNewShaderClass("Glass", nullptr));
+  const RTid lens = rtBeginObject(0);
+  const auto drawLens = [&](double conic) {
+    std::vector<double> terms{.01, -.002};
+    rtBindShader(glass);
+    rtTranslated(0, -.5, 1);
+    rtAsphere(.4, conic, terms.size(), terms.data(), .1, .6);
+    rtTranslated(0, 0, .2);
+    std::vector<double> plane{0, 0, 1, 0, 0, 0, .1, 0, 0, -1e-3}, low{-.5, -.4, -.3},
+        high{.5, .4, .3};
+    rtQuadric(plane.data(), low.data(), high.data());
+    rtBindShader(surface);
+    rtCone(.2, .1, .3, .6);
+  };
+  drawLens(-1.5);
+  rtEndObject();
+  rtInstantiateObject(lens);
   const RTid instance = rtInstantiateObject(pair);
   rtPushMatrix();
   rtTranslated(0, 1.4, -1);
@@ -128,6 +146,9 @@ std::vector<Picture> recordFrames(const fs::path& recording) {
   frames.push_back(rendered());
 
   rtParameter3f(rtParameterHandle("diffuseColor"), 0.9f, 0.1f, 0.2f);
+  rtBeginObject(lens);
+  drawLens(.5);
+  rtEndObject();
   rtBeginObject(ball);
   rtBegin(RT_TRIANGLES);
   rtVertex3f(-1, -1, 0);

@@ -171,8 +171,8 @@ const OptionInfo table[] = {
     {"--false-colour,--false-color", "auto|MAX", "Picture",
      "Show luminance in colours, with isolines and a legend in cd/m2, in " +
          picture::formatsWith(&picture::Format::appliesCurve) +
-         " files. MAX is the luminance at the end of the scale; auto chooses a round one. The file "
-         "is wider than --size by the legend.",
+         " files and films. MAX is the luminance at the end of the scale; auto chooses a round one "
+         "by the first picture of the run. The file is wider than --size by the legend.",
      [](Options& o, const std::string& v) {
        o.falseColour = v == "auto" ? 0 : readNumber(v, 1e-12, 1e12);
      }},

@@ -151,10 +151,10 @@ constexpr Rule rules[] = {
     {[](const Options& o) {
        return o.falseColour &&
               std::none_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
-                return output.film == picture::FilmKind::none && output.format->appliesCurve;
+                return output.film != picture::FilmKind::none || output.format->appliesCurve;
               });
      },
-     "--false-colour needs -o with a file for a screen, such as .png"},
+     "--false-colour needs -o with a film or a file for a screen, such as .png"},
     {[](const Options& o) { return o.falseColour && !o.render.linear; },
      "--false-colour needs light that is added linearly: it cannot be used with --colour vrml97"},
     {[](const Options& o) { return o.audit && o.render.timeLimit > 0; },

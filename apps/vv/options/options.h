@@ -90,7 +90,7 @@ struct Options {
   bool quiet = false, verbose = false;
   std::string control; // address where programs control the world; empty: none
   bool noWindow = false;
-  // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen for the picture.
+  // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen by the first.
   std::optional<double> falseColour;
   std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
 

@@ -535,6 +535,7 @@ class World:
         follow_images: bool = ...,
         jitter: bool = ...,
         light_stride: int = ...,
+        exact_shapes: bool = ...,
     ) -> Picture:
         ...
 
@@ -550,6 +551,7 @@ class World:
         time_limit: float = ...,
         cluster: Optional[Cluster] = ...,
         progress: Union[None, bool, Callable[[float], Any]] = ...,
+        exact_shapes: bool = ...,
     ) -> List[Measurement]:
         ...
 
@@ -714,6 +716,7 @@ class LiveView:
         up: Optional[str] = ...,
         background: Union[None, str, "os.PathLike[str]", Sequence[float]] = ...,
         isa: str = ...,
+        exact_shapes: bool = ...,
     ) -> None:
         ...
 

@@ -103,6 +103,57 @@ class Context:
     def sphere(self, radius: float, *, shader: Optional[Shader] = ..., name: int = ...) -> Object:
         ...
 
+    def quadric(
+        self,
+        coefficients: Sequence[float],
+        low: Sequence[float],
+        high: Sequence[float],
+        *,
+        ccw: bool = ...,
+        shader: Optional[Shader] = ...,
+        name: int = ...,
+    ) -> Object:
+        ...
+
+    def cylinder(
+        self,
+        radius: float,
+        low: float,
+        high: float,
+        *,
+        ccw: bool = ...,
+        shader: Optional[Shader] = ...,
+        name: int = ...,
+    ) -> Object:
+        ...
+
+    def cone(
+        self,
+        low_radius: float,
+        high_radius: float,
+        low: float,
+        high: float,
+        *,
+        ccw: bool = ...,
+        shader: Optional[Shader] = ...,
+        name: int = ...,
+    ) -> Object:
+        ...
+
+    def asphere(
+        self,
+        curvature: float,
+        semi_aperture: float,
+        *,
+        conic: float = ...,
+        terms: Sequence[float] = ...,
+        inner_radius: float = ...,
+        ccw: bool = ...,
+        shader: Optional[Shader] = ...,
+        name: int = ...,
+    ) -> Object:
+        ...
+
     def group(self, parts: Sequence[Tuple[Object, Optional[npt.ArrayLike]]]) -> Object:
         ...
 

@@ -75,8 +75,8 @@ RT_API void rtSphere(float radius);
  * object. Every shader works on them. A number that is not finite or out of its range is
  * RT_INVALID_VALUE, and nothing is added. Lengths are in units of the current matrix; nothing is
  * kept of the arrays. Like spheres they latch shader, name, matrix and capabilities; RT_CW_FRONT
- * exchanges front and back. Light that they emit is found only by paths that meet them: make
- * lamps of triangles or spheres. rtQueryClosestPoints does not see them. */
+ * exchanges front and back. Quadrics that emit, but are not of revolution about an axis of their
+ * frame, are found by chance alone. rtClosestPoints refuses scenes that have any of these. */
 
 /* Adds the part of a quadric that lies in a box: the points between `low` and `high`, within 1e12
  * of the origin, where
