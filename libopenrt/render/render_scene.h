@@ -20,6 +20,7 @@ namespace openrt {
 
 class ShaderRegistry;
 class LightSources;
+class PhotonGuide;
 struct Motions;
 
 struct ShaderSlot {
@@ -111,7 +112,10 @@ struct RenderScene {
   // Indexed by light set. Null: every light is evaluated at every hit.
   std::shared_ptr<const std::vector<LightSampler>> lightSamplers;
   std::shared_ptr<const LightSources>
-      lightSources;                // light tracing; null if there is nothing to trace
+      lightSources; // light tracing; null if there is nothing to trace
+  // Guides camera paths to emissive shapes by way of specular surfaces; null: there is nothing to
+  // guide to, or too few samples are taken.
+  std::shared_ptr<const PhotonGuide> photonGuide;
   bool transparentShadows = false; // something transparent may lie between a point and a light
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.
   bool skyKnown = false, skyShines = false;

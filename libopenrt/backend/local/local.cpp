@@ -18,6 +18,7 @@
 
 #include "render/lights/light_sources.h"
 #include "render/path/guides.h"
+#include "render/path/photon_pass.h"
 #include "render/path/transport.h"
 #include "scene/transports.h"
 
@@ -83,6 +84,7 @@ void LocalBackend::prepare() {
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
+  next->photonGuide = makePhotonGuide(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
   snapshot_ = std::move(next);
   snapshotFrame_ = history_.number();
   changes_ = {};

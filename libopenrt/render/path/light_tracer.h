@@ -11,6 +11,7 @@
 #include <atomic>
 #include <vector>
 
+#include "render/lights/photon_guide.h"
 #include "render/path/light_departures.h"
 #include "render/path/wave.h"
 #include "render/surface/sample_lobes.h"
@@ -21,6 +22,8 @@ namespace openrt {
 class LightTracer {
  public:
   LightTracer(const RenderScene& scene, const LightSources& sources);
+  // Traces light paths to their first non-specular surfaces and returns what they leave there.
+  std::vector<Photon> tracePhotons(uint32_t paths, uint32_t seed);
   // Traces `paths` light paths into picture() (rgb by pixel). Each part of a frame needs its own
   // seed. Returns false if `stop` was set; it is checked every few thousand paths.
   bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
@@ -33,6 +36,8 @@ class LightTracer {
   void selectMet(Wave& wave);
   void transmitRays(const Points& points, const PathStates& states, const RtsClass& shaderClass);
   void scatter(const Points& points, const PathStates& states, const RtsClass& shaderClass);
+  void leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
+                    uint32_t n);
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                uint32_t n);
   void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling& sampling,
@@ -50,8 +55,9 @@ class LightTracer {
   const StageContext context_{scene_, arena_, counters_};
   LightDepartures departures_;
   std::vector<float> picture_;
-  PathSamples samples_{}; // of the paths in flight
-  RayQueue queue_, next_; // rays of the current wave, and of the next one
+  std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
+  PathSamples samples_{};                  // of the paths in flight
+  RayQueue queue_, next_;                  // rays of the current wave, and of the next one
 };
 
 } // namespace openrt

@@ -1,5 +1,6 @@
 #include "render/path/spawn_rays.h"
 
+#include "render/path/guided_rays.h"
 #include "render/path/wave.h"
 #include "render/surface/continue_paths.h"
 #include "scene/transports.h"
@@ -38,7 +39,7 @@ void countCut(const CameraPaths& paths, const BsdfSampleArrays& samples) {
 void countUnsampled(const CameraPaths& paths, size_t begin) {
   const PathStates& states = paths.next.states();
   for (size_t r = begin; r < paths.next.size(); r++)
-    paths.unsampled.send(states.flagsOf(r), load(states.throughput, r));
+    paths.unsampled.send(states.flagsOf(r), load(states.throughput, r) * states.unguidedWeight[r]);
 }
 
 // Spawns the rays of the BSDF samples: those of one sample of all hits, then those of the next.
@@ -67,19 +68,23 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
   for (const SampleArrays& sample : samples) {
     const size_t begin = paths.next.size();
     continuePaths(from, sample, hitOf, paths.next);
-    if (sample.deflected && !sample.pdf) countUnsampled(paths, begin);
+    if (sample.pdf)
+      weightUnguided(*batch.scene, paths.next, begin);
+    else if (sample.deflected)
+      countUnsampled(paths, begin);
   }
 }
 
 } // namespace
 
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
-                      const MediaStack& media) {
+                      const MediaStack& media, bool guided) {
   const Points& points = *paths.batch.points;
   RayState ray = (*paths.batch.states)[paths.batch.order[i]];
   ray.throughput *= weight;
   ray.travelled = points.hits.distance[i];
   ray.pdf = 0;
+  if (!guided) ray.unguidedWeight = 1;
   ray.media = media;
   queueRay(points, i, load(points.hits.direction, i), ray, paths.next);
 }
@@ -94,7 +99,8 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
   if (!boundaries.crossing) return;
   constexpr Vec3f clear{1, 1, 1};
   for (uint32_t i = 0; i < batch.points->hits.count; i++)
-    if (!boundaries.visibleAt(i)) spawnStraightRay(paths, i, clear, boundaries.crossing[i].behind);
+    if (!boundaries.visibleAt(i))
+      spawnStraightRay(paths, i, clear, boundaries.crossing[i].behind, true);
 }
 
 } // namespace openrt

@@ -13,6 +13,7 @@
 #include "render/film/sums.h"
 #include "render/frame/tiles.h"
 #include "render/lights/unsampled_lights.h"
+#include "render/path/guided_rays.h"
 #include "render/path/guides.h"
 #include "render/path/light_stride.h"
 #include "render/path/pixel_samples.h"
@@ -112,7 +113,8 @@ class TileRenderer {
   PathSamples samples_{}; // of the paths in flight; inside trace() those of the nested paths
   uint32_t nesting_ = 0;  // nesting depth of trace()
   RayQueue queue_, next_; // rays of the current wave, and of the next one
-  uint32_t level_ = 0;    // depth of the current wave
+  GuidedRays guided_{context_};
+  uint32_t level_ = 0; // depth of the current wave
 };
 
 } // namespace openrt
