@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-live bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -166,6 +166,10 @@ bench-parts: build
 ## make bench-rays     ray queries from numpy beside raw Embree, Open3D and embreex
 bench-rays: build
 	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tools/bench_rays.py --raw $(R)/lib/libraw_rays.so
+
+## make test-rays      10 million rays at vertices and edges of closed meshes: none may leave, every crossing must count once
+test-rays: build
+	PYTHONPATH=$(CURDIR)/$(R)/python $(PYTHON) tools/check_rays.py
 
 ## make bench-isa      how much pictures differ between the instruction sets of Embree's kernels (a table of docs/accuracy.md)
 bench-isa: build

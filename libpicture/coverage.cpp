@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "student.h"
+
 namespace picture {
 
 namespace {
@@ -104,7 +106,9 @@ class Count {
     const double v =
         std::max(0.0, sum2 / count - c_.bias * c_.bias) * count / std::max(count - 1, 1.0);
     // the reference has an error of its own
-    c_.biasInterval = count > 1 ? 2 * std::sqrt(v * (1 / count + 1 / reference_.worth)) : 1;
+    c_.biasInterval = count > 1 ? student::quantile95(count - 1) *
+                                      std::sqrt(v * (1 / count + 1 / reference_.worth))
+                                : 1;
   }
 
   const std::vector<Shot>& shots_;
@@ -160,8 +164,9 @@ Difference compare(const std::vector<float>& rgba, const std::vector<float>& ref
   const double n = double(off.size());
   d.rmse = std::sqrt(square / n);
   d.bias = sum / n;
-  d.biasInterval =
-      n > 1 ? 1.96 * std::sqrt(std::max(0.0, square / n - d.bias * d.bias) / (n - 1)) : 0;
+  d.biasInterval = n > 1 ? student::quantile95(n - 1) *
+                               std::sqrt(std::max(0.0, square / n - d.bias * d.bias) / (n - 1))
+                         : 0;
   for (double r : relative) d.relMse += r / n;
   const double limit = at(relative, .999);
   double kept = 0, count = 0;

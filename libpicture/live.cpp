@@ -53,6 +53,7 @@ struct FrameRequest {
   View view;
   WorldChanges worldChanges;
   Clock::time_point started;
+  double denoising = 0; // of the LiveFrame
 };
 
 // A frame that has begun, and the facts that are known only at its start.
@@ -64,6 +65,7 @@ struct FrameInFlight {
   std::vector<std::string> names; // of a still frame
   live::FrameCamera camera;
   live::WorldStep step;
+  double denoising = 0; // of the LiveFrame
 };
 
 // A frame that has finished or was cancelled.
@@ -72,6 +74,7 @@ struct EndedFrame {
   Picture picture;                               // a preview: the rebuilt picture
   RenderResult result;                           // the picture in it is empty
   double seconds = 0, alone = 0, rebuilding = 0; // see LivePicture
+  std::string denoisedBy;                        // see LivePicture
   bool whole = false;
 };
 
@@ -87,6 +90,7 @@ RenderSettings settingsOf(const RenderSettings& given, const LiveFrame& frame) {
   settings.samples = frame.samples;
   settings.progressive = given.progressive && frame.samples > 1;
   settings.channels |= shownChannels;
+  settings.quality.set(RT_VIEW, int32_t(frame.viewer & 0x7fffffff)); // viewers take turns
   return settings;
 }
 
@@ -141,7 +145,7 @@ struct LiveRenderer::Impl {
 
   Impl(xvrml::Browser& browser, const RenderSettings& settings)
       : given(settings), stage(browser.world(), &browser, settings),
-        most(settings.cluster ? maxOverlapping : 1), previews(settings.threads) {
+        most(settings.cluster ? maxOverlapping : 1), previews(settings.threads, settings.denoiser) {
     given.progressive = true;
   }
 
@@ -206,11 +210,13 @@ struct LiveRenderer::Impl {
   }
 
   void begin(FrameRequest frame) {
-    FrameInFlight flight{frame.facts, stage.settings, frame.started, {}, {}, {}, {}};
+    FrameInFlight flight{frame.facts, stage.settings, frame.started, {}, {}, {},
+                         {},          frame.denoising};
     try {
       map(std::move(frame));
       flight.map = stage.mapper()->stats();
-      flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height};
+      flight.camera = {stage.shown(), double(flight.settings.width) / flight.settings.height,
+                       flight.settings.background.kind == Background::Kind::file};
       if (flight.facts.purpose == Purpose::still && (flight.settings.channels & RT_NAME))
         flight.names = stage.mapper()->names();
     } catch (...) { // the world is only half mapped: the next frame starts with a new context
@@ -222,7 +228,7 @@ struct LiveRenderer::Impl {
     if (cancelled) return; // cancelled before it began
     rtSwapBuffers();
     throwOnError("rendering");
-    flight.step = steps.begin();
+    flight.step = steps.begin(flight.facts.viewer);
     inFlight.push_back(std::move(flight));
     if (cancelled) rtCancel(stage.context()); // a cancellation that came before the frame existed
   }
@@ -280,7 +286,8 @@ struct LiveRenderer::Impl {
     const Clock::time_point begin = Clock::now();
     const std::string wrong = failureOf([&] {
       Picture rebuilt = previews.rebuild(flight.facts.viewer, frame.picture, flight.camera,
-                                         flight.facts.lightStride, flight.step);
+                                         flight.facts.lightStride, flight.step, flight.denoising);
+      frame.denoisedBy = previews.denoisedBy();
       // Every pixel is covered, also where no sample has been taken.
       std::vector<float>& samples = rebuilt.planes[RT_SAMPLES];
       samples = std::move(frame.picture.planes[RT_SAMPLES]);
@@ -289,6 +296,7 @@ struct LiveRenderer::Impl {
       frame.picture = std::move(rebuilt);
     });
     frame.rebuilding = secondsSince(begin);
+    if (const std::string problem = previews.takeProblem(); !problem.empty()) stage.warn(problem);
     if (!wrong.empty()) frame.facts.purpose = Purpose::rawPreview;
     if (!wrong.empty() && rebuilding) unrebuilt = "the preview cannot be rebuilt: " + wrong;
     rebuilding = wrong.empty();
@@ -337,7 +345,7 @@ struct LiveRenderer::Impl {
     progress = 0;
     nextPoll = {};
     cancelled = false;
-    FrameRequest next{current, frame.view, stage.collectChanges(), started};
+    FrameRequest next{current, frame.view, stage.collectChanges(), started, frame.denoising};
     {
       const std::lock_guard lock(mutex);
       failure.clear();
@@ -378,6 +386,7 @@ struct LiveRenderer::Impl {
     out.alone = finished->alone;
     out.ended = true;
     out.rebuilding = finished->rebuilding;
+    out.denoisedBy = finished->denoisedBy;
     out.overhead = std::max(0.0, finished->seconds - finished->rebuilding -
                                      finished->result.stats.renderSeconds);
     out.map = finished->result.map;

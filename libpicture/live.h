@@ -26,6 +26,8 @@ struct LiveFrame {
   int samples = 1;
   // Of a preview: pixels each way of the blocks in which one pixel gets light (RT_LIGHT_STRIDE).
   int lightStride = 1;
+  // Of a preview: seconds that Denoiser::automatic may take (live/denoise_choice.h).
+  double denoising = 0;
   // still: refined from 1 sample per pixel on, with the bytes of Renderer::render.
   // preview: of something that moves; the picture is rebuilt from this frame and earlier previews
   //   of the same viewer (live/reconstruction.h) and is never part of a file or a still picture.
@@ -58,7 +60,8 @@ struct LivePicture {
   bool ended = false;
   // Part of `seconds` before tracing began: reading the world and building acceleration structures.
   double overhead = 0;
-  double rebuilding = 0; // part of `seconds` after tracing: the time of the Reconstruction
+  std::string denoisedBy; // of a preview: the library that has filtered it; "": none has
+  double rebuilding = 0;  // part of `seconds` after tracing: the time of the Reconstruction
   xvrml::MapStats map{};
   RTstats stats{};
 };

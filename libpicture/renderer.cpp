@@ -15,8 +15,10 @@
 #include <fmt/format.h>
 
 #include "libpicture/cluster.h"
+#include "libpicture/live/oidn.h"
 #include "libpicture/live/preview_settings.h"
 #include "libpicture/live/reconstruction.h"
+#include "libpicture/measure.h"
 #include "libpicture/stage.h"
 
 namespace picture {
@@ -41,9 +43,18 @@ struct FrameInFlight {
   bool otherWorld = false;        // the first frame of another world
 };
 
-std::string previewNote(int samples) {
-  return fmt::format("preview: rebuilt from {} sample{} per pixel, biased", samples,
-                     samples == 1 ? "" : "s");
+// denoisedBy: the library that has filtered the picture; "": none has.
+std::string previewNote(int samples, const std::string& denoisedBy) {
+  return fmt::format("preview: rebuilt from {} sample{} per pixel{}{}, biased", samples,
+                     samples == 1 ? "" : "s", denoisedBy.empty() ? "" : " by ", denoisedBy);
+}
+
+std::unique_ptr<live::OidnFilter> newDenoiser(int threads) {
+  checkDenoiser(Denoiser::oidn);
+  try {
+    return std::make_unique<live::OidnFilter>(live::OidnLibrary::find(), threads,
+                                              live::OidnQuality::high);
+  } catch (const live::OidnError& error) { throw RenderError(error.what()); }
 }
 
 } // namespace
@@ -75,6 +86,7 @@ struct Renderer::Impl {
   std::deque<FrameInFlight> inFlight;
   Clock::time_point lastEnd;                          // when the last frame ended
   std::optional<live::Reconstruction> reconstruction; // none before the first preview
+  std::unique_ptr<live::OidnFilter> denoiser;         // none before the first preview with it
   uint32_t previews = 0;                              // number of previews that were started
   bool otherWorld = false; // the browser shows another world than in the last frame
 
@@ -152,11 +164,14 @@ struct Renderer::Impl {
     if (newWorld && reconstruction) reconstruction->reset();
     if (!frame.preview || result.interrupted) return;
     if (!reconstruction) reconstruction.emplace(frame.threads);
+    if (frame.denoiser == Denoiser::oidn && !denoiser) denoiser = newDenoiser(frame.threads);
     const bool transparent = result.picture.transparent;
-    result.picture =
-        reconstruction->add(result.picture, {camera, double(frame.width) / frame.height});
+    result.picture = reconstruction->add(
+        result.picture, {camera, double(frame.width) / frame.height}, 1, denoiser.get());
+    if (const std::string& problem = reconstruction->facts().problem; !problem.empty())
+      throw RenderError(problem);
     result.picture.transparent = transparent;
-    result.picture.note = previewNote(frame.samples);
+    result.picture.note = previewNote(frame.samples, denoiser ? denoiser->name() : "");
     result.renderSeconds += reconstruction->facts().seconds;
     lastEnd = Clock::now();
   }
@@ -201,6 +216,23 @@ struct Renderer::Impl {
     rebuild(flight.settings, flight.camera, flight.otherWorld, result);
     stage.describe(flight.settings, result);
     result.map = flight.result.map;
+  }
+
+  void measure(const View& view, std::vector<Measurement>& out) {
+    doing = "mapping";
+    stage.prepareSensors(view);
+    std::vector<PlacedSensor> sensors;
+    for (const xvrml::SensorInfo& info : stage.mapper()->sensors())
+      sensors.push_back(placeSensor(info));
+    RenderSettings frame = stage.settings;
+    if (!sensors.empty()) frame.timeLimit /= double(sensors.size());
+    doing = "";
+    for (const PlacedSensor& sensor : sensors) {
+      if (cancelled) break;
+      out.push_back(stage.measure(sensor, frame));
+      out.back().interrupted = cancelled;
+    }
+    stage.reportMessages(); // safe here: the browser's thread is waiting
   }
 
   void render(const View& view, RenderResult& result) {
@@ -368,6 +400,18 @@ RenderResult Renderer::render(const View& view) {
     impl_->render(view, result);
   });
   return result;
+}
+
+std::vector<Measurement> Renderer::measure(const View& view) {
+  checkViewpoint(view);
+  std::vector<Measurement> out;
+  impl_->cancelled = false;
+  const WorldChanges worldChanges = impl_->stage.collectChanges();
+  impl_->run([&] {
+    impl_->apply(worldChanges);
+    impl_->measure(view, out);
+  });
+  return out;
 }
 
 int findViewpoint(const std::vector<xvrml::ViewpointInfo>& viewpoints, const std::string& name) {

@@ -23,6 +23,14 @@
 namespace picture {
 
 class Cluster;
+struct Measurement;
+
+// What smooths the light of previews (live/reconstruction.h).
+enum class Denoiser : uint8_t {
+  own,      // the filter that is always there
+  oidn,     // beside it Open Image Denoise 2, a library that may be installed
+  automatic // LiveRenderer: that library, too, where it is there and fast enough; Renderer: own
+};
 
 struct RenderSettings {
   int width = 800, height = 600;
@@ -34,6 +42,7 @@ struct RenderSettings {
   int threads = 0;          // 0: as many threads as the process may use
   std::string isa = "auto"; // instruction set of the ray kernels (isa=NAME of rtNewContext)
   bool linear = true;
+  bool exactShapes = false;      // value of xvrml::OpenRTMapper::setExactShapes
   bool multiplyTextures = false; // value of xvrml::MapOptions::multiplyTextures
   xvrml::MapOptions::Headlight headlight = xvrml::MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
@@ -48,6 +57,7 @@ struct RenderSettings {
   // A picture that was interrupted has its samples as they are, and no note. For pictures of one
   // sequence and one view at each moment, in the order of their time.
   bool preview = false;
+  Denoiser denoiser = Denoiser::own;
   std::shared_ptr<Cluster> cluster; // machines to render with, instead of `backend`; null: none
 
   bool operator==(const RenderSettings&) const = default;
@@ -67,6 +77,8 @@ struct RenderError : std::runtime_error {
 // Throws RenderError if this machine does not have the instruction set; the message says what was
 // expected. Otherwise rendering would fail later.
 void checkIsa(const std::string& isa);
+// Throws RenderError if this machine does not have what the denoiser needs.
+void checkDenoiser(Denoiser denoiser);
 
 struct RenderResult {
   Picture picture;
@@ -131,6 +143,11 @@ class Renderer {
   bool snapshot(Picture& picture);
   // Throws RenderError. An exception of the progress callback ends the picture and propagates.
   RenderResult render(const View& view);
+
+  // Returns the readings of all ORTSensors, in the order of the file (libpicture/measure.h). The
+  // samples and limits are those of the settings; a time limit is shared by the sensors. The view
+  // chooses billboards and levels of detail. Throws SensorError if a sensor has wrong fields.
+  std::vector<Measurement> measure(const View& view);
 
   // Overlapping frames, for settings with a cluster. start() returns when the world is mapped and
   // the frame is under way; the world may then change. finish() waits for the oldest frame. Each

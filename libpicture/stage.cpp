@@ -96,10 +96,13 @@ void Stage::note(RTenum error, const char*, void* self) {
 // Receives the engine's messages: shaders that cannot be rendered, results that are not finite.
 // [any thread, also render threads]
 void Stage::listen(int level, const char* text, void* self) {
-  auto& stage = *static_cast<Stage*>(self);
+  if (level >= 2) static_cast<Stage*>(self)->warn(text);
+}
+
+void Stage::warn(std::string text) {
   constexpr size_t most = 100;
-  const std::lock_guard lock(stage.messagesMutex_);
-  if (level >= 2 && stage.messages_.size() < most) stage.messages_.emplace_back(text);
+  const std::lock_guard lock(messagesMutex_);
+  if (messages_.size() < most) messages_.push_back(std::move(text));
 }
 
 void Stage::reportMessages() {
@@ -160,6 +163,7 @@ void Stage::makeMapper() {
   options.aspect = aspectOf(settings);
   mapper_.reset(); // destroy first: two mappers would both own the context's scene
   mapper_ = std::make_unique<xvrml::OpenRTMapper>(*world_, options);
+  mapper_->setExactShapes(settings.exactShapes);
   mapper_->setMultiplyTextures(settings.multiplyTextures);
   meshSeconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
 }

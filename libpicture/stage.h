@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "libpicture/measure.h"
 #include "libpicture/renderer.h"
 
 namespace picture {
@@ -41,6 +42,8 @@ class Stage {
   WorldChanges collectChanges();
   // Adds the engine's messages since the last call to the world's diagnostics.
   void reportMessages();
+  // Adds a message to them. [any thread]
+  void warn(std::string text);
 
   // --- On the context's thread ---
   //
@@ -55,6 +58,9 @@ class Stage {
   xvrml::CameraSettings cameraOf(const View& view) const;
   // Maps the world for a view.
   void prepare(const View& view);
+  // Maps the world for its sensors, as it is for a view. Then measure() makes the readings of one.
+  void prepareSensors(const View& view);
+  Measurement measure(const PlacedSensor& sensor, const RenderSettings& frame);
   // Sets size, channels and quality of the next frame, from the settings or from others.
   void setUpFrame() { setUpFrame(settings); }
   void setUpFrame(const RenderSettings& frame);

@@ -13,8 +13,10 @@
 #include <unistd.h>
 
 #include "ending.h"
+#include "libpicture/false_colour.h"
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
+#include "libpicture/measure.h"
 #include "libpicture/transport.h"
 #include "nearest.h"
 #include "options/names.h"
@@ -23,6 +25,7 @@
 #include "report/cluster_report.h"
 #include "report/describe.h"
 #include "report/hints.h"
+#include "report/measure_report.h"
 #include "report/messages.h"
 #include "report/progress.h"
 #include "report/report.h"
@@ -128,6 +131,8 @@ class Pictures {
     if (!renderer_) makeRenderer(settings);
     picture::Renderer& renderer = *renderer_;
     moments_ = timeline.size();
+    if (options_.measures())
+      if (const int code = measure(); code != exitDone || !makesPicture()) return code;
     for (size_t i = 0; i < timeline.size(); ++i) {
       const Moment moment = timeline[i];
       if (!clock.advance(moment.time))
@@ -312,6 +317,37 @@ class Pictures {
     return interrupted() ? stopped("vv: interrupted; the picture so far is saved") : exitDone;
   }
 
+  // Tells whether --measure is not all that is asked for.
+  bool makesPicture() const { return !options_.outputs.empty() || !options_.compare.empty(); }
+
+  // Writes the readings of the sensors.
+  int measure() {
+    progress_ = std::make_unique<Progress>("sensors", options_.quiet);
+    const std::vector<Job> jobs = chooseJobs(options_, renderer_->viewpoints());
+    std::vector<picture::Measurement> sensors;
+    try {
+      sensors = renderer_->measure(jobs[0].view);
+    } catch (const picture::SensorError& wrong) {
+      progress_.reset();
+      throw Failure{exitProblems, wrong.what()};
+    }
+    progress_.reset();
+    problems_.tell(browser_.world());
+    if (sensors.empty() && !interrupted())
+      throw Failure{exitProblems, "--measure: the world has no ORTSensor"};
+    const bool json = options_.measure.ends_with(".json");
+    writeText(options_.measure,
+              json ? measurementsJson(sensors, commandLine_) : measurementsCsv(sensors));
+    for (const picture::Measurement& sensor : sensors) {
+      if (options_.quiet) break;
+      say("vv: " + oneLine(measurementText(sensor)));
+      for (const std::string& text :
+           measurementWarnings(sensor, options_.render.error, uint32_t(options_.render.samples)))
+        sayWarning(oneLine(text));
+    }
+    return interrupted() ? stopped("vv: interrupted; the readings so far are saved") : exitDone;
+  }
+
   int auditOne(const Job& job) {
     Audit audit(options_, *renderer_);
     audit.setProgress([this](const std::string& what) {
@@ -338,9 +374,13 @@ class Pictures {
 
   void writePictures(const Job& job, const picture::Picture& made) {
     const picture::Picture wanted = wantedPart(made, options_.render.channels);
+    std::optional<picture::Picture> coloured;
+    if (const std::optional<double>& most = options_.falseColour)
+      coloured = picture::falseColours(wanted, *most > 0 ? most : std::nullopt);
     for (const Output& output : options_.outputs) {
       if (output.film != picture::FilmKind::none) continue;
-      const std::string bytes = output.format->encode(wanted);
+      const bool shows = coloured && output.format->appliesCurve;
+      const std::string bytes = output.format->encode(shows ? *coloured : wanted);
       if (output.path == "-") {
         picture::writeDescriptor(STDOUT_FILENO, bytes, "standard output");
         continue;
@@ -406,9 +446,9 @@ class Pictures {
     const RTstats& s = result.stats;
     if (options_.render.error > 0 && !result.interrupted && s.errorPixels > 0 &&
         s.errorHalfWidth > 1.001 * options_.render.error)
-      sayWarning(fmt::format("{}{}the error is {:.3g} %, not {:.3g} %: {}", job.name.text(),
-                             job.name.text().empty() ? "" : ": ", 100 * s.errorHalfWidth,
-                             100 * options_.render.error, whyMissed(result)));
+      sayWarning(fmt::format("{}{}--error promised {:.3g} %, reached {:.3g} %: {}", job.name.text(),
+                             job.name.text().empty() ? "" : ": ", 100 * options_.render.error,
+                             100 * s.errorHalfWidth, whyMissed(result)));
     if (options_.stats.empty()) return;
     if (options_.isSequence())
       frames_.add(job.name, moment.time, result, writeSeconds);

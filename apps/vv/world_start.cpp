@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <chrono>
+#include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -61,16 +63,32 @@ std::unique_ptr<xvrml::World> readWorld(const std::string& path,
   return xvrml::loadWorldFromMemory(readStandardInput(options.limits.fileBytes), "-", options);
 }
 
+xvrml::LoadOptions loadOptionsForShowing(const Options& options) {
+  xvrml::LoadOptions load = options.load;
+  const bool whole = !options.shaders.empty() || !options.definitions.empty() || options.script ||
+                     !options.recordInput.empty() || options.strict;
+  if (!whole) load.loadInlines = false;
+  return load;
+}
+
+bool isOfCommandLine(const Options& options, const xvrml::World& world) {
+  if (options.input.empty() || world.path == options.input) return true;
+  std::error_code unknown; // of a file that is gone, or of standard input
+  return std::filesystem::equivalent(world.path, options.input, unknown);
+}
+
 std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
                                            const Options& options, Problems& problems) {
   problems.tell(*world);
   if (options.verbose)
     say(fmt::format("vv: {} nodes, parsed in {}, Inlines and prototypes in {}", world->nodeCount,
                     duration(world->times.parse), duration(world->times.load)));
-  const std::vector<Definition> definitions = readDefinitions(options.definitions, *world);
+  const bool changes = isOfCommandLine(options, *world);
+  const std::vector<Definition> definitions =
+      changes ? readDefinitions(options.definitions, *world) : std::vector<Definition>();
   for (const Definition& d : definitions)
     if (!d.asEvent) d.node->set(*d.field, d.value);
-  changeShaders(options.shaders, options.render.shaderPath, *world);
+  if (changes) changeShaders(options.shaders, options.render.shaderPath, *world);
   std::unique_ptr<xvrml::Browser> browser = startScripts(std::move(world), options);
   for (const Definition& d : definitions)
     if (d.asEvent) browser->set(*d.node, d.field->name, d.value);

@@ -14,8 +14,18 @@ namespace vv {
 // Reads a world; "-" is standard input. Throws xvrml::LoadError or Failure. [any thread]
 std::unique_ptr<xvrml::World> readWorld(const std::string& path, const xvrml::LoadOptions& options);
 
-// Starts the world at time 0 after options.epoch, with the changes of -D and --shader, and reports
-// its problems. Throws Failure and UsageError. [the browser's thread]
+// Returns how worlds are read that are shown while their Inlines are still to come. Inlines are
+// read with the world if an option needs all nodes. [any thread]
+xvrml::LoadOptions loadOptionsForShowing(const Options& options);
+
+// Tells whether a world is that of the command line, to which -D, --shader and --viewpoint refer.
+// Worlds that it leads to need not have what they name. If the command line names none, every world
+// is. [any thread]
+bool isOfCommandLine(const Options& options, const xvrml::World& world);
+
+// Starts the world at time 0 after options.epoch, with the changes of -D and --shader if
+// it is that of the command line, and reports its problems. Throws Failure and UsageError. [the
+// browser's thread]
 std::unique_ptr<xvrml::Browser> startWorld(std::unique_ptr<xvrml::World> world,
                                            const Options& options, Problems& problems);
 

@@ -108,6 +108,18 @@ PyObject* newObject(PyTypeObject* type, PyObject*, PyObject*) {
   return nullptr;
 }
 
+// Has pybind11 look up numpy's functions. It would do so at the first array, under a lock of its
+// own. Importing numpy releases the GIL, so a second thread could then wait for this lock with the
+// GIL, for ever. Only one thread at a time imports a module. Without numpy, arrays raise
+// ImportError.
+void findNumpy() {
+  try {
+    const py::array_t<uint8_t> first(0);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ImportError)) throw;
+  }
+}
+
 } // namespace
 
 std::unique_ptr<World> loadSource(const py::object& source, const py::object& limits,
@@ -142,6 +154,7 @@ std::unique_ptr<World> loadSource(const py::object& source, const py::object& li
 }
 
 PYBIND11_MODULE(_xvrml, module) {
+  findNumpy();
   watchInterpreter();
   reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base)->tp_new = newObject;
   parseError = PyErr_NewExceptionWithDoc("xvrml.ParseError",
@@ -169,6 +182,7 @@ PYBIND11_MODULE(_xvrml, module) {
   defineNode(module);
   definePicture(module);
   defineFilm(module);
+  defineMeasurement(module);
   defineWorld(module);
   defineBrowser(module);
   defineViewer(module);

@@ -212,6 +212,7 @@ void defineScripts(py::module_& module);
 void defineNode(py::module_& module);
 void defineWorld(py::module_& module);
 void defineRender(py::object worldClass);
+void defineMeasurement(py::module_& module); // before defineWorld()
 void defineBrowser(py::module_& module);
 void defineViewer(py::module_& module);
 void definePicture(py::module_& module);

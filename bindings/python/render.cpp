@@ -1,11 +1,12 @@
-// render.cpp: Implements World.render(): renders without the GIL, with Ctrl-C and progress
-// callbacks. [GIL held]
+// render.cpp: Implements World.render() and World.measure(): they render without the GIL, with
+// Ctrl-C and progress callbacks. [GIL held]
 #include <cmath>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "cluster_object.h"
+#include "libpicture/measure.h"
 #include "numbers.h"
 #include "parameters.h"
 #include "picture_object.h"
@@ -138,6 +139,53 @@ py::object render(const WorldPtr& self, const RenderArguments& given) {
   return making.picture();
 }
 
+// Reads the ORTSensors of the world.
+std::vector<picture::Measurement> measure(const WorldPtr& self, const RenderArguments& given) {
+  constexpr long long samples = 4096; // as vv --measure
+  RenderArguments arguments = given;
+  const bool limited = given.quality[RT_TARGET_ERROR] > 0 || given.quality[RT_TIME_LIMIT] > 0;
+  if (!arguments.spp && !limited) arguments.spp = samples;
+  RenderRequest request = requestOf(arguments);
+  const py::object bar = progressOf(given.progress);
+  request.settings.cluster = clusterFor(given.cluster, self);
+  const auto lock = self->lockDrawing();
+  if (self->isRenderingHere)
+    throw picture::RenderError("a picture is being made: its progress cannot measure");
+  std::vector<picture::Measurement> sensors;
+  {
+    const Drawing drawing(*self);
+    interruptible(
+        [&](picture::ProgressCallback watch) {
+          std::shared_ptr<picture::Renderer> renderer =
+              self->renderer(request.settings, std::move(watch));
+          try {
+            sensors = renderer->measure(request.view);
+          } catch (...) {
+            renderer->setProgressCallback({});
+            throw;
+          }
+          renderer->setProgressCallback({});
+        },
+        bar);
+  }
+  if (py::hasattr(bar, "close")) bar.attr("close")();
+  return sensors;
+}
+
+// Returns a copy of a vector as an array of rows and columns.
+template <class T>
+py::array_t<T> gridOf(const picture::Measurement& m, const std::vector<T>& values) {
+  return py::array_t<T>({m.sensor.rows, m.sensor.columns}, values.data());
+}
+
+py::array_t<double> positionsOf(const picture::Measurement& m) {
+  py::array_t<double> out({m.sensor.rows, m.sensor.columns, 3});
+  for (int row = 0; row < m.sensor.rows; ++row)
+    for (int column = 0; column < m.sensor.columns; ++column)
+      m.sensor.pointAt(column, row, out.mutable_data(row, column, 0));
+  return out;
+}
+
 } // namespace
 
 py::object progressOf(const py::object& given) {
@@ -179,9 +227,54 @@ void interruptible(const std::function<void(picture::ProgressCallback watch)>& w
   if (failure) std::rethrow_exception(failure);
 }
 
+void defineMeasurement(py::module_& module) {
+  using M = picture::Measurement;
+  py::class_<M>(module, "Measurement",
+                "The readings of one ORTSensor. Arrays have a row for each row of the sensor; each "
+                "value lies within half_widths of the truth with a probability of 95 %.")
+      .def_property_readonly("name", [](const M& m) { return m.sensor.name; })
+      .def_property_readonly(
+          "quantity", [](const M& m) { return m.sensor.luminance ? "luminance" : "illuminance"; })
+      .def_property_readonly("unit", [](const M& m) { return m.sensor.luminance ? "cd/m2" : "lx"; })
+      .def_property_readonly("direction",
+                             [](const M& m) {
+                               const double* d = m.sensor.direction;
+                               return py::make_tuple(d[0], d[1], d[2]);
+                             })
+      .def_property_readonly("positions", positionsOf)
+      .def_property_readonly("values", [](const M& m) { return gridOf(m, m.value); })
+      .def_property_readonly("half_widths", [](const M& m) { return gridOf(m, m.halfWidth); })
+      .def_property_readonly("trusted",
+                             [](const M& m) { return gridOf(m, m.trusted).attr("astype")("bool"); })
+      .def_property_readonly("samples", [](const M& m) { return gridOf(m, m.samples); })
+      .def_property_readonly("stats",
+                             [](const M& m) {
+                               py::dict stats;
+                               describePicture(stats, m.stats);
+                               return stats;
+                             })
+      .def("__repr__", [](const M& m) {
+        return fmt::format("<xvrml.Measurement {}, {} x {} points>", m.sensor.name,
+                           m.sensor.columns, m.sensor.rows);
+      });
+}
+
 void defineRender(py::object worldClass) {
   using A = RenderArguments;
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
+  defineMethod(
+      world, "measure", measure, parameterList(),
+      parameterList(parameter("spp", &A::spp), qualityParameter<long long>(RT_SEED),
+                    parameter("threads", &A::threads), qualityParameter<long long>(RT_MAX_DEPTH),
+                    qualityParameter<std::string>(RT_TRANSPORT),
+                    qualityParameter<double>(RT_TARGET_ERROR),
+                    qualityParameter<double>(RT_TIME_LIMIT), parameter("cluster", &A::cluster),
+                    parameter("progress", &A::progress)),
+      "Reads the ORTSensors of the world in its current state and returns a list of "
+      "Measurement, in the order of the file: lux or cd/m2 with 95 % intervals. The "
+      "options are those of vv --measure. spp: samples per point (default 4096; with "
+      "error and time_limit the maximum). error: the mean relative half-width at which "
+      "sampling ends.");
   defineMethod(
       world, "render", render,
       parameterList(

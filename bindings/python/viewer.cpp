@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "libpicture/live/denoise_choice.h"
 #include "parameters.h"
 #include "quality_parameters.h"
 
@@ -31,10 +32,6 @@ Viewer::Viewer(const ViewerArguments& given) : world_(given.world) {
   if (py::hasattr(given.camera, "_numbers"))
     throw py::value_error("camera: a Pinhole belongs to pictures of one size; a view takes a 4x4 "
                           "matrix, (position, target) or (position, target, up)");
-  // pybind11 looks numpy up on first use, under a lock of its own that a second thread would wait
-  // for with the GIL. Pictures come while other threads work, so this is done before.
-  py::module_::import("numpy");
-  const py::array_t<uint8_t> first(0);
   RenderRequest request = requestOf(given);
   asked_ = request.view;
   samples_ = request.settings.samples;
@@ -47,6 +44,7 @@ Viewer::Viewer(const ViewerArguments& given) : world_(given.world) {
   request.settings.samples = usual.settings.samples;
   request.settings.channels = RT_RGBA;
   request.settings.progressive = true;
+  request.settings.denoiser = picture::Denoiser::automatic;
 
   Browser& running = world_->live();
   const auto lock = world_->lock();
@@ -150,17 +148,17 @@ bool Viewer::start(bool moving, bool raw) {
   if (renderer.state() != State::idle) return false;
   for (picture::LivePicture old; renderer.look(old);) {} // of a view that was closed
   using Purpose = picture::LiveFrame::Purpose;
-  using Light = picture::Pacing::Light;
   picture::LiveFrame frame;
   frame.view = view();
   frame.viewer = number_;
   frame.purpose = !moving ? Purpose::still : raw ? Purpose::rawPreview : Purpose::preview;
-  if (raw && light_ == Light::sparse) light_ = Light::sampled;
+  if (raw) light_ = picture::rawOf(light_);
   frame_ = pacing_.next(width_, height_, moving, samples_, light_);
   frame.width = frame_.width;
   frame.height = frame_.height;
   frame.samples = frame_.samples;
   frame.lightStride = frame_.lightStride;
+  frame.denoising = picture::live::denoisingInMotion(framesPerSecond);
   viewers_->changes += browser().hasChanges();
   frameChanges_ = viewers_->changes;
   frameCamera_ = knownCamera();

@@ -82,7 +82,8 @@ class Viewer {
   std::optional<xvrml::CameraSettings> frozen_;
   std::optional<double> fovy_;
   std::optional<xvrml::CameraSettings> last_; // the camera of the last picture
-  picture::Pacing pacing_{30};
+  static constexpr double framesPerSecond = 30;
+  picture::Pacing pacing_{framesPerSecond};
   picture::Pacing::Light light_ = picture::Pacing::Light::sparse; // until the first picture tells
   // The last frame that began.
   bool begun_ = false, moving_ = false, wasOutdated_ = true;

@@ -82,6 +82,7 @@ Vec3d motionOf(const RenderScene& scene, const RayHits& hits, uint32_t lane,
     return change(*m, direction * double(m->radius)) +
            m->before.direction(direction * (double(m->radius) - double(m->radiusBefore)));
   }
+  if (r.surface) return change(*m, r.fromRender.point(Vec3d(position)));
   const Vec3d point = pointOfMesh(r, hits, lane, *m->points);
   if (!m->pointsBefore) return change(*m, point);
   const Vec3d before = pointOfMesh(r, hits, lane, *m->pointsBefore);

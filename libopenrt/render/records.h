@@ -102,9 +102,11 @@ struct Record {
   const GeometryParameter* parameters = nullptr;
   uint32_t parameterCount = 0;
   float scale = 1; // not instanced: vertices times scale are in render space
-  // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space
+  // instanced: kernel's frame -> render space; sphere: unit-sphere frame -> render space; analytic
+  // surface: its own frame -> render space
   Affine toRender;
-  Affine fromRender; // sphere: inverse of toRender
+  Affine fromRender; // sphere and analytic surface: inverse of toRender
+  const AnalyticSurface* surface = nullptr;
   // Normals of the geometry -> render space (inverse transpose), not normalised.
   Rows<float> normalMatrix;
   Affine toObject;          // render space -> frame of the object that contains the geometry

@@ -1,69 +1,60 @@
-// history.h: what has changed in a scene since the frame before, for RT_MOTION. Scene::apply()
-// keeps here how changed instances and objects were in the frame before. It costs what has changed,
-// and nothing while the frame lacks the channel. The local backend owns one beside its scene. Like
-// the scene it follows from the commits alone, so every backend that has applied the commit of a
-// frame and that of the frame before it finds the same motion.
+// history.h: what has changed in a scene since the last frame of each view (RT_VIEW), for
+// RT_MOTION. Scene::apply() tells it what it changes. It costs what has changed, and nothing while
+// no frame has the channel. The local backend owns one beside its scene. What a view has follows
+// from the commits since its last frame alone, so every backend that has applied the commit of a
+// frame and all since that of the view's frame before it finds the same motion.
 #pragma once
 
 #include <cstdint>
 #include <unordered_map>
-#include <unordered_set>
-#include <vector>
 
 #include "scene/scene.h"
+#include "scene/view_history.h"
 
 namespace openrt {
 
+// A view that has had none of the last frames, this many of all views together, begins anew. So a
+// cluster need not keep older scenes for workers that join.
+constexpr uint64_t maxFramesBetween = 32;
+
 class SceneHistory {
  public:
-  // Scene::apply() calls these. Between begin() and finish(), if watches(), it tells what it is
+  // Scene::apply() calls these. Between begin() and finish(), if records(), it tells what it is
   // about to change.
   void begin(const Commit& commit);
-  bool watches() const { return watches_; }
+  bool records() const { return records_; }
   void changeInstance(uint32_t id, const Instance& before);
   void addInstance(uint32_t id);
   void changeObject(uint32_t id, Object& before); // takes its geometries
   void addObject(uint32_t id);
   void finish(const Scene& scene, const Commit& commit);
 
-  // Returns the number of the current frame's history; a new one begins with each frame.
+  // Returns the number of the current frame; it grows with each frame.
   uint64_t number() const { return number_; }
-  // Returns true if there was no frame before, so that everything is new.
-  bool beginning() const { return beginning_; }
-  // Returns true if anything may have moved or is new.
-  bool any() const {
-    return watches_ &&
-           (beginning_ || !instances_.empty() || !newInstances_.empty() || !objects_.empty());
-  }
-  // Returns whether the instance is new or has changed.
-  bool changed(uint32_t instance) const {
-    return instances_.contains(instance) || newInstances_.contains(instance);
-  }
-  // Returns how a changed instance was in the frame before; null if it was not there or invisible.
-  const Instance* before(uint32_t instance) const;
-  // Returns whether the object was defined again.
-  bool redefined(uint32_t object) const { return objects_.contains(object); }
-  bool redefinedAny() const { return !objects_.empty(); }
-  // Returns what a geometry of an object that was defined again was in the frame before; null if
-  // there was no such geometry, or one of another topology.
-  const Geometry* before(uint32_t object, size_t geometry) const;
+  // Returns the number of the frame before in the view of the current frame; 0: there was none.
+  uint64_t numberBefore() const { return current().last; }
+  // Returns whether the current frame has the channel.
+  bool watches() const { return current().watches; }
+  // Returns true if the current frame has the channel and anything may have moved or is new.
+  bool any() const { return watches() && current().history.any(); }
+  // Returns what has changed since the frame before in the view of the current frame.
+  const ViewHistory& view() const { return current().history; }
 
  private:
-  struct Past { // an object that was defined again
-    std::vector<Geometry> geometries;
-    std::vector<const Geometry*> matches; // by geometry of the new definition
+  struct View {
+    ViewHistory history;
+    bool watches = false; // its last frame has RT_MOTION, or the current one if that is its own
+    uint64_t last = 0;    // number of its last frame before the current one
   };
-  void forget();
-  void matchInstances(const Scene& scene);
-  static void matchGeometries(Past& past, const std::vector<Geometry>& now);
+  const View& current() const;
+  // Calls f with the history of each view that notes the changes of a commit.
+  template <class F> void forEachWatching(const F& f);
 
-  bool watches_ = false, beginning_ = true;
-  bool framed_ = false; // a frame followed the last commit
-  uint64_t number_ = 0;
-  std::unordered_map<uint32_t, Instance> instances_; // changed or deleted ones, as they were
-  std::unordered_set<uint32_t> newInstances_, newObjects_;
-  std::unordered_map<uint32_t, uint32_t> replaced_; // new instances: those whose place they take
-  std::unordered_map<uint32_t, Past> objects_;
+  std::unordered_map<uint32_t, View> views_;
+  uint32_t view_ = 0; // that of the current frame
+  uint64_t number_ = 1;
+  bool framed_ = false;  // a frame followed the last commit
+  bool records_ = false; // any view notes what changes
 };
 
 } // namespace openrt

@@ -86,6 +86,15 @@ constexpr QualitySetting table[] = {
       "pixels each way of the blocks in which one pixel gets light"},
      get<&Frame::lightStride>,
      set<&Frame::lightStride>},
+    {{size, RT_VIEW, "view", 0, 0, double(INT32_MAX), 0, 0, nullptr,
+      "number of the sequence of frames that motion refers to"},
+     get<&Frame::view>,
+     set<&Frame::view>},
+    {{size, RT_MEASURE, "measure", 0, RT_MEASURE_NOTHING, RT_MEASURE_ILLUMINANCE,
+      RT_MEASURE_NOTHING, 0, "nothing luminance illuminance",
+      "whether pixels are photometric readings"},
+     get<&Frame::measure>,
+     set<&Frame::measure>},
 };
 
 } // namespace

@@ -35,7 +35,9 @@ size_t Geometry::primitives() const {
   case edit::Primitive::Triangles: return count / 3;
   case edit::Primitive::Lines: return count / 2;
   case edit::Primitive::Points: return count;
-  case edit::Primitive::Sphere: return 1;
+  case edit::Primitive::Sphere:
+  case edit::Primitive::Quadric:
+  case edit::Primitive::Asphere: return 1;
   }
   return 0;
 }
@@ -56,7 +58,7 @@ std::map<ArrayId, ArrayPtr> Scene::arrays() const {
 
 SceneChanges Scene::apply(const Commit& commit, SceneHistory* history) {
   if (history) history->begin(commit);
-  history_ = history && history->watches() ? history : nullptr;
+  history_ = history && history->records() ? history : nullptr;
   // Only now and then, so that a commit costs what it changes.
   if (arrays_.size() > 2 * arraysSwept_ + 64) {
     std::erase_if(arrays_, [](const auto& entry) { return entry.second.expired(); });
@@ -235,7 +237,8 @@ void Scene::replaceObject(const edit::ObjectT& object, SceneChanges& changes) {
                                  array(g->normals),
                                  array(g->texCoords),
                                  array(g->colors),
-                                 {}});
+                                 {},
+                                 AnalyticSurface::make(g->primitive, g->surface)});
     for (const auto& p : g->parameters)
       if (p)
         target.geometries.back().parameters.push_back({p->index, p->perVertex, array(p->values)});

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/analytic.h"
 #include "scene/commit.h"
 #include "scene/id_table.h"
 #include "scene/matrix.h"
@@ -33,8 +34,9 @@ struct Geometry {
   float width = 1; // pixels; radius of a sphere
   ArrayPtr points, indices, normals, texCoords, colors;
   std::vector<GeometryParameter> parameters;
+  std::shared_ptr<const AnalyticSurface> surface; // of a quadric or an asphere
 
-  size_t primitives() const; // triangles, segments or points; 1 for a sphere
+  size_t primitives() const; // triangles, segments or points; 1 for spheres and analytic surfaces
 };
 
 struct Object {

@@ -118,7 +118,8 @@ class Export {
   }
 
   Json mesh(const Geometry& g, const Matrix4d& toWorld, uint32_t shader) {
-    constexpr const char* kinds[] = {"triangles", "lines", "points", "sphere"};
+    constexpr const char* kinds[] = {"triangles", "lines",   "points",
+                                     "sphere",    "quadric", "asphere"};
     Json m = {{"kind", kinds[int(g.primitive)]},
               {"shader", shader     ? shader
                          : g.shader ? g.shader
@@ -127,6 +128,7 @@ class Export {
               {"cull", g.cull},
               {"clockwise", g.clockwise}};
     if (g.primitive == edit::Primitive::Sphere) m["radius"] = g.width;
+    if (g.surface) m["surface"] = g.surface->numbers();
     m["points"] = writeArray(g.points);
     m["indices"] = writeArray(g.indices);
     m["normals"] = writeArray(g.normals);

@@ -28,8 +28,10 @@ inline Mask areAlike(Lanes a, Lanes b) {
 
 // The sums of a least-squares fit of a plane through the pixel's own nearness.
 struct Fit {
-  Lanes xx = all(0), xy = all(0), yy = all(0), xd = all(0), yd = all(0);
+  Lanes xx, xy, yy, xd, yd;
 
+  // Written out: see Around in spread.cpp.
+  Fit() : xx(all(0)), xy(all(0)), yy(all(0)), xd(all(0)), yd(all(0)) {}
   void add(Mask valid, Lanes x, Lanes y, Lanes d) {
     xx = xx + where(valid, x * x);
     xy = xy + where(valid, x * y);

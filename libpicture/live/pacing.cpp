@@ -7,16 +7,22 @@ namespace picture {
 
 namespace {
 
-constexpr int smallest = -12;    // scale 2^(-12/4): an eighth in each direction
-constexpr int mostDoublings = 4; // the best step has 2^4 samples
-// Light::sparse: pixels each way of the blocks in which one pixel gets light; there is a step of
-// the full size for each smaller number.
-constexpr int widestStride = 3;
-// Assumed cost of what a pixel without light shows, in costs of the light of a pixel.
-constexpr double unlit = 0.15;
-// The step below which the frame rate falls before the picture shrinks: a quarter in each direction
-// if light is sampled, half if it is sparse, and the full size otherwise.
-constexpr int quarter = -8, half = -4, whole = 0;
+constexpr int smallest = -12;                     // scale 2^(-12/4): an eighth in each direction
+constexpr int mostDoublings = 4;                  // the best step has 2^4 samples
+constexpr int quarter = -8, half = -4, whole = 0; // steps: size in each direction
+
+// What Pacing::Light decides.
+struct Rule {
+  // Pixels each way of the blocks in which one pixel gets light in motion; there is a step of the
+  // full size for each smaller number.
+  int widestStride;
+  // Assumed cost of what a pixel without light shows, in costs of the light of a pixel.
+  double unlit;
+  // The step below which the frame rate falls before the picture shrinks.
+  int kept;
+};
+constexpr Rule rules[] = {{1, 0.15, quarter}, {2, 0.15, half}, {1, 0.6, whole}, {2, 0.6, whole}};
+constexpr const Rule& ruleOf(Pacing::Light light) { return rules[size_t(light)]; }
 constexpr double slower = 1.5;    // the budget of that step and of smaller ones, in budgets
 constexpr double settling = 0.09; // seconds of a frame between motion and rest
 constexpr double fill = 0.85; // fraction of a frame's time for rendering; the window needs the rest
@@ -30,28 +36,25 @@ constexpr double assumedPixel = 2e-7; // initial guess in seconds: 800x600 in a 
 
 constexpr double leastSide = 64; // shortest side of a picture, in pixels
 
-// Returns the cost of a frame's pixel in costs of one with light.
-double costOf(const FrameSize& f) {
-  const double lit = 1.0 / (f.lightStride * f.lightStride);
-  return f.samples * (unlit + lit) / (unlit + 1);
-}
-
 } // namespace
 
 Pacing::Pacing(double framesPerSecond) : budget_(fill / std::clamp(framesPerSecond, 0.1, 1000.0)) {}
 
 FrameSize Pacing::at(int step, int width, int height) const {
-  const int strides = light_ == Light::sparse ? widestStride - 1 : 0;
+  const int strides = ruleOf(light_).widestStride - 1;
   if (step >= strides) return {width, height, 1 << (step - strides)};
-  if (step >= 0) return {width, height, 1, widestStride - step};
+  if (step >= 0) return {width, height, 1, strides + 1 - step};
   // Both sides have the same scale, so the aspect ratio is kept.
   const double scale =
       std::min(1.0, std::max(std::exp2(step / 4.0), leastSide / std::min(width, height)));
   return {int(std::ceil(width * scale)), int(std::ceil(height * scale)), 1, strides + 1};
 }
 
-int Pacing::best() const {
-  return mostDoublings + (light_ == Light::sparse ? widestStride - 1 : 0);
+int Pacing::best() const { return mostDoublings + ruleOf(light_).widestStride - 1; }
+
+double Pacing::costOf(const FrameSize& f) const {
+  const double unlit = ruleOf(light_).unlit, lit = 1.0 / (f.lightStride * f.lightStride);
+  return f.samples * (unlit + lit) / (unlit + 1);
 }
 
 double Pacing::seconds(const FrameSize& f) const {
@@ -99,9 +102,9 @@ FrameSize Pacing::next(int width, int height, bool moving, int samples, Light li
 
   // Compares the time of a step with its budget. If reading the world takes all of it, half of that
   // time is allowed in addition.
-  const int kept = light == Light::direct ? whole : light == Light::sparse ? half : quarter;
   const auto load = [&](int step) {
-    const double budget = std::max(step <= kept ? slower * budget_ : budget_, 1.5 * overhead_);
+    const double budget =
+        std::max(step <= ruleOf(light).kept ? slower * budget_ : budget_, 1.5 * overhead_);
     return seconds(at(step, width, height)) / budget;
   };
   const auto fitting = [&] {
@@ -142,8 +145,14 @@ FrameSize Pacing::settle(int width, int height, int samples) const {
 Pacing::Light lightOf(const RTstats& stats, bool rebuilt) {
   const bool direct =
       stats.transport == RT_TRANSPORT_DIRECT || stats.transport == RT_TRANSPORT_WHITTED;
-  if (stats.cameraRays > 0 && direct) return Pacing::Light::direct;
+  if (stats.cameraRays > 0 && direct)
+    return rebuilt ? Pacing::Light::sparseDirect : Pacing::Light::direct;
   return rebuilt ? Pacing::Light::sparse : Pacing::Light::sampled;
+}
+
+Pacing::Light rawOf(Pacing::Light light) {
+  if (light == Pacing::Light::sparse) return Pacing::Light::sampled;
+  return light == Pacing::Light::sparseDirect ? Pacing::Light::direct : light;
 }
 
 } // namespace picture

@@ -22,7 +22,8 @@ class Pacing {
   enum class Light : uint8_t {
     sampled, // every pixel gets light, shown as it is
     sparse,  // sampled, and rebuilt: a picture needs its size more than it needs light everywhere
-    direct   // none is sampled: a picture needs its full size more than it needs many samples
+    direct,  // none is sampled: a picture needs its full size more than it needs many samples
+    sparseDirect // none is sampled, and rebuilt: light in one of four pixels is enough in motion
   };
 
   explicit Pacing(double framesPerSecond);
@@ -41,10 +42,10 @@ class Pacing {
   // Returns the next frame for a window of this size. moving: the viewer or something in the world
   // moves. A moving frame takes at most a frame's time, as predicted from earlier frames. Where
   // that would make it smaller than a quarter of the window in each direction (Light::sparse: than
-  // half of it, Light::direct: than the window), it may take half as long again before it shrinks
-  // further. With Light::sparse one pixel in 9 gets light unless there is time for more. It has at
-  // least an eighth of the window in each direction and 64 pixels. A frame that does not move fills
-  // the window and gets all requested samples.
+  // half of it, without sampled light: than the window), it may take half as long again before it
+  // shrinks further. Where pictures are rebuilt, one pixel in 4 gets light unless there is time
+  // for more. It has at least an eighth of the window in each direction and 64 pixels. A frame that
+  // does not move fills the window and gets all requested samples.
   FrameSize next(int width, int height, bool moving, int samples, Light light = Light::sampled);
 
   // Returns a frame between motion and rest: larger than the frames of the motion, because it may
@@ -58,6 +59,7 @@ class Pacing {
   // enough apart that small variations of the time do not change the step.
   FrameSize at(int step, int width, int height) const;
   int best() const;                             // the best step
+  double costOf(const FrameSize& frame) const;  // of a pixel, in costs of one with light
   double seconds(const FrameSize& frame) const; // as predicted(), with a guess at first
 
   double budget_; // seconds per frame
@@ -72,5 +74,8 @@ class Pacing {
 // Tells which light a world has from the statistics of its last frame, as the engine chose its
 // transport. rebuilt: previews of it are rebuilt.
 Pacing::Light lightOf(const RTstats& stats, bool rebuilt);
+
+// Returns the light of the same world where previews are not rebuilt.
+Pacing::Light rawOf(Pacing::Light light);
 
 } // namespace picture

@@ -48,7 +48,7 @@ constexpr float emptyName = -2;   // the pixel has no sample
 struct Guides {
   void resize(const Layout& layout) {
     name.assign(layout.size(), outsideName);
-    for (Plane* plane : {&nearness, &slopeX, &slopeY, &offsetX, &offsetY})
+    for (Plane* plane : {&nearness, &slopeX, &slopeY, &offsetX, &offsetY, &moves})
       plane->assign(layout.size(), 0);
     normal.assign(layout.size(), 0);
   }
@@ -59,6 +59,7 @@ struct Guides {
   Plane nearness;
   Plane slopeX, slopeY;   // change of nearness from pixel to pixel
   Plane offsetX, offsetY; // place of the sample relative to the pixel's centre, in pixels
+  Plane moves;            // 1: the surface has moved in the world since the frame before, or is new
   Plane3 normal;          // of length 1
 };
 

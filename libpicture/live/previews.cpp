@@ -1,9 +1,11 @@
 #include "libpicture/live/previews.h"
 
+#include <cmath>
+
 namespace picture::live {
 
 Picture Previews::rebuild(uint32_t viewer, const Picture& frame, const FrameCamera& camera,
-                          int lightStride, const WorldStep& step) {
+                          int lightStride, const WorldStep& step, double denoising) {
   Viewer& own = viewers_.of(viewer);
   try {
     if (!own.reconstruction)
@@ -11,7 +13,15 @@ Picture Previews::rebuild(uint32_t viewer, const Picture& frame, const FrameCame
     else if (own.world != step.before)
       own.reconstruction->reset();
     own.world = step.now;
-    return own.reconstruction->add(frame, camera, lightStride);
+    const double cells = std::ceil(double(frame.width) / lightStride) *
+                         std::ceil(double(frame.height) / lightStride);
+    OidnFilter* const filter = oidn_.filterFor(own.denoised, cells, denoising);
+    Picture rebuilt = own.reconstruction->add(frame, camera, lightStride, filter);
+    const Reconstruction::Facts& facts = own.reconstruction->facts();
+    denoisedBy_ = facts.denoised ? filter->name() : "";
+    if (facts.denoised) oidn_.took(cells, facts.denoising);
+    if (!facts.problem.empty()) oidn_.failed(facts.problem);
+    return rebuilt;
   } catch (...) {
     forget(viewer);
     throw;

@@ -113,7 +113,12 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     // The camera is known to be what was said if the sample projects into its own pixel.
     const Mask own = both(both(hit, isPlace(p, place)),
                           both(absolute(offsetX) <= one, absolute(offsetY) <= one));
-    const Place past = placeOf(q, point - motion), far = environmentAt(p, q, filmX, filmY);
+    const Place past = placeOf(q, point - motion);
+    // A picture behind the world moves with the screen, but not what mirrors and glass show.
+    Place far = environmentAt(p, q, filmX, filmY);
+    if (p.camera.fixedBackground)
+      far = {select(coloured, far.x, filmX), select(coloured, far.y, filmY),
+             select(coloured, far.depth, one)};
     const Mask moved = both(own, isPlace(q, past)),
                environment = hn::AndNot(hit, both(some, isPlace(q, far)));
     const Mask still = both(both(motion.x == zero, motion.y == zero), motion.z == zero);
@@ -140,6 +145,7 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     store(nearness, guides.nearness.data() + i);
     store(where(own, offsetX), guides.offsetX.data() + i);
     store(where(own, offsetY), guides.offsetY.data() + i);
+    store(where(hn::AndNot(still, hit), all(1)), guides.moves.data() + i);
     store(unitNormal(loadTriples(frame.normal + 3 * first, x, w)), guides.normal, i);
     const Lanes name = select(some, amount(given), all(emptyName));
     store(select(present(x, w), name, all(outsideName)), guides.name.data() + i);

@@ -28,7 +28,7 @@ template <class Kept> class RecentViewers {
 
  private:
   struct Entry {
-    Kept kept;
+    Kept kept{};
     uint64_t used = 0; // number of the last use
   };
   std::map<uint32_t, Entry> entries_;

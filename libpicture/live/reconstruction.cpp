@@ -1,5 +1,6 @@
 #include "libpicture/live/reconstruction.h"
 
+#include <algorithm>
 #include <chrono>
 #include <numeric>
 #include <stdexcept>
@@ -10,11 +11,17 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "libpicture/live/denoise.h"
 #include "libpicture/live/stages.h"
 
 namespace picture::live {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 // Returns a plane of a frame, after checking that each pixel has its numbers.
 const float* planeOf(const Picture& frame, uint32_t channel, size_t numbers) {
@@ -37,6 +44,21 @@ FramePlanes planesOf(const Picture& frame) {
           planeOf(frame, RT_NORMAL, 3),   planeOf(frame, RT_ALBEDO, 3),
           planeOf(frame, RT_POSITION, 3), planeOf(frame, RT_NAME, 1),
           planeOf(frame, RT_MOTION, 3),   planeOf(frame, RT_SAMPLES, 1)};
+}
+
+// Continues a row of colours by the two pixels that showRow reads beyond the picture, above and
+// below it, too. Otherwise nothing, which is black, would be among the colours that bound a pixel.
+void continueRow(Plane& colours, const Layout& layout, int y) {
+  constexpr int reach = 2;
+  float* const first = colours.data() + layout.row(y);
+  float* const last = first + layout.width - 1;
+  std::fill_n(first - reach, reach, *first);
+  std::fill_n(last + 1, reach, *last);
+  for (int k = 1; k <= reach; k++) {
+    if (y == 0) std::copy(first - reach, last + 1 + reach, first - reach - k * layout.stride);
+    if (y == layout.height - 1)
+      std::copy(first - reach, last + 1 + reach, first - reach + k * layout.stride);
+  }
 }
 
 } // namespace
@@ -131,6 +153,30 @@ struct Reconstruction::Impl {
     result = pass.from;
   }
 
+  // Tells whether there is anything that a denoiser may change.
+  bool isNoisy() const {
+    const Plane& noise = now.accumulated.noise;
+    return std::any_of(noise.begin(), noise.end(), [](float n) { return n > 0; });
+  }
+
+  // Lets a denoiser filter the illumination, too, and mixes what it makes of it into `result`.
+  // Returns whether it has succeeded.
+  bool denoise(OidnFilter& denoiser) {
+    const auto begin = Clock::now();
+    try {
+      images.resize(now.layout.width, now.layout.height);
+      rows(now, [&](int y) { imageRow(now, reading, y, images); });
+      denoiser.denoise(images);
+    } catch (const OidnError& error) {
+      facts.problem = error.what();
+      return false;
+    }
+    rows(now, [&](int y) { lightRow(now, reading, images, y, *result, work.filtered); });
+    result = &work.filtered;
+    facts.denoising = secondsSince(begin);
+    return true;
+  }
+
   // Writes `fresh` from the filtered illumination.
   void colour(const FramePlanes& planes) {
     const Moment& grid = sparse ? pixels : now;
@@ -138,11 +184,16 @@ struct Reconstruction::Impl {
         planes,     grid,           pixelsOfBefore(), sparse ? pixelReading : reading,
         now,        reading.albedo, *result,          work.verdict,
         shownBefore};
-    rows(grid,
-         [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
+    rows(grid, [&](int y) {
+      now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh);
+      for (Plane* plane : {&fresh.colour.x, &fresh.colour.y, &fresh.colour.z})
+        continueRow(*plane, grid.layout, y);
+    });
   }
 
-  Picture add(const Picture& frame, const FrameCamera& camera, int lightStride) {
+  Picture add(const Picture& frame, const FrameCamera& camera, int lightStride,
+              OidnFilter* denoiser) {
+    facts = {};
     const FramePlanes planes = planesOf(frame);
     start(camera, frame.width, frame.height, lightStride);
     read(planes);
@@ -153,6 +204,7 @@ struct Reconstruction::Impl {
     rows(now, [&](int y) { accumulateRow(reading, y, now, work); });
     rows(now, [&](int y) { boundRow(y, now); });
     filter();
+    facts.denoised = denoiser && isNoisy() && denoise(*denoiser);
     colour(planes);
 
     Picture picture;
@@ -186,6 +238,7 @@ struct Reconstruction::Impl {
   Layout freshLayout;
   Shown shown, shownBefore;
   const Plane3* result = nullptr; // filtered illumination
+  OidnImages images;
   Facts facts;
 };
 
@@ -198,14 +251,15 @@ void Reconstruction::reset() {
   impl_->shown = Shown();
 }
 
-Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera, int lightStride) {
+Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera, int lightStride,
+                            OidnFilter* denoiser) {
   if (lightStride < 1 || lightStride > mostLightStride)
     throw std::invalid_argument("a preview cannot have light in one of " +
                                 std::to_string(lightStride) + " pixels each way");
-  const auto start = std::chrono::steady_clock::now();
-  Picture picture = impl_->arena.execute([&] { return impl_->add(frame, camera, lightStride); });
-  impl_->facts.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Clock::time_point begin = Clock::now();
+  Picture picture =
+      impl_->arena.execute([&] { return impl_->add(frame, camera, lightStride, denoiser); });
+  impl_->facts.seconds = secondsSince(begin);
   return picture;
 }
 

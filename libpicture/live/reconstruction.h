@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "libpicture/files/picture.h"
@@ -26,11 +27,15 @@ namespace picture::live {
 constexpr uint32_t previewChannels =
     RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION;
 
+class OidnFilter;
+
 // How the frame's camera projects. A camera whose shader is not null cannot be inverted: its frames
 // are accumulated only while the camera rests.
 struct FrameCamera {
   xvrml::CameraSettings settings;
   double aspect = 1; // width / height of the frame
+  // What is seen where nothing is hit has its place on the screen, wherever the camera looks.
+  bool fixedBackground = false;
 };
 
 // The largest RT_LIGHT_STRIDE.
@@ -58,13 +63,20 @@ class Reconstruction {
   // lightStride: RT_LIGHT_STRIDE of the frame, 1 to mostLightStride. From 2 on, pixels take their
   // illumination from the blocks around them that show the same surface; edges and textures keep
   // the size of the pixels. Frames may differ in it.
-  Picture add(const Picture& frame, const FrameCamera& camera, int lightStride = 1);
+  //
+  // denoiser: filters the illumination beside the filter of this class, where there is noise; null:
+  // none does. The bytes then depend on its library and on this machine, too.
+  Picture add(const Picture& frame, const FrameCamera& camera, int lightStride = 1,
+              OidnFilter* denoiser = nullptr);
 
   // Facts about the last add(), for reports and tests.
   struct Facts {
     double seconds = 0;     // time of the call
     double reprojected = 0; // fraction of the pixels that found themselves in the frame before
     double history = 0;     // accumulated frames, mean over the pixels
+    bool denoised = false;  // the denoiser has filtered the frame
+    double denoising = 0;   // part of `seconds`: time of the denoiser
+    std::string problem; // why it has failed and this class has filtered the frame; "": it has not
   };
   const Facts& facts() const;
 

@@ -37,8 +37,9 @@ void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
     const Mask seen = wasSeen(pass.cells.accumulated.frames, i, ptrdiff_t(layout.stride));
     store(load(pass.cells.accumulated.noise.data() + i), fresh.noise.data() + i);
     store(all(Shown::noSample), fresh.sample.data() + i);
-    keepShown(pass, recalledAt(pass, seen, x, i), i, fresh);
+    keepShown(pass, recalledAt(pass, seen, x, i), x, y, i, fresh);
   }
+  continueBorder(layout, y, fresh.colour);
 }
 
 // The colours that the pixels around allow.
@@ -85,6 +86,30 @@ inline Range rangeAround(const Plane& colour, size_t i, ptrdiff_t stride, Mask r
   return {select(rests, resting.low, moving.low), select(rests, resting.high, moving.high)};
 }
 
+// At rest the samples of an edge or a texture differ from what was shown in both directions. Where
+// they agree, as behind a shadow or in a texture that changes, what was shown is out of date.
+// Returns the part of its frames that still counts: with independent differences d around a pixel,
+// the square of their sum is as large as the sum of their squares, and `agreeing` times it one time
+// in seventy.
+inline Lanes stillValid(const Fresh& fresh, size_t i, ptrdiff_t stride) {
+  constexpr float agreeing = 6;
+  Lanes3 sum{all(0), all(0), all(0)};
+  Lanes squares = all(0);
+  for (ptrdiff_t dy = -2; dy <= 2; dy++)
+    for (ptrdiff_t dx = -2; dx <= 2; dx++) {
+      const size_t j = i + size_t(dy * stride + dx);
+      const Mask known = load(fresh.oldFrames.data() + j) > all(0);
+      const Lanes3 difference = load(fresh.colour, j) - load(fresh.oldColour, j);
+      const Lanes3 d{where(known, difference.x), where(known, difference.y),
+                     where(known, difference.z)};
+      sum = sum + d;
+      squares = squares + dot(d, d);
+    }
+  const Lanes whole = dot(sum, sum), most = all(agreeing) * squares;
+  const Lanes part = most / larger(whole, all(1e-30f));
+  return select(whole > most, part * part, all(1));
+}
+
 inline Lanes mixed(Lanes old, Lanes fresh, const Range& range, Lanes part) {
   const Lanes kept = clamped(old, range.low, range.high);
   return larger(select(part < all(1), kept + (fresh - kept) * part, fresh), all(0));
@@ -101,11 +126,13 @@ void showRow(const FramePlanes& frame, int y, const Layout& before, const Moment
     const size_t i = row + size_t(x);
     const Mask some = load(now.guides.name.data() + i) >= zero;
     const Lanes3 old = load(fresh.oldColour, i);
-    const Lanes oldFrames = load(fresh.oldFrames.data() + i);
+    Lanes oldFrames = load(fresh.oldFrames.data() + i);
     const Mask rests = both(same, both(load(fresh.pastX.data() + i) == countFrom(x),
                                        load(fresh.pastY.data() + i) == all(float(y))));
     // Where light is sampled, what was shown is filtered light, and may lag behind it.
     const Mask quiet = both(rests, load(fresh.noise.data() + i) <= zero);
+    if (!hn::AllFalse(Tag(), quiet))
+      oldFrames = oldFrames * select(quiet, stillValid(fresh, i, stride), one);
     const Lanes most =
         select(quiet, all(framesAtRest), select(rests, all(framesSampled), all(framesMoving)));
     const Lanes frames = smaller(oldFrames + one, most);

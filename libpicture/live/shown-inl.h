@@ -141,9 +141,51 @@ inline Lanes lastNumbers(const Layout& layout, const std::vector<float>& shown,
   return load(numbers);
 }
 
+// Returns where a pixel that rests was covered, or its neighbours were, by something in front that
+// has moved away since: what was shown there is not its own colour.
+inline Mask wasUncovered(const ColourPass& pass, const Recalled& recalled, int x, int y, size_t i) {
+  const Mask none = all(1) < all(0);
+  if (!(pass.before.layout == pass.pixels.layout)) return none;
+  const Mask rests =
+      both(recalled.known, both(recalled.past.x == countFrom(x), recalled.past.y == all(float(y))));
+  const Guides& old = pass.before.guides;
+  const auto stride = ptrdiff_t(pass.before.layout.stride);
+  const Lanes own = load(pass.pixels.guides.nearness.data() + i);
+  const Lanes front = own + all(nearer) * (pass.pixels.projection.parallel ? all(1) : own);
+  Mask covered = none;
+  for (ptrdiff_t dy = -1; dy <= 1; dy++)
+    for (ptrdiff_t dx = -1; dx <= 1; dx++) {
+      const size_t j = i + size_t(dy * stride + dx);
+      const Mask ahead =
+          both(load(old.name.data() + j) >= all(0), load(old.nearness.data() + j) > front);
+      covered = either(covered, both(ahead, load(old.moves.data() + j) > all(0)));
+    }
+  return both(rests, covered);
+}
+
+// Continues a row of colours by the widest range of showRow on both sides, the first and the last
+// one upwards and downwards, too: beyond the border of the picture is nothing else to be seen.
+inline void continueBorder(const Layout& layout, int y, Plane& colours) {
+  constexpr ptrdiff_t reach = 2;
+  const auto stride = ptrdiff_t(layout.stride), width = ptrdiff_t(layout.width);
+  float* const row = colours.data() + layout.row(y);
+  std::fill_n(row - reach, reach, row[0]);
+  std::fill_n(row + width, reach, row[width - 1]);
+  for (ptrdiff_t k = 1; k <= reach; k++) {
+    if (y == 0) std::copy_n(row - reach, width + 2 * reach, row - reach - k * stride);
+    if (y == layout.height - 1)
+      std::copy_n(row - reach, width + 2 * reach, row - reach + k * stride);
+  }
+}
+inline void continueBorder(const Layout& layout, int y, Plane3& colours) {
+  for (Plane* plane : {&colours.x, &colours.y, &colours.z}) continueBorder(layout, y, *plane);
+}
+
 // Keeps for showRow what was shown.
-inline void keepShown(const ColourPass& pass, const Recalled& recalled, size_t i, Fresh& fresh) {
+inline void keepShown(const ColourPass& pass, Recalled recalled, int x, int y, size_t i,
+                      Fresh& fresh) {
   const Lanes nowhere = all(std::numeric_limits<float>::quiet_NaN());
+  recalled.known = hn::AndNot(wasUncovered(pass, recalled, x, y, i), recalled.known);
   Lanes frames;
   store(shownNumbers(pass.shown.layout, pass.shown.colour, recalled, frames), fresh.oldColour, i);
   store(frames, fresh.oldFrames.data() + i);

@@ -63,11 +63,18 @@ inline Lanes meanOf(const Lanes3& colour) {
 
 // What the cells around a pixel tell.
 struct Around {
-  Lanes3 light{all(0), all(0), all(0)};
-  Lanes3 least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f), all(-1e30f), all(-1e30f)};
-  Lanes weights = all(0), noise = all(0), slope = all(0), changed = all(0);
+  Lanes3 light, least, most;
+  Lanes weights, noise, slope, changed;
   // Of the cells with the pixel's name, however they lie: their largest noise; -1: there are none.
-  Lanes nameNoise = all(-1);
+  Lanes nameNoise;
+
+  // Written out, because GCC compiles a constructor of its own making for the oldest instruction
+  // set, where vectors are returned in another way.
+  Around()
+      : light{all(0), all(0), all(0)}, least{all(1e30f), all(1e30f), all(1e30f)}, most{all(-1e30f),
+                                                                                       all(-1e30f),
+                                                                                       all(-1e30f)},
+        weights(all(0)), noise(all(0)), slope(all(0)), changed(all(0)), nameNoise(all(-1)) {}
 
   // same: the names are equal. alike: the cell's albedo is like the pixel's, so that its light is a
   // bound for the pixel's.
@@ -172,15 +179,34 @@ inline Lanes3 bounded(const Lanes3& v, const Lanes3& least, const Lanes3& most) 
           clamped(v.z, least.z, most.z)};
 }
 
+// What was shown of pixels, and the pixels of the frame before that showed their surfaces.
+struct RecalledSurfaces : Recalled {
+  Taps taps;
+};
+
 // Tells where the surfaces of pixels were shown. slope: change of nearness from cell to cell.
-inline Recalled recalledSurfaces(const ColourPass& pass, Lanes slope, int x, size_t i) {
+inline RecalledSurfaces recalledSurfaces(const ColourPass& pass, Lanes slope, int x, size_t i) {
   const Expected expected = expectedAt(pass.pixels, pass.before, pass.reading,
                                        slope * all(1 / float(pass.cells.block)), i);
   const Lanes pastX = load(pass.reading.pastX.data() + i),
               pastY = load(pass.reading.pastY.data() + i);
   Taps taps = tapsAround(pass.before, expected, pastX, pastY);
   searchAround(pass.before, expected, pastX, pastY, taps);
-  return recalledAt(pass, taps.found, x, i);
+  return {recalledAt(pass, taps.found, x, i), taps};
+}
+
+// Returns the illumination that was shown of the pixels' own surfaces. A spline across the edges of
+// something thin would swing below and above the light of what is beside it, and more with each
+// frame.
+inline Lanes3 lightOfSurfaces(const ColourPass& pass, const Taps& taps) {
+  const float* light = pass.shown.light.data();
+  Lanes3 sum{all(0), all(0), all(0)};
+  for (int k = 0; k < 4; k++) {
+    const Index at = hn::ShiftLeft<2>(taps.index[k]);
+    const Lanes3 tap{gather(light, at), gather(light + 1, at), gather(light + 2, at)};
+    sum = sum + tap * taps.weight[k];
+  }
+  return sum;
 }
 
 // Pixels of a row from x on, i being the place of the first one in planes.
@@ -207,16 +233,20 @@ inline Lit litPixels(const ColourPass& pass, const Pixels& at) {
 }
 
 // Returns the illumination of pixels of which `around` may be noise or have no light.
-inline Lanes3 ownLight(const ColourPass& pass, const Around& around, const Recalled& recalled,
-                       Mask lit, const Pixels& at) {
+inline Lanes3 ownLight(const ColourPass& pass, const Around& around,
+                       const RecalledSurfaces& recalled, Mask lit, const Pixels& at) {
   Lanes unused;
-  const Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
+  Lanes3 shown = shownNumbers(pass.shown.layout, pass.shown.light, recalled, unused);
   // Where nothing has changed at rest, a surface keeps what it has shown, also what is too fine
   // for the cells.
   const Mask same = pass.shown.layout == pass.pixels.layout ? all(0) < all(1) : all(1) < all(0);
   const Mask rests = both(both(recalled.known, same), both(recalled.past.x == countFrom(at.x),
                                                            recalled.past.y == all(float(at.y))));
-  const Mask keeps = either(both(rests, around.changed <= all(0)), hn::Not(around.found()));
+  const Mask calm = both(rests, around.changed <= all(0)), alone = hn::Not(around.found());
+  const Mask keeps = either(calm, alone);
+  const Mask follows = both(both(hn::AndNot(calm, alone), recalled.known), recalled.taps.found);
+  if (!hn::AllFalse(Tag(), follows))
+    shown = select(follows, lightOfSurfaces(pass, recalled.taps), shown);
   // What was shown may belong to another albedo: the sample lies anywhere in the pixel.
   const Mask isBound = hn::Not(around.least.x > around.most.x);
   const Lanes3 bound = select(isBound, bounded(shown, around.least, around.most), around.light);
@@ -236,7 +266,7 @@ inline void forgetLent(Mask unsampled, Mask lit, Mask found, Lanes noise, size_t
 }
 
 inline Lanes3 spreadLight(const ColourPass& pass, const Columns& columns, const Surface& surface,
-                          const Around& around, const Recalled& recalled, const Pixels& at,
+                          const Around& around, const RecalledSurfaces& recalled, const Pixels& at,
                           Fresh& fresh) {
   const Lit lit = litPixels(pass, at);
   const Lanes one = all(1);
@@ -280,11 +310,12 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
                           all(partY) + load(guides.offsetY.data() + i) * all(1 / block),
                           load(guides.normal, i)};
     const Around around = cellsAround(pass, columns, surface, y);
-    const Recalled recalled = recalledSurfaces(pass, around.slope, x, i);
-    keepShown(pass, recalled, i, fresh);
+    const RecalledSurfaces recalled = recalledSurfaces(pass, around.slope, x, i);
+    keepShown(pass, recalled, x, y, i, fresh);
     storeColour(spreadLight(pass, columns, surface, around, recalled, {x, y, i}, fresh),
                 pass.reading, i, fresh);
   }
+  continueBorder(layout, y, fresh.colour);
 }
 
 } // namespace HWY_NAMESPACE

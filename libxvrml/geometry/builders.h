@@ -20,7 +20,9 @@ namespace xvrml {
   X(PointSet)                                                                                      \
   X(ElevationGrid)                                                                                 \
   X(Extrusion)                                                                                     \
-  X(Text)
+  X(Text)                                                                                          \
+  X(ORTQuadric)                                                                                    \
+  X(ORTAsphere)
 
 #define XVRML_DECLARE_BUILDER(name)                                                                \
   Mesh build##name(const nodes::name& node, const MeshOptions& options, Faults& faults);

@@ -6,7 +6,7 @@
 
 namespace xvrml {
 
-Mesh buildCone(const nodes::Cone& node, const MeshOptions&, Faults& faults) {
+Mesh buildCone(const nodes::Cone& node, const MeshOptions& options, Faults& faults) {
   Mesh mesh;
   float radius = std::abs(node.bottomRadius), height = std::abs(node.height);
   if (!isFinite(radius) || !isFinite(height)) {
@@ -33,6 +33,10 @@ Mesh buildCone(const nodes::Cone& node, const MeshOptions&, Faults& faults) {
     }
   }
   if (node.bottom) addDisc(mesh, -height / 2, radius, false);
+  if (options.exactShapes) {
+    if (node.side) addExactSide(mesh, radius, 0, -height / 2, height / 2);
+    if (node.bottom) addExactDisc(mesh, -height / 2, radius, false);
+  }
   return finishRound(std::move(mesh));
 }
 

@@ -5,7 +5,7 @@
 
 namespace xvrml {
 
-Mesh buildCylinder(const nodes::Cylinder& node, const MeshOptions&, Faults& faults) {
+Mesh buildCylinder(const nodes::Cylinder& node, const MeshOptions& options, Faults& faults) {
   Mesh mesh;
   float radius = std::abs(node.radius), half = std::abs(node.height) / 2;
   if (!isFinite(radius) || !isFinite(half)) {
@@ -28,6 +28,11 @@ Mesh buildCylinder(const nodes::Cylinder& node, const MeshOptions&, Faults& faul
   }
   if (node.top) addDisc(mesh, half, radius, true);
   if (node.bottom) addDisc(mesh, -half, radius, false);
+  if (options.exactShapes) {
+    if (node.side) addExactSide(mesh, radius, radius, -half, half);
+    if (node.top) addExactDisc(mesh, half, radius, true);
+    if (node.bottom) addExactDisc(mesh, -half, radius, false);
+  }
   return finishRound(std::move(mesh));
 }
 

@@ -18,6 +18,19 @@ struct Color4 {
   float r = 1, g = 1, b = 1, a = 1;
 };
 
+// A surface that the ray tracer draws by its equation: rtQuadric or rtAsphere (openrt/geometry.h),
+// whose arguments it holds. None of them is out of range.
+struct ExactSurface {
+  enum class Kind : uint8_t { quadric, asphere } kind = Kind::quadric;
+  // Quadric: ten coefficients, lower and upper corner of the box. Asphere: curvature, conic
+  // constant, inner radius, semi-aperture, terms.
+  std::vector<double> numbers;
+  // An asphere's height and direction of its axis: along z, or for the ends of round bodies up or
+  // down the y axis.
+  enum class Facing : uint8_t { z, up, down } facing = Facing::z;
+  double height = 0;
+};
+
 struct Mesh {
   enum class Kind : uint8_t { empty, triangles, lines, points, sphere };
   Kind kind = Kind::empty;
@@ -31,6 +44,8 @@ struct Mesh {
   bool solid = true; // back faces are culled
   bool ccw = true;
   float radius = 0; // radius of a sphere
+  // If not empty, what the ray tracer draws in place of the triangles.
+  std::vector<ExactSurface> exact;
 
   std::vector<Vec3f> ownPoints, ownNormals;
   std::vector<uint32_t> ownIndices;
@@ -51,6 +66,8 @@ struct MeshOptions {
   Diagnostics* diagnostics = nullptr;
   // The name of limits->triangles in messages; empty: the limit 'triangles'.
   std::string_view limitName = {};
+  // Cylinders and cones get exact surfaces beside their triangles.
+  bool exactShapes = false;
 };
 
 // Builds the mesh of any geometry node (Box ... Text). Its kind is empty for other nodes and if

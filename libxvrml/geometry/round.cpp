@@ -47,6 +47,22 @@ void addDisc(Mesh& mesh, float y, float radius, bool up) {
   }
 }
 
+// The side is where x^2 + z^2 = (at0 + slope y)^2. Its box cuts it only along the axis.
+void addExactSide(Mesh& mesh, double lowRadius, double highRadius, double low, double high) {
+  const double slope = (highRadius - lowRadius) / (high - low), at0 = lowRadius - slope * low;
+  const double r = 1.001 * std::max(lowRadius, highRadius);
+  mesh.exact.push_back({ExactSurface::Kind::quadric,
+                        {1, -slope * slope, 1, 0, 0, 0, 0, -2 * at0 * slope, 0, -at0 * at0, -r, low,
+                         -r, r, high, r}});
+}
+
+void addExactDisc(Mesh& mesh, double y, double radius, bool up) {
+  mesh.exact.push_back({ExactSurface::Kind::asphere,
+                        {0, 0, 0, radius},
+                        up ? ExactSurface::Facing::up : ExactSurface::Facing::down,
+                        y});
+}
+
 Mesh finishRound(Mesh&& mesh) {
   if (mesh.ownIndices.empty()) return {};
   mesh.kind = Mesh::Kind::triangles;

@@ -113,6 +113,11 @@ int OpenRTMapper::boundViewpoint() const {
   return found == places.end() ? -1 : int(found - places.begin());
 }
 
+std::vector<SensorInfo> OpenRTMapper::sensors() const {
+  impl_->places.updateForFrame(impl_->graph, impl_->camera);
+  return listSensors(impl_->graph, impl_->places);
+}
+
 CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
   const std::vector<int32_t>& places = impl_->viewpointPlaces();
   return impl_->cameraAt(index < places.size() ? places[index] : none);
@@ -122,6 +127,8 @@ CameraSettings OpenRTMapper::fitCamera(double fovy) const {
   const CameraSettings first = viewpointCamera(size_t(std::max(0, boundViewpoint())));
   return cameraAround(impl_->bounds(), first.matrix, fovy, impl_->options.aspect);
 }
+
+void OpenRTMapper::setExactShapes(bool exact) { impl_->graph.meshes.setExactShapes(exact); }
 
 void OpenRTMapper::setMultiplyTextures(bool multiply) {
   impl_->surfaces.multiplyTextures = multiply;

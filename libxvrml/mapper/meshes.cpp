@@ -106,6 +106,13 @@ bool Meshes::needTexture(int32_t mesh) {
   return true;
 }
 
+void Meshes::setExactShapes(bool exact) {
+  if (exactShapes_ == exact) return;
+  exactShapes_ = exact;
+  for (size_t mesh = 0; mesh < entries_.size(); ++mesh)
+    if (entries_[mesh].geometry) changed(int32_t(mesh));
+}
+
 void Meshes::changed(int32_t mesh) {
   leave(mesh);
   forgetCorners();
@@ -135,7 +142,8 @@ const Mesh& Meshes::get(int32_t mesh) {
   const bool scarce = entry.triangles < limits.triangles;
   if (scarce) limits.triangles = entry.triangles;
   const std::string name = scarce ? quota_.budget().name() : std::string();
-  MeshOptions options{entry.textured, &limits, entry.said ? &silent : &world_.diagnostics, name};
+  MeshOptions options{entry.textured, &limits, entry.said ? &silent : &world_.diagnostics, name,
+                      exactShapes_};
   entry.mesh = std::make_unique<Mesh>(buildMesh(*entry.geometry, options));
   if (!quota_.take(ownBytes(*entry.mesh), entry.geometry->source)) *entry.mesh = Mesh();
   entry.said = true;
@@ -152,6 +160,7 @@ const Mesh& Meshes::get(int32_t mesh) {
   case Mesh::Kind::points: entry.extent.primitives = corners; break;
   case Mesh::Kind::sphere: entry.extent.primitives = 1; break;
   }
+  if (!entry.mesh->exact.empty()) entry.extent.primitives = entry.mesh->exact.size();
   if (!entry.dynamic && entry.extent.kind == Mesh::Kind::triangles &&
       entry.extent.primitives >= minimumComparedPrimitives)
     join(mesh);

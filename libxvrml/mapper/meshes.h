@@ -17,6 +17,8 @@ namespace xvrml::mapper {
 class Meshes {
  public:
   explicit Meshes(World& world) : world_(world), quota_(world, "meshes") {}
+  // Sets whether cylinders and cones are drawn without facets. Meshes are then built again.
+  void setExactShapes(bool exact);
   // Returns the mesh number of a geometry node and adds a user. textured: the user has a texture.
   int32_t add(Node& geometry, bool textured);
   void drop(int32_t mesh); // removes one user
@@ -85,6 +87,7 @@ class Meshes {
   void count(int32_t mesh, int32_t users);
 
   World& world_;
+  bool exactShapes_ = false;
   Quota quota_; // quota for the meshes that are built now
   std::vector<Entry> entries_;
   std::vector<int32_t> free_, dropped_, built_;

@@ -15,6 +15,18 @@ RTenum modeOf(Mesh::Kind kind) {
          : kind == Mesh::Kind::points ? RT_POINTS
                                       : RT_TRIANGLES;
 }
+
+// Draws a surface without facets under the current matrix.
+void drawExact(const ExactSurface& exact) {
+  const double* n = exact.numbers.data();
+  if (exact.kind == ExactSurface::Kind::quadric) return rtQuadric(n, n + 10, n + 13);
+  rtPushMatrix();
+  rtTranslated(0, exact.height, 0);
+  if (exact.facing != ExactSurface::Facing::z)
+    rtRotated(exact.facing == ExactSurface::Facing::up ? -90 : 90, 1, 0, 0);
+  rtAsphere(n[0], n[1], exact.numbers.size() - 4, n + 4, n[2], n[3]);
+  rtPopMatrix();
+}
 } // namespace
 
 void Objects::enter(ItemId id, int32_t at, const Matrix& matrix) {
@@ -153,13 +165,15 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   Part& part = parts_[size_t(writing_)];
   part.bytes += bytes;
   part.primitives += extent.primitives;
-  if (m.kind == Mesh::Kind::triangles) part.triangles += extent.primitives;
+  if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += extent.primitives;
   ++part.drawCalls;
   rtBindShader(surface.shader);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   if (m.kind == Mesh::Kind::sphere) {
     rtSphere(m.radius);
+  } else if (!m.exact.empty()) {
+    for (const ExactSurface& exact : m.exact) drawExact(exact);
   } else if (m.indices.size() <
              m.points.size()) { // several geometries share a Coordinate: each takes its part
     Mesh used;

@@ -66,6 +66,20 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
   return list;
 }
 
+std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places) {
+  std::vector<SensorInfo> list;
+  for (const Place& place : places.all) {
+    const Item& item = graph.items[place.item];
+    if (item.kind != Kind::sensor || !place.active) continue;
+    SensorInfo info;
+    info.name = graph.names[item.name];
+    info.node = item.node;
+    toArray(place.world, info.matrix);
+    list.push_back(std::move(info));
+  }
+  return list;
+}
+
 CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
   Vec3f position{0, 0, 10}; // defaults of clause 6.53
   Rotation orientation;

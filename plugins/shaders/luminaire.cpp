@@ -1,8 +1,9 @@
 // luminaire.cpp: the light Luminaire, a measured lamp: its intensity by direction comes from the
-// text of an IES file. [render]
+// text of an IES or EULUMDAT file. [render]
 #include <cstdio>
 #include <new>
 
+#include "eulumdat.h"
 #include "ies.h"
 #include "openrt/openrts.hpp"
 
@@ -12,34 +13,46 @@ struct Luminaire : rts::LightSource<Luminaire> {
   static constexpr const char* text =
       "a measured luminaire: one candela is a radiant intensity of 1";
   rts::Param<rts::String> profile{
-      "profile", "text of an ANSI/IES LM-63 file of photometric type C, TILT=NONE"};
+      "profile", "text of an ANSI/IES LM-63 or EULUMDAT file; without it the lamp shines evenly"};
   rts::Param<rts::Color> color{"color", {1, 1, 1}, "multiplies the measured intensity"};
   rts::Param<float> intensity{"intensity", 1, "multiplies the measured intensity", 0, 1e9f};
+  rts::Param<float> lumen{"lumen", 0,
+                          "luminous flux of the luminaire, to which the measured intensity is "
+                          "scaled; 0: as measured",
+                          0, 1e12f};
+  rts::Param<float> tilt{"tilt", 0, "degrees by which the luminaire is tilted, for TILT=INCLUDE", 0,
+                         180};
   rts::Param<rts::Vec3> location{"location", {0, 0, 0}, "place of the photometric centre"};
   rts::Param<rts::Vec3> direction{
-      "direction", {0, 0, -1}, "towards vertical angle 0: down, as the luminaire hangs"};
+      "direction",
+      {0, 0, -1},
+      "towards vertical angle 0: down, as the luminaire hangs; types A and B: forward"};
   rts::Param<rts::Vec3> reference{
       "reference",
       {1, 0, 0},
-      "towards horizontal angle 0; angles grow counter-clockwise seen from above"};
+      "towards horizontal angle 0; angles grow counter-clockwise seen from above; types A and B: "
+      "to the right"};
 
   // Computed by prepare.
-  const ies::Photometry* photometry;
+  const photometry::Photometry* photometry;
   rts::Vec3 down, zero, ninety; // orthonormal axes of the photometric angles
   float flux;
   char message[200];
 
   const char* prepare() {
-    auto* made = new (std::nothrow) ies::Photometry;
+    auto* made = new (std::nothrow) photometry::Photometry;
     if (!made) return "out of memory";
     photometry = made;
     int line = 0;
     const char* problem = nullptr;
     try {
-      problem = ies::parse(*profile, *made, line);
+      problem = read(*made, line);
     } catch (const std::bad_alloc&) { problem = "out of memory"; }
     if (problem) {
-      std::snprintf(message, sizeof message, "profile, line %d: %s", line, problem);
+      if (line > 0)
+        std::snprintf(message, sizeof message, "profile, line %d: %s", line, problem);
+      else
+        std::snprintf(message, sizeof message, "%s", problem);
       release(); // frees the memory even if the host does not call release() after a refusal
       return message;
     }
@@ -54,6 +67,25 @@ struct Luminaire : rts::LightSource<Luminaire> {
     flux = float(made->flux());
     return nullptr;
   }
+  // Reads the profile and applies `lumen`. Returns null or a message; `line` is then its line, or
+  // 0.
+  const char* read(photometry::Photometry& out, int& line) const {
+    const std::string_view text = *profile;
+    if (text.empty() && *lumen > 0) {
+      out.vertical = {0, 180};
+      out.horizontal = {0};
+      out.candela = {1, 1};
+    } else if (const char* problem = eulumdat::looksLike(text)
+                                         ? eulumdat::parse(text, out, line)
+                                         : ies::parse(text, out, line, double(*tilt))) {
+      return problem;
+    }
+    if (*lumen == 0) return nullptr;
+    line = 0;
+    const double own = out.flux();
+    if (!(own > 0)) return "lumen: the profile has no light that could be scaled";
+    return out.scale(double(*lumen) / own) ? nullptr : "lumen: the intensity would be too large";
+  }
   void release() {
     delete photometry;
     photometry = nullptr;
@@ -65,11 +97,7 @@ struct Luminaire : rts::LightSource<Luminaire> {
     const double d = rts::dot(way, down), x = rts::dot(way, zero), y = rts::dot(way, ninety);
     const double square = d * d + x * x + y * y;
     if (!photometry || !(square > 1e-30)) return {};
-    constexpr double degrees = 180 / M_PI;
-    const double vertical = std::atan2(std::sqrt(x * x + y * y), d) * degrees,
-                 horizontal = std::atan2(y, x) * degrees;
-    const double seen =
-        double(photometry->intensity(vertical, horizontal)) * double(*intensity) / (M_PI * square);
+    const double seen = double(photometry->towards(d, x, y)) * double(*intensity) / (M_PI * square);
     return {-way, *color * float(std::fmin(seen, 1e30)), {}};
   }
   rts::Extent extent() const {

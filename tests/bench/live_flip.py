@@ -3,13 +3,15 @@
 often they come, how late, and whether they flicker.
 
 live_flip.py --bench PROGRAM --out FOLDER [--worlds a,b,FILE.wrl] [--seconds N] [--pairs N]
-             [--steps N] [--frame WxH] [--size WxH] [--compare WxH] [--threads N]
+             [--steps N] [--frame WxH[xS[xK]]] [--size WxH] [--compare WxH] [--threads N]
+             [--denoiser own|oidn|auto]
              [--reference-spp N] [--reference-error E] [--strip FOLDER] [--docs] [--fresh]
 
 `make bench-live` runs it. PROGRAM is bench_live, which shows each world on a slow and on a fast turn,
 once with the samples as they are and once rebuilt, and keeps what the window would show. Some
-instants are then rendered with many samples. Shown and converged pictures are scaled to the window
-(--size) and then to --compare, and compared by FLIP (the package flip-evaluator).
+instants are then rendered with many samples, in the size of the comparison (--compare). What is
+shown is scaled to the window (--size) and then to that size, and compared by FLIP (the package
+flip-evaluator).
 
 By default the pictures are those for which the clock leaves time, so the machine must have no other
 work. --steps N shows N pictures of one size (--frame) at fixed instants instead; then FLIP can be
@@ -181,11 +183,11 @@ class World:
     def __init__(self, options, file):
         self.options, self.file, self.name = options, file, file.name.split(".")[0]
 
-    def bench(self, *arguments):
-        """Runs bench_live with the options that all modes share."""
+    def bench(self, size, *arguments):
+        """Runs bench_live with the options that all modes share, for a window of some size."""
         o = self.options
         done = subprocess.run([
-            o.bench, *arguments, f"--size={o.size[0]}x{o.size[1]}", f"--fps={o.fps}",
+            o.bench, *arguments, f"--size={size[0]}x{size[1]}", f"--fps={o.fps}",
             f"--threads={o.threads}", self.file
         ],
                               capture_output=True,
@@ -200,12 +202,15 @@ class World:
         folder = self.options.out / self.name / f"{turn}-{kind}"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        how = [f"--show={folder}", f"--speed={TURNS[turn]}", f"--seconds={self.options.seconds}"]
+        how = [
+            f"--show={folder}", f"--speed={TURNS[turn]}", f"--seconds={self.options.seconds}",
+            f"--denoiser={self.options.denoiser}"
+        ]
         if kind == "raw":
             how.append("--raw")
         if self.options.steps:
-            how += [f"--steps={self.options.steps}", f"--frame={self.options.frame}x1"]
-        self.bench(*how)
+            how += [f"--steps={self.options.steps}", f"--frame={self.options.frame}"]
+        self.bench(self.options.size, *how)
         run = Run(folder, self.options.pairs)
         run.remove_rest()
         return run
@@ -214,7 +219,7 @@ class World:
         """Returns the converged pictures of some instants; renders those that are not kept."""
         o = self.options
         key = [
-            self.file.read_bytes().hex(), o.size, o.fps, TURNS[turn], o.reference_spp,
+            self.file.read_bytes().hex(), o.compare, o.fps, TURNS[turn], o.reference_spp,
             o.reference_error, seed
         ]
         digest = hashlib.sha256(json.dumps(key).encode()).hexdigest()[:12]
@@ -224,10 +229,10 @@ class World:
         missing = [k for k, file in files.items() if not file.exists()]
         if missing:
             print(f"  {turn}: {len(missing)} converged pictures", flush=True)
-            self.bench(f"--converge={folder}", f"--speed={TURNS[turn]}",
+            self.bench(o.compare, f"--converge={folder}", f"--speed={TURNS[turn]}",
                        f"--at={','.join(map(str, missing))}", f"--spp={o.reference_spp}",
                        f"--error={o.reference_error}", f"--seed={seed}")
-        return {k: self.picture(file) for k, file in files.items()}
+        return {k: Image.open(file).convert("RGB") for k, file in files.items()}
 
     def measure(self, turn):
         """Returns the row of a turn, and pictures of it: raw, rebuilt, converged."""
@@ -305,7 +310,7 @@ def note(rows, options):
            if o.steps else f"{o.seconds:g} s on the clock, load average {o.load:.1f} before it")
     text = (f"Window {o.size[0]}x{o.size[1]}, compared at {o.compare[0]}x{o.compare[1]}; {how}; "
             f"converged pictures of at most {o.reference_spp} samples or an error of "
-            f"{100 * o.reference_error:g} %; {o.pairs} pairs of neighbours a turn.\n")
+            f"{100 * o.reference_error:g} %; neighbours compared a turn: {o.pairs}.\n")
     if not all(row["previews"] for row in rows):
         text += ("\nThis build of bench_live did not rebuild all of the pictures that should have "
                  "been: the column \"rebuilt\" is not what it says.\n")
@@ -353,11 +358,12 @@ def read_options():
     add("--seconds", type=float, default=6)
     add("--steps", type=int, default=0)
     add("--frame", default="400x300")
-    add("--pairs", type=int, default=3)
+    add("--pairs", type=int, default=1)
     add("--size", type=size, default=(800, 600))
     add("--compare", type=size, default=(400, 300))
     add("--fps", type=float, default=30)
     add("--threads", type=int, default=0)
+    add("--denoiser", choices=["own", "oidn", "auto"], default="own")
     add("--reference-spp", type=int, default=128)
     add("--reference-error", type=float, default=0.03)
     add("--strip", type=pathlib.Path)

@@ -13,9 +13,10 @@
 // For live_flip.py it shows a scripted turn and keeps the pictures, and renders the true pictures
 // of some of its instants (live_show.h):
 //
-//   bench_live --show=DIR [--raw] [--speed=RADIANS] [--steps=N [--frame=WxHxS] [--still=S]] ...
-//   WORLD bench_live --converge=DIR --at=N,N,... [--speed=RADIANS] [--spp=N] [--error=E] [--seed=N]
-//   ... WORLD
+//   bench_live --show=DIR [--raw] [--denoiser=own|oidn|auto] [--speed=RADIANS] [--steps=N]
+//              [--frame=WxH[xS[xK]]] [--still=S] ... WORLD
+//   bench_live --converge=DIR --at=N,N,... [--speed=RADIANS] [--spp=N] [--error=E] [--seed=N] ...
+//              WORLD
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -33,6 +34,7 @@
 #include "libpicture/cluster.h"
 #include "libpicture/live.h"
 #include "libpicture/live/pacing.h"
+#include "libpicture/live/reconstruction.h"
 #include "live_show.h"
 
 using namespace picture;
@@ -56,6 +58,11 @@ bool readShow(const std::string& a, Options& o) {
   if (a.starts_with("--show=")) return o.show.folder = a.substr(7), true;
   if (a.starts_with("--converge=")) return o.converge.folder = a.substr(11), true;
   if (a == "--raw") return o.show.raw = true;
+  if (a == "--denoiser=own") return true;
+  if (a == "--denoiser=oidn" || a == "--denoiser=auto") {
+    o.show.denoiser = a.ends_with("oidn") ? Denoiser::oidn : Denoiser::automatic;
+    return true;
+  }
   if (a.starts_with("--at=")) {
     std::istringstream list(a.substr(5));
     for (std::string one; std::getline(list, one, ',');)
@@ -67,7 +74,8 @@ bool readShow(const std::string& a, Options& o) {
     return true;
   }
   FrameSize& frame = o.show.frame;
-  return std::sscanf(text, "--frame=%dx%dx%d", &frame.width, &frame.height, &frame.samples) >= 2 ||
+  return std::sscanf(text, "--frame=%dx%dx%dx%d", &frame.width, &frame.height, &frame.samples,
+                     &frame.lightStride) >= 2 ||
          std::sscanf(text, "--steps=%d", &o.show.steps) == 1 ||
          std::sscanf(text, "--still=%d", &o.show.stillSamples) == 1 ||
          std::sscanf(text, "--spp=%d", &o.converge.samples) == 1 ||
@@ -346,6 +354,8 @@ std::string faultOf(const Options& o) {
   const FrameSize& frame = o.show.frame;
   if (frame.width < 1 || frame.height < 1 || frame.samples < 1)
     return "--frame: WxHxS above 0 expected";
+  if (frame.lightStride < 1 || frame.lightStride > live::mostLightStride)
+    return fmt::format("--frame: a light stride of 1 to {} expected", live::mostLightStride);
   if (o.width < 1 || o.height < 1) return "--size: WxH above 0 expected";
   if (!(o.fps > 0) || !(o.seconds > 0)) return "--fps, --seconds: numbers above 0 expected";
   if (o.show.steps < 0 || o.show.stillSamples < 1) return "--steps, --still: above 0 expected";

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
 #include "libpicture/live.h"
+#include "libpicture/live/denoise_choice.h"
 #include "live_turn.h"
 
 using namespace picture;
@@ -47,6 +49,7 @@ void writePpm(const std::string& path, const LivePicture& picture) {
 struct Shown {
   int instant = 0;
   double asked = 0, shown = 0; // when its frame was started, and when it could be seen
+  double processor = 0;        // seconds that all threads together worked for it
   LivePicture picture;
 };
 
@@ -79,6 +82,7 @@ class Show {
     settings.width = options.width;
     settings.height = options.height;
     settings.threads = options.threads;
+    settings.denoiser = options.denoiser;
     return settings;
   }
 
@@ -90,6 +94,7 @@ class Show {
     frame.samples = size.samples;
     frame.lightStride = size.lightStride;
     frame.purpose = purpose;
+    frame.denoising = live::denoisingInMotion(options_.fps);
     return frame;
   }
 
@@ -114,9 +119,11 @@ class Show {
     Shown one;
     one.instant = instant;
     one.asked = secondsSince(begin_);
+    const std::clock_t worked = std::clock();
     turn_.advance(instant);
     one.picture = finish(frameAt(instant, moving(), size));
     one.shown = secondsSince(begin_);
+    one.processor = double(std::clock() - worked) / CLOCKS_PER_SEC;
     const LivePicture& p = one.picture;
     light_ = lightOf(p.stats, !options_.raw);
     pacing_.took(size, p.seconds, p.alone, p.overhead, p.samples, p.rebuilding);
@@ -165,7 +172,8 @@ class Show {
   // Sets `picture` to what is shown after stillSeconds.
   Json refine(const LiveFrame& frame, LivePicture& picture) {
     const Clock::time_point stop = Clock::now();
-    if (!options_.raw && (light_ != Pacing::Light::direct || picture.width < options_.width))
+    if (!options_.raw && (rawOf(light_) != Pacing::Light::direct ||
+                          picture.width < options_.width || picture.lightStride > 1))
       settle(stop, picture);
     LivePicture now;
     Json whole;
@@ -190,7 +198,9 @@ class Show {
     const int instant = shown_.back().instant;
     while (secondsSince(stop) < settlingTime) {
       const FrameSize size = pacing_.settle(options_.width, options_.height, 64);
-      LivePicture next = finish(frameAt(instant, moving(), size));
+      LiveFrame frame = frameAt(instant, moving(), size);
+      frame.denoising = live::denoisingAtRest;
+      LivePicture next = finish(frame);
       if (secondsSince(stop) < stillSeconds) picture = std::move(next);
     }
   }
@@ -201,10 +211,14 @@ class Show {
       frames.push_back({{"instant", one.instant},
                         {"asked", one.asked},
                         {"shown", one.shown},
+                        {"processor", one.processor},
                         {"width", one.picture.width},
                         {"height", one.picture.height},
                         {"samples", one.picture.samples},
-                        {"preview", one.picture.preview}});
+                        {"light_stride", one.picture.lightStride},
+                        {"preview", one.picture.preview},
+                        {"rebuilding", one.picture.rebuilding},
+                        {"denoised", one.picture.denoisedBy}});
     return {{"world", options_.world}, {"window", {options_.width, options_.height}},
             {"fps", options_.fps},     {"speed", options_.speed},
             {"raw", options_.raw},     {"steps", options_.steps},

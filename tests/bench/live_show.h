@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libpicture/live/pacing.h"
+#include "libpicture/renderer.h"
 
 struct ShowOptions {
   std::string world, folder;     // folder: for the pictures; it exists
@@ -13,7 +14,8 @@ struct ShowOptions {
   int threads = 0;
   double fps = 30, seconds = 4;
   double speed = 0.15; // of the turn, in radians per second
-  bool raw = false;    // the samples as they are, instead of rebuilt pictures
+  picture::Denoiser denoiser = picture::Denoiser::own;
+  bool raw = false; // the samples as they are, instead of rebuilt pictures
   // Not 0: this many pictures at the instants 0, 1, 2 ... instead of those that the clock leaves
   // time for. Then all of them have the size `frame`, and nothing depends on the clock.
   int steps = 0;

@@ -22,7 +22,7 @@ Current current;
 // accuracy.md; V stands for the lighting of VRML97.
 const std::map<std::string, const char*> ids = {
     {"Watertight.NoRandomRayLeavesAClosedBall", "N3"},
-    {"Watertight.FewRaysAimedAtVerticesLeave", "N4"},
+    {"Watertight.NoRayAimedAtVerticesLeaves", "N4"},
     {"Rays.HostileRaysHitNothingAndAreCounted", "N8"},
     {"Rays.MatricesThatAreNotFiniteAreRefused", "N8"},
     {"Rays.SingularInstancesDrawNothing", "N12"},
@@ -45,6 +45,14 @@ const std::map<std::string, const char*> ids = {
     {"LightTracing.ThePictureDoesNotDependOnThreads", "N22"},
     {"ErrorBars.StoppingDoesNotBiasWhatIsRare", "A4"},
     {"ErrorBars.ATargetIsReachedWithoutBias", "A4"},
+    {"Room.OfTheIntervals95PercentHold", "A4"},
+    {"Cie171.Case52PointLightSource", "CIE 171 5.2"},
+    {"Cie171.Case53AreaLightSource", "CIE 171 5.3"},
+    {"Cie171.Case54LuminousFluxIsConserved", "CIE 171 5.4"},
+    {"Cie171.Case55DirectionalTransmittanceOfClearGlass", "CIE 171 5.5"},
+    {"Cie171.Case56ReflectionByADiffuseSurface", "CIE 171 5.6"},
+    {"Cie171.Case57DiffuseReflectionWithAnObstruction", "CIE 171 5.7"},
+    {"Cie171.Case58InternallyReflectedComponent", "CIE 171 5.8"},
 };
 
 // Returns the id: D1 for "Lobes.D1ASlab...". "Offsets/Watertight.Name/0" is looked up as

@@ -2,11 +2,13 @@
 // glass, how it moves, and that the light of a picture does not depend on it. Frames without light.
 #include <cstring>
 
+#include "drawing.h"
 #include "numeric/support.h"
 
 namespace numeric {
 namespace {
 
+constexpr uint32_t ofFirstSample = RT_DEPTH | RT_POSITION | RT_NAME | RT_MOTION;
 constexpr uint32_t features = RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION;
 
 // What the pixel in the middle says about its surface.
@@ -207,12 +209,7 @@ TEST_F(Guides, ImagesInANewMirrorAreNew) {
 }
 
 TEST_F(Guides, AMirrorBallThatTurnsLeavesItsImagesWhereTheyAre) {
-  rtBindShader(mirror());
-  const RTid ball = rtBeginObject(0);
-  rtSphere(1);
-  rtEndObject();
-  rtBindShader(0);
-  const RTid placed = place(ball);
+  const RTid placed = place(drawing::ball(mirror(), 1));
   placeAt(30, namedSquare(2, painted(), 1000), true);
   see(0, 0);
   moveTo(placed, 0, 0, 0, 0, 30);
@@ -242,64 +239,22 @@ class GuidedPictures : public testing::Test {
     uint32_t channels = RT_RGBA;
     bool progressive = false, jitter = false;
     int stride = 1, seed = 0;
+    int sheets = 0; // that are transparent
   };
   // Returns the channels of the last of some frames, one after the other, and its statistics.
   static std::vector<float> picture(const Look& look, uint32_t wanted, RTstats* stats = nullptr) {
-    const RTcontext context = rtNewContext(("threads=" + std::to_string(look.threads)).c_str());
     std::vector<float> all;
-    if (!context) {
-      ADD_FAILURE() << (rtGetError(), rtGetErrorMessage());
-      return all;
-    }
-    draw(look);
-    for (uint32_t channel = 1; channel <= wanted; channel <<= 1) {
-      if (!(wanted & channel)) continue;
-      const size_t components =
-          channel == RT_RGBA ? 4
-          : channel & (RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR)
-              ? 3
-              : 1;
-      std::vector<float> plane(components * width * height);
-      rtReadPixels(channel, plane.data(), plane.size());
-      all.insert(all.end(), plane.begin(), plane.end());
-    }
-    if (stats) {
+    drawing::drawIn(drawing::contextWith(look.threads), [&] {
+      draw(look);
+      all = drawing::readChannels(wanted, width, height);
+      if (!stats) return;
       stats->size = sizeof *stats;
       rtGetStats(stats);
-    }
-    EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
-    rtDeleteContext(context);
+    });
     return all;
   }
-  static RTid square(RTid shader, float half) {
-    const RTid object = rtBeginObject(0);
-    rtBindShader(shader);
-    rtBegin(RT_QUADS);
-    rtNormal3f(0, 0, 1);
-    for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}})
-      rtVertex3f(c[0], c[1], 0);
-    rtEnd();
-    rtEndObject();
-    rtBindShader(0);
-    return object;
-  }
-  static RTid at(double x, double y, double z, RTid object, double turn = 0) {
-    rtPushMatrix();
-    rtTranslated(x, y, z);
-    rtRotated(turn, 1, 0, 0);
-    const RTid instance = rtInstantiateObject(object);
-    rtPopMatrix();
-    return instance;
-  }
-  static RTid ball(RTid shader, float radius) {
-    rtBindShader(shader);
-    const RTid object = rtBeginObject(0);
-    rtSphere(radius);
-    rtEndObject();
-    rtBindShader(0);
-    return object;
-  }
   static void draw(const Look& look) {
+    using namespace drawing;
     rtLoadIdentity();
     at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.8, .3, .2}), 4), -90);
     at(0, 2.5, 0, square(Shader("Diffuse").set("emission", {9, 9, 8}), .3f), 90);
@@ -307,13 +262,13 @@ class GuidedPictures : public testing::Test {
     at(.6, 0, 0, ball(Shader("Glass").set("abbe", {30}), .6f));
     const RTid moving = at(-.6, -.6, .8, ball(Shader("VRML97").set("transparency", {.7}), .4f));
     at(1.2, -.6, 1, square(Shader("VRML97").set("diffuseColor", {.2, .6, .3}), .4f), -30);
+    for (int i = 0; i < look.sheets; i++) // one behind the other, of which any may count most
+      at(-.3 + .2 * i, .2, 2 - .2 * i,
+         square(Shader("VRML97").set("transparency", {.9 - .2 * i}), .7f), 3 * i);
     Shader lamp("VRML97DirectionalLight");
     lamp.set("direction", {-.3, -1, -.4}).set("intensity", {.5});
     rtUseLight(lamp);
-    rtPushMatrix();
-    rtLookAt(0, .5, 5, 0, 0, 0, 0, 1, 0);
-    rtPerspective(40);
-    rtPopMatrix();
+    lookFrom(0, .5, 5);
     rtFrameBuffer(width, height, look.channels);
     rtQuality(RT_SAMPLES_PER_PIXEL, look.samples);
     rtQuality(RT_TRANSPORT, look.transport);
@@ -359,11 +314,10 @@ TEST_F(GuidedPictures, HaveTheSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST_F(GuidedPictures, OfOneSampleDescribeTheFirstSample) {
-  constexpr uint32_t first = RT_DEPTH | RT_POSITION | RT_NAME | RT_MOTION;
-  const Look one{.samples = 1, .follow = 1, .channels = RT_RGBA | first, .jitter = true};
+  const Look one{.samples = 1, .follow = 1, .channels = RT_RGBA | ofFirstSample, .jitter = true};
   Look many = one;
   many.samples = 8;
-  expectSame(picture(many, first), picture(one, first));
+  expectSame(picture(many, ofFirstSample), picture(one, ofFirstSample));
 }
 
 // Every pixel gets light in one of stride x stride frames of consecutive seeds, as much as
@@ -395,6 +349,75 @@ TEST_F(GuidedPictures, WithSparseLightHaveLightInTurn) {
     }
     for (const int times : lit) EXPECT_TRUE(times == 1 || times == stride * stride) << times;
   }
+}
+
+// Whoever shades surfaces, the light of pixels that get none costs nothing.
+TEST_F(GuidedPictures, WithSparseLightTraceFewShadowRays) {
+  for (const int transport :
+       {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT}) {
+    SCOPED_TRACE(transport);
+    Look look{.transport = transport, .samples = 1, .channels = RT_RGBA | features};
+    RTstats plain{}, dense{}, sparse{};
+    picture(look, RT_RGBA, &plain);
+    look.follow = 1;
+    picture(look, RT_RGBA, &dense);
+    look.stride = 3;
+    picture(look, RT_RGBA, &sparse);
+    EXPECT_EQ(dense.shadowRays, plain.shadowRays);
+    EXPECT_GT(sparse.shadowRays, 0u);
+    EXPECT_LT(sparse.shadowRays, dense.shadowRays / 6);
+  }
+}
+
+// Pixels without light ask the shaders of transparent surfaces in another way than pixels with
+// light, and must find the same.
+TEST_F(GuidedPictures, WithSparseLightAreDescribedAsWithAllLight) {
+  for (const int transport :
+       {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH, RT_TRANSPORT_LIGHT})
+    for (const int follow : {0, 1})
+      for (const int samples : {1, 5}) {
+        SCOPED_TRACE(testing::Message() << transport << ' ' << follow << ' ' << samples);
+        const Look dense{.transport = transport,
+                         .samples = samples,
+                         .follow = follow,
+                         .channels = RT_RGBA | features,
+                         .jitter = true,
+                         .sheets = 4};
+        for (const int stride : {2, 3, 4}) {
+          Look sparse = dense;
+          sparse.stride = stride;
+          expectSame(picture(sparse, ofFirstSample), picture(dense, ofFirstSample));
+        }
+      }
+}
+
+// Normals and albedos are means over the samples of a pixel. A pixel without light has one sample,
+// at a silhouette too, where other samples would see the environment.
+TEST_F(GuidedPictures, WithSparseLightHaveOneSampleInPixelsWithoutLight) {
+  const Look one{.samples = 1, .channels = RT_RGBA | RT_SAMPLES | features, .jitter = true};
+  Look sparse = one;
+  sparse.stride = 3;
+  sparse.samples = 40; // several leaves
+  const std::vector<float> samples = picture(sparse, RT_SAMPLES),
+                           colours = picture(sparse, RT_RGBA), depth = picture(sparse, RT_DEPTH);
+  for (const uint32_t channel : {RT_NORMAL, RT_ALBEDO}) {
+    const std::vector<float> got = picture(sparse, channel), expected = picture(one, channel);
+    int compared = 0;
+    for (size_t i = 0; i < got.size(); i++) {
+      if (samples[i / 3] == sparse.samples) continue;
+      EXPECT_EQ(got[i], expected[i]) << i;
+      EXPECT_EQ(samples[i / 3], std::isinf(depth[i / 3]) ? 1 : 0);
+      if (samples[i / 3] == 0) { EXPECT_EQ(colours[4 * (i / 3) + i % 3], 0); }
+      compared++;
+    }
+    EXPECT_GT(compared, int(got.size()) / 2);
+  }
+}
+
+TEST_F(GuidedPictures, FramesWithoutLightHaveAllSamplesWithAnyStride) {
+  Look dense{.samples = 5, .channels = features, .jitter = true}, sparse = dense;
+  sparse.stride = 3;
+  expectSame(picture(sparse, features), picture(dense, features));
 }
 
 TEST_F(GuidedPictures, WithoutLightFollowNone) {

@@ -48,6 +48,27 @@ TEST_F(StockLights, IntensityBetweenMeasuredAngles) {
   expectGrey(look(4), 0);
 }
 
+TEST_F(StockLights, TheFluxOfALuminaireCanBeGiven) {
+  Shader s = luminaire(even); // 100 cd everywhere up to 120 degrees: 300 pi lumen
+  s.set("location", {0, 0, 2}).set("lumen", {600 * pi});
+  use(s);
+  expectGrey(look(), 200 / 4. / pi, 1e-3);
+}
+
+TEST_F(StockLights, AnEulumdatFileIsALuminaire) {
+  std::string text = "maker\n1\n1\n1\n0\n2\n90\n\nname\n\n\n\n600\n600\n50\n600\n600\n0\n0\n0\n0\n"
+                     "100\n80\n1\n0\n1\n1\nlamp\n2000\n3000\n80\n20\n";
+  for (int i = 0; i < 10; i++) text += ".5\n";
+  text += "0\n0\n90\n100\n0\n"; // gamma 0: 100 cd for 1000 lm
+  Shader s("Luminaire");
+  rtBindShader(s);
+  rtParameterString(rtParameterHandle("profile"), text.c_str());
+  rtBindShader(0);
+  s.set("location", {0, 0, 2});
+  use(s);
+  expectGrey(look(), 200 / 4. / pi);
+}
+
 TEST_F(StockLights, HorizontalAnglesGrowCounterClockwiseFromTheReference) {
   Shader s = luminaire("10 10 10\n20 20 20\n30 30 30\n40 40 40");
   s.set("location", {0, 0, 2}).set("direction", {0, 0, -3}).set("reference", {1, 0, .5});
@@ -65,12 +86,12 @@ TEST_F(StockLights, ATextThatIsNoProfileIsNotRenderedAndSaidSo) {
   rtLogCallback([](int, const char* text, void*) { said += text; }, nullptr);
   Shader s("Luminaire");
   rtBindShader(s);
-  rtParameterString(rtParameterHandle("profile"), "IESNA91\nTILT=INCLUDE\n1 2 3");
+  rtParameterString(rtParameterHandle("profile"), "IESNA91\nTILT=INCLUDE\n9 2 3");
   rtBindShader(0);
   use(s);
   expectGrey(look(), 0);
   EXPECT_NE(said.find("Luminaire"), std::string::npos) << said;
-  EXPECT_NE(said.find("line 2: TILT=INCLUDE"), std::string::npos) << said;
+  EXPECT_NE(said.find("line 3: TILT=INCLUDE"), std::string::npos) << said;
   rtBindShader(s); // with another value the light is there again
   rtParameterString(rtParameterHandle("profile"),
                     "IESNA91\nTILT=NONE\n1 1 1 1 1 1 1 0 0 0 1 1 1 0 0 3.14159265");

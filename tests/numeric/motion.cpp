@@ -4,6 +4,7 @@
 #include <functional>
 #include <random>
 
+#include "drawing.h"
 #include "numeric/support.h"
 
 namespace numeric {
@@ -52,17 +53,15 @@ class Motion : public Scene {
     rtOrtho(wide);
     rtPopMatrix();
   }
-  static std::vector<float> read(RTenum channel, size_t components) {
-    std::vector<float> plane(components * edge * edge);
-    rtReadPixels(channel, plane.data(), plane.size());
-    return plane;
+  static std::vector<float> read(RTenum channel) {
+    return drawing::readChannel(channel, edge, edge);
   }
   // Renders a frame and returns what its pixels hit. Where nothing is hit, the motion must be 0.
   static std::vector<Hit> frame() {
     rtFrameBuffer(edge, edge, channels);
     rtRender();
-    const auto depth = read(RT_DEPTH, 1), name = read(RT_NAME, 1), p = read(RT_POSITION, 3),
-               m = read(RT_MOTION, 3);
+    const auto depth = read(RT_DEPTH), name = read(RT_NAME), p = read(RT_POSITION),
+               m = read(RT_MOTION);
     std::vector<Hit> hits;
     for (size_t i = 0; i < depth.size(); i++) {
       const Vec motion{m[3 * i], m[3 * i + 1], m[3 * i + 2]};
@@ -108,25 +107,14 @@ class Motion : public Scene {
     rtLoadName(0);
     return instance;
   }
-  // Defines a net of triangles in the plane z = 0.
+  // Defines a net of triangles.
   static RTid net(const std::function<Vec(double x, double y)>& place, RTid object = 0,
                   int cells = 3) {
-    std::vector<float> points;
-    std::vector<uint32_t> corners;
-    for (int y = 0; y <= cells; y++)
-      for (int x = 0; x <= cells; x++) {
-        const Vec p = place(2.0 * x / cells - 1, 2.0 * y / cells - 1);
-        points.insert(points.end(), {float(p.x), float(p.y), float(p.z)});
-        const auto i = uint32_t(y * (cells + 1) + x), above = i + uint32_t(cells) + 1;
-        if (x < cells && y < cells)
-          corners.insert(corners.end(), {i, i + 1, above, above, i + 1, above + 1});
-      }
-    const RTid defined = rtBeginObject(object);
-    rtVertexPointer(3, RT_FLOAT, 0, points.data());
-    rtDrawElements(RT_TRIANGLES, corners.size(), corners.data(), points.size() / 3);
-    rtVertexPointer(3, RT_FLOAT, 0, nullptr);
-    rtEndObject();
-    return defined;
+    const auto point = [&](double x, double y) {
+      const Vec p = place(x, y);
+      return drawing::Point{p.x, p.y, p.z};
+    };
+    return drawing::net(point, object, cells);
   }
 };
 
@@ -220,21 +208,13 @@ TEST_F(Motion, OfVertices) {
 
 TEST_F(Motion, OfSpheres) {
   const Shader shader("Diffuse");
-  const auto ball = [&](RTid object, float radius) {
-    const RTid defined = rtBeginObject(object);
-    rtBindShader(shader);
-    rtSphere(radius);
-    rtEndObject();
-    rtBindShader(0);
-    return defined;
-  };
-  const RTid object = ball(0, 1), instance = place(object);
+  const RTid object = drawing::ball(shader, 1), instance = place(object);
   lookAt(0, 0);
   frame();
   const Placement now{.angle = .5, .x = .25};
   move(instance, now);
   expectFrom(frame(), [&](const Hit& hit) { return now.undo(hit.position); });
-  ball(object, 1.25f);
+  drawing::ball(shader, 1.25f, object);
   expectFrom(frame(), [&](const Hit& hit) {
     const Vec p = now.undo(hit.position);
     return now.apply({p.x / 1.25, p.y / 1.25, p.z / 1.25});

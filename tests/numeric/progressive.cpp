@@ -3,22 +3,15 @@
 // pilots, replicates and paths from lamps.
 #include <algorithm>
 #include <map>
-#include <string>
 
+#include "drawing.h"
 #include "numeric/support.h"
 
 namespace numeric {
 namespace {
 
-constexpr uint32_t everyChannel = (RT_MOTION << 1) - 1;
+using namespace drawing;
 using Channels = std::map<uint32_t, std::vector<float>>;
-
-size_t componentsOf(uint32_t channel) {
-  if (channel == RT_RGBA) return 4;
-  constexpr uint32_t vectors =
-      RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR;
-  return channel & vectors ? 3 : 1;
-}
 
 struct Settings {
   int samples = 16, transport = RT_TRANSPORT_PATH, width = 50, height = 40;
@@ -31,7 +24,7 @@ class Progressive : public testing::Test {
  protected:
   void open(int threads) {
     if (context_) rtDeleteContext(context_);
-    context_ = rtNewContext(("threads=" + std::to_string(threads)).c_str());
+    context_ = contextWith(threads);
     ASSERT_NE(context_, nullptr) << (rtGetError(), rtGetErrorMessage());
     scene();
   }
@@ -40,48 +33,11 @@ class Progressive : public testing::Test {
     rtDeleteContext(context_);
   }
 
-  static RTid square(RTid shader, float half) {
-    const RTid object = rtBeginObject(0);
-    rtBindShader(shader);
-    rtBegin(RT_QUADS);
-    rtNormal3f(0, 0, 1);
-    for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}})
-      rtVertex3f(c[0], c[1], 0);
-    rtEnd();
-    rtEndObject();
-    rtBindShader(0);
-    return object;
-  }
-  static void at(double x, double y, double z, RTid object, double turn = 0) {
-    rtPushMatrix();
-    rtTranslated(x, y, z);
-    rtRotated(turn, 1, 0, 0);
-    rtInstantiateObject(object);
-    rtPopMatrix();
-  }
-
-  // A floor of two coincident faces, a lamp, a mirror and a glass ball, so that paths split,
-  // continue and hit ties.
   static void scene() {
-    rtLoadIdentity();
-    at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.8, .3, .2}), 4), -90);
-    at(0, -1, 0, square(Shader("Diffuse").set("reflectance", {.2, .3, .8}), 4), -90);
-    at(0, 2.5, 0, square(Shader("Diffuse").set("emission", {9, 9, 8}), .3f), 90);
-    at(-1, 0, -1, square(Shader("Mirror").set("reflectance", {.9, .9, .9}), .8f), 10);
-    const Shader glass("Glass");
-    const RTid ball = rtBeginObject(0);
-    rtBindShader(glass);
-    rtSphere(.6f);
-    rtEndObject();
-    rtBindShader(0);
-    at(.6, 0, 0, ball);
+    drawRoom();
     Shader lamp("VRML97DirectionalLight");
     lamp.set("direction", {-.3, -1, -.4}).set("intensity", {.5});
     rtUseLight(lamp);
-    rtPushMatrix();
-    rtLookAt(0, .5, 5, 0, 0, 0, 0, 1, 0);
-    rtPerspective(40);
-    rtPopMatrix();
   }
 
   static void set(const Settings& s, bool progressive) {
@@ -95,12 +51,8 @@ class Progressive : public testing::Test {
   }
   static Channels read(const Settings& s) {
     Channels out;
-    for (uint32_t channel = 1; channel <= s.channels; channel <<= 1) {
-      if (!(s.channels & channel)) continue;
-      std::vector<float>& plane = out[channel];
-      plane.resize(size_t(s.width) * size_t(s.height) * componentsOf(channel));
-      rtReadPixels(channel, plane.data(), plane.size());
-    }
+    for (uint32_t channel = 1; channel <= s.channels; channel <<= 1)
+      if (s.channels & channel) out[channel] = readChannel(channel, s.width, s.height);
     return out;
   }
   static Channels render(const Settings& s, bool progressive) {

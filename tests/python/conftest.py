@@ -15,6 +15,9 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # test would inherit that.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Previews are filtered in the same way on every machine, unless a test asks for the library.
+os.environ["OPENRT_OIDN_LIBRARY"] = "none"
+
 BOX = """#VRML V2.0 utf8
 Viewpoint { position 0 0 5 description "front" }
 DEF Back Viewpoint { position 0 0 -5 orientation 0 1 0 3.14159265 description "from behind" }

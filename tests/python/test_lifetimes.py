@@ -335,3 +335,49 @@ def test_threads_with_small_stacks_read_and_write_deep_worlds(tmp_path):
     """, tmp_path / "deep.wrl", tmp_path / "bad.wrl")
     assert done.returncode == 0 and done.stdout == "[990, (3, 4, 4), 'refused']\n", (
         done.returncode, done.stdout, done.stderr[-500:])
+
+
+# The first arrays of two threads -----------------------------------------------------------------
+
+
+def test_two_threads_may_make_the_first_arrays():
+    """Two threads that both need numpy first must not wait for each other for ever."""
+    result = python("""
+        import sys, threading
+        sys.setswitchinterval(1e-6)
+        import xvrml
+        WORLD = b"#VRML V2.0 utf8\\nShape { geometry PointSet { coord DEF Points Coordinate { point [0 0 0, 1 0 0, 0 1 0] } } }"
+        worlds = [xvrml.load(WORLD) for _ in range(4)]
+        seen = []
+        start = threading.Barrier(len(worlds))
+        def work(world):
+            start.wait()
+            world["Points"].point = [(0, 0, 0), (1, 0, 0), (0, 2, 0)]
+            seen.append(world["Points"].point[2, 1])
+        threads = [threading.Thread(target=work, args=(world,)) for world in worlds]
+        for thread in threads: thread.start()
+        for thread in threads: thread.join()
+        print(*seen)
+    """)
+    assert (result.returncode, result.stdout.split()) == (0, 4 * ["2.0"]), result.stderr
+
+
+def test_two_threads_may_import_at_once():
+    """All modules, by threads that import and use them in another order."""
+    result = python("""
+        import importlib, sys, threading
+        sys.setswitchinterval(1e-6)
+        modules = ["xvrml", "xvrml.rt", "xvrml.interop", "xvrml.control", "numpy"]
+        seen = []
+        start = threading.Barrier(2)
+        def work(names):
+            start.wait()
+            for name in names: importlib.import_module(name)
+            import xvrml.rt
+            seen.append(len(xvrml.Coordinate(point=[(0, 0, 0)]).point))
+        threads = [threading.Thread(target=work, args=(names,)) for names in (modules, modules[::-1])]
+        for thread in threads: thread.start()
+        for thread in threads: thread.join()
+        print(*seen)
+    """)
+    assert (result.returncode, result.stdout.split()) == (0, ["1", "1"]), result.stderr

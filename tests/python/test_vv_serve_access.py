@@ -2,6 +2,7 @@
 messages, too many pages, pages of other sites, wrong tokens."""
 import re
 import socket
+import time
 
 import pytest
 
@@ -75,6 +76,30 @@ def test_no_request_holds_a_connection(serve):
         except ConnectionResetError:
             pass
     assert server.get("/").status == 200
+
+
+def test_silent_connections_keep_nobody_out(serve):
+    server = serve(SENSORS, "--spp", 1)
+    page = server.join(*SIZE)
+    page.still()
+    silent = [
+        socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE) for _ in range(200)
+    ]
+    for i, one in enumerate(silent):
+        try:
+            one.sendall(b"GET / HTTP/1.1\r\n" if i % 2 else b"")  # half a request is none
+        except OSError:
+            pass  # it has been closed
+    begin = time.monotonic()
+    assert server.get("/").status == 200
+    other = server.join(*SIZE)
+    other.still()
+    assert time.monotonic() - begin < 5  # libwebsockets would let them wait for 20 s
+    count = len(page.pictures)  # a page that is there is not touched
+    page.drag(0, -0.9, 0.3, -0.9)
+    page.until(lambda p: len(page.pictures) > count)
+    for one in silent:
+        one.close()
 
 
 def test_foreign_pages_cannot_steer(serve):

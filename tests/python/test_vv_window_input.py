@@ -71,6 +71,23 @@ def test_what_was_recorded_can_be_played(window, vv):
     assert shot.share(blue) > 0.01 and shot.share(red) == 0
 
 
+def test_a_recording_with_keys_of_several_words_can_be_played(window, vv):
+    w = window(SENSORS, "--record-input", "in.txt")
+    w.key("shift+s")
+    w.said("saved as world-1.exr")
+    assert w.end() == 0
+    assert '"Left Shift"' in (vv.folder / "in.txt").read_text()
+    done = vv("world.wrl", "--input", "in.txt", "-o", "p.png", "--size", "16x12", "--spp", 1)
+    assert done.returncode == 0, done.talk
+
+
+@pytest.mark.parametrize("event", ['key "Left', 'down ""', 'down'])
+def test_keys_without_a_name_are_refused(vv, event):
+    vv.write("in.txt", f"0.5 {event}\n")
+    done = vv("box.wrl", "--input", "in.txt", "-o", "p.png")
+    assert done.returncode == 3 and "in.txt:1: a key was expected" in done.talk
+
+
 def test_what_cannot_be_recorded_is_told(window):
     w = window(SENSORS, "--record-input", "/dev/full")
     w.click(-0.35, 0)

@@ -1,5 +1,6 @@
 """Tests what vv's window does while something moves: it saves the true picture of an instant, shows
 previews or raw samples, and loses no picture that waits for its samples."""
+import pathlib
 import re
 import time
 
@@ -143,3 +144,22 @@ def test_a_key_shows_the_raw_samples(window, screen):
     w.key("n")
     w.wait(lambda: noise() < 1.5 * rebuilt + 2, "rebuilt pictures")
     assert w.end() == 0
+
+
+def test_a_finished_picture_lets_the_processor_sleep(window):
+    """The window wakes up for its clock, 5 times a second here, and not to ask for input."""
+    w = window(coloured("1 0 0"), "--fps", 5)
+    w.still()
+
+    def wakes():
+        text = pathlib.Path(f"/proc/{w.program.pid}/status").read_text()
+        return int(re.search(r"\nvoluntary_ctxt_switches:\s+(\d+)", text)[1])
+
+    def sleeps():
+        before, begin = wakes(), time.monotonic()
+        time.sleep(1)
+        return wakes() - before < 60 * (time.monotonic() - begin)
+
+    w.wait(sleeps, "a window that sleeps")
+    w.key("h")  # and wakes up for input
+    w.until(lambda s: s.at(0, 0) == (0, 0, 0))

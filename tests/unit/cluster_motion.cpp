@@ -8,10 +8,10 @@ namespace {
 
 using namespace openrt::test;
 
-class ClusterMotion : public testing::Test {
+class ClusterMotion : public testing::TestWithParam<std::vector<int>> { // views of the frames
  protected:
   void SetUp() override {
-    commits_ = movingCommits(true);
+    commits_ = movingCommits(true, GetParam());
     FramePlayer player;
     for (const auto& commit : commits_) expected_.push_back(player.render(commit));
   }
@@ -30,7 +30,7 @@ class ClusterMotion : public testing::Test {
   std::vector<std::vector<float>> expected_;
 };
 
-TEST_F(ClusterMotion, IsThatOfAWorkerThatWasThereFromTheBeginning) {
+TEST_P(ClusterMotion, IsThatOfAWorkerThatWasThereFromTheBeginning) {
   FramePlayer shaders;
   for (const bool trimmed : {false, true}) {
     SceneLog log(&shaders.shaders());
@@ -45,7 +45,7 @@ TEST_F(ClusterMotion, IsThatOfAWorkerThatWasThereFromTheBeginning) {
   }
 }
 
-TEST_F(ClusterMotion, IsTheSameWhileFramesOverlap) {
+TEST_P(ClusterMotion, IsTheSameWhileFramesOverlap) {
   FramePlayer shaders;
   SceneLog log(&shaders.shaders());
   for (Epoch frame = 1; frame <= commits_.size(); frame++) log.add(frame, commits_[frame - 1]);
@@ -59,7 +59,7 @@ TEST_F(ClusterMotion, IsTheSameWhileFramesOverlap) {
   }
 }
 
-TEST_F(ClusterMotion, IsTheSameForAWorkerThatSkipsFrames) {
+TEST_P(ClusterMotion, IsTheSameForAWorkerThatSkipsFrames) {
   FramePlayer shaders;
   SceneLog log(&shaders.shaders());
   FramePlayer worker;
@@ -73,6 +73,10 @@ TEST_F(ClusterMotion, IsTheSameForAWorkerThatSkipsFrames) {
     EXPECT_TRUE(shows(worker, frame)) << frame;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Views, ClusterMotion,
+                         testing::Values(std::vector<int>{}, std::vector<int>{0, 1, 0, 1, 0, 1, 0},
+                                         std::vector<int>{0, 3, 3, 0, 7, 3, 7}));
 
 } // namespace
 } // namespace openrt::cluster

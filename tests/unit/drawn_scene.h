@@ -2,7 +2,6 @@
 // prepared for rendering. For tests of the code behind the API.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -11,11 +10,12 @@
 
 #include "api/context.h"
 #include "backend/local/local.h"
-#include "openrt/openrt.h"
+#include "drawing.h"
 #include "shading/registry.h"
 
 namespace openrt::test {
 
+using namespace drawing;
 using Commits = std::vector<std::shared_ptr<const Commit>>;
 
 class KeepingBackend final : public Backend {
@@ -41,11 +41,9 @@ class KeepingBackend final : public Backend {
 // Returns what `draw` commits: one commit for each rtRender() in it.
 inline Commits drawn(const std::function<void()>& draw) {
   auto commits = std::make_shared<Commits>();
-  const RTcontext context = adoptContext(
-      std::make_shared<Context>(ContextConfig{}, std::make_unique<KeepingBackend>(commits)));
-  draw();
-  EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR)) << rtGetErrorMessage();
-  rtDeleteContext(context);
+  drawIn(adoptContext(
+             std::make_shared<Context>(ContextConfig{}, std::make_unique<KeepingBackend>(commits))),
+         draw);
   return *commits;
 }
 
@@ -56,7 +54,6 @@ struct Settings {
   int replicates = 0;
   bool progressive = false;
 };
-inline constexpr uint32_t everyChannel = (RT_MOTION << 1) - 1;
 
 inline void set(const Settings& s) {
   rtFrameBuffer(s.width, s.height, s.channels);
@@ -68,60 +65,6 @@ inline void set(const Settings& s) {
   rtQualityf(RT_TIME_LIMIT, s.timeLimit);
   rtQuality(RT_PROGRESSIVE, s.progressive);
   rtQuality(RT_MAX_DEPTH, 6);
-}
-
-inline RTid colored(const char* shaderClass, const char* parameter, std::array<float, 3> color) {
-  const RTid shader = rtNewShader(rtNewShaderClass(shaderClass, nullptr));
-  rtBindShader(shader);
-  if (parameter) rtParameter3f(rtParameterHandle(parameter), color[0], color[1], color[2]);
-  rtBindShader(0);
-  return shader;
-}
-
-inline RTid square(RTid shader, float half) {
-  const RTid object = rtBeginObject(0);
-  rtBindShader(shader);
-  rtBegin(RT_QUADS);
-  rtNormal3f(0, 0, 1);
-  for (const auto& c : {std::array{-half, -half}, {half, -half}, {half, half}, {-half, half}})
-    rtVertex3f(c[0], c[1], 0);
-  rtEnd();
-  rtEndObject();
-  rtBindShader(0);
-  return object;
-}
-
-inline void at(double x, double y, double z, RTid object, double turn = 0) {
-  rtPushMatrix();
-  rtTranslated(x, y, z);
-  rtRotated(turn, 1, 0, 0);
-  rtInstantiateObject(object);
-  rtPopMatrix();
-}
-
-inline void lookFrom(double x, double y, double z) {
-  rtPushMatrix();
-  rtLookAt(x, y, z, 0, 0, 0, 0, 1, 0);
-  rtPerspective(40);
-  rtPopMatrix();
-}
-
-// Draws a floor of two coincident faces, a lamp, a mirror and a glass ball, so that paths split,
-// continue and hit ties.
-inline void drawRoom() {
-  rtLoadIdentity();
-  at(0, -1, 0, square(colored("Diffuse", "reflectance", {.8f, .3f, .2f}), 4), -90);
-  at(0, -1, 0, square(colored("Diffuse", "reflectance", {.2f, .3f, .8f}), 4), -90);
-  at(0, 2.5, 0, square(colored("Diffuse", "emission", {9, 9, 8}), .3f), 90);
-  at(-1, 0, -1, square(colored("Mirror", "reflectance", {.9f, .9f, .9f}), .8f), 10);
-  const RTid glass = colored("Glass", nullptr, {});
-  const RTid ball = rtBeginObject(0);
-  rtBindShader(glass);
-  rtSphere(.6f);
-  rtEndObject();
-  rtBindShader(0);
-  at(.6, 0, 0, ball);
-  lookFrom(0, .5, 5);
 }
 
 // The room, prepared on a backend of its own.

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstring>
+#include <functional>
+#include <vector>
 
 #include "scene/channels.h"
 #include "unit/drawn_scene.h"
@@ -13,24 +15,13 @@ namespace openrt::test {
 inline constexpr int movingFrames = 7;
 
 // Draws the frames. In each one something else has changed since the one before.
-inline void drawMovingFrames() {
-  const auto net = [](RTid object, float bulge, int cells) {
-    std::vector<float> points;
-    std::vector<uint32_t> corners;
-    for (int y = 0; y <= cells; y++)
-      for (int x = 0; x <= cells; x++) {
-        const float u = 2 * float(x) / float(cells) - 1, v = 2 * float(y) / float(cells) - 1;
-        points.insert(points.end(), {.5f * u, .5f * v, bulge * u * v});
-        const auto i = uint32_t(y * (cells + 1) + x), above = i + uint32_t(cells) + 1;
-        if (x < cells && y < cells)
-          corners.insert(corners.end(), {i, i + 1, above, above, i + 1, above + 1});
-      }
-    const RTid defined = rtBeginObject(object);
-    rtVertexPointer(3, RT_FLOAT, 0, points.data());
-    rtDrawElements(RT_TRIANGLES, corners.size(), corners.data(), points.size() / 3);
-    rtVertexPointer(3, RT_FLOAT, 0, nullptr);
-    rtEndObject();
-    return defined;
+inline void drawMovingFrames(const std::function<void()>& render = rtRender) {
+  const auto cloth = [](RTid object, double bulge, int cells) {
+    return net(
+        [=](double u, double v) {
+          return Point{.5 * u, .5 * v, bulge * u * v};
+        },
+        object, cells);
   };
   const auto move = [](RTid instance, double x, double y, double turn) {
     rtPushMatrix();
@@ -43,53 +34,55 @@ inline void drawMovingFrames() {
     rtInstanceMatrix(instance, m);
   };
   rtLoadIdentity();
-  const RTid cloth = net(0, 0, 4), mirror = colored("Mirror", nullptr, {});
-  rtBindShader(colored("Diffuse", "reflectance", {.7f, .5f, .3f}));
-  const RTid ball = rtBeginObject(0);
-  rtSphere(.3f);
-  rtEndObject();
-  rtBindShader(0);
+  const RTid sheet = cloth(0, 0, 4), mirror = colored("Mirror", nullptr, {}),
+             round = ball(colored("Diffuse", "reflectance", {.7f, .5f, .3f}), .3f);
   const auto group = [&](RTid object, double up) {
     const RTid defined = rtBeginObject(object);
-    at(-.5, up, 0, ball);
-    at(.5, 0, up, cloth);
+    at(-.5, up, 0, round);
+    at(.5, 0, up, sheet);
     rtEndObject();
     return defined;
   };
   const RTid pair = group(0, 0);
   at(0, -1, 0, square(mirror, 3), -90);
   at(0, 0, -2, pair);
-  const RTid moving = rtInstantiateObject(pair), still = rtInstantiateObject(cloth);
+  const RTid moving = rtInstantiateObject(pair), still = rtInstantiateObject(sheet);
   move(still, 1.5, .5, 30);
   lookFrom(0, 1, 6);
-  rtRender();
+  render();
   move(moving, .2, .3, 20);
-  rtRender();
-  net(cloth, .2f, 4); // other vertices
+  render();
+  cloth(sheet, .2, 4); // other vertices
   move(moving, .1, .3, 10);
-  rtRender();
+  render();
   group(pair, .2); // other instances of the same objects
-  rtRender();
-  const RTid fresh = rtInstantiateObject(ball);
-  net(cloth, .3f, 5); // other triangles
-  rtRender();
+  render();
+  const RTid fresh = rtInstantiateObject(round);
+  cloth(sheet, .3, 5); // other triangles
+  render();
   rtDeleteInstance(fresh);
   rtInstanceVisible(still, 0);
   move(moving, 0, 0, 0);
-  rtRender();
-  rtRender(); // nothing has changed
+  render();
+  render(); // nothing has changed
 }
 
-// followImages: RT_FOLLOW_IMAGES.
-inline Commits movingCommits(bool followImages) {
-  Commits commits = drawn([followImages] {
+// followImages: RT_FOLLOW_IMAGES. views: RT_VIEW of each frame; those that are missing have view 0.
+inline Commits movingCommits(bool followImages, const std::vector<int>& views = {}) {
+  Commits commits = drawn([&] {
     set({.samples = 2,
          .width = 30,
          .height = 22,
          .channels =
              RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION});
     rtQuality(RT_FOLLOW_IMAGES, followImages);
-    drawMovingFrames();
+    size_t frame = 0;
+    drawMovingFrames([&] {
+      const int view = frame < views.size() ? views[frame] : 0;
+      frame++;
+      rtQuality(RT_VIEW, view);
+      rtRender();
+    });
   });
   EXPECT_EQ(commits.size(), size_t(movingFrames));
   return commits;

@@ -37,6 +37,8 @@ const float identityF[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const float notFiniteF[16] = {1, 0, 0, 0, 0, NAN, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const float three[4] = {1, 2, 3, 4}, badThree[4] = {1, nan, 3, 4};
 const double threeD[3] = {1, 2, 3}, badThreeD[3] = {1, HUGE_VAL, 3};
+const double ball[10] = {1, 1, 1, 0, 0, 0, 0, 0, 0, -1}, badBall[10] = {1, NAN},
+             below[3] = {-1, -1, -1}, above[3] = {1, 1, 1};
 const uint32_t indices[3] = {0, 1, 2};
 
 using Call = std::function<void(World&)>;
@@ -88,6 +90,10 @@ const Named needContext[] = {
     CALL(rtDisable, RT_CULL_FACE),
     CALL(rtLoadName, 1),
     CALL(rtSphere, 1),
+    CALL(rtQuadric, ball, below, above),
+    CALL(rtCylinder, 1, -1, 1),
+    CALL(rtCone, 1, 0, -1, 1),
+    CALL(rtAsphere, .1, 0, 0, nullptr, 0, 1),
     CALL(rtVertexPointer, 3, RT_FLOAT, 0, three),
     CALL(rtNormalPointer, RT_FLOAT, 0, three),
     CALL(rtTexCoordPointer, 2, RT_FLOAT, 0, three),
@@ -235,6 +241,21 @@ const Wrong wrong[] = {
     WRONG(ENUM, Outside, rtDisable, 1), WRONG(OPERATION, Outside, rtSphere, 1),
     WRONG(OPERATION, List, rtSphere, 1), WRONG(VALUE, Definition, rtSphere, 0),
     WRONG(VALUE, Definition, rtSphere, nan),
+    WRONG(OPERATION, Outside, rtQuadric, ball, below, above),
+    WRONG(OPERATION, List, rtQuadric, ball, below, above),
+    WRONG(VALUE, Definition, rtQuadric, nullptr, below, above),
+    WRONG(VALUE, Definition, rtQuadric, badBall, below, above),
+    WRONG(VALUE, Definition, rtQuadric, ball, above, below),
+    WRONG(OPERATION, Outside, rtCylinder, 1, -1, 1), WRONG(OPERATION, List, rtCylinder, 1, -1, 1),
+    WRONG(VALUE, Definition, rtCylinder, 0, -1, 1), WRONG(VALUE, Definition, rtCylinder, 1, 1, 1),
+    WRONG(OPERATION, Outside, rtCone, 1, 0, -1, 1), WRONG(OPERATION, List, rtCone, 1, 0, -1, 1),
+    WRONG(VALUE, Definition, rtCone, 0, 0, -1, 1), WRONG(VALUE, Definition, rtCone, -1, 1, -1, 1),
+    WRONG(OPERATION, Outside, rtAsphere, .1, 0, 0, nullptr, 0, 1),
+    WRONG(OPERATION, List, rtAsphere, .1, 0, 0, nullptr, 0, 1),
+    WRONG(VALUE, Definition, rtAsphere, nan, 0, 0, nullptr, 0, 1),
+    WRONG(VALUE, Definition, rtAsphere, .1, 0, 1, nullptr, 0, 1),
+    WRONG(VALUE, Definition, rtAsphere, .1, 0, 9, below, 0, 1),
+    WRONG(VALUE, Definition, rtAsphere, 2, 0, 0, nullptr, 0, 1), // beyond the edge
     // Arrays.
     WRONG(VALUE, Outside, rtVertexPointer, 2, RT_FLOAT, 0, three),
     WRONG(ENUM, Outside, rtVertexPointer, 3, RT_UNSIGNED_BYTE, 0, three),

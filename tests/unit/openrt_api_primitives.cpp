@@ -347,6 +347,34 @@ TEST_F(Primitives, Spheres) {
   EXPECT_EQ(g.points + g.indices, 0u);
 }
 
+TEST_F(Primitives, AnalyticSurfaces) {
+  rtBeginObject(0);
+  const double sphere[10] = {1, 1, 1, 0, 0, 0, 0, 0, 0, -1}, low[3] = {-1, -1, -1},
+               high[3] = {1, 1, 1}, terms[9] = {1e-3};
+  EXPECT_FAILS(RT_INVALID_VALUE, rtQuadric(nullptr, low, high));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtQuadric(sphere, high, low));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtCylinder(0, 0, 1));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtCylinder(-1, 0, 1));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtCylinder(1, 1, 1));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtCone(1, double(infinity), 0, 1));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtAsphere(1, 0, 0, nullptr, 0, 2)); // beyond the sphere
+  EXPECT_FAILS(RT_INVALID_VALUE, rtAsphere(1, 0, 1, nullptr, 0, .5));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtAsphere(1, 0, 9, terms, 0, .5));
+  EXPECT_FAILS(RT_INVALID_VALUE, rtAsphere(double(std::nanf("")), 0, 0, nullptr, 0, .5));
+  rtTranslated(1, 2, 3);
+  rtLoadName(4);
+  rtEnable(RT_CW_FRONT);
+  rtAsphere(.5, -1, 1, terms, .1, 1);
+  rtDisable(RT_CW_FRONT);
+  const edit::GeometryT& g = only();
+  EXPECT_EQ(g.primitive, edit::Primitive::Asphere);
+  EXPECT_EQ(g.surface, (std::vector<double>{.5, -1, .1, 1, 1e-3}));
+  EXPECT_TRUE(g.clockwise);
+  EXPECT_EQ(g.name, 4u);
+  EXPECT_EQ(matrixOf(*g.matrix)[14], 3.0);
+  EXPECT_EQ(g.points + g.indices, 0u);
+}
+
 // Returns world positions in double: the origin (in the matrix) plus the points.
 std::vector<double> positions(const Commit& c, const edit::GeometryT& g) {
   const std::vector<double> m = matrixOf(*g.matrix);

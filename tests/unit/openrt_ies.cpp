@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "../../plugins/shaders/ies.h"
 
@@ -73,11 +74,55 @@ TEST(Ies, Symmetries) {
   EXPECT_NEAR(across.intensity(0, 315), 25, 1e-4);
 }
 
+TEST(Ies, TheFactorOfTheTiltIsInterpolated) {
+  const std::string text = "IESNA91\nTILT=INCLUDE\n1\n3\n0 40 90\n1 .5 .8\n"
+                           "1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 100 100";
+  for (const auto& [tilt, factor] :
+       {std::pair(0., 1.), {20., .75}, {40., .5}, {65., .65}, {120., .8}}) {
+    ies::Photometry p;
+    int line = 0;
+    ASSERT_EQ(ies::parse(text, p, line, tilt), nullptr);
+    EXPECT_NEAR(p.intensity(0, 0), 100 * factor, 1e-4) << tilt;
+  }
+}
+
+// Types A and B differ in which angle turns around the polar axis: away from the axes, the same two
+// angles are two directions (CIE 121-1996).
+TEST(Ies, TypesAAndBTellDirectionsByOtherAngles) {
+  constexpr double degree = M_PI / 180;
+  const std::string rest = " 1 0 0 0 1 1 1  -40 0 40  -60 0 60  1 2 3 4 5 6 7 8 9";
+  const ies::Photometry a = good(file(head, "1 1 1 3 3 3" + rest)),
+                        b = good(file(head, "1 1 1 3 3 2" + rest));
+  EXPECT_EQ(a.type, ies::Type::A);
+  EXPECT_EQ(b.type, ies::Type::B);
+  const auto typeA = [&](double across, double up) {
+    return a.towards(std::cos(across) * std::cos(up), std::sin(across) * std::cos(up),
+                     std::sin(up));
+  };
+  const auto typeB = [&](double across, double up) {
+    return b.towards(std::cos(across) * std::cos(up), std::sin(across),
+                     std::cos(across) * std::sin(up));
+  };
+  for (const double across : {-50., -20., 10., 55.})
+    for (const double up : {-35., 0., 25.}) {
+      const double expected = 5 + across / 20 + up / 40;
+      EXPECT_NEAR(typeA(across * degree, up * degree), expected, 1e-4);
+      EXPECT_NEAR(typeB(across * degree, up * degree), expected, 1e-4);
+    }
+  EXPECT_EQ(a.towards(-1, 0, 0), 0) << "nothing was measured behind the lamp";
+  const ies::Photometry half = good(file(head, "1 1 1 1 2 3 1 0 0 0 1 1 1  0  0 90  10 40"));
+  EXPECT_NEAR(half.intensity(0, -45), 25, 1e-4) << "one side stands for both";
+}
+
 TEST(Ies, WhatIsWrongIsSaid) {
   const std::string numbers = "1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 ";
   EXPECT_EQ(bad(""), "the profile is empty: give the text of an IES LM-63 file 1");
   EXPECT_EQ(bad("#VRML V2.0 utf8\nShape {}"), "this is not an IES file: there is no line TILT= 2");
-  EXPECT_NE(bad("IESNA91\nTILT=INCLUDE\n" + numbers).find("TILT=INCLUDE"), std::string::npos);
+  EXPECT_EQ(bad("IESNA91\nTILT=INCLUDE\n4 1 0 1"),
+            "TILT=INCLUDE needs the lamp's position (1, 2 or 3) and the number of tilt angles 3");
+  EXPECT_NE(bad("IESNA91\nTILT=INCLUDE\n1 2\n90 0\n1 1").find("must be rising"), std::string::npos);
+  EXPECT_NE(bad("IESNA91\nTILT=INCLUDE\n1 2\n0 90\n1 -1").find("tilt factor"), std::string::npos);
+  EXPECT_NE(bad("IESNA91\nTILT=INCLUDE\n1 1e9\n0").find("tilt angles"), std::string::npos);
   EXPECT_NE(bad("IESNA91\nTILT=../../etc/passwd\n" + numbers).find("only TILT=NONE"),
             std::string::npos);
   EXPECT_EQ(bad(file(head, numbers + "1")),
@@ -93,7 +138,11 @@ TEST(Ies, WhatIsWrongIsSaid) {
             std::string::npos);
   EXPECT_NE(bad(file(head, "1 1 1 -1 1 1 1 0 0 0 1 1 1")).find("number of angles"),
             std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 1 2 1 2 1 0 0 0 1 1 1 0 90 0 1 1")).find("type C"),
+  EXPECT_NE(bad(file(head, "1 1 1 2 1 4 1 0 0 0 1 1 1 0 90 0 1 1")).find("photometric type"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 2 1 3 1 0 0 0 1 1 1 0 91 0 1 1")).find("types A and B"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 1 2 2 1 0 0 0 1 1 1 0 5 90 1 1")).find("types A and B"),
             std::string::npos);
   EXPECT_NE(bad(file(head, "1 1 1 2 1 1 1 0 0 0 1 1 1 90 0 0 1 1")).find("must rise"),
             std::string::npos);

@@ -1,6 +1,7 @@
 // openrt_motion.cpp: RT_MOTION follows from the commits: any number of threads, a recording and a
 // backend that skips frames find the same bytes. What is not asked for is not kept.
 #include <filesystem>
+#include <memory>
 
 #include <unistd.h>
 
@@ -68,6 +69,70 @@ TEST(Motion, HasTheSameBytesIfFramesAreSkipped) {
       EXPECT_TRUE(sameBytes(player.render(), expected[i])) << i << " of " << rendered;
     }
   }
+}
+
+// Returns the same changes of the scene without the frames of other views.
+Commits framesOf(int view, const std::vector<int>& views) {
+  Commits commits = movingCommits(true, views);
+  for (size_t i = 0; i < views.size(); i++) {
+    if (views[i] == view) continue;
+    edit::EditsT& edits = std::const_pointer_cast<Commit>(commits[i])->edits;
+    edits.render = false;
+    std::erase_if(edits.edits, [](const auto& edit) { return edit->any.AsFrameSettings(); });
+  }
+  return commits;
+}
+
+// Frames of other views do not change what a view sees.
+TEST(Motion, OfAViewIsThatSinceItsOwnLastFrame) {
+  const std::vector<std::vector<int>> turns = {
+      {1, 2, 1, 2, 1, 2, 1}, {1, 1, 2, 2, 1, 2, 1}, {1, 2, 3, 1, 2, 3, 1}, {2, 1, 2, 2, 3, 2, 1}};
+  for (const std::vector<int>& views : turns) {
+    const Pictures seen = picturesOf(movingCommits(true, views));
+    for (const int view : {1, 2, 3}) {
+      FramePlayer alone;
+      const Commits commits = framesOf(view, views);
+      for (size_t i = 0; i < views.size(); i++) {
+        alone.apply(commits[i]);
+        if (views[i] != view) continue;
+        EXPECT_TRUE(sameBytes(seen[i], alone.render())) << "view " << view << ", frame " << i;
+      }
+    }
+  }
+}
+
+// Returns after how many frames of view 1, in each of which something moves, view 0 begins anew.
+// channels: of the first frame of view 0.
+uint64_t framesUntilForgotten(uint32_t channels) {
+  for (uint64_t between = 1; between < 100; between++) {
+    const Commits commits = drawn([&] {
+      set({.channels = channels});
+      rtBindShader(colored("Diffuse", nullptr, {}));
+      const RTid ball = rtBeginObject(0);
+      rtSphere(.3f);
+      rtEndObject();
+      const RTid moving = rtInstantiateObject(ball);
+      lookFrom(0, 1, 6);
+      rtRender();
+      set({.channels = RT_RGBA | RT_MOTION});
+      for (uint64_t i = 0; i <= between; i++) {
+        const double matrix[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, double(i + 1), 0, 0, 1};
+        rtInstanceMatrix(moving, matrix);
+        rtQuality(RT_VIEW, i < between);
+        rtRender();
+      }
+    });
+    Scene scene;
+    SceneHistory history;
+    for (const auto& commit : commits) scene.apply(*commit, &history);
+    if (history.view().beginning()) return between;
+  }
+  return 0;
+}
+
+TEST(Motion, OfAViewThatWasNotDrawnForLongBeginsAnew) {
+  EXPECT_EQ(framesUntilForgotten(RT_RGBA | RT_MOTION), maxFramesBetween);
+  EXPECT_EQ(framesUntilForgotten(RT_RGBA), 1u) << "what moved meanwhile was not noted";
 }
 
 // Applies the commits and returns whether the history has anything after each of them.

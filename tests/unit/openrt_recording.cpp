@@ -343,6 +343,24 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"SphereWithPoints",
               [](Example& e) { e.geometry.primitive = edit::Primitive::Sphere; },
               "a sphere has vertices"},
+        Fault{"QuadricWithoutNumbers",
+              [](Example& e) { e.geometry.primitive = edit::Primitive::Quadric; },
+              "ten coefficients"},
+        Fault{"AsphereWithPoints",
+              [](Example& e) {
+                e.geometry.primitive = edit::Primitive::Asphere;
+                e.geometry.surface = {0, 0, 0, 1};
+              },
+              "an analytic surface has vertices"},
+        Fault{"AsphereBeyondItsEdge",
+              [](Example& e) {
+                e.geometry.primitive = edit::Primitive::Asphere;
+                e.geometry.points = e.geometry.indices = 0;
+                e.geometry.surface = {1, 0, 0, 2};
+              },
+              "beyond its edge"},
+        Fault{"TrianglesWithNumbers", [](Example& e) { e.geometry.surface = {1}; },
+              "has numbers of an analytic surface"},
         Fault{"NoWidth", [](Example& e) { e.geometry.width = 0; }, "a width is not positive"},
         Fault{"NoMatrix", [](Example& e) { e.geometry.matrix.reset(); }, "a matrix is missing"},
         Fault{"MatrixOfZeros",

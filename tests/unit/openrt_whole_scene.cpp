@@ -95,7 +95,8 @@ class Comparer {
            same(a.matrix, b.matrix) && a.cull == b.cull && a.clockwise == b.clockwise &&
            a.width == b.width && same(a.points, b.points) && same(a.indices, b.indices) &&
            same(a.normals, b.normals) && same(a.texCoords, b.texCoords) &&
-           same(a.colors, b.colors) &&
+           same(a.colors, b.colors) && !a.surface == !b.surface &&
+           (!a.surface || *a.surface == *b.surface) &&
            (known(a.shader) == 0 ||
             std::equal(a.parameters.begin(), a.parameters.end(), b.parameters.begin(),
                        b.parameters.end(), [](auto& x, auto& y) {

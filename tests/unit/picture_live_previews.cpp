@@ -7,45 +7,15 @@
 #include <cmath>
 #include <thread>
 
-#include <fmt/format.h>
-
 #include "libpicture/cluster.h"
-#include "libpicture/live.h"
 #include "libpicture/live/display.h"
 #include "libpicture/live/previews.h"
+#include "unit/live_previews.h"
 
 using namespace picture;
-using Purpose = LiveFrame::Purpose;
-using State = LiveRenderer::State;
+using namespace live_previews;
 
 namespace {
-
-// A sky that is bright above and dark below: every sample of the box is bright or dark, by chance.
-constexpr const char* noisy = R"(#VRML V2.0 utf8
-NavigationInfo { headlight FALSE }
-Viewpoint { position 0 0 10 fieldOfView 0.6 }
-Background { skyColor [ 1 1 1, 1 1 1, 0 0 0, 0 0 0 ] skyAngle [ 1.5, 1.6, 3.1 ] }
-DEF Place Transform { children
-  Shape { appearance Appearance { material Material { diffuseColor 0.8 0.8 0.8 } } geometry Box { size 0.6 2 0.6 } } }
-)";
-
-std::unique_ptr<xvrml::Browser> browserOf() {
-  return std::make_unique<xvrml::Browser>(xvrml::loadWorldFromMemory(noisy, "previews.wrl"));
-}
-
-void moveTo(xvrml::Browser& browser, double x) {
-  browser.set(*browser.node("Place"), "translation", xvrml::Value(xvrml::Vec3f{float(x), 0, 0}));
-  browser.tick(browser.now() + .01);
-}
-
-RenderSettings settingsOf(uint32_t channels = RT_RGBA, int seed = 0) {
-  RenderSettings settings;
-  settings.threads = 2;
-  settings.channels = channels;
-  settings.quality.set(RT_TRANSPORT, RT_TRANSPORT_PATH);
-  settings.quality.set(RT_SEED, seed);
-  return settings;
-}
 
 RenderSettings clustered() {
   RenderSettings settings = settingsOf();
@@ -53,56 +23,6 @@ RenderSettings clustered() {
   cluster.workers = "127.0.0.1:1"; // nobody answers there: this process renders alone
   settings.cluster = std::make_shared<Cluster>(cluster, settings);
   return settings;
-}
-
-LiveFrame frameOf(Purpose purpose, int width = 64, int height = 48, int samples = 1) {
-  LiveFrame frame;
-  frame.purpose = purpose;
-  frame.width = width;
-  frame.height = height;
-  frame.samples = samples;
-  return frame;
-}
-
-LiveFrame previewOf(uint32_t viewer = 0, int width = 64, int height = 48) {
-  LiveFrame frame = frameOf(Purpose::preview, width, height);
-  frame.viewer = viewer;
-  return frame;
-}
-
-LiveFrame seenFrom(LiveFrame frame, const xvrml::Browser& browser, double x) {
-  frame.view.viewer = browser.camera(4.0 / 3);
-  frame.view.viewer->matrix[12] += x;
-  return frame;
-}
-
-void nap() { std::this_thread::sleep_for(std::chrono::microseconds(200)); }
-
-void waitFor(LiveRenderer& live) {
-  while (live.state() != State::idle) nap();
-}
-
-LivePicture finish(LiveRenderer& live, const LiveFrame& frame) {
-  const uint64_t number = live.start(frame);
-  waitFor(live);
-  EXPECT_EQ(live.takeFailure(), "");
-  LivePicture picture;
-  EXPECT_TRUE(live.look(picture));
-  EXPECT_TRUE(picture.finished && picture.ended);
-  EXPECT_EQ(picture.number, number);
-  EXPECT_EQ(picture.purpose, frame.purpose);
-  EXPECT_EQ(picture.width, frame.width);
-  EXPECT_EQ(picture.height, frame.height);
-  EXPECT_EQ(picture.rgb.size(), size_t(3 * frame.width * frame.height));
-  EXPECT_EQ(picture.covered, 1);
-  return picture;
-}
-
-Picture headless(xvrml::Browser& browser, RenderSettings settings, const LiveFrame& frame) {
-  settings.width = frame.width;
-  settings.height = frame.height;
-  settings.samples = frame.samples;
-  return Renderer(browser, settings).render(frame.view).picture;
 }
 
 // The mean difference of two pictures of the same size in a rectangle of pixels.
@@ -276,15 +196,38 @@ TEST(LivePreview, viewersAccumulateForThemselves) {
   EXPECT_EQ(see(true), see(false));
 }
 
-// RT_MOTION says how things moved since the frame of the other viewer. The own frames are older, so
-// nothing of them may be used.
-TEST(LivePreview, aViewerBeginsAnewIfTheWorldMovedForAnother) {
+// Two viewers of a moving world take turns at different instants, or each at every instant. What
+// one sees does not depend on the other: it has what it would have accumulated alone.
+TEST(LivePreview, viewersOfAMovingWorldAccumulateForThemselves) {
+  const auto see = [](bool two, double later) {
+    const auto browser = browserOf();
+    LiveRenderer live(*browser, settingsOf());
+    std::vector<std::vector<uint8_t>> pictures;
+    for (int i = 0; i < 6; ++i) {
+      moveTo(*browser, .4 * i - 1);
+      pictures.push_back(finish(live, previewOf(1)).rgb);
+      moveTo(*browser, .4 * i - 1 + later);
+      // Frames between take a number, and with it a seed.
+      finish(live, two ? previewOf(2, 80, 60) : frameOf(Purpose::rawPreview));
+    }
+    return pictures;
+  };
+  EXPECT_EQ(see(true, .2), see(false, .2));
+  EXPECT_EQ(see(true, 0), see(false, 0));
+}
+
+// The motion of a frame is that since the viewer's still frame. Its last preview is older, so
+// nothing of it may be used.
+TEST(LivePreview, aViewerBeginsAnewIfTheWorldMovedForAStillPicture) {
   const auto see = [](uint32_t last) {
     const auto browser = browserOf();
     LiveRenderer live(*browser, settingsOf());
     for (int i = 0; i < 4; ++i) finish(live, previewOf(1));
     moveTo(*browser, 1);
-    finish(live, previewOf(2));
+    LiveFrame still = frameOf(Purpose::still);
+    still.viewer = 1;
+    finish(live, still);
+    moveTo(*browser, 2);
     return finish(live, previewOf(last)).rgb;
   };
   EXPECT_EQ(see(1), see(3));
@@ -410,16 +353,19 @@ TEST(LivePreview, fewViewersAreRemembered) {
 
 TEST(LivePreview, stepsOfTheWorldAreNumbered) {
   live::WorldSteps steps;
-  EXPECT_EQ(steps.begin().before, 0u); // there is no frame before
-  const live::WorldStep rest = steps.begin();
+  EXPECT_EQ(steps.begin(0).before, 0u); // there is no frame before
+  const live::WorldStep rest = steps.begin(0);
   EXPECT_EQ(rest.before, rest.now);
   steps.change();
   steps.change(); // a frame that was cancelled before it began
-  const live::WorldStep moved = steps.begin();
+  const live::WorldStep other = steps.begin(7);
+  EXPECT_EQ(other.before, 0u); // another viewer's frames do not count
+  const live::WorldStep moved = steps.begin(0);
   EXPECT_EQ(moved.before, rest.now);
   EXPECT_NE(moved.now, rest.now);
+  EXPECT_EQ(moved.now, other.now);
   steps.beginAnew();
-  const live::WorldStep anew = steps.begin();
+  const live::WorldStep anew = steps.begin(0);
   EXPECT_EQ(anew.before, 0u);
   EXPECT_GT(anew.now, moved.now);
 }

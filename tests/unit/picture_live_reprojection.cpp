@@ -72,6 +72,32 @@ TEST(LiveReprojection, AMovingCameraFindsTheWorldAgain) {
   EXPECT_GT(reconstruction.facts().reprojected, 0.95);
 }
 
+// A picture behind the world (--background FILE) is composited with each frame.
+TEST(LiveReprojection, AFixedBackgroundStaysInItsPlaceWhileTheCameraTurns) {
+  const World nothing = [](Vec, Vec) { return Hit(); };
+  const auto errorOf = [&](bool isFixed) {
+    Reconstruction reconstruction;
+    double sum = 0;
+    for (uint32_t k = 0; k < 12; k++) {
+      Shot shot = shotAt({0, 0, 0}, k);
+      shot.camera = cameraAt({0, 0, 0}, 0.02 * k);
+      shot.camera.fixedBackground = isFixed;
+      Picture frame = render(nothing, shot);
+      std::vector<float>& rgba = frame.planes[RT_RGBA];
+      for (int i = 0; i < shot.width * shot.height; i++) // stripes of four pixels
+        for (int c = 0; c < 3; c++) rgba[size_t(4 * i + c)] = i % shot.width / 4 % 2 ? .8f : .1f;
+      const Picture shown = reconstruction.add(frame, shot.camera);
+      sum = 0;
+      for (size_t i = 0; i < rgba.size(); i++)
+        sum += std::abs(double(shown.planes.at(RT_RGBA)[i]) - double(rgba[i]));
+      sum /= double(rgba.size());
+    }
+    return sum;
+  };
+  EXPECT_LT(errorOf(true), 1e-5);
+  EXPECT_GT(errorOf(false), 0.05);
+}
+
 TEST(LiveReprojection, AParallelCameraFindsTheWorldAgain) {
   Reconstruction reconstruction;
   Picture shown;

@@ -144,6 +144,34 @@ TEST_P(SparseLight, AnObjectThinnerThanABlockKeepsItsColour) {
   EXPECT_LT(largest(shown[1], truth, inner(shot)), 0.05);
 }
 
+TEST_P(SparseLight, SomethingThinInMotionHasTheLightOfNothingElse) {
+  // Posts of about half a pixel, much darker than the wall behind them.
+  const World world = [](Vec origin, Vec direction) {
+    Hit hit = plane(origin, direction, 0.5, -infinite, infinite);
+    const Vec p = origin + direction * hit.distance;
+    hit.light = 0.2;
+    hit.name = 2;
+    if (p.x - 0.3 * std::floor(p.x / 0.3) > 0.012) {
+      hit = plane(origin, direction, -1, -infinite, infinite);
+      hit.light = 5;
+      hit.name = 1;
+    }
+    hit.albedo = {0.5, 0.5, 0.5};
+    return hit;
+  };
+  Reconstruction reconstruction;
+  for (uint32_t k = 0; k < 16; k++) {
+    const Shot shot = shotAt({0.013 * k, 0, 3}, k);
+    const Picture shown =
+        reconstruction.add(sparse(world, shot, GetParam()), shot.camera, GetParam());
+    for (int y = 0; y < 72; y++)
+      for (int x = 0; x < 96; x++) {
+        ASSERT_GT(colourAt(shown, x, y, 0), 0.099) << k << ", " << x << ' ' << y;
+        ASSERT_LT(colourAt(shown, x, y, 0), 2.51) << k << ", " << x << ' ' << y;
+      }
+  }
+}
+
 TEST_P(SparseLight, TheShadowOfAPointLightGetsSharpAtRest) {
   Shot shot = shotAt({0, 0, 3}, 0);
   Reconstruction reconstruction;

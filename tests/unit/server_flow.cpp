@@ -2,12 +2,15 @@
 // limits of vv serve.
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "server/flow.h"
+#include "server/idle_connections.h"
 #include "server/pages.h"
+#include "server/save_queue.h"
 
 namespace vv::server {
 namespace {
@@ -60,6 +63,62 @@ TEST(ServerFlow, MessagesAreLimitedOnAverageAndAtOnce) {
   EXPECT_FALSE(rate.allow(50)); // a clock that goes back gives nothing
   for (int i = 0; i < 10 * maxMessagesPerSecond; ++i)
     EXPECT_TRUE(rate.allow(102 + double(i) / maxMessagesPerSecond));
+}
+
+TEST(ServerFlow, PagesOfTheWebAreLimitedOnAverageAndAtOnce) {
+  OpenRate rate;
+  int allowed = 0;
+  for (int i = 0; i < 1000; ++i) allowed += rate.allow(5);
+  EXPECT_EQ(allowed, maxOpenBurst);
+  for (int i = 0; i < 6000; ++i) allowed += rate.allow(5 + .1 * i); // for ten minutes
+  EXPECT_NEAR(allowed, maxOpenBurst + 10 * maxOpensPerMinute, 1);
+}
+
+TEST(ServerFlow, OfManyIdleConnectionsTheOldestGoes) {
+  IdleConnections<const int*> idle;
+  std::vector<int> connections(maxIdleConnections + 2);
+  for (int i = 0; i < maxIdleConnections; ++i)
+    EXPECT_EQ(idle.add(&connections[size_t(i)]), nullptr);
+  idle.remove(&connections[0]);                  // it makes a request
+  EXPECT_EQ(idle.add(&connections[0]), nullptr); // it is idle again, now as the newest
+  EXPECT_EQ(idle.add(&connections[0]), nullptr); // known already
+  const int* const newcomer = &connections[size_t(maxIdleConnections)];
+  EXPECT_EQ(idle.add(newcomer), &connections[1]);
+  idle.remove(&connections[1]); // its end is told, too
+  EXPECT_EQ(idle.add(newcomer + 1), &connections[2]);
+}
+
+TEST(ServerFlow, FilesTakeNoMoreThanHalfOfTheTimeWhileOthersLook) {
+  SaveQueue queue;
+  EXPECT_FALSE(queue.begin(0));
+  queue.want({1, Message::Format::png});
+  queue.want({2, Message::Format::exr});
+  EXPECT_EQ(queue.begin(10)->page, 1u);
+  EXPECT_FALSE(queue.begin(11)) << "one at a time";
+  queue.end(14, true);
+  EXPECT_FALSE(queue.begin(17.9));
+  const auto second = queue.begin(18);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->page, 2u);
+  EXPECT_EQ(second->format, Message::Format::exr);
+  queue.end(20, false);
+  queue.want({1, Message::Format::png});
+  EXPECT_TRUE(queue.begin(20)) << "nobody else looks";
+}
+
+TEST(ServerFlow, FilesThatAreGivenUpAreNotRendered) {
+  SaveQueue queue;
+  queue.want({1, Message::Format::png});
+  queue.want({2, Message::Format::png});
+  EXPECT_TRUE(queue.drop(1));
+  EXPECT_FALSE(queue.drop(1));
+  EXPECT_EQ(queue.begin(0)->page, 2u);
+  EXPECT_FALSE(queue.drop(2)) << "it is being rendered";
+  queue.want({3, Message::Format::png});
+  queue.clear(); // another world
+  EXPECT_FALSE(queue.begin(1));
+  queue.want({4, Message::Format::png});
+  EXPECT_TRUE(queue.begin(1));
 }
 
 TEST(ServerFlow, PicturesFitThePageWithinTheLimits) {

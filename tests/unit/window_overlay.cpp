@@ -2,6 +2,8 @@
 // and give an error only for a still picture.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "session/input/keys.h"
 #include "session/overlay.h"
 
@@ -42,6 +44,17 @@ TEST(Overlay, aPreviewIsCalledOne) {
   EXPECT_TRUE(
       brief(facts(Showing::preview, 0)).starts_with("preview")); // the motion has just ended
   EXPECT_TRUE(brief(facts(Showing::samples, 29)).starts_with("raw samples   29 fps"));
+  // "all" says what has filtered it.
+  SessionFacts filtered = facts(Showing::preview, 29);
+  const auto says = [&](const std::string& line) {
+    const auto lines = overlayLines(filtered, false, OverlayLevel::all);
+    return std::find(lines.begin(), lines.end(), line) != lines.end();
+  };
+  EXPECT_TRUE(says("\tfiltered by vv itself"));
+  filtered.denoisedBy = "Open Image Denoise 2.5.1";
+  EXPECT_TRUE(says("\tfiltered by Open Image Denoise 2.5.1"));
+  filtered.showing = Showing::still;
+  EXPECT_FALSE(says("\tfiltered by Open Image Denoise 2.5.1"));
   SessionFacts fading = facts(Showing::fading, 0);
   fading.wanted = 256;
   fading.finished = false;

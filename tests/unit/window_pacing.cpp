@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "libpicture/live/pacing.h"
@@ -17,11 +18,13 @@ struct Machine {
   double pixel, overhead = 0;
   double unsteady = 0; // relative variation of the time per frame
   double rebuilt = 0;  // seconds to rebuild a pixel of a preview
+  double unlit = 0;    // seconds of a pixel without its light
   int count = 0;
   double rebuilding(const FrameSize& f) const { return rebuilt * f.width * f.height; }
   double seconds(const FrameSize& f) {
     const double wave = 1 + unsteady * ((count++ * 7919 % 13) / 6.0 - 1);
-    return overhead + pixel * f.width * f.height * f.samples * wave + rebuilding(f);
+    const double light = pixel / (f.lightStride * f.lightStride);
+    return overhead + (unlit + light) * f.width * f.height * f.samples * wave + rebuilding(f);
   }
 };
 
@@ -167,6 +170,51 @@ TEST(Pacing, directLightKeepsTheFullSize) {
     EXPECT_LT(others.back().width, width);
     EXPECT_LT(seconds, 1 / 20.0);
   }
+}
+
+// Where pictures are rebuilt, light becomes sparse before they shrink, and shrinking pictures keep
+// it sparse: they need their size more.
+TEST(Pacing, rebuiltPicturesLoseLightBeforeSize) {
+  for (const auto& [light, widest, unlit] :
+       {std::tuple{Pacing::Light::sparseDirect, 2, 0.5}, {Pacing::Light::sparse, 2, 0.15}}) {
+    int last = 0;
+    bool between = false;
+    for (double wholePicture = 0.005; wholePicture < 0.5; wholePicture *= 1.2) {
+      SCOPED_TRACE(wholePicture);
+      Pacing pacing(30), raw(30);
+      Machine machine{wholePicture / full};
+      machine.unlit = unlit * machine.pixel;
+      std::vector<FrameSize> sizes, others;
+      const double seconds = move(pacing, machine, 60, &sizes, light).back();
+      move(raw, machine, 60, &others, rawOf(light));
+      const FrameSize f = sizes.back();
+      EXPECT_LT(seconds, 1 / 20.0);
+      EXPECT_GE(f.lightStride, last);
+      EXPECT_LE(f.lightStride, widest);
+      EXPECT_TRUE(f.width == width || f.lightStride == widest);
+      EXPECT_EQ(others.back().lightStride, 1);
+      EXPECT_GE(f.width, others.back().width);
+      between |= f.width == width && f.lightStride == widest;
+      last = f.lightStride;
+    }
+    EXPECT_TRUE(between);
+    EXPECT_EQ(last, widest);
+  }
+}
+
+TEST(Pacing, theTransportTellsTheLight) {
+  RTstats stats{};
+  stats.cameraRays = 1;
+  for (const RTenum transport : {RT_TRANSPORT_DIRECT, RT_TRANSPORT_WHITTED}) {
+    stats.transport = transport;
+    EXPECT_EQ(lightOf(stats, true), Pacing::Light::sparseDirect);
+    EXPECT_EQ(lightOf(stats, false), Pacing::Light::direct);
+  }
+  stats.transport = RT_TRANSPORT_PATH;
+  EXPECT_EQ(lightOf(stats, true), Pacing::Light::sparse);
+  EXPECT_EQ(lightOf(stats, false), Pacing::Light::sampled);
+  for (const bool rebuilt : {true, false})
+    EXPECT_EQ(rawOf(lightOf(stats, rebuilt)), Pacing::Light::sampled);
 }
 
 // Between motion and rest a picture is larger than those of the motion, but never a long wait.

@@ -1,5 +1,5 @@
 // xvrml_geometry_primitives.cpp: Tests Box, Cone, Cylinder and Sphere against their closed forms
-// (ISO/IEC 14772-1 clauses 6.7, 6.11, 6.14, 6.43).
+// (ISO/IEC 14772-1 clauses 6.7, 6.11, 6.14, 6.43), and ORTQuadric and ORTAsphere.
 #include "geometry/bounds.h"
 #include "unit/mesh_checks.h"
 
@@ -178,6 +178,67 @@ TEST(GeometrySphere, IsExact) {
     EXPECT_EQ(built.mesh.kind, Mesh::Kind::empty);
     EXPECT_EQ(built.diagnostics.warnings(), 1u);
   }
+}
+
+TEST(GeometryExact, CylinderAndConeHaveExactSurfacesIfAskedFor) {
+  Made<nodes::Cylinder> cylinder("Cylinder");
+  Made<nodes::Cone> cone("Cone");
+  EXPECT_TRUE(build(cylinder).mesh.exact.empty());
+  EXPECT_TRUE(build(cone).mesh.exact.empty());
+  MeshOptions options;
+  options.exactShapes = true;
+  EXPECT_EQ(buildMesh(*cylinder, options).exact.size(), 3u);
+  EXPECT_EQ(buildMesh(*cone, options).exact.size(), 2u);
+  cylinder->top = cylinder->bottom = false;
+  const Mesh side = buildMesh(*cylinder, options);
+  ASSERT_EQ(side.exact.size(), 1u);
+  EXPECT_EQ(side.kind, Mesh::Kind::triangles) << "for pointing devices";
+  EXPECT_EQ(side.exact[0].numbers[9], -1) << "minus the square of the radius";
+}
+
+TEST(GeometryQuadric, TheTrianglesFollowTheSurface) {
+  Made<nodes::ORTQuadric> quadric("ORTQuadric"); // the unit sphere
+  Built built = build(quadric);
+  expectSound(built.mesh);
+  EXPECT_EQ(built.diagnostics.warnings(), 0u);
+  EXPECT_NEAR(signedVolume(built.mesh), 4 * pi / 3, .05);
+  ASSERT_EQ(built.mesh.exact.size(), 1u);
+  EXPECT_EQ(built.mesh.exact[0].numbers.size(), 16u);
+  quadric->coefficients = {1, 2, 3};
+  EXPECT_EQ(build(quadric).diagnostics.warnings(), 1u);
+  quadric->coefficients = {1, 1, 1, 0, 0, 0, 0, 0, 0, NAN};
+  EXPECT_EQ(build(quadric).mesh.kind, Mesh::Kind::empty);
+  quadric->coefficients = {1, 1, 1, 0, 0, 0, 0, 0, 0, -1};
+  quadric->high = {-2, 1, 1};
+  EXPECT_EQ(build(quadric).mesh.kind, Mesh::Kind::empty);
+  EXPECT_EQ(build(quadric).diagnostics.warnings(), 1u);
+}
+
+TEST(GeometryAsphere, TheTrianglesFollowTheSurface) {
+  Made<nodes::ORTAsphere> asphere("ORTAsphere");
+  asphere->radius = 2;
+  asphere->conic = -1;
+  Built built = build(asphere);
+  expectSound(built.mesh);
+  EXPECT_EQ(built.diagnostics.warnings(), 0u);
+  // A paraboloid of height h = .25 and radius 1 has the area pi / 6 / h^2 ((1 + 4 h^2)^1.5 - 1).
+  EXPECT_NEAR(area(built.mesh), pi / 6 / .0625 * (std::pow(1.25, 1.5) - 1), 1e-2);
+  for (const Vec3f& n : built.mesh.normals) EXPECT_GT(n.z, 0);
+  for (size_t t = 0; t < built.mesh.indices.size() / 3; t++)
+    EXPECT_GT(areaVector(built.mesh, t)[2], 0);
+  ASSERT_EQ(built.mesh.exact.size(), 1u);
+  EXPECT_EQ(built.mesh.exact[0].numbers, (std::vector<double>{.5, -1, 0, 1}));
+  for (const float bad : {0.f, -1.f, NAN, INFINITY}) {
+    asphere->semiAperture = bad;
+    EXPECT_EQ(build(asphere).mesh.kind, Mesh::Kind::empty);
+    EXPECT_EQ(build(asphere).diagnostics.warnings(), 1u);
+  }
+  asphere->semiAperture = 1;
+  asphere->innerRadius = 1;
+  EXPECT_EQ(build(asphere).mesh.kind, Mesh::Kind::empty);
+  asphere->innerRadius = 0;
+  asphere->terms.assign(9, 0.f);
+  EXPECT_EQ(build(asphere).mesh.kind, Mesh::Kind::empty);
 }
 
 TEST(GeometryMesh, OtherNodesHaveNone) {

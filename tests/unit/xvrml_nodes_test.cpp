@@ -74,9 +74,12 @@ constexpr Interface interfaces[] = {
     {"6.54", "VisibilitySensor", 0, 3, 0, 3},
     {"6.55", "WorldInfo", 0, 0, 2, 0},
     {"", "ORTAppearance", 0, 4, 0, 0},
+    {"", "ORTAsphere", 0, 0, 7, 0},
     {"", "ORTBackground", 1, 1, 0, 1},
     {"", "ORTInstance", 2, 1, 2, 0},
     {"", "ORTLight", 0, 2, 0, 0},
+    {"", "ORTQuadric", 0, 0, 5, 0},
+    {"", "ORTSensor", 0, 7, 1, 0},
     {"", "ORTShader", 0, 3, 0, 0},
     {"", "ORTStatic", 2, 1, 2, 0},
     {"", "ORTViewpoint", 1, 5, 1, 2},
@@ -237,6 +240,11 @@ TEST(Nodes, DefaultsAreThoseOfTheStandard) {
       {"Viewpoint", "position", SFVec3f{0, 0, 10}},
       {"Viewpoint", "jump", true},
       {"WorldInfo", "title", std::string()},
+      {"ORTAsphere", "conic", 0.0f},
+      {"ORTAsphere", "semiAperture", 1.0f},
+      {"ORTAsphere", "terms", MFFloat{}},
+      {"ORTQuadric", "coefficients", MFFloat{1, 1, 1, 0, 0, 0, 0, 0, 0, -1}},
+      {"ORTQuadric", "low", SFVec3f{-1, -1, -1}},
       {"ORTShader", "options", MFString{}},
   };
   for (const Default& expected : defaults)
@@ -286,9 +294,10 @@ TEST(Nodes, RolesAreThoseOfTheStandard) {
   for (const NodeType* type : nodeTypes())
     for (const std::string& role : type->abstract) ++roles[role];
   EXPECT_EQ(roles["child"],
-            32 + 5); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTViewpoint, ORTBackground
+            32 + 6); // 4.6.5; ORTStatic, ORTInstance, ORTLight, ORTSensor, ORTViewpoint,
+                     // ORTBackground
   EXPECT_EQ(roles["grouping"], 8 + 2);
-  EXPECT_EQ(roles["geometry"], 10);
+  EXPECT_EQ(roles["geometry"], 10 + 2);
   EXPECT_EQ(roles["texture"], 3);
   EXPECT_EQ(roles["light"], 3);
   EXPECT_EQ(roles["sensor"], 7);

@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "control/control.h"
-#include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
 #include "report/cluster_report.h"
 #include "report/messages.h"
 #include "report/problems.h"
+#include "session/ending.h"
 #include "session/session.h"
 #include "session/world_loader.h"
 #include "signals.h"
@@ -81,19 +79,11 @@ class Unattended {
     if (session_ && !session_->resting()) return; // the old session cannot end yet
     LoadAnswer answer;
     if (!loader_.take(answer)) return;
-    std::string wrong = std::move(answer.error);
-    int code = exitInput;
-    if (answer.world) {
-      try {
-        begin(std::move(answer.world), answer.fragment);
-      } catch (const Failure& failure) {
-        wrong = failure.text;
-        code = failure.code;
-      } catch (const UsageError& error) {
-        wrong = error.what();
-        code = exitUsage;
-      } catch (const std::exception& error) { wrong = error.what(); }
-    }
+    const auto [wrong, code] =
+        useWorld(std::move(answer),
+                 [this](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+                   begin(std::move(world), fragment);
+                 });
     if (wrong.empty()) return;
     sayError(wrong);
     control_->loadFailed(wrong);
@@ -127,18 +117,11 @@ class Unattended {
     if (session_ && session_->resting()) static_cast<void>(session_->takeMessage());
   }
 
-  // Ends the process. Reading a world and building geometry cannot be cancelled; in those cases the
-  // process exits without cleanup.
   int end() {
     const int code = interrupted() ? exitInterrupted : failed_;
-    const bool stopped = !session_ || session_->stop(.5);
-    if (stopped && !WorldLoader::working()) {
-      control_.reset();
-      return code;
-    }
-    picture::removeTemporary();
-    std::fflush(nullptr);
-    ::_exit(code);
+    control_.reset(); // sends the last answers, before the process may end
+    stopOrExit(session_.get(), code);
+    return code;
   }
 
   Options options_;

@@ -1,6 +1,6 @@
 // option_table.cpp: Defines every option of vv: names, argument, help text and effect. The options
 // of the group Cluster are in cluster_options.cpp, those of quality settings in
-// quality_options.cpp.
+// quality_options.cpp. Longer than 500 lines because it is one table.
 #include "options.h"
 
 #include <algorithm>
@@ -59,6 +59,18 @@ void setIsa(Options& o, const std::string& value) {
     throw UsageError(fmt::format("{}, not \"{}\"", error.what(), value));
   }
   o.render.isa = value;
+}
+
+void setDenoiser(Options& o, const std::string& value) {
+  using picture::Denoiser;
+  if (value != "auto" && value != "own" && value != "oidn")
+    throw UsageError(fmt::format("auto, own or oidn was expected, not \"{}\"", value));
+  o.render.denoiser = value == "auto"  ? Denoiser::automatic
+                      : value == "own" ? Denoiser::own
+                                       : Denoiser::oidn;
+  try {
+    picture::checkDenoiser(o.render.denoiser);
+  } catch (const picture::RenderError& error) { throw UsageError(error.what()); }
 }
 
 void setBackground(Options& o, const std::string& value) {
@@ -156,6 +168,14 @@ const OptionInfo table[] = {
          " files get the sRGB curve. vrml97: the standard's lighting equation is applied to the "
          "numbers as written, without any curve.",
      setColour},
+    {"--false-colour,--false-color", "auto|MAX", "Picture",
+     "Show luminance in colours, with isolines and a legend in cd/m2, in " +
+         picture::formatsWith(&picture::Format::appliesCurve) +
+         " files. MAX is the luminance at the end of the scale; auto chooses a round one. The file "
+         "is wider than --size by the legend.",
+     [](Options& o, const std::string& v) {
+       o.falseColour = v == "auto" ? 0 : readNumber(v, 1e-12, 1e12);
+     }},
     {"--background", "none|COLOUR|FILE", "Picture",
      "Replace the world's Background, which then is not seen in mirrors either. none: nothing; " +
          picture::formatsWith(&picture::Format::keepsAlpha) +
@@ -226,6 +246,12 @@ const OptionInfo table[] = {
      "window does while something moves. Such pictures are biased and have no error bars, and "
      "their files say so. They depend on the frame that the sequence begins with.",
      [](Options& o, const std::string&) { o.render.preview = true; }},
+    {"--denoiser", "auto|own|oidn", "Time",
+     "What smooths the light of previews: own, the filter that vv always has; oidn, beside it "
+     "Open Image Denoise 2, which must be installed; auto (default), in windows and on pages that "
+     "library "
+     "where it is there and fast enough, in files own, so that they do not depend on it.",
+     setDenoiser},
     {"--input", "FILE", "Time",
      "Replay mouse and keyboard input from FILE, one event per line: SECONDS EVENT (move X Y, "
      "press left, release left, key PageDown, viewpoint NAME ...; docs/window.md). World time "
@@ -257,6 +283,11 @@ const OptionInfo table[] = {
      "without directOutput TRUE may change nodes, as in the browsers of 1997), textures (a colour "
      "texture multiplies diffuseColor, as in X3D). --explain says what they change.",
      setCompat},
+    {"--exact-shapes", "", "Change",
+     "Draw Cylinder and Cone without facets, for lenses, pipes and mirrors. Spheres, ORTQuadric "
+     "and "
+     "ORTAsphere never have facets.",
+     [](Options& o, const std::string&) { o.render.exactShapes = true; }},
     {"--old-world", "", "Change",
      "Show the world as browsers of the nineties did: the same as --compat scripts,textures "
      "--colour vrml97 --shadows off.",
@@ -346,6 +377,17 @@ const OptionInfo table[] = {
      [](Options& o, const std::string& v) {
        notEmpty(v, "an OpenEXR file");
        o.compare = v;
+     }},
+    {"--measure", "FILE", "Inspect",
+     "Write what the ORTSensors of the world read, in lux and cd/m2 with their 95 % intervals, as "
+     ".csv or .json; - is CSV on standard output. --spp (default here 4096), --error and "
+     "--time-limit say how many samples each point gets (docs/photometry.md). -o is not needed.",
+     [](Options& o, const std::string& v) {
+       if (v != "-" && !v.ends_with(".csv") && !v.ends_with(".json"))
+         throw UsageError(fmt::format("a file name that ends in .csv or .json was expected, or -, "
+                                      "not \"{}\"",
+                                      v));
+       o.measure = v;
      }},
     {"--audit", "[N]", "Inspect",
      "Test the error bars: render the picture with N seeds (default 20) and once with many more "

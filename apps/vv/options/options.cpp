@@ -71,7 +71,8 @@ std::string missingValue(std::string_view last) {
 
 using picture::Background;
 
-constexpr int previewSamples = 4; // --spp of --preview where it is not given
+// --spp of --preview and of --measure without -o where it is not given
+constexpr int previewSamples = 4, measureSamples = 4096;
 
 bool writesToStandardOutput(const Options& o) {
   return std::any_of(o.outputs.begin(), o.outputs.end(),
@@ -88,7 +89,8 @@ int inspectionsOf(const Options& o) {
 int printed(const Options& o) {
   const auto pictures = std::count_if(o.outputs.begin(), o.outputs.end(),
                                       [](const Output& output) { return output.path == "-"; });
-  return int(pictures) + (o.stats == "-") + (o.write == "-") + (inspectionsOf(o) > 0);
+  return int(pictures) + (o.measure == "-") + (o.stats == "-") + (o.write == "-") +
+         (inspectionsOf(o) > 0);
 }
 
 bool showsOnePicture(const Options& o) { return !o.allViewpoints() && !o.isSequence(); }
@@ -140,6 +142,21 @@ constexpr Rule rules[] = {
      "--audit tests one picture: it cannot be used with --frames or --turntable"},
     {[](const Options& o) { return (o.audit || !o.compare.empty()) && printed(o) > 0; },
      "--audit and --compare write to standard output: nothing else can go there"},
+    {[](const Options& o) {
+       return o.measures() && (o.audit || o.isSequence() || o.allViewpoints() || o.watch ||
+                               !o.render.record.empty());
+     },
+     "--measure reads the sensors of one moment: it cannot be used with --audit, --frames, "
+     "--turntable, --viewpoint all, --watch or --record"},
+    {[](const Options& o) {
+       return o.falseColour &&
+              std::none_of(o.outputs.begin(), o.outputs.end(), [](const Output& output) {
+                return output.film == picture::FilmKind::none && output.format->appliesCurve;
+              });
+     },
+     "--false-colour needs -o with a file for a screen, such as .png"},
+    {[](const Options& o) { return o.falseColour && !o.render.linear; },
+     "--false-colour needs light that is added linearly: it cannot be used with --colour vrml97"},
     {[](const Options& o) { return o.audit && o.render.timeLimit > 0; },
      "--audit cannot be used with --time-limit, whose pictures differ from run to run"},
     // the cluster
@@ -285,6 +302,7 @@ std::vector<std::string> withOptionalArguments(int argc, char** argv) {
 
 Options readCommandLine(int argc, char** argv) {
   Options options;
+  options.render.denoiser = picture::Denoiser::automatic;
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
@@ -327,10 +345,12 @@ Options readCommandLine(int argc, char** argv) {
       options.time = options.script->end;
   }
   const picture::RenderSettings& render = options.render;
-  options.render.samples = options.samples.value_or(render.timeLimit > 0 ? 65536
-                                                    : render.error > 0   ? 4096
-                                                    : render.preview     ? previewSamples
-                                                                         : render.samples);
+  options.render.samples =
+      options.samples.value_or(render.timeLimit > 0                            ? 65536
+                               : render.error > 0                              ? 4096
+                               : options.measures() && options.outputs.empty() ? measureSamples
+                               : render.preview                                ? previewSamples
+                                                                               : render.samples);
   return options;
 }
 
@@ -383,18 +403,20 @@ std::string helpText() {
                                     : "\n" + std::string(indent, ' ');
     out += wrapped(option.text, indent, width - indent) + "\n";
   }
-  return out + "\nExit codes\n"
-               "  0    done\n"
-               "  1    the picture could not be made or written\n"
-               "  2    the command line is wrong\n"
-               "  3    unusable input: the world, or another file that the command line names, "
-               "cannot be read\n"
-               "  4    --check, --strict or --audit found problems\n"
-               "  5    under --strict: a plug-in or a texture is missing\n"
-               "  6    fewer workers than --require-workers asks for\n"
-               "  75   out of memory or another resource, try again\n"
-               "  130  interrupted; what was finished is saved. A second interrupt ends at once. "
-               "SIGUSR1 saves and goes on\n";
+  return out +
+         "\nExit codes\n"
+         "  0    done\n"
+         "  1    the picture could not be made or written\n"
+         "  2    the command line is wrong\n"
+         "  3    unusable input: the world, or another file that the command line names, "
+         "cannot be read\n"
+         "  4    --check, --strict or --audit found problems; --measure found no sensor or a wrong "
+         "one\n"
+         "  5    under --strict: a plug-in or a texture is missing\n"
+         "  6    fewer workers than --require-workers asks for\n"
+         "  75   out of memory or another resource, try again\n"
+         "  130  interrupted; what was finished is saved. A second interrupt ends at once. "
+         "SIGUSR1 saves and goes on\n";
 }
 
 } // namespace vv

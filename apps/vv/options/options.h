@@ -90,9 +90,15 @@ struct Options {
   bool quiet = false, verbose = false;
   std::string control; // address where programs control the world; empty: none
   bool noWindow = false;
+  // Pictures show luminance in colours; the end of the scale in cd/m2, 0: chosen for the picture.
+  std::optional<double> falseColour;
+  std::string measure; // file for the readings of the sensors, .csv or .json; empty: none
 
   bool allViewpoints() const { return viewpoint == "all"; }
-  bool makesPictures() const { return !outputs.empty() || !compare.empty() || audit > 0; }
+  bool makesPictures() const {
+    return !outputs.empty() || !compare.empty() || audit > 0 || measures();
+  }
+  bool measures() const { return !measure.empty(); }
   bool opensWindow() const {
     return !makesPictures() && !check && write.empty() && (!job() || !job()->inspects) &&
            !has(Job::listKeys) && !has(Job::serve);

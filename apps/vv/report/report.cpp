@@ -1,4 +1,4 @@
-// report.cpp: Builds the reports. No other file of vv includes nlohmann/json.
+// report.cpp: Builds the reports.
 #include "report.h"
 
 #include <algorithm>

@@ -35,12 +35,13 @@ class PictureFlow {
 };
 
 // A token bucket: so many messages per second on average, and a burst at once.
-class MessageRate {
+class RateLimit {
  public:
+  RateLimit(double perSecond, int burst) : perSecond_(perSecond), burst_(burst) {}
   // Notes a message at a time of any clock, in seconds. Returns false if it is one too many.
   bool allow(double seconds) {
-    if (begun_) level_ += std::max(0.0, seconds - last_) * maxMessagesPerSecond;
-    level_ = std::min(level_, double(maxMessageBurst));
+    if (begun_) level_ += std::max(0.0, seconds - last_) * perSecond_;
+    level_ = std::min(level_, burst_);
     last_ = begun_ ? std::max(last_, seconds) : seconds;
     begun_ = true;
     if (level_ < 1) return false;
@@ -49,8 +50,18 @@ class MessageRate {
   }
 
  private:
-  double level_ = maxMessageBurst, last_ = 0;
+  double perSecond_, burst_, level_ = burst_, last_ = 0;
   bool begun_ = false;
+};
+
+// Limits how much one page sends.
+struct MessageRate : RateLimit {
+  MessageRate() : RateLimit(maxMessagesPerSecond, maxMessageBurst) {}
+};
+
+// Limits how many pages of the web a world opens.
+struct OpenRate : RateLimit {
+  OpenRate() : RateLimit(maxOpensPerMinute / 60.0, maxOpenBurst) {}
 };
 
 struct PictureSize {

@@ -17,6 +17,7 @@
 #include "options/values.h"
 #include "server/answer.h"
 #include "server/flow.h"
+#include "server/idle_connections.h"
 #include "server/limits.h"
 
 namespace vv::server {
@@ -110,6 +111,7 @@ struct Host::Impl {
   std::map<uint64_t, Socket> sockets;
   std::unordered_map<lws*, uint64_t> numbers;
   std::unordered_map<lws*, Transfer> transfers;
+  IdleConnections<lws*> idlers;
   uint64_t lastSocket = 0;
 
   Impl(const HostOptions& wanted, std::function<void()> wakeOther)
@@ -128,10 +130,17 @@ struct Host::Impl {
   int handle(lws* connection, lws_callback_reasons reason, void* in, size_t length) {
     switch (reason) {
     case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE: return confirm(connection, static_cast<char*>(in));
-    case LWS_CALLBACK_HTTP: return answer(connection, {static_cast<char*>(in), length});
+    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED: idle(connection); return 0;
+    case LWS_CALLBACK_HTTP:
+      idlers.remove(connection);
+      return answer(connection, {static_cast<char*>(in), length});
     case LWS_CALLBACK_HTTP_WRITEABLE: return sendBody(connection);
     case LWS_CALLBACK_CLOSED_HTTP: transfers.erase(connection); return 0;
-    case LWS_CALLBACK_ESTABLISHED: join(connection); return 0;
+    case LWS_CALLBACK_WSI_DESTROY: idlers.remove(connection); return 0;
+    case LWS_CALLBACK_ESTABLISHED:
+      idlers.remove(connection);
+      join(connection);
+      return 0;
     case LWS_CALLBACK_RECEIVE: return receive(connection, {static_cast<char*>(in), length});
     case LWS_CALLBACK_SERVER_WRITEABLE: return sendNext(connection);
     case LWS_CALLBACK_CLOSED: leave(connection); return 0;
@@ -141,6 +150,18 @@ struct Host::Impl {
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED: takeOrders(); return 0;
     default: return 0;
     }
+  }
+
+  // Notes a connection that asks for nothing now.
+  void idle(lws* connection) {
+    if (lws* const oldest = idlers.add(connection))
+      lws_set_timeout(oldest, PENDING_TIMEOUT_USER_OK, LWS_TO_KILL_ASYNC);
+  }
+
+  // Ends an answer. Returns what the callback returns.
+  int complete(lws* connection) {
+    idle(connection);
+    return lws_http_transaction_completed(connection) ? -1 : 0;
   }
 
   Verdict judgeRequest(lws* connection) const {
@@ -187,7 +208,7 @@ struct Host::Impl {
         return -1;
     }
     if (lws_finalize_write_http_header(connection, start, &at, end)) return -1;
-    if (head || size == 0) return lws_http_transaction_completed(connection) ? -1 : 0;
+    if (head || size == 0) return complete(connection);
     transfers[connection] = {given.body, 0};
     lws_callback_on_writable(connection);
     return 0;
@@ -210,7 +231,7 @@ struct Host::Impl {
       return 0;
     }
     transfers.erase(found);
-    return lws_http_transaction_completed(connection) ? -1 : 0;
+    return complete(connection);
   }
 
   // --- WebSockets ---

@@ -24,6 +24,9 @@ inline constexpr int maxTokenLength = 128;
 inline constexpr int maxDownloads = 8;
 inline constexpr int maxDownloadSeconds = 60;
 inline constexpr int maxRequests = 64;
+inline constexpr int maxIdleConnections = 48;
+inline constexpr int maxOpensPerMinute = 6;
+inline constexpr int maxOpenBurst = 4;
 
 inline constexpr Limit limits[] = {
     {"maxViewers", maxViewers, "pages that are connected at a time"},
@@ -38,6 +41,11 @@ inline constexpr Limit limits[] = {
      "saved pictures that wait to be fetched, of which the oldest one goes; and that become files"},
     {"maxDownloadSeconds", maxDownloadSeconds, "seconds for which a saved picture can be fetched"},
     {"maxRequests", maxRequests, "HTTP connections at a time"},
+    {"maxIdleConnections", maxIdleConnections,
+     "HTTP connections without a request; one more ends the one that has been idle for longest"},
+    {"maxOpensPerMinute", maxOpensPerMinute,
+     "pages of the web that a world opens per minute, on average"},
+    {"maxOpenBurst", maxOpenBurst, "pages of the web that a world opens at once"},
 };
 
 } // namespace vv::server

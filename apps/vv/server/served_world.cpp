@@ -13,16 +13,8 @@ namespace vv::server {
 ServedWorld::ServedWorld(const Options& options, Callbacks callbacks)
     : options_(options), callbacks_(std::move(callbacks)), problems_(options) {}
 
-// As in the window, Inlines are loaded after the first picture, unless an option needs all nodes.
-xvrml::LoadOptions ServedWorld::loadOptions() const {
-  xvrml::LoadOptions options = options_.load;
-  const bool whole = !options_.shaders.empty() || !options_.definitions.empty() || options_.strict;
-  if (!whole) options.loadInlines = false;
-  return options;
-}
-
 void ServedWorld::openFirst() {
-  std::unique_ptr<xvrml::World> world = readWorld(options_.input, loadOptions());
+  std::unique_ptr<xvrml::World> world = readWorld(options_.input, loadOptionsForShowing(options_));
   begin(std::move(world), "", {options_.render.width, options_.render.height});
 }
 
@@ -33,15 +25,11 @@ void ServedWorld::reload() {
 }
 
 void ServedWorld::watch(double now) {
-  if (!watched_ || now < nextLook_) return;
-  nextLook_ = now + .2;
-  if (!watched_->changed()) return;
-  if (!options_.quiet) say("vv: a file has changed");
-  reload();
+  if (watch_.changed(now)) reload();
 }
 
 void ServedWorld::open(LoadRequest request, bool keepPlace) {
-  request.options = loadOptions();
+  request.options = loadOptionsForShowing(options_);
   keepPlace_ = keepPlace;
   loading_ = request.urls.empty() ? "" : request.urls[0];
   loader_.begin(std::move(request));
@@ -59,15 +47,11 @@ bool ServedWorld::take(PictureSize size) {
   LoadAnswer answer;
   if (!loader_.take(answer)) return false;
   loading_.clear();
-  std::string wrong = std::move(answer.error);
-  if (answer.world) {
-    try {
-      begin(std::move(answer.world), answer.fragment, size);
-      return true;
-    } catch (const Failure& failure) { wrong = failure.text; } catch (const std::exception& error) {
-      wrong = error.what();
-    }
-  }
+  const std::string wrong = useWorld(std::move(answer), [&](std::unique_ptr<xvrml::World> world,
+                                                            const std::string& fragment) {
+                              begin(std::move(world), fragment, size);
+                            }).wrong;
+  if (wrong.empty()) return true;
   sayError(wrong);
   callbacks_.onMessage(wrong);
   return false;
@@ -90,11 +74,7 @@ void ServedWorld::begin(std::unique_ptr<xvrml::World> world, const std::string& 
       std::make_unique<Session>(std::move(world), options_, problems_, std::move(calls), nullptr);
   fresh->begin(size.width, size.height, place, fragment);
   session_ = std::move(fresh); // ends the previous session
-  const std::string& path = session_->browser().world().path;
-  if (options_.watch && path != "-")
-    watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
+  watch_.follow(session_->browser().world());
 }
-
-bool ServedWorld::end() { return session_->stop(.5) && !WorldLoader::working(); }
 
 } // namespace vv::server

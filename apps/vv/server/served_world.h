@@ -10,9 +10,10 @@
 
 #include "report/problems.h"
 #include "server/flow.h"
+#include "session/ending.h"
 #include "session/session.h"
 #include "session/world_loader.h"
-#include "watched.h"
+#include "session/world_watch.h"
 
 namespace vv::server {
 
@@ -42,12 +43,10 @@ class ServedWorld {
   Session& session() { return *session_; }
   // Returns the name of the world that is being read; "": none.
   const std::string& loading() const { return loading_; }
-  // Ends the session. Returns false if a thread still uses the world, so that the process must end
-  // without cleanup.
-  bool end();
+  // Ends the session, or the process with `code` (session/ending.h).
+  void end(int code) { stopOrExit(session_.get(), code); }
 
  private:
-  xvrml::LoadOptions loadOptions() const;
   void open(LoadRequest request, bool keepPlace);
   void openUrls(const std::vector<std::string>& urls, const std::string& base);
   void begin(std::unique_ptr<xvrml::World> world, const std::string& fragment, PictureSize size);
@@ -57,10 +56,9 @@ class ServedWorld {
   Problems problems_;
   WorldLoader loader_;
   std::unique_ptr<Session> session_;
-  std::unique_ptr<Watched> watched_;
+  WorldWatch watch_{options_};
   std::string loading_;
   bool keepPlace_ = false;
-  double nextLook_ = 0;
 };
 
 } // namespace vv::server

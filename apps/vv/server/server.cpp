@@ -1,20 +1,16 @@
 // server.cpp: Runs the loop of `vv serve`: passes what pages send to the session of the world, and
 // the session's pictures to the pages. Three other threads help: the host's with the connections,
-// one that encodes pictures for pages, and one that encodes files.
+// one that encodes pictures for pages, and one that encodes files (saves.h).
 #include "server/server.h"
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <filesystem>
 #include <mutex>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include "libpicture/files/atomic_file.h"
 #include "libpicture/files/formats.h"
-#include "options/names.h"
 #include "options/shader_text.h"
 #include "pictures.h"
 #include "report/cluster_report.h"
@@ -23,10 +19,10 @@
 #include "server/host.h"
 #include "server/pages.h"
 #include "server/reports.h"
+#include "server/saves.h"
 #include "server/served_world.h"
 #include "server/texts.h"
 #include "server/worker.h"
-#include "session/saving.h"
 #include "signals.h"
 #include "xvrml/node_plugin.h"
 
@@ -61,6 +57,9 @@ class Server {
   int run() {
     world_.openFirst();
     host_ = std::make_unique<Host>(hostOptions_, [this] { wake(); });
+    saves_ = std::make_unique<Saves>(
+        options_, pages_, world_, reports_, *host_,
+        [this](uint32_t view, const std::string& text) { notify(view, text, 6); });
     deferInterrupt(true, interruptSeconds);
     writeOut(urlOf(options_.serve, hostOptions_, host_->port()) + "\n");
     std::fflush(stdout);
@@ -69,6 +68,7 @@ class Server {
       takeHostEvents();
       takeWorld();
       const double time = now();
+      if (world_.session().resting()) saves_->advance();
       watched_ = pages_.isWatched(time);
       if (isTime(time)) advance(time);
       takePictures();
@@ -153,7 +153,7 @@ class Server {
     Page* const page = pages_.find(number);
     if (!page) return;
     page->saving = Page::Saving::nothing; // nobody is to be told
-    world_.session().giveUpCapture(number);
+    saves_->giveUp(number);
     if (page->role == Page::Role::leader)
       world_.session().handleFor(0, leaving());
     else if (page->role == Page::Role::own)
@@ -197,7 +197,7 @@ class Server {
       if (pages_.follow(number)) endView(view);
       break;
     }
-    case Message::Type::save: save(number, message.format); break;
+    case Message::Type::save: saves_->want(number, message.format); break;
     case Message::Type::command: sendCommand(number, page); break;
     case Message::Type::shown: break; // acknowledge()
     }
@@ -214,8 +214,7 @@ class Server {
 
   void input(uint64_t number, const Page& page, const InputEvent& event) {
     const bool escapes = event.kind == InputEvent::Kind::down && event.text == "Escape";
-    if (page.saving == Page::Saving::picture && escapes)
-      return world_.session().giveUpCapture(number);
+    if (page.saving == Page::Saving::picture && escapes) return saves_->giveUp(number);
     if (page.role == Page::Role::follower) return;
     if (event.kind == InputEvent::Kind::press || event.kind == InputEvent::Kind::release)
       clicked_ = number;
@@ -246,12 +245,18 @@ class Server {
     calls.onAction = [this](uint32_t view, const InputEvent&, Action action) {
       onAction(view, action);
     };
-    calls.openPage = [this](const std::string& url) {
-      const uint64_t page = pages_.find(clicked_) ? clicked_ : pages_.leader();
-      host_->sendText(page, "", openText(url));
-    };
+    calls.openPage = [this](const std::string& url) { openPage(url); };
     calls.onMessage = [this](const std::string& text) { notify(0, text, 10); };
     return calls;
+  }
+
+  // Opens a page of the web for the one who clicked. A Script may want that at any time, and again
+  // and again.
+  void openPage(const std::string& url) {
+    if (!openRate_.allow(now()))
+      return notify(0, "the world opens too many pages (maxOpensPerMinute)", 10);
+    const uint64_t page = pages_.find(clicked_) ? clicked_ : pages_.leader();
+    host_->sendText(page, "", openText(url));
   }
 
   void onAction(uint32_t view, Action action) {
@@ -261,8 +266,8 @@ class Server {
     Session& session = world_.session();
     using Motion = PictureLoop::Motion;
     switch (action) {
-    case Action::save: save(number, Message::Format::png); break;
-    case Action::saveExr: save(number, Message::Format::exr); break;
+    case Action::save: saves_->want(number, Message::Format::png); break;
+    case Action::saveExr: saves_->want(number, Message::Format::exr); break;
     case Action::command: sendCommand(number, *page); break;
     case Action::samples: {
       const bool raw = session.motion(view) == Motion::rebuilt;
@@ -284,14 +289,11 @@ class Server {
     const Page* const leader = pages_.find(pages_.leader());
     const PictureSize usual{options_.render.width, options_.render.height};
     if (!world_.take(leader && leader->sized ? leader->size : usual)) return;
-    std::vector<uint64_t> lost; // pages whose pictures have ended with the previous world
-    for (auto& [number, page] : pages_.all()) {
-      if (page.saving == Page::Saving::picture) lost.push_back(number);
+    for (const auto& [number, page] : pages_.all())
       if (page.role == Page::Role::own)
         world_.session().addGuest(page.view, page.size.width, page.size.height);
-    }
     reports_.beginAnew();
-    for (const uint64_t number : lost) endSaving(number, ": the world has been replaced");
+    saves_->loseAll();
     isQuiet_ = false;
   }
 
@@ -350,70 +352,6 @@ class Server {
     } catch (const std::exception&) { host_->close(page); } // it would wait for ever
   }
 
-  // --- Files ---
-
-  void save(uint64_t number, Message::Format format) {
-    takeMadeFiles();
-    Page* const page = pages_.find(number);
-    if (!page || page->saving != Page::Saving::nothing) return;
-    page->saving = Page::Saving::picture;
-    const std::string suffix = format == Message::Format::exr ? "exr" : "png";
-    world_.session().capture(
-        page->view, number, [this, number, suffix](const picture::Picture* picture) {
-          reports_.hurry();
-          if (!picture) return endSaving(number);
-          // Pictures that wait here need much memory, and more than these would not be kept.
-          takeMadeFiles();
-          if (filesInMaking_ >= maxDownloads)
-            return endSaving(number, ": too many others are being saved");
-          ++filesInMaking_;
-          if (Page* const saver = pages_.find(number)) saver->saving = Page::Saving::file;
-          std::string name = fileNamePart(
-              std::filesystem::path(world_.session().browser().world().path).stem().string());
-          name =
-              fmt::format("{}-{}.{}", name.empty() || name == "-" ? "vv" : name, ++saved_, suffix);
-          auto wanted =
-              std::make_shared<picture::Picture>(wantedPart(*picture, options_.render.channels));
-          files_.post(
-              [this, number, name, wanted, suffix] { encodeFile(number, name, *wanted, suffix); });
-        });
-  }
-
-  // [the thread for files]
-  void encodeFile(uint64_t page, const std::string& name, const picture::Picture& picture,
-                  const std::string& suffix) {
-    std::string path;
-    try {
-      path = host_->offerDownload(name, "image/" + suffix,
-                                  picture::formatNamed(suffix)->encode(picture));
-    } catch (const std::exception&) { host_->close(page); }
-    {
-      const std::lock_guard lock(mutex_);
-      madeFiles_.push_back(page); // before the page is told, because it may save again at once
-    }
-    if (!path.empty()) host_->sendText(page, "", savedText(path, name));
-  }
-
-  // Lets the pages whose files have been made save again.
-  void takeMadeFiles() {
-    std::vector<uint64_t> made;
-    {
-      const std::lock_guard lock(mutex_);
-      made.swap(madeFiles_);
-    }
-    filesInMaking_ -= int(made.size());
-    for (const uint64_t number : made)
-      if (Page* const page = pages_.find(number)) page->saving = Page::Saving::nothing;
-  }
-
-  // Tells a page that it gets no file.
-  void endSaving(uint64_t number, std::string_view why = "") {
-    Page* const page = pages_.find(number);
-    if (!page || page->saving == Page::Saving::nothing) return;
-    page->saving = Page::Saving::nothing;
-    notify(page->view, fmt::format("the picture is not saved{}", why), 6);
-  }
-
   void sendCommand(uint64_t number, const Page& page) {
     host_->sendText(number, "", commandText(world_.session().command(arguments_, page.view)));
   }
@@ -433,15 +371,10 @@ class Server {
       say(line);
   }
 
-  // Ends the process. Reading a world and building geometry cannot be cancelled; in those cases the
-  // process exits without cleanup.
   int end() {
-    const bool stopped = world_.end();
+    world_.end(exitDone);
     interruptHandled();
-    if (stopped) return exitDone;
-    picture::removeTemporary();
-    std::fflush(nullptr);
-    ::_exit(exitDone);
+    return exitDone;
   }
 
   using Clock = std::chrono::steady_clock;
@@ -453,7 +386,6 @@ class Server {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool woken_ = false;
-  std::vector<uint64_t> madeFiles_; // the pages whose files have been made since the last save()
 
   ServedWorld world_;
   Pages pages_;
@@ -461,8 +393,7 @@ class Server {
   Reports reports_{pages_, world_};
   std::map<uint32_t, std::shared_ptr<Shot>> shots_; // by view: its newest picture
   uint32_t lastShot_ = 0;
-  int saved_ = 0; // files that were begun
-  int filesInMaking_ = 0;
+  OpenRate openRate_;
   uint64_t clicked_ = 0; // the page whose button went down or up last
   bool watched_ = false; // somebody looks
   bool isQuiet_ = false; // nothing moves, and the pictures are finished
@@ -471,7 +402,8 @@ class Server {
   double time_ = 0, advanced_ = 0, next_ = 0;
 
   std::unique_ptr<Host> host_;
-  Worker encoder_, files_; // the last members: their tasks use the others
+  std::unique_ptr<Saves> saves_;
+  Worker encoder_; // the last member: its tasks use the others
 };
 
 } // namespace

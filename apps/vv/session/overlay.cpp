@@ -67,6 +67,10 @@ std::vector<std::string> workerLines(const std::vector<RTworker>& workers) {
 
 } // namespace
 
+std::string filterText(const std::string& denoisedBy) {
+  return "filtered by " + (denoisedBy.empty() ? "vv itself" : denoisedBy);
+}
+
 std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, OverlayLevel level) {
   if (level == OverlayLevel::none) return {};
   std::string first = sampling(f);
@@ -94,6 +98,8 @@ std::vector<std::string> overlayLines(const SessionFacts& f, bool paused, Overla
     lines.push_back(fmt::format("\t{}: {}", picture::transportName(f.stats.transport),
                                 f.stats.transportReason));
   lines.push_back(fmt::format("\t{}, picture of {}x{}", f.navigation, f.width, f.height));
+  if (f.showing == SessionFacts::Showing::preview && f.stats.cameraRays > 0)
+    lines.push_back("\t" + filterText(f.denoisedBy));
   for (const std::string& line : workerLines(f.workers)) lines.push_back("\t" + line);
   if (!wrong.empty()) lines.push_back(wrong);
   if (!f.lastProblem.empty()) lines.push_back("\t" + oneLine(f.lastProblem));

@@ -12,6 +12,9 @@ namespace vv {
 enum class OverlayLevel : uint8_t { none, brief, all };
 
 // A line that begins with a tab is drawn in a weaker colour.
+// Says what has filtered a preview. denoisedBy: as in LivePicture.
+std::string filterText(const std::string& denoisedBy);
+
 std::vector<std::string> overlayLines(const SessionFacts& facts, bool paused, OverlayLevel level);
 std::vector<std::string> helpLines();
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "libpicture/live/denoise_choice.h"
+
 namespace vv {
 
 namespace {
@@ -37,12 +39,13 @@ bool PictureLoop::isOutdated(const Pilot& pilot, const Fit& fit) const {
          (isRefining() && (frame_.width != width_ || frame_.height != height_));
 }
 
-// A world without sampled light needs no larger preview than one of full size.
+// A world without sampled light needs no better preview than one of full size with light
+// everywhere.
 bool PictureLoop::isSettled(double now) const {
   if (motion_ == Motion::samples) return true;
   if (phase_ == Phase::settling) return now >= settlingEnds_;
-  return picture::lightOf(facts_.stats, true) == picture::Pacing::Light::direct &&
-         frame_.width >= width_ && frame_.height >= height_;
+  return picture::lightOf(facts_.stats, false) == picture::Pacing::Light::direct &&
+         frame_.width >= width_ && frame_.height >= height_ && frame_.lightStride == 1;
 }
 
 bool PictureLoop::isInterrupted() const {
@@ -176,6 +179,8 @@ void PictureLoop::start(Phase phase, const Pilot& pilot, Fit& fit, double now) {
   frame.height = frame_.height;
   frame.samples = frame_.samples;
   frame.lightStride = frame_.lightStride;
+  frame.denoising =
+      moving ? picture::live::denoisingInMotion(options_.fps) : picture::live::denoisingAtRest;
   frame.purpose = phase == Phase::refining     ? Purpose::still
                   : motion_ == Motion::rebuilt ? Purpose::preview
                                                : Purpose::rawPreview;
@@ -243,6 +248,7 @@ bool PictureLoop::note(const picture::LivePicture& picture) {
   facts_.samples = picture.samples;
   facts_.finished = picture.finished;
   facts_.preview = picture.preview;
+  facts_.denoisedBy = picture.denoisedBy;
   facts_.purpose = picture.purpose;
   if (picture.purpose == Purpose::still && picture.number == number_ && picture.covered == 1)
     still_ = picture.finished ? Progress::finished : Progress::covered;

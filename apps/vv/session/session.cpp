@@ -73,9 +73,7 @@ Session::Session(std::unique_ptr<xvrml::World> world, const Options& options, Pr
 void Session::begin(int width, int height, const std::optional<Place>& place,
                     const std::string& fragment) {
   resize(width, height);
-  // --viewpoint names one of the command line's world; worlds that it leads to need not have it.
-  const bool ofCommandLine = options_.input.empty() || browser_->world().path == options_.input;
-  const bool named = ofCommandLine && !place && fragment.empty();
+  const bool named = isOfCommandLine(options_, browser_->world()) && !place && fragment.empty();
   if (pilot_.begin(options_.view, named ? options_.viewpoint : std::string()) && !place)
     fit_.want(Fit::Direction::initial);
   fit_.setRepeat(fit_.isPending() && inlines_.isLoading() ? Fit::Repeat::whenLoaded
@@ -452,6 +450,7 @@ SessionFacts Session::facts(uint32_t viewer) const {
   SessionFacts facts;
   facts.showing = picture.preview ? (still ? Showing::fading : Showing::preview)
                                   : (still ? Showing::still : Showing::samples);
+  facts.denoisedBy = picture.denoisedBy;
   facts.frameRate = pictures.frameRate();
   facts.width = picture.width;
   facts.height = picture.height;

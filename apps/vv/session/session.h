@@ -40,7 +40,8 @@ struct SessionFacts {
   double frameRate = 0; // pictures per second while something moves; 0: nothing moves
   int width = 0, height = 0;
   double samples = 0, wanted = 0;
-  RTstats stats{}; // statistics of the last finished picture
+  std::string denoisedBy; // the library that has filtered the preview; "": none
+  RTstats stats{};        // statistics of the last finished picture
   xvrml::MapStats map{};
   uint64_t errors = 0, warnings = 0;
   std::string lastProblem, navigation, description;

@@ -3,14 +3,15 @@
 #include <atomic>
 #include <new>
 #include <thread>
+#include <utility>
 
-#include "options/values.h"
 #include "world_start.h"
 
 namespace vv {
 
 namespace {
 
+constexpr int mostThreads = 4; // that read at a time, whether their worlds are wanted or not
 std::atomic<int> threads{0};
 
 LoadAnswer load(const LoadRequest& request) {
@@ -40,6 +41,20 @@ LoadAnswer load(const LoadRequest& request) {
 
 } // namespace
 
+LoadOutcome useWorld(LoadAnswer answer,
+                     const std::function<void(std::unique_ptr<xvrml::World> world,
+                                              const std::string& fragment)>& begin) {
+  if (!answer.world) return {answer.error, exitInput};
+  try {
+    begin(std::move(answer.world), answer.fragment);
+    return {};
+  } catch (const Failure& failure) {
+    return {failure.text, failure.code};
+  } catch (const UsageError& error) {
+    return {error.what(), exitUsage};
+  } catch (const std::exception& error) { return {error.what(), exitInput}; }
+}
+
 struct WorldLoader::Job {
   LoadRequest request;
   LoadAnswer answer;
@@ -49,8 +64,16 @@ struct WorldLoader::Job {
 WorldLoader::~WorldLoader() = default;
 
 void WorldLoader::begin(LoadRequest request) {
+  job_ = nullptr;
+  wanted_ = std::move(request);
+  startIfPossible();
+}
+
+// Reading cannot be cancelled, and Scripts may ask for worlds again and again.
+void WorldLoader::startIfPossible() {
+  if (!wanted_ || threads >= mostThreads) return;
   job_ = std::make_shared<Job>();
-  job_->request = std::move(request);
+  job_->request = *std::exchange(wanted_, {});
   ++threads;
   std::thread([job = job_] {
     job->answer = load(job->request);
@@ -60,6 +83,7 @@ void WorldLoader::begin(LoadRequest request) {
 }
 
 bool WorldLoader::take(LoadAnswer& answer) {
+  startIfPossible();
   if (!job_ || !job_->done) return false;
   answer = std::move(job_->answer);
   job_ = nullptr;

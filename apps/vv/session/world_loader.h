@@ -2,10 +2,13 @@
 // one. A read that is no longer wanted runs to its end. [one thread]
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "options/values.h"
 #include "xvrml/world.h"
 
 namespace vv {
@@ -22,16 +25,29 @@ struct LoadAnswer {
   std::string error;                   // why there is no world
 };
 
+// Tells what became of the world of an answer.
+struct LoadOutcome {
+  std::string wrong;   // why it is not used; empty if it is
+  int code = exitDone; // of the process that cannot go on without it
+};
+// Gives the world of an answer to `begin`, whose errors mean that it cannot be used.
+LoadOutcome useWorld(LoadAnswer answer,
+                     const std::function<void(std::unique_ptr<xvrml::World> world,
+                                              const std::string& fragment)>& begin);
+
 class WorldLoader {
  public:
   ~WorldLoader();
   void begin(LoadRequest request); // discards an earlier request
-  bool busy() const { return job_ != nullptr; }
+  bool busy() const { return job_ || wanted_; }
   bool take(LoadAnswer& answer); // returns true once the answer is there
   static bool working();         // true while a thread still reads, wanted or not
 
  private:
   struct Job;
+  void startIfPossible();
+
+  std::optional<LoadRequest> wanted_; // waits until fewer threads read
   std::shared_ptr<Job> job_;
 };
 

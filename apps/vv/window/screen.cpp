@@ -141,7 +141,7 @@ struct Screen::Impl {
     case SDL_KEYDOWN:
     case SDL_KEYUP: {
       const std::string name = SDL_GetKeyName(e.key.keysym.sym);
-      if (!e.key.repeat && !isTextKey(name))
+      if (!e.key.repeat && !name.empty() && !isTextKey(name)) // some keys have no name
         key(e.type == SDL_KEYDOWN ? Kind::down : Kind::up, name, e.key.keysym.mod, out);
       break;
     }

@@ -5,27 +5,26 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "control/control.h"
-#include "libpicture/files/atomic_file.h"
 #include "options/shader_text.h"
 #include "report/cluster_report.h"
 #include "report/messages.h"
 #include "report/progress.h"
+#include "session/ending.h"
 #include "session/overlay.h"
 #include "session/saving.h"
 #include "session/session.h"
 #include "session/world_loader.h"
+#include "session/world_watch.h"
 #include "signals.h"
-#include "watched.h"
 #include "window/screen.h"
 #include "window/sound/speaker.h"
 #include "world_start.h"
@@ -90,11 +89,12 @@ class Window {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   // Waits for events. The wait is short if a picture or a command of a program may be due, and
-  // longer if the window is hidden. It is never nothing: that would take the processor from the
-  // picture that is drawn.
+  // longer if the window is hidden or shows a finished picture, since events end it. It is never
+  // nothing: that would take the processor from the picture that is drawn.
   void wait(double time) {
     const bool soon = session_ && (session_->drawing() || session_->due());
-    const double most = (session_ && screen_.visible()) || control_ ? .004 : .05;
+    const bool idle = !session_ || !screen_.visible() || (input_.empty() && session_->isQuiet());
+    const double most = idle && !control_ ? .05 : .004;
     screen_.wait(soon ? .001 : std::min(time, most), events_);
   }
 
@@ -125,6 +125,13 @@ class Window {
     if (std::exchange(first_, false) && options_.verbose)
       say(fmt::format("vv: first picture, {}x{}, after {}", picture_.width, picture_.height,
                       duration(seconds() - loadStart_)));
+    if (options_.verbose && picture_.purpose == picture::LiveFrame::Purpose::preview) sayFilter();
+  }
+
+  // Says once of each filter that it has made a preview.
+  void sayFilter() {
+    const std::string filter = filterText(picture_.denoisedBy);
+    if (filtersSaid_.insert(filter).second) say("vv: previews are " + filter);
   }
 
   void advanceSession() {
@@ -141,16 +148,13 @@ class Window {
     if (session_->resting()) {
       screen_.setHand(session_->pilot().overSensor());
       sound();
-      watch();
+      if (watch_.changed(seconds())) reload();
     }
   }
 
   // --- Worlds ---
   void open(LoadRequest request, bool keepPlace) {
-    request.options = options_.load;
-    const bool whole = !options_.shaders.empty() || !options_.definitions.empty() ||
-                       options_.script || record_.is_open() || options_.strict;
-    if (!whole) request.options.loadInlines = false; // Inlines are loaded after the first picture
+    request.options = loadOptionsForShowing(options_);
     keepPlace_ = keepPlace && session_;
     loading_ = request.urls.empty() ? "" : request.urls[0];
     loadStart_ = seconds();
@@ -162,17 +166,12 @@ class Window {
     if (session_ && !session_->resting()) return; // the old session cannot end yet
     LoadAnswer answer;
     if (!loader_.take(answer)) return;
-    const std::string name = std::exchange(loading_, "");
-    std::string wrong = std::move(answer.error);
-    int code = exitInput;
-    if (answer.world) {
-      try {
-        begin(std::move(answer.world), answer.fragment);
-      } catch (const Failure& failure) {
-        wrong = failure.text;
-        code = failure.code;
-      } catch (const std::exception& error) { wrong = error.what(); }
-    }
+    loading_.clear();
+    const auto [wrong, code] =
+        useWorld(std::move(answer),
+                 [this](std::unique_ptr<xvrml::World> world, const std::string& fragment) {
+                   begin(std::move(world), fragment);
+                 });
     if (wrong.empty()) return;
     sayError(wrong);
     message(wrong, 1e9);
@@ -208,8 +207,7 @@ class Window {
     message(saved, 6);
     const std::string& path = session_->browser().world().path;
     screen_.setTitle(path + " - vv");
-    if (options_.watch && path != "-")
-      watched_ = std::make_unique<Watched>(usedFiles(session_->browser().world()));
+    watch_.follow(session_->browser().world());
   }
 
   // Records a line of input. After a failed write nothing more is written, because a script with a
@@ -235,14 +233,6 @@ class Window {
     const std::string path = session_->browser().world().path;
     if (path == "-") return message("standard input cannot be read again", 3);
     open({{path}, "", {}}, true);
-  }
-
-  void watch() {
-    if (!watched_ || seconds() < nextLook_) return;
-    nextLook_ = seconds() + .2;
-    if (!watched_->changed()) return;
-    if (!options_.quiet) say("vv: a file has changed");
-    reload();
   }
 
   // --- Keys ---
@@ -360,8 +350,6 @@ class Window {
     if (speaker_.tried()) mixer_.set(audible);
   }
 
-  // Ends the process. Reading a world and building geometry cannot be cancelled; in those cases the
-  // process exits without cleanup.
   int end() {
     errno = 0;
     if (record_.is_open() && record_ && (record_.close(), !record_)) recordingFailed(errno);
@@ -369,14 +357,9 @@ class Window {
                      : failed_ == exitDone && !record_ ? exitRender
                                                        : failed_;
     if (session_) session_->endSaving();
-    const bool stopped = !session_ || session_->stop(.5);
-    if (stopped && !WorldLoader::working()) {
-      control_.reset();
-      return code;
-    }
-    picture::removeTemporary();
-    std::fflush(nullptr);
-    ::_exit(code);
+    control_.reset(); // sends the last answers, before the process may end
+    stopOrExit(session_.get(), code);
+    return code;
   }
 
   Options options_;
@@ -390,17 +373,18 @@ class Window {
   std::unique_ptr<PanelPainter> painter_;
   std::unique_ptr<Session> session_;          // null: no world has been loaded yet
   std::unique_ptr<control::Control> control_; // null: no program controls the world
-  std::unique_ptr<Watched> watched_;
+  WorldWatch watch_{options_};
   picture::LivePicture picture_;
   std::vector<InputEvent> events_, input_;
   const Clock::time_point start_ = Clock::now();
   int width_ = 0, height_ = 0;
   int failed_ = exitDone; // exit code of a world that could not be loaded
   bool ended_ = false, keepPlace_ = false, help_ = false;
+  std::set<std::string> filtersSaid_;
   bool first_ = false;  // the first picture of the world is still missing
   double advanced_ = 0; // when the session advanced last
   PictureLoop::Motion motion_ = PictureLoop::Motion::rebuilt;
-  double nextLook_ = 0, loadStart_ = 0;
+  double loadStart_ = 0;
 
   OverlayLevel level_ = OverlayLevel::brief;
   std::string loading_, message_, bottom_;

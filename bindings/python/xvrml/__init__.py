@@ -26,9 +26,9 @@ from . import _xvrml
 from ._camera import Pinhole
 from ._live import LiveView
 from ._world import loads
-from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Mesh, Node, ParseError,
-                     Picture, RenderError, ViewpointInfo, Worker, World, load_node_plugins,
-                     __version__)
+from ._xvrml import (Browser, Cluster, ClusterError, Diagnostic, Film, Measurement, Mesh, Node,
+                     ParseError, Picture, RenderError, ViewpointInfo, Worker, World,
+                     load_node_plugins, __version__)
 
 load = _arguments.explained(_xvrml.load)
 for _class in (World, Browser, Cluster, Film, Node, Picture, _xvrml.Viewer):
@@ -42,9 +42,9 @@ from . import nodes as nodes  # noqa: E402  after the plug-ins, whose nodes have
 from .nodes import *  # noqa: E402,F401,F403
 
 __all__ = [
-    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Mesh", "Node",
-    "ParseError", "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World", "load",
-    "load_node_plugins", "loads", "__version__", *nodes.__all__
+    "Browser", "Cluster", "ClusterError", "Diagnostic", "Film", "LiveView", "Measurement", "Mesh",
+    "Node", "ParseError", "Picture", "Pinhole", "RenderError", "ViewpointInfo", "Worker", "World",
+    "load", "load_node_plugins", "loads", "__version__", *nodes.__all__
 ]
 
 _SUBMODULES = ("control", "dask", "interop", "notebook", "rt")

@@ -290,6 +290,49 @@ class Pinhole:
         ...
 
 
+class Measurement:
+
+    @property
+    def name(self) -> str:
+        ...
+
+    @property
+    def quantity(self) -> str:
+        ...
+
+    @property
+    def unit(self) -> str:
+        ...
+
+    @property
+    def direction(self) -> Tuple[float, float, float]:
+        ...
+
+    @property
+    def positions(self) -> npt.NDArray[np.float64]:
+        ...
+
+    @property
+    def values(self) -> npt.NDArray[np.float32]:
+        ...
+
+    @property
+    def half_widths(self) -> npt.NDArray[np.float32]:
+        ...
+
+    @property
+    def trusted(self) -> npt.NDArray[np.bool_]:
+        ...
+
+    @property
+    def samples(self) -> npt.NDArray[np.uint32]:
+        ...
+
+    @property
+    def stats(self) -> Dict[str, Any]:
+        ...
+
+
 class Picture:
 
     @property
@@ -493,6 +536,21 @@ class World:
         jitter: bool = ...,
         light_stride: int = ...,
     ) -> Picture:
+        ...
+
+    def measure(
+        self,
+        *,
+        spp: Optional[int] = ...,
+        seed: int = ...,
+        threads: int = ...,
+        depth: int = ...,
+        transport: str = ...,
+        error: float = ...,
+        time_limit: float = ...,
+        cluster: Optional[Cluster] = ...,
+        progress: Union[None, bool, Callable[[float], Any]] = ...,
+    ) -> List[Measurement]:
         ...
 
     def view(self, size: Tuple[int, int] = ..., **options: Any) -> _View:

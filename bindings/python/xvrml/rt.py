@@ -122,7 +122,7 @@ class Raycaster:
         return self._context.test_occlusions(rays, tnear=tnear, tfar=tfar)
 
     def count_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):
-        """Returns the number of triangles on each ray."""
+        """Returns the number of crossings of surfaces on each ray. Every crossing counts once."""
         return self._context.count_intersections(rays, tnear=tnear, tfar=tfar)
 
     def list_intersections(self, rays, nthreads=0, *, tnear=0.0, tfar=np.inf):

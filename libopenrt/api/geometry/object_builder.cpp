@@ -7,6 +7,7 @@
 #include <xxhash.h>
 
 #include "api/geometry/transform.h"
+#include "scene/analytic.h"
 
 namespace openrt {
 namespace {
@@ -291,6 +292,18 @@ void ObjectBuilder::sphere(float radius, const GeometryState& state) {
   open_ = false;
   BuiltGeometry built{.state = state, .primitive = edit::Primitive::Sphere};
   built.state.width = radius;
+  done_.push_back(std::move(built));
+}
+
+void ObjectBuilder::analytic(edit::Primitive kind, std::vector<double> numbers,
+                             const GeometryState& state) {
+  require(!inList_, RT_INVALID_OPERATION, "between rtBegin and rtEnd");
+  const std::string problem = AnalyticSurface::problemOf(kind, numbers);
+  if (!problem.empty()) fail(RT_INVALID_VALUE, problem);
+  flush(vertices_.count());
+  open_ = false;
+  BuiltGeometry built{.state = state, .primitive = kind};
+  built.surface = std::move(numbers);
   done_.push_back(std::move(built));
 }
 

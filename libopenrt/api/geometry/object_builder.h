@@ -78,6 +78,7 @@ struct BuiltGeometry {
   edit::Primitive primitive = edit::Primitive::Triangles;
   ArrayPtr points, indices, normals, texCoords, colors;
   std::vector<BuiltParameter> parameters;
+  std::vector<double> surface; // numbers of a quadric or an asphere
 };
 
 class ObjectBuilder {
@@ -106,6 +107,8 @@ class ObjectBuilder {
 
   void draw(const DrawCall& call, const GeometryState& state);
   void sphere(float radius, const GeometryState& state);
+  // Adds a quadric or an asphere with the numbers of AnalyticSurface.
+  void analytic(edit::Primitive kind, std::vector<double> numbers, const GeometryState& state);
 
   uint64_t degenerate() const { return degenerate_; }
   // Ends the object and returns its geometry.

@@ -63,7 +63,8 @@ void removedParameters(const RuleContext& f, const Report& report) {
 void unmappedTextures(const RuleContext& f, const Report& report) {
   for (const auto& [id, object] : f.scene.objects)
     for (const Geometry& g : object.geometries) {
-      if (g.primitive == edit::Primitive::Sphere || g.texCoords || g.shader == 0) continue;
+      if (g.primitive == edit::Primitive::Sphere || g.surface || g.texCoords || g.shader == 0)
+        continue;
       const auto values = f.scene.shaders.find(g.shader);
       if (values == f.scene.shaders.end()) continue;
       for (const auto& [index, parameter] : values->second.parameters)
@@ -107,6 +108,11 @@ Bounds boundsOf(const Object& object) {
       for (int corner = 0; corner < 8; corner++)
         b.add(g.matrix.point({corner & 1 ? g.width : -g.width, corner & 2 ? g.width : -g.width,
                               corner & 4 ? g.width : -g.width}));
+    } else if (g.surface) {
+      const Vec3d low = g.surface->low(), high = g.surface->high();
+      for (int corner = 0; corner < 8; corner++)
+        b.add(g.matrix.point({corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y,
+                              corner & 4 ? high.z : low.z}));
     } else if (g.points) {
       const float* p = g.points->as<float>();
       for (size_t i = 0; i + 2 < g.points->count<float>(); i += 3)

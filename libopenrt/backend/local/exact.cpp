@@ -94,6 +94,19 @@ double closestPointToLine(const RelativeTriangle& s, const Vec3d& d, unsigned ed
   return best;
 }
 
+bool intersectUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
+  const double dd = dot(d, d), middle = -dot(o, d) / dd;
+  const Vec3d across = o + d * middle;
+  const double h = length(across), square = (1 - h) * (1 + h) / dd;
+  if (!(square >= 0)) return false;
+  const double half = std::sqrt(square), far = middle + std::copysign(half, middle),
+               distance = length(o);
+  const double near = far != 0 ? (distance - 1) * (distance + 1) / dd / far : 0;
+  t[0] = std::min(near, far);
+  t[1] = std::max(near, far);
+  return std::isfinite(near) && std::isfinite(far);
+}
+
 double intersectPlane(const RelativeTriangle& s, const Vec3d& d) {
   const Vec3d n = cross(s.b - s.a, s.c - s.a);
   return dot(n, s.a) / dot(n, d);

@@ -32,6 +32,11 @@ bool intersectTriangle(const RelativeTriangle& triangle, const Vec3d& direction,
 double closestPointToLine(const RelativeTriangle& triangle, const Vec3d& direction, unsigned edges,
                           TriangleHit& at);
 
+// Intersects the line o + t d with the unit sphere. Returns false if it misses, else both t, the
+// smaller one first. The nearer one is computed from the product of both, which follows from the
+// origin's distance from the surface, so that it keeps its digits.
+bool intersectUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]);
+
 // Returns t where the line intersects the plane of the triangle; not finite if they are parallel.
 double intersectPlane(const RelativeTriangle& triangle, const Vec3d& direction);
 

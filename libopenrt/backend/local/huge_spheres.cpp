@@ -6,26 +6,11 @@
 #include <cmath>
 
 #include "backend/local/accel/embree_parts.h"
+#include "backend/local/exact.h"
 #include "backend/local/user_geometry.h"
 
 namespace openrt {
 namespace {
-
-// Intersects the ray with the unit sphere. Returns false if it misses, else both distances, the
-// nearer one first. The nearer one is computed from the product of both, which follows from the
-// origin's distance from the surface, so that it keeps its digits.
-bool intersectUnitSphere(const Vec3d& o, const Vec3d& d, double t[2]) {
-  const double dd = dot(d, d), middle = -dot(o, d) / dd;
-  const Vec3d across = o + d * middle;
-  const double h = length(across), square = (1 - h) * (1 + h) / dd;
-  if (!(square >= 0)) return false;
-  const double half = std::sqrt(square), far = middle + std::copysign(half, middle),
-               distance = length(o);
-  const double near = far != 0 ? (distance - 1) * (distance + 1) / dd / far : 0;
-  t[0] = std::min(near, far);
-  t[1] = std::max(near, far);
-  return std::isfinite(near) && std::isfinite(far);
-}
 
 struct HugeSphere {
   Matrix4d toUnit;
@@ -78,13 +63,7 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
 } // namespace
 
 RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part) {
-  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(part.spheres.size()));
-  rtcSetGeometryUserData(geometry, &part);
-  rtcSetGeometryBoundsFunction(geometry, boundsOf, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect);
-  rtcSetGeometryOccludedFunction(geometry, occluded);
-  return geometry;
+  return newUserGeometry(device, &part, part.spheres.size(), boundsOf, intersect, occluded);
 }
 
 } // namespace openrt

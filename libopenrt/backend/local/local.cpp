@@ -50,14 +50,17 @@ Vec3d LocalBackend::eye() const {
 
 void LocalBackend::prepare() {
   // What moved in the last snapshot may rest in this one.
-  const bool rested = snapshot_ && snapshot_->motions && snapshotFrame_ != history_.number();
-  if (snapshot_ && accel_ && !changes_.any() && !rested) return;
+  // What moved in the last snapshot may rest in this one, and in another view other things moved.
+  const bool motionsDiffer =
+      snapshot_ && snapshotFrame_ != history_.number() && (snapshot_->motions || history_.any());
+  if (snapshot_ && accel_ && !changes_.any() && !motionsDiffer) return;
   auto next = std::make_shared<RenderScene>();
   next->frame = scene_.frame;
   makeShaders(*next);
   try {
     updateAccel(*next);
   } catch (...) { // incomplete: the next call rebuilds it
+    exact_ = nullptr;
     accel_ = nullptr;
     throw;
   }
@@ -76,6 +79,11 @@ void LocalBackend::prepare() {
     const std::string warning = warnOfNearLamps(*next);
     if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
     warnedOfNearLamp_ = !warning.empty();
+  }
+  if (!warnedOfAnalyticLamp_ && options_.log && !recordsUnmoved_) {
+    const std::string warning = warnOfAnalyticLamps(*next);
+    if (!warning.empty()) options_.log(2, warning.c_str(), options_.logUser);
+    warnedOfAnalyticLamp_ = !warning.empty();
   }
   next->lightSamplers = makeLightSamplers(*next, snapshot_.get());
   if (tracesLamps(choice.transport) && !showsNoLight(next->frame) &&
@@ -128,6 +136,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
                          pixel};
+  exact_ = nullptr;
   const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
   recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)
@@ -141,15 +150,15 @@ void LocalBackend::updateAccel(RenderScene& next) {
   makeLights(next, flat_, origin);
 }
 
-// Finds out what has moved since the frame before, for RT_MOTION.
+// Finds out what has moved since the frame before in the same view, for RT_MOTION.
 //   moved  clusters that moved since the last prepare()
 //   all    anything may have moved
 void LocalBackend::updateMotions(RenderScene& next, std::vector<uint32_t> moved, bool all) {
   if (!history_.watches()) return dropPaths(flat_);
   if (!history_.any()) return;
-  if (flat_.paths.empty() && !history_.beginning()) addPaths(scene_, flat_);
-  // A prepare() between this frame and the one before has already taken note of other changes.
-  all |= snapshot_ && snapshotFrame_ == history_.number();
+  if (flat_.paths.empty() && !history_.view().beginning()) addPaths(scene_, flat_);
+  // A prepare() after the frame before, also of another view, has already taken note of changes.
+  all |= snapshot_ && snapshotFrame_ > history_.numberBefore();
   for (const uint32_t object : changes_.redefined) {
     const uint32_t part = builder_.survey.partOf(object);
     if (part == ~0u) continue;
@@ -158,8 +167,8 @@ void LocalBackend::updateMotions(RenderScene& next, std::vector<uint32_t> moved,
   }
   std::sort(moved.begin(), moved.end());
   moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
-  next.motions =
-      makeMotions({scene_, history_, flat_, builder_.survey, *accel_}, all ? nullptr : &moved);
+  next.motions = makeMotions({scene_, history_.view(), flat_, builder_.survey, *accel_},
+                             all ? nullptr : &moved);
 }
 
 // Reuses the shaders and textures of the last snapshot if they did not change.

@@ -8,11 +8,14 @@
 
 #include "backend/backend.h"
 #include "backend/local/accel/accel_build.h"
+#include "backend/local/accel/exact_scene.h"
 #include "backend/surface_queries.h"
 #include "render/frame/renderer.h"
 #include "scene/history.h"
 
 namespace openrt {
+
+struct Doubts;
 
 class LocalBackend final : public Backend, public SurfaceQueries {
  public:
@@ -54,9 +57,21 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   // Calls `use` for blocks of rays, converted to render space, on all threads.
   void forBatches(std::span<const RTray> rays,
                   const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
-  // Calls `take` for each ray with all its hits, in order of distance.
-  void forMultiHits(std::span<const RTray> rays,
-                    const std::function<void(size_t ray, std::span<const Accel::MultiHit>)>& take);
+  // Makes the scene for exact queries of what is committed, if it does not exist yet.
+  const ExactScene& exact();
+  // Calls `use` for every ray of which `some` is not 0 (null: all), on all threads. Rays that
+  // cannot be traced are counted and left out; `refuse` is called for them.
+  void forEachExact(std::span<const RTray> rays, const uint8_t* some,
+                    const std::function<void(size_t ray, const ExactRay& exact)>& use,
+                    const std::function<void(size_t ray)>& refuse = {});
+  // Makes the exact ray of a query; returns false if it cannot be traced.
+  bool loadExact(const RTray& ray, ExactRay& to) const;
+  // Finds the nearest hits of rays in single precision and calls take(ray, hits, index of its hit)
+  // for each, on all threads. Returns by ray whether it must be decided again; empty: none must.
+  template <class Take>
+  std::vector<uint8_t> findNearest(std::span<const RTray> rays, const Take& take);
+  bool isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i, const RayHits& found) const;
+  RThit hitOf(const ExactScene::Hit& found, const ExactRay& ray, const RTray& asked) const;
   void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
 
   BackendOptions options_;
@@ -64,11 +79,12 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::shared_ptr<EmbreeDevice> device_;
   AccelBuilder builder_;
   Scene scene_;
-  SceneHistory history_;       // what has changed since the frame before
+  SceneHistory history_;       // what has changed since the last frame of each view
   uint64_t snapshotFrame_ = 0; // number of the history at the last prepare()
   SceneChanges changes_;       // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;
   std::shared_ptr<Accel> accel_;
+  std::unique_ptr<const ExactScene> exact_; // of accel_; null until a query needs it
   Flattened flat_;
   PixelFootprint footprint_;
   // scopedLights_: some light has a scope. recordsUnmoved_: every record is in the same place as in
@@ -76,7 +92,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   bool scopedLights_ = false, recordsUnmoved_ = false;
   std::string transportReason_; // why the snapshot's transport was chosen
   uint32_t unreachedLights_ = 0, transportLeavesOut_ = 0;
-  bool warnedOfNearLamp_ = false;
+  bool warnedOfNearLamp_ = false, warnedOfAnalyticLamp_ = false;
   mutable std::mutex mutex_; // guards frame_ against cancel(), progress() and snapshot()
   std::shared_ptr<Frame> frame_, finished_;
   double commitSeconds_ = 0, buildSeconds_ = 0;

@@ -1,7 +1,8 @@
 // motions.h: finds out how the placed geometries of a scene have moved since the frame before
-// (render/motion.h): the matrices and vertices of now beside those that the history has kept. It
-// costs what has moved if only dynamic instances and objects have changed, else one pass over
-// everything placed. Called by the local backend between frames, on the application thread.
+// in the same view (render/motion.h): the matrices and vertices of now beside those that the
+// history has kept. It costs what has moved if only dynamic instances and objects have changed,
+// else one pass over everything placed. Called by the local backend between frames, on the
+// application thread.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +13,13 @@
 #include "backend/local/accel/survey.h"
 #include "render/motion.h"
 #include "scene/flatten.h"
-#include "scene/history.h"
+#include "scene/view_history.h"
 
 namespace openrt {
 
 struct MotionInput {
   const Scene& scene;
-  const SceneHistory& history;
+  const ViewHistory& history;
   const Flattened& flat; // with paths, unless there was no frame before
   const Survey& survey;
   const Accel& accel;

@@ -109,4 +109,12 @@ std::string warnOfNearLamps(const RenderScene& scene) {
   return text;
 }
 
+std::string warnOfAnalyticLamps(const RenderScene& scene) {
+  for (const Record& r : scene.records)
+    if (r.surface && ((*scene.shaders)[r.shader].traits & RTS_EMISSIVE))
+      return "a quadric or an asphere emits light, which is found only by paths that meet it by "
+             "chance: make lamps of triangles or spheres";
+  return {};
+}
+
 } // namespace openrt

@@ -14,4 +14,8 @@ namespace openrt {
 // count.
 std::string warnOfNearLamps(const RenderScene& scene);
 
+// Returns a warning if a quadric or an asphere emits light, which is not sampled; else an empty
+// text.
+std::string warnOfAnalyticLamps(const RenderScene& scene);
+
 } // namespace openrt

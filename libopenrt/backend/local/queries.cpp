@@ -1,13 +1,19 @@
 // queries.cpp: Answers ray, hit and closest-point queries of LocalBackend, in blocks distributed
 // over its threads. Called on the application's thread.
+//
+// All hits of a ray are found exactly (accel/exact_scene.h). Nearest hits and occlusion are found
+// by Embree, and again exactly where its single precision may have decided wrongly: see
+// accel/doubts.h.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "backend/local/accel/doubts.h"
 #include "backend/local/local.h"
 
 namespace openrt {
@@ -71,16 +77,106 @@ void LocalBackend::forBatches(
   });
 }
 
-void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+const ExactScene& LocalBackend::exact() {
+  prepare();
+  if (!exact_) {
+    exact_ = std::make_unique<const ExactScene>(*device_, *accel_);
+    if (rtcGetDeviceError(device_->device) == RTC_ERROR_OUT_OF_MEMORY) {
+      exact_ = nullptr;
+      throw std::bad_alloc();
+    }
+  }
+  return *exact_;
+}
+
+bool LocalBackend::loadExact(const RTray& ray, ExactRay& to) const {
+  const Vec3d origin = Vec3d(vectorOf(ray.origin)) - vectorOf(snapshot_->origin),
+              direction(vectorOf(ray.direction));
+  const double size = dot(abs(direction), {1, 1, 1});
+  // Comparisons with NaN are false.
+  if (!(largest(abs(origin)) <= accel_->reach() && isFinite(vectorOf(ray.origin)) && size > 0 &&
+        size <= 1e18 && ray.tnear >= 0 && ray.tnear <= ray.tfar && ray.tnear <= mostFinite))
+    return false;
+  to = exactRay(origin, direction, ray.tnear, ray.tfar, 0x1p-30);
+  return true;
+}
+
+void LocalBackend::forEachExact(std::span<const RTray> rays, const uint8_t* some,
+                                const std::function<void(size_t, const ExactRay&)>& use,
+                                const std::function<void(size_t)>& refuse) {
+  parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
+    uint64_t refused = 0;
+    for (size_t i = first; i < first + n; i++) {
+      if (some && !some[i]) continue;
+      ExactRay ray;
+      if (loadExact(rays[i], ray)) {
+        use(i, ray);
+      } else if (refuse) {
+        refuse(i);
+        refused++;
+      }
+    }
+    if (refused) accel_->rejectedRays += refused;
+  });
+}
+
+bool LocalBackend::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i,
+                              const RayHits& found) const {
+  if (found.record[i] == noHit) return doubts.miss(rays, i);
+  return doubts.hit(accel_->records[found.record[i]], rays, i, found);
+}
+
+template <class Take>
+std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, const Take& take) {
+  prepare();
+  const Doubts doubts(*accel_);
+  std::vector<uint8_t> again(rays.size());
+  std::atomic<bool> any{false};
   forBatches(rays, [&](size_t first, Arena& arena, Rays& batch) {
     RayHits found;
     found.allocate(arena, batch.count);
     accel_->intersect(batch, maskAll, Coherence::incoherent, found);
+    bool some = false;
     for (uint32_t i = 0; i < batch.count; i++) {
-      RThit& hit = hits[first + i] = hitOf(found, i);
-      hit.t *= directionScale(rays[first + i]);
+      some |= again[first + i] = isDoubtful(doubts, batch, i, found);
+      take(first + i, found, i);
     }
+    if (some) any = true;
   });
+  if (!any) again.clear();
+  return again;
+}
+
+void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) {
+  const std::vector<uint8_t> again =
+      findNearest(rays, [&](size_t ray, const RayHits& found, uint32_t i) {
+        hits[ray] = hitOf(found, i);
+        hits[ray].t *= directionScale(rays[ray]);
+      });
+  if (again.empty()) return;
+  const ExactScene& scene = exact();
+  forEachExact(rays, again.data(), [&](size_t i, const ExactRay& ray) {
+    ExactScene::Hit found;
+    scene.nearest(ray, found);
+    hits[i] = hitOf(found, ray, rays[i]);
+  });
+}
+
+RThit LocalBackend::hitOf(const ExactScene::Hit& found, const ExactRay& ray,
+                          const RTray& asked) const {
+  RThit hit{};
+  hit.t = std::numeric_limits<float>::infinity();
+  if (found.record == noHit) return hit;
+  const Record& r = accel_->records[found.record];
+  hit.t = std::clamp(float(found.at.t * ray.unit), asked.tnear, std::min(asked.tfar, mostFinite));
+  hit.u = float(found.at.u);
+  hit.v = float(found.at.v);
+  store(Vec3f(exact_->normal(found, ray)), hit.normal);
+  hit.instance = r.instance;
+  hit.name = r.name;
+  hit.primitive = found.primitive;
+  hit.userData = r.userData;
+  return hit;
 }
 
 RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
@@ -99,46 +195,32 @@ RThit LocalBackend::hitOf(const RayHits& found, uint32_t i) const {
   return hit;
 }
 
-void LocalBackend::forMultiHits(
-    std::span<const RTray> rays,
-    const std::function<void(size_t ray, std::span<const Accel::MultiHit>)>& take) {
-  forBatches(rays, [&](size_t first, Arena&, Rays& batch) {
-    std::vector<Accel::MultiHit> all;
-    accel_->allHits(batch, all);
-    for (size_t i = 0, begin = 0; i < batch.count; i++) {
-      size_t end = begin;
-      while (end < all.size() && all[end].ray == i) end++;
-      take(first + i, {all.data() + begin, end - begin});
-      begin = end;
-    }
-  });
-}
-
 void LocalBackend::countHits(std::span<const RTray> rays, std::span<uint32_t> counts) {
-  forMultiHits(rays, [&](size_t ray, std::span<const Accel::MultiHit> allHits) {
-    counts[ray] = uint32_t(allHits.size());
-  });
+  const ExactScene& scene = exact();
+  forEachExact(
+      rays, nullptr, [&](size_t i, const ExactRay& ray) { counts[i] = uint32_t(scene.count(ray)); },
+      [&](size_t i) { counts[i] = 0; });
 }
 
 void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t> first,
                             std::span<RThit> hits) {
-  forMultiHits(rays, [&](size_t ray, std::span<const Accel::MultiHit> allHits) {
+  const ExactScene& scene = exact();
+  RThit none{};
+  none.t = std::numeric_limits<float>::infinity();
+  const auto write = [&](size_t ray, std::span<const ExactScene::Hit> all, const ExactRay& exact) {
     for (size_t i = first[ray]; i < first[ray + 1]; i++) {
-      RThit& hit = hits[i] = {};
-      hit.t = std::numeric_limits<float>::infinity();
-      if (i - first[ray] >= allHits.size()) continue;
-      const Accel::MultiHit& p = allHits[i - first[ray]];
-      const Record& r = accel_->records[p.record];
-      hit.t = p.t * directionScale(rays[ray]);
-      hit.u = p.u;
-      hit.v = p.v;
-      store(worldNormal(r, p.ng), hit.normal);
-      hit.instance = r.instance;
-      hit.name = r.name;
-      hit.primitive = p.primitive;
-      hit.userData = r.userData;
+      const size_t k = i - first[ray];
+      hits[i] = k < all.size() ? hitOf(all[k], exact, rays[ray]) : none;
     }
-  });
+  };
+  forEachExact(
+      rays, nullptr,
+      [&](size_t i, const ExactRay& ray) {
+        std::vector<ExactScene::Hit> all;
+        scene.all(ray, all);
+        write(i, all, ray);
+      },
+      [&](size_t i) { write(i, {}, {}); });
 }
 
 void LocalBackend::closestPoints(std::span<const float> points, float radius,
@@ -189,10 +271,16 @@ bool LocalBackend::pick(double x, double y, RThit& hit) {
   return true;
 }
 
+// An occlusion query of Embree is a third faster, but does not say where it hit.
 void LocalBackend::occludedRays(std::span<const RTray> rays, std::span<uint8_t> occluded) {
-  forBatches(rays, [&](size_t first, Arena&, Rays& batch) {
-    accel_->occluded(batch, maskAll, Coherence::incoherent, occluded.data() + first);
-  });
+  const std::vector<uint8_t> again =
+      findNearest(rays, [&](size_t ray, const RayHits& found, uint32_t i) {
+        occluded[ray] = found.record[i] != noHit;
+      });
+  if (again.empty()) return;
+  const ExactScene& scene = exact();
+  forEachExact(rays, again.data(),
+               [&](size_t i, const ExactRay& ray) { occluded[i] = scene.occluded(ray); });
 }
 
 } // namespace openrt

@@ -108,13 +108,7 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
 
 RTCGeometry newSlivers(const EmbreeDevice& device, Part& part) {
   part.wrongHits = &device.wrongHits;
-  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(part.indices.size() / 3));
-  rtcSetGeometryUserData(geometry, &part);
-  rtcSetGeometryBoundsFunction(geometry, boundsOf, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect);
-  rtcSetGeometryOccludedFunction(geometry, occluded);
-  return geometry;
+  return newUserGeometry(device, &part, part.indices.size() / 3, boundsOf, intersect, occluded);
 }
 
 } // namespace openrt

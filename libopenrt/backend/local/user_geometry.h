@@ -103,4 +103,17 @@ inline bool storeHit(const RTCIntersectFunctionNArguments* a, unsigned i, double
   return true;
 }
 
+// Returns a geometry of `count` primitives. Its functions get `data`, which must outlive it.
+inline RTCGeometry newUserGeometry(const EmbreeDevice& device, void* data, size_t count,
+                                   RTCBoundsFunction bounds, RTCIntersectFunctionN intersect,
+                                   RTCOccludedFunctionN occluded) {
+  RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(count));
+  rtcSetGeometryUserData(geometry, data);
+  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryOccludedFunction(geometry, occluded);
+  return geometry;
+}
+
 } // namespace openrt

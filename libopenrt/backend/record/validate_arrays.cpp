@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "scene/analytic.h"
 #include "shading/parameters.h"
 
 namespace openrt {
@@ -34,12 +35,18 @@ void checkAttribute(const Commit& commit, ArrayId id, size_t vertices, size_t co
   checkFinite(*array, what);
 }
 
+bool hasVertices(edit::Primitive primitive) {
+  return primitive != edit::Primitive::Sphere && !AnalyticSurface::isAnalytic(primitive);
+}
+
 size_t cornersOf(edit::Primitive primitive) {
   switch (primitive) {
   case edit::Primitive::Triangles: return 3;
   case edit::Primitive::Lines: return 2;
   case edit::Primitive::Points: return 1;
-  case edit::Primitive::Sphere: break;
+  case edit::Primitive::Sphere:
+  case edit::Primitive::Quadric:
+  case edit::Primitive::Asphere: break;
   }
   throw std::runtime_error("an unknown primitive");
 }
@@ -47,9 +54,12 @@ size_t cornersOf(edit::Primitive primitive) {
 } // namespace
 
 void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
-  if (g.primitive == edit::Primitive::Sphere) {
+  const std::string problem = AnalyticSurface::problemOf(g.primitive, g.surface);
+  if (!problem.empty()) throw std::runtime_error(problem);
+  if (!hasVertices(g.primitive)) {
     demand(!g.points && !g.indices && !g.normals && !g.texCoords && !g.colors,
-           "a sphere has vertices");
+           g.primitive == edit::Primitive::Sphere ? "a sphere has vertices"
+                                                  : "an analytic surface has vertices");
     return;
   }
   const size_t corners = cornersOf(g.primitive);
@@ -70,7 +80,7 @@ void checkGeometryArrays(const edit::GeometryT& g, const Commit& commit) {
 
 void checkParameterValues(const edit::GeometryT& g, const edit::GeometryParameterT& own,
                           const Commit& commit, const RtsParam* param) {
-  demand(g.primitive != edit::Primitive::Sphere, "a sphere has parameters of its own");
+  demand(hasVertices(g.primitive), "a sphere has parameters of its own, or an analytic surface");
   const Array* values = arrayOf(commit, own.values);
   demand(values != nullptr, "a parameter has no values");
   const Array& counted = *arrayOf(commit, own.perVertex ? g.points : g.indices);

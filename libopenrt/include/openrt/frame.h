@@ -30,11 +30,12 @@ enum {
                            nothing is known */
   RT_TRUST = 512,    /* 1: 1 if that interval can be trusted, else 0 */
   /* 3: world-space vector from where the hit point of the first sample was in the previous frame of
-   * this context to where it is now: how its instance moved, or its vertices. 0 0 0 if nothing
-   * moved or nothing is hit; not a number if the point did not exist or was invisible in the
-   * previous frame, and everywhere in the first one. The motion of the camera is not part of it.
-   * Where an object was defined again, geometries and instances of the same name (rtLoadName) are
-   * the same if there are as many as before and their indices and objects are equal. */
+   * this context (with RT_VIEW: of this view) to where it is now: how its instance moved, or its
+   * vertices. 0 0 0 if nothing moved or nothing is hit; not a number if the point did not exist or
+   * was invisible in the previous frame, and everywhere in the first one. The motion of the camera
+   * is not part of it. Where an object was defined again, geometries and instances of the same name
+   * (rtLoadName) are the same if there are as many as before and their indices and objects are
+   * equal. */
   RT_MOTION = 1024
 };
 
@@ -82,13 +83,43 @@ enum {
    * by the seed, and not in the middle. For callers that combine frames of several seeds. */
   RT_JITTER = 15,
   /* 1 (default) .. 4: light is followed in one pixel of each block of so many pixels each way. The
-   * others have RT_SAMPLES 0 and no colour unless they see the environment directly, but the
-   * channels of the first hit like all pixels. Consecutive seeds choose each pixel of a block in
-   * turn. With RT_TRANSPORT_LIGHT, paths from lamps add their light to the others alone, so that
-   * the light of a block is that of its pixel plus the mean of the others. For callers that rebuild
-   * pictures from few samples. Frames with error bars, a target error, a time limit or a transport
-   * of a plug-in follow light in every pixel. */
-  RT_LIGHT_STRIDE = 16
+   * others take one sample: they have the channels of its first hit, no colour and RT_SAMPLES 0, or
+   * the environment's colour and RT_SAMPLES 1 if they see it directly. Consecutive seeds choose
+   * each pixel of a block in turn. With RT_TRANSPORT_LIGHT, paths from lamps add their light to the
+   * others alone, so that the light of a block is that of its pixel plus the mean of the others.
+   * For callers that rebuild pictures from few samples. Frames with error bars, a target error, a
+   * time limit or a transport of a plug-in follow light in every pixel. */
+  RT_LIGHT_STRIDE = 16,
+  /* 0 (default) .. 2147483647: the sequence of frames that a frame belongs to. RT_MOTION tells the
+   * motion since the frame before of the same sequence, so that several views of a scene can be
+   * rendered in turns. A sequence begins anew, with everything new, after 32 frames of others, and
+   * if its last frame lacked RT_MOTION and something moved for a frame of another one. It changes
+   * no other channel. */
+  RT_VIEW = 17,
+  /* One of RT_MEASURE_* below, default RT_MEASURE_NOTHING: each pixel is the reading of a
+   * photometric sensor instead of a part of a picture. */
+  RT_MEASURE = 18
+};
+
+/* What the pixels of a frame are (RT_MEASURE). Every sample of a sensor uses the camera's ray
+ * through the middle of its pixel, so that an orthographic camera is a grid of points. Red, green
+ * and blue of RT_RGBA are all the reading, and those of RT_ERROR its half-width. Units: a radiance
+ * of 1 in all three colours is a luminance of 1 cd/m2, and the unit of length is the metre. A
+ * colour counts as 0.2126 red + 0.7152 green + 0.0722 blue (ITU-R BT.709, luminance of linear
+ * sRGB).
+ *
+ * The variance of a reading is that of its own replicates; it is not pooled with neighbouring
+ * pixels. Sensors follow paths (RT_TRANSPORT_PATH) where the transport is RT_TRANSPORT_AUTO or
+ * RT_TRANSPORT_LIGHT; the latter's paths from lamps do not reach them. Channels of first hits are 0
+ * for RT_MEASURE_ILLUMINANCE. */
+enum {
+  RT_MEASURE_NOTHING = 0, /* pixels are those of a picture */
+  /* Luminance in cd/m2 of the light that arrives at the origin of the ray against its direction. */
+  RT_MEASURE_LUMINANCE = 1,
+  /* Illuminance in lux at the origin of the ray, of a plane whose normal is the ray's direction:
+   * light of the half space that the ray points to. A point on a surface must lie a little off it.
+   */
+  RT_MEASURE_ILLUMINANCE = 2
 };
 
 /* Light transports: how light is followed from surfaces whose shaders answer in lobes (openrts.h).

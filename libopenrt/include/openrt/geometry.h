@@ -70,6 +70,38 @@ RT_API void rtLoadName(uint32_t name);
  * above, t from the bottom to the top. [context-thread] */
 RT_API void rtSphere(float radius);
 
+/* Surfaces that are equations, without facets. Rays meet them where double precision does, their
+ * normals are exact, and their edges leave no gap to another surface with the same edge in the same
+ * object. Every shader works on them. A number that is not finite or out of its range is
+ * RT_INVALID_VALUE, and nothing is added. Lengths are in units of the current matrix; nothing is
+ * kept of the arrays. Like spheres they latch shader, name, matrix and capabilities; RT_CW_FRONT
+ * exchanges front and back. Light that they emit is found only by paths that meet them: make
+ * lamps of triangles or spheres. rtQueryClosestPoints does not see them. */
+
+/* Adds the part of a quadric that lies in a box: the points between `low` and `high`, within 1e12
+ * of the origin, where
+ *   c[0] x^2 + c[1] y^2 + c[2] z^2 + c[3] x y + c[4] y z + c[5] z x + c[6] x + c[7] y + c[8] z +
+ * c[9] is 0. The front is the side on which it is positive. Texture coordinates run as on VRML's
+ * Cylinder: s around the y axis from the back (-z), t from the lower to the upper side of the box.
+ * [context-thread] */
+RT_API void rtQuadric(const double coefficients[10], const double low[3], const double high[3]);
+/* Add the side of a cylinder or of a truncated cone about the y axis, from y = low to y = high,
+ * without its ends. Radii: from 0, not both 0. The front is outside. They are quadrics.
+ * [context-thread] */
+RT_API void rtCylinder(double radius, double low, double high);
+RT_API void rtCone(double lowRadius, double highRadius, double low, double high);
+/* Adds a surface of revolution about the z axis, as lenses and reflectors have it (ISO 10110-12):
+ *   z = c r^2 / (1 + sqrt(1 - (1 + k) c^2 r^2)) + terms[0] r^4 + terms[1] r^6 + ...
+ * for innerRadius <= r <= semiAperture (1e-12 to 1e12), where r is the distance from the axis.
+ *  - curvature: c, 1 / the radius at the vertex; > 0 bends towards +z, 0 is a plane.
+ *  - conic: k. 0: sphere; -1: paraboloid; < -1: hyperboloid; otherwise an ellipsoid.
+ *  - terms: termCount numbers (0 to 8); NULL if there are none.
+ * The semi-aperture must not be beyond the edge, where the root is 0; with terms it must be inside.
+ * The front faces +z. Texture coordinates are those of a square about the aperture: s along x, t
+ * along y. [context-thread] */
+RT_API void rtAsphere(double curvature, double conic, size_t termCount, const double* terms,
+                      double innerRadius, double semiAperture);
+
 /* Arrays: the bulk path ------------------------------------------------------------------------ */
 
 enum { RT_FLOAT = 0x1406, RT_DOUBLE = 0x140A, RT_UNSIGNED_BYTE = 0x1401, RT_UNSIGNED_INT = 0x1405 };

@@ -370,7 +370,8 @@ struct RtsHost {
   uint32_t size;
   uint16_t major, minor;
   /* Returns the number of lights to evaluate for the batch. The host may let one of them stand for
-   * many: it then selects a light for each hit and divides by the selection probability. */
+   * many: it then selects a light for each hit and divides by the selection probability. 0 where
+   * the host asks only for transmission and albedo; rays traced by `trace` are black then. */
   uint32_t (*lights)(RtsBatch* batch);
   /* Evaluates light i (0 <= i < lights) at the hits, without shadows. Sets the pointers of out to
    * arrays of the host, valid until the next call for this batch. */

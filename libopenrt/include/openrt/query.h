@@ -21,7 +21,7 @@ typedef struct RTray {
 } RTray;
 typedef struct RThit {
   float t;         /* along the ray's direction as given; infinite if nothing is hit */
-  float u, v;      /* barycentric coordinates */
+  float u, v;      /* barycentric coordinates; 0 for spheres, quadrics and aspheres */
   float normal[3]; /* unit geometric normal, not turned towards the ray */
   RTid instance;   /* the outermost instance; 0 if nothing is hit */
   uint32_t name;   /* see rtLoadName */
@@ -35,15 +35,24 @@ typedef struct RThit {
  * the camera ray. Returns 1, or 0 if nothing is hit. Needs a frame buffer and a camera (else
  * RT_INVALID_OPERATION). [context-thread] */
 RT_API int rtPick(double x, double y, RThit* hit);
-/* Finds the nearest hits of count rays. A ray that is not finite hits nothing and is counted
- * (RTstats.rejectedRays). [context-thread] */
+/* Finds the nearest hits of count rays. Rays are traced in single precision, and decided again as
+ * rtCountHits does if that may be wrong: if a ray from within the bounds of the scene hits nothing,
+ * or if it hits near an edge, at a grazing angle or near its ends. One error is not noticed: a ray
+ * exactly through a vertex may pass that surface and hit the middle of a triangle behind it or,
+ * from outside of the bounds, nothing. rtListHits has the right first hit there. A ray that is not
+ * finite hits nothing and is counted (RTstats.rejectedRays). [context-thread] */
 RT_API void rtCastRays(size_t count, const RTray* rays, RThit* hits);
-/* Writes occluded[i] = 1 if anything lies between tnear and tfar of ray i, else 0.
- * [context-thread] */
+/* Writes occluded[i] = 1 if anything lies between tnear and tfar of ray i, else 0. Decides as
+ * rtCastRays does. [context-thread] */
 RT_API void rtOccludedRays(size_t count, const RTray* rays, uint8_t* occluded);
 
-/* Counts the surfaces that each ray passes between tnear and tfar. Lines and points do not count. A
- * ray through the edge of two triangles may pass both. [context-thread] */
+/* Counts the surfaces that each ray crosses behind tnear, up to and including tfar. Lines and
+ * points do not count. Every crossing counts once: a ray exactly through an edge or a vertex
+ * crosses what it crosses with its origin moved by (e, e^2, e^3), e smaller than any number. So the
+ * number is odd exactly if the ray's ends lie on different sides of a closed mesh. Spheres,
+ * quadrics and aspheres are intersected in double precision: a ray that only touches one does not
+ * cross it, and one within 1e-10 of the rim of a quadric or an asphere may cross the next surface,
+ * too. [context-thread] */
 RT_API void rtCountHits(size_t count, const RTray* rays, uint32_t* counts);
 /* Lists the surfaces that the rays pass, nearest first. first holds count + 1 numbers that never
  * fall (else RT_INVALID_VALUE); hits has room for first[count] hits. The hits of ray i begin at

@@ -20,6 +20,7 @@
 #include <limits>
 
 #include "render/film/light_image.h"
+#include "student.h"
 
 namespace openrt {
 namespace {
@@ -27,9 +28,9 @@ namespace {
 // Defaults of frames whose error is requested.
 constexpr uint32_t fewestSamples = 32, fewestReplicates = 16;
 constexpr uint32_t trustedReplicates = 8;
-// number of pixels of the window to each side; the window ends at the border of the tile
-constexpr uint32_t reach = 2;
-constexpr uint32_t windowPixels = (2 * reach + 1) * (2 * reach + 1);
+// number of pixels of a picture's window to each side; the window ends at the border of the tile
+constexpr uint32_t pictureReach = 2;
+constexpr uint32_t windowOf(uint32_t reach) { return (2 * reach + 1) * (2 * reach + 1); }
 // fewestMeans: minimum effective number of replicate means that carry the variance of a window.
 // fewestHits: minimum number of hits of a rare bright feature in a window.
 constexpr double fewestMeans = 2.5, fewestHits = 4;
@@ -87,7 +88,7 @@ struct Cell {
 
 // Sums cells over windows, in two passes. Each window is summed anew, so that no result depends on
 // numbers outside of its window.
-void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height) {
+void sumWindows(std::vector<Cell>& cells, uint32_t width, uint32_t height, uint32_t reach) {
   std::vector<Cell> rows(cells.size());
   const auto pass = [&](const std::vector<Cell>& from, std::vector<Cell>& to, bool across) {
     for (uint32_t y = 0; y < height; y++)
@@ -177,9 +178,10 @@ float scaleOf(const float mean[3]) {
 class TileErrors {
  public:
   TileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
-             std::span<PixelError> out)
+             Pooling pooling, std::span<PixelError> out)
       : width_(width), height_(uint32_t(pixels.size()) / width), pixels_(pixels),
-        replicates_(replicates), out_(out), pooled_(pixels.size()) {}
+        replicates_(replicates), reach_(pooling == Pooling::neighbours ? pictureReach : 0),
+        out_(out), pooled_(pixels.size()) {}
 
   void make() {
     for (size_t i = 0; i < pixels_.size(); i++) {
@@ -223,8 +225,8 @@ class TileErrors {
     }
     const std::vector<Cell> own = relative = cells;
     for (size_t i = 0; i < relative.size(); i++) relative[i].scale(1 / (bright[i] * bright[i]));
-    sumWindows(cells, width_, height_);
-    sumWindows(relative, width_, height_);
+    sumWindows(cells, width_, height_, reach_);
+    sumWindows(relative, width_, height_, reach_);
     for (size_t i = 0; i < pixels_.size(); i++) {
       if (own[i].count == 0) continue;
       Pooled& p = pooled_[i];
@@ -290,7 +292,7 @@ class TileErrors {
     e.trusted = enough && !dark && !p.few;
     // Some features are so rare that most windows have missed them. The means there lack their
     // light, and no variance shows it.
-    const double hits = rare_.hits(s.samples) * std::min(windowPixels, rare_.pixels);
+    const double hits = rare_.hits(s.samples) * std::min(windowOf(reach_), rare_.pixels);
     if (s.random && hits < fewestHits && rare_.mean(s.samples) > negligible * half)
       e.trusted = false;
   }
@@ -298,6 +300,7 @@ class TileErrors {
   uint32_t width_, height_;
   std::span<const PixelSums> pixels_;
   const Replicates& replicates_;
+  uint32_t reach_; // pixels of the window to each side
   std::span<PixelError> out_;
   std::vector<Pooled> pooled_;
   Rare rare_;
@@ -305,16 +308,7 @@ class TileErrors {
 
 } // namespace
 
-double student95(double v) {
-  static constexpr double table[] = {0,       12.7062, 4.30265, 3.18245, 2.77645,
-                                     2.57058, 2.44691, 2.36462, 2.30600, 2.26216};
-  if (v < std::size(table)) return table[std::max(1, int(v))];
-  // M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 26.7.5
-  const double z = 1.959963985, z3 = z * z * z, z5 = z3 * z * z;
-  const double first = (z3 + z) / 4, second = (5 * z5 + 16 * z3 + 3 * z) / 96;
-  const double third = (3 * z5 * z * z + 19 * z5 + 17 * z3 - 15 * z) / 384;
-  return z + first / v + second / (v * v) + third / (v * v * v);
-}
+double student95(double v) { return student::quantile95(v); }
 
 bool wantsError(const edit::FrameSettingsT& frame) {
   return (frame.channels & (RT_ERROR | RT_TRUST)) || frame.targetError > 0 || frame.timeLimit > 0;
@@ -352,14 +346,14 @@ PixelError independentError(const PixelSums& s) {
 }
 
 void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
-                std::span<PixelError> out) {
-  TileErrors(width, pixels, replicates, out).make();
+                std::span<PixelError> out, Pooling pooling) {
+  TileErrors(width, pixels, replicates, pooling, out).make();
 }
 
 void addLight(const LightSums& light, PixelError& e) {
   double half = 0, lamps = 0, own = 0;
   // Mean number of light paths per pixel.
-  const double met = std::max(light.hits / windowPixels, 1e-3);
+  const double met = std::max(light.hits / windowOf(pictureReach), 1e-3);
   for (int k = 0; k < 3; k++) {
     const double w = light.variance[k], h = student95(LightImage::parts - 1) * std::sqrt(w);
     e.mean[k] += float(light.mean[k]);

@@ -25,10 +25,13 @@ Replicates replicatesOf(const edit::FrameSettingsT& frame, uint32_t samples, uin
 // The result is never trusted.
 PixelError independentError(const PixelSums& sums);
 
-// Estimates the errors of a tile's pixels, row by row. Variances are pooled over neighbouring
-// pixels of the tile (error.cpp).
+// Whether the variance of a pixel is pooled with those of the neighbouring pixels of its tile.
+// Pixels that are sensors (RT_MEASURE) have nothing in common with their neighbours.
+enum class Pooling : uint8_t { neighbours, none };
+
+// Estimates the errors of a tile's pixels, row by row (error.cpp).
 void tileErrors(uint32_t width, std::span<const PixelSums> pixels, const Replicates& replicates,
-                std::span<PixelError> out);
+                std::span<PixelError> out, Pooling pooling = Pooling::neighbours);
 
 // Adds the contribution and the error of light paths to a pixel's error.
 void addLight(const LightSums& light, PixelError& error);

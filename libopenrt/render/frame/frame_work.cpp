@@ -27,7 +27,8 @@ double now() {
 }
 
 ErrorMap::Kind errorsOf(const edit::FrameSettingsT& frame) {
-  if (wantsError(frame)) return ErrorMap::Kind::full;
+  // The middle of a pixel has no edge that could cut its corner (ErrorMap::doubtConstants).
+  if (wantsError(frame)) return frame.measure ? ErrorMap::Kind::summary : ErrorMap::Kind::full;
   return frame.samples > 1 && (frame.channels & RT_VARIANCE) ? ErrorMap::Kind::summary
                                                              : ErrorMap::Kind::none;
 }
@@ -118,7 +119,8 @@ void FrameWork::Impl::store(const Tile& tile, const std::vector<PixelSums>& sums
   if (!film.errors().empty()) {
     errors.resize(sums.size());
     if (required.error)
-      tileErrors(tile.width(), sums, replicates, errors);
+      tileErrors(tile.width(), sums, replicates, errors,
+                 frame.measure ? Pooling::none : Pooling::neighbours);
     else
       for (size_t i = 0; i < sums.size(); i++) errors[i] = independentError(sums[i]);
   }

@@ -152,6 +152,7 @@ void evaluateChosenLights(RtsBatch& batch, const LightSampler& sampler, const Rt
 
 // Allocates the arrays here, because callers open an arena scope for each light.
 uint32_t lightCount(RtsBatch& batch) {
+  if (batch.describes) return 0;
   if (batch.points) allocateLightArrays(batch, batch.points->hits.count);
   const LightSampler* sampler = lightSamplerOf(batch);
   return uint32_t(sampler ? sampler->always().size() + 1

@@ -110,6 +110,7 @@ void Guides::describeBucket(const StageContext& context, const Points& points, c
   const bool asks = has(RT_ALBEDO) || (follows_ && !last);
   RtsBatch batch = makeBatch(context, points, states);
   batch.lightSet = bucket.lightSet;
+  batch.describes = true;
   float* albedo[3] = {};
   if (usesLobes(shaderClass, scene_.frame)) {
     if (asks) {

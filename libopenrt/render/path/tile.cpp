@@ -11,6 +11,7 @@
 #include "render/path/accumulate.h"
 #include "render/path/camera_rays.h"
 #include "render/path/light_stride.h"
+#include "render/path/measure.h"
 #include "render/surface/surface_shader.h"
 #include "shading/running.h"
 
@@ -58,8 +59,10 @@ bool TileRenderer::render(const Tile& tile, const Replicates& replicates, bool c
   stop_ = &stop;
   ledger_.samples += samples;
   const auto all = uint32_t(pixels_.size());
+  // A pixel without light has its first sample only, so that what it sees and the light of the
+  // environment there belong together.
   return renderPixels({0, lit_, true}, first, samples) &&
-         renderPixels({lit_, all, false}, first, samples);
+         (first > 0 || renderPixels({lit_, all, false}, 0, 1));
 }
 
 bool TileRenderer::renderPixels(const PixelRange& range, uint32_t first, uint32_t samples) {
@@ -77,7 +80,8 @@ bool TileRenderer::renderPixels(const PixelRange& range, uint32_t first, uint32_
 void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uint32_t samples) {
   ArenaScope scope(arena_);
   const auto pixels = std::span<const uint32_t>(pixels_).subspan(range.begin, range.count());
-  const FilmSamples film{pixels, width_, firstSample, samples, replicates_, centred_};
+  const bool centred = centred_ || scene_.frame.measure != RT_MEASURE_NOTHING;
+  const FilmSamples film{pixels, width_, firstSample, samples, replicates_, centred};
   const uint32_t n = film.count();
   PixelSamples found;
   found.allocate(arena_, n);
@@ -103,6 +107,7 @@ void TileRenderer::renderWave(const PixelRange& range, uint32_t firstSample, uin
 }
 
 void TileRenderer::renderPaths(bool light, Wave& wave, PixelSamples& found) {
+  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE) return follow(wave, found);
   guides_.begin(wave.rays);
   if (showsNoLight_) {
     guides_.describe(context_, wave, found);
@@ -128,7 +133,10 @@ void TileRenderer::describe(Wave& wave, PixelSamples& found) {
 // order.
 void TileRenderer::follow(Wave& wave, PixelSamples& found) {
   const uint32_t most = wave.rays.count;
-  traceWave(wave, found);
+  if (scene_.frame.measure == RT_MEASURE_ILLUMINANCE)
+    measureIlluminance(wave, found);
+  else
+    traceWave(wave, found);
   for (level_++; (!next_.empty() || !guided_.empty()) && level_ <= scene_.frame.depth; level_++) {
     std::swap(queue_, next_);
     next_.clear();
@@ -195,20 +203,27 @@ void TileRenderer::scatter(const Points& points, const Bucket& bucket, const Pat
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
   float* const* radiance = surface.emission; // all light that the hits send back
   weightEmission(batch, boundaries, unsampled_, radiance);
+  gatherLight(batch, boundaries, radiance);
+  addSurface(batch, surface, boundaries, fogAt(context_, points, states), found);
+}
+
+// Adds the light of lamps and emitters that the lobes of a batch send back to `radiance`, and
+// spawns the rays that find the rest.
+void TileRenderer::gatherLight(RtsBatch& batch, const Boundaries& boundaries,
+                               float* const radiance[3]) {
   addLamps(batch, radiance);
   LobeSampling sampling;
   const bool path = tracesPaths(scene_.frame.transport);
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
   if (path) {
-    sampling = drawChoices(batch, randomNumbersAt(samples_, states, points.order, points.hits.count,
-                                                  firstPair(), arena_));
+    sampling = drawChoices(batch, randomNumbersAt(samples_, *batch.states, batch.order,
+                                                  batch.points->hits.count, firstPair(), arena_));
     sampleLobes(batch, sampling);
     if (emitters) allocateSelection(batch, sampling);
   }
   spawnRays(pathsOf(batch), sampling, boundaries);
   if (emitters) sampleEmitters(batch, sampling, boundaries, radiance);
   if (emitters && scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);
-  addSurface(batch, surface, boundaries, fogAt(context_, points, states), found);
 }
 
 void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& found,
@@ -219,12 +234,13 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
     for (uint32_t s = 0; s < samples; s++) {
       const uint32_t i = pixel * samples + s;
       const bool first = firstSample + s == 0;
-      // A pixel without light has the surface of its first sample only.
-      if (found.complete && !found.complete[i]) {
-        if (first) addFirst(found, i, sums);
+      if (found.complete && !found.complete[i]) { // a surface, and no light
+        addFirst(found, i, sums);
         continue;
       }
       float radiance[3] = {found.radiance[0][i], found.radiance[1][i], found.radiance[2][i]};
+      if (scene_.frame.measure)
+        std::fill_n(radiance, 3, readingOf(scene_.frame, load(found.radiance, i)));
       for (float& r : radiance) {
         if (!(limit > 0 && r > limit)) continue;
         ledger_.clipped += double(r) - double(limit);

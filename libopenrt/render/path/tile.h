@@ -64,6 +64,8 @@ class TileRenderer {
   void describe(Wave& wave, PixelSamples& found);
   void follow(Wave& wave, PixelSamples& found);
   void traceWave(Wave& wave, PixelSamples& found);
+  // measure.cpp: the first wave of RT_MEASURE_ILLUMINANCE.
+  void measureIlluminance(const Wave& wave, PixelSamples& found);
   void runTransportShader(const Rays& rays, PixelSamples& found);
   void addToPixels(const PixelRange& range, const PixelSamples& found, uint32_t firstSample,
                    uint32_t samples);
@@ -88,6 +90,7 @@ class TileRenderer {
   static_assert(std::size(shadings) == size_t(Shading::count));
   void scatter(const Points& points, const Bucket& bucket, const PathStates& states,
                PixelSamples& found);
+  void gatherLight(RtsBatch& batch, const Boundaries& boundaries, float* const radiance[3]);
 
   const RenderScene& scene_;
   const uint32_t width_; // width of the picture
@@ -97,7 +100,9 @@ class TileRenderer {
   RayCounters counters_;
   const StageContext context_{scene_, arena_, counters_, this};
   const bool showsNoLight_{showsNoLight(scene_.frame)};
-  const uint32_t lightStride_{lightStrideOf(scene_.frame)};
+  // 1 where there is no light to save, or a plug-in follows it
+  const uint32_t lightStride_{
+      showsNoLight_ || scene_.transport.shaderClass ? 1 : lightStrideOf(scene_.frame)};
   Guides guides_{scene_, arena_, counters_};
   Ledger ledger_;
   UnsampledLights unsampled_{scene_, ledger_};

@@ -132,6 +132,7 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
   if (camera && camera->project) set(hasProjection, camera->name);
   const ShaderSlot& environment = scene.environment.shader;
   const bool backdrop = environment.traits & RTS_BACKDROP;
+  if (scene.frame.measure == RT_MEASURE_ILLUMINANCE) set(hasLobes | hasScattering, "the sensor");
   scene.skyKnown =
       environment.shaderClass && ((c.bits & hasScattering) || ((c.bits & hasShading) && !backdrop));
   scene.skyShines = scene.skyKnown && shines(scene, before);
@@ -143,12 +144,17 @@ TransportChoice chooseTransport(RenderScene& scene, const RenderScene* before) {
   const SceneContents contents = contentsOf(scene, before);
   TransportChoice choice;
   choice.transport = scene.frame.transport;
+  const bool measures = scene.frame.measure != RT_MEASURE_NOTHING;
   if (scene.transport.shaderClass) {
     if (!choice.transport) choice.transport = RT_TRANSPORT_PATH;
     choice.reason = std::string("the transport shader ") + scene.transport.shaderClass->name;
     return choice;
   }
-  if (choice.transport != RT_TRANSPORT_AUTO) {
+  if (measures &&
+      (choice.transport == RT_TRANSPORT_AUTO || traitsOf(choice.transport).tracesLamps)) {
+    choice.transport = RT_TRANSPORT_PATH;
+    choice.reason = "sensors follow paths";
+  } else if (choice.transport != RT_TRANSPORT_AUTO) {
     choice.reason = "chosen by the user";
   } else {
     for (const Choice& row : choices) {

@@ -44,6 +44,9 @@ struct RtsBatch {
   float* reach = nullptr; // distance to the light; 0 if there is no direction
   uint32_t current = ~0u; // index into the batch's lights
   bool directional = false;
+  // The shader is asked what surfaces are, not what light they send: it gets no lights, and rays
+  // that it traces are black.
+  bool describes = false;
   // By hit: index of the sampled scene light; null: the same light for all hits.
   uint32_t* chosen = nullptr;
   // The renderer. Null if shaders are called outside of a frame: nothing is traced then, and random

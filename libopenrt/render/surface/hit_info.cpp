@@ -58,6 +58,16 @@ void sphereDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3]
   store(Vec3f(r.toRender.direction(t)), alongT, i);
 }
 
+// Computes the derivatives of the position by the texture coordinates of a quadric or an asphere.
+void analyticDerivatives(const RtsBatch& batch, uint32_t i, float* const alongS[3],
+                         float* const alongT[3]) {
+  const Record& r = recordAt(batch, i);
+  const Vec3f position = load(batch.points->hits.position, batch.pointOf(i));
+  const auto tangents = r.surface->tangentsAt(r.fromRender.point(Vec3d(position)));
+  store(Vec3f(r.toRender.direction(tangents.alongS)), alongS, i);
+  store(Vec3f(r.toRender.direction(tangents.alongT)), alongT, i);
+}
+
 } // namespace
 
 void localOf(const RtsBatch& batch, float* const position[3], float* const normal[3]) {
@@ -87,6 +97,7 @@ void derivativesOf(const RtsBatch& batch, float* const alongS[3], float* const a
     const edit::Primitive primitive = recordAt(batch, i).primitive;
     if (primitive == edit::Primitive::Triangles) triangleDerivatives(batch, i, alongS, alongT);
     if (primitive == edit::Primitive::Sphere) sphereDerivatives(batch, i, alongS, alongT);
+    if (recordAt(batch, i).surface) analyticDerivatives(batch, i, alongS, alongT);
   }
 }
 

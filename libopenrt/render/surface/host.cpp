@@ -83,7 +83,7 @@ void random(RtsBatch* batch, uint32_t pair, float* const square[2]) {
 }
 
 void trace(RtsBatch* batch, const RtsRequest* rays, float* const rgba[4]) {
-  if (batch->tracer) return batch->tracer->trace(*batch, *rays, rgba);
+  if (batch->tracer && !batch->describes) return batch->tracer->trace(*batch, *rays, rgba);
   for (int k = 0; k < 4; k++)
     if (rgba[k]) std::fill_n(rgba[k], rays->count, 0.0f);
 }

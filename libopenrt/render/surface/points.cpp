@@ -101,6 +101,27 @@ void computeSphere(const Record& r, const Rays& rays, const RayHits& hits, uint3
   block.smooth[to] = 0;
 }
 
+// The hit is settled on the surface in double, so that neither its position nor its normal has the
+// rounding error of t.
+void computeAnalytic(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
+                     PointBlock& block, uint32_t to) {
+  const Vec3d origin(load(rays.org, lane)), direction(load(rays.dir, lane));
+  const Vec3d l = r.surface->settle(r.fromRender.point(origin + double(hits.t[lane]) * direction),
+                                    r.fromRender.direction(direction));
+  Vec3d normal;
+  r.surface->valueAt(l, normal);
+  const Vec3f place(l);
+  const float rounding = gammaOf(5) * largest(abs(place));
+  store(r.toRender.point(place), block.position, to);
+  store(boundOfImage(r.toRender, place, {rounding, rounding, rounding}), block.bound, to);
+  store(r.normalMatrix * Vec3f(normalize(normal)), block.ng, to);
+  const auto uv = r.surface->texCoordAt(l);
+  for (size_t k = 0; k < 2; k++) block.uv[k][to] = float(uv[k]);
+  for (auto& color : block.color) color[to] = 1;
+  block.flags[to] = RTS_HIT_TEXCOORD;
+  block.smooth[to] = 0;
+}
+
 void computeThin(const Record& r, const Rays& rays, const RayHits& hits, uint32_t lane,
                  PointBlock& block, uint32_t to) {
   const Vec3f origin = load(rays.org, lane), direction = load(rays.dir, lane),
@@ -149,8 +170,10 @@ void computeBlock(const RenderScene& scene, const Rays& rays, const RayHits& hit
   for (; others; others &= others - 1) {
     const uint32_t to = uint32_t(std::countr_zero(others)), lane = hitLanes[to];
     const Record& r = scene.records[hits.record[lane]];
-    (r.primitive == edit::Primitive::Sphere ? computeSphere : computeThin)(r, rays, hits, lane,
-                                                                           block, to);
+    const auto compute = r.surface                                ? computeAnalytic
+                         : r.primitive == edit::Primitive::Sphere ? computeSphere
+                                                                  : computeThin;
+    compute(r, rays, hits, lane, block, to);
   }
   finishPoints(block, out, i);
 }
@@ -271,6 +294,7 @@ Points makePoints(const RenderScene& scene, const Rays& rays, const RayHits& hit
 }
 
 bool liftToSmooth(const RenderScene& scene, const Points& points, uint32_t i, Vec3f& out) {
+  if (points.record[i] == noHit) return false; // a sensor
   const Record& r = scene.records[points.record[i]];
   if (!r.normals || r.primitive != edit::Primitive::Triangles) return false;
   const uint32_t lane = points.order[i];

@@ -22,6 +22,13 @@ struct ViewpointInfo {
   double matrix[16]; // local to world, column-major
 };
 
+// A place of an ORTSensor.
+struct SensorInfo {
+  std::string name; // DEF name, may be empty
+  NodeRef node;
+  double matrix[16]; // local to world, column-major
+};
+
 struct MapOptions {
   // Decodes sRGB colours (vv-cli.md "Colour"). If false, the standard's equation is applied to the
   // numbers as written.
@@ -99,6 +106,9 @@ class OpenRTMapper {
   // Returns the index of the viewpoint that is bound first, -1 if there is none. It belongs to the
   // file itself, not to its Inlines (clause 4.6.10).
   int boundViewpoint() const;
+  // Returns the sensors in the order of the file, prototypes and Inlines expanded. A sensor that is
+  // used several times has several places.
+  std::vector<SensorInfo> sensors() const;
   // Returns the camera of a viewpoint (index into viewpoints()), or the standard's default camera
   // (0 0 10) if the index is out of range.
   CameraSettings viewpointCamera(size_t index) const;
@@ -117,6 +127,9 @@ class OpenRTMapper {
   // If true, a colour texture multiplies diffuseColor (X3D's rule) instead of replacing it (clause
   // 4.14.3). Call it before the first map().
   void setMultiplyTextures(bool multiply);
+  // If true, Cylinder and Cone are drawn without facets (rtCylinder, rtCone). Call it before the
+  // first map().
+  void setExactShapes(bool exact);
   // If true, three soft lights around the camera replace the automatic headlight in a world that
   // leaves its lighting open: one without Viewpoint, NavigationInfo, lights and ORT nodes. Takes
   // effect with the next map(); false by default.

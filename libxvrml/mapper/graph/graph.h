@@ -33,9 +33,10 @@ enum class Kind : uint8_t {
   viewpoint,
   background,
   fog,
-  navigationInfo
+  navigationInfo,
+  sensor
 };
-constexpr bool isBindable(Kind k) { return k >= Kind::viewpoint; }
+constexpr bool isBindable(Kind k) { return k >= Kind::viewpoint && k <= Kind::navigationInfo; }
 constexpr bool isLight(Kind k) { return k == Kind::directionalLight || k == Kind::localLight; }
 
 // The author's hint on a group: merge (ORTStatic) or instantiate (ORTInstance).

@@ -93,6 +93,7 @@ void planOrtLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::ORTLight>(node, Kind::localLight, plan);
 }
 
+void planSensor(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::sensor; }
 void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
 void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
 void planFog(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::fog; }
@@ -123,6 +124,7 @@ std::vector<PlanFunction>& table() {
     set(nodes::PointLight::typeIndex, planPointLight);
     set(nodes::SpotLight::typeIndex, planSpotLight);
     set(nodes::ORTLight::typeIndex, planOrtLight);
+    set(nodes::ORTSensor::typeIndex, planSensor);
     for (const NodeType* type : nodeTypes())
       if (const BindableStack stack = bindableStack(*type); stack != BindableStack::none)
         set(type->index, bindablePlans[size_t(stack)]);

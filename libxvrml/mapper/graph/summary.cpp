@@ -144,7 +144,7 @@ class Summary {
 
   static bool isPlaceDependent(const Item& item) {
     if (item.kind == Kind::billboard || item.kind == Kind::lod) return item.draws;
-    return isBindable(item.kind) || shines(item);
+    return isBindable(item.kind) || item.kind == Kind::sensor || shines(item);
   }
 
   // Counts bottom-up in one pass: children come before parents. strip: items with several paths

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -38,6 +39,13 @@ struct Line {
     std::string word;
     if (!(rest >> word)) throw UsageError(fmt::format("{} was expected", what));
     return word;
+  }
+  // Reads a name, in quotation marks if it has several words.
+  std::string nextName(const char* what) {
+    std::string name;
+    if (!(rest >> std::quoted(name)) || name.empty())
+      throw UsageError(fmt::format("{} was expected", what));
+    return name;
   }
   std::string all(const char* what) {
     std::string text;
@@ -97,7 +105,7 @@ InputEvent readEvent(const std::string& name, Line& line, double& x, double& y) 
   case Kind::wheel: event.amount = readPlace(line.next("a number of notches")); break;
   case Kind::down:
   case Kind::up:
-    event.text = line.next("a key");
+    event.text = line.nextName("a key");
     readModifiers(line, event);
     break;
   case Kind::viewpoint: event.text = line.all("a name"); break;
@@ -111,6 +119,14 @@ InputEvent readEvent(const std::string& name, Line& line, double& x, double& y) 
   std::string more;
   if (line.rest >> more) throw UsageError(fmt::format("\"{}\" was not expected", more));
   return event;
+}
+
+// Returns a name as nextName() reads it.
+std::string nameInLine(const std::string& name) {
+  if (name.find_first_of(" \t\"\\") == name.npos) return name;
+  std::ostringstream text;
+  text << std::quoted(name);
+  return text.str();
 }
 
 } // namespace
@@ -162,7 +178,7 @@ std::string inputLine(double time, const InputEvent& event) {
     break;
   case Kind::wheel: line += fmt::format(" {}", event.amount); break;
   case Kind::down:
-  case Kind::up:
+  case Kind::up: line += " " + nameInLine(event.text); break;
   case Kind::viewpoint:
   case Kind::save:
   case Kind::open: line += " " + event.text; break;

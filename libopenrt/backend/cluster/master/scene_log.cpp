@@ -1,8 +1,11 @@
 #include "backend/cluster/master/scene_log.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <set>
 
 #include "openrt/frame.h"
+#include "scene/history.h"
 #include "scene/whole_scene.h"
 
 namespace openrt::cluster {
@@ -10,7 +13,9 @@ namespace openrt::cluster {
 void SceneLog::add(Epoch epoch, std::shared_ptr<const Commit> commit) {
   for (const auto& entry : commit->edits.edits)
     if (const auto* settings = entry ? entry->any.AsFrameSettings() : nullptr) frame_ = *settings;
-  log_.push_back({epoch, packer_.pack(std::move(commit)), (frame_.channels & RT_MOTION) != 0});
+  if (commit->edits.render)
+    frames_.push_back({epoch, frame_.view, (frame_.channels & RT_MOTION) != 0});
+  log_.push_back({epoch, packer_.pack(std::move(commit))});
   bytes_ += log_.back().parcel->bytes;
 }
 
@@ -20,19 +25,36 @@ void SceneLog::dropFirst() {
   log_.pop_front();
 }
 
-// A worker that joins at a frame with RT_MOTION must know the scene of the frame before. So that
-// one is kept, and the worker gets the commits after it, too.
+// Returns the epoch of the oldest frame to which the motion of the frame of `epoch`, or of a later
+// one, may refer (SceneHistory): the last one of each view, and in the view of that frame, if it
+// has RT_MOTION, the one before it.
 Epoch SceneLog::baseFor(Epoch epoch) const {
-  const auto after = std::find_if(log_.begin(), log_.end(),
-                                  [epoch](const Entry& entry) { return entry.epoch > epoch; });
-  if (after == log_.begin() || !std::prev(after)->motion) return epoch;
-  for (auto entry = std::prev(after); entry != log_.begin();)
-    if ((--entry)->parcel->commit->edits.render) return entry->epoch;
-  return base_;
+  auto frame = std::find_if(frames_.rbegin(), frames_.rend(),
+                            [epoch](const Frame& one) { return one.epoch <= epoch; });
+  if (frame == frames_.rend()) return epoch;
+  const Frame& own = *frame;
+  std::set<uint32_t> found;
+  Epoch base = epoch;
+  if (!own.motion)
+    found.insert(own.view);
+  else if (own.epoch == epoch)
+    ++frame;
+  for (uint64_t passed = 0; frame != frames_.rend() && passed <= maxFramesBetween;
+       ++frame, ++passed)
+    if (found.insert(frame->view).second) base = frame->epoch;
+  return base;
+}
+
+// Forgets the frames that baseFor() needs neither for the frame of `epoch` nor for later ones.
+void SceneLog::dropFrames(Epoch epoch) {
+  const auto before = std::count_if(frames_.begin(), frames_.end(),
+                                    [epoch](const Frame& one) { return one.epoch < epoch; });
+  for (auto kept = before; kept > std::ptrdiff_t(maxFramesBetween) + 1; --kept) frames_.pop_front();
 }
 
 void SceneLog::settle(Epoch epoch) {
   const Epoch base = baseFor(epoch);
+  dropFrames(epoch);
   for (const Entry& entry : log_) {
     if (entry.epoch <= base_ || entry.epoch > base) continue;
     scene_.apply(*entry.parcel->commit);

@@ -1,6 +1,8 @@
 // scene_log.h: Keeps the commits that workers may still need, and the scene at the oldest of them.
 // A worker that joins in the middle of a frame gets the scene of that frame; if the frame has
-// RT_MOTION, that of the frame before and the commits since. One thread.
+// RT_MOTION, that of the frame before in the same view (RT_VIEW) and the commits since. If other
+// views take turns with it, the worker gets the last frame of each of them in the same way. One
+// thread.
 #pragma once
 
 #include <deque>
@@ -38,14 +40,20 @@ class SceneLog {
   struct Entry {
     Epoch epoch = 0;
     ParcelPtr parcel;
-    bool motion = false; // its frame has RT_MOTION
+  };
+  struct Frame {
+    Epoch epoch = 0;
+    uint32_t view = 0;
+    bool motion = false; // it has RT_MOTION
   };
   // Returns the latest scene that a worker may begin with if it is to render the frame of `epoch`.
   Epoch baseFor(Epoch epoch) const;
   void dropFirst();
+  void dropFrames(Epoch epoch);
 
   Packer packer_;
   std::deque<Entry> log_;
+  std::deque<Frame> frames_; // the last ones
   size_t bytes_ = 0;
   // scene_ is the scene at base_; commits up to gone_ are no longer in the log.
   Scene scene_;

@@ -38,14 +38,6 @@ class Accel final : public Intersector {
   void intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const override;
   void bounds(float low[3], float high[3]) const override;
 
-  // One of all the hits along a ray.
-  struct MultiHit {
-    uint32_t ray, record, primitive;
-    float t, u, v;
-    Vec3f ng;
-  };
-  // Finds all hits along the rays, sorted by ray and distance. [any thread]
-  void allHits(const Rays& rays, std::vector<MultiHit>& out) const;
   struct Nearest {
     uint32_t record = noHit, primitive = 0;
     double distance = 0;
@@ -57,6 +49,16 @@ class Accel final : public Intersector {
   bool nearest(const Vec3d& place, double distance, std::span<const uint32_t> round,
                Nearest& out) const;
   std::vector<uint32_t> spheres() const; // returns the records of all visible spheres
+  struct Surface {
+    uint32_t record;
+    // To render space: of a sphere from the unit sphere's frame, of an analytic surface from its
+    // own.
+    Matrix4d toRender;
+  };
+  // Returns the largest coordinate of an origin of a ray, in render space.
+  double reach() const { return 1e18 / double(scale_); }
+  // Returns all visible triangle meshes, spheres and analytic surfaces.
+  std::vector<Surface> surfaces() const;
   // Returns the first record of a cluster; the entries of its part follow in order.
   uint32_t firstRecord(uint32_t cluster) const { return placed_[cluster].firstRecord; }
 
@@ -83,14 +85,10 @@ class Accel final : public Intersector {
   struct FilterContext {
     const Accel* accel;
     const Level* level;
-    const uint32_t* record = nullptr;     // for each ray the record to ignore
-    std::vector<MultiHit>* all = nullptr; // receives all hits
+    const uint32_t* record = nullptr; // for each ray the record to ignore
   };
   void intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
-                         const uint32_t* record, RayHits& hits,
-                         std::vector<MultiHit>* all = nullptr) const;
-  static void collectHit(const RTCFilterFunctionNArguments* a);
-  void refineMultiHit(const Rays& rays, MultiHit& p) const;
+                         const uint32_t* record, RayHits& hits) const;
   struct PointSearch;
   bool updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& best) const;
   static bool visitNear(RTCPointQueryFunctionArguments* a);

@@ -160,17 +160,6 @@ bool Accel::updateNearest(const PrimitiveId& found, const Vec3d& p, Nearest& bes
   return true;
 }
 
-std::vector<uint32_t> Accel::spheres() const {
-  std::vector<uint32_t> out;
-  for (size_t c = 0; c < placed_.size(); c++) {
-    if (c > 0 && !placed_[c].shown) continue;
-    const size_t end = c + 1 < placed_.size() ? placed_[c + 1].firstRecord : records.size();
-    for (size_t i = placed_[c].firstRecord; i < end; i++)
-      if (records[i].primitive == edit::Primitive::Sphere) out.push_back(uint32_t(i));
-  }
-  return out;
-}
-
 bool Accel::nearest(const Vec3d& place, double distance, std::span<const uint32_t> round,
                     Nearest& out) const {
   const Vec3f p(place * double(scale_));

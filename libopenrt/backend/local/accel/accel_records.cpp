@@ -25,7 +25,9 @@ void setInstance(Record& r, const Matrix4d& kernelToRender) {
   r.kernelNormal = normalMatrixOf(kernelToRender);
 }
 
+// The gradient of an analytic surface points to its front in every frame.
 bool flipped(const Geometry& g, const Matrix4d& asTheKernelSeesIt) {
+  if (g.surface) return g.clockwise;
   return g.primitive == edit::Primitive::Triangles &&
          g.clockwise != (asTheKernelSeesIt.determinant() < 0);
 }
@@ -127,7 +129,8 @@ void AccelBuilder::writeRecords(uint32_t c) {
       case DrawnAs::ellipsoid: setInstance(r, unit); break;
       case DrawnAs::thin: break;
       }
-      if (sphere) {
+      r.surface = g.surface.get();
+      if (sphere || g.surface) {
         r.toRender = Affine::from(unit);
         r.fromRender = Affine::from(inverse(unit));
       }

@@ -217,12 +217,11 @@ void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayH
 }
 
 void Accel::intersectFiltered(const Rays& rays, uint32_t mask, RTCFilterFunctionN filter,
-                              const uint32_t* record, RayHits& hits,
-                              std::vector<MultiHit>* all) const {
+                              const uint32_t* record, RayHits& hits) const {
   bool first = true;
   for (const Level* level : {&staticLevel_, &topLevel_}) {
     if (level == &topLevel_ && !(level->masks & mask)) continue;
-    const FilterContext filtered{this, level, record, all};
+    const FilterContext filtered{this, level, record};
     intersectPackets<Packet8>(*level, rays, mask, {false, filter, &filtered}, first, hits);
     first = false;
   }

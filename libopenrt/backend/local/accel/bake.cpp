@@ -42,6 +42,9 @@ Box boundsOf(const Geometry& geometry) {
     const double r = geometry.width;
     local.add({-r, -r, -r});
     local.add({r, r, r});
+  } else if (geometry.surface) {
+    local.add(geometry.surface->low());
+    local.add(geometry.surface->high());
   } else if (geometry.points) {
     const float* p = geometry.points->as<float>();
     const size_t n = geometry.points->count<float>() / 3;
@@ -61,6 +64,7 @@ Box boundsOf(const Geometry& geometry) {
 
 bool consistent(const Geometry& g) {
   if (g.primitive == edit::Primitive::Sphere) return g.width > 0 && std::isfinite(g.width);
+  if (AnalyticSurface::isAnalytic(g.primitive)) return g.surface != nullptr;
   if (!g.points || !g.indices) return false;
   const size_t n = g.points->count<float>() / 3;
   if ((g.normals && g.normals->count<float>() < 3 * n) ||

@@ -1,5 +1,6 @@
 // blas.cpp: builds a Blas. Small geometries share one Embree geometry, large ones have their own.
-// Slivers and huge spheres go to user geometries that intersect in double precision.
+// Slivers, huge spheres and analytic surfaces go to user geometries that intersect in double
+// precision.
 #include "backend/local/accel/blas.h"
 
 #include <cmath>
@@ -44,6 +45,7 @@ void BlasBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entr
   if (!consistent(g) || !toKernel.usable()) return;
   if (g.primitive == edit::Primitive::Triangles) addTriangles(g, toKernel, entry, mask);
   if (g.primitive == edit::Primitive::Sphere) addSphere(g, toKernel, entry, mask);
+  if (g.surface) addAnalytic(g, toKernel, entry, mask);
 }
 
 void BlasBuilder::addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel,
@@ -125,6 +127,14 @@ void BlasBuilder::addSphere(const Geometry& g, const Matrix4d& toKernel, uint32_
   part->primitives.add(entry, 0);
 }
 
+void BlasBuilder::addAnalytic(const Geometry& g, const Matrix4d& toKernel, uint32_t entry,
+                              uint32_t mask) {
+  auto& part = analytic_[mask];
+  if (!part) part = std::make_unique<Part>();
+  part->surfaces.push_back({g.surface, toKernel, inverse(toKernel)});
+  part->primitives.add(entry, 0);
+}
+
 // Attaches all parts that are still open and commits the scene. From here on the vertices keep
 // their addresses.
 std::shared_ptr<Blas> BlasBuilder::finish() {
@@ -134,6 +144,8 @@ std::shared_ptr<Blas> BlasBuilder::finish() {
     if (part) attachRound(*blas_, device_, std::move(part), mask, RTC_GEOMETRY_TYPE_SPHERE_POINT);
   for (auto& [mask, part] : hugeSpheres_)
     if (part) attachHugeSpheres(*blas_, device_, std::move(part), mask);
+  for (auto& [mask, part] : analytic_)
+    if (part) attachAnalytic(*blas_, device_, std::move(part), mask);
   for (const VertexOf& v : vertexOf_) blas_->vertices[v.entry] = v.part->vertices.data() + v.offset;
   if (triangles_ >= compactTriangles) setCompact(blas_->scene);
   rtcCommitScene(blas_->scene);

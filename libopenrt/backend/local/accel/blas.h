@@ -34,8 +34,8 @@ class UnitSpheres {
 class BlasBuilder {
  public:
   BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries);
-  // Adds a geometry (triangles or a sphere) as entry number `entry`. toKernel: from its local frame
-  // to the Embree scene's.
+  // Adds a geometry (triangles, a sphere or an analytic surface) as entry number `entry`. toKernel:
+  // from its local frame to the Embree scene's.
   void add(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
   // Adds an instance of another Blas; its entries are numbered from `entry` on.
   void addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel, uint32_t entry);
@@ -45,6 +45,8 @@ class BlasBuilder {
   void addTriangles(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry,
                     uint32_t mask);
   void addSphere(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
+  void addAnalytic(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry,
+                   uint32_t mask);
   Part& merge(const std::vector<float>& vertices, const uint32_t* index,
               const std::vector<uint32_t>* which, size_t count, uint32_t entry, uint32_t mask,
               bool slivers);
@@ -54,7 +56,7 @@ class BlasBuilder {
   std::shared_ptr<Blas> blas_;
   // Triangles of small geometries, by (mask, slivers).
   std::map<std::pair<uint32_t, bool>, std::unique_ptr<Part>> merged_;
-  std::map<uint32_t, std::unique_ptr<Part>> spheres_, hugeSpheres_; // by mask
+  std::map<uint32_t, std::unique_ptr<Part>> spheres_, hugeSpheres_, analytic_; // by mask
   struct VertexOf { // where an entry's vertices are stored
     uint32_t entry;
     const Part* part;

@@ -1,5 +1,5 @@
-// embree.h: hides the differences between Embree 3 and 4: contexts, arguments and calls for packets
-// of 8 and 16 rays. No other file depends on the major version.
+// embree.h: hides the differences between Embree 3 and 4: contexts, arguments and calls for one ray
+// and for packets of 8 and 16 rays. No other file depends on the major version.
 #pragma once
 
 // The library's build defines the major version. Other includers (tests) find the same one, because
@@ -65,6 +65,9 @@ struct OcclusionQuery {
         (options.filter ? RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER : 0));
   }
 };
+inline void intersect1(RTCScene scene, RTCRayHit& ray, Query& query) {
+  rtcIntersect1(scene, &ray, &query.arguments);
+}
 inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, Query& query) {
   rtcIntersect16(valid, scene, &rays, &query.arguments);
 }
@@ -95,6 +98,9 @@ struct Query {
                                      : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
 };
+inline void intersect1(RTCScene scene, RTCRayHit& ray, Query& query) {
+  rtcIntersect1(scene, &query.context, &ray);
+}
 inline void intersect16(RTCScene scene, const int* valid, RTCRayHit16& rays, Query& query) {
   rtcIntersect16(valid, scene, &query.context, &rays);
 }

@@ -69,6 +69,12 @@ void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_pt
   attach(to, geometry, {std::move(part)}, mask);
 }
 
+void attachAnalytic(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                    uint32_t mask) {
+  RTCGeometry geometry = newAnalytic(device, *part);
+  attach(to, geometry, {std::move(part)}, mask);
+}
+
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                  uint32_t mask, RTCGeometryType type, uint32_t slot) {
   RTCGeometry geometry = rtcNewGeometry(device.device, type);
@@ -100,8 +106,18 @@ void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix) {
   rtcCommitGeometry(geometry);
 }
 
+Matrix4d transformOf(const PartScene& in, uint32_t slot) {
+  float m[12];
+  rtcGetGeometryTransform(rtcGetGeometry(in.scene, slot), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
+  Matrix4d matrix;
+  for (size_t column = 0; column < 4; column++)
+    for (size_t row = 0; row < 3; row++) matrix.m[4 * column + row] = double(m[3 * column + row]);
+  return matrix;
+}
+
 void setEnabled(PartScene& in, uint32_t slot, bool enabled) {
   RTCGeometry geometry = rtcGetGeometry(in.scene, slot);
+  in.parts[slot].enabled = enabled;
   if (enabled)
     rtcEnableGeometry(geometry);
   else

@@ -9,12 +9,19 @@
 
 #include "backend/local/accel/embree_device.h"
 #include "backend/local/accel/primitive_runs.h"
+#include "scene/analytic.h"
 #include "scene/commit.h"
 #include "scene/matrix.h"
 
 namespace openrt {
 
 struct Blas;
+
+// An analytic surface in the frame of an Embree geometry.
+struct PlacedSurface {
+  std::shared_ptr<const AnalyticSurface> surface;
+  Matrix4d toKernel, fromKernel;
+};
 
 // The buffers of one Embree geometry, and the map from its primitives to records and primitives of
 // the scene.
@@ -25,6 +32,7 @@ struct Part {
   ArrayPtr sharedIndices;
   std::vector<uint8_t> openEdges; // for each sliver bits of its open edges (sliver_edges.h)
   std::vector<Matrix4d> spheres;  // for huge spheres: unit sphere's frame to the geometry's frame
+  std::vector<PlacedSurface> surfaces;        // for analytic surfaces
   std::atomic<uint64_t>* wrongHits = nullptr; // for slivers: the device's; it outlives the part
 };
 
@@ -34,6 +42,7 @@ struct PartSlot {
   std::unique_ptr<Part> part;         // null for an instance
   std::shared_ptr<const Blas> object; // for an instance: the instanced scene
   uint32_t record = 0;                // for an instance: the first of its records
+  bool enabled = true;
   bool used() const { return part || object; }
 };
 
@@ -64,6 +73,11 @@ void attachHugeSpheres(PartScene& to, const EmbreeDevice& device, std::unique_pt
                        uint32_t mask);
 // Creates the user geometry of huge spheres without attaching it.
 RTCGeometry newHugeSpheres(const EmbreeDevice& device, Part& part);
+// Attaches quadrics and aspheres from part.surfaces, intersected in double precision.
+void attachAnalytic(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
+                    uint32_t mask);
+// Creates the user geometry of analytic surfaces without attaching it.
+RTCGeometry newAnalytic(const EmbreeDevice& device, Part& part);
 // Attaches spheres or round linear curves. part.vertices have stride 4: centre and radius. slot:
 // the geometry id.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
@@ -74,6 +88,8 @@ void attachInstance(PartScene& to, const EmbreeDevice& device, std::shared_ptr<c
 void detach(PartScene& from, uint32_t slot); // does nothing if the slot is empty
 // setTransform() moves the instance in a slot, setEnabled() shows or hides it.
 void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix);
+// Returns the matrix of the instance in a slot, which is made of floats.
+Matrix4d transformOf(const PartScene& in, uint32_t slot);
 void setEnabled(PartScene& in, uint32_t slot, bool enabled);
 
 } // namespace openrt

@@ -22,6 +22,13 @@ double largestColumn(const Matrix4d& m) {
 
 } // namespace
 
+Matrix4d matrixOf(const Affine& affine) {
+  Matrix4d m;
+  for (size_t i = 0; i < 3; i++)
+    for (size_t j = 0; j < 4; j++) m.m[4 * j + i] = double(affine.r[i][j]);
+  return m;
+}
+
 Matrix4d uniformScale(double s) {
   Matrix4d m;
   m.m[0] = m.m[5] = m.m[10] = s;
@@ -84,7 +91,9 @@ PartInfo Survey::measurePart(const Scene& scene, const ScenePart& part, bool roo
         if (!shared && !root && !similarity(item.matrix * geometries[g].matrix))
           drawn = DrawnAs::ellipsoid;
         break;
-      case edit::Primitive::Triangles: break;
+      case edit::Primitive::Triangles:
+      case edit::Primitive::Quadric:
+      case edit::Primitive::Asphere: break;
       }
       if (shared) drawn = DrawnAs::shared;
       if (drawn == DrawnAs::ellipsoid) info.ellipsoids.emplace_back(i, g);

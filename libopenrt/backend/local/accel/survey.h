@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "backend/local/accel/bake.h"
+#include "render/records.h"
 #include "scene/flatten.h"
 
 namespace openrt {
@@ -81,5 +82,6 @@ class Survey {
 // Returns whether the matrix scales all directions equally, so that a sphere stays a sphere.
 bool similarity(const Matrix4d& m);
 Matrix4d uniformScale(double s);
+Matrix4d matrixOf(const Affine& affine);
 
 } // namespace openrt

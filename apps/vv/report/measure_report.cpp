@@ -1,0 +1,159 @@
+#include "measure_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "describe.h"
+#include "printable.h"
+
+namespace vv {
+
+namespace {
+
+using picture::Measurement;
+using Json = nlohmann::ordered_json;
+
+const char* unitOf(const Measurement& m) { return m.sensor.luminance ? "cd/m2" : "lx"; }
+const char* quantityOf(const Measurement& m) {
+  return m.sensor.luminance ? "luminance" : "illuminance";
+}
+
+// Statistics over the finished points of a sensor.
+struct Summary {
+  size_t points = 0, trusted = 0;
+  double mean = 0, halfWidth = 0; // the points are independent, so squares of half-widths add up
+  double least = 0, most = 0;
+
+  explicit Summary(const Measurement& m) {
+    double squares = 0;
+    for (size_t i = 0; i < m.value.size(); i++) {
+      if (m.samples[i] == 0) continue;
+      const auto value = double(m.value[i]), half = double(m.halfWidth[i]);
+      least = points ? std::min(least, value) : value;
+      most = points ? std::max(most, value) : value;
+      mean += value;
+      squares += half * half;
+      trusted += m.trusted[i];
+      points++;
+    }
+    if (points == 0) return;
+    mean /= double(points);
+    halfWidth = std::sqrt(squares) / double(points);
+  }
+  // Uniformity of illuminance: the least over the mean (EN 12665).
+  double uniformity() const { return mean > 0 ? least / mean : 0; }
+};
+
+// Quotes a text for CSV. A text that a spreadsheet would take for a formula gets a quote in front.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
+    out += '\'';
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+Json numberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+} // namespace
+
+std::string measurementsCsv(const std::vector<Measurement>& sensors) {
+  std::string out = "sensor,quantity,unit,column,row,x [m],y [m],z [m],value [unit],"
+                    "half-width of the 95 % interval [unit],trusted,samples\r\n";
+  for (const Measurement& m : sensors)
+    for (size_t i = 0; i < m.value.size(); i++) {
+      if (m.samples[i] == 0) continue;
+      const int column = int(i) % m.sensor.columns, row = int(i) / m.sensor.columns;
+      double p[3];
+      m.sensor.pointAt(column, row, p);
+      out += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.4g},{},{}\r\n",
+                         quoted(m.sensor.name), quantityOf(m), unitOf(m), column, row, p[0], p[1],
+                         p[2], m.value[i], m.halfWidth[i], int(m.trusted[i]), m.samples[i]);
+    }
+  return out;
+}
+
+std::string measurementsJson(const std::vector<Measurement>& sensors,
+                             const std::string& commandLine) {
+  Json json;
+  json["schema"] = 1;
+  json["version"] = version();
+  json["command"] = commandLine;
+  json["interval"] = {{"level", .95}, {"method", "replicated nets, Student's t"}};
+  json["units"] = {{"position", "m"}, {"illuminance", "lx"}, {"luminance", "cd/m2"}};
+  json["sensors"] = Json::array();
+  for (const Measurement& m : sensors) {
+    const Summary all(m);
+    Json points = Json::array();
+    for (size_t i = 0; i < m.value.size(); i++) {
+      double p[3];
+      m.sensor.pointAt(int(i) % m.sensor.columns, int(i) / m.sensor.columns, p);
+      const bool made = m.samples[i] > 0;
+      points.push_back({{"position", {p[0], p[1], p[2]}},
+                        {"value", made ? numberOrNull(double(m.value[i])) : Json(nullptr)},
+                        {"half_width", made ? numberOrNull(double(m.halfWidth[i])) : Json(nullptr)},
+                        {"trusted", m.trusted[i] != 0},
+                        {"samples", m.samples[i]}});
+    }
+    const double* d = m.sensor.direction;
+    json["sensors"].push_back({{"name", m.sensor.name},
+                               {"quantity", quantityOf(m)},
+                               {"unit", unitOf(m)},
+                               {"direction", {d[0], d[1], d[2]}},
+                               {"columns", m.sensor.columns},
+                               {"rows", m.sensor.rows},
+                               {"mean", numberOrNull(all.mean)},
+                               {"mean_half_width", numberOrNull(all.halfWidth)},
+                               {"minimum", all.least},
+                               {"maximum", all.most},
+                               {"uniformity", all.uniformity()},
+                               {"relative_half_width", numberOrNull(m.stats.errorHalfWidth)},
+                               {"unreached_lamps", m.stats.unreachedLights},
+                               {"interrupted", m.interrupted},
+                               {"points", std::move(points)}});
+  }
+  return printableJson(json.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+}
+
+std::string measurementText(const Measurement& m) {
+  const Summary all(m);
+  const char* unit = unitOf(m);
+  if (all.points == 0) return fmt::format("{}: no reading was finished", m.sensor.name);
+  std::string out = fmt::format("{}: {:.4g} {} +- {:.2g} {} (95 %)", m.sensor.name, all.mean, unit,
+                                all.halfWidth, unit);
+  if (all.points > 1)
+    out += fmt::format(", mean of {} points from {:.4g} to {:.4g} {}, uniformity {:.3g}",
+                       all.points, all.least, all.most, unit, all.uniformity());
+  return out;
+}
+
+std::vector<std::string> measurementWarnings(const Measurement& m, double target,
+                                             uint32_t allowed) {
+  std::vector<std::string> out;
+  const Summary all(m);
+  if (all.points == 0) return out;
+  const auto add = [&](const std::string& text) { out.push_back(m.sensor.name + ": " + text); };
+  if (target > 0 && m.stats.errorHalfWidth > 1.001 * target) {
+    const uint32_t taken = *std::max_element(m.samples.begin(), m.samples.end());
+    add(fmt::format("--error promised {:.3g} %, reached {:.3g} % with {} samples; {}", 100 * target,
+                    100 * m.stats.errorHalfWidth, taken,
+                    taken < allowed ? "a smaller --error takes more" : "--spp allows more"));
+  }
+  if (const size_t doubtful = all.points - all.trusted)
+    add(fmt::format("the intervals of {} of {} points are not trusted: too few paths have found "
+                    "the light there (docs/error-bars.md)",
+                    doubtful, all.points));
+  if (m.stats.unreachedLights > 0)
+    add(fmt::format("the light that {} lamps without extent send through glass or mirrors is "
+                    "missing",
+                    m.stats.unreachedLights));
+  return out;
+}
+
+} // namespace vv

@@ -1,0 +1,24 @@
+// measure_report.h: the reports of --measure: readings of sensors as CSV and JSON, and lines for
+// people. Pure functions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "libpicture/measure.h"
+
+namespace vv {
+
+// Returns the readings as CSV (RFC 4180): one line per point, after a line of names with units.
+std::string measurementsCsv(const std::vector<picture::Measurement>& sensors);
+// Returns the readings as JSON, schema 1.
+std::string measurementsJson(const std::vector<picture::Measurement>& sensors,
+                             const std::string& commandLine);
+// Describes one sensor in a line: mean with its interval, range, uniformity.
+std::string measurementText(const picture::Measurement& sensor);
+// Returns what a reader of the readings must know, a sentence each: a missed --error (target, with
+// at most so many samples allowed), light that is missing, readings that are not trusted.
+std::vector<std::string> measurementWarnings(const picture::Measurement& sensor, double target,
+                                             uint32_t allowed);
+
+} // namespace vv

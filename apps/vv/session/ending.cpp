@@ -1,0 +1,22 @@
+#include "session/ending.h"
+
+#include <cstdio>
+
+#include <unistd.h>
+
+#include "libpicture/files/atomic_file.h"
+#include "session/session.h"
+#include "session/world_loader.h"
+
+namespace vv {
+
+void stopOrExit(Session* session, int code) {
+  constexpr double patience = .5; // seconds
+  const bool stopped = !session || session->stop(patience);
+  if (stopped && !WorldLoader::working()) return;
+  picture::removeTemporary();
+  std::fflush(nullptr);
+  ::_exit(code);
+}
+
+} // namespace vv

@@ -1,0 +1,78 @@
+// measure.cpp: the first vertex of the paths that measure illuminance.
+#include "render/path/measure.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "render/path/tile.h"
+
+namespace openrt {
+
+// Shadow rays and spawned rays start at the sensor itself: its position is given, so it has no
+// rounding error that could lift them off a surface.
+Points sensorPoints(const Rays& rays, Arena& arena) {
+  const uint32_t n = rays.count, size = padded(n);
+  const auto filled = [&](float value) {
+    auto* array = arena.take<float>(size);
+    std::fill_n(array, size, value);
+    return array;
+  };
+  Points points{};
+  RtsHits& hits = points.hits;
+  hits.count = n;
+  for (int k = 0; k < 3; k++) {
+    auto *position = arena.take<float>(size), *normal = arena.take<float>(size),
+         *direction = arena.take<float>(size);
+    for (uint32_t i = 0; i < size; i++) { // the padding repeats the last ray
+      const uint32_t lane = std::min(i, n - 1);
+      position[i] = rays.org[k][lane];
+      normal[i] = rays.dir[k][lane];
+      direction[i] = -normal[i];
+    }
+    hits.position[k] = position;
+    hits.direction[k] = direction;
+    hits.geometric[k] = hits.normal[k] = normal;
+  }
+  hits.uv[0] = hits.uv[1] = hits.distance = hits.segment = filled(0);
+  for (auto& color : hits.color) color = filled(1);
+  hits.flags = arena.takeZero<uint32_t>(size);
+  hits.params = arena.takeZero<const void*>(size);
+  points.error = filled(0);
+  auto *record = arena.take<uint32_t>(size), *order = arena.take<uint32_t>(size);
+  std::fill_n(record, size, noHit);
+  for (uint32_t i = 0; i < size; i++) order[i] = std::min(i, n - 1);
+  points.record = record;
+  points.order = order;
+  return points;
+}
+
+// The radiance of a white matt surface is its illuminance over pi (J. H. Lambert, "Photometria",
+// 1760).
+float readingOf(const edit::FrameSettingsT& frame, const Vec3f& radiance) {
+  const float luminance = 0.2126f * radiance.x + 0.7152f * radiance.y + 0.0722f * radiance.z;
+  return frame.measure == RT_MEASURE_ILLUMINANCE ? std::numbers::pi_v<float> * luminance
+                                                 : luminance;
+}
+
+void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
+  ArenaScope scope(arena_);
+  const Points points = sensorPoints(wave.rays, arena_);
+  RtsBatch batch = makeBatch(context_, points, wave.states);
+  batch.lightSet = 0; // the lights that shine on everything (flatten.cpp)
+  const uint32_t n = points.hits.count;
+  const RtsLobe& white = *scene_.host.lobe(&batch, RTS_LOBE_DIFFUSE);
+  float* radiance[3];
+  for (int k = 0; k < 3; k++) {
+    std::fill_n(white.weight[k], padded(n), 1.0f);
+    radiance[k] = arena_.takeZero<float>(padded(n));
+  }
+  gatherLight(batch, {}, radiance);
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t path = wave.states.path[i];
+    store(load(found.radiance, path) + load(radiance, i), found.radiance, path);
+    found.alpha[path] = 1;
+    found.first[path] = 0;
+  }
+}
+
+} // namespace openrt

@@ -1,0 +1,19 @@
+// measure.h: photometric sensors (RT_MEASURE). A luminance is that of a camera ray. An illuminance
+// is found by a path that starts on a white matt surface at the sensor, which nothing else in the
+// scene can see: light samples, shadow rays and the rays that follow are those of any matt surface.
+// [render]
+#pragma once
+
+#include "render/surface/points.h"
+#include "scene/scene.h"
+
+namespace openrt {
+
+// Makes shading points at the origins of rays, whose normals are the directions of the rays. They
+// belong to no record of the scene.
+Points sensorPoints(const Rays& rays, Arena& arena);
+
+// Returns the reading of a sensor whose path has found this radiance, in cd/m2 or lux (frame.h).
+float readingOf(const edit::FrameSettingsT& frame, const Vec3f& radiance);
+
+} // namespace openrt

@@ -1,0 +1,188 @@
+#include "libpicture/false_colour.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "openrt/openrt.h"
+
+namespace picture {
+
+namespace {
+
+using Colour = std::array<float, 3>;
+constexpr Colour black{0, 0, 0};
+
+// Returns the colour of a value from 0 to 1: A. Mikhailov, "Turbo, An Improved Rainbow Colormap for
+// Visualization", 2019, in its polynomial form.
+Colour turbo(double at) {
+  const double x = std::clamp(at, 0.0, 1.0);
+  const auto polynomial = [x](const double(&c)[6]) {
+    double sum = 0;
+    for (int i = 5; i >= 0; i--) sum = sum * x + c[i];
+    return float(std::clamp(sum, 0.0, 1.0));
+  };
+  return {
+      polynomial({.13572138, 4.61539260, -42.66032258, 132.13108234, -152.94239396, 59.28637943}),
+      polynomial({.09140261, 2.19418839, 4.84296658, -14.18503333, 4.27729857, 2.82956604}),
+      polynomial({.10667330, 12.64194608, -60.58204836, 110.36276771, -89.90310912, 27.34824973})};
+}
+
+// The letters of numbers and of the unit, 5 x 7 dots each; a row is a number of 5 bits.
+struct Glyph {
+  char letter;
+  uint8_t rows[7];
+};
+constexpr Glyph glyphs[] = {{'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},
+                            {'2', {14, 17, 1, 2, 4, 8, 31}},     {'3', {31, 2, 4, 2, 1, 17, 14}},
+                            {'4', {2, 6, 10, 18, 31, 2, 2}},     {'5', {31, 16, 30, 1, 1, 17, 14}},
+                            {'6', {6, 8, 16, 30, 17, 17, 14}},   {'7', {31, 1, 2, 4, 8, 8, 8}},
+                            {'8', {14, 17, 17, 14, 17, 17, 14}}, {'9', {14, 17, 17, 15, 1, 2, 12}},
+                            {'.', {0, 0, 0, 0, 0, 12, 12}},      {'-', {0, 0, 0, 31, 0, 0, 0}},
+                            {'+', {0, 4, 4, 31, 4, 4, 0}},       {'e', {0, 0, 14, 17, 31, 16, 14}},
+                            {'c', {0, 0, 14, 16, 16, 17, 14}},   {'d', {1, 1, 13, 19, 17, 17, 15}},
+                            {'m', {0, 0, 26, 21, 21, 17, 17}},   {'/', {1, 1, 2, 4, 8, 16, 16}}};
+constexpr int letterWidth = 6, letterHeight = 7; // with the gap to the next letter
+
+class Canvas {
+ public:
+  Canvas(int width, int height) {
+    out_.width = width;
+    out_.height = height;
+    out_.linear = false;
+    out_.planes[RT_RGBA].assign(size_t(width) * size_t(height) * 4, 1.0f);
+  }
+  void set(int x, int y, const Colour& colour) {
+    if (x < 0 || y < 0 || x >= out_.width || y >= out_.height) return;
+    std::copy(colour.begin(), colour.end(),
+              out_.planes[RT_RGBA].begin() +
+                  std::ptrdiff_t(4 * (size_t(y) * size_t(out_.width) + size_t(x))));
+  }
+  void fill(int x, int y, int width, int height, const Colour& colour) {
+    for (int j = 0; j < height; j++)
+      for (int i = 0; i < width; i++) set(x + i, y + j, colour);
+  }
+  // Writes a text whose left upper corner is at (x, y); a dot has `size` pixels each way.
+  void write(int x, int y, int size, std::string_view text) {
+    for (const char letter : text) {
+      for (const Glyph& glyph : glyphs)
+        for (int row = 0; glyph.letter == letter && row < letterHeight; row++)
+          for (int column = 0; column < 5; column++)
+            if (glyph.rows[row] >> (4 - column) & 1)
+              fill(x + column * size, y + row * size, size, size, black);
+      x += letterWidth * size;
+    }
+  }
+  Picture take() { return std::move(out_); }
+
+ private:
+  Picture out_;
+};
+
+std::vector<float> luminancesOf(const Picture& picture) {
+  const std::vector<float>& rgba = rgbaOf(picture);
+  std::vector<float> out(rgba.size() / 4);
+  for (size_t i = 0; i < out.size(); i++) {
+    const float y = .2126f * rgba[4 * i] + .7152f * rgba[4 * i + 1] + .0722f * rgba[4 * i + 2];
+    out[i] = std::isfinite(y) ? y : 0;
+  }
+  return out;
+}
+
+double mostOf(std::vector<float> values) {
+  const auto at = values.begin() + std::ptrdiff_t(double(values.size() - 1) * .995);
+  std::nth_element(values.begin(), at, values.end());
+  const double most = double(*at);
+  return most > 0 ? most : 1;
+}
+
+// Returns the means over the 5x5 pixels around each, so that noise breaks no isoline.
+std::vector<float> smoothed(const std::vector<float>& values, int width, int height) {
+  constexpr int reach = 2;
+  std::vector<float> rows(values.size()), out(values.size());
+  const auto pass = [&](const std::vector<float>& from, std::vector<float>& to, int dx, int dy) {
+    for (int y = 0; y < height; y++)
+      for (int x = 0; x < width; x++) {
+        float sum = 0, count = 0;
+        for (int i = -reach; i <= reach; i++) {
+          const int u = x + i * dx, v = y + i * dy;
+          if (u < 0 || v < 0 || u >= width || v >= height) continue;
+          sum += from[size_t(v) * size_t(width) + size_t(u)];
+          count++;
+        }
+        to[size_t(y) * size_t(width) + size_t(x)] = sum / count;
+      }
+  };
+  pass(values, rows, 1, 0);
+  pass(rows, out, 0, 1);
+  return out;
+}
+
+} // namespace
+
+LuminanceScale luminanceScale(double most) {
+  const double fine = most / 10, power = std::pow(10, std::floor(std::log10(fine)));
+  LuminanceScale scale;
+  scale.step = 10 * power;
+  for (const double round : {1.0, 2.0, 5.0})
+    if (round * power >= fine * (1 - 1e-9)) {
+      scale.step = round * power;
+      break;
+    }
+  scale.top = scale.step * std::ceil(most / scale.step - 1e-9);
+  return scale;
+}
+
+Picture falseColours(const Picture& picture, std::optional<double> most) {
+  const int width = picture.width, height = picture.height;
+  const std::vector<float> luminance = luminancesOf(picture);
+  const LuminanceScale scale = luminanceScale(most ? *most : mostOf(luminance));
+  const int size = std::max(1, height / 300), line = letterHeight * size;
+  const int bar = 12 * size, gap = 3 * size;
+  const int labels = int(std::lround(scale.top / scale.step));
+  size_t letters = std::string_view("cd/m2").size();
+  const auto textOf = [&](int i) { return fmt::format("{:g}", scale.step * i); };
+  for (int i = 0; i <= labels; i++) letters = std::max(letters, textOf(i).size());
+  Canvas canvas(width + 3 * gap + bar + int(letters) * letterWidth * size, height);
+
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++)
+      canvas.set(x, y, turbo(double(luminance[size_t(y) * size_t(width) + size_t(x)]) / scale.top));
+  const std::vector<float> smooth = smoothed(luminance, width, height);
+  const auto levelAt = [&](int x, int y) {
+    return std::floor(double(smooth[size_t(y) * size_t(width) + size_t(x)]) / scale.step);
+  };
+  for (int y = 0; y + 1 < height; y++)
+    for (int x = 0; x + 1 < width; x++) {
+      const double here = std::min(levelAt(x, y), double(labels));
+      if (here != std::min(levelAt(x + 1, y), double(labels)) ||
+          here != std::min(levelAt(x, y + 1), double(labels)))
+        canvas.fill(x, y, size, size, black);
+    }
+
+  // The legend: the unit, then the bar with a label at each isoline that has room.
+  const int top = 2 * line, bottom = height - line, left = width + gap;
+  canvas.write(left, line / 2, size, "cd/m2");
+  const int length = std::max(bottom - top, 1);
+  for (int y = top; y < bottom; y++)
+    canvas.fill(left, y, bar, 1, turbo(1 - double(y - top) / length));
+  int last = height + line;
+  for (int i = 0; i <= labels; i++) {
+    const int y = bottom - int(std::lround(double(length) * i / labels));
+    canvas.fill(left, std::min(y, bottom - 1), bar, 1, black);
+    if (last - y < line + gap || y - line / 2 < line * 3 / 2) continue;
+    canvas.write(left + bar + gap, y - line / 2, size, textOf(i));
+    last = y;
+  }
+  Picture out = canvas.take();
+  out.note = picture.note;
+  return out;
+}
+
+} // namespace picture

@@ -1,0 +1,166 @@
+#include "libpicture/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "libpicture/stage.h"
+#include "xvrml/nodes.h"
+
+namespace picture {
+
+namespace {
+
+struct Vec {
+  double x = 0, y = 0, z = 0;
+};
+Vec operator+(Vec a, Vec b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec operator*(Vec a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double length(Vec a) { return std::hypot(a.x, a.y, a.z); }
+Vec of(const xvrml::Vec3f& v) { return {double(v.x), double(v.y), double(v.z)}; }
+void store(Vec v, double out[3]) {
+  out[0] = v.x;
+  out[1] = v.y;
+  out[2] = v.z;
+}
+Vec load(const double v[3]) { return {v[0], v[1], v[2]}; }
+
+// Applies the linear part of a matrix.
+Vec turned(const double m[16], Vec v) {
+  return load(m) * v.x + load(m + 4) * v.y + load(m + 8) * v.z;
+}
+
+constexpr int mostPoints = 1 << 20; // of one sensor
+
+[[noreturn]] void refuse(const std::string& name, const std::string& what) {
+  throw SensorError(fmt::format("ORTSensor {}: {}", name, what));
+}
+
+std::string nameOf(const xvrml::SensorInfo& info, const xvrml::nodes::ORTSensor& node) {
+  if (!info.name.empty()) return info.name;
+  return node.description.empty() ? "ORTSensor" : node.description;
+}
+
+// Returns a unit vector across the unit vector n: the part of `wanted` that is, or any.
+Vec acrossOf(Vec wanted, Vec n) {
+  const Vec part = wanted + n * -dot(wanted, n);
+  if (const double l = length(part); l > 1e-6 * length(wanted)) return part * (1 / l);
+  const Vec other = std::abs(n.x) < .9 ? Vec{1, 0, 0} : Vec{0, 0, 1};
+  const Vec rest = other + n * -dot(other, n);
+  return rest * (1 / length(rest));
+}
+
+} // namespace
+
+void PlacedSensor::pointAt(int c, int r, double out[3]) const {
+  store(load(first) + load(column) * c + load(row) * r, out);
+}
+
+// In local space, the ray of pixel (i, j) starts at (i + 1/2 - columns / 2, rows / 2 - j - 1/2, 0)
+// and goes along -z (plugins/shaders/vrml97/cameras.cpp).
+void PlacedSensor::camera(double lift, double out[16]) const {
+  const Vec u = load(column), v = load(row) * -1, n = load(direction);
+  const Vec middle =
+      load(first) + load(column) * ((columns - 1) * .5) + load(row) * ((rows - 1) * .5) + n * lift;
+  const Vec columnsOf[4] = {u, v, n * -1, middle};
+  for (int i = 0; i < 4; i++) {
+    store(columnsOf[i], out + 4 * i);
+    out[4 * i + 3] = i == 3;
+  }
+}
+
+PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
+  const auto& node = static_cast<const xvrml::nodes::ORTSensor&>(*info.node);
+  PlacedSensor out;
+  out.name = nameOf(info, node);
+  const auto refuseThis = [&](const std::string& what) { refuse(out.name, what); };
+  if (node.quantity != "ILLUMINANCE" && node.quantity != "LUMINANCE")
+    refuseThis(fmt::format("quantity is ILLUMINANCE or LUMINANCE, not \"{}\"", node.quantity));
+  out.luminance = node.quantity == "LUMINANCE";
+  out.columns = node.columns;
+  out.rows = node.rows;
+  if (out.columns < 1 || out.rows < 1 || int64_t(out.columns) * out.rows > mostPoints)
+    refuseThis(fmt::format("columns and rows are 1 or more, and at most {} points in all; not {} "
+                           "and {}",
+                           mostPoints, node.columns, node.rows));
+  const Vec given = of(node.direction);
+  if (!(length(given) > 0) || !std::isfinite(length(given))) refuseThis("direction has no length");
+  const double width = double(node.size.x), height = double(node.size.y);
+  if (!(width >= 0) || !(height >= 0) || !std::isfinite(width + height))
+    refuseThis("size is not below 0");
+  const Vec n = given * (1 / length(given)), a = acrossOf(of(node.across), n), b = cross(a, n);
+  const double* m = info.matrix;
+  const Vec u = turned(m, a), v = turned(m, b), area = cross(v, u);
+  const Vec position = turned(m, of(node.position)) + load(m + 12);
+  const double mirrored = dot(area, turned(m, n)) < 0 ? -1 : 1;
+  const Vec direction = out.luminance ? turned(m, n) : area * mirrored;
+  const double size = length(direction), extent = length(u) * length(v);
+  if (!(size > 0) || !std::isfinite(size) || !(length(area) > 1e-9 * extent) ||
+      !std::isfinite(length(position)))
+    refuseThis("it stands in a coordinate system that is flat or not finite");
+  store(direction * (1 / size), out.direction);
+  // A point has a cell, too, which gives the camera its axes.
+  const double cellWidth = width > 0 ? width / out.columns : 1,
+               cellHeight = height > 0 ? height / out.rows : 1;
+  store(u * cellWidth, out.column);
+  store(v * cellHeight, out.row);
+  store(position + u * (cellWidth * (1 - out.columns) * .5) +
+            v * (cellHeight * (1 - out.rows) * .5),
+        out.first);
+  return out;
+}
+
+// Sensors see neither the headlight nor the light that vv adds to models without light: only lamps
+// of the world count. Billboards and levels of detail are those of the view.
+void Stage::prepareSensors(const View& view) {
+  mapper_->setHeadlight(xvrml::MapOptions::Headlight::off);
+  mapper_->setModelLight(false);
+  mapper_->setBackground(settings.background.kind == Background::Kind::world);
+  mapper_->map(cameraOf(view));
+  useEnvironment();
+  if (memoryExhausted_) throw std::bad_alloc();
+}
+
+Measurement Stage::measure(const PlacedSensor& sensor, const RenderSettings& given) {
+  // Points that lie in a surface are lifted off it by more than the rounding of its vertices.
+  constexpr double liftOfRadius = 2e-6;
+  Measurement out;
+  out.sensor = sensor;
+  double matrix[16];
+  const double lift = sensor.luminance ? 0 : liftOfRadius * mapper_->boundingSphere().radius;
+  sensor.camera(lift, matrix);
+  rtLoadMatrixd(matrix);
+  rtOrtho(sensor.rows);
+  RenderSettings frame = given;
+  frame.width = sensor.columns;
+  frame.height = sensor.rows;
+  frame.channels = RT_RGBA | RT_ERROR | RT_TRUST | RT_SAMPLES;
+  frame.progressive = frame.preview = false;
+  frame.quality.set(RT_MEASURE, sensor.luminance ? RT_MEASURE_LUMINANCE : RT_MEASURE_ILLUMINANCE);
+  setUpFrame(frame);
+  rtRender();
+  throwOnError("measuring");
+  const size_t n = size_t(sensor.columns) * size_t(sensor.rows);
+  std::vector<float> rgba(4 * n), error(3 * n), trust(n), samples(n);
+  rtReadPixels(RT_RGBA, rgba.data(), rgba.size());
+  rtReadPixels(RT_ERROR, error.data(), error.size());
+  rtReadPixels(RT_TRUST, trust.data(), trust.size());
+  rtReadPixels(RT_SAMPLES, samples.data(), samples.size());
+  throwOnError("reading the sensors");
+  for (size_t i = 0; i < n; i++) {
+    out.value.push_back(rgba[4 * i]);
+    out.halfWidth.push_back(error[3 * i]);
+    out.trusted.push_back(trust[i] > 0);
+    out.samples.push_back(uint32_t(samples[i]));
+  }
+  out.stats.size = sizeof out.stats;
+  rtGetStats(&out.stats);
+  return out;
+}
+
+} // namespace picture

@@ -1,0 +1,47 @@
+// measure.h: photometric readings of the ORTSensors of a world: where their points are, and what
+// they read. Renderer::measure() makes the readings; the sensors are placed by pure functions.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libpicture/renderer.h"
+
+namespace picture {
+
+// A sensor of the world has fields that make no sense; the message names the sensor and the field.
+struct SensorError : RenderError {
+  using RenderError::RenderError;
+};
+
+// A sensor, placed in the world: a camera whose rays start at the points, row by row.
+struct PlacedSensor {
+  std::string name;       // DEF name, else description, else "ORTSensor"
+  bool luminance = false; // what is measured: luminance in cd/m2, or illuminance in lux
+  int columns = 1, rows = 1;
+  // World coordinates: the first point, the steps to the next column and to the next row, and the
+  // unit normal of the plane (or the direction of view).
+  double first[3], column[3], row[3], direction[3];
+
+  void pointAt(int column, int row, double out[3]) const;
+  // Writes the matrix (local to world, column-major) of the orthographic camera of height `rows`
+  // whose rays start at the points, moved by `lift` along the direction.
+  void camera(double lift, double out[16]) const;
+};
+
+// Places a sensor. Throws SensorError if its fields are out of range or its place is flat.
+PlacedSensor placeSensor(const xvrml::SensorInfo& info);
+
+// The readings of one sensor, by point, row by row.
+struct Measurement {
+  PlacedSensor sensor;
+  std::vector<float> value;     // lux or cd/m2
+  std::vector<float> halfWidth; // of the 95 % interval; infinite if nothing is known
+  std::vector<uint8_t> trusted; // 1 where the interval can be trusted (docs/error-bars.md)
+  std::vector<uint32_t> samples;
+  bool interrupted = false; // points that were not finished have 0 samples
+  RTstats stats;            // of the sensor's frame
+};
+
+} // namespace picture

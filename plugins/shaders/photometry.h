@@ -1,0 +1,160 @@
+// photometry.h: the luminous intensity of a luminaire by direction, and the reader of numbers that
+// the parsers of measured luminaires share (ies.h, eulumdat.h). The texts are untrusted: sizes are
+// bounded, and every error has a message. Pure functions.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+namespace photometry {
+
+// Limits of the angles of one kind and of all intensities.
+constexpr size_t maxAngles = 4096, maxValues = size_t(1) << 20;
+
+// How a direction is told by two angles (ANSI/IES LM-63, CIE 121). The photometric axis points down
+// in type C, and forward in types A and B, where positive angles point right and up.
+enum class Type {
+  C, // vertical: from the axis, 0 to 180; horizontal: around it, counter-clockwise seen from above
+  B, // polar axis horizontal: vertical turns around it, horizontal leads to the side, -90 to 90
+  A  // polar axis vertical: horizontal turns around it, vertical leads up, -90 to 90
+};
+
+class Photometry {
+ public:
+  Type type = Type::C;
+  // In degrees. Horizontal angles cover the part that the file contains.
+  std::vector<float> vertical, horizontal;
+  std::vector<float> candela; // by horizontal, then by vertical angle, all factors applied
+
+  // Returns the intensity in candela in a direction of any length: along the photometric axis,
+  // towards horizontal angle 0 (types A and B: right), and towards 90 degrees (up).
+  float towards(double axis, double zero, double ninety) const {
+    constexpr double degrees = 180 / M_PI;
+    if (type == Type::A)
+      return intensity(std::atan2(ninety, std::hypot(axis, zero)) * degrees,
+                       std::atan2(zero, axis) * degrees);
+    if (type == Type::B)
+      return intensity(std::atan2(ninety, axis) * degrees,
+                       std::atan2(zero, std::hypot(axis, ninety)) * degrees);
+    return intensity(std::atan2(std::hypot(zero, ninety), axis) * degrees,
+                     std::atan2(ninety, zero) * degrees);
+  }
+
+  // Returns the interpolated intensity in candela; 0 outside the measured angles.
+  float intensity(double up, double around) const {
+    if (up < double(vertical.front()) || up > double(vertical.back())) return 0;
+    if (type != Type::C) {
+      if (horizontal.front() >= 0) around = std::fabs(around); // one side stands for both
+      if (around < double(horizontal.front()) || around > double(horizontal.back())) return 0;
+    }
+    const Interpolation v = interpolationAt(vertical, up),
+                        h = interpolationAt(horizontal,
+                                            type == Type::C ? foldToMeasured(around) : around);
+    const auto at = [&](size_t column, size_t row) {
+      return double(candela[column * vertical.size() + row]);
+    };
+    const auto along = [&](size_t column) {
+      return at(column, v.first) * (1 - v.weight) + at(column, v.second) * v.weight;
+    };
+    return float(along(h.first) * (1 - h.weight) + along(h.second) * h.weight);
+  }
+  float largest() const { return *std::max_element(candela.begin(), candela.end()); }
+  // Returns the luminous flux in lumen: the integral over all directions, by the midpoint rule on
+  // fine cells.
+  double flux() const {
+    constexpr int rows = 360, columns = 144;
+    double sum = 0;
+    for (int row = 0; row < rows; row++) {
+      const double down = M_PI * (row + .5) / rows, sine = std::sin(down);
+      for (int column = 0; column < columns; column++) {
+        const double turn = 2 * M_PI * (column + .5) / columns;
+        sum += double(towards(std::cos(down), sine * std::cos(turn), sine * std::sin(turn))) * sine;
+      }
+    }
+    return sum * (M_PI / rows) * (2 * M_PI / columns);
+  }
+  // Multiplies all intensities. Returns false if one would not be a finite float.
+  bool scale(double factor) {
+    if (!(double(largest()) * factor <= 1e30)) return false;
+    for (float& value : candela) value = float(double(value) * factor);
+    return true;
+  }
+
+ private:
+  struct Interpolation {
+    size_t first, second;
+    double weight;
+  };
+  // Finds the two angles around `at`. Beyond the last angle it interpolates to the first one, a
+  // full turn later.
+  static Interpolation interpolationAt(const std::vector<float>& angles, double at) {
+    if (angles.size() == 1) return {0, 0, 0};
+    const size_t last = angles.size() - 1;
+    if (at >= double(angles[last])) {
+      const double gap = double(angles[0]) + 360 - double(angles[last]);
+      return gap > 0 && at > double(angles[last])
+                 ? Interpolation{last, 0, (at - double(angles[last])) / gap}
+                 : Interpolation{last, last, 0};
+    }
+    const auto above = std::upper_bound(angles.begin(), angles.end(), float(at), std::less<>());
+    const size_t i = std::clamp<size_t>(size_t(above - angles.begin()), 1, last);
+    const double low = double(angles[i - 1]), high = double(angles[i]);
+    return {i - 1, i, std::clamp((at - low) / (high - low), 0.0, 1.0)};
+  }
+  // Maps a horizontal angle to the measured range; the rest is symmetric to it.
+  double foldToMeasured(double around) const {
+    around = std::fmod(around, 360.0);
+    if (around < 0) around += 360;
+    const double first = double(horizontal.front()), last = double(horizontal.back());
+    if (horizontal.size() == 1) return first;
+    if (first == 90)
+      return around >= 90 && around <= 270 ? around : around < 90 ? 180 - around : 540 - around;
+    if (last > 180) return around;
+    if (around > 180) around = 360 - around;
+    return last == 90 && around > 90 ? 180 - around : around;
+  }
+};
+
+// Reads numbers one after the other, across line ends.
+class Reader {
+ public:
+  Reader(std::string_view text, int line) : rest_(text), line_(line) {}
+  int line() const { return line_; }
+  bool number(double& out) {
+    while (!rest_.empty() && (rest_[0] == ' ' || rest_[0] == '\t' || rest_[0] == '\r' ||
+                              rest_[0] == '\n' || rest_[0] == ',')) {
+      line_ += rest_[0] == '\n';
+      rest_.remove_prefix(1);
+    }
+    if (!rest_.empty() && rest_[0] == '+') rest_.remove_prefix(1);
+    const auto result = std::from_chars(rest_.data(), rest_.data() + rest_.size(), out);
+    if (result.ec != std::errc() || !std::isfinite(out) || std::fabs(out) > 1e30) return false;
+    rest_.remove_prefix(size_t(result.ptr - rest_.data()));
+    return true;
+  }
+  bool numbers(size_t count, double factor, std::vector<float>& out) {
+    out.clear();
+    for (size_t i = 0; i < count; i++) {
+      double value;
+      if (!number(value) || !std::isfinite(value * factor) || std::fabs(value * factor) > 1e30)
+        return false;
+      out.push_back(float(value * factor));
+    }
+    return true;
+  }
+
+ private:
+  std::string_view rest_;
+  int line_;
+};
+
+inline bool rising(const std::vector<float>& angles) {
+  return std::adjacent_find(angles.begin(), angles.end(),
+                            [](float a, float b) { return !(a < b); }) == angles.end();
+}
+
+} // namespace photometry

@@ -1,0 +1,145 @@
+"""Tests photometric sensors: vv --measure, World.measure() and --false-colour."""
+import csv
+import io
+import json
+import math
+
+import numpy as np
+import pytest
+
+import xvrml
+
+ROOM = """#VRML V2.0 utf8
+NavigationInfo { headlight FALSE }
+Transform { translation 0 2 0 children ORTLight { shader ORTShader {
+  name "Luminaire" file "luminaire" options "1f lumen 1256.6371" } } }
+DEF Desk ORTSensor { size 2 2 columns 2 rows 2 }
+ORTSensor { description "=glare, \\"hard\\"" quantity "LUMINANCE" position 0 1 3 direction 0 0 -1 }
+Shape {
+  appearance ORTAppearance { shader ORTShader { name "Diffuse" file "diffuse"
+    options "color reflectance 0 0 0 color emission 50 50 50" } }
+  geometry IndexedFaceSet { solid FALSE coordIndex [ 0 1 2 3 ]
+    coord Coordinate { point [ -1 0 -9, 1 0 -9, 1 2 -9, -1 2 -9 ] } }
+}
+"""
+
+
+@pytest.fixture
+def room(vv):
+    (vv.folder / "room.wrl").write_text(ROOM)
+    return vv
+
+
+def test_readings_as_csv(room):
+    done = room("room.wrl", "--measure", "out.csv", "--spp", "64")
+    assert done.returncode == 0, done.talk
+    rows = list(csv.DictReader(io.StringIO((room.folder / "out.csv").read_text())))
+    assert len(rows) == 5
+    for row in rows[:4]:
+        assert row["sensor"] == "Desk" and row["unit"] == "lx"
+        assert abs(float(row["x [m]"])) == .5 and abs(float(row["z [m]"])) == .5
+        # 100 cd at a height of 2 m, and a little of the luminous wall
+        direct = 100 * 2 / 4.5**1.5
+        value = float(row["value [unit]"])
+        half = float(row["half-width of the 95 % interval [unit]"])
+        assert direct - half < value < direct + 5
+    glare = rows[4]
+    assert glare["sensor"] == "'=glare, \"hard\"", "no formula for a spreadsheet"
+    assert (glare["quantity"], glare["unit"]) == ("luminance", "cd/m2")
+    assert float(glare["value [unit]"]) == pytest.approx(50, rel=1e-5)
+    assert "Desk: " in done.talk and " lx " in done.talk
+
+
+def test_readings_as_json(room):
+    done = room("room.wrl", "--measure", "out.json", "--spp", "256", "-q")
+    assert done.returncode == 0, done.talk
+    said = json.loads((room.folder / "out.json").read_text())
+    assert said["schema"] == 1 and said["interval"]["level"] == .95
+    assert said["units"] == {"position": "m", "illuminance": "lx", "luminance": "cd/m2"}
+    desk, glare = said["sensors"]
+    assert desk["unit"] == "lx" and len(desk["points"]) == 4 and desk["direction"] == [0, 1, 0]
+    values = [point["value"] for point in desk["points"]]
+    assert desk["mean"] == pytest.approx(np.mean(values))
+    assert desk["minimum"] == min(values) and desk["maximum"] == max(values)
+    assert desk["uniformity"] == pytest.approx(min(values) / np.mean(values))
+    assert all(point["samples"] == 256 and point["half_width"] > 0 for point in desk["points"])
+    assert glare["points"][0]["value"] == pytest.approx(50, rel=1e-5)
+
+
+def test_the_same_bytes_for_any_number_of_threads(room):
+    texts = {
+        room("room.wrl", "--measure", "-", "--spp", "64", "-q", "--threads", n).stdout
+        for n in (1, 3)
+    }
+    assert len(texts) == 1 and texts.pop().startswith(b"sensor,quantity,unit")
+    other = room("room.wrl", "--measure", "-", "--spp", "64", "-q", "--seed", "3").stdout
+    assert other.startswith(b"sensor,quantity,unit") and other not in texts
+
+
+def test_a_target_that_is_missed_says_what_was_promised_and_reached(room):
+    done = room("room.wrl", "--measure", "out.csv", "--error", ".001%", "--spp", "64")
+    assert done.returncode == 0
+    lines = [line for line in done.talk.splitlines() if "promised" in line]
+    assert lines and all("reached" in line for line in lines), done.talk
+    done = room("room.wrl", "-o", "x.png", "--size", "16x16", "--error", ".001%", "--spp", "64")
+    (line,) = [line for line in done.talk.splitlines() if "promised" in line]
+    assert "--error promised 0.001 %, reached" in line
+
+
+@pytest.mark.parametrize("fields, expected", [
+    ('quantity "LUX"', "quantity is ILLUMINANCE or LUMINANCE"),
+    ("direction 0 0 0", "direction has no length"),
+    ("columns 4096 rows 4096", "at most 1048576 points"),
+])
+def test_wrong_sensors_are_refused(vv, fields, expected):
+    (vv.folder / "bad.wrl").write_text("#VRML V2.0 utf8\nDEF Bad ORTSensor { %s }\n" % fields)
+    done = vv("bad.wrl", "--measure", "out.csv", "--spp", "1")
+    assert done.returncode == 4 and expected in done.talk and "Bad" in done.talk, done.talk
+    assert not (vv.folder / "out.csv").exists()
+
+
+def test_worlds_without_sensors_and_wrong_options(vv):
+    done = vv("box.wrl", "--measure", "out.csv")
+    assert done.returncode == 4 and "no ORTSensor" in done.talk
+    for arguments in (("--measure", "out.txt"), ("--measure", "out.csv", "--frames", "1-2"),
+                      ("--measure", "-", "--stats", "-", "-o", "x.png"), ("--false-colour", "auto"),
+                      ("--false-colour", "-3", "-o", "x.png"), ("--false-colour", "auto", "-o",
+                                                                "x.exr")):
+        assert vv("box.wrl", *arguments).returncode == 2, arguments
+
+
+def test_false_colours_widen_the_picture_and_leave_exr_alone(room):
+    done = room("room.wrl", "-o", "x.ppm", "-o", "x.exr", "--false-colour", "60", "--size", "64x48",
+                "--spp", "4", "-q")
+    assert done.returncode == 0, done.talk
+    width, height = map(int, (room.folder / "x.ppm").read_bytes().split(b"\n")[1].split()[:2])
+    assert width > 64 and height == 48
+    assert room("room.wrl", "--compare", "x.exr", "--size", "64x48", "--spp", "4",
+                "-q").returncode == 0, "the EXR file holds the picture itself"
+
+
+def test_python_reads_the_same(room):
+    world = xvrml.load(room.folder / "room.wrl")
+    desk, glare = world.measure(spp=256)
+    assert (desk.name, desk.quantity, desk.unit) == ("Desk", "illuminance", "lx")
+    assert desk.values.shape == desk.half_widths.shape == desk.trusted.shape == (2, 2)
+    assert desk.positions.shape == (2, 2, 3) and desk.direction == (0, 1, 0)
+    assert glare.values[0, 0] == pytest.approx(50, rel=1e-5)
+    assert room("room.wrl", "--measure", "out.json", "--spp", "256", "-q").returncode == 0
+    said = json.loads((room.folder / "out.json").read_text())
+    for point, value in zip(said["sensors"][0]["points"], desk.values.flat):
+        assert np.float32(point["value"]) == value
+    assert (desk.samples == 256).all()
+    more = world.measure(spp=65536, error=.02)
+    assert more[0].stats["error_half_width"] < .03
+
+
+def test_python_places_sensors(room):
+    world = xvrml.loads("#VRML V2.0 utf8\nNavigationInfo { headlight FALSE }\n"
+                        "Transform { scale 2 2 2 rotation 1 0 0 1.5707963\n"
+                        " children DEF S ORTSensor { position 0 0 -1 size 1 1 rows 2 } }")
+    (sensor,) = world.measure(spp=1)
+    # The normal y becomes z, and the plane's z becomes -y.
+    assert np.allclose(sensor.direction, (0, 0, 1), atol=1e-6)
+    assert np.allclose(sensor.positions[:, 0], [(0, 2.5, 0), (0, 1.5, 0)], atol=1e-5)
+    assert math.isclose(float(sensor.values[0, 0]), 0)
