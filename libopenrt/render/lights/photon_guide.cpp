@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "render/frame.h"
 
@@ -12,43 +13,43 @@ namespace {
 constexpr uint32_t mostInCell = 24, fewestPhotons = 8;
 // A lobe reaches as far as this neighbour among the places that the light of its cell came from.
 constexpr size_t neighbour = 3;
-// The narrowest and the widest lobe, as angles: 1 / sqrt(concentration).
-constexpr double narrowest = 3e-4, widest = 1;
+// Bounds of a lobe's spread.
+constexpr float narrowest = 1e-8f, widest = .5f;
+// Places farther away than this are not usable, because their squares would overflow.
+constexpr float farthest = 1e18f;
 
-// A von Mises-Fisher distribution around an axis (N. I. Fisher, T. Lewis, B. J. J. Embleton,
-// "Statistical Analysis of Spherical Data", 1987, 4.4.3). Values so small that they do not matter
-// are 0.
+// A lobe about an axis. With h = 1 - cosine of the angle to the axis, its solid-angle pdf is
+//   spread (spread + 2) / (4 pi (spread + h)^2).
+// Half of the samples of a narrow lobe have h < spread. It has the longer tails of Student's t, and
+// costs no exponential function: it is evaluated for each photon of a cell at every hit.
 struct Distribution {
-  Vec3d axis;
-  double concentration, beyond; // beyond: exp(-2 concentration)
+  Vec3f axis;
+  float spread;
 
-  Distribution(const Vec3d& towards, double radius) {
-    const double distance = length(towards);
-    axis = distance > 0 ? towards / distance : Vec3d{0, 0, 1};
-    const double width =
-        distance > 0 ? std::clamp(radius / distance, narrowest, widest) : double(widest);
-    concentration = 1 / (width * width);
-    beyond = concentration < 20 ? std::exp(-2 * concentration) : 0; // else below 1e-17
+  Distribution(const Vec3f& towards, float radius2) {
+    const float square = dot(towards, towards), d2 = square > 0 ? square : 1,
+                inverse = 1 / std::sqrt(d2);
+    axis = {towards.x * inverse, towards.y * inverse, square > 0 ? towards.z * inverse : 1};
+    spread = std::min(std::max(radius2 / d2 / 2, narrowest), widest);
   }
-  double pdf(const Vec3d& direction) const {
-    const Vec3d chord = direction - axis;
-    const double exponent = concentration * dot(chord, chord) / 2;
-    if (exponent > 60) return 0; // below 1e-26 of the largest value
-    return concentration / (2 * M_PI * (1 - beyond)) * std::exp(-exponent);
+  float pdf(const Vec3f& direction) const {
+    const Vec3f chord = direction - axis;
+    const float reach = spread + dot(chord, chord) / 2;
+    return spread * (spread + 2) / (4 * std::numbers::pi_v<float> * reach * reach);
   }
   Vec3f sample(float u, float v) const {
-    const double height = -std::log(1 - double(u) * (1 - beyond)) / concentration, // 1 - cosine
-        round = std::sqrt(std::max(0.0, height * (2 - height))), phi = 2 * M_PI * double(v);
+    const double a = double(spread), h = 2 * a * double(u) / (a + 2 - 2 * double(u)),
+                 round = std::sqrt(std::max(0.0, h * (2 - h))), phi = 2 * M_PI * double(v);
     Vec3f s, t;
-    basisOf(Vec3f(axis), s, t);
+    basisOf(axis, s, t);
     const Vec3d direction =
-        (1 - height) * axis + round * std::cos(phi) * Vec3d(s) + round * std::sin(phi) * Vec3d(t);
+        (1 - h) * Vec3d(axis) + round * std::cos(phi) * Vec3d(s) + round * std::sin(phi) * Vec3d(t);
     return Vec3f(direction / length(direction));
   }
 };
 
-// Returns the distance from a place to the given neighbour among the others.
-float distanceToNeighbour(const Photon* photons, uint32_t count, uint32_t of) {
+// Returns the squared distance from a place to its neighbour among the others.
+float squareToNeighbour(const Photon* photons, uint32_t count, uint32_t of) {
   float nearest[neighbour]; // squared distances, ascending
   std::fill_n(nearest, neighbour, std::numeric_limits<float>::infinity());
   for (uint32_t i = 0; i < count; i++) {
@@ -58,15 +59,17 @@ float distanceToNeighbour(const Photon* photons, uint32_t count, uint32_t of) {
     for (float& n : nearest)
       if (square < n) std::swap(square, n);
   }
-  size_t last = std::min<size_t>(neighbour, count - 1);
-  return last ? std::sqrt(nearest[last - 1]) : 0;
+  const size_t last = std::min<size_t>(neighbour, count - 1);
+  return last ? nearest[last - 1] : 0;
 }
 
 } // namespace
 
 PhotonGuide::PhotonGuide(std::vector<Photon> photons) {
-  std::erase_if(photons, [](const Photon& p) {
-    return !(p.power > 0) || !std::isfinite(p.power) || !isFinite(p.position) || !isFinite(p.from);
+  const auto usable = [](const Vec3f& place) { return largest(abs(place)) < farthest; };
+  std::erase_if(photons, [&](const Photon& p) {
+    return !(p.power > 0) || !std::isfinite(p.power) || !isFinite(p.position) ||
+           !isFinite(p.from) || !usable(p.position) || !usable(p.from);
   });
   if (photons.size() < fewestPhotons) return;
   build(photons, 0, uint32_t(photons.size()));
@@ -99,8 +102,8 @@ int32_t PhotonGuide::build(std::vector<Photon>& photons, uint32_t begin, uint32_
 int32_t PhotonGuide::addCell(const std::vector<Photon>& photons, uint32_t begin, uint32_t end) {
   const Photon* own = photons.data() + begin;
   const uint32_t count = end - begin;
-  Cell cell{uint32_t(lobes_.size()), uint32_t(lobes_.size()) + count, own[0].position,
-            own[0].position};
+  const auto first = uint32_t(probability_.size());
+  Cell cell{first, first + count, own[0].position, own[0].position};
   double power = 0;
   for (uint32_t i = 0; i < count; i++) {
     cell.low = min(cell.low, own[i].position);
@@ -115,9 +118,11 @@ int32_t PhotonGuide::addCell(const std::vector<Photon>& photons, uint32_t begin,
   // An eighth of the samples goes to all photons alike, because weak ones may lead to light that is
   // strong elsewhere in the cell.
   const double mean = power / count, total = power + count * mean / 8;
-  for (uint32_t i = 0; i < count; i++)
-    lobes_.push_back({own[i].from, distanceToNeighbour(own, count, i),
-                      float((double(own[i].power) + mean / 8) / total)});
+  for (uint32_t i = 0; i < count; i++) {
+    for (size_t k = 0; k < 3; k++) from_[k].push_back(own[i].from[k]);
+    radius2_.push_back(squareToNeighbour(own, count, i));
+    probability_.push_back(float((double(own[i].power) + mean / 8) / total));
+  }
   cells_.push_back(cell);
   return ~int32_t(cells_.size() - 1);
 }
@@ -139,20 +144,26 @@ float PhotonGuide::sample(uint32_t cell, const Vec3f& position, float pick, floa
                           Vec3f& direction) const {
   uint32_t i = cells_[cell].begin;
   float left = pick;
-  while (i + 1 < cells_[cell].end && left >= lobes_[i].probability) left -= lobes_[i++].probability;
-  const Distribution distribution(Vec3d(lobes_[i].from) - Vec3d(position),
-                                  double(lobes_[i].radius));
-  direction = distribution.sample(u, v);
+  while (i + 1 < cells_[cell].end && left >= probability_[i]) left -= probability_[i++];
+  const Vec3f from{from_[0][i], from_[1][i], from_[2][i]};
+  direction = Distribution(from - position, radius2_[i]).sample(u, v);
   return pdf(cell, position, direction);
 }
 
+// The compiler makes vector code of the loop.
 float PhotonGuide::pdf(uint32_t cell, const Vec3f& position, const Vec3f& direction) const {
-  double sum = 0;
-  for (uint32_t i = cells_[cell].begin; i < cells_[cell].end; i++)
-    sum += double(lobes_[i].probability) *
-           Distribution(Vec3d(lobes_[i].from) - Vec3d(position), double(lobes_[i].radius))
-               .pdf(Vec3d(direction));
-  return std::isfinite(sum) ? float(sum) : 0.0f;
+  const uint32_t begin = cells_[cell].begin, count = cells_[cell].end - begin;
+  const float *x = from_[0].data() + begin, *y = from_[1].data() + begin,
+              *z = from_[2].data() + begin, *radius2 = radius2_.data() + begin,
+              *probability = probability_.data() + begin;
+  float share[mostInCell];
+  for (uint32_t i = 0; i < count; i++) {
+    const Vec3f from{x[i], y[i], z[i]};
+    share[i] = probability[i] * Distribution(from - position, radius2[i]).pdf(direction);
+  }
+  float sum = 0;
+  for (uint32_t i = 0; i < count; i++) sum += share[i];
+  return sum;
 }
 
 } // namespace openrt

@@ -38,12 +38,10 @@ class PhotonGuide {
 
  private:
   // Each photon of a cell is a lobe around the direction to the place that its light came from. So
-  // the lobes of a cell follow from the point at which they are looked up.
-  struct Lobe {
-    Vec3f from;
-    float radius;      // distance of other places that light came from
-    float probability; // of the lobe within its cell
-  };
+  // the lobes of a cell follow from the point at which they are looked up. The lobes of all cells,
+  // cell by cell:
+  std::vector<float> from_[3], radius2_; // squared distance of other places that light came from
+  std::vector<float> probability_;       // of the lobe within its cell
   struct Cell {
     uint32_t begin, end; // of its lobes
     Vec3f low, high;     // where the photons are taken as valid
@@ -58,7 +56,6 @@ class PhotonGuide {
 
   std::vector<Node> nodes_;
   std::vector<Cell> cells_;
-  std::vector<Lobe> lobes_;
 };
 
 } // namespace openrt

@@ -101,16 +101,24 @@ uint32_t guideCellAt(const RenderScene& scene, PathFlags path, const Vec3f& posi
   return scene.photonGuide->find(position);
 }
 
-void weightUnguided(const RenderScene& scene, RayQueue& queue, size_t begin) {
+void weightUnguided(const RtsBatch& batch, const Boundaries& boundaries) {
+  const RenderScene& scene = *batch.scene;
+  const PathStates& states = *batch.states;
   if (!scene.photonGuide) return;
-  const PathStates& states = queue.states();
-  for (size_t r = begin; r < queue.size(); r++) {
-    const Vec3f position = states.previousOf(r).position;
-    const uint32_t cell = guideCellAt(scene, states.flagsOf(r), position);
+  const bool goesOn = boundaries.crossing || std::any_of(batch.lobes, batch.lobes + batch.lobeCount,
+                                                         [](const RtsLobe& lobe) {
+                                                           return !nonSpecularFunctions(lobe);
+                                                         });
+  if (!goesOn) return;
+  for (uint32_t i = 0; i < batch.points->hits.count; i++) {
+    const uint32_t lane = batch.order[i];
+    const float pdf = states.pdf[lane];
+    if (!(pdf > 0)) continue;
+    const Vec3f position = states.previousOf(lane).position;
+    const uint32_t cell = guideCellAt(scene, states.flagsOf(lane), position);
     if (cell == PhotonGuide::none) continue;
-    const float pdf = states.pdf[r],
-                guided = scene.photonGuide->pdf(cell, position, load(queue.direction(), r));
-    states.unguidedWeight[r] = pdf / (pdf + guided);
+    const Vec3f direction = load(batch.points->hits.direction, i);
+    states.unguidedWeight[lane] = pdf / (pdf + scene.photonGuide->pdf(cell, position, direction));
   }
 }
 

@@ -17,9 +17,9 @@ namespace openrt {
 // the path sends none there. Light tracing has the light of paths whose first surface scatters.
 uint32_t guideCellAt(const RenderScene& scene, PathFlags path, const Vec3f& position);
 
-// Writes the MIS weight of BSDF sampling to the rays of a queue from ray `begin` on. They have just
-// been sampled from a non-specular lobe.
-void weightUnguided(const RenderScene& scene, RayQueue& queue, size_t begin);
+// Writes the MIS weight of BSDF sampling to the states of the paths that BSDF samples of
+// non-specular lobes have led to the hits of a batch, if they may go on by way of specular lobes.
+void weightUnguided(const RtsBatch& batch, const Boundaries& boundaries);
 
 class GuidedRays {
  public:

@@ -68,10 +68,7 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
   for (const SampleArrays& sample : samples) {
     const size_t begin = paths.next.size();
     continuePaths(from, sample, hitOf, paths.next);
-    if (sample.pdf)
-      weightUnguided(*batch.scene, paths.next, begin);
-    else if (sample.deflected)
-      countUnsampled(paths, begin);
+    if (sample.deflected && !sample.pdf) countUnsampled(paths, begin);
   }
 }
 
@@ -93,6 +90,7 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries) {
   const RtsBatch& batch = paths.batch;
   ArenaScope scope(*batch.arena);
+  weightUnguided(batch, boundaries);
   const BsdfSampleArrays samples(batch, sampling, boundaries,
                                  !followsImages(batch.scene->frame.transport));
   if (!samples.empty()) followSamples(paths, sampling, boundaries, samples);
