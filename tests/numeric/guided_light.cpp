@@ -72,21 +72,33 @@ TEST_F(GuidedLight, AMirrorSendsOnTheLightOfASmallLamp) {
   expectQ("mirrored", Scene::mean(picture(8, 64, 1)), expected, .004);
 }
 
-// What a mirror shows of a caustic is the caustic times the reflectance of the mirror.
+// What a mirror shows of a caustic is the caustic times the reflectance of the mirror. Parallel
+// projections, one of them mirrored, see the same part of the floor.
 TEST_F(GuidedLight, ACausticSeenInAMirrorHasTheLightOfTheCaustic) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
   rtQuality(RT_MAX_DEPTH, 8);
   at(0, 0, 0, square(matt(.7), 3));
   at(0, 0, .8, sphere(Shader("Glass"), .5));
   at(.4, 0, 3, square(matt(0, 500), .03), true);
-  at(0, 0, 4, square(mirror(.5), 6), true);
-  constexpr double seen = 4;
-  cameraAt({.1, .8, 4 - 1e-3}, {0, 0, 0}, seen); // from the mirror
-  const double direct = Scene::mean(picture(8, 256, 1));
-  cameraAt({.1, .8, 1e-3}, {0, 0, 8}, seen); // the mirror image of that: from the floor
-  const double mirrored = Scene::mean(picture(8, 256, 2));
-  EXPECT_GT(direct, 0);
-  EXPECT_NEAR(mirrored, .5 * direct, .05 * direct);
+  const auto seenFrom = [](Vec from, Vec to) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(from.x, from.y, from.z, to.x, to.y, to.z, 0, 0, 1);
+    rtOrtho(.2);
+    rtPopMatrix();
+    return Scene::mean(picture(8, 1024, 1));
+  };
+  // Past the ball: the line of sight rises by 1.4 for 1.
+  constexpr double caustic = -.145, mirrorAt = -3, mirrored = 2 * mirrorAt - caustic, rise = 1.4;
+  const double direct = seenFrom({-1.4, 0, rise * (caustic + 1.4)}, {caustic, 0, 0});
+  rtPushMatrix();
+  rtTranslated(mirrorAt, 0, rise * (caustic - mirrorAt));
+  rtRotated(90, 0, 1, 0);
+  place(square(mirror(.5), .3));
+  rtPopMatrix();
+  const double inMirror = seenFrom({-2, 0, rise * (-2 - mirrored)}, {mirrored, 0, 0});
+  EXPECT_GT(direct, .05);
+  EXPECT_NEAR(inMirror, .5 * direct, .02 * direct);
 }
 
 // Pictures with photons agree with pictures of so few samples that none are traced.

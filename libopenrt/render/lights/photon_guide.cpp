@@ -11,7 +11,8 @@ namespace openrt {
 namespace {
 
 constexpr uint32_t mostInCell = 24, fewestPhotons = 8;
-// A lobe reaches as far as this neighbour among the places that the light of its cell came from.
+// A lobe is as wide as the error with which it predicts the direction of its photon's neighbour of
+// this number, in the order of these errors.
 constexpr size_t neighbour = 3;
 // Bounds of a lobe's spread.
 constexpr float narrowest = 1e-8f, widest = .5f;
@@ -26,11 +27,9 @@ struct Distribution {
   Vec3f axis;
   float spread;
 
-  Distribution(const Vec3f& towards, float radius2) {
-    const float square = dot(towards, towards), d2 = square > 0 ? square : 1,
-                inverse = 1 / std::sqrt(d2);
+  Distribution(const Vec3f& towards, float side, float s) : spread(s) {
+    const float square = dot(towards, towards), inverse = side / std::sqrt(square > 0 ? square : 1);
     axis = {towards.x * inverse, towards.y * inverse, square > 0 ? towards.z * inverse : 1};
-    spread = std::min(std::max(radius2 / d2 / 2, narrowest), widest);
   }
   float pdf(const Vec3f& direction) const {
     const Vec3f chord = direction - axis;
@@ -48,29 +47,55 @@ struct Distribution {
   }
 };
 
-// Returns the squared distance from a place to its neighbour among the others.
-float squareToNeighbour(const Photon* photons, uint32_t count, uint32_t of) {
-  float nearest[neighbour]; // squared distances, ascending
-  std::fill_n(nearest, neighbour, std::numeric_limits<float>::infinity());
+// A point that the light of photons comes from, or goes to.
+struct Focus {
+  Vec3f place;
+  float side, spread;
+};
+
+// Returns the focus at a distance along the light of a photon; beyond it, if the distance is below
+// 0. Its spread follows from how well it predicts the directions of the other photons.
+Focus focusAt(const Photon* photons, uint32_t count, uint32_t of, float distance) {
+  Focus focus{photons[of].position + distance * photons[of].direction, distance > 0 ? 1.f : -1.f,
+              0};
+  float error[neighbour]; // 1 - cosine of the angle, ascending
+  std::fill_n(error, neighbour, widest);
   for (uint32_t i = 0; i < count; i++) {
     if (i == of) continue;
-    const Vec3f apart = photons[i].from - photons[of].from;
-    float square = dot(apart, apart);
-    for (float& n : nearest)
-      if (square < n) std::swap(square, n);
+    const Vec3f chord =
+        photons[i].direction - Distribution(focus.place - photons[i].position, focus.side, 0).axis;
+    float next = dot(chord, chord) / 2;
+    for (float& e : error)
+      if (next < e) std::swap(next, e);
   }
-  const size_t last = std::min<size_t>(neighbour, count - 1);
-  return last ? nearest[last - 1] : 0;
+  focus.spread = std::max(error[std::min<size_t>(neighbour, count - 1) - 1], narrowest);
+  return focus;
+}
+
+// Returns the best focus for the light of a photon. Candidates:
+// * the emitter, seen in flat mirrors;
+// * the place on the specular surface, from which the light of curved ones spreads;
+// * real images between the two surfaces, and beyond the photon.
+Focus focusOf(const Photon* photons, uint32_t count, uint32_t of) {
+  const Photon& p = photons[of];
+  const float distances[] = {p.total, p.last, p.last / 2, p.last / 4, -p.last / 2, -2 * p.last};
+  Focus best = focusAt(photons, count, of, distances[0]);
+  for (size_t d = 1; d < std::size(distances); d++) {
+    const Focus next = focusAt(photons, count, of, distances[d]);
+    if (next.spread < best.spread) best = next;
+  }
+  return best;
 }
 
 } // namespace
 
 PhotonGuide::PhotonGuide(std::vector<Photon> photons) {
-  const auto usable = [](const Vec3f& place) { return largest(abs(place)) < farthest; };
-  std::erase_if(photons, [&](const Photon& p) {
-    return !(p.power > 0) || !std::isfinite(p.power) || !isFinite(p.position) ||
-           !isFinite(p.from) || !usable(p.position) || !usable(p.from);
-  });
+  const auto usable = [](const Photon& p) {
+    return p.power > 0 && std::isfinite(p.power) && largest(abs(p.position)) < farthest &&
+           p.last > 0 && p.last <= p.total && p.total < farthest && isFinite(p.position) &&
+           std::fabs(dot(p.direction, p.direction) - 1) < 1e-3f;
+  };
+  std::erase_if(photons, [&](const Photon& p) { return !usable(p); });
   if (photons.size() < fewestPhotons) return;
   build(photons, 0, uint32_t(photons.size()));
 }
@@ -119,8 +144,10 @@ int32_t PhotonGuide::addCell(const std::vector<Photon>& photons, uint32_t begin,
   // strong elsewhere in the cell.
   const double mean = power / count, total = power + count * mean / 8;
   for (uint32_t i = 0; i < count; i++) {
-    for (size_t k = 0; k < 3; k++) from_[k].push_back(own[i].from[k]);
-    radius2_.push_back(squareToNeighbour(own, count, i));
+    const Focus focus = focusOf(own, count, i);
+    for (size_t k = 0; k < 3; k++) focus_[k].push_back(focus.place[k]);
+    side_.push_back(focus.side);
+    spread_.push_back(focus.spread);
     probability_.push_back(float((double(own[i].power) + mean / 8) / total));
   }
   cells_.push_back(cell);
@@ -145,21 +172,21 @@ float PhotonGuide::sample(uint32_t cell, const Vec3f& position, float pick, floa
   uint32_t i = cells_[cell].begin;
   float left = pick;
   while (i + 1 < cells_[cell].end && left >= probability_[i]) left -= probability_[i++];
-  const Vec3f from{from_[0][i], from_[1][i], from_[2][i]};
-  direction = Distribution(from - position, radius2_[i]).sample(u, v);
+  const Vec3f focus{focus_[0][i], focus_[1][i], focus_[2][i]};
+  direction = Distribution(focus - position, side_[i], spread_[i]).sample(u, v);
   return pdf(cell, position, direction);
 }
 
 // The compiler makes vector code of the loop.
 float PhotonGuide::pdf(uint32_t cell, const Vec3f& position, const Vec3f& direction) const {
   const uint32_t begin = cells_[cell].begin, count = cells_[cell].end - begin;
-  const float *x = from_[0].data() + begin, *y = from_[1].data() + begin,
-              *z = from_[2].data() + begin, *radius2 = radius2_.data() + begin,
-              *probability = probability_.data() + begin;
+  const float *x = focus_[0].data() + begin, *y = focus_[1].data() + begin,
+              *z = focus_[2].data() + begin, *side = side_.data() + begin,
+              *spread = spread_.data() + begin, *probability = probability_.data() + begin;
   float share[mostInCell];
   for (uint32_t i = 0; i < count; i++) {
-    const Vec3f from{x[i], y[i], z[i]};
-    share[i] = probability[i] * Distribution(from - position, radius2[i]).pdf(direction);
+    const Vec3f focus{x[i], y[i], z[i]};
+    share[i] = probability[i] * Distribution(focus - position, side[i], spread[i]).pdf(direction);
   }
   float sum = 0;
   for (uint32_t i = 0; i < count; i++) sum += share[i];

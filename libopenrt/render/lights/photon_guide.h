@@ -16,8 +16,10 @@ namespace openrt {
 // The end of a light path at its first non-specular surface, in render space.
 struct Photon {
   Vec3f position;
-  Vec3f from;  // the specular surface that the light has come from
-  float power; // its largest colour
+  Vec3f direction; // unit, towards the specular surface that the light has come from
+  float power;     // its largest colour
+  // Lengths of the last ray and of the whole path from the emitter.
+  float last, total;
 };
 
 class PhotonGuide {
@@ -37,11 +39,13 @@ class PhotonGuide {
   float pdf(uint32_t cell, const Vec3f& position, const Vec3f& direction) const;
 
  private:
-  // Each photon of a cell is a lobe around the direction to the place that its light came from. So
-  // the lobes of a cell follow from the point at which they are looked up. The lobes of all cells,
-  // cell by cell:
-  std::vector<float> from_[3], radius2_; // squared distance of other places that light came from
-  std::vector<float> probability_;       // of the lobe within its cell
+  // Each photon of a cell is a lobe of directions around the one in which light from its focus
+  // arrives. So the lobes of a cell follow from the point at which they are looked up. The lobes of
+  // all cells, cell by cell:
+  std::vector<float> focus_[3];
+  std::vector<float> side_;   // 1: light comes from the focus; -1: it goes to a focus further on
+  std::vector<float> spread_; // of the lobe
+  std::vector<float> probability_; // of the lobe within its cell
   struct Cell {
     uint32_t begin, end; // of its lobes
     Vec3f low, high;     // where the photons are taken as valid

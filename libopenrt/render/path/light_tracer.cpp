@@ -154,11 +154,11 @@ void LightTracer::leavePhotons(const Points& points, const PathStates& states, c
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t i = hits[j], lane = points.order[i];
     const RayState state = states[lane];
-    const Vec3f position = load(points.hits.position, i),
-                way = load(points.hits.direction, i) * points.rayHits->t[lane];
-    photons_->push_back({.position = position,
-                         .from = position - way,
-                         .power = largest(state.throughput * departures_.attenuation(state.path))});
+    photons_->push_back({.position = load(points.hits.position, i),
+                         .direction = -load(points.hits.direction, i),
+                         .power = largest(state.throughput * departures_.attenuation(state.path)),
+                         .last = points.rayHits->t[lane],
+                         .total = departures_.length(state.path)});
   }
 }
 
