@@ -1,6 +1,7 @@
 // guided_light.cpp: light of small lamps that path tracing finds by way of mirrors and glass,
 // against closed forms and against pictures without photons.
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "numeric/lamp_scene.h"
@@ -98,7 +99,7 @@ TEST_F(GuidedLight, ACausticSeenInAMirrorHasTheLightOfTheCaustic) {
   rtPopMatrix();
   const double inMirror = seenFrom({-2, 0, rise * (-2 - mirrored)}, {mirrored, 0, 0});
   EXPECT_GT(direct, .05);
-  EXPECT_NEAR(inMirror, .5 * direct, .02 * direct);
+  EXPECT_NEAR(inMirror, .5 * direct, .03 * direct);
 }
 
 // Pictures with photons agree with pictures of so few samples that none are traced.
@@ -128,6 +129,10 @@ TEST_F(GuidedLight, ThePictureDoesNotDependOnThreads) {
     at(.5, 0, 3, square(matt(.3, 5), .1), true);
     cameraAt({0, -4, 2.5}, {0, 0, .4}, 40);
     pictures.push_back(picture(20, 32, 1));
+    RTstats stats{};
+    stats.size = sizeof stats;
+    rtGetStats(&stats);
+    EXPECT_NE(std::string(stats.transportReason).find("guided by photons"), std::string::npos);
     rtDeleteContext(context);
   }
   rtMakeCurrent(own);

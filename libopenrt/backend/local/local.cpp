@@ -92,7 +92,8 @@ void LocalBackend::prepare() {
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
-  next->photonGuide = makePhotonGuide(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
+  guideByPhotons(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
+  if (next->photonGuide) transportReason_ += ", guided by photons";
   snapshot_ = std::move(next);
   snapshotFrame_ = history_.number();
   changes_ = {};

@@ -154,6 +154,12 @@ int32_t PhotonGuide::addCell(const std::vector<Photon>& photons, uint32_t begin,
   return ~int32_t(cells_.size() - 1);
 }
 
+void PhotonGuide::keep(const std::vector<uint8_t>& kept) {
+  for (size_t c = 0; c < cells_.size(); c++)
+    if (!kept[c]) cells_[c].high = cells_[c].low - Vec3f{1, 1, 1}; // contains no point
+  if (std::find(kept.begin(), kept.end(), uint8_t(1)) == kept.end()) cells_.clear();
+}
+
 uint32_t PhotonGuide::find(const Vec3f& position) const {
   if (cells_.empty()) return none;
   int32_t at = nodes_.empty() ? ~0 : 0;

@@ -27,6 +27,9 @@ class PhotonGuide {
   // Stays empty if there are too few photons to learn from.
   explicit PhotonGuide(std::vector<Photon> photons);
   bool empty() const { return cells_.empty(); }
+  uint32_t cells() const { return uint32_t(cells_.size()); }
+  // Forgets the photons of the cells whose value is 0.
+  void keep(const std::vector<uint8_t>& kept);
 
   // Returns the cell with the photons around a point; `none` if there are none nearby.
   static constexpr uint32_t none = ~0u;

@@ -22,6 +22,7 @@ struct Guided {
   float* direction[3]; // unit
   float* pdf;          // with the probability of Russian roulette
   float* kept;         // that probability
+  Vec3f* position;     // where the guide was asked
 };
 
 Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
@@ -33,6 +34,7 @@ Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
   out.hit = arena.take<uint32_t>(padded(n));
   out.pdf = arena.take<float>(padded(n));
   out.kept = arena.take<float>(padded(n));
+  out.position = arena.take<Vec3f>(padded(n));
   for (auto& a : out.direction) a = arena.takeZero<float>(padded(n));
   ArenaScope scope(arena);
   float *choice[2], *place[2];
@@ -48,7 +50,8 @@ Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
     const Vec3f position = lightSampleContext(points, i, false).position;
     const uint32_t cell = guideCellAt(scene, state.flags, position);
     if (cell == PhotonGuide::none) continue;
-    const float kept = std::min(1.0f, largest(state.throughput) / certainThroughput);
+    // The number of rays with the least variance at equal cost is proportional to what they carry.
+    const float kept = std::min(1.0f, largest(state.throughput));
     if (choice[1][i] >= kept) continue;
     Vec3f direction;
     const float pdf = scene.photonGuide->sample(cell, position, choice[0][i], place[0][i],
@@ -58,16 +61,21 @@ Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
     store(direction, out.direction, out.count);
     out.pdf[out.count] = pdf;
     out.kept[out.count] = kept;
+    out.position[out.count] = position;
     out.hit[out.count++] = i;
   }
   return out;
 }
 
-// Returns the response of the hits to their guided rays: BSDF times MIS weight over pdf.
-Vec3f* responses(const RtsBatch& batch, const LobeSampling& sampling, const Guided& rays) {
+struct Response {
+  Vec3f light;    // of the hit to the guided ray: BSDF times MIS weight over pdf
+  Vec3f unguided; // the part of `light` that BSDF sampling contributes as often
+};
+
+Response* responses(const RtsBatch& batch, const LobeSampling& sampling, const Guided& rays) {
   Arena& arena = *batch.arena;
-  auto* response = arena.take<Vec3f>(rays.count);
-  std::fill_n(response, rays.count, Vec3f());
+  auto* response = arena.take<Response>(rays.count);
+  std::fill_n(response, rays.count, Response());
   ArenaScope scope(arena);
   const RtsHits& hits = batch.points->hits;
   LobeValues values(arena, rays.count, &batch);
@@ -86,8 +94,10 @@ Vec3f* responses(const RtsBatch& batch, const LobeSampling& sampling, const Guid
       if (!(followed[i] > 0) || !weightAt(lobe, i, weight) || front != above ||
           (!front && !nonSpecularFunctions(lobe)->transmits))
         continue;
-      response[r] += weight * load(values.value, r) *
-                     (1 / (rays.pdf[r] + followed[i] * values.pdf[r]) / rays.kept[r]);
+      const float bsdfPdf = followed[i] * values.pdf[r], pdf = rays.pdf[r] + bsdfPdf;
+      const Vec3f light = weight * load(values.value, r) * (1 / pdf / rays.kept[r]);
+      response[r].light += light;
+      response[r].unguided += light * (bsdfPdf / pdf);
     }
   }
   return response;
@@ -105,10 +115,9 @@ void weightUnguided(const RtsBatch& batch, const Boundaries& boundaries) {
   const RenderScene& scene = *batch.scene;
   const PathStates& states = *batch.states;
   if (!scene.photonGuide) return;
-  const bool goesOn = boundaries.crossing || std::any_of(batch.lobes, batch.lobes + batch.lobeCount,
-                                                         [](const RtsLobe& lobe) {
-                                                           return !nonSpecularFunctions(lobe);
-                                                         });
+  const bool goesOn = boundaries.crossing ||
+                      std::any_of(batch.lobes, batch.lobes + batch.lobeCount,
+                                  [](const RtsLobe& lobe) { return !nonSpecularFunctions(lobe); });
   if (!goesOn) return;
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const uint32_t lane = batch.order[i];
@@ -128,21 +137,24 @@ void GuidedRays::start(const CameraPaths& paths, const LobeSampling& sampling,
   ArenaScope scope(*batch.arena);
   const Guided rays = sampleGuide(batch, sampling);
   if (rays.count == 0) return;
-  const Vec3f* response = responses(batch, sampling, rays);
+  const Response* response = responses(batch, sampling, rays);
   for (uint32_t r = 0; r < rays.count; r++) {
     const uint32_t i = rays.hit[r];
     const Vec3f direction = load(rays.direction, r);
     RayState state = (*batch.states)[batch.order[i]];
-    state.throughput *= response[r];
+    state.throughput *= response[r].light;
     const float most = largest(state.throughput);
     if (!(most > 0) || !std::isfinite(most)) continue;
     state.travelled = batch.points->hits.distance[i];
     state.pdf = 0;
+    state.previous = {rays.position[r], {}};
+    state.unguidedWeight = largest(response[r].unguided) / largest(response[r].light);
     state.branch = hash(state.branch + guidedBranch, paths.level + 1);
     state.media = mediaTowards(*batch.points, i, direction, boundaries, state.media);
     state.flags.set(PathFlags::specularSinceDiffuseBit, false);
     state.flags.set(PathFlags::scatteredBit, true);
     state.flags.set(PathFlags::deflectedBit, true);
+    if (trial_) trial_->send(batch.scene->photonGuide->find(rays.position[r]));
     queueRay(*batch.points, i, direction, state, next_);
   }
 }
@@ -209,10 +221,14 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
     const Vec3f emission = load(surface.emission, i);
     stage.unsampled.meet(state.flags, emission);
     const float through = fog.transmittance ? fog.transmittance[i] : 1;
+    Vec3f light = state.throughput * (emission * through);
     for (int k = 0; k < 3; k++) {
-      const float light = state.throughput[k] * (through * emission[k]);
-      if (std::isfinite(light)) stage.found.radiance[k][state.path] += light;
+      if (!std::isfinite(light[k])) light[k] = 0;
+      stage.found.radiance[k][state.path] += light[k];
     }
+    if (trial_ && state.unguidedWeight > 0)
+      trial_->meet(context_.scene.photonGuide->find(state.previous.position), light,
+                   double(state.unguidedWeight));
   }
 }
 
@@ -236,6 +252,7 @@ void GuidedRays::spawnRay(const Stage& stage, const RtsBatch& batch, uint32_t i,
   state.travelled = points.hits.distance[i];
   state.media = mediaTowards(points, i, sample.direction, boundaries, state.media);
   stage.unsampled.send(state.flags, state.throughput);
+  if (trial_) trial_->send(context_.scene.photonGuide->find(state.previous.position));
   queueRay(points, i, sample.direction, state, next_);
 }
 

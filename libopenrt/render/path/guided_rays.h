@@ -7,6 +7,7 @@
 #pragma once
 
 #include "render/lights/photon_guide.h"
+#include "render/path/guide_trial.h"
 #include "render/path/pixel_samples.h"
 #include "render/path/spawn_rays.h"
 #include "render/path/wave.h"
@@ -26,6 +27,8 @@ class GuidedRays {
   // context: as that of the renderer.
   explicit GuidedRays(const StageContext& context) : context_(context) {}
 
+  // Tells a trial about all rays from now on.
+  void observe(GuideTrial* trial) { trial_ = trial; }
   // Queues a ray for each hit near photons that has a non-specular lobe.
   void start(const CameraPaths& paths, const LobeSampling& sampling, const Boundaries& boundaries);
   bool empty() const { return next_.empty(); }
@@ -56,6 +59,7 @@ class GuidedRays {
                 const Boundaries& boundaries);
 
   const StageContext context_;
+  GuideTrial* trial_ = nullptr;
   RayQueue queue_, next_; // rays of the current wave, and of the next one
 };
 

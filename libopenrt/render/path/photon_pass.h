@@ -2,17 +2,16 @@
 // Called between frames.
 #pragma once
 
-#include <memory>
-
 #include "render/render_scene.h"
 
 namespace openrt {
 
-// Returns null if the frame's transport samples no paths, if no emissive shape or no specular
-// surface is there, if too few light paths end on other surfaces, or if the frame takes so few
-// samples that light paths do not pay. before: a snapshot with everything in the same places, or
-// null. The result depends on the scene and its frame alone.
-std::shared_ptr<const PhotonGuide> makePhotonGuide(const RenderScene& scene,
-                                                   const RenderScene* before);
+// Makes scene.photonGuide. It becomes null if
+// * the frame's transport samples no paths, or it takes so few samples that light paths do not pay;
+// * there is no emissive shape or no specular surface, or few light paths end on other surfaces;
+// * a trial shows that guided rays do not lower the error at equal time (guide_trial.h).
+// before: a snapshot with everything in the same places, or null. The result depends on the scene
+// and its frame alone.
+void guideByPhotons(RenderScene& scene, const RenderScene* before);
 
 } // namespace openrt

@@ -38,6 +38,8 @@ class TileRenderer {
   RayCounters& counters() { return counters_; }
   // Energy left out by the last render().
   const Ledger& ledger() const { return ledger_; }
+  // Tells a trial about all guided rays of camera paths from now on.
+  void observe(GuideTrial* trial) { guided_.observe(trial); }
   // Returns the depth of the wave: the number of surfaces that its paths have hit before.
   uint32_t level() const { return level_; }
   // trace.cpp: services that shaders request from the renderer (RtsHost).
