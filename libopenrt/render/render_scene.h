@@ -20,6 +20,7 @@ namespace openrt {
 
 class ShaderRegistry;
 class LightSources;
+class PhotonGuide;
 struct Motions;
 
 struct ShaderSlot {
@@ -122,6 +123,9 @@ struct RenderScene {
   // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the
   // scene scatters.
   std::vector<MediumLights> mediumLights;
+  // Guides camera paths to emissive shapes by way of specular surfaces; null: there is nothing to
+  // guide to, or too few samples are taken.
+  std::shared_ptr<const PhotonGuide> photonGuide;
   bool transparentShadows = false; // something transparent may lie between a point and a light
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.
   bool skyKnown = false, skyShines = false;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <unistd.h>
 
 #include "cluster/support.h"
+#include "drawing.h"
 #include "openrt/queries.h"
 
 namespace {
@@ -93,6 +95,31 @@ TEST(ClusterProcesses, SurfacesWithoutFacetsHaveTheSameBytes) {
   join(2);
   rtRender();
   EXPECT_EQ(different(pixels(look), one), 0u);
+}
+
+// Every machine traces the photons that guide paths (photon_guide.h).
+TEST(ClusterProcesses, GuidedPathsAreTheSameOnAllMachines) {
+  const FrameOptions look{.samples = 32};
+  const auto render = [&] {
+    drawing::drawRoom();
+    rtFrameBuffer(look.width, look.height, look.channels);
+    rtQuality(RT_SAMPLES_PER_PIXEL, look.samples);
+    rtQuality(RT_TRANSPORT, look.transport);
+    rtRender();
+    return pixels(look);
+  };
+  Picture one;
+  {
+    const Context context("threads=1");
+    one = render();
+    EXPECT_NE(std::strstr(statistics().transportReason, "guided by photons"), nullptr)
+        << statistics().transportReason;
+  }
+  const Workers helping = start(2);
+  const Context context("backend=cluster threads=1 " + workersOption(helping));
+  join(2);
+  EXPECT_EQ(different(render(), one), 0u);
+  EXPECT_GT(statistics().tilesRemote, 0u);
 }
 
 // The second worker joins between frames, and gets the scene of the frame before.

@@ -53,6 +53,7 @@ struct Hits {
       store({random(0, 1), random(0, 1), random(0, 0.1f)}, states.throughput, i);
       store(random.inCube(), states.previousPosition, i);
       store(random.inCube(), states.previousNormal, i);
+      states.unguidedWeight[i] = random(0, 1);
       states.branch[i] = i % 3 ? 0 : hash(i);
       PathFlags flags;
       flags.setClass(PathClass(i % 4));

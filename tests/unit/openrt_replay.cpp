@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "drawing.h"
 #include "openrt/openrt.h"
 
 namespace {
@@ -183,6 +184,26 @@ TEST_F(Replay, EveryFrameHasTheSameBytes) {
   ASSERT_EQ(replay(quoted("a recording") + " -o " + quoted("last.pfm") + " --stats"), 0) << said();
   EXPECT_TRUE(same(readPfm("last.pfm"), frames[3]));
   EXPECT_NE(said().find("\"frames\": 4"), std::string::npos) << said();
+}
+
+// The photons that guide paths are traced again (photon_guide.h).
+TEST_F(Replay, GuidedPathsHaveTheSameBytes) {
+  Picture frame;
+  drawing::drawIn(
+      rtNewContext(("threads=2 record=\"" + (folder / "guided").string() + "\"").c_str()), [&] {
+        drawing::drawRoom();
+        rtFrameBuffer(width, height, RT_RGBA);
+        rtQuality(RT_SAMPLES_PER_PIXEL, 32);
+        rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+        frame = rendered();
+        RTstats stats{};
+        stats.size = sizeof stats;
+        rtGetStats(&stats);
+        EXPECT_NE(std::strstr(stats.transportReason, "guided by photons"), nullptr)
+            << stats.transportReason;
+      });
+  ASSERT_EQ(replay(quoted("guided") + " -o " + quoted("frame.pfm") + " --threads 1"), 0) << said();
+  EXPECT_TRUE(same(readPfm("frame.pfm"), frame));
 }
 
 TEST_F(Replay, ValuesOfVerticesAndAReload) {

@@ -19,6 +19,7 @@
 #include "render/lights/light_sources.h"
 #include "render/medium/medium_lights.h"
 #include "render/path/guides.h"
+#include "render/path/photon_pass.h"
 #include "render/path/transport.h"
 #include "scene/transports.h"
 
@@ -96,6 +97,8 @@ void LocalBackend::prepare() {
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
+  guideByPhotons(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
+  if (next->photonGuide) transportReason_ += ", guided by photons";
   snapshot_ = std::move(next);
   snapshotFrame_ = history_.number();
   changes_ = {};

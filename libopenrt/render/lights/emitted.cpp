@@ -15,6 +15,13 @@ LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool two
   return {offsetPoint(p, n, points.error[i]), twoSided ? Vec3f() : n};
 }
 
+bool startsLightPaths(const RtsBatch& batch, uint32_t i) {
+  const RayHits& hits = *batch.points->rayHits;
+  const uint32_t lane = batch.order[i];
+  return batch.scene->emitters.startsLightPaths(hits.record[lane], hits.primitive[lane],
+                                                load(batch.points->hits.direction, i));
+}
+
 namespace {
 
 // Returns the number of the emissive shape at hit i, or `none`.
@@ -27,12 +34,8 @@ uint32_t shapeAt(const RtsBatch& batch, uint32_t i) {
 
 // Returns whether light tracing contributes the emission of hit i.
 bool isLeftToLightTracing(const RtsBatch& batch, uint32_t i) {
-  const RenderScene& scene = *batch.scene;
-  const RayHits& hits = *batch.points->rayHits;
-  const uint32_t lane = batch.order[i];
-  return canOnlyReachSky(scene, batch.states->flagsOf(lane)) &&
-         scene.emitters.startsLightPaths(hits.record[lane], hits.primitive[lane],
-                                         load(batch.points->hits.direction, i));
+  return canOnlyReachSky(*batch.scene, batch.states->flagsOf(batch.order[i])) &&
+         startsLightPaths(batch, i);
 }
 
 // Returns the MIS weights of the emission that rays have found at some hits.
@@ -48,6 +51,8 @@ float* emissionMisWeights(const RtsBatch& batch, const Boundaries& boundaries, c
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t i = hit[j], lane = batch.order[i], shape = shapeAt(batch, i);
     weight[j] = boundaries.visibleAt(i) && !isLeftToLightTracing(batch, i) ? 1 : 0;
+    if (states.flagsOf(lane).specularSinceDiffuse() && startsLightPaths(batch, i))
+      weight[j] *= states.unguidedWeight[lane];
     if (weight[j] == 0 || !(states.pdf[lane] > 0) || shape == EmissiveShapes::none) continue;
     const uint32_t f = found.count++;
     const LightSampleContext from = states.previousOf(lane);
@@ -77,9 +82,9 @@ void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, Unsampl
   const float* weight = emissionMisWeights(batch, boundaries, hit, n);
   for (uint32_t j = 0; j < n; j++) {
     const uint32_t i = hit[j];
-    const Vec3f weighted = load(emission, i) * weight[j];
-    store(weighted, emission, i);
-    if (weight[j] > 0) unsampled.meet(batch.states->flagsOf(batch.order[i]), weighted);
+    const Vec3f found = load(emission, i);
+    store(found * weight[j], emission, i);
+    if (weight[j] > 0) unsampled.meet(batch.states->flagsOf(batch.order[i]), found);
   }
 }
 

@@ -13,6 +13,9 @@ namespace openrt {
 // count as well.
 LightSampleContext lightSampleContext(const Points& points, uint32_t i, bool twoSided);
 
+// Returns whether light paths start on the surface at hit i, on the side that the ray has hit.
+bool startsLightPaths(const RtsBatch& batch, uint32_t i);
+
 // Multiplies the emission of the hits by the MIS weight of BSDF sampling; light sampling or light
 // tracing contributes the rest. Emission behind an invisible boundary becomes 0.
 void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, UnsampledLights& unsampled,

@@ -79,7 +79,7 @@ void LightSources::measureSceneExtent(const RenderScene& scene) {
   far_ = float(length(Vec3d(vectorOf(high)) - Vec3d(vectorOf(low)))) + radius_;
 }
 
-LightSources::LightSources(const RenderScene& scene, const RenderScene* before) {
+LightSources::LightSources(const RenderScene& scene, const RenderScene* before, Kind kind) {
   if (before && before->lightSources && sameSpecularSurfaces(scene, *before)) {
     centre_ = before->lightSources->centre_;
     radius_ = before->lightSources->radius_;
@@ -97,6 +97,7 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before) 
   const EmissiveShapes* shapes = scene.emitters.shapes();
   for (uint32_t i = 0; shapes && i < shapes->size(); i++)
     add({none, i, {}}, (*shapes)[i].power * M_PI);
+  if (kind == Kind::shapes) return;
   for (uint32_t i = 0; i < scene.lights.size(); i++) {
     // Without shadows a light shines straight through glass, so its light paths would count twice.
     if (!scene.frame.shadows || (scene.lights[i].shader.traits & RTS_NO_SHADOW)) continue;

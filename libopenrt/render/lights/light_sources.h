@@ -14,9 +14,10 @@ namespace openrt {
 
 class LightSources {
  public:
+  enum class Kind : uint8_t { all, shapes }; // shapes: no lights without extent
   // Stays empty if nothing emits, or if nothing mirrors or refracts. before: a snapshot with
   // everything in the same places, or null.
-  LightSources(const RenderScene& scene, const RenderScene* before);
+  LightSources(const RenderScene& scene, const RenderScene* before, Kind kind = Kind::all);
   bool empty() const { return cumulative_.empty(); }
 
   struct LightRay {

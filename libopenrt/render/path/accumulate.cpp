@@ -117,7 +117,7 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
     if (through <= 1e-6f)
       paths.ledger.cutByEnergy += double(through);
     else
-      spawnStraightRay(paths, i, transmission, ray.media);
+      spawnStraightRay(paths, i, transmission, ray.media, false);
   }
 }
 

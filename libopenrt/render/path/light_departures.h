@@ -23,6 +23,8 @@ class LightDepartures {
   void start(const PathSamples& samples, uint32_t n, RayQueue& queue);
   // Adds the length of the ray that has reached the next surface.
   void travel(uint32_t path, float length) { departures_[path].pathLength += double(length); }
+  // Returns the length of the path so far.
+  float length(uint32_t path) const { return float(departures_[path].pathLength); }
   // Multiplies the throughput by the emitted flux when a path has reached its first surface, hit i.
   // Returns whether any throughput is left.
   bool applyEmission(const Points& points, uint32_t i, RayState& state);

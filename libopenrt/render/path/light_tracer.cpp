@@ -37,6 +37,16 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
   return true;
 }
 
+std::vector<Photon> LightTracer::tracePhotons(uint32_t paths, uint32_t seed) {
+  std::vector<Photon> photons;
+  photons_ = &photons;
+  seed_ = seed;
+  for (uint32_t first = 0; first < paths; first += pathsInFlight)
+    tracePaths(first, std::min(pathsInFlight, paths - first));
+  photons_ = nullptr;
+  return photons;
+}
+
 void LightTracer::tracePaths(uint32_t first, uint32_t n) {
   ArenaScope scope(arena_);
   level_ = 0;
@@ -126,8 +136,12 @@ void LightTracer::scatter(const Points& points, const PathStates& states,
   if (count && scatters) {
     for (uint32_t c = 0; c < count; c++)
       departures_.updateAttenuation(states.path[points.order[deflected[c]]]);
-    if (!sensors_) connect(batch, random, deflected, count);
-    sampleLobes(batch, sampling);
+    if (photons_) {
+      leavePhotons(points, states, deflected, count);
+    } else {
+      if (!sensors_) connect(batch, random, deflected, count);
+      sampleLobes(batch, sampling);
+    }
   }
   for (uint32_t i = 0; i < n; i++) {
     if (boundaries.visibleAt(i)) {
@@ -137,6 +151,19 @@ void LightTracer::scatter(const Points& points, const PathStates& states,
     RayState passed = states[points.order[i]];
     passed.media = boundaries.crossing[i].behind;
     push(points, i, passed, load(points.hits.direction, i));
+  }
+}
+
+void LightTracer::leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
+                               uint32_t n) {
+  for (uint32_t j = 0; j < n; j++) {
+    const uint32_t i = hits[j], lane = points.order[i];
+    const RayState state = states[lane];
+    photons_->push_back({.position = load(points.hits.position, i),
+                         .direction = -load(points.hits.direction, i),
+                         .power = largest(state.throughput * departures_.attenuation(state.path)),
+                         .last = points.rayHits->t[lane],
+                         .total = departures_.length(state.path)});
   }
 }
 

@@ -14,6 +14,7 @@
 #include <atomic>
 #include <vector>
 
+#include "render/lights/photon_guide.h"
 #include "render/path/light_departures.h"
 #include "render/path/sensor_plane.h"
 #include "render/path/wave.h"
@@ -25,6 +26,8 @@ namespace openrt {
 class LightTracer {
  public:
   LightTracer(const RenderScene& scene, const LightSources& sources);
+  // Traces light paths to their first non-specular surfaces and returns what they leave there.
+  std::vector<Photon> tracePhotons(uint32_t paths, uint32_t seed);
   // Traces `paths` light paths into picture() (rgb by pixel). Each part of a frame needs its own
   // seed. Returns false if `stop` was set; it is checked every few thousand paths.
   bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
@@ -37,6 +40,8 @@ class LightTracer {
   void selectMet(Wave& wave);
   void transmitRays(const Points& points, const PathStates& states, const RtsClass& shaderClass);
   void scatter(const Points& points, const PathStates& states, const RtsClass& shaderClass);
+  void leavePhotons(const Points& points, const PathStates& states, const uint32_t* hits,
+                    uint32_t n);
   void connect(const RtsBatch& batch, const RandomNumbers& random, const uint32_t* hits,
                uint32_t n);
   void spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling& sampling,
@@ -64,8 +69,9 @@ class LightTracer {
     Vec3f flux; // without the attenuation of lamps
   };
   std::vector<Crossing> crossings_;
-  PathSamples samples_{}; // of the paths in flight
-  RayQueue queue_, next_; // rays of the current wave, and of the next one
+  std::vector<Photon>* photons_ = nullptr; // gets the ends of the paths; null: they are connected
+  PathSamples samples_{};                  // of the paths in flight
+  RayQueue queue_, next_;                  // rays of the current wave, and of the next one
 };
 
 } // namespace openrt

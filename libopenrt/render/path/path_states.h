@@ -68,6 +68,9 @@ struct RayState {
   float pdf = 0;
   // The previous path vertex, where `pdf` was sampled; needed for the light pdf in MIS.
   LightSampleContext previous;
+  // MIS weight of BSDF sampling for light that the ray finds by way of specular surfaces only:
+  // photons may have guided another ray there (photon_guide.h).
+  float unguidedWeight = 1;
   MediaStack media = {}; // the media that contain the ray
   PathFlags flags;
 };
@@ -77,7 +80,7 @@ struct PathStates {
   float* throughput[3];
   float* travelled;
   uint32_t *path, *branch;
-  float* pdf;
+  float *pdf, *unguidedWeight;
   float *previousPosition[3], *previousNormal[3];
   MediaStack* media;
   uint32_t* flags;
@@ -88,8 +91,8 @@ struct PathStates {
         [&](auto*& array) { array = arena.take<std::remove_reference_t<decltype(*array)>>(n); });
   }
   RayState operator[](size_t i) const {
-    return {load(throughput, i), travelled[i], path[i],   branch[i], pdf[i],
-            previousOf(i),       media[i],     flagsOf(i)};
+    return {load(throughput, i), travelled[i],      path[i],  branch[i], pdf[i],
+            previousOf(i),       unguidedWeight[i], media[i], flagsOf(i)};
   }
   void set(size_t i, const RayState& state) const {
     store(state.throughput, throughput, i);
@@ -99,6 +102,7 @@ struct PathStates {
     path[i] = state.path;
     branch[i] = state.branch;
     pdf[i] = state.pdf;
+    unguidedWeight[i] = state.unguidedWeight;
     media[i] = state.media;
     flags[i] = state.flags.bits;
   }
@@ -114,6 +118,7 @@ struct PathStates {
     f(path);
     f(branch);
     f(pdf);
+    f(unguidedWeight);
     f(media);
     f(flags);
   }

@@ -1,5 +1,6 @@
 #include "render/path/spawn_rays.h"
 
+#include "render/path/guided_rays.h"
 #include "render/path/wave.h"
 #include "render/surface/continue_paths.h"
 #include "scene/transports.h"
@@ -38,7 +39,7 @@ void countCut(const CameraPaths& paths, const BsdfSampleArrays& samples) {
 void countUnsampled(const CameraPaths& paths, size_t begin) {
   const PathStates& states = paths.next.states();
   for (size_t r = begin; r < paths.next.size(); r++)
-    paths.unsampled.send(states.flagsOf(r), load(states.throughput, r));
+    paths.unsampled.send(states.flagsOf(r), load(states.throughput, r) * states.unguidedWeight[r]);
 }
 
 // Spawns the rays of the BSDF samples: those of one sample of all hits, then those of the next.
@@ -79,19 +80,20 @@ void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind
   const uint32_t traits = (*scene.shaders)[scene.records[batch.points->record[i]].shader].traits;
   const float pdf = batch.states->pdf[batch.order[i]];
   const size_t at = paths.next.size();
-  spawnStraightRay(paths, i, {1, 1, 1}, behind);
+  spawnStraightRay(paths, i, {1, 1, 1}, behind, true);
   if (!scene.mediumLights.empty() && (traits & RTS_TRANSPARENT)) paths.next.states().pdf[at] = pdf;
 }
 
 } // namespace
 
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
-                      const MediaStack& media) {
+                      const MediaStack& media, bool guided) {
   const Points& points = *paths.batch.points;
   RayState ray = (*paths.batch.states)[paths.batch.order[i]];
   ray.throughput *= weight;
   ray.travelled = points.hits.distance[i];
   ray.pdf = 0;
+  if (!guided) ray.unguidedWeight = 1;
   ray.media = media;
   queueRay(points, i, load(points.hits.direction, i), ray, paths.next);
 }
@@ -100,6 +102,7 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries) {
   const RtsBatch& batch = paths.batch;
   ArenaScope scope(*batch.arena);
+  weightUnguided(batch, boundaries);
   const BsdfSampleArrays samples(batch, sampling, boundaries,
                                  !followsImages(batch.scene->frame.transport));
   if (!samples.empty()) followSamples(paths, sampling, boundaries, samples);

@@ -33,7 +33,8 @@ void spawnRays(const CameraPaths& paths, const LobeSampling& sampling,
                const Boundaries& boundaries);
 
 // Spawns a ray that goes straight on from hit i, with its throughput multiplied by `weight`.
+// guided: rays that photons guide go on there as well.
 void spawnStraightRay(const CameraPaths& paths, uint32_t i, const Vec3f& weight,
-                      const MediaStack& media);
+                      const MediaStack& media, bool guided);
 
 } // namespace openrt

@@ -142,7 +142,7 @@ void TileRenderer::follow(Wave& wave, PixelSamples& found) {
     measureIlluminance(wave, found);
   else
     traceWave(wave, found);
-  for (level_++; !next_.empty() && level_ <= scene_.frame.depth; level_++) {
+  for (level_++; (!next_.empty() || !guided_.empty()) && level_ <= scene_.frame.depth; level_++) {
     std::swap(queue_, next_);
     next_.clear();
     counters_.secondary += queue_.size();
@@ -150,10 +150,12 @@ void TileRenderer::follow(Wave& wave, PixelSamples& found) {
       loadWave(queue_, begin, uint32_t(std::min<size_t>(most, queue_.size() - begin)), wave);
       traceWave(wave, found);
     }
+    guided_.follow(samples_, level_, unsampled_, found);
   }
   for (size_t i = 0; i < next_.size(); i++)
     for (int k = 0; k < 3; k++) ledger_.cutByDepth += double(next_.states().throughput[k][i]);
   next_.clear();
+  guided_.clear();
 }
 
 void TileRenderer::traceWave(Wave& wave, PixelSamples& found) {
@@ -234,6 +236,7 @@ void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundari
   }
   spawnRays(pathsOf(batch), sampling, boundaries);
   if (emitters) sampleEmitters(batch, sampling, boundaries, radiance);
+  if (emitters && scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);
 }
 
 void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& found,

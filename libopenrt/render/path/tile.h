@@ -13,6 +13,7 @@
 #include "render/film/sums.h"
 #include "render/frame/tiles.h"
 #include "render/lights/unsampled_lights.h"
+#include "render/path/guided_rays.h"
 #include "render/path/guides.h"
 #include "render/path/light_stride.h"
 #include "render/path/pixel_samples.h"
@@ -39,6 +40,8 @@ class TileRenderer {
   RayCounters& counters() { return counters_; }
   // Energy left out by the last render().
   const Ledger& ledger() const { return ledger_; }
+  // Tells a trial about all guided rays of camera paths from now on.
+  void observe(GuideTrial* trial) { guided_.observe(trial); }
   // Returns the depth of the wave: the number of surfaces that its paths have hit before.
   uint32_t level() const { return level_; }
   // trace.cpp: services that shaders request from the renderer (RtsHost).
@@ -130,7 +133,8 @@ class TileRenderer {
   PathSamples samples_{}; // of the paths in flight; inside trace() those of the nested paths
   uint32_t nesting_ = 0;  // nesting depth of trace()
   RayQueue queue_, next_; // rays of the current wave, and of the next one
-  uint32_t level_ = 0;    // depth of the current wave
+  GuidedRays guided_{context_};
+  uint32_t level_ = 0; // depth of the current wave
 };
 
 } // namespace openrt

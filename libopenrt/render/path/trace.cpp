@@ -97,8 +97,10 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   const PathSamples outerSamples = samples_;
   const uint32_t outerLevel = level_;
   RayQueue outerQueue, outerNext;
+  GuidedRays outerGuided(context_);
   std::swap(outerQueue, queue_);
   std::swap(outerNext, next_);
+  outerGuided.swap(guided_);
   samples_ = samples;
   nesting_++;
   level_ += batch.points ? 1 : 0;
@@ -109,6 +111,7 @@ void TileRenderer::trace(RtsBatch& batch, const RtsRequest& request, float* cons
   level_ = outerLevel;
   std::swap(outerQueue, queue_);
   std::swap(outerNext, next_);
+  outerGuided.swap(guided_);
   for (uint32_t i = 0; i < n; i++) {
     if (samples.random[i]) samples_.markRandom(parentPath[i]);
     for (int k = 0; k < 3; k++)

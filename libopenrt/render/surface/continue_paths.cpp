@@ -187,7 +187,9 @@ size_t appendRays(const Continuation& paths, const SampleArrays& sample, uint32_
     if (specular) {
       append(gather(states.previousPosition, lane), to.previousPosition);
       append(gather(states.previousNormal, lane), to.previousNormal);
+      append(gather(states.unguidedWeight, lane), to.unguidedWeight);
     } else {
+      append(one, to.unguidedWeight);
       append(offsetPoint(position, g, error), to.previousPosition);
       append(paths.twoSided ? select(loadMask(paths.twoSided + i), none, g) : g, to.previousNormal);
     }

@@ -1,0 +1,66 @@
+// guided_rays.h: rays of camera paths that photons guide from non-specular surfaces by way of
+// mirrors and smooth glass to emissive shapes (photon_guide.h). Light sampling cannot connect such
+// surfaces to the light, and BSDF sampling finds small lamps with a low probability. Each hit near
+// photons sends one more ray, which follows specular surfaces only and counts the emission alone.
+// It is combined with BSDF sampling by MIS (E. Veach, L. Guibas, SIGGRAPH 1995, balance heuristic).
+// One instance per render thread.
+#pragma once
+
+#include "render/lights/photon_guide.h"
+#include "render/path/guide_trial.h"
+#include "render/path/pixel_samples.h"
+#include "render/path/spawn_rays.h"
+#include "render/path/wave.h"
+
+namespace openrt {
+
+// Returns the cell of the guide from which rays are sent at a point of a path; PhotonGuide::none if
+// the path sends none there. Light tracing has the light of paths whose first surface scatters.
+uint32_t guideCellAt(const RenderScene& scene, PathFlags path, const Vec3f& position);
+
+// Writes the MIS weight of BSDF sampling to the states of the paths that BSDF samples of
+// non-specular lobes have led to the hits of a batch, if they may go on by way of specular lobes.
+void weightUnguided(const RtsBatch& batch, const Boundaries& boundaries);
+
+class GuidedRays {
+ public:
+  // context: as that of the renderer.
+  explicit GuidedRays(const StageContext& context) : context_(context) {}
+
+  // Tells a trial about all rays from now on.
+  void observe(GuideTrial* trial) { trial_ = trial; }
+  // Queues a ray for each hit near photons that has a non-specular lobe.
+  void start(const CameraPaths& paths, const LobeSampling& sampling, const Boundaries& boundaries);
+  bool empty() const { return next_.empty(); }
+  // Follows all rays of the queue to their next surface and adds the light that they find there.
+  // level: number of surfaces that the paths have hit before.
+  void follow(const PathSamples& samples, uint32_t level, UnsampledLights& unsampled,
+              PixelSamples& found);
+  // Ends the rays of the queue.
+  void clear() { next_.clear(); }
+  // Exchanges the rays with those of another one.
+  void swap(GuidedRays& other) {
+    std::swap(queue_, other.queue_);
+    std::swap(next_, other.next_);
+  }
+
+ private:
+  struct Stage { // what the hits of a wave need
+    const PathSamples& samples;
+    uint32_t level;
+    UnsampledLights& unsampled;
+    PixelSamples& found;
+  };
+  void visit(const Stage& stage, const Points& points, const Bucket& bucket,
+             const PathStates& states);
+  void addEmission(const Stage& stage, const RtsBatch& batch, const RtsSurface& surface,
+                   const Boundaries& boundaries);
+  void spawnRay(const Stage& stage, const RtsBatch& batch, uint32_t i, float choice,
+                const Boundaries& boundaries);
+
+  const StageContext context_;
+  GuideTrial* trial_ = nullptr;
+  RayQueue queue_, next_; // rays of the current wave, and of the next one
+};
+
+} // namespace openrt

@@ -1,0 +1,88 @@
+#include "render/path/photon_pass.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "render/lights/light_sources.h"
+#include "render/path/guides.h"
+#include "render/path/light_tracer.h"
+#include "render/path/sampler.h"
+#include "render/path/tile.h"
+#include "scene/transports.h"
+
+namespace openrt {
+namespace {
+
+constexpr uint32_t fewestSamples = 16;
+// One light path for so many camera paths, within bounds.
+constexpr uint64_t cameraPaths = 16, fewestPaths = 1u << 11, mostPaths = 1u << 15;
+// One path of the trial for so many camera paths, within bounds. Blocks of pixels are tried.
+constexpr uint64_t trialShare = 32, fewestBlocks = 4, mostBlocks = 32;
+constexpr uint32_t blockEdge = 4, trialSamples = 16;
+// Keep the light paths and the trial apart from those of the picture.
+constexpr uint32_t photonSeed = 0x70686f74u, trialSeed = 0x74726961u;
+
+uint64_t cameraPathsOf(const edit::FrameSettingsT& frame) {
+  return uint64_t(frame.width) * frame.height * frame.samples;
+}
+
+// Returns block i of a low-discrepancy sequence over the picture (M. Roberts, "The Unreasonable
+// Effectiveness of Quasirandom Sequences", 2018).
+Tile trialBlock(const edit::FrameSettingsT& frame, uint32_t i) {
+  const auto place = [i](double step, uint32_t size) {
+    const double at = .5 + i * step;
+    return uint32_t((at - std::floor(at)) * ((size + blockEdge - 1) / blockEdge)) * blockEdge;
+  };
+  const uint32_t x = place(0.7548776662466927, frame.width),
+                 y = place(0.5698402909980532, frame.height);
+  return {x, y, std::min(x + blockEdge, frame.width), std::min(y + blockEdge, frame.height)};
+}
+
+std::vector<uint8_t> tryGuide(RenderScene& scene) {
+  const edit::FrameSettingsT settings = scene.frame;
+  scene.frame.channels |= RT_VARIANCE;
+  scene.frame.lightStride = 1;
+  GuideTrial trial(scene.photonGuide->cells());
+  TileRenderer renderer(scene);
+  renderer.observe(&trial);
+  const std::atomic<bool> never = false;
+  const Replicates replicates{hash(settings.seed, trialSeed)};
+  const uint64_t blocks =
+      std::clamp(cameraPathsOf(settings) / (trialShare * blockEdge * blockEdge * trialSamples),
+                 fewestBlocks, mostBlocks);
+  std::vector<PixelSums> sums;
+  for (uint32_t b = 0; b < blocks; b++) {
+    const Tile tile = trialBlock(settings, b);
+    sums.assign(tile.pixels(), {});
+    renderer.render(tile, replicates, false, 0, trialSamples, sums, never);
+    trial.endBlock(sums);
+  }
+  scene.frame = settings;
+  return trial.choose(renderer.counters());
+}
+
+} // namespace
+
+void guideByPhotons(RenderScene& scene, const RenderScene* before) {
+  scene.photonGuide = nullptr;
+  const edit::FrameSettingsT& frame = scene.frame;
+  const EmissiveShapes* shapes = scene.emitters.shapes();
+  if (!tracesPaths(frame.transport) || showsNoLight(frame) || frame.samples < fewestSamples ||
+      frame.measure != RT_MEASURE_NOTHING || !scene.mediumLights.empty() ||
+      scene.transport.shaderClass || !scene.camera.shader.shaderClass || !shapes || shapes->empty())
+    return;
+  const LightSources sources(scene, before, LightSources::Kind::shapes);
+  if (sources.empty()) return;
+  const uint64_t paths = std::clamp(cameraPathsOf(frame) / cameraPaths, fewestPaths, mostPaths);
+  LightTracer tracer(scene, sources);
+  const auto guide = std::make_shared<PhotonGuide>(
+      tracer.tracePhotons(uint32_t(paths), hash(frame.seed, photonSeed)));
+  if (guide->empty()) return;
+  scene.photonGuide = guide;
+  guide->keep(tryGuide(scene));
+  if (guide->empty()) scene.photonGuide = nullptr;
+}
+
+} // namespace openrt

@@ -1,0 +1,18 @@
+// photon_pass.h: traces the light paths that guide the camera paths of a frame (photon_guide.h).
+// Called between frames.
+#pragma once
+
+#include "render/render_scene.h"
+
+namespace openrt {
+
+// Makes scene.photonGuide. It becomes null if
+// * the frame's transport samples no paths, or it takes so few samples that light paths do not pay;
+// * the pixels are sensors, or a medium of the scene scatters: guided rays know neither;
+// * there is no emissive shape or no specular surface, or few light paths end on other surfaces;
+// * a trial shows that guided rays do not lower the error at equal time (guide_trial.h).
+// before: a snapshot with everything in the same places, or null. The result depends on the scene
+// and its frame alone.
+void guideByPhotons(RenderScene& scene, const RenderScene* before);
+
+} // namespace openrt
