@@ -112,7 +112,7 @@ TEST(ClusterProcesses, GuidedPathsAreTheSameOnAllMachines) {
   {
     const Context context("threads=1");
     one = render();
-    EXPECT_NE(std::strstr(statistics().transportReason, "guided by photons"), nullptr)
+    EXPECT_NE(std::strstr(statistics().transportReason, ", guided"), nullptr)
         << statistics().transportReason;
   }
   const Workers helping = start(2);

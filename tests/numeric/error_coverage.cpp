@@ -71,7 +71,7 @@ TEST_F(ErrorBars, WhatOnlySomePathsMeetIsTrustedWhereEnoughDo) { // lamps are no
                                                                  // glass: paths must find them
   audit::Scenario s = scenario("pane");
   s.reference = 0;
-  s.samples = 32;
+  s.samples = 15; // too few for photons that guide paths
   s.exact = 1;
   const double few = audit::measure(s, 4, 16).trustedShare();
   EXPECT_LT(few, .7);
@@ -282,7 +282,7 @@ TEST_F(ErrorBars, StoppingDoesNotBiasWhatIsRare) {
   rtQuality(RT_SAMPLES_PER_PIXEL, 1024);
   const auto fixed = means(1, 20, taken);
   rtQuality(RT_SAMPLES_PER_PIXEL, 4096);
-  rtQualityf(RT_TARGET_ERROR, .9);
+  rtQualityf(RT_TARGET_ERROR, .1);
   const auto stopped = means(1000, 25, wanted);
   EXPECT_LT(wanted, 4000);
   EXPECT_GT(wanted, 32);

@@ -98,7 +98,7 @@ void LocalBackend::prepare() {
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
   guideByPhotons(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
-  if (next->photonGuide) transportReason_ += ", guided by photons";
+  if (next->photonGuide) transportReason_ += ", guided";
   snapshot_ = std::move(next);
   snapshotFrame_ = history_.number();
   changes_ = {};

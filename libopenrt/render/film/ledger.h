@@ -18,8 +18,11 @@ struct UnsampledLight {
   // Radiance if every such ray hit the brightest emitter that it can reach; summed over the
   // colours.
   double light = 0;
-  double rays = 0; // number of such rays
-  double met = 0;  // number of rays that hit something at least half as bright as that emitter
+  // Number of such rays, and of those that hit something at least half as bright as that emitter. A
+  // ray counts with the MIS weight of BSDF sampling, because guided rays find the rest of its
+  // light.
+  double rays = 0;
+  double met = 0;
 
   void add(const UnsampledLight& c) {
     light += c.light;
@@ -29,15 +32,15 @@ struct UnsampledLight {
   // Counts a ray. brightest: radiance of the brightest emitter that the ray can reach, summed over
   // the colours. The colour of the emitter is not known here, so the largest component of the
   // throughput bounds what the ray could contribute.
-  void send(const Vec3f& throughput, double brightest) {
+  void send(const Vec3f& throughput, double brightest, double weight = 1) {
     if (!(brightest > 0)) return;
-    light += double(largest(throughput)) * brightest;
-    rays++;
+    light += double(largest(throughput)) * weight * brightest;
+    rays += weight;
   }
   // Counts the hit of such a ray if the radiance found there is at least half of `brightest`.
-  void meet(const Vec3f& radiance, double brightest) {
+  void meet(const Vec3f& radiance, double brightest, double weight = 1) {
     const double sum = double(radiance.x) + double(radiance.y) + double(radiance.z);
-    if (sum >= .5 * brightest) met++;
+    if (sum >= .5 * brightest) met += weight;
   }
   // Returns a bound of the share of rays that should have hit such an emitter but did not: the
   // upper 95 % bound of a Poisson variable (E. B. Wilson, M. M. Hilferty, The distribution of

@@ -84,7 +84,9 @@ void weightEmission(const RtsBatch& batch, const Boundaries& boundaries, Unsampl
     const uint32_t i = hit[j];
     const Vec3f found = load(emission, i);
     store(found * weight[j], emission, i);
-    if (weight[j] > 0) unsampled.meet(batch.states->flagsOf(batch.order[i]), found);
+    const uint32_t lane = batch.order[i];
+    if (weight[j] > 0)
+      unsampled.meet(batch.states->flagsOf(lane), found, batch.states->unguidedWeight[lane]);
   }
 }
 

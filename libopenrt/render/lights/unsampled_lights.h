@@ -19,13 +19,16 @@ class UnsampledLights {
   UnsampledLights(const RenderScene& scene, Ledger& ledger)
       : scene_(scene), ledger_(ledger), brightest_(scene.emitters.brightest()),
         brightestSky_(scene.emitters.brightestSky()) {}
-  // Counts a ray, if light sampling cannot find the emitter that it may hit.
-  void send(PathFlags path, const Vec3f& throughput) {
-    if (path.specularSinceDiffuse()) countOf(path).send(throughput, brightestFor(path));
+  // Counts a ray, if light sampling cannot find the emitter that it may hit. unguidedWeight: as in
+  // RayState.
+  void send(PathFlags path, const Vec3f& throughput, float unguidedWeight = 1) {
+    if (path.specularSinceDiffuse())
+      countOf(path).send(throughput, brightestFor(path), weightOf(path, unguidedWeight));
   }
   // Counts the emitted radiance that such a ray has hit.
-  void meet(PathFlags path, const Vec3f& radiance) {
-    if (path.specularSinceDiffuse()) countOf(path).meet(radiance, brightestFor(path));
+  void meet(PathFlags path, const Vec3f& radiance, float unguidedWeight = 1) {
+    if (path.specularSinceDiffuse())
+      countOf(path).meet(radiance, brightestFor(path), weightOf(path, unguidedWeight));
   }
 
  private:
@@ -34,6 +37,10 @@ class UnsampledLights {
   }
   double brightestFor(PathFlags path) const {
     return canOnlyReachSky(scene_, path) ? brightestSky_ : brightest_;
+  }
+  // No ray is guided to the sky.
+  double weightOf(PathFlags path, float unguidedWeight) const {
+    return brightestFor(path) > brightestSky_ ? double(unguidedWeight) : 1.0;
   }
   const RenderScene& scene_;
   Ledger& ledger_;

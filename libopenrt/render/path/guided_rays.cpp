@@ -159,12 +159,11 @@ void GuidedRays::start(const CameraPaths& paths, const LobeSampling& sampling,
   }
 }
 
-void GuidedRays::follow(const PathSamples& samples, uint32_t level, UnsampledLights& unsampled,
-                        PixelSamples& found) {
+void GuidedRays::follow(const PathSamples& samples, uint32_t level, PixelSamples& found) {
   std::swap(queue_, next_);
   next_.clear();
   context_.counters.secondary += queue_.size();
-  const Stage stage{samples, level, unsampled, found};
+  const Stage stage{samples, level, found};
   for (size_t begin = 0; begin < queue_.size(); begin += raysInFlight) {
     ArenaScope scope(context_.arena);
     const auto n = uint32_t(std::min<size_t>(raysInFlight, queue_.size() - begin));
@@ -195,7 +194,7 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
   random.draw(Decision::choice, context_.arena, choice);
   for (uint32_t i = 0; i < points.hits.count; i++) {
     if (boundaries.visibleAt(i)) {
-      spawnRay(stage, batch, i, choice[0][i], boundaries);
+      spawnRay(batch, i, choice[0][i], boundaries);
       continue;
     }
     RayState passed = states[points.order[i]];
@@ -219,7 +218,6 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
         !startsLightPaths(batch, i))
       continue;
     const Vec3f emission = load(surface.emission, i);
-    stage.unsampled.meet(state.flags, emission);
     const float through = fog.transmittance ? fog.transmittance[i] : 1;
     Vec3f light = state.throughput * (emission * through);
     for (int k = 0; k < 3; k++) {
@@ -233,7 +231,7 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
 }
 
 // Continues a path along one specular sample, selected in proportion to what it carries.
-void GuidedRays::spawnRay(const Stage& stage, const RtsBatch& batch, uint32_t i, float choice,
+void GuidedRays::spawnRay(const RtsBatch& batch, uint32_t i, float choice,
                           const Boundaries& boundaries) {
   const Points& points = *batch.points;
   RayState state = (*batch.states)[batch.order[i]];
@@ -251,7 +249,6 @@ void GuidedRays::spawnRay(const Stage& stage, const RtsBatch& batch, uint32_t i,
   if (sample.deflected) state.flags.set(PathFlags::specularSinceDiffuseBit, true);
   state.travelled = points.hits.distance[i];
   state.media = mediaTowards(points, i, sample.direction, boundaries, state.media);
-  stage.unsampled.send(state.flags, state.throughput);
   if (trial_) trial_->send(context_.scene.photonGuide->find(state.previous.position));
   queueRay(points, i, sample.direction, state, next_);
 }

@@ -34,8 +34,7 @@ class GuidedRays {
   bool empty() const { return next_.empty(); }
   // Follows all rays of the queue to their next surface and adds the light that they find there.
   // level: number of surfaces that the paths have hit before.
-  void follow(const PathSamples& samples, uint32_t level, UnsampledLights& unsampled,
-              PixelSamples& found);
+  void follow(const PathSamples& samples, uint32_t level, PixelSamples& found);
   // Ends the rays of the queue.
   void clear() { next_.clear(); }
   // Exchanges the rays with those of another one.
@@ -48,15 +47,13 @@ class GuidedRays {
   struct Stage { // what the hits of a wave need
     const PathSamples& samples;
     uint32_t level;
-    UnsampledLights& unsampled;
     PixelSamples& found;
   };
   void visit(const Stage& stage, const Points& points, const Bucket& bucket,
              const PathStates& states);
   void addEmission(const Stage& stage, const RtsBatch& batch, const RtsSurface& surface,
                    const Boundaries& boundaries);
-  void spawnRay(const Stage& stage, const RtsBatch& batch, uint32_t i, float choice,
-                const Boundaries& boundaries);
+  void spawnRay(const RtsBatch& batch, uint32_t i, float choice, const Boundaries& boundaries);
 
   const StageContext context_;
   GuideTrial* trial_ = nullptr;

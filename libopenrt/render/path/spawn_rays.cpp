@@ -39,7 +39,7 @@ void countCut(const CameraPaths& paths, const BsdfSampleArrays& samples) {
 void countUnsampled(const CameraPaths& paths, size_t begin) {
   const PathStates& states = paths.next.states();
   for (size_t r = begin; r < paths.next.size(); r++)
-    paths.unsampled.send(states.flagsOf(r), load(states.throughput, r) * states.unguidedWeight[r]);
+    paths.unsampled.send(states.flagsOf(r), load(states.throughput, r), states.unguidedWeight[r]);
 }
 
 // Spawns the rays of the BSDF samples: those of one sample of all hits, then those of the next.

@@ -150,7 +150,7 @@ void TileRenderer::follow(Wave& wave, PixelSamples& found) {
       loadWave(queue_, begin, uint32_t(std::min<size_t>(most, queue_.size() - begin)), wave);
       traceWave(wave, found);
     }
-    guided_.follow(samples_, level_, unsampled_, found);
+    guided_.follow(samples_, level_, found);
   }
   for (size_t i = 0; i < next_.size(); i++)
     for (int k = 0; k < 3; k++) ledger_.cutByDepth += double(next_.states().throughput[k][i]);
