@@ -23,8 +23,8 @@ struct RequiredSums {
 };
 RequiredSums requiredSums(const edit::FrameSettingsT& frame);
 
-// Sums of one pixel, samples added in order. What most frames need comes first: a frame touches only
-// as much of each pixel as its channels need.
+// Sums of one pixel, samples added in order. What most frames need comes first: a frame touches
+// only as much of each pixel as its channels need.
 struct PixelSums {
   double rgba[4] = {};
   float depth = 0, position[3] = {}, name = 0; // values of sample 0

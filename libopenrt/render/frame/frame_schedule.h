@@ -123,8 +123,8 @@ class FrameSchedule {
   double started_, began_;              // start times of the frame and of the round
   bool begun_ = false;
   // Light.
-  uint32_t parts_ = 0, nextPart_ = 0, partsUntil_ = 0, partPaths_ = 0, nextEarly_ = 0, earlyUntil_ = 0,
-           earlyPaths_ = 0;
+  uint32_t parts_ = 0, nextPart_ = 0, partsUntil_ = 0, partPaths_ = 0, nextEarly_ = 0,
+           earlyUntil_ = 0, earlyPaths_ = 0;
   const uint32_t earlyParts_;
 
   std::unordered_map<Key, OutstandingJob, KeyHash> outstanding_;
