@@ -124,7 +124,7 @@ TEST_F(Ledger, N18WhatIsClippedIsWhatIsMissing) {
     return sum;
   };
   const double all = mean();
-  rtQualityf(RT_CLAMP, 10);
+  rtQualityf(RT_CLAMP, 2);
   const double rest = mean(), clipped = stats().clipped;
   EXPECT_GT(clipped, .05 * all);
   expectClose(rest + clipped, all);

@@ -44,6 +44,7 @@ std::vector<uint8_t> tryGuide(RenderScene& scene) {
   const edit::FrameSettingsT settings = scene.frame;
   scene.frame.channels |= RT_VARIANCE;
   scene.frame.lightStride = 1;
+  scene.frame.clamp = 0; // clipped samples would hide what photons are worth
   GuideTrial trial(scene.photonGuide->cells());
   TileRenderer renderer(scene);
   renderer.observe(&trial);
