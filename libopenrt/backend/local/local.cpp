@@ -50,7 +50,6 @@ Vec3d LocalBackend::eye() const {
 }
 
 void LocalBackend::prepare() {
-  // What moved in the last snapshot may rest in this one.
   // What moved in the last snapshot may rest in this one, and in another view other things moved.
   const bool motionsDiffer =
       snapshot_ && snapshotFrame_ != history_.number() && (snapshot_->motions || history_.any());
@@ -97,9 +96,8 @@ void LocalBackend::prepare() {
         std::make_shared<const LightSources>(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
     if (!sources->empty()) next->lightSources = std::move(sources);
   }
-  guideByPhotons(*next, recordsUnmoved_ ? snapshot_.get() : nullptr);
-  if (next->photonGuide) transportReason_ += ", guided";
   snapshot_ = std::move(next);
+  guided_ = false;
   snapshotFrame_ = history_.number();
   changes_ = {};
 }
@@ -287,16 +285,26 @@ void LocalBackend::makeLights(RenderScene& next, const Flattened& flat, const Ve
   }
 }
 
-std::shared_ptr<const RenderScene> LocalBackend::prepared() {
+// Queries need no photons, so that these are made when a frame begins.
+void LocalBackend::prepareFrame() {
+  stop_ = false;
   prepare();
+  if (guided_) return;
+  guided_ = guideByPhotons(*snapshot_, stop_);
+  if (snapshot_->photonGuide) transportReason_ += ", guided";
+}
+
+std::shared_ptr<const RenderScene> LocalBackend::prepared() {
+  prepareFrame();
   return snapshot_;
 }
 
 void LocalBackend::start() {
-  prepare();
+  prepareFrame();
   auto frame = std::make_shared<Frame>(snapshot_, threads_);
   std::lock_guard lock(mutex_);
   frame_ = std::move(frame);
+  if (stop_) frame_->cancel();
 }
 
 void LocalBackend::wait() {
@@ -318,6 +326,7 @@ void LocalBackend::wait() {
 
 void LocalBackend::cancel() {
   std::lock_guard lock(mutex_);
+  stop_ = true;
   if (frame_) frame_->cancel();
 }
 

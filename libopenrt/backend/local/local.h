@@ -3,6 +3,7 @@
 // except cancel(), progress() and snapshot(), which any thread may call.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 
@@ -50,6 +51,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
 
  private:
   void prepare(); // makes a new snapshot of the committed scene if anything changed since the last
+  // Likewise, and makes the photons that guide the paths of its frame. cancel() ends that early.
+  void prepareFrame();
   void updateAccel(RenderScene& next);
   void updateMotions(RenderScene& next, std::vector<uint32_t> moved, bool all);
   void makeShaders(RenderScene& next) const;
@@ -94,6 +97,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   uint64_t snapshotFrame_ = 0; // number of the history at the last prepare()
   SceneChanges changes_;       // since the last prepare()
   std::shared_ptr<RenderScene> snapshot_;
+  bool guided_ = false;            // it has the photons that it needs
+  std::atomic<bool> stop_ = false; // cancel() was called since prepareFrame()
   std::shared_ptr<Accel> accel_;
   // Of accel_; null until a query needs them. Those before a change are kept for their meshes.
   std::unique_ptr<const ExactScene> exact_;

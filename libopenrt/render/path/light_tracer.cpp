@@ -37,11 +37,12 @@ bool LightTracer::trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& 
   return true;
 }
 
-std::vector<Photon> LightTracer::tracePhotons(uint32_t paths, uint32_t seed) {
+std::vector<Photon> LightTracer::tracePhotons(uint32_t paths, uint32_t seed,
+                                              const std::atomic<bool>& stop) {
   std::vector<Photon> photons;
   photons_ = &photons;
   seed_ = seed;
-  for (uint32_t first = 0; first < paths; first += pathsInFlight)
+  for (uint32_t first = 0; first < paths && !stop; first += pathsInFlight)
     tracePaths(first, std::min(pathsInFlight, paths - first));
   photons_ = nullptr;
   return photons;

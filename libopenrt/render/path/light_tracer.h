@@ -26,8 +26,9 @@ namespace openrt {
 class LightTracer {
  public:
   LightTracer(const RenderScene& scene, const LightSources& sources);
-  // Traces light paths to their first non-specular surfaces and returns what they leave there.
-  std::vector<Photon> tracePhotons(uint32_t paths, uint32_t seed);
+  // Traces light paths to their first non-specular surfaces and returns what they leave there; less
+  // if `stop` was set.
+  std::vector<Photon> tracePhotons(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
   // Traces `paths` light paths into picture() (rgb by pixel). Each part of a frame needs its own
   // seed. Returns false if `stop` was set; it is checked every few thousand paths.
   bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);

@@ -40,7 +40,8 @@ Tile trialBlock(const edit::FrameSettingsT& frame, uint32_t i) {
   return {x, y, std::min(x + blockEdge, frame.width), std::min(y + blockEdge, frame.height)};
 }
 
-std::vector<uint8_t> tryGuide(RenderScene& scene) {
+// Returns which cells are kept; none if `stop` was set.
+std::vector<uint8_t> tryGuide(RenderScene& scene, const std::atomic<bool>& stop) {
   const edit::FrameSettingsT settings = scene.frame;
   scene.frame.channels |= RT_VARIANCE;
   scene.frame.lightStride = 1;
@@ -48,16 +49,15 @@ std::vector<uint8_t> tryGuide(RenderScene& scene) {
   GuideTrial trial(scene.photonGuide->cells());
   TileRenderer renderer(scene);
   renderer.observe(&trial);
-  const std::atomic<bool> never = false;
   const Replicates replicates{hash(settings.seed, trialSeed)};
   const uint64_t blocks =
       std::clamp(cameraPathsOf(settings) / (trialShare * blockEdge * blockEdge * trialSamples),
                  fewestBlocks, mostBlocks);
   std::vector<PixelSums> sums;
-  for (uint32_t b = 0; b < blocks; b++) {
+  for (uint32_t b = 0; b < blocks && !stop; b++) {
     const Tile tile = trialBlock(settings, b);
     sums.assign(tile.pixels(), {});
-    renderer.render(tile, replicates, false, 0, trialSamples, sums, never);
+    renderer.render(tile, replicates, false, 0, trialSamples, sums, stop);
     trial.endBlock(sums);
   }
   scene.frame = settings;
@@ -66,24 +66,27 @@ std::vector<uint8_t> tryGuide(RenderScene& scene) {
 
 } // namespace
 
-void guideByPhotons(RenderScene& scene, const RenderScene* before) {
+bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.photonGuide = nullptr;
   const edit::FrameSettingsT& frame = scene.frame;
   const EmissiveShapes* shapes = scene.emitters.shapes();
   if (!tracesPaths(frame.transport) || showsNoLight(frame) || frame.samples < fewestSamples ||
       frame.measure != RT_MEASURE_NOTHING || !scene.mediumLights.empty() ||
       scene.transport.shaderClass || !scene.camera.shader.shaderClass || !shapes || shapes->empty())
-    return;
-  const LightSources sources(scene, before, LightSources::Kind::shapes);
-  if (sources.empty()) return;
+    return true;
+  const LightSources sources(scene, &scene, LightSources::Kind::shapes);
+  if (sources.empty()) return true;
   const uint64_t paths = std::clamp(cameraPathsOf(frame) / cameraPaths, fewestPaths, mostPaths);
   LightTracer tracer(scene, sources);
   const auto guide = std::make_shared<PhotonGuide>(
-      tracer.tracePhotons(uint32_t(paths), hash(frame.seed, photonSeed)));
-  if (guide->empty()) return;
+      tracer.tracePhotons(uint32_t(paths), hash(frame.seed, photonSeed), stop));
+  if (stop) return false;
+  if (guide->empty()) return true;
   scene.photonGuide = guide;
-  guide->keep(tryGuide(scene));
-  if (guide->empty()) scene.photonGuide = nullptr;
+  const std::vector<uint8_t> kept = tryGuide(scene, stop);
+  if (!stop) guide->keep(kept);
+  if (stop || guide->empty()) scene.photonGuide = nullptr;
+  return !stop;
 }
 
 } // namespace openrt

@@ -2,6 +2,8 @@
 // Called between frames.
 #pragma once
 
+#include <atomic>
+
 #include "render/render_scene.h"
 
 namespace openrt {
@@ -11,8 +13,8 @@ namespace openrt {
 // * the pixels are sensors, or a medium of the scene scatters: guided rays know neither;
 // * there is no emissive shape or no specular surface, or few light paths end on other surfaces;
 // * a trial shows that guided rays do not lower the error at equal time (guide_trial.h).
-// before: a snapshot with everything in the same places, or null. The result depends on the scene
-// and its frame alone.
-void guideByPhotons(RenderScene& scene, const RenderScene* before);
+// The result depends on the scene and its frame alone. stop: checked every few thousand paths;
+// returns false if it was set. Then there is no guide.
+bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop);
 
 } // namespace openrt
