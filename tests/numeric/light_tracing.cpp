@@ -44,7 +44,8 @@ class LightTracing : public Scene {
 };
 
 // A lamp over a mirror lights a ceiling as the lamp and its mirror image would. The camera looks at
-// a part of the ceiling beside both.
+// a part of the ceiling beside both. A parallel view shows the same; the mirror is behind its
+// plane.
 TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   const double half = .05, lampAt = 1, ceilingAt = 2, reflectance = .8, radiance = 100, x = .7;
   Shader mirror("Mirror");
@@ -60,19 +61,25 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
     const double d2 = px * px + py * py + h * h;
     return radiance * 4 * half * half * h * h / (d2 * d2);
   };
+  const double seen = .8 * std::tan(25 * pi / 180);
   double direct = 0, mirrored = 0;
   constexpr int n = 100;
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
-      const double seen = .8 * std::tan(25 * pi / 180), px = x + seen * (2 * (i + .5) / n - 1),
-                   py = seen * (2 * (j + .5) / n - 1);
+      const double px = x + seen * (2 * (i + .5) / n - 1), py = seen * (2 * (j + .5) / n - 1);
       direct += from(px, py, ceilingAt - lampAt) / (n * n);
       mirrored += reflectance * from(px, py, ceilingAt + lampAt) / (n * n);
     }
-  const double light = mean(picture(4, 32768)), before = .5 / pi * direct,
-               expected = .5 / pi * (direct + mirrored);
-  EXPECT_NEAR(light, expected, .02 * (expected - before) + .001 * expected);
+  const double before = .5 / pi * direct, expected = .5 / pi * (direct + mirrored),
+               tolerance = .02 * (expected - before) + .001 * expected;
+  EXPECT_NEAR(mean(picture(4, 32768)), expected, tolerance);
   EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_LIGHT));
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtLookAt(x, 0, 1.2, x, 0, ceilingAt, 0, 1, 0);
+  rtOrtho(2 * seen);
+  rtPopMatrix();
+  EXPECT_NEAR(mean(picture(4, 32768)), expected, tolerance);
 }
 
 // Each path is found by exactly one of the two methods, so the picture agrees with path tracing.

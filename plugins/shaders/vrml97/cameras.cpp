@@ -108,7 +108,7 @@ class PerspectiveProjection {
 
 class OrthographicProjection {
  public:
-  static constexpr int parallel = 1;
+  static constexpr int parallel = 0; // rays start in the plane of the camera, not at infinity
   using Params = OrthographicParams;
   OrthographicProjection(const Params& params, const float size[2])
       : pixels_(static_cast<double>(size[1]) / static_cast<double>(params.height)) {}
@@ -117,7 +117,7 @@ class OrthographicProjection {
     return {x * pixels_,
             y * pixels_,
             local[2] < 0 && local[2] >= -noLimit ? pixels_ * pixels_ : 0,
-            {0.0f, 0.0f, 1.0f}};
+            {0.0f, 0.0f, -local[2]}};
   }
 
  private:
