@@ -77,11 +77,11 @@ void followSamples(const CameraPaths& paths, const LobeSampling& sampling,
 void passBoundary(const CameraPaths& paths, uint32_t i, const MediaStack& behind) {
   const RtsBatch& batch = paths.batch;
   const RenderScene& scene = *batch.scene;
-  const uint32_t traits = (*scene.shaders)[scene.records[batch.points->record[i]].shader].traits;
-  const float pdf = batch.states->pdf[batch.order[i]];
   const size_t at = paths.next.size();
   spawnStraightRay(paths, i, {1, 1, 1}, behind, true);
-  if (!scene.mediumLights.empty() && (traits & RTS_TRANSPARENT)) paths.next.states().pdf[at] = pdf;
+  if (scene.mediumLights.empty()) return;
+  const uint32_t traits = (*scene.shaders)[scene.records[batch.points->record[i]].shader].traits;
+  if (traits & RTS_TRANSPARENT) paths.next.states().pdf[at] = batch.states->pdf[batch.order[i]];
 }
 
 } // namespace
