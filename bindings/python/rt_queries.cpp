@@ -115,7 +115,7 @@ struct DoubleHits : Hits<double> {
   }
 };
 
-// What the queries of each precision use.
+// Each precision has its own types and calls.
 struct Single {
   using Number = float;
   using Ray = RTray;

@@ -20,7 +20,7 @@ struct LightSums {
   double mean[3] = {}, variance[3] = {};
   // Effective number of light paths that contributed to the pixel and its neighbours.
   double hits = 0;
-  // Of sensors: the largest mean of all cells. 0 in pictures.
+  // This is the largest mean of all cells of sensors, and 0 in pictures.
   double brightest = 0;
 };
 

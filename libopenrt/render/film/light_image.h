@@ -24,8 +24,8 @@ class LightImage {
   // Returns the number of parts of a frame. Those with light in few pixels are previews: their
   // parts have few paths, and to add up whole pictures would cost more than to trace them.
   static uint32_t partsOf(const edit::FrameSettingsT& frame);
-  // What is kept: means alone, or also the variances that errors need. A pixel shares its variance
-  // with its neighbours; a sensor has one of its own.
+  // Tells what is kept: means alone, or also the variances that errors need. A pixel shares its
+  // variance with its neighbours; a sensor has one of its own.
   enum class Kept : uint8_t { means, pixels, sensors };
   LightImage(uint32_t width, uint32_t height, uint32_t all = parts, Kept kept = Kept::pixels);
   // Adds a part: rgb by pixel, row by row. Each number may be added once.
@@ -53,8 +53,8 @@ class LightImage {
   mutable std::shared_mutex sums_; // guards pixels_ and means_, and added_ for readers
   std::vector<Pixel> pixels_;      // where variances are kept
   std::vector<Mean> means_;        // where they are not
-  // Of sensors: the mean that one path leaves in a cell, and the largest mean of all cells. 0 if no
-  // path has crossed any.
+  // Where pixels are sensors, these are the mean that one path leaves in a cell, and the largest
+  // mean of all cells. They are 0 if no path has crossed any.
   double ofOnePath_ = 0, brightest_ = 0;
   std::atomic<uint32_t> added_{0};
   std::mutex turn_; // guards waiting_ and adding_

@@ -222,7 +222,7 @@ template <class Add> void shadeSampledPoints(const StageContext& context,
   }
 }
 
-// What shadow rays to emitters find in scenes with media that scatter.
+// Holds what shadow rays to emitters find in scenes with media that scatter.
 struct SeenThroughMedia {
   float* transmittance[3] = {};
   float* origin[3] = {}; // where each ray has left the last boundary without effect

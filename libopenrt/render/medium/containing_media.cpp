@@ -14,7 +14,7 @@ const Vec3f probeDirection = normalize(Vec3f{0.5377f, 0.8018f, 0.2604f});
 // A probe that passes more surfaces than this gives up.
 constexpr int mostSurfaces = 1000;
 
-// What a probe ray has passed.
+// Holds what a probe ray has passed.
 struct Probe {
   std::vector<uint16_t> entered, left; // left: media that it never entered, in the order of leaving
 

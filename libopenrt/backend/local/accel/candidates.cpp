@@ -91,4 +91,8 @@ void CandidateScene::visit(const FrameRay& ray, CandidateVisitor& visitor) const
   intersect1(scene_, hit, query);
 }
 
+double unitOf(double length) {
+  return length > 0 && std::isfinite(length) ? std::exp2(-std::ilogb(length) - 1) : 1;
+}
+
 } // namespace openrt

@@ -20,6 +20,12 @@ struct FrameRay {
   double near, far;
 };
 
+// Below these numbers all are tried, without a CandidateScene.
+inline constexpr uint32_t fewTriangles = 12, fewSurfaces = 6;
+
+// Returns the power of two that brings a length below 1; 1 for a length that has none.
+double unitOf(double length);
+
 // Receives the boxes that a ray may touch, in no particular order.
 class CandidateVisitor {
  public:

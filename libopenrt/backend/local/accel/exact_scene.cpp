@@ -14,8 +14,6 @@ namespace openrt {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// Below these numbers all are tried, without a tree.
-constexpr uint32_t fewTriangles = 12, fewSurfaces = 6;
 
 Vec3d cornerOf(const Record& r, uint32_t triangle, int k) { return Vec3d(r.corner(triangle, k)); }
 
@@ -31,11 +29,6 @@ ExactRay withoutPlaces(const ExactRay& ray) {
   ExactRay out = ray;
   out.tolerance = 0x1p20;
   return out;
-}
-
-// Returns the power of two that brings a length below 1.
-double unitOf(double size) {
-  return size > 0 && std::isfinite(size) ? std::exp2(-std::ilogb(size) - 1) : 1;
 }
 
 } // namespace
@@ -85,14 +78,6 @@ struct ExactScene::Surface {
   }
 };
 
-// Receives crossings. add() returns the t from which on further ones are of no interest.
-class ExactScene::Collector {
- public:
-  virtual ~Collector() = default;
-  virtual double add(const Hit& hit) = 0;
-  double far = infinite;
-};
-
 class ExactScene::Nearest final : public Collector {
  public:
   Hit hit;
@@ -101,36 +86,6 @@ class ExactScene::Nearest final : public Collector {
     const auto key = [](const Hit& x) { return std::tuple(x.at.t, x.record, x.primitive); };
     if (hit.record == noHit || key(h) < key(hit)) hit = h;
     return far = hit.at.t;
-  }
-};
-
-class ExactScene::Any final : public Collector {
- public:
-  bool met = false;
-  double add(const Hit&) override {
-    met = true;
-    return far = -infinite;
-  }
-};
-
-class ExactScene::All final : public Collector {
- public:
-  explicit All(std::vector<Hit>& hits) : hits_(hits) {}
-  double add(const Hit& hit) override {
-    hits_.push_back(hit);
-    return far;
-  }
-
- private:
-  std::vector<Hit>& hits_;
-};
-
-class ExactScene::Counter final : public Collector {
- public:
-  size_t count = 0;
-  double add(const Hit&) override {
-    count++;
-    return far;
   }
 };
 
@@ -301,21 +256,21 @@ bool ExactScene::nearest(const ExactRay& ray, Hit& hit) const {
 }
 
 bool ExactScene::occluded(const ExactRay& ray) const {
-  Any found;
+  AnyCrossing<Hit> found;
   search(withoutPlaces(ray), found);
   return found.met;
 }
 
 void ExactScene::all(const ExactRay& ray, std::vector<Hit>& hits) const {
   hits.clear();
-  All found(hits);
+  AllCrossings<Hit> found(hits);
   search(ray, found);
   const auto key = [](const Hit& h) { return std::tuple(h.at.t, h.record, h.primitive); };
   std::sort(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) { return key(a) < key(b); });
 }
 
 size_t ExactScene::count(const ExactRay& ray) const {
-  Counter found;
+  CrossingCounter<Hit> found;
   search(withoutPlaces(ray), found);
   return found.count;
 }

@@ -11,6 +11,7 @@
 
 #include "backend/local/accel/accel.h"
 #include "backend/local/accel/candidates.h"
+#include "backend/local/accel/crossing_collectors.h"
 #include "backend/local/crossing.h"
 
 namespace openrt {
@@ -42,11 +43,8 @@ class ExactScene {
  private:
   struct Mesh;
   struct Surface;
-  class Collector;
+  using Collector = CrossingCollector<Hit>;
   class Nearest;
-  class Any;
-  class All;
-  class Counter;
   class MeshVisitor;
   class TopVisitor;
   using Key = std::tuple<const float*, const uint32_t*, uint32_t>; // vertices, indices, number

@@ -12,15 +12,8 @@ namespace openrt {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// Below these numbers all are tried, without a tree.
-constexpr uint32_t fewTriangles = 12, fewSurfaces = 6;
 // Larger coordinates are dropped, as by Embree.
 constexpr float farthest = 1e18f;
-
-// Returns the power of two that brings a length below 1.
-double unitOf(double size) {
-  return size > 0 && std::isfinite(size) ? std::exp2(-std::ilogb(size) - 1) : 1;
-}
 
 auto keyOf(const PreciseScene::Hit& h) { return std::tuple(h.at.t, h.record, h.primitive); }
 
@@ -77,14 +70,6 @@ struct PreciseScene::Surface {
   }
 };
 
-// Receives crossings. add() returns the t from which on further ones are of no interest.
-class PreciseScene::Collector {
- public:
-  virtual ~Collector() = default;
-  virtual double add(const Hit& hit) = 0;
-  double far = infinite;
-};
-
 // The least t that any other crossing may truly have is `others`.
 class PreciseScene::Nearest final : public Collector {
  public:
@@ -96,36 +81,6 @@ class PreciseScene::Nearest final : public Collector {
     if (hit.record == noHit || keyOf(h) < keyOf(hit)) std::swap(hit, other);
     if (other.record != noHit) others = std::min(others, other.at.t - other.at.tError);
     return far = hit.at.t + hit.at.tError;
-  }
-};
-
-class PreciseScene::Any final : public Collector {
- public:
-  bool met = false;
-  double add(const Hit&) override {
-    met = true;
-    return far = -infinite;
-  }
-};
-
-class PreciseScene::All final : public Collector {
- public:
-  explicit All(std::vector<Hit>& hits) : hits_(hits) {}
-  double add(const Hit& hit) override {
-    hits_.push_back(hit);
-    return far;
-  }
-
- private:
-  std::vector<Hit>& hits_;
-};
-
-class PreciseScene::Counter final : public Collector {
- public:
-  size_t count = 0;
-  double add(const Hit&) override {
-    count++;
-    return far;
   }
 };
 
@@ -317,21 +272,21 @@ bool PreciseScene::nearest(const PreciseRay& ray, Hit& hit) const {
 }
 
 bool PreciseScene::occluded(const PreciseRay& ray) const {
-  Any found;
+  AnyCrossing<Hit> found;
   search(ray, found);
   return found.met;
 }
 
 void PreciseScene::all(const PreciseRay& ray, std::vector<Hit>& hits) const {
   hits.clear();
-  All found(hits);
+  AllCrossings<Hit> found(hits);
   search(ray, found);
   std::sort(hits.begin(), hits.end(),
             [](const Hit& a, const Hit& b) { return keyOf(a) < keyOf(b); });
 }
 
 size_t PreciseScene::count(const PreciseRay& ray) const {
-  Counter found;
+  CrossingCounter<Hit> found;
   search(ray, found);
   return found.count;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "backend/local/accel/accel.h"
+#include "backend/local/accel/crossing_collectors.h"
 #include "backend/local/accel/survey.h"
 #include "backend/local/precise/search_frame.h"
 
@@ -47,11 +48,8 @@ class PreciseScene {
  private:
   struct Mesh;
   struct Surface;
-  class Collector;
+  using Collector = CrossingCollector<Hit>;
   class Nearest;
-  class Any;
-  class All;
-  class Counter;
   class MeshVisitor;
   class TopVisitor;
   using Key = std::pair<const Array*, const Array*>; // points and indices
