@@ -379,7 +379,7 @@ struct LiveRenderer::Impl {
   }
 
   bool look(LivePicture& out) {
-    stage.reportMessages();
+    if (now() != State::mapping) stage.reportMessages(); // the mapper adds messages, too
     const std::shared_ptr<const EndedFrame> finished = nextUnpolled();
     if (!finished) return alone() && pollInFlight(out);
     show(finished->picture, finished->facts, finished->whole, finished->seconds, out);

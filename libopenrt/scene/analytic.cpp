@@ -63,6 +63,12 @@ std::string problemOfAsphere(std::span<const double> n) {
     return numbered("the inner radius %.9g of the asphere is not from 0 to below the semi-aperture "
                     "%.9g",
                     inner, outer);
+  double sag = std::fabs(c) * outer * outer, power = outer * outer * outer * outer;
+  for (size_t i = 4; i < n.size(); i++, power *= outer * outer) sag += std::fabs(n[i]) * power;
+  if (!(sag <= deepest * outer))
+    return numbered("the asphere is more than a million times deeper than its semi-aperture %.9g: "
+                    "check the units of curvature and coefficients",
+                    outer);
   // z exists up to the radius at which the square root is 0.
   const double root = (1 + k) * c * c * outer * outer;
   const bool polynomial = n.size() > 4;
@@ -74,12 +80,10 @@ std::string problemOfAsphere(std::span<const double> n) {
                                  "is at %.9g",
                     outer, edge);
   }
-  double sag = std::fabs(c) * outer * outer, power = outer * outer * outer * outer;
-  for (size_t i = 4; i < n.size(); i++, power *= outer * outer) sag += std::fabs(n[i]) * power;
-  if (!(sag <= deepest * outer))
-    return numbered("the asphere is more than a million times deeper than its semi-aperture %.9g: "
-                    "check the units of curvature and coefficients",
-                    outer);
+  if (root < -1e100)
+    return numbered("the conic constant %.9g of the asphere overflows within its semi-aperture "
+                    "%.9g",
+                    k, outer);
   return {};
 }
 

@@ -281,6 +281,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"NoAperture", Kind::Asphere, {1, 0, 0, 0}, "semi-aperture 0"},
         Bad{"NegativeAperture", Kind::Asphere, {0, 0, 0, -1}, "semi-aperture -1"},
         Bad{"ApertureNotANumber", Kind::Asphere, {0, 0, 0, nan}, "not finite"},
+        Bad{"ConicOverflows", Kind::Asphere, {2, -1e308, 0, 1}, "conic constant -1e+308"},
+        Bad{"CurvatureOverflows", Kind::Asphere, {1e308, -1, 0, 1}, "a million times deeper"},
         Bad{"InnerBeyondOuter", Kind::Asphere, {0, 0, 2, 1}, "inner radius 2"},
         Bad{"BeyondTheSphere", Kind::Asphere, {.1, 0, 0, 12}, "beyond its edge, which is at 10"},
         Bad{"PolynomialAtTheEdge", Kind::Asphere, {.1, 0, 0, 10, 1e-9}, "must be below 10"},
