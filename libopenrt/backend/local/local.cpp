@@ -138,10 +138,11 @@ void LocalBackend::updateAccel(RenderScene& next) {
   store(origin, next.origin);
   makeCamera(next, origin);
   const PixelFootprint pixel = footprint(next);
-  const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
-                         pixel};
+  const double scale = builder_.survey.scale(origin);
+  const BuildInput input{
+      scene_, flat_, *next.shaders, origin, scale, builder_.survey.reach(origin) * scale, pixel};
   exactIsFormer_ = preciseIsFormer_ = true;
-  const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
+  const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, input);
   recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)
     accel_ = builder_.build(input);

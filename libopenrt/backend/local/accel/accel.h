@@ -21,6 +21,8 @@
 
 namespace openrt {
 
+struct PacketRays;
+
 class Accel final : public Intersector {
  public:
   std::vector<Record> records;
@@ -74,6 +76,8 @@ class Accel final : public Intersector {
     const PartScene* scene = nullptr;
     uint32_t masks = 0;     // union of the masks of its geometries; 0: the scene is empty
     bool instances = false; // whether the scene contains instances
+    // Largest coordinate of the origin and of the direction of a ray, in the units of the kernels.
+    float limit = 1e18f;
   };
   template <class Packet> void intersectPackets(const Level& level, const Rays& rays, uint32_t mask,
                                                 const QueryOptions& options, bool first,
@@ -81,6 +85,17 @@ class Accel final : public Intersector {
   template <class Packet> void occludedPackets(const Level& level, const Rays& rays, uint32_t mask,
                                                const QueryOptions& options, bool first,
                                                uint8_t* blocked) const;
+  // Rays of a packet that were moved along their direction (accel_far.cpp). t is that of the moved
+  // ray in the units of the kernel.
+  struct FarRays {
+    uint32_t lanes = 0;              // a bit for each ray that was moved
+    double shift[16], perLength[16]; // by how much; units of the kernel in a length of t
+    double distance(uint32_t i, double t) const { return (t + shift[i]) / perLength[i]; }
+  };
+  // Moves those rays of a packet that loadPacket() has rejected and that may hit something. Returns
+  // how many rays stay rejected.
+  uint32_t moveNear(const Rays& rays, const float* ends, uint32_t first, uint32_t size, int* valid,
+                    const PacketRays& to, FarRays& far) const;
   void intersectLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent,
                       bool first, RayHits& hits) const;
   void occludedLevel(const Level& level, const Rays& rays, uint32_t mask, bool coherent, bool first,
@@ -122,6 +137,7 @@ class Accel final : public Intersector {
   std::vector<PlacedCluster> placed_; // by cluster
   Vec3d origin_;                      // of render space, in the world
   Vec3f low_, high_;                  // bounds in render space, with a margin
+  double reach_ = 0;                  // of the scene, in the units of the kernels
   float scale_ = 1; // render space x scale = the space of both Embree scenes; a power of two
 };
 

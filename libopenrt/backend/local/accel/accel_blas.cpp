@@ -147,7 +147,7 @@ std::shared_ptr<const Blas> AccelBuilder::staticBlas() {
   const ScenePart& source = input_->flat.parts[0];
   const PartInfo& info = survey.parts()[0];
   Hash hash;
-  hash << input_->origin << input_->scale;
+  hash << input_->origin << input_->scale << input_->reach;
   std::vector<std::shared_ptr<const Blas>> shared;
   for (uint32_t i = 0; i < source.items.size(); i++) {
     const Item& item = source.items[i];
@@ -162,7 +162,7 @@ std::shared_ptr<const Blas> AccelBuilder::staticBlas() {
   if (static_.blas && static_.signature == signature) return static_.blas;
   static_.blas.reset(); // frees its memory before the next one is built
   const Matrix4d toKernel = uniformScale(input_->scale) * worldToRender_;
-  BlasBuilder builder(*device_, spheres_, info.entries());
+  BlasBuilder builder(*device_, spheres_, info.entries(), input_->reach);
   for (uint32_t i = 0; i < source.items.size(); i++) {
     const auto& geometries = input_->scene.objects.at(source.items[i].object).geometries;
     for (uint32_t g = 0; g < geometries.size(); g++)

@@ -21,6 +21,7 @@ struct BuildInput {
   const ShaderTable& shaders;
   Vec3d origin; // origin of render space, in the world
   double scale = 1;
+  double reach = 0; // of the scene (Survey), in the units of the kernels
   PixelFootprint footprint;
 };
 
@@ -38,8 +39,8 @@ class AccelBuilder {
   //   thin      the pixel footprint changed, so all lines and points are rebuilt
   void update(Accel& accel, const BuildInput& input, const std::vector<uint32_t>& clusters,
               const std::vector<uint32_t>& objects, bool thin);
-  // Returns whether an Accel has this origin and scale.
-  static bool hasFrame(const Accel& accel, const Vec3d& origin, double scale);
+  // Returns whether an Accel has the origin, scale and reach of an input.
+  static bool hasFrame(const Accel& accel, const BuildInput& input);
 
   struct Counts { // of the visible parts of an Accel
     uint64_t triangles = 0, uniqueTriangles = 0, degenerate = 0, rejectedInstances = 0;

@@ -32,9 +32,10 @@ void AccelBuilder::begin(Accel& accel, const BuildInput& input) {
   buildNumber_++;
 }
 
-bool AccelBuilder::hasFrame(const Accel& accel, const Vec3d& origin, double scale) {
-  return accel.origin_.x == origin.x && accel.origin_.y == origin.y &&
-         accel.origin_.z == origin.z && accel.scale_ == float(scale);
+bool AccelBuilder::hasFrame(const Accel& accel, const BuildInput& input) {
+  return accel.origin_.x == input.origin.x && accel.origin_.y == input.origin.y &&
+         accel.origin_.z == input.origin.z && accel.scale_ == float(input.scale) &&
+         accel.reach_ == input.reach;
 }
 
 std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
@@ -43,12 +44,13 @@ std::shared_ptr<Accel> AccelBuilder::build(const BuildInput& input) {
   accel->device_ = device_;
   accel->origin_ = input.origin;
   accel->scale_ = float(input.scale);
+  accel->reach_ = input.reach;
   buckets_.clear();
   layOut();
   accel->static_ = staticBlas();
   accel->staticLevel_ = {accel->static_.get(),
                          accel->static_->parts.empty() ? 0u : maskOpaque | maskTransparent,
-                         accel->static_->instances};
+                         accel->static_->instances, largestCoordinate(accel->static_->enlargement)};
   for (uint32_t c = 0; c < input.flat.clusters.size(); c++) place(c);
   if (accel->buckets.empty()) accel->buckets.push_back({input.shaders[0].shaderClass, 0});
   if (!changed_) topLevelBuilds++; // there is only the static scene
@@ -156,7 +158,7 @@ bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas
   PartScene& top = accel_->top_;
   const Matrix4d toRoot = uniformScale(input_->scale) * toRender;
   changed_ = true;
-  if (!blas || blas->parts.empty() || !toRoot.usable()) {
+  if (!blas || blas->parts.empty() || !isTraceable(toRoot, input_->reach)) {
     if (top.parts[slot].used()) setEnabled(top, slot, false);
     return false;
   }
@@ -217,7 +219,10 @@ void AccelBuilder::finish() {
     }
     if (part.lines || part.points) masks |= maskThin;
   }
-  a.topLevel_ = {&a.top_, masks, instances};
+  int8_t enlargement = 0;
+  for (const PartSlot& slot : a.top_.parts)
+    if (slot.object && slot.enabled) enlargement = std::max(enlargement, slot.enlargement);
+  a.topLevel_ = {&a.top_, masks, instances, largestCoordinate(enlargement)};
   if (changed_ && a.top_.scene) {
     rtcCommitScene(a.top_.scene);
     topLevelBuilds++;

@@ -99,7 +99,11 @@ void AccelBuilder::writeRecords(uint32_t c) {
     const auto& geometries = input_->scene.objects.at(item.object).geometries;
     const Inherited path = input_->flat.inherit(cluster.path, item.path);
     const Matrix4d itemToRender = partToRender * item.matrix;
-    placed.rejected += !itemToRender.usable();
+    bool rejected = !itemToRender.usable();
+    const auto setPlace = [&](Record& r, const Matrix4d& kernelToRender) {
+      setInstance(r, kernelToRender);
+      rejected |= !isTraceable(uniformScale(input_->scale) * kernelToRender, input_->reach);
+    };
     std::shared_ptr<const Blas> shared;
     if (info.drawn[info.firstEntry[i]] == DrawnAs::shared)
       shared = objectBlas(item.object, overrideMask(path.shader));
@@ -114,19 +118,19 @@ void AccelBuilder::writeRecords(uint32_t c) {
       switch (info.drawn[entry]) {
       case DrawnAs::baked:
         if (!root)
-          setInstance(r, partToRender * blas->fromKernel);
+          setPlace(r, partToRender * blas->fromKernel);
         else if (sphere && !similarity(uniformScale(input_->scale) * toRender) &&
                  !isHugeSphere(uniformScale(input_->scale) * unit))
-          setInstance(r, unit); // baked as an instance of the unit sphere
+          setPlace(r, unit); // baked as an instance of the unit sphere
         r.flip = flipped(g, root ? toRender : item.matrix * g.matrix);
         r.vertices = blas->vertices[entry];
         break;
       case DrawnAs::shared:
-        setInstance(r, itemToRender * shared->fromKernel);
+        setPlace(r, itemToRender * shared->fromKernel);
         r.flip = flipped(g, g.matrix);
         r.vertices = shared->vertices[k];
         break;
-      case DrawnAs::ellipsoid: setInstance(r, unit); break;
+      case DrawnAs::ellipsoid: setPlace(r, unit); break;
       case DrawnAs::thin: break;
       }
       r.surface = g.surface.get();
@@ -138,6 +142,7 @@ void AccelBuilder::writeRecords(uint32_t c) {
       placed.culls |= r.cull;
       accel_->records[placed.firstRecord + entry] = r;
     }
+    placed.rejected += rejected;
   }
 }
 

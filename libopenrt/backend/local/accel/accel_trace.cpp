@@ -43,18 +43,16 @@ void refineGrazingHit(const Record& r, const Rays& rays, float far, RayHits& hit
   }
 }
 
-// Fills a packet with the rays from number `first` on and returns how many were rejected.
-template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* ends, uint32_t first,
-                                               float scale, uint32_t mask, int* valid, Ray& to) {
-  return loadPacket(rays, ends, first, W, scale, mask, valid,
-                    {{to.org_x, to.org_y, to.org_z},
-                     {to.dir_x, to.dir_y, to.dir_z},
-                     to.tnear,
-                     to.tfar,
-                     to.mask,
-                     to.id,
-                     to.flags,
-                     to.time});
+// Returns the arrays of a packet of rays.
+template <class Ray> PacketRays arraysOf(Ray& to) {
+  return {{to.org_x, to.org_y, to.org_z},
+          {to.dir_x, to.dir_y, to.dir_z},
+          to.tnear,
+          to.tfar,
+          to.mask,
+          to.id,
+          to.flags,
+          to.time};
 }
 
 } // namespace
@@ -120,8 +118,11 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
     const uint32_t n = std::min(W, rays.count - begin);
     if (!first)
       for (uint32_t i = 0; i < n; i++) ends[i] = std::min(rays.tfar[begin + i], hits.t[begin + i]);
-    const uint32_t bad =
-        load<W>(rays, first ? rays.tfar + begin : ends, begin, scale_, mask, valid, packet.ray);
+    const PacketRays to = arraysOf(packet.ray);
+    const float* const until = first ? rays.tfar + begin : ends;
+    FarRays far;
+    uint32_t bad = loadPacket(rays, until, begin, W, scale_, level.limit, mask, valid, to);
+    if (bad) bad = moveNear(rays, until, begin, W, valid, to, far);
     if (first) refused += bad;
     for (uint32_t i = 0; i < W; i++)
       packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -144,6 +145,7 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
             find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
         hits.record[lane] = found.record;
         hits.primitive[lane] = found.primitive;
+        if (far.lanes >> i & 1) hits.t[lane] = float(far.distance(i, packet.ray.tfar[i]));
         const Record& record = records[found.record];
         if (record.instanced || met.grazing >> i & 1)
           refineGrazingHit(record, rays, rays.tfar[lane], hits, lane);
@@ -157,7 +159,8 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
           find(*level.scene, packet.hit.instID[0][i], packet.hit.geomID[i], packet.hit.primID[i]);
       hits.record[lane] = found.record;
       hits.primitive[lane] = found.primitive;
-      hits.t[lane] = packet.ray.tfar[i] * unscale;
+      hits.t[lane] = far.lanes >> i & 1 ? float(far.distance(i, packet.ray.tfar[i]))
+                                        : packet.ray.tfar[i] * unscale;
       hits.u[lane] = packet.hit.u[i];
       hits.v[lane] = packet.hit.v[i];
       hits.ng[0][lane] = packet.hit.Ng_x[i];
@@ -178,7 +181,11 @@ template <class Packet> void Accel::occludedPackets(const Level& level, const Ra
   uint64_t refused = 0;
   for (uint32_t begin = 0; begin < rays.count; begin += W) {
     const uint32_t n = std::min(W, rays.count - begin);
-    const uint32_t bad = load<W>(rays, rays.tfar + begin, begin, scale_, mask, valid, packet);
+    const PacketRays to = arraysOf(packet);
+    FarRays far;
+    uint32_t bad =
+        loadPacket(rays, rays.tfar + begin, begin, W, scale_, level.limit, mask, valid, to);
+    if (bad) bad = moveNear(rays, rays.tfar + begin, begin, W, valid, to, far);
     if (first)
       refused += bad;
     else

@@ -3,6 +3,7 @@
 // precision.
 #include "backend/local/accel/blas.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "backend/local/accel/bake.h"
@@ -36,8 +37,9 @@ std::shared_ptr<const Blas> UnitSpheres::get(uint32_t mask) {
   return known = std::move(blas);
 }
 
-BlasBuilder::BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries)
-    : device_(device), unitSpheres_(spheres), blas_(std::make_shared<Blas>()) {
+BlasBuilder::BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries,
+                         double reach)
+    : device_(device), unitSpheres_(spheres), reach_(reach), blas_(std::make_shared<Blas>()) {
   blas_->scene = newScene(device);
   blas_->vertices.resize(entries);
 }
@@ -51,8 +53,9 @@ void BlasBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entr
 
 void BlasBuilder::addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel,
                               uint32_t entry) {
-  if (!toKernel.usable() || blas->parts.empty()) return;
+  if (!isTraceable(toKernel, reach_) || blas->parts.empty()) return;
   blas_->instances = true;
+  blas_->enlargement = std::max(blas_->enlargement, enlargementOf(toKernel));
   attachInstance(*blas_, device_, std::move(blas), entry, toKernel);
 }
 

@@ -20,6 +20,7 @@ struct Blas : PartScene {
   std::vector<const float*> vertices; // vertices of triangles by entry, in the Embree scene's frame
   uint64_t degenerate = 0;            // number of dropped triangles
   bool instances = false;             // contains instances, so it cannot be instanced itself
+  int8_t enlargement = 0;             // largest one of these (embree_parts.h)
 };
 
 // The unit sphere for each mask; ellipsoids are instances of it.
@@ -35,7 +36,8 @@ class UnitSpheres {
 
 class BlasBuilder {
  public:
-  BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries);
+  // reach: of the scene, in the Embree scene's frame, for a Blas that may hold instances.
+  BlasBuilder(const EmbreeDevice& device, UnitSpheres& spheres, size_t entries, double reach = 0);
   // Adds a geometry (triangles, a sphere or an analytic surface) as entry number `entry`. toKernel:
   // from its local frame to the Embree scene's.
   void add(const Geometry& geometry, const Matrix4d& toKernel, uint32_t entry, uint32_t mask);
@@ -58,6 +60,7 @@ class BlasBuilder {
 
   const EmbreeDevice& device_;
   UnitSpheres& unitSpheres_;
+  const double reach_;
   std::shared_ptr<Blas> blas_;
   // Triangles of small geometries, by (mask, slivers).
   std::map<std::pair<uint32_t, bool>, std::unique_ptr<Part>> merged_;

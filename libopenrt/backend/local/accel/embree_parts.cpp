@@ -2,6 +2,8 @@
 #include "backend/local/accel/blas.h"
 #include "render/rays.h"
 
+#include <algorithm>
+#include <cmath>
 #include <new>
 
 namespace openrt {
@@ -28,7 +30,31 @@ void transform(RTCGeometry geometry, const Matrix4d& matrix) {
   rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, m);
 }
 
+// Returns the largest sum of the magnitudes of a row of the inverse.
+double inverseNorm(const Matrix4d& matrix) {
+  const Matrix4d toLocal = inverse(matrix);
+  double most = 0;
+  for (int i = 0; i < 3; i++) most = std::max(most, dot(abs(toLocal.row(i)), Vec3d{1, 1, 1}));
+  return most;
+}
+
 } // namespace
+
+int8_t enlargementOf(const Matrix4d& matrix) {
+  const double norm = inverseNorm(matrix);
+  if (!(norm < 0x1p127)) return 127;
+  return norm > 1 ? int8_t(std::ceil(std::log2(norm))) : int8_t(0);
+}
+
+// Embree inverts the matrix in single precision, so the determinant must be a normal number and
+// larger than its rounding error. Without that the inverse is not finite.
+bool isTraceable(const Matrix4d& matrix, double reach) {
+  if (!matrix.usable()) return false;
+  const double volume = std::fabs(matrix.determinant()),
+               box = length(matrix.column(0)) * length(matrix.column(1)) * length(matrix.column(2));
+  return volume >= 1e-6 * box && volume >= 1e-37 && volume <= 1e37 &&
+         inverseNorm(matrix) * std::max(reach, largest(abs(matrix.translation()))) <= 1e16;
+}
 
 RTCScene newScene(const EmbreeDevice& device) {
   RTCScene scene = rtcNewScene(device.device);
@@ -91,7 +117,8 @@ void attachInstance(PartScene& to, const EmbreeDevice& device, std::shared_ptr<c
   RTCGeometry geometry = rtcNewGeometry(device.device, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(geometry, object->scene);
   transform(geometry, matrix);
-  attach(to, geometry, {nullptr, std::move(object), record}, maskAll, slot);
+  attach(to, geometry, {nullptr, std::move(object), record, true, enlargementOf(matrix)}, maskAll,
+         slot);
 }
 
 void detach(PartScene& from, uint32_t slot) {
@@ -104,6 +131,7 @@ void setTransform(PartScene& in, uint32_t slot, const Matrix4d& matrix) {
   RTCGeometry geometry = rtcGetGeometry(in.scene, slot);
   transform(geometry, matrix);
   rtcCommitGeometry(geometry);
+  in.parts[slot].enlargement = enlargementOf(matrix);
 }
 
 Matrix4d transformOf(const PartScene& in, uint32_t slot) {

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -49,6 +51,7 @@ struct PartSlot {
   std::shared_ptr<const Blas> object; // for an instance: the instanced scene
   uint32_t record = 0;                // for an instance: the first of its records
   bool enabled = true;
+  int8_t enlargement = 0; // for an instance: see enlargementOf()
   bool used() const { return part || object; }
 };
 
@@ -88,6 +91,17 @@ RTCGeometry newAnalytic(const EmbreeDevice& device, Part& part);
 // the geometry id.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                  uint32_t mask, RTCGeometryType type, uint32_t slot = nextSlot);
+// Returns the exponent of a power of two by which the frame of an instance enlarges coordinates and
+// directions at most; 0 if it does not. 127: by more than can be traced.
+int8_t enlargementOf(const Matrix4d& matrix);
+// Tells whether an instance can be traced by rays from everywhere within `reach` of the origin: in
+// its frame their coordinates must not leave the range of the kernels.
+bool isTraceable(const Matrix4d& matrix, double reach);
+// Returns the largest coordinate of a ray's origin, and of its direction, for a scene with
+// instances of this enlargement, all of which are traceable.
+inline float largestCoordinate(int8_t enlargement) {
+  return enlargement > 0 ? std::ldexp(1e17f, -enlargement) : 1e18f;
+}
 // Attaches an instance of another scene. record: the first of the instance's records.
 void attachInstance(PartScene& to, const EmbreeDevice& device, std::shared_ptr<const Blas> object,
                     uint32_t record, const Matrix4d& matrix, uint32_t slot = nextSlot);

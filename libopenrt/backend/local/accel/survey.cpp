@@ -201,10 +201,18 @@ Vec3d Survey::origin(const Vec3d& eye) const {
   return {snap(eye.x), snap(eye.y), snap(eye.z)};
 }
 
-double Survey::scale(const Vec3d& origin) const {
+double Survey::farthest(const Vec3d& origin) const {
   const Box world = bounds();
-  if (world.empty()) return 1;
-  const double far = largest(max(abs(world.low - origin), abs(world.high - origin)));
+  return world.empty() ? 0 : largest(max(abs(world.low - origin), abs(world.high - origin)));
+}
+
+double Survey::reach(const Vec3d& origin) const {
+  const double far = farthest(origin);
+  return far > 0 ? std::exp2(10 * std::ceil(std::log2(far) / 10)) : 0;
+}
+
+double Survey::scale(const Vec3d& origin) const {
+  const double far = farthest(origin);
   if (!(far > 0)) return 1;
   const auto powerOfTwo = [](double x) { return std::exp2(std::floor(std::log2(x))); };
   if (far < 1e-4) return powerOfTwo(1 / far); // small scenes are scaled up to about 1

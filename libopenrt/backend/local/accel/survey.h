@@ -64,12 +64,16 @@ class Survey {
   // Returns the factor from render space to the space of the ray kernels: a power of two, 1 except
   // for extreme sizes.
   double scale(const Vec3d& origin) const;
+  // Returns a distance from the origin beyond which there is nothing: a power of 1024, so that it
+  // seldom changes.
+  double reach(const Vec3d& origin) const;
 
  private:
   void measure(const Scene& scene, uint32_t object);
   PartInfo measurePart(const Scene& scene, const ScenePart& part, bool root) const;
   bool isShared(uint32_t object) const;
   Box bounds() const;
+  double farthest(const Vec3d& origin) const; // largest difference of a coordinate; 0: nothing
   std::map<uint32_t, ObjectInfo> objects_;
   // number of items that place an object, over all parts
   std::unordered_map<uint32_t, uint64_t> uses_;
