@@ -29,8 +29,8 @@ uint32_t Accel::moveNear(const Rays& rays, const float* ends, uint32_t first, ui
                 given(load(rays.dir, first + i));
     const double size1 = dot(abs(given), Vec3d{1, 1, 1}), near = double(rays.tnear[first + i]),
                  end = double(ends[i]);
-    if (!(largest(abs(origin)) <= most && size1 > 0 && size1 <= most && near >= 0 && near <= end &&
-          near <= double(mostFinite))) {
+    if (!(isFinite(origin) && largest(abs(origin)) <= most && size1 > 0 && size1 <= most &&
+          near >= 0 && near <= end && near <= double(mostFinite))) {
       refused++;
       continue;
     }
