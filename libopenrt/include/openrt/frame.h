@@ -36,7 +36,14 @@ enum {
    * is not part of it. Where an object was defined again, geometries and instances of the same name
    * (rtLoadName) are the same if there are as many as before and their indices and objects are
    * equal. */
-  RT_MOTION = 1024
+  RT_MOTION = 1024,
+  /* 3: the part of the radiance that coats reflect: varnish, lacquer, the surface of plastic. It is
+   * the light of paths that are reflected by a mirror or glossy lobe of a surface that has a diffuse
+   * lobe, too, where that is their first surface besides mirrors and clear things. Light samples of
+   * a glossy lobe and light that paths from lamps bring are not part of it. 0 with the transports
+   * RT_TRANSPORT_DIRECT and RT_TRANSPORT_WHITTED. For callers that rebuild pictures from few
+   * samples: what a coat reflects does not have the colour of the surface. */
+  RT_REFLECTION = 2048
 };
 
 /* Settings of rtQuality and rtQualityf. */
