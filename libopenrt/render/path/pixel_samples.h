@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "render/path/path_states.h"
 #include "render/surface/points.h"
 
 namespace openrt {
