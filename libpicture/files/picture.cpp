@@ -46,7 +46,7 @@ constexpr Channel table[] = {
      RT_REFLECTION,
      3,
      {"reflection.R", "reflection.G", "reflection.B"},
-     "part of the radiance that coats reflect: varnish, lacquer, the surface of plastic"},
+     "part of the radiance that coats reflect: varnish, lacquer, highlights"},
 };
 
 // Encodes a linear value with the curve of IEC 61966-2-1 (sRGB).

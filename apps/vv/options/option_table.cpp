@@ -160,7 +160,7 @@ const OptionInfo table[] = {
      "samples, variance, error, trust, motion, reflection (default rgba). error is the half-width of the 95 % "
      "interval of each colour, trust is 1 where that interval can be trusted. With error or trust, "
      "other sample positions are used. motion is how far what is seen has moved since the picture "
-     "before. reflection is the part of the light that coats reflect: varnish, lacquer.",
+     "before. reflection is the part of the light that coats reflect: varnish, lacquer, highlights.",
      setChannels},
     {"--colour,--color", "linear|vrml97", "Picture",
      "linear (default): colours of the file are decoded from sRGB, light is added linearly, and " +

@@ -58,8 +58,8 @@ Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
   if (sample.colour) flags = hn::Or(flags, bitsOf(sample.colour << PathFlags::channelShift));
   if (!sample.deflected) return flags;
   if (sample.coat) {
-    const BitsMask scatteredBefore = hn::Ne(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
-    flags = hn::Or(flags, hn::IfThenZeroElse(scatteredBefore, bitsOf(PathFlags::reflectedBit)));
+    const BitsMask first = hn::Eq(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
+    flags = hn::Or(flags, hn::IfThenElseZero(first, bitsOf(PathFlags::reflectedBit)));
   }
   const auto is = [&](PathClass pathClass) {
     return hn::Eq(hn::And(flags, bitsOf(PathFlags::classBits)), bitsOf(uint32_t(pathClass)));
