@@ -119,13 +119,13 @@ inline void drawRoom() {
 
 // --- Pictures ---
 
-inline constexpr uint32_t everyChannel = (RT_MOTION << 1) - 1;
+inline constexpr uint32_t everyChannel = (RT_REFLECTION << 1) - 1;
 
 // Returns the numbers that a pixel of a channel has.
 inline size_t componentsOf(uint32_t channel) {
   if (channel == RT_RGBA) return 4;
   constexpr uint32_t vectors =
-      RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR;
+      RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_MOTION | RT_VARIANCE | RT_ERROR | RT_REFLECTION;
   return channel & vectors ? 3 : 1;
 }
 

@@ -10,8 +10,8 @@ namespace openrt {
 
 inline constexpr uint32_t allChannels = RT_RGBA | RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION |
                                         RT_NAME | RT_SAMPLES | RT_VARIANCE | RT_ERROR | RT_TRUST |
-                                        RT_MOTION;
-inline constexpr uint32_t channelBits = 11;
+                                        RT_MOTION | RT_REFLECTION;
+inline constexpr uint32_t channelBits = 12;
 
 // Returns the floats per pixel of one channel; 0 if there is no such channel.
 constexpr uint32_t channelComponents(uint32_t channel) {
@@ -21,6 +21,7 @@ constexpr uint32_t channelComponents(uint32_t channel) {
   case RT_ALBEDO:
   case RT_POSITION:
   case RT_MOTION:
+  case RT_REFLECTION:
   case RT_VARIANCE:
   case RT_ERROR: return 3;
   case RT_DEPTH:

@@ -42,6 +42,11 @@ constexpr Channel table[] = {
      3,
      {"motion.X", "motion.Y", "motion.Z"},
      "world-space motion of the first hit since the picture before; not a number where it is new"},
+    {"reflection",
+     RT_REFLECTION,
+     3,
+     {"reflection.R", "reflection.G", "reflection.B"},
+     "part of the radiance that coats reflect: varnish, lacquer, highlights"},
 };
 
 // Encodes a linear value with the curve of IEC 61966-2-1 (sRGB).

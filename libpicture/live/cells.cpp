@@ -148,6 +148,9 @@ void setEmpty(size_t i, Moment& now, Reading& reading, Work& work) {
            &reading.light.x,
            &reading.light.y,
            &reading.light.z,
+           &reading.reflection.x,
+           &reading.reflection.y,
+           &reading.reflection.z,
            &reading.pastNearness,
        })
     (*plane)[i] = 0;
@@ -182,6 +185,9 @@ void cellRow(const CellPass& pass, int y, Moment& now, Reading& reading, Work& w
     reading.albedo.x[i] = pass.reading.albedo.x[j];
     reading.albedo.y[i] = pass.reading.albedo.y[j];
     reading.albedo.z[i] = pass.reading.albedo.z[j];
+    reading.reflection.x[i] = pass.reading.reflection.x[j];
+    reading.reflection.y[i] = pass.reading.reflection.y[j];
+    reading.reflection.z[i] = pass.reading.reflection.z[j];
 
     // The middle of the cell moves as the pixel does.
     const float middleX = edge * float(x) + (edge - 1) / 2,

@@ -156,11 +156,17 @@ void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading) {
     // The environment has an albedo only in mirrors and behind glass.
     const Lanes3 albedo = select(either(hit, coloured), surface, Lanes3{one, one, one});
     const Lanes most = all(brightest);
-    const Lanes3 light{smaller(radiance.x / albedo.x, most), smaller(radiance.y / albedo.y, most),
-                       smaller(radiance.z / albedo.z, most)};
-    const Lanes nothing = zero;
+    const Lanes3 given3 = amounts(loadTriples(frame.reflection + 3 * first, x, w));
+    const Lanes3 reflected{smaller(given3.x, smaller(radiance.x, most)),
+                           smaller(given3.y, smaller(radiance.y, most)),
+                           smaller(given3.z, smaller(radiance.z, most))};
+    const Lanes3 rest = radiance - reflected;
+    const Lanes3 light{smaller(rest.x / albedo.x, most), smaller(rest.y / albedo.y, most),
+                       smaller(rest.z / albedo.z, most)};
+    const Lanes3 nothing{zero, zero, zero};
     store(albedo, reading.albedo, i);
-    store(lumaOf(select(some, light, Lanes3{nothing, nothing, nothing})), reading.light, i);
+    store(lumaOf(select(some, light, nothing)), reading.light, i);
+    store(lumaOf(select(some, reflected, nothing)), reading.reflection, i);
   }
 }
 

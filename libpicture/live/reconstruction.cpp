@@ -43,7 +43,8 @@ FramePlanes planesOf(const Picture& frame) {
   return {planeOf(frame, RT_RGBA, 4),     planeOf(frame, RT_DEPTH, 1),
           planeOf(frame, RT_NORMAL, 3),   planeOf(frame, RT_ALBEDO, 3),
           planeOf(frame, RT_POSITION, 3), planeOf(frame, RT_NAME, 1),
-          planeOf(frame, RT_MOTION, 3),   planeOf(frame, RT_SAMPLES, 1)};
+          planeOf(frame, RT_MOTION, 3),   planeOf(frame, RT_SAMPLES, 1),
+          planeOf(frame, RT_REFLECTION, 3)};
 }
 
 // Continues a row of colours by the two pixels that showRow reads beyond the picture, above and
@@ -81,6 +82,7 @@ struct Reconstruction::Impl {
     std::swap(now, before);
     std::swap(pixels, pixelsBefore);
     std::swap(shown, shownBefore);
+    std::swap(coats.now, coats.before);
     const Layout picture(width, height),
         cells((width + block - 1) / block, (height + block - 1) / block);
     now.block = block;
@@ -89,8 +91,10 @@ struct Reconstruction::Impl {
     if (!(workLayout == cells)) {
       work.resize(cells);
       reading.resize(cells);
+      coats.work.resize(cells);
       workLayout = cells;
     }
+    if (coats.now.light.x.size() != now.layout.size()) coats.now.resize(now.layout);
     if (!(shown.layout == picture)) shown.resize(picture);
     if (!(freshLayout == picture)) fresh.resize(freshLayout = picture);
     // Pixels and cells are the same planes if all cells are pixels, in the frame before, too.
@@ -115,6 +119,41 @@ struct Reconstruction::Impl {
     rows(pixels, [&](int y) { readRow(pass, y, pixels, pixelReading); });
     const CellPass cells{planes, pixels, old, pixelReading, before, shownBefore};
     rows(now, [&](int y) { cellRow(cells, y, now, reading, work); });
+  }
+
+  // Rebuilds the illumination of the frame by cell; `result` is where it lies.
+  void rebuild() {
+    rows(now, [&](int y) { compareRow(reading, y, now, work); });
+    rows(now, [&](int y) { estimateRow(reading, y, now, work); });
+    rows(now, [&](int y) { recallRow(reading, y, before, now, work); });
+    findChanges();
+    rows(now, [&](int y) { accumulateRow(reading, y, now, work); });
+    rows(now, [&](int y) { boundRow(y, now); });
+    filter();
+  }
+
+  // Exchanges illumination and what coats reflect, so that the stages work on the other one.
+  void exchange() {
+    std::swap(now.accumulated, coats.now);
+    std::swap(before.accumulated, coats.before);
+    std::swap(reading.light, reading.reflection);
+    std::swap(work, coats.work);
+  }
+
+  // Rebuilds what coats reflect. It is accumulated and filtered as illumination is, but apart from
+  // it, since it has not the colour of the surface.
+  void rebuildReflections() {
+    const auto isSome = [](const Plane& plane) {
+      return std::any_of(plane.begin(), plane.end(), [](float v) { return v != 0; });
+    };
+    const bool some = isSome(reading.reflection.x);
+    if (!some && !coats.some) return;
+    if (!coats.some) coats.before.resize(before.layout);
+    coats.some = some;
+    exchange();
+    rebuild();
+    exchange();
+    coats.result = result == &work.filtered ? &coats.work.filtered : &reading.reflection;
   }
 
   // Sums up changes of brightness over 31 x 31 pixels of the same surface. After the four passes
@@ -182,8 +221,8 @@ struct Reconstruction::Impl {
     const Moment& grid = sparse ? pixels : now;
     const ColourPass pass{
         planes,     grid,           pixelsOfBefore(), sparse ? pixelReading : reading,
-        now,        reading.albedo, *result,          work.verdict,
-        shownBefore};
+        now,        reading.albedo, *result,          coats.result,
+        work.verdict, shownBefore};
     rows(grid, [&](int y) {
       now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh);
       for (Plane* plane : {&fresh.colour.x, &fresh.colour.y, &fresh.colour.z})
@@ -197,13 +236,9 @@ struct Reconstruction::Impl {
     const FramePlanes planes = planesOf(frame);
     start(camera, frame.width, frame.height, lightStride);
     read(planes);
-    rows(now, [&](int y) { compareRow(reading, y, now, work); });
-    rows(now, [&](int y) { estimateRow(reading, y, now, work); });
-    rows(now, [&](int y) { recallRow(reading, y, before, now, work); });
-    findChanges();
-    rows(now, [&](int y) { accumulateRow(reading, y, now, work); });
-    rows(now, [&](int y) { boundRow(y, now); });
-    filter();
+    coats.result = nullptr;
+    rebuildReflections();
+    rebuild();
     facts.denoised = denoiser && isNoisy() && denoise(*denoiser);
     colour(planes);
 
@@ -230,6 +265,13 @@ struct Reconstruction::Impl {
   Reading reading;
   Work work;
   Layout workLayout;
+  // What coats reflect: `accumulated` of `now` and `before`, and the rest.
+  struct {
+    Accumulated now, before;
+    Work work;
+    bool some = false; // `now` has some, or the frame before had
+    const Plane3* result = nullptr; // filtered; null: there is none
+  } coats;
   bool sparse = false;         // the planes of pixels are not those of cells
   Moment pixels, pixelsBefore; // surfaces; used only if `sparse`
   Reading pixelReading;
@@ -249,6 +291,7 @@ void Reconstruction::reset() {
   impl_->now = Moment();
   impl_->before = Moment();
   impl_->shown = Shown();
+  impl_->coats.some = false;
 }
 
 Picture Reconstruction::add(const Picture& frame, const FrameCamera& camera, int lightStride,

@@ -25,7 +25,7 @@ namespace picture::live {
 // The channels that a frame must have for a preview, besides RT_RGBA and RT_SAMPLES. The frame must
 // be rendered with quality RT_FOLLOW_IMAGES 1.
 constexpr uint32_t previewChannels =
-    RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION;
+    RT_DEPTH | RT_NORMAL | RT_ALBEDO | RT_POSITION | RT_NAME | RT_MOTION | RT_REFLECTION;
 
 class OidnFilter;
 

@@ -33,7 +33,10 @@ void colourRow(const ColourPass& pass, int y, Fresh& fresh) {
   const size_t row = layout.row(y);
   for (int x = 0; x < layout.width; x += width()) {
     const size_t i = row + size_t(x);
-    storeColour(load(pass.light, i), pass.reading, i, fresh);
+    Lanes3 light = load(pass.light, i);
+    if (pass.reflection)
+      light = light + asIllumination(load(*pass.reflection, i), load(pass.reading.albedo, i));
+    storeColour(light, pass.reading, i, fresh);
     const Mask seen = wasSeen(pass.cells.accumulated.frames, i, ptrdiff_t(layout.stride));
     store(load(pass.cells.accumulated.noise.data() + i), fresh.noise.data() + i);
     store(all(Shown::noSample), fresh.sample.data() + i);

@@ -193,6 +193,12 @@ inline void keepShown(const ColourPass& pass, Recalled recalled, int x, int y, s
   store(select(recalled.known, recalled.past.y, nowhere), fresh.pastY.data() + i);
 }
 
+// Returns the illumination that would bring as much light as coats reflect.
+inline Lanes3 asIllumination(const Lanes3& reflection, const Lanes3& albedo) {
+  const Lanes3 radiance = colourOf(reflection);
+  return lumaOf({radiance.x / albedo.x, radiance.y / albedo.y, radiance.z / albedo.z});
+}
+
 // Multiplies illumination by albedo again.
 inline void storeColour(const Lanes3& light, const Reading& reading, size_t i, Fresh& fresh) {
   const Lanes3 rgb = colourOf(light) * load(reading.albedo, i);

@@ -100,9 +100,18 @@ struct Around {
 // The surfaces of some pixels.
 struct Surface {
   Lanes name, nearness, albedo; // mean of the colours
+  Lanes3 colour;                // the albedo
   Lanes x, y;                   // the sample from the centre of the pixel's cell, in cells
   Lanes3 normal;
 };
+
+// Returns the illumination of cells; what coats reflect becomes one of the pixels' own albedo.
+inline Lanes3 lightOf(const ColourPass& pass, const Columns& columns, size_t at,
+                      const Surface& surface) {
+  const Lanes3 light = columns.of(pass.light, at);
+  if (!pass.reflection) return light;
+  return light + asIllumination(columns.of(*pass.reflection, at), surface.colour);
+}
 
 inline Around cellsAround(const ColourPass& pass, const Columns& columns, const Surface& surface,
                           int y) {
@@ -135,7 +144,7 @@ inline Around cellsAround(const ColourPass& pass, const Columns& columns, const 
                                    all(mostAlbedoFall));
       const Mask same = of(guides.name) == surface.name;
       const Lanes weight = where(same, fallOff(away + unlike) * across[dx + 1] * all(down[dy + 1]));
-      around.add(columns.of(pass.light, at), weight, same, unlike < all(alikeAlbedo),
+      around.add(lightOf(pass, columns, at, surface), weight, same, unlike < all(alikeAlbedo),
                  of(cells.accumulated.noise), slope);
       const Mask exists = of(guides.name) >= all(0);
       around.changed =
@@ -170,6 +179,8 @@ inline Lanes3 lightFarAround(const ColourPass& pass, const Columns& columns, con
       const Lanes lower = smaller(albedo / larger(surface.albedo, all(1e-6f)), all(1));
       weights = weights + weight;
       sum = sum + columns.of(pass.light, at) * (weight * lower);
+      if (pass.reflection)
+        sum = sum + asIllumination(columns.of(*pass.reflection, at), surface.colour) * weight;
     }
   return sum * (all(1) / weights);
 }
@@ -251,7 +262,10 @@ inline Lanes3 ownLight(const ColourPass& pass, const Around& around,
   const Mask isBound = hn::Not(around.least.x > around.most.x);
   const Lanes3 bound = select(isBound, bounded(shown, around.least, around.most), around.light);
   const Lanes3 old = select(keeps, shown, bound);
-  return select(lit, load(pass.reading.light, at.i), select(recalled.known, old, around.light));
+  const Lanes3 sample =
+      load(pass.reading.light, at.i) + asIllumination(load(pass.reading.reflection, at.i),
+                                                      load(pass.reading.albedo, at.i));
+  return select(lit, sample, select(recalled.known, old, around.light));
 }
 
 // Forgets colours that were shown while others lent their light: until the pixel's first sample of
@@ -306,6 +320,7 @@ void spreadRow(const ColourPass& pass, int y, Fresh& fresh) {
     const Surface surface{load(guides.name.data() + i),
                           load(guides.nearness.data() + i),
                           meanOf(load(pass.reading.albedo, i)),
+                          load(pass.reading.albedo, i),
                           columns.part + load(guides.offsetX.data() + i) * all(1 / block),
                           all(partY) + load(guides.offsetY.data() + i) * all(1 / block),
                           load(guides.normal, i)};

@@ -13,7 +13,7 @@ namespace picture::live {
 
 // The planes of a frame, width * height times their number of floats.
 struct FramePlanes {
-  const float *rgba, *depth, *normal, *albedo, *position, *name, *motion, *samples;
+  const float *rgba, *depth, *normal, *albedo, *position, *name, *motion, *samples, *reflection;
 };
 
 // The surfaces of a frame, by pixel or by cell, and what is kept of them for the next frame.
@@ -41,7 +41,7 @@ constexpr float lonelyWeight = 5;
 // What is read of a frame and not kept, by pixel or by cell.
 struct Reading {
   void resize(const Layout& layout) {
-    for (Plane3* planes : {&albedo, &light}) planes->assign(layout.size(), 0);
+    for (Plane3* planes : {&albedo, &light, &reflection}) planes->assign(layout.size(), 0);
     for (Plane* plane : {&pastX, &pastY, &pastNearness}) plane->assign(layout.size(), 0);
   }
 
@@ -49,7 +49,8 @@ struct Reading {
   // and its nearness there. Not a number: nowhere.
   Plane pastX, pastY, pastNearness;
   Plane3 albedo; // what the illumination is multiplied by; nowhere 0
-  Plane3 light;  // illumination of this frame's samples
+  Plane3 light;  // illumination of this frame's samples, without what coats reflect
+  Plane3 reflection; // radiance that coats reflect
 };
 
 // What is computed of the illumination and not kept, by cell.
@@ -154,6 +155,7 @@ struct ColourPass {
   const Moment& cells;
   const Plane3& cellAlbedo;
   const Plane3& light; // illumination by cell, filtered
+  const Plane3* reflection; // radiance that coats reflect, by cell, filtered; null: none
   const Plane& verdict;
   const Shown& shown; // by the frame before
 };

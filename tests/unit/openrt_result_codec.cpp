@@ -62,6 +62,7 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
       if (frame.channels & RT_MOTION) s.motion[k] = float(value());
       if (frame.channels & RT_NORMAL) s.normal[k] = value();
       if (frame.channels & RT_ALBEDO) s.albedo[k] = value();
+      if (frame.channels & RT_REFLECTION) s.reflection[k] = value();
       if (g.spread) {
         s.first[k] = value();
         s.delta[k] = value();

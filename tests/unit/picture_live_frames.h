@@ -94,6 +94,7 @@ inline picture::Picture render(const World& world, const Shot& shot) {
   auto &rgba = plane(RT_RGBA, 4), &depth = plane(RT_DEPTH, 1), &normal = plane(RT_NORMAL, 3),
        &albedo = plane(RT_ALBEDO, 3), &position = plane(RT_POSITION, 3), &name = plane(RT_NAME, 1),
        &motion = plane(RT_MOTION, 3), &samples = plane(RT_SAMPLES, 1);
+  plane(RT_REFLECTION, 3); // there are no coats
   const auto set = [](std::vector<float>& to, size_t i, Vec v) {
     to[i] = float(v.x);
     to[i + 1] = float(v.y);

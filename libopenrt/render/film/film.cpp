@@ -37,6 +37,7 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* li
     if (has(RT_NORMAL)) plane(RT_NORMAL)[3 * pixel + k] = float(s.normal[k] / n);
     if (has(RT_ALBEDO)) plane(RT_ALBEDO)[3 * pixel + k] = float(s.albedo[k] / n);
     if (has(RT_POSITION)) plane(RT_POSITION)[3 * pixel + k] = s.position[k];
+    if (has(RT_REFLECTION)) plane(RT_REFLECTION)[3 * pixel + k] = float(s.reflection[k] / n);
     if (has(RT_MOTION)) plane(RT_MOTION)[3 * pixel + k] = s.motion[k];
     if (has(RT_VARIANCE)) {
       const double sum2 = s.delta2[k] - s.delta[k] * s.delta[k] / n;

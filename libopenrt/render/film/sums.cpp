@@ -53,7 +53,7 @@ RequiredSums requiredSums(const edit::FrameSettingsT& frame) {
   RequiredSums g;
   g.error = wantsError(frame);
   g.spread = g.error || (frame.channels & RT_VARIANCE);
-  g.surface = frame.channels & (RT_NORMAL | RT_ALBEDO);
+  g.surface = frame.channels & (RT_NORMAL | RT_ALBEDO | RT_REFLECTION);
   g.motion = frame.channels & RT_MOTION;
   return g;
 }
@@ -80,6 +80,7 @@ void PixelSums::merge(const PixelSums& l, const RequiredSums& required, const Re
   for (int k = 0; k < 3 && required.surface; k++) {
     normal[k] += l.normal[k];
     albedo[k] += l.albedo[k];
+    reflection[k] += l.reflection[k];
   }
   if (required.spread) {
     const double n = l.samples;

@@ -17,7 +17,7 @@ namespace openrt {
 // Tells which sums the channels of a frame need; the other fields of PixelSums are undefined.
 struct RequiredSums {
   bool spread = false;  // true if first, delta and delta2 are needed
-  bool surface = false; // true if normal and albedo are needed
+  bool surface = false; // true if normal, albedo and reflection are needed
   bool error = false;   // true if all sums are needed
   bool motion = false;  // true if motion is needed
 };
@@ -29,7 +29,7 @@ struct PixelSums {
   double rgba[4] = {};
   float depth = 0, position[3] = {}, name = 0; // values of sample 0
   uint32_t samples = 0;
-  double normal[3] = {}, albedo[3] = {};
+  double normal[3] = {}, albedo[3] = {}, reflection[3] = {};
   float motion[3] = {}; // value of sample 0
   // Sums of (x - first) and of its square. The difference avoids cancellation.
   double first[3] = {}, delta[3] = {}, delta2[3] = {};

@@ -35,6 +35,7 @@ std::vector<Field> fieldsOf(const edit::FrameSettingsT& frame) {
   if (required.spread) fields.insert(fields.end(), {FIELD(first), FIELD(delta), FIELD(delta2)});
   if (frame.channels & RT_NORMAL) fields.push_back(FIELD(normal));
   if (frame.channels & RT_ALBEDO) fields.push_back(FIELD(albedo));
+  if (frame.channels & RT_REFLECTION) fields.push_back(FIELD(reflection));
   if (required.error)
     fields.insert(fields.end(), {FIELD(closed), FIELD(closed2), FIELD(closed3), FIELD(closed4),
                                  FIELD(grey), FIELD(largest), FIELD(random)});

@@ -51,11 +51,13 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
       misWeight =
           pdf / (pdf + emitters.skyPdf(wave.states.previousOf(lane), load(sky.direction, i)));
     unsampled.meet(flags, load(sky.rgba, i));
+    Vec3f light;
     for (int k = 0; k < 3; k++) {
       const float throughput = wave.states.throughput[k][lane], radiance = sky.rgba[k][i];
-      if (std::isfinite(radiance)) found.radiance[k][path] += throughput * misWeight * radiance;
+      light[k] = std::isfinite(radiance) ? throughput * misWeight * radiance : 0;
       weight += throughput;
     }
+    found.add(path, flags, light);
     if (!flags.deflected()) found.alpha[path] += weight / 3 * sky.rgba[3][i];
   }
 }

@@ -72,7 +72,7 @@ void TileRenderer::gatherLamps(uint16_t medium, const Wave& wave, std::span<cons
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = lamps.places.lanes[i], path = wave.states.path[lane];
     const Vec3f light = load(lamps.weight, lane) * load(radiance, i);
-    if (isFinite(light)) store(load(found.radiance, path) + light, found.radiance, path);
+    if (isFinite(light)) found.add(path, wave.states.flagsOf(lane), light);
   }
 }
 
@@ -89,7 +89,7 @@ void TileRenderer::scatterInMedium(uint16_t medium, const Wave& wave, const RayP
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = collisions.lanes[i], path = wave.states.path[lane];
     const Vec3f throughput = load(wave.states.throughput, lane);
-    store(load(found.radiance, path) + throughput * load(radiance, i), found.radiance, path);
+    found.add(path, wave.states.flagsOf(lane), throughput * load(radiance, i));
     if (!wave.states.flagsOf(lane).deflected())
       found.alpha[path] += (throughput.x + throughput.y + throughput.z) / 3;
   }

@@ -101,11 +101,12 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const RayState ray = (*batch.states)[batch.order[i]];
     const Vec3f transmission = min(max(Vec3f(), load(shaded.transmission, i)), one); // NaN: opaque
+    Vec3f arriving;
     for (int k = 0; k < 3; k++) {
       const float light = std::isfinite(shaded.radiance[k][i]) ? shaded.radiance[k][i] : 0.0f;
-      found.radiance[k][ray.path] +=
-          ray.throughput[k] * fog.attenuate(i, k, light, transmission[k]);
+      arriving[k] = ray.throughput[k] * fog.attenuate(i, k, light, transmission[k]);
     }
+    found.add(ray.path, ray.flags, arriving);
     const float covered = dot(ray.throughput, one - transmission),
                 through = dot(ray.throughput, transmission);
     if (!ray.flags.deflected()) found.alpha[ray.path] += covered / 3;
@@ -133,7 +134,7 @@ void addSurface(const RtsBatch& batch, const RtsSurface& surface, const Boundari
   (batch, surface, fog, hiddenHits(batch, boundaries), radiance, alpha);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order[i], path = states.path[lane];
-    store(load(found.radiance, path) + load(radiance, i), found.radiance, path);
+    found.add(path, states.flagsOf(lane), load(radiance, i));
     if (!states.flagsOf(lane).deflected()) found.alpha[path] += alpha[i];
     if (found.first[path] && boundaries.visibleAt(i)) {
       found.first[path] = 0;

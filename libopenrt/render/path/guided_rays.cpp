@@ -220,10 +220,9 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
     const Vec3f emission = load(surface.emission, i);
     const float through = fog.transmittance ? fog.transmittance[i] : 1;
     Vec3f light = state.throughput * (emission * through);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++)
       if (!std::isfinite(light[k])) light[k] = 0;
-      stage.found.radiance[k][state.path] += light[k];
-    }
+    stage.found.add(state.path, state.flags, light);
     if (trial_ && state.unguidedWeight > 0)
       trial_->meet(context_.scene.photonGuide->find(state.previous.position), light,
                    double(state.unguidedWeight));

@@ -36,12 +36,15 @@ struct PathFlags {
   static constexpr uint32_t specularSinceDiffuseBit = 8;
   // A surface has changed the direction: the pixel's alpha is final.
   static constexpr uint32_t deflectedBit = 16;
+  // A coat has reflected the path (RT_REFLECTION).
+  static constexpr uint32_t reflectedBit = 32;
   static constexpr uint32_t channelShift = 8, splitsShift = 16, mostSplits = 255;
 
   PathClass pathClass() const { return PathClass(bits & classBits); }
   bool scattered() const { return bits & scatteredBit; }
   bool specularSinceDiffuse() const { return bits & specularSinceDiffuseBit; }
   bool deflected() const { return bits & deflectedBit; }
+  bool reflected() const { return bits & reflectedBit; }
   // 1 + index of the only colour that the ray carries (dispersion); 0: all colours
   uint8_t channel() const { return uint8_t(bits >> channelShift & 255); }
   // number of times the path has split into several rays

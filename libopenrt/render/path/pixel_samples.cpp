@@ -24,6 +24,7 @@ void PixelSamples::allocateFirst(Arena& arena, uint32_t n, uint32_t channels) {
     albedo[k] = optional(RT_ALBEDO);
     position[k] = optional(RT_POSITION);
     motion[k] = optional(RT_MOTION);
+    reflection[k] = optional(RT_REFLECTION);
   }
   depth = optional(RT_DEPTH);
   if (depth) std::fill_n(depth, size, std::numeric_limits<float>::infinity());

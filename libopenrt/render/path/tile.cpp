@@ -284,6 +284,7 @@ void TileRenderer::addSurfaces(const PixelSamples& found, uint32_t path, PixelSu
   for (int k = 0; k < 3; k++) {
     if (found.normal[k]) sums.normal[k] += found.normal[k][path];
     if (found.albedo[k]) sums.albedo[k] += found.albedo[k][path];
+    if (found.reflection[k]) sums.reflection[k] += found.reflection[k][path];
   }
 }
 

@@ -1,0 +1,139 @@
+// reflections_of_coats.cpp: RT_REFLECTION against Fresnel's equations: the light that varnish and
+// the surface of plastic reflect, apart from the colour below, under a uniform sky.
+#include "numeric/support.h"
+
+namespace numeric {
+namespace {
+
+class ReflectionsOfCoats : public Scene {
+ protected:
+  static constexpr double skyRadiance = 3, index = 1.5;
+
+  void SetUp() override {
+    Scene::SetUp();
+    Shader sky("VRML97Environment");
+    sky.setList("skyColor", {skyRadiance, skyRadiance, skyRadiance});
+    rtUseEnvironment(sky);
+    rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  }
+  static Shader plastic() {
+    return Shader("Plastic").set("color", {.02, .3, .6}).set("index", {index}).set("roughness", {0});
+  }
+  // Returns the reflectance of a smooth boundary for unpolarised light.
+  static double fresnel(double cosine, double n = index) {
+    const double behind = std::sqrt(1 - (1 - cosine * cosine) / (n * n)),
+                 s = (cosine - n * behind) / (cosine + n * behind),
+                 p = (n * cosine - behind) / (n * cosine + behind);
+    return (s * s + p * p) / 2;
+  }
+  struct Seen {
+    Vec all, reflected;
+  };
+  // Returns what is seen of the origin at an angle from the axis +z.
+  static Seen see(double degrees, int samples = 1) {
+    rtQuality(RT_SAMPLES_PER_PIXEL, samples);
+    rtFrameBuffer(1, 1, RT_RGBA | RT_REFLECTION);
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtRotated(degrees, 0, 1, 0);
+    rtTranslated(0, 0, 20);
+    rtOrtho(1e-6);
+    rtPopMatrix();
+    rtRender();
+    float rgba[4], reflected[3];
+    rtReadPixels(RT_RGBA, rgba, 4);
+    rtReadPixels(RT_REFLECTION, reflected, 3);
+    return {{rgba[0], rgba[1], rgba[2]}, {reflected[0], reflected[1], reflected[2]}};
+  }
+  static void expectReflected(const Seen& seen, double expected, double relative = 1e-5) {
+    for (const double c : {seen.reflected.x, seen.reflected.y, seen.reflected.z})
+      expectClose(c, expected, relative);
+  }
+};
+
+// Whitted's transport follows what the coat reflects without random decisions.
+TEST_F(ReflectionsOfCoats, AreThatOfFresnelWhateverTheColourBelow) {
+  place(square(plastic(), 10));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED);
+  for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
+    SCOPED_TRACE(degrees);
+    expectReflected(see(degrees), skyRadiance * fresnel(std::cos(degrees * pi / 180)));
+  }
+}
+
+// Path tracing follows it with a probability, and has the colour below besides. With n samples the
+// standard deviation is below 2 / sqrt(n) of the value.
+TEST_F(ReflectionsOfCoats, HaveTheSameMeanInPathTracing) {
+  constexpr int samples = 16384;
+  place(square(plastic(), 10));
+  for (const double degrees : {0.0, 60.0, 80.0}) {
+    SCOPED_TRACE(degrees);
+    const Seen seen = see(degrees, samples);
+    expectReflected(seen, skyRadiance * fresnel(std::cos(degrees * pi / 180)), 5 * 2 / 128.);
+    EXPECT_GT(seen.all.z, 1.5 * seen.reflected.z);
+  }
+}
+
+// The plane is seen in a mirror above the camera: the mirror dims its light.
+TEST_F(ReflectionsOfCoats, AreDimmedByAMirrorThatShowsThem) {
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_WHITTED);
+  place(square(plastic(), 10));
+  Shader mirror("Mirror");
+  mirror.set("reflectance", {.5, .25, .125});
+  rtPushMatrix();
+  rtTranslated(-15, 0, 15);
+  rtRotated(90, 0, 1, 0);
+  place(square(mirror, 10)); // faces +x, in the plane x = -15
+  rtPopMatrix();
+  // A ray from (0, 0, 15) to (-15, 0, 7.5) goes on to (-30, 0, 0), which lies beyond the plane; one
+  // to (-15, 0, 10) returns to (0, 0, 5) and meets the plane at (15, 0, 0): so the plane is wide.
+  place(square(plastic(), 40));
+  rtFrameBuffer(1, 1, RT_RGBA | RT_REFLECTION);
+  rtPushMatrix();
+  rtLoadIdentity();
+  rtTranslated(0, 0, 15);
+  rtRotated(std::atan2(15, -5) * 180 / pi, 0, 1, 0);
+  rtRotated(180, 0, 1, 0);
+  rtOrtho(1e-6);
+  rtPopMatrix();
+  rtRender();
+  float rgba[4], reflected[3];
+  rtReadPixels(RT_RGBA, rgba, 4);
+  rtReadPixels(RT_REFLECTION, reflected, 3);
+  EXPECT_GT(reflected[0], 0);
+  expectClose(reflected[1], reflected[0] / 2);
+  expectClose(reflected[2], reflected[0] / 4);
+}
+
+TEST_F(ReflectionsOfCoats, DoNotExistWithoutACoat) {
+  for (const char* name : {"Diffuse", "Mirror", "Metal", "Glass"}) {
+    SCOPED_TRACE(name);
+    TearDown();
+    SetUp();
+    place(square(Shader(name), 10));
+    expectReflected(see(30, 64), 0);
+  }
+}
+
+// A part of the light is never more than the whole, also where coats see each other.
+TEST_F(ReflectionsOfCoats, AreNeverMoreThanTheRadiance) {
+  place(square(plastic(), 10));
+  placeAt(3, square(plastic(), 1), true);
+  for (const double degrees : {10.0, 50.0}) {
+    SCOPED_TRACE(degrees);
+    const Seen seen = see(degrees, 256);
+    EXPECT_GT(seen.reflected.x, 0);
+    EXPECT_LE(seen.reflected.x, seen.all.x);
+    EXPECT_LE(seen.reflected.y, seen.all.y);
+    EXPECT_LE(seen.reflected.z, seen.all.z);
+  }
+}
+
+TEST_F(ReflectionsOfCoats, AreNotFollowedInDirectLight) {
+  place(square(plastic(), 10));
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_DIRECT);
+  expectReflected(see(30), 0);
+}
+
+} // namespace
+} // namespace numeric
