@@ -59,8 +59,10 @@ class Accel final : public Intersector {
     // own.
     Matrix4d toRender;
   };
-  // Returns the largest coordinate of an origin of a ray, in render space.
-  double reach() const { return 1e18 / double(scale_); }
+  // Return the largest coordinate of an origin, in render space, and the largest sum of the
+  // coordinates of a direction of rays that can be traced.
+  double reach() const { return double(limit_) / double(scale_); }
+  double longestDirection() const { return double(limit_); }
   // Returns all visible triangle meshes, spheres and analytic surfaces.
   std::vector<Surface> surfaces() const;
   // Returns the Embree scenes that own the vertices of all records.
@@ -112,7 +114,8 @@ class Accel final : public Intersector {
 
   struct PlacedCluster {
     uint32_t firstRecord = 0, firstSlot = 0;
-    bool shown = false, instances = false, transparent = false, culls = false;
+    bool shown = false, transparent = false, culls = false;
+    double growth = 0;     // largest growthOfInstance() of its visible instances; 0: it has none
     uint32_t rejected = 0; // visible items whose matrix is unusable
   };
   std::shared_ptr<EmbreeDevice> device_;
@@ -122,7 +125,8 @@ class Accel final : public Intersector {
   std::vector<PlacedCluster> placed_; // by cluster
   Vec3d origin_;                      // of render space, in the world
   Vec3f low_, high_;                  // bounds in render space, with a margin
-  float scale_ = 1; // render space x scale = the space of both Embree scenes; a power of two
+  float limit_ = 1e18f; // for origins and directions of rays in Embree's frame (embree_parts.h)
+  float scale_ = 1;     // render space x scale = the space of both Embree scenes; a power of two
 };
 
 } // namespace openrt

@@ -80,8 +80,8 @@ class AccelBuilder {
   void layOut();
   void place(uint32_t cluster);
   void placeInstances(uint32_t cluster);
-  bool placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas, uint32_t record,
-                     const Matrix4d& toRender);
+  double placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas, uint32_t record,
+                       const Matrix4d& toRender);
   void placeThin(uint32_t cluster);
   void hide(uint32_t cluster);
   void finish();

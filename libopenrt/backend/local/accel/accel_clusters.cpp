@@ -115,7 +115,8 @@ void AccelBuilder::hide(uint32_t c) {
     if (accel_->top_.parts[placed.firstSlot + s].used())
       setEnabled(accel_->top_, placed.firstSlot + s, false);
   for (uint32_t s = slots.lines; s < slots.end; s++) detach(accel_->top_, placed.firstSlot + s);
-  placed.shown = placed.instances = placed.transparent = false;
+  placed.shown = placed.transparent = false;
+  placed.growth = 0;
   placed.rejected = 0;
   changed_ = true;
 }
@@ -129,44 +130,49 @@ void AccelBuilder::placeInstances(uint32_t c) {
   const Matrix4d partToRender = worldToRender_ * cluster.world;
   const uint32_t override = overrideMask(cluster.path.shader);
   uint32_t slot = placed.firstSlot;
-  bool any = false;
+  double growth = 0;
+  const auto put = [&](const std::shared_ptr<const Blas>& blas, uint32_t record,
+                       const Matrix4d& toRender) {
+    growth = std::max(growth, placeInstance(slot++, blas, record, toRender));
+  };
   if (info.baked) {
     const auto blas = partBlas(cluster.part, override);
-    any |= placeInstance(slot++, blas, placed.firstRecord, partToRender * blas->fromKernel);
+    put(blas, placed.firstRecord, partToRender * blas->fromKernel);
   }
   for (uint32_t i : info.sharedItems) {
     const Item& item = part.items[i];
     const auto blas = objectBlas(item.object, override ? override : overrideMask(item.path.shader));
-    any |= placeInstance(slot++, blas, placed.firstRecord + info.firstEntry[i],
-                         partToRender * item.matrix * blas->fromKernel);
+    put(blas, placed.firstRecord + info.firstEntry[i],
+        partToRender * item.matrix * blas->fromKernel);
   }
   for (const auto& [i, k] : info.ellipsoids) {
     const Item& item = part.items[i];
     const Geometry& g = input_->scene.objects.at(item.object).geometries[k];
-    any |= placeInstance(slot++, consistent(g) ? spheres_.get(maskOf(item, g, override)) : nullptr,
-                         placed.firstRecord + info.firstEntry[i] + k,
-                         partToRender * item.matrix * g.matrix * uniformScale(g.width));
+    put(consistent(g) ? spheres_.get(maskOf(item, g, override)) : nullptr,
+        placed.firstRecord + info.firstEntry[i] + k,
+        partToRender * item.matrix * g.matrix * uniformScale(g.width));
   }
-  placed.instances = any;
+  placed.growth = growth;
 }
 
-// Returns whether the instance is visible.
-bool AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas, uint32_t record,
-                                 const Matrix4d& toRender) {
+// Returns growthOfInstance(), or 0 if the instance is not visible.
+double AccelBuilder::placeInstance(uint32_t slot, std::shared_ptr<const Blas> blas, uint32_t record,
+                                   const Matrix4d& toRender) {
   PartScene& top = accel_->top_;
   const Matrix4d toRoot = uniformScale(input_->scale) * toRender;
   changed_ = true;
-  if (!blas || blas->parts.empty() || !toRoot.usable()) {
+  const double growth = blas && !blas->parts.empty() ? growthOfInstance(toRoot) : 0;
+  if (growth == 0) {
     if (top.parts[slot].used()) setEnabled(top, slot, false);
-    return false;
+    return 0;
   }
   if (top.parts[slot].object == blas) {
     setTransform(top, slot, toRoot);
     setEnabled(top, slot, true);
-    return true;
+    return growth;
   }
   attachInstance(top, *device_, std::move(blas), record, toRoot, slot);
-  return true;
+  return growth;
 }
 
 void AccelBuilder::placeThin(uint32_t c) {
@@ -204,20 +210,20 @@ void AccelBuilder::finish() {
   Accel& a = *accel_;
   a.hasTransparent = a.culls = false;
   uint32_t masks = 0;
-  bool instances = false;
+  double growth = 0;
   for (uint32_t c = 0; c < a.placed_.size(); c++) {
     const Accel::PlacedCluster& placed = a.placed_[c];
     if (!placed.shown) continue;
     const PartInfo& part = survey.parts()[input_->flat.clusters[c].part];
     a.hasTransparent |= placed.transparent;
     a.culls |= placed.culls;
-    if (placed.instances) {
-      instances = true;
-      masks |= maskOpaque | maskTransparent;
-    }
+    if (placed.growth > 0) masks |= maskOpaque | maskTransparent;
+    growth = std::max(growth, placed.growth);
     if (part.lines || part.points) masks |= maskThin;
   }
-  a.topLevel_ = {&a.top_, masks, instances};
+  a.topLevel_ = {&a.top_, masks, growth > 0};
+  growth = std::max(growth, a.static_->growth);
+  a.limit_ = float(growth > 0 ? largestBesideInstances / growth : largestOfRay);
   if (changed_ && a.top_.scene) {
     rtcCommitScene(a.top_.scene);
     topLevelBuilds++;

@@ -81,9 +81,9 @@ bool Accel::mayHaveLeaked(const Rays& rays, uint32_t i) const {
   const Vec3f o = load(rays.org, i), d = load(rays.dir, i);
   const bool inside = o.x >= low_.x && o.y >= low_.y && o.z >= low_.z && o.x <= high_.x &&
                       o.y <= high_.y && o.z <= high_.z;
-  if (!inside && !(rays.tfar[i] <= most && largest(abs(o)) * scale_ <= 1e18f)) return false;
+  if (!inside && !(rays.tfar[i] <= most && largest(abs(o)) * scale_ <= limit_)) return false;
   const float size = dot(abs(d), {1, 1, 1});
-  return size > 0 && size < 1e17f && rays.tnear[i] >= 0 && rays.tnear[i] <= rays.tfar[i];
+  return size > 0 && size < limit_ / 10 && rays.tnear[i] >= 0 && rays.tnear[i] <= rays.tfar[i];
 }
 
 // Calls found(lane, hits, i) for every ray for which isOpen(lane) holds and that hits a triangle at

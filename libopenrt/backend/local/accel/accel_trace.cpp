@@ -45,8 +45,9 @@ void refineGrazingHit(const Record& r, const Rays& rays, float far, RayHits& hit
 
 // Fills a packet with the rays from number `first` on and returns how many were rejected.
 template <uint32_t W, class Ray> uint32_t load(const Rays& rays, const float* ends, uint32_t first,
-                                               float scale, uint32_t mask, int* valid, Ray& to) {
-  return loadPacket(rays, ends, first, W, scale, mask, valid,
+                                               float scale, float limit, uint32_t mask, int* valid,
+                                               Ray& to) {
+  return loadPacket(rays, ends, first, W, scale, limit, mask, valid,
                     {{to.org_x, to.org_y, to.org_z},
                      {to.dir_x, to.dir_y, to.dir_z},
                      to.tnear,
@@ -120,8 +121,8 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
     const uint32_t n = std::min(W, rays.count - begin);
     if (!first)
       for (uint32_t i = 0; i < n; i++) ends[i] = std::min(rays.tfar[begin + i], hits.t[begin + i]);
-    const uint32_t bad =
-        load<W>(rays, first ? rays.tfar + begin : ends, begin, scale_, mask, valid, packet.ray);
+    const uint32_t bad = load<W>(rays, first ? rays.tfar + begin : ends, begin, scale_, limit_,
+                                 mask, valid, packet.ray);
     if (first) refused += bad;
     for (uint32_t i = 0; i < W; i++)
       packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -178,7 +179,8 @@ template <class Packet> void Accel::occludedPackets(const Level& level, const Ra
   uint64_t refused = 0;
   for (uint32_t begin = 0; begin < rays.count; begin += W) {
     const uint32_t n = std::min(W, rays.count - begin);
-    const uint32_t bad = load<W>(rays, rays.tfar + begin, begin, scale_, mask, valid, packet);
+    const uint32_t bad =
+        load<W>(rays, rays.tfar + begin, begin, scale_, limit_, mask, valid, packet);
     if (first)
       refused += bad;
     else

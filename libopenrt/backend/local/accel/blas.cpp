@@ -51,8 +51,10 @@ void BlasBuilder::add(const Geometry& g, const Matrix4d& toKernel, uint32_t entr
 
 void BlasBuilder::addInstance(std::shared_ptr<const Blas> blas, const Matrix4d& toKernel,
                               uint32_t entry) {
-  if (!toKernel.usable() || blas->parts.empty()) return;
+  const double growth = growthOfInstance(toKernel);
+  if (growth == 0 || blas->parts.empty()) return;
   blas_->instances = true;
+  blas_->growth = std::max(blas_->growth, growth);
   attachInstance(*blas_, device_, std::move(blas), entry, toKernel);
 }
 

@@ -19,6 +19,7 @@ struct Blas : PartScene {
   Matrix4d fromKernel; // from the Embree scene's frame, scaled near 1, to that of its contents
   std::vector<const float*> vertices; // vertices of triangles by entry, in the Embree scene's frame
   uint64_t degenerate = 0;            // number of dropped triangles
+  double growth = 0;                  // largest growthOfInstance() of its instances
   bool instances = false;             // contains instances, so it cannot be instanced itself
 };
 

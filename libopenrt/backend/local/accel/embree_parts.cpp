@@ -2,6 +2,8 @@
 #include "backend/local/accel/blas.h"
 #include "render/rays.h"
 
+#include <algorithm>
+#include <cmath>
 #include <new>
 
 namespace openrt {
@@ -84,6 +86,19 @@ void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
                                part->indices.data(), 0, 4, part->indices.size());
   attach(to, geometry, {std::move(part)}, mask, slot);
+}
+
+double growthOfInstance(const Matrix4d& matrix) {
+  if (!matrix.usable()) return 0;
+  // The rows of the inverse times the determinant.
+  const Vec3d a = matrix.column(0), b = matrix.column(1), c = matrix.column(2), one{1, 1, 1};
+  const Vec3d sums{dot(abs(cross(b, c)), one), dot(abs(cross(c, a)), one),
+                   dot(abs(cross(a, b)), one)};
+  const double growth = std::max(1.0, largest(sums) / std::fabs(matrix.determinant()));
+  // Comparisons with NaN are false.
+  const bool traced = growth <= mostGrowthOfInstance &&
+                      growth * largest(abs(matrix.translation())) <= largestBesideInstances;
+  return traced ? growth : 0;
 }
 
 void attachInstance(PartScene& to, const EmbreeDevice& device, std::shared_ptr<const Blas> object,

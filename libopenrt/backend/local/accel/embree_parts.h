@@ -88,6 +88,13 @@ RTCGeometry newAnalytic(const EmbreeDevice& device, Part& part);
 // the geometry id.
 void attachRound(PartScene& to, const EmbreeDevice& device, std::unique_ptr<Part> part,
                  uint32_t mask, RTCGeometryType type, uint32_t slot = nextSlot);
+// Embree asserts that no coordinate of a ray exceeds 1.8e18, also in the frame of an instance that
+// the ray meets. So an instance must not be smaller than 1e-12 or lie farther away than 5e17 times
+// its size, and the rays of a scene with instances have a limit (Accel::limit_).
+constexpr double largestOfRay = 1e18, largestBesideInstances = 5e17, mostGrowthOfInstance = 1e12;
+// Returns how much the inverse of an instance's matrix can enlarge the largest coordinate of a
+// direction, at least 1; 0 if an instance with this matrix cannot be traced.
+double growthOfInstance(const Matrix4d& matrix);
 // Attaches an instance of another scene. record: the first of the instance's records.
 void attachInstance(PartScene& to, const EmbreeDevice& device, std::shared_ptr<const Blas> object,
                     uint32_t record, const Matrix4d& matrix, uint32_t slot = nextSlot);

@@ -47,8 +47,8 @@ template <uint32_t size> struct Of {
   }
 
   static uint32_t loadPacket(const Rays& rays, const float* ends, uint32_t first, float scale,
-                             uint32_t mask, int* valid, const PacketRays& to) {
-    const V zero = value(0), one = value(1), largest = value(1e18f), limit = value(1e18f / scale),
+                             float most, uint32_t mask, int* valid, const PacketRays& to) {
+    const V zero = value(0), one = value(1), largest = value(most), limit = value(most / scale),
             unit = value(scale), last = value(std::numeric_limits<float>::max());
     const Vec3<V> none{zero, zero, zero}, forward{zero, zero, one};
     uint32_t refused = 0;
@@ -104,9 +104,9 @@ template <uint32_t size> struct Of {
 } // namespace
 
 uint32_t loadPacket(const Rays& rays, const float* ends, uint32_t first, uint32_t size, float scale,
-                    uint32_t mask, int* valid, const PacketRays& to) {
-  return (size == 8 ? Of<8>::loadPacket : Of<16>::loadPacket)(rays, ends, first, scale, mask, valid,
-                                                              to);
+                    float limit, uint32_t mask, int* valid, const PacketRays& to) {
+  return (size == 8 ? Of<8>::loadPacket : Of<16>::loadPacket)(rays, ends, first, scale, limit, mask,
+                                                              valid, to);
 }
 
 PacketMet storePacket(const PacketHits& packet, const Rays& rays, const int* valid, uint32_t first,
@@ -124,8 +124,8 @@ namespace openrt {
 HWY_EXPORT(loadPacket);
 HWY_EXPORT(storePacket);
 uint32_t loadPacket(const Rays& rays, const float* ends, uint32_t first, uint32_t size, float scale,
-                    uint32_t mask, int* valid, const PacketRays& to) {
-  return HWY_DYNAMIC_DISPATCH(loadPacket)(rays, ends, first, size, scale, mask, valid, to);
+                    float limit, uint32_t mask, int* valid, const PacketRays& to) {
+  return HWY_DYNAMIC_DISPATCH(loadPacket)(rays, ends, first, size, scale, limit, mask, valid, to);
 }
 PacketMet storePacket(const PacketHits& packet, const Rays& rays, const int* valid, uint32_t first,
                       uint32_t size, float unscale, const RayHits& hits) {

@@ -22,9 +22,10 @@ struct PacketHits {
 
 // Fills a packet of `size` rays with those from number `first` on, in the units of the kernel.
 // Writes -1 to `valid` for each ray that is there and can be traced, else 0; such rays get harmless
-// values. ends: tfar of these rays. Returns how many rays were rejected.
+// values. ends: tfar of these rays. limit: the largest coordinate of an origin in these units, and
+// the largest sum of the coordinates of a direction. Returns how many rays were rejected.
 uint32_t loadPacket(const Rays& rays, const float* ends, uint32_t first, uint32_t size, float scale,
-                    uint32_t mask, int* valid, const PacketRays& to);
+                    float limit, uint32_t mask, int* valid, const PacketRays& to);
 
 struct PacketMet { // bits by ray of the packet
   uint32_t hit;    // valid rays that hit something
