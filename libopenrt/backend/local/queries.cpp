@@ -118,8 +118,7 @@ bool LocalBackend::loadExact(const RTray& ray, ExactRay& to) const {
   const double size = dot(abs(direction), {1, 1, 1});
   // Comparisons with NaN are false.
   if (!(largest(abs(origin)) <= accel_->reach() && isFinite(vectorOf(ray.origin)) && size > 0 &&
-        size <= accel_->longestDirection() && ray.tnear >= 0 && ray.tnear <= ray.tfar &&
-        ray.tnear <= mostFinite))
+        size <= 1e18 && ray.tnear >= 0 && ray.tnear <= ray.tfar && ray.tnear <= mostFinite))
     return false;
   to = exactRay(origin, direction, ray.tnear, ray.tfar, 0x1p-30);
   return true;

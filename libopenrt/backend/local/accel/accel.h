@@ -59,10 +59,9 @@ class Accel final : public Intersector {
     // own.
     Matrix4d toRender;
   };
-  // Return the largest coordinate of an origin, in render space, and the largest sum of the
-  // coordinates of a direction of rays that can be traced.
-  double reach() const { return double(limit_) / double(scale_); }
-  double longestDirection() const { return double(limit_); }
+  // Returns the largest coordinate of an origin of an exact query, in render space. Such queries
+  // have scenes without instances.
+  double reach() const { return 1e18 / double(scale_); }
   // Returns all visible triangle meshes, spheres and analytic surfaces.
   std::vector<Surface> surfaces() const;
   // Returns the Embree scenes that own the vertices of all records.
