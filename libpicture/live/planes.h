@@ -41,6 +41,7 @@ struct Plane3 {
 };
 
 // Numbers in Guides::name that are no name.
+constexpr float isGone = 2;       // in Guides::moves
 constexpr float outsideName = -1; // the pixel does not exist
 constexpr float emptyName = -2;   // the pixel has no sample
 
@@ -59,8 +60,10 @@ struct Guides {
   Plane nearness;
   Plane slopeX, slopeY;   // change of nearness from pixel to pixel
   Plane offsetX, offsetY; // place of the sample relative to the pixel's centre, in pixels
-  Plane moves;            // 1: the surface has moved in the world since the frame before, or is new
-  Plane3 normal;          // of length 1
+  // 1: the surface has moved in the world since the frame before, or is new. isGone: it has
+  // vanished in the frame after.
+  Plane moves;
+  Plane3 normal; // of length 1
 };
 
 // What is accumulated over time for each pixel, or for each cell.

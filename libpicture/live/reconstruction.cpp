@@ -106,7 +106,7 @@ struct Reconstruction::Impl {
   }
 
   // The surfaces of the frame before, by pixel.
-  const Moment& pixelsOfBefore() const { return before.block > 1 ? pixelsBefore : before; }
+  Moment& pixelsOfBefore() { return before.block > 1 ? pixelsBefore : before; }
 
   void read(const FramePlanes& planes) {
     const Moment& old = pixelsOfBefore();
@@ -236,6 +236,7 @@ struct Reconstruction::Impl {
     const FramePlanes planes = planesOf(frame);
     start(camera, frame.width, frame.height, lightStride);
     read(planes);
+    names.markGone(pixelsOfBefore(), sparse ? pixels : now);
     coats.result = nullptr;
     rebuildReflections();
     rebuild();
@@ -276,6 +277,7 @@ struct Reconstruction::Impl {
   Moment pixels, pixelsBefore; // surfaces; used only if `sparse`
   Reading pixelReading;
   Layout pixelLayout;
+  NamesSeen names;
   Fresh fresh;
   Layout freshLayout;
   Shown shown, shownBefore;

@@ -142,7 +142,7 @@ inline Lanes lastNumbers(const Layout& layout, const std::vector<float>& shown,
 }
 
 // Returns where a pixel that rests was covered, or its neighbours were, by something in front that
-// has moved away since: what was shown there is not its own colour.
+// has moved away since, or by something that is gone: what was shown there is not its own colour.
 inline Mask wasUncovered(const ColourPass& pass, const Recalled& recalled, int x, int y, size_t i) {
   const Mask none = all(1) < all(0);
   if (!(pass.before.layout == pass.pixels.layout)) return none;
@@ -158,7 +158,8 @@ inline Mask wasUncovered(const ColourPass& pass, const Recalled& recalled, int x
       const size_t j = i + size_t(dy * stride + dx);
       const Mask ahead =
           both(load(old.name.data() + j) >= all(0), load(old.nearness.data() + j) > front);
-      covered = either(covered, both(ahead, load(old.moves.data() + j) > all(0)));
+      const Lanes moves = load(old.moves.data() + j);
+      covered = either(covered, either(both(ahead, moves > all(0)), moves >= all(isGone)));
     }
   return both(rests, covered);
 }

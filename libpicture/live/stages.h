@@ -110,6 +110,16 @@ struct ReadPass {
   bool rests, sparse;
 };
 void readRow(const ReadPass& pass, int y, Moment& now, Reading& reading);
+// Finds shapes that the frame before showed and this one shows nowhere, and marks their pixels
+// there as gone, so that nothing of them stays at their edges (wasUncovered). Shapes of a few
+// pixels are left alone.
+class NamesSeen {
+ public:
+  void markGone(Moment& before, const Moment& now);
+
+ private:
+  std::vector<uint32_t> before_, now_; // pixels of each shape
+};
 // Reads a row of cells, each from the pixel of its block that has a sample of light.
 struct CellPass {
   const FramePlanes& frame;

@@ -1,5 +1,6 @@
 #include "mapper/rt.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace xvrml::mapper {
@@ -36,6 +37,36 @@ const ShaderClass& ShaderClasses::find(const std::string& name, const std::strin
     if (info.name) found.parameters.emplace(info.name, info.type);
   }
   return found;
+}
+
+namespace {
+// Returns whether the renderer takes these numbers for the parameter.
+bool takes(const RTparameterInfo& parameter, std::span<const float> values) {
+  return std::all_of(values.begin(), values.end(), [&](float v) {
+    return std::isfinite(v) && v >= parameter.minimum && v <= parameter.maximum;
+  });
+}
+
+void write(const RTparameterInfo& parameter, int handle, std::span<const float> values) {
+  const float* v = values.data();
+  if (parameter.type == RT_PARAM_FLOATS) return rtParameterfv(handle, values.size(), v);
+  switch (values.size()) {
+  case 1: return rtParameter1f(handle, v[0]);
+  case 3: return rtParameter3f(handle, v[0], v[1], v[2]);
+  case 16: return rtParameter16f(handle, v);
+  }
+}
+} // namespace
+
+void ShaderSetup::set(const char* name, std::span<const float> values) {
+  const int at = handle(name);
+  RTparameterInfo parameter{};
+  rtGetParameterInfo(class_, at, &parameter);
+  if (!fresh() && !takes(parameter, values)) {
+    const size_t count = parameter.type == RT_PARAM_FLOATS ? 0 : values.size();
+    write(parameter, at, {parameter.defaultValue, count});
+  }
+  write(parameter, at, values);
 }
 
 } // namespace xvrml::mapper

@@ -43,13 +43,18 @@ class ShaderClasses {
 
 // Sets the parameters of a shader, which is bound for the lifetime of this object. Every setter
 // takes the name of a parameter that the class declares.
+//
+// The renderer refuses numbers that are not finite or out of range, with an error. The parameter
+// then has its default, in a new shader as in an existing one: how a surface looks must not depend
+// on the values that it had before.
 class ShaderSetup {
  public:
-  explicit ShaderSetup(RTid shaderClass) : shader_(rtNewShader(shaderClass)) {
+  explicit ShaderSetup(RTid shaderClass) : class_(shaderClass), shader_(rtNewShader(shaderClass)) {
     rtBindShader(shader_);
   }
-  // Changes an existing shader. sets: counts the parameters that are set.
-  ShaderSetup(RTid shader, uint64_t& sets) : shader_(shader), sets_(&sets) {
+  // Changes an existing shader of this class. sets: counts the parameters that are set.
+  ShaderSetup(RTid shaderClass, RTid shader, uint64_t& sets)
+      : class_(shaderClass), shader_(shader), sets_(&sets) {
     rtBindShader(shader_);
   }
   ~ShaderSetup() { rtBindShader(0); }
@@ -59,22 +64,20 @@ class ShaderSetup {
   bool fresh() const { return !sets_; }
 
   void integer(const char* name, int v) { rtParameter1i(handle(name), v); }
-  void number(const char* name, float v) { rtParameter1f(handle(name), v); }
+  void number(const char* name, float v) { set(name, {&v, 1}); }
   // Clamps to the field's range. Parsers have warned about values outside it.
   void number(const char* name, float v, float low,
               float high = std::numeric_limits<float>::max()) {
     number(name, std::clamp(v, low, high));
   }
-  void vector(const char* name, Vec3f v) { rtParameter3f(handle(name), v.x, v.y, v.z); }
-  void color(const char* name, Color c) { rtParameter3f(handle(name), c.r, c.g, c.b); }
-  void floats(const char* name, std::span<const float> v) {
-    rtParameterfv(handle(name), v.size(), v.data());
-  }
+  void vector(const char* name, Vec3f v) { set(name, {&v.x, 3}); }
+  void color(const char* name, Color c) { set(name, {&c.r, 3}); }
+  void floats(const char* name, std::span<const float> v) { set(name, v); }
   void texture(const char* name, RTid texture) { rtParameterTexture(handle(name), texture); }
   void matrix(const char* name, const Matrix& m) {
     float f[16];
     for (int i = 0; i < 16; ++i) f[i] = float(data(m)[i]);
-    rtParameter16f(handle(name), f);
+    set(name, f);
   }
 
  private:
@@ -82,7 +85,9 @@ class ShaderSetup {
     if (sets_) ++*sets_;
     return rtParameterHandle(name);
   }
-  RTid shader_;
+  void set(const char* name, std::span<const float> values);
+
+  RTid class_, shader_;
   uint64_t* sets_ = nullptr;
 };
 

@@ -69,10 +69,11 @@ void Objects::drain() {
   }
 }
 
-// Returns whether something of this extent lies beyond the float range under this matrix. If so, it
-// also reports a warning.
-bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& where,
-                     const std::string& what) {
+// Notes how far something of this extent reaches under this matrix, and warns if that is beyond the
+// float range. Whether it is drawn does not depend on that: instances move later, when what is
+// around them is not measured again. The renderer leaves out what is too large or too far away.
+void Objects::measure(const Matrix& matrix, double reach, const SourcePosition& where,
+                      const std::string& what) {
   constexpr double most = 1e38;
   double far = 0;
   for (int i = 0; i < 3; ++i) {
@@ -84,12 +85,10 @@ bool Objects::tooFar(const Matrix& matrix, double reach, const SourcePosition& w
   if (far <= most) {
     Part& part = parts_[size_t(writing_)];
     part.reach = std::max(part.reach, far);
-    return false;
+    return;
   }
-  world_.diagnostics.warn(
-      where,
-      what + " is larger than 1e38, or further away, by the Transforms around it; it is left out");
-  return true;
+  world_.diagnostics.warn(where, what + " is larger than 1e38, or further away, by the Transforms "
+                                        "around it; what is there is left out");
 }
 
 // dynamic: events or the camera will move the instance.
@@ -98,8 +97,8 @@ RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, boo
   const NodeRef node = used.kind == Part::Kind::mesh ? NodeRef(&graph_.meshes.geometry(used.mesh))
                                                      : graph_.items[used.item].node;
   const SourcePosition where = node ? node->source : SourcePosition();
-  const bool usable = !tooFar(matrix, used.reach, where, node ? node->type().name : "the world");
-  if (!usable && !dynamic) return 0;
+  measure(matrix, used.reach, where, node ? node->type().name : "the world");
+  if (!finite(matrix) && !dynamic) return 0;
   const uint64_t flattenedInstances =
       std::max<uint64_t>(used.flattenedInstances + (used.drawCalls > 0), 1);
   const uint64_t records = addSaturating(used.records, used.drawCalls);
@@ -108,7 +107,7 @@ RTid Objects::instantiate(int32_t id, const Matrix& matrix, uint32_t number, boo
                                        multiplySaturating(furtherRecords, bytesOfRecord));
   if (!quota_.take(bytes, where)) return 0;
   rtLoadName(number);
-  load(usable ? matrix : scaling(Vector(0)));
+  load(placing(matrix));
   const RTid instance = rtInstantiateObject(parts_[size_t(id)].object);
   if (instance == 0) {
     quota_.give(bytes);
@@ -144,7 +143,9 @@ void Objects::writeShape(ItemId id, const Matrix& matrix) {
     if (item.recolored) keep(id, instance, matrix);
   } else {
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
-    if (extent.primitives == 0 || tooFar(matrix, extent.reach, item.node->source, "Shape")) return;
+    if (extent.primitives == 0) return;
+    measure(matrix, extent.reach, item.node->source, "Shape");
+    if (!finite(matrix)) return;
     const Surface surface = surfaces_.surfaceFor(appearance, item.lines);
     rtLoadName(item.number);
     load(matrix);

@@ -24,6 +24,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -364,6 +365,19 @@ std::string faultOf(const Options& o) {
   return "";
 }
 
+// Does something with a world. Returns false, with a message, if that fails.
+bool tryWorld(const std::string& world, const std::function<void()>& use) {
+  std::string fault;
+  try {
+    use();
+    return true;
+  } catch (const xvrml::LoadError& error) {
+    fault = error.diagnostic.text(); // it begins with the world's name
+  } catch (const std::exception& error) { fault = fmt::format("{}: {}", world, error.what()); }
+  fmt::print(stderr, "bench_live: {}\n", fault);
+  return false;
+}
+
 // Does what --show and --converge ask for. Returns the program's exit code.
 int keepPictures(Options options) {
   if (const std::string fault = faultOf(options); !fault.empty()) {
@@ -371,14 +385,27 @@ int keepPictures(Options options) {
     return 2;
   }
   options.show.world = options.converge.world = options.worlds[0];
-  try {
+  const bool done = tryWorld(options.worlds[0], [&] {
     if (!options.show.folder.empty()) showTurn(options.show);
     if (!options.converge.folder.empty()) convergeTurn(options.converge);
-    return 0;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}: {}\n", options.worlds[0], e.what());
-    return 1;
-  }
+  });
+  return done ? 0 : 1;
+}
+
+// Measures what a viewer of this world waits for.
+void measureWorld(const std::string& world, const Options& options,
+                  const std::shared_ptr<Cluster>& cluster) {
+  Looking looking(world, options, cluster);
+  looking.tell();
+  for (int turn = 0; cluster && turn < 3; turn++)
+    for (const bool paced : {false, true})
+      for (const bool overlapping : {false, true}) looking.follow(overlapping, paced);
+  if (cluster) return;
+  looking.move();
+  looking.measureCancel();
+  looking.refine();
+  looking.rounds(16);
+  looking.rounds(64);
 }
 
 } // namespace
@@ -395,19 +422,8 @@ int main(int argc, char** argv) {
     cluster = std::make_shared<Cluster>(options.cluster, rendering);
     if (!cluster->wait(1, 10)) fmt::print("no worker answers\n");
   }
-  for (const std::string& world : options.worlds) {
-    try {
-      Looking looking(world, options, cluster);
-      looking.tell();
-      for (int turn = 0; cluster && turn < 3; turn++)
-        for (const bool paced : {false, true})
-          for (const bool overlapping : {false, true}) looking.follow(overlapping, paced);
-      if (cluster) continue;
-      looking.move();
-      looking.measureCancel();
-      looking.refine();
-      looking.rounds(16);
-      looking.rounds(64);
-    } catch (const std::exception& e) { fmt::print("{}: {}\n", world, e.what()); }
-  }
+  bool good = true;
+  for (const std::string& world : options.worlds)
+    good &= tryWorld(world, [&] { measureWorld(world, options, cluster); });
+  return good ? 0 : 1;
 }

@@ -273,6 +273,37 @@ TEST_F(Rays, HostileRaysHitNothingAndAreCounted) {
   expectClose(hit.t, 5);
 }
 
+// Embree asserts that no coordinate of a ray exceeds 1.8e18. In the frame of a small instance the
+// coordinates are larger than those of the ray that was checked.
+TEST_F(Rays, SmallInstancesMeetNoRayThatIsTooLargeForThem) {
+  place(square(Shader("VRML97")));
+  const RTid small = square(Shader("VRML97"));
+  for (const double size : {1e-3, 1e-9, 1e-14}) {
+    for (const Vec& at : {Vec{0, 0, 1}, Vec{0, 0, 1e9}, Vec{0, 0, 5e16}}) {
+      SCOPED_TRACE(testing::Message() << size << " at " << at.z);
+      rtPushMatrix();
+      rtTranslated(at.x, at.y, at.z);
+      rtScaled(size, size, size);
+      const RTid instance = place(small);
+      rtPopMatrix();
+      rtInstanceHint(instance, RT_DYNAMIC);
+      rtRender();
+      std::vector<RTray> rays;
+      for (const float length : {1.0f, 1e6f, 1e17f})
+        for (const float from : {5.0f, 1e9f, 1e15f, 9e16f, 9e17f})
+          rays.push_back({{0, 0, from}, 0, {0, 0, -length}, infinity});
+      std::vector<RThit> hits(rays.size());
+      std::vector<uint8_t> occluded(rays.size());
+      rtCastRays(rays.size(), rays.data(), hits.data());
+      rtOccludedRays(rays.size(), rays.data(), occluded.data());
+      EXPECT_EQ(rtGetError(), RTenum(RT_NO_ERROR));
+      EXPECT_LE(hits[0].t, 5) << "what is near is seen";
+      EXPECT_EQ(occluded[0], 1);
+      rtDeleteInstance(instance);
+    }
+  }
+}
+
 TEST_F(Rays, MatricesThatAreNotFiniteAreRefused) {
   const RTid instance = place(square(Shader("VRML97")));
   for (const double bad :

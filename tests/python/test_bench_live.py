@@ -5,6 +5,7 @@ import importlib.util
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -182,6 +183,14 @@ def test_what_cannot_be_done_is_said(bench, tmp_path):
     assert done.returncode == 2 and "one world" in done.stderr
     done = bench(f"--show={tmp_path}", "--steps=2", "--frame=0x4")
     assert done.returncode == 2 and "--frame" in done.stderr
+
+
+@pytest.mark.parametrize("mode", [[], ["--show=.", "--steps=1"], ["--converge=.", "--at=0"]])
+def test_a_missing_world_is_named_in_one_line(bench, tmp_path, mode):
+    (tmp_path / "ball.wrl").unlink()
+    done = bench(*mode)
+    assert done.returncode == 1
+    assert re.fullmatch(r"bench_live: \S*ball\.wrl: error: .*\n", done.stderr), done.stderr
 
 
 def test_a_whole_run(bench, stand_in, tmp_path):

@@ -218,6 +218,28 @@ TEST_F(MapBudget, ComesBackWhatIsNotDrawnAnyMore) {
   }
 }
 
+// A picture that is too large is left out, and the one before it is not shown instead of it.
+TEST_F(MapBudget, APictureThatChanges) {
+  load("Shape { appearance Appearance { texture DEF P PixelTexture { image 1 1 3 0xFF0000 } } "
+       "geometry "
+       "Box { } }");
+  const auto image = [](int size) {
+    return Image{size, size, 1, std::vector<uint8_t>(size_t(size) * size_t(size), 9)};
+  };
+  Share others(budgetOf(*world_));
+  ASSERT_TRUE(others.take(budgetOf(*world_)->limit() - budgetOf(*world_)->used() - 5'000'000));
+  EXPECT_EQ(mapper_->stats().textures, 1u);
+  send("P", "set_image", image(3000));
+  frame();
+  EXPECT_EQ(mapper_->stats().textures, 0u);
+  EXPECT_EQ(count(messages(*world_), "PixelTexture: no picture: together with"), 1u);
+  const uint64_t without = budgetOf(*world_)->used();
+  send("P", "set_image", image(100));
+  frame();
+  EXPECT_EQ(mapper_->stats().textures, 1u);
+  EXPECT_EQ(budgetOf(*world_)->used(), without + 10'000);
+}
+
 TEST_F(MapBudget, PicturesInAll) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("map_budget_" + std::to_string(::getpid()));

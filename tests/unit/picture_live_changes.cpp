@@ -113,3 +113,39 @@ TEST(LiveChanges, WhatHasPassedLeavesItsColourOnNoEdge) {
     EXPECT_LT(red, 0.02) << k;
   }
 }
+
+// A red board rests before the edge of a grey wall against a black sky, or on that wall, and is
+// gone in one frame, as a choice of a Switch is. The pixels of its edges, which had shown it in
+// part, show nothing of it.
+TEST(LiveChanges, WhatVanishesLeavesItsColourOnNoEdge) {
+  struct Case {
+    int lightStride;
+    double height;
+  };
+  for (const auto& [lightStride, height] : {Case{1, 0.5}, Case{2, 0.5}, Case{1, 0.001}}) {
+    Reconstruction reconstruction;
+    for (uint32_t k = 0; k < restingFrames + 3; k++) {
+      const World world = [k, z = height](Vec origin, Vec direction) {
+        Hit hit = plane(origin, direction, z, -0.313, 0.357);
+        if (k < restingFrames && std::isfinite(hit.distance)) {
+          hit.albedo = {0.8, 0, 0};
+          hit.name = 2;
+          return hit;
+        }
+        hit = plane(origin, direction, 0, -infinite, infinite);
+        if (origin.y + direction.y * hit.distance > 0.313) return Hit();
+        hit.albedo = {0.6, 0.6, 0.6};
+        hit.name = 1;
+        return hit;
+      };
+      const Shot shot = shotAt({0, 0, 3}, k);
+      const Picture shown = reconstruction.add(render(world, shot), shot.camera, lightStride);
+      if (k < restingFrames) continue;
+      double red = 0;
+      for (int y = 0; y < shot.height; y++)
+        for (int x = 0; x < shot.width; x++)
+          red = std::max(red, double(colourAt(shown, x, y, 0) - colourAt(shown, x, y, 1)));
+      EXPECT_LT(red, 0.02) << k << ", light stride " << lightStride << ", height " << height;
+    }
+  }
+}

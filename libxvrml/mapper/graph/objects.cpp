@@ -25,8 +25,7 @@ void Objects::updateForFrame() {
     if (kind == Kind::billboard && place.instance != 0) {
       const Matrix matrix = compose(graph_.below(place.base, graph_.items[place.item]),
                                     places_.billboardRotations[i]);
-      if (!finite(matrix)) continue;
-      rtInstanceMatrix(place.instance, data(matrix));
+      rtInstanceMatrix(place.instance, data(placing(matrix)));
       report(world_.diagnostics, graph_.items[place.item].node->source, "Billboard");
     }
   }

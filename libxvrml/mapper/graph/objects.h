@@ -14,6 +14,10 @@
 
 namespace xvrml::mapper {
 
+// Returns the matrix of an instance, which must be finite. Another one makes it nothing of size 0,
+// so that it does not stay where it was before.
+inline Matrix placing(const Matrix& matrix) { return finite(matrix) ? matrix : scaling(Vector(0)); }
+
 struct Part {
   enum class Kind : uint8_t { nothing, place, item, mesh } kind = Kind::nothing;
   ItemId item = 0; // set for place and item
@@ -106,8 +110,8 @@ class Objects {
   void writeShape(ItemId item, const Matrix& matrix);
   bool draw(int32_t mesh, const Surface& surface, bool textured);
   void drawArrays(const Mesh& mesh, const Surface& surface, bool textured);
-  bool tooFar(const Matrix& matrix, double reach, const SourcePosition& where,
-              const std::string& what);
+  void measure(const Matrix& matrix, double reach, const SourcePosition& where,
+               const std::string& what);
   // number: the number of the shape that the instance draws; 0 if the shapes below have their own.
   RTid instantiate(int32_t part, const Matrix& matrix, uint32_t number, bool dynamic);
   void keep(ItemId item, RTid instance, const Matrix& base);

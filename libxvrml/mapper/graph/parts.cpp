@@ -183,7 +183,7 @@ bool Objects::moved(ItemId id) {
   if (!item.moves || item.objectReason == ObjectReason::none) return false;
   const auto move = [&](RTid instance, const Matrix& matrix) {
     if (instance == 0) return;
-    rtInstanceMatrix(instance, data(finite(matrix) ? matrix : scaling(Vector(0))));
+    rtInstanceMatrix(instance, data(placing(matrix)));
     ++moves_;
   };
   if (const auto found = trackedInstances_.find(id);

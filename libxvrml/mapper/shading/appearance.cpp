@@ -228,10 +228,11 @@ void Surfaces::makeSurface(Entry& entry) {
     return;
   }
   std::optional<ShaderSetup> setup;
+  const RTid shaderClass = classes_.get("VRML97", "");
   if (entry.own == 0)
-    setup.emplace(classes_.get("VRML97", ""));
+    setup.emplace(shaderClass);
   else
-    setup.emplace(entry.own, sets_);
+    setup.emplace(shaderClass, entry.own, sets_);
   ShaderSetup& shader = *setup;
   entry.surface.shader = shader.id();
   (entry.shared ? entry.shared->shader : entry.own) = shader.id();

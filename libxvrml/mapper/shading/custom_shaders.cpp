@@ -141,28 +141,38 @@ void CustomShaders::make(ShaderEntry& made, RTenum role, const Preset& preset) {
   }
 }
 
-// Updates the parameters if class and options are the same; otherwise makes a new shader that
-// replaces the old one.
+// Updates the parameters if class and options are the same and all values are good; otherwise makes
+// a new shader that replaces the old one. An option with a wrong value would leave the old value.
 void CustomShaders::refresh(ShaderEntry& made, RTenum role, const Preset& preset) {
   const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
   std::vector<std::string> errors, names;
   const std::vector<ShaderOption> options = optionsOf(made, errors);
   for (const ShaderOption& option : options) names.push_back(option.name);
-  if (made.shader == 0 || made.name != node.name || made.file != node.file ||
-      names != made.options || !errors.empty()) {
-    const RTid before = made.shader;
-    make(made, role, preset);
-    if (before != 0) replaced_.push_back(before);
+  if (made.shader != 0 && made.name == node.name && made.file == node.file &&
+      names == made.options && errors.empty() && change(made, options, role, preset))
     return;
-  }
+  const RTid before = made.shader;
+  make(made, role, preset);
+  if (before != 0) replaced_.push_back(before);
+}
+
+// Sets the parameters of an existing shader. Returns false if one of them was refused; make() tells
+// which.
+bool CustomShaders::change(ShaderEntry& made, const std::vector<ShaderOption>& options, RTenum role,
+                           const Preset& preset) {
+  const auto& node = static_cast<const nodes::ORTShader&>(*made.node);
+  report(world_.diagnostics, node.source, "before ORTShader " + node.name);
+  made.unreadable = false;
   const ShaderClass& shaderClass = classes_.find(node.name, node.file);
-  ShaderSetup shader(made.shader, sets_);
+  ShaderSetup shader(shaderClass.id, made.shader, sets_);
   if (preset) preset(shader, shaderClass);
   for (const ShaderOption& option : options) {
     setOption(option, made, role);
     ++sets_;
   }
-  report(world_.diagnostics, node.source, "ORTShader " + node.name);
+  bool good = !made.unreadable;
+  while (rtGetError() != RT_NO_ERROR) good = false;
+  return good;
 }
 
 void CustomShaders::changed(const Node& node) {

@@ -53,6 +53,8 @@ class CustomShaders {
   };
   void make(ShaderEntry& made, RTenum role, const Preset& preset);
   void refresh(ShaderEntry& made, RTenum role, const Preset& preset);
+  bool change(ShaderEntry& made, const std::vector<ShaderOption>& options, RTenum role,
+              const Preset& preset);
   // Returns the node's current options and charges them to this shader. Returns none, after a
   // message, if the world's budget does not allow them.
   std::vector<ShaderOption> optionsOf(ShaderEntry& made, std::vector<std::string>& errors);

@@ -105,12 +105,13 @@ void Environment::updateForFrame(const Places& places, const Bound& bound) {
   for (int i = 0; background && i < 6; ++i)
     images[i] = textures_.ofUrls(background->*pictures[i].urls, *background, false, false);
   const bool fresh = shader_ == 0;
+  const RTid shaderClass = classes_.get("VRML97Environment", "");
   if (fresh) {
-    ShaderSetup setup(classes_.get("VRML97Environment", ""));
+    ShaderSetup setup(shaderClass);
     shader_ = setup.id();
     setAll(setup, images);
   } else {
-    ShaderSetup setup(shader_, sets_);
+    ShaderSetup setup(shaderClass, shader_, sets_);
     setAll(setup, images);
   }
   if (fresh || turned) {

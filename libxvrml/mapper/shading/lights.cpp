@@ -78,7 +78,7 @@ void Lights::changed(Node& light) {
     if (shaderOf(light) != before) remade_.insert(&light);
     return;
   }
-  ShaderSetup setup(found->second.shader, sets_);
+  ShaderSetup setup(classes_.get(classOf(light), ""), found->second.shader, sets_);
   set(setup, light, linear_);
   report(world_.diagnostics, light.source, light.type().name);
 }

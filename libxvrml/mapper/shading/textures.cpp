@@ -90,11 +90,14 @@ bool Textures::changed(Node& node) {
     rtBindTexture(before);
     try {
       upload(before, *own.image);
-    } catch (const std::runtime_error& failure) { // the previous picture stays
+    } catch (const std::runtime_error& failure) { // as makeNode() does
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
+      remove(before);
+      --count_;
+      nodes_[&node].id = 0;
     }
     report(world_.diagnostics, node.source, node.type().name);
-    return false;
+    return nodes_[&node].id != before;
   }
   if (OwnImage own; before != 0 && ownImage(node, own)) { // the node has no picture any more
     remove(before);
