@@ -40,10 +40,10 @@ FramePlanes planesOf(const Picture& frame) {
   if (frame.width < 1 || frame.height < 1 || frame.width > 65536 || frame.height > 65536)
     throw std::invalid_argument("a preview needs a frame of 1 to 65536 pixels each way, not " +
                                 std::to_string(frame.width) + " x " + std::to_string(frame.height));
-  return {planeOf(frame, RT_RGBA, 4),     planeOf(frame, RT_DEPTH, 1),
-          planeOf(frame, RT_NORMAL, 3),   planeOf(frame, RT_ALBEDO, 3),
-          planeOf(frame, RT_POSITION, 3), planeOf(frame, RT_NAME, 1),
-          planeOf(frame, RT_MOTION, 3),   planeOf(frame, RT_SAMPLES, 1),
+  return {planeOf(frame, RT_RGBA, 4),      planeOf(frame, RT_DEPTH, 1),
+          planeOf(frame, RT_NORMAL, 3),    planeOf(frame, RT_ALBEDO, 3),
+          planeOf(frame, RT_POSITION, 3),  planeOf(frame, RT_NAME, 1),
+          planeOf(frame, RT_MOTION, 3),    planeOf(frame, RT_SAMPLES, 1),
           planeOf(frame, RT_REFLECTION, 3)};
 }
 
@@ -220,8 +220,8 @@ struct Reconstruction::Impl {
   void colour(const FramePlanes& planes) {
     const Moment& grid = sparse ? pixels : now;
     const ColourPass pass{
-        planes,     grid,           pixelsOfBefore(), sparse ? pixelReading : reading,
-        now,        reading.albedo, *result,          coats.result,
+        planes,       grid,           pixelsOfBefore(), sparse ? pixelReading : reading,
+        now,          reading.albedo, *result,          coats.result,
         work.verdict, shownBefore};
     rows(grid, [&](int y) {
       now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh);
@@ -270,7 +270,7 @@ struct Reconstruction::Impl {
   struct {
     Accumulated now, before;
     Work work;
-    bool some = false; // `now` has some, or the frame before had
+    bool some = false;              // `now` has some, or the frame before had
     const Plane3* result = nullptr; // filtered; null: there is none
   } coats;
   bool sparse = false;         // the planes of pixels are not those of cells

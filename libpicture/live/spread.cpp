@@ -263,8 +263,8 @@ inline Lanes3 ownLight(const ColourPass& pass, const Around& around,
   const Lanes3 bound = select(isBound, bounded(shown, around.least, around.most), around.light);
   const Lanes3 old = select(keeps, shown, bound);
   const Lanes3 sample =
-      load(pass.reading.light, at.i) + asIllumination(load(pass.reading.reflection, at.i),
-                                                      load(pass.reading.albedo, at.i));
+      load(pass.reading.light, at.i) +
+      asIllumination(load(pass.reading.reflection, at.i), load(pass.reading.albedo, at.i));
   return select(lit, sample, select(recalled.known, old, around.light));
 }
 

@@ -48,8 +48,8 @@ struct Reading {
   // Where the surface was in the frame before, in its pixels or cells (0: centre of the first one),
   // and its nearness there. Not a number: nowhere.
   Plane pastX, pastY, pastNearness;
-  Plane3 albedo; // what the illumination is multiplied by; nowhere 0
-  Plane3 light;  // illumination of this frame's samples, without what coats reflect
+  Plane3 albedo;     // what the illumination is multiplied by; nowhere 0
+  Plane3 light;      // illumination of this frame's samples, without what coats reflect
   Plane3 reflection; // radiance that coats reflect
 };
 
@@ -164,7 +164,7 @@ struct ColourPass {
   const Reading& reading;        // by pixel
   const Moment& cells;
   const Plane3& cellAlbedo;
-  const Plane3& light; // illumination by cell, filtered
+  const Plane3& light;      // illumination by cell, filtered
   const Plane3* reflection; // radiance that coats reflect, by cell, filtered; null: none
   const Plane& verdict;
   const Shown& shown; // by the frame before

@@ -17,7 +17,10 @@ class ReflectionsOfCoats : public Scene {
     rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
   }
   static Shader plastic() {
-    return Shader("Plastic").set("color", {.02, .3, .6}).set("index", {index}).set("roughness", {0});
+    return Shader("Plastic")
+        .set("color", {.02, .3, .6})
+        .set("index", {index})
+        .set("roughness", {0});
   }
   // Returns the reflectance of a smooth boundary for unpolarised light.
   static double fresnel(double cosine, double n = index) {

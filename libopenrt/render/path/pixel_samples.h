@@ -14,7 +14,7 @@ class Guides;
 struct PixelSamples { // all arrays are indexed by path
   float *radiance[3], *alpha;
   float* reflection[3] = {}; // part of the radiance; null if the frame lacks RT_REFLECTION
-  uint8_t* first; // 1 until the first surface of the path has been shaded
+  uint8_t* first;            // 1 until the first surface of the path has been shaded
   // The first surface; null if the frame does not have the channel.
   float *normal[3] = {}, *albedo[3] = {}, *position[3] = {}, *motion[3] = {}, *depth = nullptr;
   uint32_t* name = nullptr;
