@@ -290,6 +290,7 @@ void LocalBackend::prepareFrame() {
   stop_ = false;
   prepare();
   if (guided_) return;
+  snapshot_->enclosed = isEnclosed(*snapshot_);
   guided_ = guideByPhotons(*snapshot_, stop_);
   if (snapshot_->photonGuide) transportReason_ += ", guided";
 }
