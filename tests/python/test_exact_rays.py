@@ -159,6 +159,42 @@ def test_a_quick_check_of_the_tool_finds_nothing():
     assert "0 of 240000 answers are wrong" in done.stdout
 
 
+def test_a_quick_check_of_the_tool_in_double_finds_nothing():
+    """8,000 rays, of which 160 are compared with rational arithmetic."""
+    done = subprocess.run([
+        sys.executable, ROOT / "tools/check_rays.py", "--rays", "8000", "--levels", "4",
+        "--precision", "double", "--exact", "2"
+    ],
+                          capture_output=True,
+                          text=True,
+                          check=False)
+    assert done.returncode == 0, done.stdout[-4000:] + done.stderr
+    assert "0 of 24160 answers are wrong" in done.stdout
+
+
+def test_a_body_in_a_room_hides_the_room_in_double():
+    """Rays from within a room at the vertices of a body that they see. In single precision some
+    pass the body there and hit the room, or the body's far side (docs)."""
+    vertices, triangles = check_rays.icosphere(5)
+    vertices = vertices.astype(np.float32)
+    caster = rt.Raycaster()
+    corners, sides = check_rays.boxes(1, size=20)
+    caster.add_triangles(corners, sides)
+    body = caster.add_triangles(vertices, triangles)
+    lost, cast = 0, 0
+    for eye in ((0, 0, 4), (3, -2, 1), (.5, 6, -7)):
+        to = vertices[np.einsum("ij,ij->i", vertices, eye - vertices) > .2 * np.linalg.norm(eye)]
+        rays = np.concatenate([np.broadcast_to(eye, to.shape), to - np.array(eye)], 1)
+        cast += len(rays)
+        hits = caster.cast_rays(rays, precision="double")
+        assert np.all((hits["geometry_ids"] == body) & (np.abs(hits["t_hit"] - 1) < 1e-5))
+        assert np.all(caster.count_intersections(rays, precision="double") == 3)
+        hits = caster.cast_rays(rays)
+        lost += np.count_nonzero((hits["geometry_ids"] != body) |
+                                 (np.abs(hits["t_hit"] - 1) > 1e-4))
+    assert lost <= .02 * cast
+
+
 def test_rays_in_the_planes_of_faces_keep_the_parity():
     """A box whose faces are cut into triangles, and rays within its faces and along its edges."""
     vertices, triangles = check_rays.boxes(1)
