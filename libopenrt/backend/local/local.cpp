@@ -62,6 +62,7 @@ void LocalBackend::prepare() {
   } catch (...) { // incomplete: the next call rebuilds it
     exact_ = nullptr;
     precise_ = nullptr;
+    bodies_ = nullptr;
     accel_ = nullptr;
     throw;
   }
@@ -140,7 +141,7 @@ void LocalBackend::updateAccel(RenderScene& next) {
   const PixelFootprint pixel = footprint(next);
   const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
                          pixel};
-  exactIsFormer_ = preciseIsFormer_ = true;
+  exactIsFormer_ = preciseIsFormer_ = bodiesAreFormer_ = true;
   const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
   recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)

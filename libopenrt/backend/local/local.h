@@ -9,6 +9,7 @@
 
 #include "backend/backend.h"
 #include "backend/local/accel/accel_build.h"
+#include "backend/local/accel/closed_bodies.h"
 #include "backend/local/accel/exact_scene.h"
 #include "backend/local/precise/precise_scene.h"
 #include "backend/surface_queries.h"
@@ -68,6 +69,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
                   const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
   // Makes the scene for exact queries of what is committed, if it does not exist yet.
   const ExactScene& exact();
+  // Finds the closed meshes of what is committed, likewise.
+  const ClosedBodies& closedBodies();
   // Makes the scene for queries in double precision, likewise (precise_queries.cpp).
   const PreciseScene& precise();
   template <class Use, class Refuse>
@@ -103,7 +106,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   // Of accel_; null until a query needs them. Those before a change are kept for their meshes.
   std::unique_ptr<const ExactScene> exact_;
   std::unique_ptr<const PreciseScene> precise_;
-  bool exactIsFormer_ = false, preciseIsFormer_ = false;
+  std::unique_ptr<const ClosedBodies> bodies_;
+  bool exactIsFormer_ = false, preciseIsFormer_ = false, bodiesAreFormer_ = false;
   Flattened flat_;
   PixelFootprint footprint_;
   // scopedLights_: some light has a scope. recordsUnmoved_: every record is in the same place as in

@@ -112,6 +112,15 @@ const ExactScene& LocalBackend::exact() {
   return *exact_;
 }
 
+const ClosedBodies& LocalBackend::closedBodies() {
+  prepare();
+  if (!bodies_ || bodiesAreFormer_) {
+    bodies_ = std::make_unique<const ClosedBodies>(*accel_, bodies_.get());
+    bodiesAreFormer_ = false;
+  }
+  return *bodies_;
+}
+
 bool LocalBackend::loadExact(const RTray& ray, ExactRay& to) const {
   const Vec3d origin = Vec3d(vectorOf(ray.origin)) - vectorOf(snapshot_->origin),
               direction(vectorOf(ray.direction));
@@ -151,7 +160,7 @@ bool LocalBackend::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i
 
 template <class Take>
 std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, const Take& take) {
-  prepare();
+  const ClosedBodies& bodies = closedBodies();
   const Doubts doubts(*accel_);
   std::vector<uint8_t> again(rays.size());
   std::atomic<bool> any{false};
@@ -165,10 +174,14 @@ std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, cons
     auto* suspects = arena.take<uint8_t>(batch.count);
     doubts.suspect(batch, found, suspects);
     for (uint32_t i = 0; i < batch.count; i++) {
-      // A ray that hits nothing is a suspect: its t is infinite.
-      if (suspects[i] || accel_->records[found.record[i]].instanced)
-        some |= again[first + i] = isDoubtful(doubts, batch, i, found);
       take(first + i, found, i);
+      // A ray that hits nothing is a suspect: its t is infinite.
+      if (!suspects[i] && !Doubts::hidesFront(accel_->records[found.record[i]])) continue;
+      if (isDoubtful(doubts, batch, i, found) ||
+          (found.record[i] != noHit && bodies.denies(batch, i, found))) {
+        again[first + i] = 1;
+        some = true;
+      }
     }
     if (some) any = true;
   });
