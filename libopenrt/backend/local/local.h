@@ -12,6 +12,7 @@
 #include "backend/local/accel/closed_bodies.h"
 #include "backend/local/accel/exact_scene.h"
 #include "backend/local/precise/precise_scene.h"
+#include "backend/local/ray_order.h"
 #include "backend/surface_queries.h"
 #include "render/frame/renderer.h"
 #include "scene/history.h"
@@ -65,8 +66,9 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   bool cameraRay(double x, double y, Vec3f& origin, Vec3f& direction) const;
   RThit hitOf(const RayHits& found, uint32_t i) const;
   // Calls `use` for blocks of rays, converted to render space, on all threads.
-  void forBatches(std::span<const RTray> rays,
-                  const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
+  void forBatches(
+      std::span<const RTray> rays, float sceneSize,
+      const std::function<void(const RayOrder::Block& block, Arena& arena, Rays& batch)>& use);
   // Makes the scene for exact queries of what is committed, if it does not exist yet.
   const ExactScene& exact();
   // Finds the closed meshes of what is committed, likewise.
@@ -89,7 +91,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::vector<uint8_t> findNearest(std::span<const RTray> rays, const Take& take);
   bool isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i, const RayHits& found) const;
   RThit hitOf(const ExactScene::Hit& found, const ExactRay& ray, const RTray& asked) const;
-  void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
+  void loadRays(std::span<const RTray> rays, const RayOrder::Block& block, Rays& to) const;
 
   BackendOptions options_;
   uint32_t threads_;
