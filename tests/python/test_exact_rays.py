@@ -148,6 +148,33 @@ def test_parity_under_matrices(matrix, offset):
             assert np.count_nonzero((np.isinf(hits) | ~occluded) & (counts > 0)) <= .03 * len(rays)
 
 
+@pytest.mark.parametrize("rows, columns, rest", [(40, 101, 0), (257, 64, 33), (64, 1000, 999),
+                                                 (3, 5000, 1), (500, 16, 7), (2, 40, 3)])
+@pytest.mark.parametrize("pattern", ["lidar", "pinhole", "grid"])
+def test_answers_do_not_depend_on_the_order_of_rays(pattern, rows, columns, rest):
+    """Rows of rays, of which the last may be cut short, are traced in patches (ray_order.h)."""
+    vertices, triangles = check_rays.icosphere(4)
+    caster = rt.Raycaster(threads=2)
+    caster.add_triangles(vertices * 3 + (0, 0, .5), triangles)
+    caster.add_triangles(vertices + (0, 0, -2), triangles)
+    caster.update(1, matrices=np.eye(4)[None])  # a body that moves
+    y, x = np.divmod(np.arange(rows * columns + rest), columns)
+    u, v = x / columns - .5, y / rows - .5
+    rays = np.zeros((len(u), 6), np.float32)
+    if pattern == "lidar":
+        rays[:, 3:] = np.stack([np.cos(2 * np.pi * u), v * .5, np.sin(2 * np.pi * u)], -1)
+    elif pattern == "pinhole":
+        rays[:, 3:] = np.stack([u, v, np.full(len(u), -1)], -1)
+    else:
+        rays[:, 0], rays[:, 1], rays[:, 2], rays[:, 5] = 8 * u, 8 * v, 9, -1
+    order = np.random.default_rng(rows).permutation(len(rays))
+    hits, mixed = caster.cast_rays(rays), caster.cast_rays(rays[order])
+    for key, values in hits.items():
+        assert np.array_equal(values[order], mixed[key], equal_nan=True), key
+    assert np.array_equal(caster.test_occlusions(rays)[order], caster.test_occlusions(rays[order]))
+    assert np.isfinite(hits["t_hit"]).sum() > len(rays) / 4
+
+
 def test_a_quick_check_of_the_tool_finds_nothing():
     """80,000 rays; `make test-rays` casts 10 million."""
     done = subprocess.run(

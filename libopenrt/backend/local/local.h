@@ -45,6 +45,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
   void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
                    std::span<RThitd> hits) override;
+  void closestPrecise(std::span<const double> points, double radius,
+                      std::span<RThitd> closest) override;
   bool pick(double x, double y, RThit& hit) override;
 
   // Returns the committed scene as the threads render it; rebuilds it if anything changed. It stays
@@ -77,6 +79,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   const PreciseScene& precise();
   template <class Use, class Refuse>
   void forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse);
+  void requireNoAnalytic(); // throws if the scene has quadrics or aspheres
   RThitd hitOf(const PreciseScene::Hit& found, const PreciseRay& ray) const;
   // Calls `use` for every ray of which `some` is not 0 (null: all), on all threads. Rays that
   // cannot be traced are counted and left out; `refuse` is called for them.

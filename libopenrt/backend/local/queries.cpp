@@ -278,13 +278,17 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
       [&](size_t i) { write(i, {}, {}); });
 }
 
-void LocalBackend::closestPoints(std::span<const float> points, float radius,
-                                 std::span<RTclosest> closest) {
+void LocalBackend::requireNoAnalytic() {
   prepare();
   for (const Record& r : accel_->records)
     if (r.surface)
       throw std::runtime_error("the scene has a quadric or an asphere, whose closest points cannot "
                                "be found: make it of triangles, or leave it out");
+}
+
+void LocalBackend::closestPoints(std::span<const float> points, float radius,
+                                 std::span<RTclosest> closest) {
+  requireNoAnalytic();
   const Vec3d origin = vectorOf(snapshot_->origin);
   const std::vector<uint32_t> round = accel_->spheres();
   parallelBlocks(threads_, closest.size(), [&](size_t first, size_t n) {
