@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -125,6 +126,8 @@ struct Single {
   static constexpr auto occluded = rtOccludedRays;
   static constexpr auto count = rtCountHits;
   static constexpr auto list = rtListHits;
+  using Closest = RTclosest;
+  static constexpr auto closest = rtClosestPoints;
 };
 struct Double {
   using Number = double;
@@ -135,6 +138,8 @@ struct Double {
   static constexpr auto occluded = rtOccludedRaysd;
   static constexpr auto count = rtCountHitsd;
   static constexpr auto list = rtListHitsd;
+  using Closest = RThitd;
+  static constexpr auto closest = rtClosestPointsd;
 };
 
 // The arguments that all ray queries have.
@@ -286,33 +291,65 @@ template <class F> void inChunks(const CurrentContext& use, size_t count, const 
   }
 }
 
-py::dict closestPoints(const RtContextPtr& self, const py::object& given, float radius) {
-  const Rows<float> points(given, "query_points", 3);
+// The arrays of closest places in both precisions.
+struct SinglePlaces : Hits<float> {
+  py::array_t<float> point;
+  float* pointTo;
+  explicit SinglePlaces(const Shape& shape)
+      : Hits(shape), point(like<float>(shape, 3)), pointTo(point.mutable_data()) {}
+  void take(size_t i, const RTclosest& c) const {
+    Hits::take(i, RThit{c.distance,
+                        c.u,
+                        c.v,
+                        {c.normal[0], c.normal[1], c.normal[2]},
+                        c.instance,
+                        c.name,
+                        c.primitive,
+                        c.userData});
+    for (size_t k = 0; k < 3; ++k)
+      pointTo[3 * i + k] =
+          c.distance < infinity ? c.point[k] : std::numeric_limits<float>::quiet_NaN();
+  }
+  py::dict dict() const {
+    py::dict out = Hits::dict();
+    out["points"] = point;
+    return out;
+  }
+};
+
+template <class P, class Places>
+py::dict closest(const RtContextPtr& self, const py::object& given, double most) {
+  const Rows<typename P::Number> points(given, "query_points", 3);
+  const auto radius = typename P::Number(most);
   if (!(radius > 0)) throw py::value_error("radius: above 0 expected");
-  const Hits<float> hits(points.shape);
-  py::array_t<float> where = like<float>(points.shape, 3);
-  float* whereTo = where.mutable_data();
+  const Places places(points.shape);
   const CurrentContext use(self, false);
   use.commit();
-  std::vector<RTclosest> found(std::min(chunk, points.count));
-  const float* from = points.values.data();
+  std::vector<typename P::Closest> found(std::min(chunk, points.count));
+  const auto* from = points.values.data();
   inChunks(use, points.count, [&](size_t first, size_t n) {
-    rtClosestPoints(n, from + 3 * first, radius, found.data());
-    parallel(n, [&](size_t i) {
-      const RTclosest& c = found[i];
-      RThit hit{c.distance, c.u,    c.v,         {c.normal[0], c.normal[1], c.normal[2]},
-                c.instance, c.name, c.primitive, c.userData};
-      hits.take(first + i, hit);
-      for (int k = 0; k < 3; ++k)
-        whereTo[3 * (first + i) + size_t(k)] =
-            c.distance < infinity ? c.point[k] : std::numeric_limits<float>::quiet_NaN();
-    });
+    P::closest(n, from + 3 * first, radius, found.data());
+    parallel(n, [&](size_t i) { places.take(first + i, found[i]); });
   });
-  py::dict out = hits.dict();
-  out["points"] = where;
-  out["distances"] = out["t_hit"];
-  PyDict_DelItemString(out.ptr(), "t_hit");
+  py::dict out = places.dict();
+  const auto rename = [&](const char* name, const char* as) {
+    if (!out.contains(name)) return;
+    out[as] = out[name];
+    PyDict_DelItemString(out.ptr(), name);
+  };
+  rename("t_hit", "distances");
+  rename("t_errors", "distance_errors");
   return out;
+}
+
+py::dict closestPoints(const RtContextPtr& self, const py::object& given, double radius,
+                       const std::string& precision) {
+  return withPrecision(precision, [&]<class P>(P) {
+    if constexpr (std::is_same_v<P, Single>)
+      return closest<P, SinglePlaces>(self, given, radius);
+    else
+      return closest<P, DoubleHits>(self, given, radius);
+  });
 }
 
 } // namespace
@@ -340,8 +377,12 @@ void defineRtQueries(py::class_<RtContext, RtContextPtr>& context) {
          "ray_ids and ray_splits. The hits of ray i are ray_splits[i] to ray_splits[i + 1].");
   context.def(
       "compute_closest_points", closestPoints, py::arg("query_points"), py::kw_only(),
-      py::arg("radius") = std::numeric_limits<float>::infinity(),
+      py::arg("radius") = infinity, py::arg("precision") = "single",
       "Returns the surface points nearest to points (..., 3), as a dict of points, distances, "
       "geometry_ids, primitive_ids, primitive_uvs, primitive_normals, instance_ids and names. "
-      "radius: maximum distance; the point is NaN if no surface is that near.");
+      "radius: maximum distance; the point is NaN if no surface is that near. precision: 'single' "
+      "or "
+      "'double'; with 'double', points are float64, and distance_errors, uv_errors and "
+      "point_errors "
+      "are bounds.");
 }

@@ -65,6 +65,13 @@ void listHitsd(Context& c, size_t count, const RTrayd* rays, const size_t* first
   CommittedQueries(c).listPrecise({rays, count}, {first, count + 1}, {hits, first[count]});
 }
 
+void closestPointsd(Context& c, size_t count, const double* points, double radius,
+                    RThitd* closest) {
+  require((points && closest) || count == 0, RT_INVALID_VALUE, "a pointer is NULL");
+  require(radius > 0, RT_INVALID_VALUE, "the radius is not above 0");
+  CommittedQueries(c).closestPrecise({points, 3 * count}, radius, {closest, count});
+}
+
 } // namespace
 } // namespace openrt
 
@@ -96,4 +103,9 @@ void rtCountHitsd(size_t count, const RTrayd* rays, uint32_t* counts) {
 
 void rtListHitsd(size_t count, const RTrayd* rays, const size_t* first, RThitd* hits) {
   guarded("rtListHitsd", [&](Context& c) { listHitsd(c, count, rays, first, hits); });
+}
+
+void rtClosestPointsd(size_t count, const double* points, double radius, RThitd* closest) {
+  guarded("rtClosestPointsd",
+          [&](Context& c) { closestPointsd(c, count, points, radius, closest); });
 }

@@ -59,4 +59,10 @@ void ForwardedQueries::listPrecise(std::span<const RTrayd> rays, std::span<const
   missAll(hits);
 }
 
+void ForwardedQueries::closestPrecise(std::span<const double> points, double radius,
+                                      std::span<RThitd> closest) {
+  if (SurfaceQueries* to = target()) return to->closestPrecise(points, radius, closest);
+  missAll(closest);
+}
+
 } // namespace openrt

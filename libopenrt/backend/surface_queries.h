@@ -25,6 +25,8 @@ class SurfaceQueries {
   virtual void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) = 0;
   virtual void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
                            std::span<RThitd> hits) = 0;
+  virtual void closestPrecise(std::span<const double> points, double radius,
+                              std::span<RThitd> closest) = 0;
 };
 
 // For backends that wrap another backend: forwards the queries to it.
@@ -40,6 +42,8 @@ class ForwardedQueries : public SurfaceQueries {
   void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
   void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
                    std::span<RThitd> hits) override;
+  void closestPrecise(std::span<const double> points, double radius,
+                      std::span<RThitd> closest) override;
 
  protected:
   virtual SurfaceQueries* target() const = 0; // null: the queries find no surface

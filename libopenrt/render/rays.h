@@ -54,9 +54,9 @@ struct RayHits {
   }
 };
 
-// coherent: rays of a regular pattern, such as those of a camera and to a lamp. Only they can be
-// aimed exactly at vertices, where single precision loses hits; for them these hits are found, too.
-// A random ray passes a vertex so closely with a probability of about 1e-13.
+// coherent: rays of a regular pattern, such as those of a camera and to a lamp. They can be aimed
+// exactly at vertices, where single precision loses hits; for them these hits are found, too.
+// incoherent: rays of which only some are so aimed; Intersector::findLost() does it for those.
 enum class Coherence : uint8_t { coherent, incoherent };
 
 // Intersects rays with the scene. Thread-safe. An invalid ray (not finite, without a direction, or
@@ -66,6 +66,9 @@ class Intersector {
   virtual ~Intersector() = default;
   virtual void intersect(const Rays& rays, uint32_t mask, Coherence coherence,
                          RayHits& hits) const = 0;
+  // Searches for the hits that intersect() has lost at vertices. aimed: 1 for the rays to search
+  // for. Rays that have a hit keep it.
+  virtual void findLost(const Rays& rays, const uint8_t* aimed, RayHits& hits) const = 0;
   // Intersects rays with the scene as if culled back faces did not exist. It is slower than
   // intersect(), so it is called only for rays whose first hit is such a face.
   virtual void intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) const = 0;

@@ -127,6 +127,8 @@ struct RenderScene {
   // guide to, or too few samples are taken.
   std::shared_ptr<const PhotonGuide> photonGuide;
   bool transparentShadows = false; // something transparent may lie between a point and a light
+  // Whether rays from the eye in all directions seldom leave the scene.
+  bool enclosed = false;
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.
   bool skyKnown = false, skyShines = false;
   RenderHost host;

@@ -1,5 +1,5 @@
 // vertex_rays.cpp: rays of pictures that are aimed exactly at vertices of closed meshes: no camera
-// ray and no ray to a lamp leaves one (decision 54).
+// ray, no ray to a lamp, and no ray that a mirror or glass sends on leaves one (decision 54).
 #include <cstdint>
 #include <ostream>
 #include <vector>
@@ -69,6 +69,14 @@ class VertexRays : public Scene, public testing::WithParamInterface<Placement> {
     s.setInt("lit", 1).set("emissiveColor", {1, 1, 1}).set("diffuseColor", {0, 0, 0});
     return s;
   }
+  // Renders and returns how many pixels are dark, but for the border.
+  static int darkPixels() {
+    const std::vector<float> rgba = picture(size);
+    int dark = 0;
+    for (int y = 1; y + 1 < size; y++)
+      for (int x = 1; x + 1 < size; x++) dark += !(rgba[size_t(4 * (y * size + x))] > .5f);
+    return dark;
+  }
 };
 
 TEST_P(VertexRays, NoCameraRayLeavesAClosedMesh) {
@@ -121,6 +129,57 @@ TEST_P(VertexRays, NoRayToALampLeavesAClosedMesh) {
     for (int x = size * 3 / 10; x < size * 7 / 10; x++)
       lit += rgba[size_t(4 * (y * size + x))] != 0;
   EXPECT_EQ(lit, 0);
+}
+
+// The mirror sends the ray of each pixel to a vertex.
+TEST_P(VertexRays, NoRayFromAMirrorLeavesAClosedMesh) {
+  place();
+  rtPerspective(fov);
+  Shader mirror("Mirror");
+  mirror.set("reflectance", {1, 1, 1});
+  rtPushMatrix();
+  rtTranslated(0, 0, -1);
+  instantiate(square(mirror, .7));
+  rtPopMatrix();
+  instantiate(closedMesh(glowing(),
+                         [](int x, int y) {
+                           const double way = 4 + .2 * std::sin(.3 * x) * std::cos(.2 * y);
+                           return Vec{way * middleOf(x), way * middleOf(y), way - 2};
+                         },
+                         {0, 0, -40}));
+  for (const RTenum transport : {RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH}) {
+    rtQuality(RT_TRANSPORT, transport);
+    EXPECT_EQ(darkPixels(), 0);
+  }
+}
+
+// A slab of glass shifts the ray of each pixel, by Snell's law, to a vertex.
+TEST_P(VertexRays, NoRayThroughGlassLeavesAClosedMesh) {
+  place();
+  rtPerspective(fov);
+  constexpr double index = 1.5, thick = .5;
+  const Shader glass = Shader("Glass").set("index", {index});
+  for (const bool back : {false, true}) {
+    rtPushMatrix();
+    rtTranslated(0, 0, back ? -1 - thick : -1);
+    if (back) rtRotated(180, 1, 0, 0);
+    instantiate(square(glass, .9));
+    rtPopMatrix();
+  }
+  instantiate(closedMesh(glowing(),
+                         [](int x, int y) {
+                           const double mx = middleOf(x), my = middleOf(y), m = std::hypot(mx, my),
+                                        sine = m / std::sqrt(1 + m * m) / index,
+                                        inside = sine / std::sqrt(1 - sine * sine) / m,
+                                        way = 2.5 + thick * inside +
+                                              .2 * std::sin(.3 * x) * std::cos(.2 * y);
+                           return Vec{way * mx, way * my, -1 - thick - (way - 1 - thick * inside)};
+                         },
+                         {0, 0, 3}));
+  for (const RTenum transport : {RT_TRANSPORT_WHITTED, RT_TRANSPORT_PATH}) {
+    rtQuality(RT_TRANSPORT, transport);
+    EXPECT_EQ(darkPixels(), 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -53,6 +53,7 @@ struct Named {
 
 RTid ids[2];
 float floats[64];
+double doubles[3];
 int kind;
 RTparameterInfo info;
 RThit hit;
@@ -180,6 +181,7 @@ const Named needContext[] = {
     CALL(rtCountHitsd, 1, &rayd, &number),
     CALL(rtListHitsd, 1, &rayd, places, &hitd),
     CALL(rtClosestPoints, 1, floats, 1, &closest),
+    CALL(rtClosestPointsd, 1, doubles, 1, &hitd),
 };
 // Functions that need no context.
 const char* const anywhere[] = {"rtGetError",
@@ -431,6 +433,7 @@ const Wrong wrong[] = {
     WRONG(VALUE, Outside, rtListHitsd, 1, &rayd, nullptr, &hitd),
     WRONG(VALUE, Outside, rtListHitsd, 1, &rayd, fallingPlaces, &hitd),
     WRONG(VALUE, Outside, rtClosestPoints, 1, floats, 0, &closest),
+    WRONG(VALUE, Outside, rtClosestPointsd, 1, doubles, 0, &hitd),
     // Contexts.
     WRONG(VALUE, Outside, rtNewContext, "nonsense"),
     WRONG(VALUE, Outside, rtNewContext, "backend=debug:nothing"),

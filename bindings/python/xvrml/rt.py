@@ -291,16 +291,30 @@ class Raycaster:
         found = self._context.list_intersections(rays, tnear=tnear, tfar=tfar, precision=precision)
         return self._numbered(found, (*self._keys(precision, errors), "ray_ids", "ray_splits"))
 
-    def compute_closest_points(self, query_points, nthreads=0, *, radius=np.inf):
+    def compute_closest_points(self,
+                               query_points,
+                               nthreads=0,
+                               *,
+                               radius=np.inf,
+                               precision="single",
+                               errors=False):
         """Returns the surface points nearest to points (..., 3), as a dict of points, distances,
         geometry_ids, primitive_ids, primitive_uvs and primitive_normals. radius: maximum distance;
-        NaN and INVALID_ID if no surface is that near."""
-        return self._numbered(self._context.compute_closest_points(query_points, radius=radius),
-                              ("points", "distances", *_FIVE[1:]))
+        NaN and INVALID_ID if no surface is that near.
 
-    def compute_distance(self, query_points, nthreads=0):
+        precision="double" takes and gives float64; errors adds distance_errors, uv_errors and
+        point_errors. No distance is farther from the truth than its error. The others are those of
+        the given place as the nearest one of its triangle or sphere."""
+        _check_precision(precision, errors)
+        found = self._context.compute_closest_points(query_points,
+                                                     radius=radius,
+                                                     precision=precision)
+        bounds = ("distance_errors", *_ERRORS[1:]) if errors else ()
+        return self._numbered(found, ("points", "distances", *_FIVE[1:], *bounds))
+
+    def compute_distance(self, query_points, nthreads=0, *, precision="single"):
         """Returns the distances from points (..., 3) to the nearest surface."""
-        return self.compute_closest_points(query_points)["distances"]
+        return self.compute_closest_points(query_points, precision=precision)["distances"]
 
     def compute_occupancy(self, query_points, nthreads=0, nsamples=1, *, precision="single"):
         """Returns 1 for points (..., 3) inside closed surfaces, otherwise 0. A point is inside if a
@@ -318,10 +332,11 @@ class Raycaster:
             votes += self.count_intersections(rays, precision=precision) % 2
         return (votes * 2 > nsamples).astype(np.float32)
 
-    def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):
+    def compute_signed_distance(self, query_points, nthreads=0, nsamples=1, *, precision="single"):
         """Returns the distances to the nearest surface, negative inside closed surfaces."""
-        inside = self.compute_occupancy(query_points, nsamples=nsamples) > 0
-        return np.where(inside, -1, 1).astype(np.float32) * self.compute_distance(query_points)
+        inside = self.compute_occupancy(query_points, nsamples=nsamples, precision=precision) > 0
+        distance = self.compute_distance(query_points, precision=precision)
+        return np.where(inside, -distance, distance)
 
     create_rays_pinhole = staticmethod(
         lambda *args, **options: create_rays_pinhole(*args, **options))

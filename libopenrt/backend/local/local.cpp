@@ -62,6 +62,7 @@ void LocalBackend::prepare() {
   } catch (...) { // incomplete: the next call rebuilds it
     exact_ = nullptr;
     precise_ = nullptr;
+    bodies_ = nullptr;
     accel_ = nullptr;
     throw;
   }
@@ -138,11 +139,18 @@ void LocalBackend::updateAccel(RenderScene& next) {
   store(origin, next.origin);
   makeCamera(next, origin);
   const PixelFootprint pixel = footprint(next);
+<<<<<<< HEAD
   const double scale = builder_.survey.scale(origin);
   const BuildInput input{
       scene_, flat_, *next.shaders, origin, scale, builder_.survey.reach(origin) * scale, pixel};
   exactIsFormer_ = preciseIsFormer_ = true;
   const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, input);
+=======
+  const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
+                         pixel};
+  exactIsFormer_ = preciseIsFormer_ = bodiesAreFormer_ = true;
+  const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
+>>>>>>> r23-rays
   recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)
     accel_ = builder_.build(input);
@@ -291,6 +299,7 @@ void LocalBackend::prepareFrame() {
   stop_ = false;
   prepare();
   if (guided_) return;
+  snapshot_->enclosed = isEnclosed(*snapshot_);
   guided_ = guideByPhotons(*snapshot_, stop_);
   if (snapshot_->photonGuide) transportReason_ += ", guided";
 }

@@ -9,8 +9,10 @@
 
 #include "backend/backend.h"
 #include "backend/local/accel/accel_build.h"
+#include "backend/local/accel/closed_bodies.h"
 #include "backend/local/accel/exact_scene.h"
 #include "backend/local/precise/precise_scene.h"
+#include "backend/local/ray_order.h"
 #include "backend/surface_queries.h"
 #include "render/frame/renderer.h"
 #include "scene/history.h"
@@ -43,6 +45,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   void countPrecise(std::span<const RTrayd> rays, std::span<uint32_t> counts) override;
   void listPrecise(std::span<const RTrayd> rays, std::span<const size_t> first,
                    std::span<RThitd> hits) override;
+  void closestPrecise(std::span<const double> points, double radius,
+                      std::span<RThitd> closest) override;
   bool pick(double x, double y, RThit& hit) override;
 
   // Returns the committed scene as the threads render it; rebuilds it if anything changed. It stays
@@ -64,14 +68,18 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   bool cameraRay(double x, double y, Vec3f& origin, Vec3f& direction) const;
   RThit hitOf(const RayHits& found, uint32_t i) const;
   // Calls `use` for blocks of rays, converted to render space, on all threads.
-  void forBatches(std::span<const RTray> rays,
-                  const std::function<void(size_t first, Arena& arena, Rays& batch)>& use);
+  void forBatches(
+      std::span<const RTray> rays, float sceneSize,
+      const std::function<void(const RayOrder::Block& block, Arena& arena, Rays& batch)>& use);
   // Makes the scene for exact queries of what is committed, if it does not exist yet.
   const ExactScene& exact();
+  // Finds the closed meshes of what is committed, likewise.
+  const ClosedBodies& closedBodies();
   // Makes the scene for queries in double precision, likewise (precise_queries.cpp).
   const PreciseScene& precise();
   template <class Use, class Refuse>
   void forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse);
+  void requireNoAnalytic(); // throws if the scene has quadrics or aspheres
   RThitd hitOf(const PreciseScene::Hit& found, const PreciseRay& ray) const;
   // Calls `use` for every ray of which `some` is not 0 (null: all), on all threads. Rays that
   // cannot be traced are counted and left out; `refuse` is called for them.
@@ -86,7 +94,7 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   std::vector<uint8_t> findNearest(std::span<const RTray> rays, const Take& take);
   bool isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i, const RayHits& found) const;
   RThit hitOf(const ExactScene::Hit& found, const ExactRay& ray, const RTray& asked) const;
-  void loadRays(std::span<const RTray> rays, size_t first, Rays& to) const;
+  void loadRays(std::span<const RTray> rays, const RayOrder::Block& block, Rays& to) const;
 
   BackendOptions options_;
   uint32_t threads_;
@@ -103,7 +111,8 @@ class LocalBackend final : public Backend, public SurfaceQueries {
   // Of accel_; null until a query needs them. Those before a change are kept for their meshes.
   std::unique_ptr<const ExactScene> exact_;
   std::unique_ptr<const PreciseScene> precise_;
-  bool exactIsFormer_ = false, preciseIsFormer_ = false;
+  std::unique_ptr<const ClosedBodies> bodies_;
+  bool exactIsFormer_ = false, preciseIsFormer_ = false, bodiesAreFormer_ = false;
   Flattened flat_;
   PixelFootprint footprint_;
   // scopedLights_: some light has a scope. recordsUnmoved_: every record is in the same place as in

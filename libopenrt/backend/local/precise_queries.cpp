@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <stdexcept>
 
 #include "backend/local/local.h"
 
@@ -127,6 +128,42 @@ void LocalBackend::listPrecise(std::span<const RTrayd> rays, std::span<const siz
         fillRest(ray, count);
       },
       [&](size_t ray) { fillRest(ray, 0); });
+}
+
+void LocalBackend::closestPrecise(std::span<const double> points, double radius,
+                                  std::span<RThitd> closest) {
+  requireNoAnalytic();
+  const PreciseScene& scene = precise();
+  if (scene.unevenSphere() != noHit)
+    throw std::runtime_error("the scene has a sphere with different scales along its axes, whose "
+                             "closest points cannot be found in double precision: make it of "
+                             "triangles, or ask in single precision");
+  tbb::task_arena arena{int(threads_)};
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, closest.size(), block), [&](const auto& range) {
+      for (size_t i = range.begin(); i < range.end(); i++) {
+        const Vec3d point = vectorOf(&points[3 * i]);
+        RThitd& hit = closest[i] = nothing();
+        PreciseScene::Closest found;
+        if (!isFinite(point) || largest(abs(point)) > farthest ||
+            !scene.closest(point, radius, found))
+          continue;
+        const Record& r = accel_->records[found.record];
+        hit.t = found.at.distance;
+        hit.u = found.at.u;
+        hit.v = found.at.v;
+        store(found.place.point, hit.position);
+        store(found.normal, hit.normal);
+        hit.tError = found.at.distanceError;
+        hit.uvError = found.at.uvError;
+        hit.positionError = found.place.error;
+        hit.userData = r.userData;
+        hit.instance = r.instance;
+        hit.name = r.name;
+        hit.primitive = found.primitive;
+      }
+    });
+  });
 }
 
 } // namespace openrt

@@ -34,9 +34,10 @@ Vec3f worldNormal(const Record& r, const Vec3f& kernel) {
 // Returns by what the direction of a ray is multiplied before the kernel gets it: a power of two
 // for very short directions, else 1. Embree treats components below 1e-18 as 1e-18, so rays with
 // such directions would pass between triangles.
-float directionScale(const RTray& ray) {
+inline float directionScale(const RTray& ray) {
   const float most = largest(abs(vectorOf(ray.direction)));
-  if (!(most > 0 && most < 0x1p-20f)) return 1;
+  if (!(most < 0x1p-20f && most > 0)) [[likely]]
+    return 1;
   return std::ldexp(1.0f, std::min(-std::ilogb(most), 126));
 }
 
@@ -58,23 +59,29 @@ bool areCoherent(const Rays& rays, float sceneSize) {
   return close >= pairs - 2; // a scan line may end between two rays
 }
 
-template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& f) {
+// Calls f(block) for the numbers below `count`, on all threads.
+template <class F> void parallelFor(uint32_t threads, size_t count, const F& f) {
   tbb::task_arena arena{int(threads)};
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, (count + block - 1) / block, 1),
-                      [&](const auto& range) {
-                        for (size_t b = range.begin(); b < range.end(); b++)
-                          f(b * block, std::min(block, count - b * block));
-                      });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1), [&](const auto& range) {
+      for (size_t b = range.begin(); b < range.end(); b++) f(b);
+    });
   });
+}
+
+template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& f) {
+  parallelFor(threads, (count + block - 1) / block,
+              [&](size_t b) { f(b * block, std::min(block, count - b * block)); });
 }
 
 } // namespace
 
-void LocalBackend::loadRays(std::span<const RTray> rays, size_t first, Rays& to) const {
+void LocalBackend::loadRays(std::span<const RTray> rays, const RayOrder::Block& block,
+                            Rays& to) const {
+  const Vec3d origin = vectorOf(snapshot_->origin);
   for (uint32_t i = 0; i < to.count; i++) {
-    const RTray& ray = rays[first + i];
-    store(Vec3f(Vec3d(vectorOf(ray.origin)) - vectorOf(snapshot_->origin)), to.org, i);
+    const RTray& ray = rays[block.first + block.offset[i]];
+    store(Vec3f(Vec3d(vectorOf(ray.origin)) - origin), to.org, i);
     const float scale = directionScale(ray);
     store(scale * vectorOf(ray.direction), to.dir, i);
     to.tnear[i] = ray.tnear / scale;
@@ -84,18 +91,23 @@ void LocalBackend::loadRays(std::span<const RTray> rays, size_t first, Rays& to)
 }
 
 void LocalBackend::forBatches(
-    std::span<const RTray> rays,
-    const std::function<void(size_t first, Arena& arena, Rays& batch)>& use) {
-  prepare();
+    std::span<const RTray> rays, float sceneSize,
+    const std::function<void(const RayOrder::Block& block, Arena& arena, Rays& batch)>& use) {
   // Memory that is given back after each block would cost a tenth of the time of coherent rays.
-  tbb::enumerable_thread_specific<Arena> arenas;
-  parallelBlocks(threads_, rays.size(), [&](size_t first, size_t n) {
-    Arena& arena = arenas.local();
-    ArenaScope scope(arena);
+  struct Memory {
+    Arena arena;
+    RayOrder::Block block;
+  };
+  tbb::enumerable_thread_specific<Memory> memories;
+  const RayOrder order(rays, sceneSize);
+  parallelFor(threads_, order.blocks(), [&](size_t number) {
+    Memory& own = memories.local();
+    ArenaScope scope(own.arena);
+    order.get(number, own.block);
     Rays batch;
-    batch.allocate(arena, uint32_t(n));
-    loadRays(rays, first, batch);
-    use(first, arena, batch);
+    batch.allocate(own.arena, own.block.count);
+    loadRays(rays, own.block, batch);
+    use(own.block, own.arena, batch);
   });
 }
 
@@ -110,6 +122,15 @@ const ExactScene& LocalBackend::exact() {
     exactIsFormer_ = false;
   }
   return *exact_;
+}
+
+const ClosedBodies& LocalBackend::closedBodies() {
+  prepare();
+  if (!bodies_ || bodiesAreFormer_) {
+    bodies_ = std::make_unique<const ClosedBodies>(*accel_, bodies_.get());
+    bodiesAreFormer_ = false;
+  }
+  return *bodies_;
 }
 
 bool LocalBackend::loadExact(const RTray& ray, ExactRay& to) const {
@@ -151,11 +172,11 @@ bool LocalBackend::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i
 
 template <class Take>
 std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, const Take& take) {
-  prepare();
+  const ClosedBodies& bodies = closedBodies();
   const Doubts doubts(*accel_);
   std::vector<uint8_t> again(rays.size());
   std::atomic<bool> any{false};
-  forBatches(rays, [&](size_t first, Arena& arena, Rays& batch) {
+  forBatches(rays, doubts.size, [&](const RayOrder::Block& block, Arena& arena, Rays& batch) {
     RayHits found;
     found.allocate(arena, batch.count);
     const Coherence coherence =
@@ -165,10 +186,15 @@ std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, cons
     auto* suspects = arena.take<uint8_t>(batch.count);
     doubts.suspect(batch, found, suspects);
     for (uint32_t i = 0; i < batch.count; i++) {
+      const size_t ray = block.first + block.offset[i];
+      take(ray, found, i);
       // A ray that hits nothing is a suspect: its t is infinite.
-      if (suspects[i] || accel_->records[found.record[i]].instanced)
-        some |= again[first + i] = isDoubtful(doubts, batch, i, found);
-      take(first + i, found, i);
+      if (!suspects[i] && !Doubts::hidesFront(accel_->records[found.record[i]])) continue;
+      if (isDoubtful(doubts, batch, i, found) ||
+          (found.record[i] != noHit && bodies.denies(batch, i, found))) {
+        again[ray] = 1;
+        some = true;
+      }
     }
     if (some) any = true;
   });
@@ -180,7 +206,7 @@ void LocalBackend::castRays(std::span<const RTray> rays, std::span<RThit> hits) 
   const std::vector<uint8_t> again =
       findNearest(rays, [&](size_t ray, const RayHits& found, uint32_t i) {
         hits[ray] = hitOf(found, i);
-        hits[ray].t *= directionScale(rays[ray]);
+        if (const float scale = directionScale(rays[ray]); scale != 1) hits[ray].t *= scale;
       });
   if (again.empty()) return;
   const ExactScene& scene = exact();
@@ -252,13 +278,17 @@ void LocalBackend::listHits(std::span<const RTray> rays, std::span<const size_t>
       [&](size_t i) { write(i, {}, {}); });
 }
 
-void LocalBackend::closestPoints(std::span<const float> points, float radius,
-                                 std::span<RTclosest> closest) {
+void LocalBackend::requireNoAnalytic() {
   prepare();
   for (const Record& r : accel_->records)
     if (r.surface)
       throw std::runtime_error("the scene has a quadric or an asphere, whose closest points cannot "
                                "be found: make it of triangles, or leave it out");
+}
+
+void LocalBackend::closestPoints(std::span<const float> points, float radius,
+                                 std::span<RTclosest> closest) {
+  requireNoAnalytic();
   const Vec3d origin = vectorOf(snapshot_->origin);
   const std::vector<uint32_t> round = accel_->spheres();
   parallelBlocks(threads_, closest.size(), [&](size_t first, size_t n) {

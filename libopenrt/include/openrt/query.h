@@ -120,6 +120,12 @@ typedef struct RTclosest {
  * coordinates), up to a distance of radius (> 0; infinity is allowed), on triangles and spheres.
  * Points not finite have none. Quadrics and aspheres: RT_INVALID_OPERATION. [context-thread] */
 RT_API void rtClosestPoints(size_t count, const float* points, float radius, RTclosest* closest);
+/* The same in double precision, for points (3 doubles each) within 1e18 and the surfaces of
+ * rtCastRaysd. t is the distance, and tError its error, which includes that another place may truly
+ * be the nearest. uvError and positionError are those of the given place, as the nearest one of its
+ * triangle or sphere. A sphere whose matrix scales its axes differently, by more than 1e-9:
+ * RT_INVALID_OPERATION. [context-thread] */
+RT_API void rtClosestPointsd(size_t count, const double* points, double radius, RThitd* closest);
 
 #ifdef __cplusplus
 }

@@ -47,7 +47,7 @@ Probe probe(const StageContext& context, Vec3f origin) {
     store(probeDirection, ray.dir, 0);
     ray.tnear[0] = 0;
     ray.tfar[0] = std::numeric_limits<float>::infinity();
-    const RayHits hits = findNearest(context, ray, Coherence::incoherent);
+    const RayHits hits = findNearest(context, ray, Coherence::coherent);
     context.counters.secondary++;
     if (hits.record[0] == noHit) break;
     if (const uint16_t medium = (*scene.shaders)[scene.records[hits.record[0]].shader].medium)

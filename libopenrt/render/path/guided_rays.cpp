@@ -170,7 +170,7 @@ void GuidedRays::follow(const PathSamples& samples, uint32_t level, PixelSamples
     Wave wave;
     wave.rays.allocate(context_.arena, n);
     loadWave(queue_, begin, n, wave);
-    intersectWave(context_, Coherence::incoherent, wave);
+    intersectWave(context_, WaveSource::surfaces, wave);
     forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {
       visit(stage, points, bucket, wave.states);
     });

@@ -73,7 +73,7 @@ void Guides::begin(const Rays& camera) {
 }
 
 void Guides::describe(const StageContext& context, Wave& wave, PixelSamples& found) {
-  intersectWave(context, Coherence::coherent, wave);
+  intersectWave(context, WaveSource::camera, wave);
   visit(context, wave, false, found);
 }
 
@@ -87,7 +87,7 @@ void Guides::finish(PixelSamples& found) {
     Wave wave;
     wave.rays.allocate(arena_, n);
     loadWave(queue_, 0, n, wave);
-    intersectWave(context_, Coherence::incoherent, wave);
+    intersectWave(context_, WaveSource::surfaces, wave);
     visit(context_, wave, surface >= mostSurfaces, found);
   }
 }

@@ -71,7 +71,7 @@ void LightTracer::tracePaths(uint32_t first, uint32_t n) {
 void LightTracer::traceWave(Wave& wave) {
   ArenaScope scope(arena_);
   if (sensors_) findCrossings(wave);
-  intersectWave(context_, Coherence::incoherent, wave);
+  intersectWave(context_, level_ == 0 ? WaveSource::lamps : WaveSource::surfaces, wave);
   if (sensors_) addCrossings(wave);
   selectMet(wave);
   forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {

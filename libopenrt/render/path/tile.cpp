@@ -160,7 +160,7 @@ void TileRenderer::follow(Wave& wave, PixelSamples& found) {
 
 void TileRenderer::traceWave(Wave& wave, PixelSamples& found) {
   ArenaScope scope(arena_);
-  intersectWave(context_, level_ == 0 ? Coherence::coherent : Coherence::incoherent, wave);
+  intersectWave(context_, level_ == 0 ? WaveSource::camera : WaveSource::surfaces, wave);
   if (scattersInMedia()) scatterInMedia(wave, found);
   addEnvironment(context_, wave, unsampled_, found);
   const auto shade = shadings[size_t(traitsOf(scene_.frame.transport).shading)];

@@ -18,8 +18,27 @@ void loadWave(const RayQueue& queue, size_t begin, uint32_t n, Wave& wave) {
   wave.states = queue.statesFrom(begin);
 }
 
-void intersectWave(const StageContext& context, Coherence coherence, Wave& wave) {
-  wave.hits = findNearest(context, wave.rays, coherence);
+// Returns for each ray whether it may be aimed at a vertex (WaveSource). A miss within a medium
+// would be a leak in any case, unless the body is open.
+static const uint8_t* findAimed(const StageContext& context, WaveSource source, const Wave& wave) {
+  const uint32_t n = wave.rays.count;
+  auto* aimed = context.arena.take<uint8_t>(n);
+  const bool fromSurfaces = source == WaveSource::surfaces;
+  if (fromSurfaces && context.scene.enclosed) {
+    std::fill_n(aimed, n, uint8_t(1));
+    return aimed;
+  }
+  for (uint32_t i = 0; i < n; i++)
+    aimed[i] = wave.states.media[i][0] != 0 || (fromSurfaces && wave.states.pdf[i] == 0);
+  return aimed;
+}
+
+void intersectWave(const StageContext& context, WaveSource source, Wave& wave) {
+  if (source == WaveSource::camera)
+    wave.hits = findNearest(context, wave.rays, Coherence::coherent);
+  else
+    wave.hits =
+        findNearest(context, wave.rays, Coherence::incoherent, findAimed(context, source, wave));
   absorbAlongRays(context.scene, wave.rays, wave.hits, wave.states);
   splitByHit(context.arena, wave);
 }

@@ -22,9 +22,18 @@ struct Wave {
 // tfar of at least n elements.
 void loadWave(const RayQueue& queue, size_t begin, uint32_t n, Wave& wave);
 
+// Where the rays of a wave come from, which tells which of them may be aimed exactly at vertices of
+// a mesh, where single precision loses hits.
+//   camera    all: they follow the pixels' pattern
+//   surfaces  those that mirrors, glass and openings send on, those within media, and all where
+//   rays
+//             seldom leave the scene (RenderScene::enclosed), so that it costs nothing
+//   lamps     those within media, because the others have random directions
+enum class WaveSource : uint8_t { camera, surfaces, lamps };
+
 // Finds the nearest hit of each ray, looks through culled backs, attenuates the throughputs by the
 // media along the rays, and lists the rays that missed and met. The hits lie in the arena.
-void intersectWave(const StageContext& context, Coherence coherence, Wave& wave);
+void intersectWave(const StageContext& context, WaveSource source, Wave& wave);
 
 // Lists the rays of a wave that hit nothing, and the others, in the order of the lanes.
 void splitByHit(Arena& arena, Wave& wave);

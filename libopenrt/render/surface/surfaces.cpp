@@ -1,6 +1,8 @@
 #include "render/surface/surfaces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace openrt {
 
@@ -41,12 +43,35 @@ void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counte
   }
 }
 
-RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence) {
+RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence,
+                    const uint8_t* aimed) {
   RayHits hits;
   hits.allocate(context.arena, rays.count);
   context.scene.kernel->intersect(rays, maskAll, coherence, hits);
+  if (aimed) context.scene.kernel->findLost(rays, aimed, hits);
   skipCulledBacks(context.scene, context.arena, context.counters, rays, hits);
   return hits;
+}
+
+// The directions are those of a Fibonacci lattice on the sphere (Gonzalez, "Measurement of areas on
+// a sphere using Fibonacci and latitude-longitude lattices", 2010).
+bool isEnclosed(const RenderScene& scene) {
+  constexpr uint32_t count = 128, most = count / 32;
+  constexpr double golden = 2.39996322972865332; // angle in radians
+  Arena arena;
+  Rays rays;
+  rays.allocate(arena, count);
+  for (uint32_t i = 0; i < count; i++) {
+    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z), turn = golden * i;
+    store(scene.eye, rays.org, i);
+    store(Vec3f(Vec3d{r * std::cos(turn), r * std::sin(turn), z}), rays.dir, i);
+    rays.tnear[i] = 0;
+    rays.tfar[i] = std::numeric_limits<float>::infinity();
+  }
+  RayHits hits;
+  hits.allocate(arena, count);
+  scene.kernel->intersect(rays, maskAll, Coherence::incoherent, hits);
+  return std::count(hits.record, hits.record + count, noHit) <= most;
 }
 
 void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked) {

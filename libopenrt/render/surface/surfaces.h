@@ -16,8 +16,11 @@ Rays copyRays(const Rays& rays, const uint32_t* rayLanes, uint32_t n, Arena& are
 void skipCulledBacks(const RenderScene& scene, Arena& arena, RayCounters& counters,
                      const Rays& rays, RayHits& hits);
 // Finds the nearest hit of each ray, as if culled back faces did not exist. The hits lie in the
-// arena.
-RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence);
+// arena. aimed: which of incoherent rays may be aimed at vertices (Intersector::findLost); or null.
+RayHits findNearest(const StageContext& context, const Rays& rays, Coherence coherence,
+                    const uint8_t* aimed = nullptr);
+// Returns whether rays from the eye in all directions seldom leave the scene.
+bool isEnclosed(const RenderScene& scene);
 // Sets blocked[i] to 1 if anything but a culled back face lies within the interval of ray i, else
 // to 0. Transparent surfaces, lines and points block as well.
 void findBlocked(const RenderScene& scene, const Rays& rays, uint8_t* blocked);

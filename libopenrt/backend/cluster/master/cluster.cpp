@@ -280,6 +280,10 @@ class ClusterBackend final : public Backend, public SurfaceQueries, private Work
                    std::span<RThitd> hits) override {
     ask([&](Backend& backend) { surfaces(backend).listPrecise(rays, first, hits); });
   }
+  void closestPrecise(std::span<const double> points, double radius,
+                      std::span<RThitd> closest) override {
+    ask([&](Backend& backend) { surfaces(backend).closestPrecise(points, radius, closest); });
+  }
 
  private:
   struct FrameInFlight { // a frame that was started

@@ -33,6 +33,7 @@ class Accel final : public Intersector {
 
   void intersect(const Rays& rays, uint32_t mask, Coherence coherence,
                  RayHits& hits) const override;
+  void findLost(const Rays& rays, const uint8_t* aimed, RayHits& hits) const override;
   // Intersects without the search for hits that are lost at vertices.
   void intersectInSinglePrecision(const Rays& rays, uint32_t mask, Coherence coherence,
                                   RayHits& hits) const;
@@ -106,7 +107,9 @@ class Accel final : public Intersector {
   bool mayHaveLeaked(const Rays& rays, uint32_t i) const;
   template <class Open, class Found> void searchLost(const Rays& rays, const Open& isOpen,
                                                      const Trace& trace, const Found& found) const;
-  void findLostHits(const Rays& rays, const Trace& trace, RayHits& hits) const;
+  // aimed: null for all rays.
+  void findLostHits(const Rays& rays, const uint8_t* aimed, const Trace& trace,
+                    RayHits& hits) const;
   void findLostBlockers(const Rays& rays, const Trace& trace, uint8_t* blocked) const;
   // Maps Embree's ids to record and primitive.
   static PrimitiveId find(const PartScene& scene, uint32_t instance, uint32_t geometry,

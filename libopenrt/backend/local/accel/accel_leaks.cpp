@@ -114,9 +114,10 @@ template <class Open, class Found> void Accel::searchLost(const Rays& rays, cons
   if (again.count) flush();
 }
 
-void Accel::findLostHits(const Rays& rays, const Trace& trace, RayHits& hits) const {
+void Accel::findLostHits(const Rays& rays, const uint8_t* aimed, const Trace& trace,
+                         RayHits& hits) const {
   searchLost(
-      rays, [&](uint32_t i) { return hits.record[i] == noHit; }, trace,
+      rays, [&](uint32_t i) { return hits.record[i] == noHit && (!aimed || aimed[i]); }, trace,
       [&](uint32_t lane, const RayHits& lost, uint32_t i) {
         const RaySegment ray{Vec3d(load(rays.org, lane)), Vec3d(load(rays.dir, lane)),
                              rays.tnear[lane], rays.tfar[lane]};
@@ -129,6 +130,15 @@ void Accel::findLostHits(const Rays& rays, const Trace& trace, RayHits& hits) co
         hits.record[lane] = lost.record[i];
         hits.primitive[lane] = lost.primitive[i];
       });
+}
+
+void Accel::findLost(const Rays& rays, const uint8_t* aimed, RayHits& hits) const {
+  findLostHits(
+      rays, aimed,
+      [&](const Rays& again, RayHits& found) {
+        intersectInSinglePrecision(again, maskAll, Coherence::incoherent, found);
+      },
+      hits);
 }
 
 void Accel::findLostBlockers(const Rays& rays, const Trace& trace, uint8_t* blocked) const {

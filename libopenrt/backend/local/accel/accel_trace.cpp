@@ -239,7 +239,7 @@ void Accel::intersect(const Rays& rays, uint32_t mask, Coherence coherence, RayH
   intersectInSinglePrecision(rays, mask, coherence, hits);
   if (coherence == Coherence::incoherent) return;
   findLostHits(
-      rays,
+      rays, nullptr,
       [&](const Rays& again, RayHits& found) {
         intersectInSinglePrecision(again, mask, coherence, found);
       },
@@ -251,7 +251,7 @@ void Accel::intersectFronts(const Rays& rays, uint32_t mask, RayHits& hits) cons
     intersectFiltered(some, mask, rejectBacks, nullptr, found);
   };
   trace(rays, hits);
-  findLostHits(rays, trace, hits);
+  findLostHits(rays, nullptr, trace, hits);
 }
 
 void Accel::intersectOthers(const Rays& rays, const uint32_t* record, RayHits& hits) const {

@@ -91,6 +91,37 @@ void CandidateScene::visit(const FrameRay& ray, CandidateVisitor& visitor) const
   intersect1(scene_, hit, query);
 }
 
+namespace {
+
+struct NearSearch {
+  CandidateVisitor* visitor;
+  float slack; // what the point and the distance round by
+};
+
+float radiusOf(double distance, float slack) {
+  return float(std::min(distance * (1 + 0x1p-20), 1e30)) + slack;
+}
+
+bool visitPrimitive(RTCPointQueryFunctionArguments* a) {
+  const NearSearch& search = *static_cast<const NearSearch*>(a->userPtr);
+  const float radius = radiusOf(search.visitor->visit(a->primID), search.slack);
+  if (!(radius < a->query->radius)) return false;
+  a->query->radius = radius;
+  return true;
+}
+
+} // namespace
+
+void CandidateScene::visitNear(const Vec3d& point, double distance,
+                               CandidateVisitor& visitor) const {
+  const Vec3f p(point);
+  NearSearch search{&visitor, 0x1p-20f * (1 + largest(abs(p)))};
+  RTCPointQuery query{p.x, p.y, p.z, 0, radiusOf(distance, search.slack)};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene_, &query, &context, visitPrimitive, &search);
+}
+
 double unitOf(double length) {
   return length > 0 && std::isfinite(length) ? std::exp2(-std::ilogb(length) - 1) : 1;
 }

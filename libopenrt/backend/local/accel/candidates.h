@@ -47,6 +47,9 @@ class CandidateScene {
   // it passes within 1e-6. Coordinates of the origin above 2^30 are too large for that promise.
   // [any thread]
   void visit(const FrameRay& ray, CandidateVisitor& visitor) const;
+  // Calls the visitor for every box within a distance of a point, and for a few beyond. The visitor
+  // returns the distance that still interests it. [any thread]
+  void visitNear(const Vec3d& point, double distance, CandidateVisitor& visitor) const;
 
  private:
   RTCScene scene_ = nullptr;

@@ -47,8 +47,11 @@ struct Doubts {
   static bool isGrazing(const Record& r, const Vec3f& kernelNormal, const Vec3f& direction) {
     return grazes(r.instanced ? r.kernelNormal * kernelNormal : kernelNormal, direction);
   }
-  // Writes for each ray whether hit() or miss() may hold. It knows no records: where the record of
-  // a hit is instanced, only hit() tells. A loop without branches, which the compiler vectorizes.
+  // Returns whether suspect() does not know the front of a record's triangles.
+  static bool hidesFront(const Record& r) { return r.instanced | r.flip; }
+  // Writes for each ray whether hit() or miss() may hold, or the hit is on a back, so that
+  // ClosedBodies may deny it. It knows no records: see hidesFront(). A loop without branches, which
+  // the compiler vectorizes.
   void suspect(const Rays& rays, const RayHits& hits, uint8_t* __restrict suspects) const {
     const float *ox = rays.org[0], *oy = rays.org[1], *oz = rays.org[2], *dx = rays.dir[0],
                 *dy = rays.dir[1], *dz = rays.dir[2], *nx = hits.ng[0], *ny = hits.ng[1],
@@ -61,8 +64,8 @@ struct Doubts {
                   size = largest(abs(d));
       const bool inside = std::min(std::min(u, v), 1 - u - v) >= 0x1p-12f,
                  apart = ((t - near[i]) * size > slack) & ((far[i] - t) * size > slack),
-                 steep = along * along > 0x1p-12f * dot(n, n) * dot(d, d);
-      suspects[i] = !(inside & apart & steep);
+                 steep = along * along > 0x1p-12f * dot(n, n) * dot(d, d), front = along < 0;
+      suspects[i] = !(inside & apart & steep & front);
     }
   }
   // Only triangles have edges. Analytic surfaces are met in double precision, at any angle.

@@ -299,15 +299,18 @@ PrecisePlace PreciseScene::place(const Hit& hit, const PreciseRay& ray) const {
   return onTriangle.error < onRay.error ? onTriangle : onRay;
 }
 
-// Mirrored triangles keep their front side: their corners run clockwise in the world.
 Vec3d PreciseScene::normal(const Hit& hit, const PreciseRay& ray) const {
-  const Surface& surface = surfaces_[surfaceOf_[hit.record]];
+  return normalAt(surfaces_[surfaceOf_[hit.record]], hit.primitive, ray.at(hit.at.t));
+}
+
+// Mirrored triangles keep their front side: their corners run clockwise in the world.
+Vec3d PreciseScene::normalAt(const Surface& surface, uint32_t primitive, const Vec3d& place) const {
   Vec3d n;
   if (surface.mesh) {
-    const PlacedTriangle s = surface.triangle(hit.primitive);
+    const PlacedTriangle s = surface.triangle(primitive);
     n = cross(Vec3d(s.b) - Vec3d(s.a), Vec3d(s.c) - Vec3d(s.a));
   } else {
-    n = surface.inverse.direction(ray.at(hit.at.t) - surface.world.translation());
+    n = surface.inverse.direction(place - surface.world.translation());
     if (surface.analytic) {
       Vec3d gradient;
       surface.analytic->valueAt(n, gradient);
@@ -316,6 +319,102 @@ Vec3d PreciseScene::normal(const Hit& hit, const PreciseRay& ray) const {
   }
   n = surface.inverse.transposed(normalize(n));
   return normalize(surface.clockwise && (surface.mesh || surface.analytic) ? -n : n);
+}
+
+// Collects the closest place. The least distance that any other may truly have is `others`.
+class PreciseScene::ClosestVisitor final : public CandidateVisitor {
+ public:
+  const Vec3d point;
+  const Surface* surface = nullptr; // whose triangles are visited
+  const Surface* foundOn = nullptr;
+  Closest found;
+  double reach, others = infinite; // reach: what is farther is of no interest
+  ClosestVisitor(const Vec3d& p, double radius) : point(p), reach(radius), radius_(radius) {}
+  double visit(uint32_t triangle) override {
+    if (surface->mesh->isInRange(triangle))
+      if (const auto at = closestOnTriangle(point, surface->triangle(triangle), reach))
+        add(triangle, *at);
+    return reach * surface->frame.stretch() + slack;
+  }
+  void add(uint32_t primitive, const PreciseClosest& at) {
+    if (!(at.distance <= radius_)) return;
+    double other = at.distance - at.distanceError;
+    const auto key = [](const PreciseClosest& c, uint32_t record, uint32_t number) {
+      return std::tuple(c.distance, record, number);
+    };
+    if (!foundOn ||
+        key(at, surface->record, primitive) < key(found.at, found.record, found.primitive)) {
+      if (foundOn)
+        other = found.at.distance - found.at.distanceError;
+      else
+        other = infinite;
+      found.record = surface->record;
+      found.primitive = primitive;
+      found.at = at;
+      foundOn = surface;
+    }
+    others = std::min(others, other);
+    reach = std::min(radius_, found.at.distance + found.at.distanceError);
+  }
+  double slack = 0; // in the frame of the surface
+
+ private:
+  double radius_;
+};
+
+void PreciseScene::approach(const Surface& surface, ClosestVisitor& to) const {
+  to.surface = &surface;
+  if (!surface.mesh) {
+    const ClosestOnSphere at = closestOnSphere(to.point, surface.world, surface.radius);
+    return to.add(0, {at.distance, 0, 0, at.distanceError, 0});
+  }
+  const SearchFrame::Spot spot = surface.frame.spotOf(to.point);
+  // Points so far away that boxes tell nothing, and frames that rounding spoils.
+  if (!surface.mesh->boxes || !(spot.error <= 1) || !(largest(abs(spot.point)) <= 1e6)) {
+    for (uint32_t t = 0; t < surface.mesh->count; t++) to.visit(t);
+    return;
+  }
+  to.slack = 2 * spot.error;
+  surface.mesh->boxes->visitNear(spot.point, to.reach * surface.frame.stretch() + to.slack, to);
+}
+
+bool PreciseScene::closest(const Vec3d& point, double radius, Closest& found) const {
+  // The surface whose box is nearest comes first, so that most others need not be searched.
+  const auto distanceTo = [&](const Surface& s) {
+    const Vec3d outside = max(max(s.box.low - point, point - s.box.high), Vec3d{});
+    const double error =
+        0x1p-40 * (largest(abs(point)) + largest(max(abs(s.box.low), abs(s.box.high))));
+    return length(outside) - 4 * error;
+  };
+  const Surface* first = nullptr;
+  double least = infinite;
+  for (const Surface& s : surfaces_)
+    if (const double d = distanceTo(s); !s.analytic && d < least) {
+      least = d;
+      first = &s;
+    }
+  if (!first || !(least <= radius)) return false;
+  ClosestVisitor visitor(point, radius);
+  approach(*first, visitor);
+  for (const Surface& s : surfaces_)
+    if (&s != first && !s.analytic && distanceTo(s) <= visitor.reach) approach(s, visitor);
+  if (!visitor.foundOn) return false;
+  found = visitor.found;
+  // The true distance is not below the least of all.
+  found.at.distanceError =
+      std::max(found.at.distanceError, (found.at.distance - visitor.others) * (1 + 0x1p-50));
+  const Surface& on = *visitor.foundOn;
+  found.place = on.mesh ? placeOnTriangle(on.triangle(found.primitive),
+                                          {0, found.at.u, found.at.v, 0, found.at.uvError})
+                        : closestOnSphere(point, on.world, on.radius).place;
+  found.normal = normalAt(on, found.primitive, found.place.point);
+  return true;
+}
+
+uint32_t PreciseScene::unevenSphere() const {
+  for (const Surface& s : surfaces_)
+    if (!s.mesh && !s.analytic && shapeOf(s.world).uneven > 1e-9) return s.record;
+  return noHit;
 }
 
 } // namespace openrt

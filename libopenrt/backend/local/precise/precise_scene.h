@@ -13,6 +13,7 @@
 #include "backend/local/accel/accel.h"
 #include "backend/local/accel/crossing_collectors.h"
 #include "backend/local/accel/survey.h"
+#include "backend/local/precise/closest.h"
 #include "backend/local/precise/search_frame.h"
 
 namespace openrt {
@@ -40,6 +41,18 @@ class PreciseScene {
   bool occluded(const PreciseRay& ray) const;
   void all(const PreciseRay& ray, std::vector<Hit>& hits) const; // in order of t
   size_t count(const PreciseRay& ray) const;
+  struct Closest {
+    uint32_t record = noHit, primitive = 0;
+    PreciseClosest at;
+    PrecisePlace place; // of the surface that is given, if another one may be as near
+    Vec3d normal;
+  };
+  // Finds the place of a triangle or sphere that is closest to a point, up to a distance. Returns
+  // false if there is none.
+  bool closest(const Vec3d& point, double radius, Closest& found) const;
+  // Returns the record of a sphere that is none any more, because its matrix scales it unevenly;
+  // noHit if there is none.
+  uint32_t unevenSphere() const;
   // Returns the place of a hit in the world, and a bound of the error of its components.
   PrecisePlace place(const Hit& hit, const PreciseRay& ray) const;
   // Returns the unit normal in the world, on the front side.
@@ -52,6 +65,7 @@ class PreciseScene {
   class Nearest;
   class MeshVisitor;
   class TopVisitor;
+  class ClosestVisitor;
   using Key = std::pair<const Array*, const Array*>; // points and indices
 
   void addSurfaces(const EmbreeDevice& device, const Input& input, uint32_t cluster,
@@ -68,6 +82,8 @@ class PreciseScene {
   double meetMesh(const Surface& surface, const PreciseRay& ray, Collector& to) const;
   double meetSphere(const Surface& surface, const PreciseRay& ray, Collector& to) const;
   double meetAnalytic(const Surface& surface, const PreciseRay& ray, Collector& to) const;
+  void approach(const Surface& surface, ClosestVisitor& to) const;
+  Vec3d normalAt(const Surface& surface, uint32_t primitive, const Vec3d& place) const;
 
   std::map<Key, std::shared_ptr<const Mesh>> meshes_; // each once, however often it is placed
   std::vector<Surface> surfaces_;

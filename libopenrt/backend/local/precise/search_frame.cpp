@@ -19,6 +19,20 @@ constexpr long double mostForBall = 0.125L;
 
 long double sumOf(const Long& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
 
+// The squares of the singular values of the matrix with the rows x, y, z are the eigenvalues of the
+// matrix of their products; the largest one has a closed form (O. Smith, Eigenvalues of a symmetric
+// 3 x 3 matrix, CACM 4(4), 1961).
+double largestStretch(const Vec3d& x, const Vec3d& y, const Vec3d& z) {
+  const double xx = dot(x, x), yy = dot(y, y), zz = dot(z, z), xy = dot(x, y), yz = dot(y, z),
+               zx = dot(z, x), mean = (xx + yy + zz) / 3;
+  const Vec3d off{xx - mean, yy - mean, zz - mean};
+  const double p = std::sqrt((dot(off, off) + 2 * (xy * xy + yz * yz + zx * zx)) / 6);
+  if (!(p > 0)) return std::sqrt(mean);
+  const Vec3d a{off.x, xy, zx}, b{xy, off.y, yz}, c{zx, yz, off.z};
+  const double r = std::clamp(dot(a, cross(b, c)) / (2 * p * p * p), -1.0, 1.0);
+  return std::sqrt(mean + 2 * p * std::cos(std::acos(r) / 3));
+}
+
 } // namespace
 
 SearchFrame::SearchFrame(const Matrix4d& toWorld, const Vec3d& center, double unit) {
@@ -37,7 +51,16 @@ SearchFrame::SearchFrame(const Matrix4d& toWorld, const Vec3d& center, double un
   // The determinant errs by its products, and so does every row by its own.
   const long double relative =
       rounding * 6 * extent(x) * extent(y) * extent(z) / std::fabs(determinant);
+  stretch_ = largestStretch(Vec3d(inverse_.x), Vec3d(inverse_.y), Vec3d(inverse_.z)) * (1 + 1e-6);
   inverseError_ = 6 * rounding * products * std::fabs(factor) + 2 * relative * size_;
+}
+
+SearchFrame::Spot SearchFrame::spotOf(const Vec3d& point) const {
+  const Long from = Long(point) - center_;
+  const long double extent = largest(abs(Long(point))) + largest(abs(center_)),
+                    error = inverseError_ * largest(abs(from)) +
+                            size_ * (centerError_ + rounding * extent);
+  return {Vec3d(inverse_ * from), double(error)};
 }
 
 SearchFrame::Way SearchFrame::wayOf(const PreciseRay& ray, double far) const {

@@ -33,12 +33,22 @@ class SearchFrame {
   // far: as the ray's, or nearer.
   Way wayOf(const PreciseRay& ray, double far) const;
 
+  // A point in the frame; no component is off by more than the error.
+  struct Spot {
+    Vec3d point;
+    double error;
+  };
+  Spot spotOf(const Vec3d& point) const;
+  // Returns how much longer lengths of the world can be in the frame.
+  double stretch() const { return stretch_; }
+
  private:
   using Long = Vec3<long double>;
   Rows<long double> inverse_; // from the world, after the subtraction of center_
   Long center_;               // in the world
   // Bounds of the errors, as sums over a row: of inverse_, and of center_.
   long double size_ = 0, inverseError_ = 0, centerError_ = 0;
+  double stretch_ = 1;
 };
 
 } // namespace openrt

@@ -1,0 +1,69 @@
+"""Which triangles a ray crosses, and where, in exact rational arithmetic: what ray queries with
+precision="double" are compared with. It shares no code with them.
+"""
+import math
+from fractions import Fraction
+
+# The origin of a ray through an edge or a vertex is moved by (E, E^2, E^3). That is so small that it
+# decides nothing else: all numbers are whole multiples of 2^-1074.
+E = Fraction(1, 2**5000)
+
+
+def minus(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def rational(numbers):
+    return [Fraction(float(x)) for x in numbers]
+
+
+def moved(matrix, point):
+    """Returns the true image of a point."""
+    return [dot(row[:3], point) + row[3] for row in matrix]
+
+
+class Crossing:
+    """The true crossing of a ray and the plane of a triangle."""
+
+    def __init__(self, ray, corners):
+        origin, direction = ray[:3], ray[3:]
+        a, b, c = corners
+        self.normal = cross(minus(b, a), minus(c, a))
+        along = dot(self.normal, direction)
+        self.hit = along != 0
+        if not self.hit:
+            return
+        self.t = dot(self.normal, minus(a, origin)) / along
+        self.point = [o + self.t * d for o, d in zip(origin, direction)]
+        square = dot(self.normal, self.normal)
+        at = minus(self.point, a)
+        self.u = dot(cross(at, minus(c, a)), self.normal) / square
+        self.v = dot(cross(minus(b, a), at), self.normal) / square
+        least = min(self.u, self.v, 1 - self.u - self.v)
+        self.hit, self.tie = least > 0, least == 0
+        if self.tie:
+            shift = (E, E * E, E * E * E)
+            start = [x + e for x, e in zip(origin, shift)]
+            t = dot(self.normal, minus(a, start)) / along
+            at = [x + t * d for x, d in zip(start, direction)]
+            self.hit = min(
+                dot(cross(minus(q, p), minus(at, p)), self.normal)
+                for p, q in ((a, b), (b, c), (c, a))) > 0
+
+
+def crossings(ray, corners, triangles, near=0, far=math.inf):
+    """Returns the true crossings of a ray by triangle."""
+    ray, found = rational(ray), {}
+    for n, triangle in enumerate(triangles):
+        at = Crossing(ray, [corners[i] for i in triangle])
+        if at.hit and at.t > Fraction(near) and (math.isinf(far) or at.t <= Fraction(far)):
+            found[n] = at
+    return found
