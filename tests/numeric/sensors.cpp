@@ -23,6 +23,18 @@ TEST_F(Sensors, OneCandelaGivesOneLuxAtOneMetre) {
   EXPECT_EQ(read({0, 0, 0}, below).value, 0) << "the light comes from behind";
 }
 
+// Without surfaces and sky no random path can find light.
+TEST_F(Sensors, ALampAloneIsReadExactly) {
+  use(bulb({0, 1.5, 2}, 4 * pi));
+  for (const int samples : {32, 256}) {
+    rtQuality(RT_SAMPLES_PER_PIXEL, samples);
+    const Reading got = read({0, 0, 0}, up);
+    EXPECT_NEAR(got.value, .8 / 6.25, 1e-6);
+    EXPECT_EQ(got.halfWidth, 0);
+    EXPECT_TRUE(got.trusted);
+  }
+}
+
 TEST_F(Sensors, ASensorIsNotSeen) { // neither by the lamp nor by another point of the grid
   lamp(rectangle(.5, 1));
   const double expected = pi * polygon(rectangle(.5, 1));
