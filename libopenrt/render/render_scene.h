@@ -121,7 +121,7 @@ struct RenderScene {
   std::shared_ptr<const LightSources>
       lightSources; // light tracing; null if there is nothing to trace
   // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the
-  // scene scatters.
+  // scene fills space (fillsSpace()).
   std::vector<MediumLights> mediumLights;
   // Guides camera paths to emissive shapes by way of specular surfaces; null: there is nothing to
   // guide to, or too few samples are taken.

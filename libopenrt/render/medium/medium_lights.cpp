@@ -1,6 +1,7 @@
 #include "render/medium/medium_lights.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "render/surface/media.h"
 #include "scene/transports.h"
@@ -26,20 +27,29 @@ std::vector<Vec3f> lampsOf(const RenderScene& scene, uint32_t set) {
 
 } // namespace
 
+bool fillsSpace(const RenderScene& scene, const ShaderSlot& shader) {
+  if (!shader.medium) return false;
+  const RtsMedium& medium = scene.shaders->media()[shader.medium - 1];
+  const auto absorbs = [](float a) { return a != 0; };
+  return scatters(medium) ||
+         ((shader.traits & RTS_MEDIUM_ONLY) &&
+          std::any_of(std::begin(medium.absorption), std::end(medium.absorption), absorbs));
+}
+
 std::vector<MediumLights> findMediumLights(const RenderScene& scene) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   std::vector<MediumLights> lights;
-  if (!tracesPaths(scene.frame.transport) || std::none_of(media.begin(), media.end(), scatters))
-    return lights;
+  if (media.empty() || !tracesPaths(scene.frame.transport)) return lights;
   lights.resize(media.size());
   std::vector<bool> known(media.size());
   bool any = false;
   for (const Record& record : scene.records) {
-    const uint16_t medium = (*scene.shaders)[record.shader].medium;
+    const ShaderSlot& shader = (*scene.shaders)[record.shader];
+    const uint16_t medium = shader.medium;
     if (!medium || known[medium - 1]) continue;
     known[medium - 1] = true;
+    any |= fillsSpace(scene, shader);
     if (!scatters(media[medium - 1])) continue;
-    any = true;
     MediumLights& found = lights[medium - 1];
     found.set = scene.buckets[record.bucket].lightSet;
     found.lamps = lampsOf(scene, found.set);
