@@ -210,3 +210,19 @@ def test_light_paths_reach_sensors_that_have_cells(vv):
     (other, _) = xvrml.load(vv.folder / "mirror.wrl").measure(spp=1024, transport="light")
     values = [p["value"] for p in grid["points"]]
     assert other.values.flatten().tolist() == pytest.approx(values, rel=1e-6)
+
+
+def test_lights_of_groups_are_left_out_and_this_is_said():
+    """The readings are those without the light of the group (docs/photometry.md)."""
+    sun = "DirectionalLight { direction 0 -1 0 }"
+    sensor = "Group { children DEF S ORTSensor { } }"
+    for world, reading, warned in ((sun + sensor, math.pi,
+                                    False), (f"Group {{ children [ {sun} {sensor} ] }}", 0, True),
+                                   (f"Group {{ children {sun} }} {sensor}", 0, False),
+                                   (f"Group {{ children [ {sun[:-1]} on FALSE }} {sensor} ] }}", 0,
+                                    False)):
+        graph = xvrml.loads("#VRML V2.0 utf8\nNavigationInfo { headlight FALSE }\n" + world)
+        (got,) = graph.measure(spp=16)
+        assert got.values[0, 0] == pytest.approx(reading)
+        said = [str(w) for w in graph.warnings if "lights the shapes of that group" in str(w)]
+        assert bool(said) == warned, said
