@@ -67,8 +67,8 @@ void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
     std::fill_n(white.weight[k], padded(n), 1.0f);
     radiance[k] = arena_.takeZero<float>(padded(n));
   }
-  // Where there is nothing to hit and no sky, light comes from the lamps alone: the reading is exact
-  // and needs no random path.
+  // Where there is nothing to hit and no sky, light comes from the lamps alone: the reading is
+  // exact and needs no random path.
   if (scene_.records.empty() && !scene_.skyShines)
     addLamps(batch, radiance);
   else
