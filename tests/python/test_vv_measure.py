@@ -226,3 +226,26 @@ def test_lights_of_groups_are_left_out_and_this_is_said():
         assert got.values[0, 0] == pytest.approx(reading)
         said = [str(w) for w in graph.warnings if "lights the shapes of that group" in str(w)]
         assert bool(said) == warned, said
+
+
+def test_the_way_to_find_light_behind_glass_is_one_that_exists(vv):
+    """In fog no light is followed from lamps, so the warning does not advise it again."""
+    world = """#VRML V2.0 utf8
+NavigationInfo { headlight FALSE }
+Transform { translation 0 3 0 children ORTLight { shader ORTShader {
+  name "Luminaire" file "luminaire" options "1f lumen 1000" } } }
+Transform { translation 0 1.5 0 children Shape { geometry Box { size 2 .1 2 } appearance
+  ORTAppearance { shader ORTShader { name "Glass" file "glass" } } } }
+%s
+DEF S ORTSensor { size 1 1 }
+"""
+    fog = """Shape { geometry Sphere { radius 9 }
+  appearance ORTAppearance { shader ORTShader { name "Fog" file "fog" } } }"""
+    for name, body, expected in (("clear", "", "--transport light follows it"),
+                                 ("fog", fog, "paths start at the camera")):
+        (vv.folder / "w.wrl").write_text(world % body)
+        asked = ("--transport", "light") if body else ()
+        done = vv("w.wrl", "--measure", "out.csv", "--spp", "16", *asked)
+        assert done.returncode == 0, done.talk
+        assert expected in done.talk, name
+        assert (expected == "--transport light follows it") == ("light follows it" in done.talk)

@@ -94,7 +94,7 @@ void avoidLightTracing(const SceneContents& contents, TransportChoice& choice) {
   choice.transport = RT_TRANSPORT_PATH;
   choice.reason =
       std::string(firstOf(contents, hasFog)) +
-      " scatters or absorbs light inside, so paths are followed from the camera and not from lamps";
+      " scatters or absorbs light inside, so paths start at the camera and not at lamps";
 }
 
 // Returns whether the environment emits light. It is evaluated on a coarse grid first. If that is
