@@ -110,6 +110,50 @@ def test_rays_in_the_planes_of_faces_keep_the_parity():
             assert not np.count_nonzero(caster.count_intersections(rays) % 2)
 
 
+@pytest.mark.parametrize("moves", [False, True])
+def test_hits_of_small_bodies_far_away_are_hits(moves):
+    """Single precision errs by more than a hundredth of a triangle that is 10,000 times farther away
+    than it is large. What it takes for a hit there is decided again."""
+    random = np.random.default_rng(8)
+    triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    hit = 0
+    for size in 10.0**random.uniform(-12, 10, 100):
+        points = (random.normal(size=(4, 3)) * size).astype(np.float32)
+        to = np.repeat(points.astype(float), 8, 0)
+        start = random.normal(size=to.shape) * size * 10.0**random.uniform(.7, 4, (len(to), 1))
+        rays = np.concatenate([start, to - start], 1).astype(np.float32)
+        caster = rt.Raycaster(threads=1)
+        caster.add_triangles(points, triangles)
+        if moves:  # an instance
+            caster.update(matrices=np.eye(4)[None])
+        none = caster.count_intersections(rays) == 0
+        found = np.isfinite(caster.cast_rays(rays)["t_hit"])
+        assert not np.any(none & (found | caster.test_occlusions(rays)))
+        hit += np.count_nonzero(found)
+    assert hit > 100
+
+
+def test_triangles_without_area_leave_no_gap_in_double_precision():
+    """A tetrahedron with a vertex in the middle of an edge, closed by a triangle without area. It is
+    closed wherever it is put (docs: in single precision, where no matrix moves it)."""
+    random = np.random.default_rng(4)
+    points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]], np.float32)
+    triangles = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 2, 4], [0, 4, 3], [2, 3, 4]]
+    for moved in (False, True):
+        matrix = np.eye(4)
+        if moved:
+            matrix[:3, :3] = np.linalg.qr(random.normal(size=(3, 3)))[0]
+            matrix[:3, 3] = 1e5, 2e5, 3e5
+        caster = rt.Raycaster(threads=1)
+        caster.add_triangles(points, triangles, matrix)
+        along = np.linspace(0, 2, 200)[:, None] * matrix[:3, 0] + matrix[:3, 3]
+        start = matrix[:3, 3] + random.normal(size=along.shape) * 20
+        rays = np.concatenate([start, along - start], 1)
+        assert not np.any(caster.count_intersections(rays, precision="double") % 2)
+        if not moved:
+            assert not np.any(caster.count_intersections(rays) % 2)
+
+
 def test_parts_of_a_ray_add_up():
     """A crossing at the common end of two parts counts in one of them."""
     vertices, triangles = check_rays.icosphere(1)
