@@ -90,7 +90,10 @@ def test_a_target_that_is_missed_says_what_was_promised_and_reached(room):
 @pytest.mark.parametrize("fields, expected", [
     ('quantity "LUX"', "quantity is ILLUMINANCE or LUMINANCE"),
     ("direction 0 0 0", "direction has no length"),
-    ("columns 4096 rows 4096", "at most 1048576 points"),
+    ("columns 4096 rows 4096 size 1 1", "at most 1048576 points"),
+    ("columns 4 rows 4", "a grid of 4 x 4 points needs a size along both, not 0 x 0"),
+    ("columns 4 rows 4 size 1 0", "needs a size along both, not 1 x 0"),
+    ("columns 4 size 1e-20 1", "nearer together than 1e-13 m"),
 ])
 def test_wrong_sensors_are_refused(vv, fields, expected):
     (vv.folder / "bad.wrl").write_text("#VRML V2.0 utf8\nDEF Bad ORTSensor { %s }\n" % fields)
@@ -174,6 +177,11 @@ def test_python_places_sensors(room):
     assert np.allclose(sensor.direction, (0, 0, 1), atol=1e-6)
     assert np.allclose(sensor.positions[:, 0], [(0, 2.5, 0), (0, 1.5, 0)], atol=1e-5)
     assert math.isclose(float(sensor.values[0, 0]), 0)
+
+
+def test_a_line_of_points_needs_one_size():
+    world = xvrml.loads("#VRML V2.0 utf8\nORTSensor { columns 4 size 2 0 }")
+    assert world.measure(spp=1)[0].positions[0, :, 0].tolist() == [-.75, -.25, .25, .75]
 
 
 MIRROR = """#VRML V2.0 utf8
