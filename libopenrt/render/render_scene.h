@@ -127,6 +127,7 @@ struct RenderScene {
   // guide to, or too few samples are taken.
   std::shared_ptr<const PhotonGuide> photonGuide;
   bool transparentShadows = false; // something transparent may lie between a point and a light
+  bool absorbingShadows = false;   // so may a medium that absorbs
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.
   bool skyKnown = false, skyShines = false;
   RenderHost host;

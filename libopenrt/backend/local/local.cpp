@@ -75,6 +75,8 @@ void LocalBackend::prepare() {
   transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
   next->mediumLights = findMediumLights(*next);
+  next->absorbingShadows =
+      !next->mediumLights.empty() || (next->transparentShadows && hasAbsorption(*next));
   next->emitters.build(*next, snapshot_.get(), recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
       next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {

@@ -9,6 +9,11 @@
 namespace openrt {
 namespace {
 
+bool absorbs(const RtsMedium& medium) {
+  return std::any_of(std::begin(medium.absorption), std::end(medium.absorption),
+                     [](float a) { return a != 0; });
+}
+
 // Returns the positions of the lights of a set; none if more than `LightSampler::few` have one.
 std::vector<Vec3f> lampsOf(const RenderScene& scene, uint32_t set) {
   std::vector<Vec3f> lamps;
@@ -30,10 +35,12 @@ std::vector<Vec3f> lampsOf(const RenderScene& scene, uint32_t set) {
 bool fillsSpace(const RenderScene& scene, const ShaderSlot& shader) {
   if (!shader.medium) return false;
   const RtsMedium& medium = scene.shaders->media()[shader.medium - 1];
-  const auto absorbs = [](float a) { return a != 0; };
-  return scatters(medium) ||
-         ((shader.traits & RTS_MEDIUM_ONLY) &&
-          std::any_of(std::begin(medium.absorption), std::end(medium.absorption), absorbs));
+  return scatters(medium) || ((shader.traits & RTS_MEDIUM_ONLY) && absorbs(medium));
+}
+
+bool hasAbsorption(const RenderScene& scene) {
+  const std::span<const RtsMedium> media = scene.shaders->media();
+  return std::any_of(media.begin(), media.end(), absorbs);
 }
 
 std::vector<MediumLights> findMediumLights(const RenderScene& scene) {

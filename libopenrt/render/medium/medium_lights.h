@@ -11,6 +11,9 @@ namespace openrt {
 // Glass that only absorbs is met by its surface. [commit]
 bool fillsSpace(const RenderScene& scene, const ShaderSlot& shader);
 
+// Returns whether a medium of the scene absorbs light. [commit]
+bool hasAbsorption(const RenderScene& scene);
+
 // Returns by medium the lights that shine on it: those of the first surface that bounds it. Returns
 // nothing if no medium fills space, or if the transport does not follow paths. [commit]
 std::vector<MediumLights> findMediumLights(const RenderScene& scene);
