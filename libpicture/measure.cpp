@@ -36,6 +36,8 @@ Vec turned(const double m[16], Vec v) {
 }
 
 constexpr int mostPoints = 1 << 20; // of one sensor
+// metres between neighbouring points; the camera that reads nearer ones would have no axes
+constexpr double leastStep = 1e-13;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& what) {
   throw SensorError(fmt::format("ORTSensor {}: {}", name, what));
@@ -93,6 +95,9 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
   const double width = double(node.size.x), height = double(node.size.y);
   if (!(width >= 0) || !(height >= 0) || !std::isfinite(width + height))
     refuseThis("size is not below 0");
+  if ((out.columns > 1 && width == 0) || (out.rows > 1 && height == 0))
+    refuseThis(fmt::format("a grid of {} x {} points needs a size along both, not {} x {}",
+                           out.columns, out.rows, width, height));
   const Vec n = given * (1 / length(given)), a = acrossOf(of(node.across), n), b = cross(a, n);
   const double* m = info.matrix;
   const Vec u = turned(m, a), v = turned(m, b), area = cross(v, u);
@@ -108,6 +113,8 @@ PlacedSensor placeSensor(const xvrml::SensorInfo& info) {
   // A point without a size has a cell, too, which gives the camera its axes.
   const double cellWidth = width > 0 ? width / out.columns : 1,
                cellHeight = height > 0 ? height / out.rows : 1;
+  if (!(std::min(length(u) * cellWidth, length(v) * cellHeight) >= leastStep))
+    refuseThis(fmt::format("its points are nearer together than {} m", leastStep));
   store(u * cellWidth, out.column);
   store(v * cellHeight, out.row);
   store(position + u * (cellWidth * (1 - out.columns) * .5) +

@@ -121,12 +121,13 @@ struct RenderScene {
   std::shared_ptr<const LightSources>
       lightSources; // light tracing; null if there is nothing to trace
   // By medium (ShaderTable::media). Empty: the transport does not follow paths, or no medium of the
-  // scene scatters.
+  // scene fills space (fillsSpace()).
   std::vector<MediumLights> mediumLights;
   // Guides camera paths to emissive shapes by way of specular surfaces; null: there is nothing to
   // guide to, or too few samples are taken.
   std::shared_ptr<const PhotonGuide> photonGuide;
   bool transparentShadows = false; // something transparent may lie between a point and a light
+  bool absorbingShadows = false;   // so may a medium that absorbs
   // Whether rays from the eye in all directions seldom leave the scene.
   bool enclosed = false;
   // skyKnown: whether the environment was tested for light. skyShines: whether it emits light.

@@ -33,7 +33,7 @@ Mesh buildCone(const nodes::Cone& node, const MeshOptions& options, Faults& faul
     }
   }
   if (node.bottom) addDisc(mesh, -height / 2, radius, false);
-  if (options.exactShapes) {
+  if (options.exactShapes && hasExactSize(double(radius), double(height))) {
     if (node.side) addExactSide(mesh, radius, 0, -height / 2, height / 2);
     if (node.bottom) addExactDisc(mesh, -height / 2, radius, false);
   }

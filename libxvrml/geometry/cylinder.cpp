@@ -28,7 +28,7 @@ Mesh buildCylinder(const nodes::Cylinder& node, const MeshOptions& options, Faul
   }
   if (node.top) addDisc(mesh, half, radius, true);
   if (node.bottom) addDisc(mesh, -half, radius, false);
-  if (options.exactShapes) {
+  if (options.exactShapes && hasExactSize(double(radius), 2 * double(half))) {
     if (node.side) addExactSide(mesh, radius, radius, -half, half);
     if (node.top) addExactDisc(mesh, half, radius, true);
     if (node.bottom) addExactDisc(mesh, -half, radius, false);

@@ -48,6 +48,11 @@ void addDisc(Mesh& mesh, float y, float radius, bool up) {
 }
 
 // The side is where x^2 + z^2 = (at0 + slope y)^2. Its box cuts it only along the axis.
+bool hasExactSize(double radius, double height) {
+  constexpr double least = 1e-11, most = 9e11; // a margin to the limits of rtQuadric
+  return radius >= least && radius <= most && height >= least && height <= most;
+}
+
 void addExactSide(Mesh& mesh, double lowRadius, double highRadius, double low, double high) {
   const double slope = (highRadius - lowRadius) / (high - low), at0 = lowRadius - slope * low;
   const double r = 1.001 * std::max(lowRadius, highRadius);

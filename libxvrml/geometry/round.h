@@ -19,6 +19,9 @@ void addTriangle(Mesh& mesh, uint32_t a, uint32_t b, uint32_t c);
 // Adds a disc at height y that faces up or down. Its texture is the disc inscribed in the texture
 // square.
 void addDisc(Mesh& mesh, float y, float radius, bool up);
+// Returns whether the ray tracer takes a body of this radius and height as an equation (rtQuadric,
+// rtAsphere). Others are drawn with facets.
+bool hasExactSize(double radius, double height);
 // Add the exact surfaces of the same bodies: the side of a cone or cylinder about the y axis, from
 // y = low to y = high, and a disc that faces up or down.
 void addExactSide(Mesh& mesh, double lowRadius, double highRadius, double low, double high);

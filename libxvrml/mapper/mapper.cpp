@@ -115,7 +115,7 @@ int OpenRTMapper::boundViewpoint() const {
 
 std::vector<SensorInfo> OpenRTMapper::sensors() const {
   impl_->places.updateForFrame(impl_->graph, impl_->camera);
-  return listSensors(impl_->graph, impl_->places);
+  return listSensors(impl_->graph, impl_->places, impl_->world.diagnostics);
 }
 
 CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {

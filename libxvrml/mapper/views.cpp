@@ -66,7 +66,25 @@ std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& plac
   return list;
 }
 
-std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places) {
+namespace {
+// Returns whether a DirectionalLight that is on shines on a group above a place, and only there
+// (clause 6.16).
+bool inScopedLight(const Graph& graph, const Places& places, const Place& place) {
+  for (int32_t above = place.parent; above > 0; above = places.all[size_t(above)].parent) {
+    const Place& group = places.all[size_t(above)];
+    for (uint32_t i = 0; i < group.childCount; ++i) {
+      const int32_t child = places.children[group.firstChild + i];
+      if (child == none) continue;
+      const Item& item = graph.items[places.all[size_t(child)].item];
+      if (item.kind == Kind::directionalLight && item.on) return true;
+    }
+  }
+  return false;
+}
+} // namespace
+
+std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
+                                    Diagnostics& diagnostics) {
   std::vector<SensorInfo> list;
   for (const Place& place : places.all) {
     const Item& item = graph.items[place.item];
@@ -75,6 +93,10 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places) {
     info.name = graph.names[item.name];
     info.node = item.node;
     toArray(place.world, info.matrix);
+    if (inScopedLight(graph, places, place))
+      diagnostics.warn(item.node->source,
+                       "ORTSensor: a DirectionalLight in a group lights the shapes of that group "
+                       "alone, and is not in the reading; sensors see those at the top level");
     list.push_back(std::move(info));
   }
   return list;

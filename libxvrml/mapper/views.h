@@ -27,8 +27,10 @@ Bound boundTo(const Graph& graph, const Places& places, const BoundNodes& nodes)
 std::vector<ViewpointInfo> listViewpoints(const Graph& graph, const Places& places,
                                           std::vector<int32_t>& place);
 
-// Returns the sensors at all places, in file order.
-std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places);
+// Returns the sensors at all places, in file order. Warns of those in a group with a
+// DirectionalLight, which does not reach them.
+std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
+                                    Diagnostics& diagnostics);
 
 // Returns the camera of a Viewpoint; for null that of the standard's default Viewpoint. parent:
 // world matrix of the node's parent.

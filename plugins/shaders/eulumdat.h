@@ -19,13 +19,8 @@ class Lines {
   int line() const { return line_; } // of the last line read, from 1
   bool next(std::string_view& out) {
     if (rest_.empty()) return false;
-    const size_t end = rest_.find('\n');
-    out = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    out = photometry::takeLine(rest_);
     line_++;
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!out.empty() && blank(out.back())) out.remove_suffix(1);
-    while (!out.empty() && blank(out.front())) out.remove_prefix(1);
     return true;
   }
   bool skip(size_t count) {
@@ -44,7 +39,7 @@ class Lines {
                    [](char c) { return c == ',' ? '.' : c; });
     const char* begin = copy + (copy[0] == '+');
     const auto result = std::from_chars(begin, copy + size, out);
-    const bool ends = result.ptr == copy + size || *result.ptr == ' ' || *result.ptr == '\t';
+    const bool ends = result.ptr == copy + size || photometry::isBlank(*result.ptr);
     return result.ec == std::errc() && ends && std::isfinite(out) && std::fabs(out) <= 1e30;
   }
   bool whole(double least, double most, size_t& out) {
@@ -53,6 +48,14 @@ class Lines {
       return false;
     out = size_t(value);
     return true;
+  }
+  // Returns whether a number follows, after empty lines.
+  bool moreNumbers() {
+    std::string_view before = rest_, text;
+    while (next(text) && text.empty()) before = rest_;
+    rest_ = before;
+    double ignored;
+    return number(ignored);
   }
   bool numbers(size_t count, std::vector<float>& out) {
     out.clear();
@@ -134,14 +137,14 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
     return stop("the number of intensities per C-plane is out of range: 1 to 4096, 2^20 values in "
                 "all");
   double factor, tilt, flux;
-  if (!lines.skip(17) || !lines.number(factor) || !(factor >= 0))
-    return stop("the conversion factor for intensities is missing, not a number, or negative");
+  if (!lines.skip(17) || !lines.number(factor) || !(factor > 0))
+    return stop("the conversion factor for intensities is missing, not a number, or not above 0");
   if (!lines.number(tilt)) return stop("the tilt during measurement is missing or not a number");
   if (!lines.whole(1, 1000, sets))
     return stop("the number of lamp sets is out of range: 1 to 1000");
   // Sets of lamps are alternatives; the first one counts.
-  if (!lines.skip(2) || !lines.number(flux) || !(flux >= 0))
-    return stop("the luminous flux of the lamps is missing, not a number, or negative");
+  if (!lines.skip(2) || !lines.number(flux) || !(flux > 0))
+    return stop("the luminous flux of the lamps is missing, not a number, or not above 0");
   if (!lines.skip(3 + 6 * (sets - 1) + 10)) return stop("the file ends before the C-planes");
   std::vector<float> angles, values;
   if (!lines.numbers(planes, angles)) return stop("a C-plane is missing or not a number");
@@ -151,6 +154,9 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
   if (!lines.numbers(planesOf(symmetry, planes).count * rows, values))
     return stop("an intensity is missing or not a number");
   if (*std::min_element(values.begin(), values.end()) < 0) return stop("an intensity is negative");
+  if (lines.moreNumbers())
+    return stop("there are more intensities than the numbers of C-planes and of intensities per "
+                "C-plane (lines 4 and 6) ask for");
   out.type = photometry::Type::C;
   if (const char* wrong = arrangePlanes(angles, symmetry, values, rows, out)) return stop(wrong);
   return out.scale(factor * flux / 1000) ? nullptr : stop("an intensity is too large");
@@ -159,7 +165,9 @@ inline const char* parse(std::string_view text, Photometry& out, int& line) {
 // Tells whether a text that is no IES file (without a line TILT=) may be EULUMDAT: lines 2 and 3
 // are small whole numbers.
 inline bool looksLike(std::string_view text) {
-  if (text.substr(0, 5) == "TILT=" || text.find("\nTILT=") != std::string_view::npos) return false;
+  std::string ignored;
+  for (std::string_view rest = text; !rest.empty();)
+    if (photometry::isTilt(photometry::takeLine(rest), ignored)) return false;
   Lines lines(text);
   size_t number;
   return lines.skip(1) && lines.whole(0, 9, number) && lines.whole(0, 9, number);

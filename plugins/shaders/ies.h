@@ -48,6 +48,7 @@ inline const char* wrongAngles(const Photometry& p) {
       return "vertical angles of types A and B must rise from -90 to 90 degrees";
     if (!rising(p.horizontal) || first < -90 || last > 90 || (p.horizontal.size() > 1 && first > 0))
       return "horizontal angles of types A and B must rise from -90 or 0 to 90 degrees";
+    if (p.horizontal.size() < 2) return "types A and B need two horizontal angles or more";
     return nullptr;
   }
   if (!rising(p.vertical) || low < 0 || high > 180)
@@ -64,26 +65,17 @@ inline const char* wrongAngles(const Photometry& p) {
 // null, or an error message; `line` is then the line of the error.
 inline const char* parse(std::string_view text, Photometry& out, int& line, double tiltAngle = 0) {
   line = 1;
-  if (text.empty()) return "the profile is empty: give the text of an IES LM-63 file";
+  if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3); // the byte order mark of UTF-8
+  if (text.empty())
+    return "the profile is empty: give the text of an IES LM-63 or EULUMDAT file, or lumen";
   // Skips the keywords before the line TILT=... Only the two oldest formats (1986, 1991) have a
   // second factor; later formats have 1 in its place.
   const bool factorLater = text.substr(0, 5) != "IESNA" && text.substr(0, 4) != "IES:"
                                ? true
                                : text.substr(0, 7) == "IESNA91";
-  std::string_view tilt;
-  for (;; line++) {
-    const size_t end = text.find('\n');
-    std::string_view here = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    while (!here.empty() && (here.back() == '\r' || here.back() == ' ' || here.back() == '\t'))
-      here.remove_suffix(1);
-    while (!here.empty() && (here.front() == ' ' || here.front() == '\t')) here.remove_prefix(1);
-    if (here.substr(0, 5) == "TILT=") {
-      tilt = here.substr(5);
-      break;
-    }
+  std::string tilt;
+  for (; !photometry::isTilt(photometry::takeLine(text), tilt); line++)
     if (text.empty()) return "this is not an IES file: there is no line TILT=";
-  }
   if (tilt != "NONE" && tilt != "INCLUDE")
     return "TILT names a file; only TILT=NONE and TILT=INCLUDE are supported";
   Reader reader(text, line + 1);
@@ -101,8 +93,9 @@ inline const char* parse(std::string_view text, Photometry& out, int& line, doub
     line = reader.line();
     if (!good) return "a number of the luminaire's description is missing or not a number";
   }
-  const double factor = head[2] * head[10] * (factorLater ? head[11] : 1) * tiltFactor;
-  if (!(factor >= 0)) return "the multiplier or the ballast factor is negative";
+  const double lampFactor = head[2] * head[10] * (factorLater ? head[11] : 1),
+               factor = lampFactor * tiltFactor;
+  if (!(lampFactor > 0)) return "the multiplier or a ballast factor is not above 0";
   if (!(head[3] >= 1 && head[3] <= double(maxAngles)) ||
       !(head[4] >= 1 && head[4] <= double(maxAngles)) || head[3] != std::floor(head[3]) ||
       head[4] != std::floor(head[4]) || head[3] * head[4] > double(maxValues))
@@ -123,6 +116,11 @@ inline const char* parse(std::string_view text, Photometry& out, int& line, doub
   else if (*std::min_element(out.candela.begin(), out.candela.end()) < 0)
     message = "a candela value is negative";
   line = reader.line();
+  if (double extra; !message && reader.number(extra)) {
+    line = reader.line();
+    return "there are more numbers than the numbers of angles ask for: one of these is wrong, or "
+           "numbers have decimal commas";
+  }
   return message;
 }
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -119,22 +121,48 @@ class Photometry {
   }
 };
 
-// Reads numbers one after the other, across line ends.
+inline bool isBlank(char c) { return c == ' ' || c == '\t'; }
+
+// Takes the first line off a text, without its end and the blanks around it. A line ends with
+// "\n", "\r\n" or, in files of old Macintoshes, "\r".
+inline std::string_view takeLine(std::string_view& text) {
+  const size_t end = std::min(text.find_first_of("\r\n"), text.size());
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(end);
+  text.remove_prefix(text.substr(0, 2) == "\r\n" ? 2 : std::min<size_t>(1, text.size()));
+  while (!line.empty() && isBlank(line.back())) line.remove_suffix(1);
+  while (!line.empty() && isBlank(line.front())) line.remove_prefix(1);
+  return line;
+}
+
+// Returns whether a line is TILT=..., which ends the keywords of an IES file; `value` is what
+// follows, in capitals. Files in use have blanks about the equals sign and small letters.
+inline bool isTilt(std::string_view line, std::string& value) {
+  std::string capitals(line);
+  for (char& c : capitals) c = char(std::toupper(static_cast<unsigned char>(c)));
+  if (capitals.substr(0, 4) != "TILT") return false;
+  const size_t equals = capitals.find_first_not_of(" \t", 4);
+  if (equals == std::string::npos || capitals[equals] != '=') return false;
+  const size_t begin = capitals.find_first_not_of(" \t", equals + 1);
+  value = begin == std::string::npos ? "" : capitals.substr(begin);
+  return true;
+}
+
+// Reads numbers one after the other, across line ends. Blanks and commas separate them.
 class Reader {
  public:
   Reader(std::string_view text, int line) : rest_(text), line_(line) {}
   int line() const { return line_; }
   bool number(double& out) {
-    while (!rest_.empty() && (rest_[0] == ' ' || rest_[0] == '\t' || rest_[0] == '\r' ||
-                              rest_[0] == '\n' || rest_[0] == ',')) {
-      line_ += rest_[0] == '\n';
+    while (!rest_.empty() && separates(rest_[0])) {
+      line_ += rest_[0] == '\n' || (rest_[0] == '\r' && rest_.substr(0, 2) != "\r\n");
       rest_.remove_prefix(1);
     }
     if (!rest_.empty() && rest_[0] == '+') rest_.remove_prefix(1);
     const auto result = std::from_chars(rest_.data(), rest_.data() + rest_.size(), out);
     if (result.ec != std::errc() || !std::isfinite(out) || std::fabs(out) > 1e30) return false;
     rest_.remove_prefix(size_t(result.ptr - rest_.data()));
-    return true;
+    return rest_.empty() || separates(rest_[0]);
   }
   bool numbers(size_t count, double factor, std::vector<float>& out) {
     out.clear();
@@ -148,6 +176,8 @@ class Reader {
   }
 
  private:
+  // Control characters separate as well: some files end with the byte 26.
+  static bool separates(char c) { return static_cast<unsigned char>(c) <= ' ' || c == ','; }
   std::string_view rest_;
   int line_;
 };

@@ -18,11 +18,6 @@ class Frames : public Scene {
     rtQuality(RT_MAX_DEPTH, 1);
     rtQuality(RT_SAMPLES_PER_PIXEL, samples);
   }
-  static Shader matt(double reflectance, double radiance = 0) {
-    Shader s("Diffuse");
-    return s.set("reflectance", {reflectance, reflectance, reflectance})
-        .set("emission", {radiance, radiance, radiance});
-  }
   static RTid ball(const Shader& shader, double radius) {
     const RTid object = rtBeginObject(0);
     rtBindShader(shader);

@@ -24,20 +24,6 @@ class GuidedLight : public Lamps {
     rtBindShader(0);
     return object;
   }
-  static void at(double x, double y, double z, RTid object, bool down = false) {
-    rtPushMatrix();
-    rtTranslated(x, y, z);
-    if (down) rtRotated(180, 1, 0, 0);
-    place(object);
-    rtPopMatrix();
-  }
-  static void cameraAt(Vec from, Vec to, double fovy) {
-    rtPushMatrix();
-    rtLoadIdentity();
-    rtLookAt(from.x, from.y, from.z, to.x, to.y, to.z, 0, 1, 0);
-    rtPerspective(fovy);
-    rtPopMatrix();
-  }
   static std::vector<float> picture(int edge, int samples, int seed) {
     rtQuality(RT_SAMPLES_PER_PIXEL, samples);
     rtQuality(RT_SEED, seed);
@@ -51,9 +37,9 @@ class GuidedLight : public Lamps {
 TEST_F(GuidedLight, AMirrorSendsOnTheLightOfASmallLamp) {
   const double half = .02, lampAt = 1, ceilingAt = 2, reflectance = .8, radiance = 1000, x = .7;
   rtQuality(RT_MAX_DEPTH, 2); // ceiling, mirror, lamp; excludes interreflection on the ceiling
-  at(0, 0, 0, square(mirror(reflectance), 2));
-  at(0, 0, lampAt, square(matt(0, radiance), half), true);
-  at(0, 0, ceilingAt, square(matt(.5), 10), true);
+  placeAt(0, square(mirror(reflectance), 2));
+  placeAt(lampAt, square(matt(0, radiance), half), true);
+  placeAt(ceilingAt, square(matt(.5), 10), true);
   cameraAt({x, 0, 1.2}, {x, 0, ceilingAt}, 50);
   // Returns the irradiance at (px, py) from a square source at height h, small compared with h.
   const auto from = [&](double px, double py, double h) {
@@ -78,9 +64,9 @@ TEST_F(GuidedLight, AMirrorSendsOnTheLightOfASmallLamp) {
 TEST_F(GuidedLight, ACausticSeenInAMirrorHasTheLightOfTheCaustic) {
   rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
   rtQuality(RT_MAX_DEPTH, 8);
-  at(0, 0, 0, square(matt(.7), 3));
-  at(0, 0, .8, sphere(Shader("Glass"), .5));
-  at(.4, 0, 3, square(matt(0, 500), .03), true);
+  placeAt(0, square(matt(.7), 3));
+  placeAt(.8, sphere(Shader("Glass"), .5));
+  placeAt({.4, 0, 3}, square(matt(0, 500), .03), true);
   const auto seenFrom = [](Vec from, Vec to) {
     rtPushMatrix();
     rtLoadIdentity();
@@ -105,10 +91,10 @@ TEST_F(GuidedLight, ACausticSeenInAMirrorHasTheLightOfTheCaustic) {
 // Pictures with photons agree with pictures of so few samples that none are traced.
 TEST_F(GuidedLight, PhotonsDoNotChangeTheMean) {
   rtQuality(RT_MAX_DEPTH, 6);
-  at(0, 0, 0, square(matt(.7), 3));
-  at(0, 0, .8, sphere(Shader("Glass"), .5));
-  at(-1.6, 0, .6, sphere(mirror(.9), .4));
-  at(.5, 0, 3, square(matt(.3, 5), .5), true);
+  placeAt(0, square(matt(.7), 3));
+  placeAt(.8, sphere(Shader("Glass"), .5));
+  placeAt({-1.6, 0, .6}, sphere(mirror(.9), .4));
+  placeAt({.5, 0, 3}, square(matt(.3, 5), .5), true);
   cameraAt({0, -4, 2.5}, {0, 0, .4}, 40);
   double without = 0, with = 0;
   constexpr int rounds = 256, few = 8, many = 512;
@@ -124,9 +110,9 @@ TEST_F(GuidedLight, ThePictureDoesNotDependOnThreads) {
   for (const char* config : {"threads=1", "threads=3"}) {
     const RTcontext context = rtNewContext(config);
     rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
-    at(0, 0, 0, square(matt(.7), 3));
-    at(0, 0, .8, sphere(Shader("Glass"), .5));
-    at(.5, 0, 3, square(matt(.3, 5), .1), true);
+    placeAt(0, square(matt(.7), 3));
+    placeAt(.8, sphere(Shader("Glass"), .5));
+    placeAt({.5, 0, 3}, square(matt(.3, 5), .1), true);
     cameraAt({0, -4, 2.5}, {0, 0, .4}, 40);
     pictures.push_back(picture(20, 32, 1));
     RTstats stats{};

@@ -236,5 +236,18 @@ TEST_F(HardCases, N22AnyNumberOfThreadsMakesTheSameBytes) {
   }
 }
 
+// Light between walls whose emission is near the largest float adds up to more than a float holds.
+TEST_F(HardCases, RadianceBeyondFloatsStaysFinite) {
+  for (const double height : {-1., 1.}) placeAt(height, square(matt(.9, 3e38)), height > 0);
+  rtQuality(RT_TRANSPORT, RT_TRANSPORT_PATH);
+  rtQuality(RT_SAMPLES_PER_PIXEL, 16);
+  rtQuality(RT_MAX_DEPTH, 8);
+  const Rgba seen = look(0, 0, 0);
+  EXPECT_NEAR(seen.r, 1e36, 1e31);
+  EXPECT_GT(stats().clipped, 1e36);
+  rtQuality(RT_MEASURE, RT_MEASURE_ILLUMINANCE);
+  EXPECT_NEAR(look(0, 0, 0).g, 1e36, 1e31);
+}
+
 } // namespace
 } // namespace numeric

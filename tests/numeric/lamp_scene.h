@@ -56,12 +56,6 @@ class Lamps : public Scene {
     rtQuality(RT_MAX_DEPTH, 1);
     rtQuality(RT_SAMPLES_PER_PIXEL, 16384);
   }
-  static Shader matt(double reflectance, double radiance = 0) {
-    Shader s("Diffuse");
-    s.set("reflectance", {reflectance, reflectance, reflectance})
-        .set("emission", {radiance, radiance, radiance});
-    return s;
-  }
   static RTid floor(double half = 100) { return place(square(matt(1), half)); }
   // A fan around the first corner.
   static RTid lamp(const std::vector<Vec>& v, double radiance = 1, bool culled = false) {

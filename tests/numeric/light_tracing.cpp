@@ -14,27 +14,6 @@ class LightTracing : public Scene {
     Scene::SetUp();
     rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
   }
-  static Shader diffuse(double radiance, double reflectance) {
-    Shader s("Diffuse");
-    s.set("reflectance", {reflectance, reflectance, reflectance})
-        .set("emission", {radiance, radiance, radiance});
-    return s;
-  }
-  static void at(double x, double y, double z, RTid object, bool down = false) {
-    rtPushMatrix();
-    rtTranslated(x, y, z);
-    if (down) rtRotated(180, 1, 0, 0);
-    place(object);
-    rtPopMatrix();
-  }
-  static void cameraAt(double x, double y, double z, double toX, double toY, double toZ,
-                       double fovy) {
-    rtPushMatrix();
-    rtLoadIdentity();
-    rtLookAt(x, y, z, toX, toY, toZ, 0, 1, 0);
-    rtPerspective(fovy);
-    rtPopMatrix();
-  }
   static std::vector<float> picture(int edge, int samples) {
     rtQuality(RT_SAMPLES_PER_PIXEL, samples);
     std::vector<float> out = Scene::picture(edge);
@@ -50,10 +29,10 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
   const double half = .05, lampAt = 1, ceilingAt = 2, reflectance = .8, radiance = 100, x = .7;
   Shader mirror("Mirror");
   mirror.set("reflectance", {reflectance, reflectance, reflectance});
-  at(0, 0, 0, square(mirror, 2));
-  at(0, 0, lampAt, square(diffuse(radiance, 0), half), true);
-  at(0, 0, ceilingAt, square(diffuse(0, .5), 10), true);
-  cameraAt(x, 0, 1.2, x, 0, ceilingAt, 50);
+  placeAt(0, square(mirror, 2));
+  placeAt(lampAt, square(matt(0, radiance), half), true);
+  placeAt(ceilingAt, square(matt(.5), 10), true);
+  cameraAt({x, 0, 1.2}, {x, 0, ceilingAt}, 50);
   // path: ceiling, mirror, lamp; excludes interreflection on the ceiling
   rtQuality(RT_MAX_DEPTH, 2);
   // Returns the irradiance at (px, py) from a square source at height h, small compared with h.
@@ -84,15 +63,15 @@ TEST_F(LightTracing, AMirrorSendsOnTheLightOfItsImage) {
 
 // Each path is found by exactly one of the two methods, so the picture agrees with path tracing.
 TEST_F(LightTracing, ACausticHasTheLightThatPathTracingFinds) {
-  at(0, 0, 0, square(diffuse(0, .7), 3));
+  placeAt(0, square(matt(.7), 3));
   const RTid ball = rtBeginObject(0);
   rtBindShader(Shader("Glass"));
   rtSphere(.5);
   rtEndObject();
   rtBindShader(0);
-  at(0, 0, .8, ball);
-  at(-1.6, 0, 1, square(Shader("Mirror"), .3));
-  at(.5, 0, 3, square(diffuse(5, .3), .6), true);
+  placeAt(.8, ball);
+  placeAt({-1.6, 0, 1}, square(Shader("Mirror"), .3));
+  placeAt({.5, 0, 3}, square(matt(.3, 5), .6), true);
   rtPushMatrix();
   rtLoadIdentity();
   rtLookAt(0, -4, 2.5, 0, 0, .4, 0, 0, 1);
@@ -122,15 +101,15 @@ TEST_F(LightTracing, ThePictureDoesNotDependOnThreads) {
   for (const char* config : {"threads=1", "threads=3"}) {
     const RTcontext context = rtNewContext(config);
     rtQuality(RT_TRANSPORT, RT_TRANSPORT_LIGHT);
-    at(0, 0, 0, square(diffuse(0, .7), 3));
+    placeAt(0, square(matt(.7), 3));
     const RTid ball = rtBeginObject(0);
     rtBindShader(Shader("Glass"));
     rtSphere(.5);
     rtEndObject();
     rtBindShader(0);
-    at(0, 0, .8, ball);
-    at(.5, 0, 3, square(diffuse(5, .3), .6), true);
-    cameraAt(0, -4, 2.5, 0, 0, .4, 40);
+    placeAt(.8, ball);
+    placeAt({.5, 0, 3}, square(matt(.3, 5), .6), true);
+    cameraAt({0, -4, 2.5}, {0, 0, .4}, 40);
     pictures.push_back(picture(20, 8));
     rtDeleteContext(context);
   }

@@ -377,6 +377,44 @@ TEST_F(ScatteringMedia, SensorsKnowWhatTheyAreIn) {
   expectReading(read({0, 0, 0}, up), 1000 / (4 * pi * 4) * std::exp(-.5 * 2), .01);
 }
 
+// Smoke that only absorbs dims the light of lamps, whoever stands in it: nothing that light meets
+// on its way tells.
+TEST_F(ScatteringMedia, SmokeDimsTheLightOfLamps) {
+  constexpr double candela = 1000 / (4 * pi), dimmed = .3;
+  const auto reading = [&](Vec lampAt, Vec smokeAt, double half) {
+    rtPushMatrix();
+    rtTranslated(smokeAt.x, smokeAt.y, smokeAt.z);
+    const RTid body = box(grey(0, dimmed), {half, half, half});
+    rtPopMatrix();
+    const RTid lamp = use(bulb(lampAt, 1000));
+    const double lux = read({0, 0, 0}, up).value;
+    rtRemoveLight(lamp);
+    rtDeleteInstance(body);
+    return lux;
+  };
+  EXPECT_NEAR(reading({0, 0, 2}, {}, 50), candela / 4 * std::exp(-dimmed * 2), 1e-3);
+  EXPECT_NEAR(reading({0, 0, 3}, {}, 2), candela / 9 * std::exp(-dimmed * 2), 1e-3);
+  EXPECT_NEAR(reading({0, 0, 3}, {0, 0, 3}, 2), candela / 9 * std::exp(-dimmed * 2), 1e-3);
+  EXPECT_NEAR(reading({0, 0, 5}, {0, 0, 3}, 1), candela / 25 * std::exp(-dimmed * 2), 1e-3);
+}
+
+TEST_F(ScatteringMedia, SmokeDimsWhatALampLightsAndACameraSees) {
+  box(grey(0, .3), {50, 50, 50});
+  placeAt(-1, square(matt(1), 20));
+  use(bulb({0, 0, 1}, 1000));
+  const double lux = 1000 / (4 * pi * 4) * std::exp(-.3 * 2);
+  expectGrey(look(0, 0, 0), lux / pi * std::exp(-.3), 1e-4);
+  EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
+}
+
+// The stack of media has four places: a body within four others is as if it were not there.
+TEST_F(ScatteringMedia, WhiteFurnaceOfSixBodiesInEachOther) {
+  environment(1);
+  for (int i = 0; i < 6; i++) ball(grey(.1 * (i + 1)), 3 - .4 * i);
+  perspectiveAt({0, 0, 5}, 20);
+  expectMean(means(), {1, 1, 1}, .03);
+}
+
 // The channels of first surfaces show what is behind the fog, and the fog hides nothing there.
 TEST_F(ScatteringMedia, ChannelsShowWhatIsBehindFog) {
   box(grey(2), {5, 5, 1});
@@ -411,7 +449,7 @@ TEST_F(ScatteringMedia, FogChoosesPathsFromTheCamera) {
     rtQuality(RT_TRANSPORT, int(asked));
     picture(2);
     EXPECT_EQ(stats().transport, RTenum(RT_TRANSPORT_PATH));
-    EXPECT_NE(std::string(stats().transportReason).find("Fog scatters light inside"),
+    EXPECT_NE(std::string(stats().transportReason).find("Fog scatters or absorbs light inside"),
               std::string::npos)
         << stats().transportReason;
   }

@@ -23,6 +23,31 @@ TEST_F(Sensors, OneCandelaGivesOneLuxAtOneMetre) {
   EXPECT_EQ(read({0, 0, 0}, below).value, 0) << "the light comes from behind";
 }
 
+// Without surfaces and sky no random path can find light.
+TEST_F(Sensors, ALampAloneIsReadExactly) {
+  use(bulb({0, 1.5, 2}, 4 * pi));
+  for (const int samples : {32, 256}) {
+    rtQuality(RT_SAMPLES_PER_PIXEL, samples);
+    const Reading got = read({0, 0, 0}, up);
+    EXPECT_NEAR(got.value, .8 / 6.25, 1e-6);
+    EXPECT_EQ(got.halfWidth, 0);
+    EXPECT_TRUE(got.trusted);
+  }
+}
+
+// The light of lamps goes straight through glass, and the glass absorbs on the way (Beer-Lambert):
+// with the lamp behind the glass, inside of it, and with the sensor inside.
+TEST_F(Sensors, AbsorbingGlassDimsTheLightOfLamps) {
+  const double a = .7, passes = 1 - .04, candela = 100;
+  Shader glass("Glass");
+  glass.set("index", {1.5}).set("absorption", {a, a, a});
+  ball(glass, 1);
+  use(bulb({0, 0, 3}, 4 * pi * candela));
+  EXPECT_NEAR(read({0, 0, -2}, up).value, candela / 25 * passes * passes * std::exp(-2 * a), 1e-4);
+  EXPECT_NEAR(read({0, 0, 0}, up).value, candela / 9 * passes * std::exp(-a), 1e-4);
+  EXPECT_NEAR(read({0, 0, 2}, up).value, candela, 1e-3) << "beside the glass";
+}
+
 TEST_F(Sensors, ASensorIsNotSeen) { // neither by the lamp nor by another point of the grid
   lamp(rectangle(.5, 1));
   const double expected = pi * polygon(rectangle(.5, 1));

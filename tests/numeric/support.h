@@ -108,6 +108,14 @@ class Scene : public testing::Test {
     rtDeleteContext(context_);
   }
 
+  // A grey Lambert surface that may emit.
+  static Shader matt(double reflectance, double radiance = 0) {
+    Shader s("Diffuse");
+    s.set("reflectance", {reflectance, reflectance, reflectance})
+        .set("emission", {radiance, radiance, radiance});
+    return s;
+  }
+
   // Defines a square in the plane z = 0 that faces +z; with a colour per vertex if `color` is
   // given.
   static RTid square(RTid shader, double half = 10, const Vec* color = nullptr) {
@@ -128,14 +136,26 @@ class Scene : public testing::Test {
   }
   // Instantiates the object under the current matrix.
   static RTid place(RTid object) { return rtInstantiateObject(object); }
-  // Places an object at height z, facing up or turned to face down.
-  static RTid placeAt(double z, RTid object, bool down = false) {
+  // Places an object at a point or at a height z, facing up or turned to face down.
+  static RTid placeAt(Vec at, RTid object, bool down = false) {
     rtPushMatrix();
-    rtTranslated(0, 0, z);
+    rtTranslated(at.x, at.y, at.z);
     if (down) rtRotated(180, 1, 0, 0);
     const RTid placed = place(object);
     rtPopMatrix();
     return placed;
+  }
+  static RTid placeAt(double z, RTid object, bool down = false) {
+    return placeAt(Vec{0, 0, z}, object, down);
+  }
+
+  // A perspective camera. Its angle of view is in degrees.
+  static void cameraAt(Vec from, Vec to, double fovy) {
+    rtPushMatrix();
+    rtLoadIdentity();
+    rtLookAt(from.x, from.y, from.z, to.x, to.y, to.z, 0, 1, 0);
+    rtPerspective(fovy);
+    rtPopMatrix();
   }
 
   static RTid use(const Shader& light) { return rtUseLight(light); }

@@ -8,11 +8,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from exact_geometry import soup
 
 from xvrml import rt
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
-from rational_rays import crossings, cross, dot, minus, moved, rational  # noqa: E402
+from rational_rays import cross, crossings, dot, minus, moved, rational  # noqa: E402
 
 
 def turn(random):
@@ -38,24 +39,6 @@ def places(random):
         "flat": matrix_of(turn(random) @ np.diag((1, 1, 1e-9)), random.normal(size=3)),
         "tiny": matrix_of(turn(random) * 1e-12, random.normal(size=3)),
     }
-
-
-def soup(random, kind):
-    """Returns a mesh full of special cases: shared vertices, vertices at the same places, coplanar
-    faces, slivers, triangles without area."""
-    if kind == "lattice":
-        points = random.integers(-2, 3, (24, 3))
-    elif kind == "far":
-        points = random.integers(-2, 3, (24, 3)) + 1e6
-    elif kind == "slivers":
-        points = random.normal(size=(24, 3)) * (1, 1e-7, 1)
-    else:
-        points = random.normal(size=(24, 3))
-    triangles = random.integers(0, 24, (40, 3))
-    triangles[::7, 2] = triangles[::7, 1]
-    points = np.concatenate([points, points]).astype(np.float32)
-    triangles[1::2] += 24
-    return points, triangles
 
 
 def rays_at(random, points, count):

@@ -1,6 +1,8 @@
 """Raycaster.update(): bodies that move and change their shape. Every query answers as a new
 Raycaster of the same bodies would, in both precisions; bad arrays change nothing and get one
 sentence."""
+import threading
+
 import numpy as np
 import pytest
 
@@ -296,3 +298,34 @@ def test_instances_of_a_context_move_at_once():
             context.mesh(TETRA, FACES, replaces=3)
         with pytest.raises(TypeError, match="instances: Instances expected"):
             context.move_instances([1, 2, 3], matrices)
+
+
+def test_queries_and_updates_of_several_threads():
+    """A hit belongs to the bodies before an update or after it. The shapes have triangles without
+    area at different places, so that ids of the one are wrong for the other."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+    shapes = {4: [[0, 1, 1]] * 4 + [[0, 1, 2]], 0: [[0, 1, 2], [0, 0, 1]]}
+    caster = rt.Raycaster(threads=1)
+    for _ in range(20):
+        caster.add_triangles(corners, shapes[0])
+    rays, wrong, done = np.array([[.2, .2, 5, 0, 0, -1.]] * 50), [], threading.Event()
+
+    def ask(precision):
+        while not done.is_set():
+            try:
+                for hits in (caster.cast_rays(rays, precision=precision),
+                             caster.list_intersections(rays, precision=precision)):
+                    wrong.extend(set(hits["primitive_ids"].tolist()) - set(shapes))
+            except Exception as error:  # pylint: disable=broad-except
+                wrong.append(error)
+
+    threads = [threading.Thread(target=ask, args=(p,)) for p in ("single", "double")]
+    for thread in threads:
+        thread.start()
+    for step in range(150):
+        caster.update(step % 20, vertices=corners, triangles=shapes[4 * (step // 20 % 2)])
+        caster.update(matrices=np.tile(np.eye(4), (20, 1, 1)))
+    done.set()
+    for thread in threads:
+        thread.join()
+    assert not wrong, wrong[:3]

@@ -90,7 +90,10 @@ def test_a_target_that_is_missed_says_what_was_promised_and_reached(room):
 @pytest.mark.parametrize("fields, expected", [
     ('quantity "LUX"', "quantity is ILLUMINANCE or LUMINANCE"),
     ("direction 0 0 0", "direction has no length"),
-    ("columns 4096 rows 4096", "at most 1048576 points"),
+    ("columns 4096 rows 4096 size 1 1", "at most 1048576 points"),
+    ("columns 4 rows 4", "a grid of 4 x 4 points needs a size along both, not 0 x 0"),
+    ("columns 4 rows 4 size 1 0", "needs a size along both, not 1 x 0"),
+    ("columns 4 size 1e-20 1", "nearer together than 1e-13 m"),
 ])
 def test_wrong_sensors_are_refused(vv, fields, expected):
     (vv.folder / "bad.wrl").write_text("#VRML V2.0 utf8\nDEF Bad ORTSensor { %s }\n" % fields)
@@ -176,6 +179,11 @@ def test_python_places_sensors(room):
     assert math.isclose(float(sensor.values[0, 0]), 0)
 
 
+def test_a_line_of_points_needs_one_size():
+    world = xvrml.loads("#VRML V2.0 utf8\nORTSensor { columns 4 size 2 0 }")
+    assert world.measure(spp=1)[0].positions[0, :, 0].tolist() == [-.75, -.25, .25, .75]
+
+
 MIRROR = """#VRML V2.0 utf8
 NavigationInfo { headlight FALSE }
 Transform { translation 0 3 0 children ORTLight { shader ORTShader {
@@ -210,3 +218,42 @@ def test_light_paths_reach_sensors_that_have_cells(vv):
     (other, _) = xvrml.load(vv.folder / "mirror.wrl").measure(spp=1024, transport="light")
     values = [p["value"] for p in grid["points"]]
     assert other.values.flatten().tolist() == pytest.approx(values, rel=1e-6)
+
+
+def test_lights_of_groups_are_left_out_and_this_is_said():
+    """The readings are those without the light of the group (docs/photometry.md)."""
+    sun = "DirectionalLight { direction 0 -1 0 }"
+    sensor = "Group { children DEF S ORTSensor { } }"
+    for world, reading, warned in ((sun + sensor, math.pi,
+                                    False), (f"Group {{ children [ {sun} {sensor} ] }}", 0, True),
+                                   (f"Group {{ children {sun} }} {sensor}", 0, False),
+                                   (f"Group {{ children [ {sun[:-1]} on FALSE }} {sensor} ] }}", 0,
+                                    False)):
+        graph = xvrml.loads("#VRML V2.0 utf8\nNavigationInfo { headlight FALSE }\n" + world)
+        (got,) = graph.measure(spp=16)
+        assert got.values[0, 0] == pytest.approx(reading)
+        said = [str(w) for w in graph.warnings if "lights the shapes of that group" in str(w)]
+        assert bool(said) == warned, said
+
+
+def test_the_way_to_find_light_behind_glass_is_one_that_exists(vv):
+    """In fog no light is followed from lamps, so the warning does not advise it again."""
+    world = """#VRML V2.0 utf8
+NavigationInfo { headlight FALSE }
+Transform { translation 0 3 0 children ORTLight { shader ORTShader {
+  name "Luminaire" file "luminaire" options "1f lumen 1000" } } }
+Transform { translation 0 1.5 0 children Shape { geometry Box { size 2 .1 2 } appearance
+  ORTAppearance { shader ORTShader { name "Glass" file "glass" } } } }
+%s
+DEF S ORTSensor { size 1 1 }
+"""
+    fog = """Shape { geometry Sphere { radius 9 }
+  appearance ORTAppearance { shader ORTShader { name "Fog" file "fog" } } }"""
+    for name, body, expected in (("clear", "", "--transport light follows it"),
+                                 ("fog", fog, "paths start at the camera")):
+        (vv.folder / "w.wrl").write_text(world % body)
+        asked = ("--transport", "light") if body else ()
+        done = vv("w.wrl", "--measure", "out.csv", "--spp", "16", *asked)
+        assert done.returncode == 0, done.talk
+        assert expected in done.talk, name
+        assert (expected == "--transport light follows it") == ("light follows it" in done.talk)

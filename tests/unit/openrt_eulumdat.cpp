@@ -1,6 +1,7 @@
 // openrt_eulumdat.cpp: Tests reading EULUMDAT files: their symmetries, units, and invalid texts.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,8 @@ TEST(Eulumdat, WhatIsWrongIsSaid) {
   EXPECT_NE(bad(file(1, 4, "-5")).find("luminous flux"), std::string::npos);
   EXPECT_NE(bad(file(1, 4, "5", "nan")).find("conversion factor"), std::string::npos);
   EXPECT_NE(bad(file(1, 4, "1e30", "1e30")).find("too large"), std::string::npos);
+  EXPECT_NE(bad(file(1, 4, "0")).find("luminous flux"), std::string::npos);
+  EXPECT_NE(bad(file(1, 4, "5", "0")).find("conversion factor"), std::string::npos);
   const std::string text = file(0, 4);
   EXPECT_NE(bad(text.substr(0, text.size() - 3)).find("an intensity is missing"),
             std::string::npos);
@@ -99,10 +102,33 @@ TEST(Eulumdat, WhatIsWrongIsSaid) {
   EXPECT_NE(bad(planes).find("C-planes must rise"), std::string::npos);
 }
 
+// With a count that is too small, angles would be read as intensities.
+TEST(Eulumdat, NumbersThatAreLeftOverAreRefused) {
+  const std::string text = file(0, 4);
+  EXPECT_NE(bad(text + "5\n").find("more intensities than"), std::string::npos);
+  EXPECT_NE(bad(text + "\n\n5").find("more intensities than"), std::string::npos);
+  std::string rows = text; // one intensity per plane instead of two
+  rows.replace(rows.find("\n2\n90\nreport"), 2, "\n1");
+  EXPECT_NE(bad(rows).find("more intensities than"), std::string::npos);
+  for (const char* end : {"\n\n", "\x1a", "a comment\n", "\r\n"})
+    EXPECT_FLOAT_EQ(good(text + end).intensity(0, 0), 200);
+}
+
+TEST(Eulumdat, LinesOfEverySystem) {
+  for (const char* end : {"\r\n", "\r"}) {
+    std::string text = file(0, 4);
+    for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += std::strlen(end))
+      text.replace(at, 1, end);
+    EXPECT_TRUE(eulumdat::looksLike(text));
+    EXPECT_FLOAT_EQ(good(text).intensity(0, 0), 200);
+  }
+}
+
 TEST(Eulumdat, IsToldFromIes) {
   EXPECT_TRUE(eulumdat::looksLike(file(1, 1)));
   EXPECT_FALSE(eulumdat::looksLike("IESNA91\nTILT=NONE\n1 1"));
   EXPECT_FALSE(eulumdat::looksLike("1986\n1\n1\nTILT=NONE\n1 1")) << "keywords may be numbers";
+  EXPECT_FALSE(eulumdat::looksLike("1986\r1\r1\rtilt = none\r1 1"));
   EXPECT_FALSE(eulumdat::looksLike("#VRML V2.0 utf8\nShape {}"));
   EXPECT_FALSE(eulumdat::looksLike(""));
 }

@@ -116,7 +116,8 @@ TEST(Ies, TypesAAndBTellDirectionsByOtherAngles) {
 
 TEST(Ies, WhatIsWrongIsSaid) {
   const std::string numbers = "1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 ";
-  EXPECT_EQ(bad(""), "the profile is empty: give the text of an IES LM-63 file 1");
+  EXPECT_EQ(bad(""),
+            "the profile is empty: give the text of an IES LM-63 or EULUMDAT file, or lumen 1");
   EXPECT_EQ(bad("#VRML V2.0 utf8\nShape {}"), "this is not an IES file: there is no line TILT= 2");
   EXPECT_EQ(bad("IESNA91\nTILT=INCLUDE\n4 1 0 1"),
             "TILT=INCLUDE needs the lamp's position (1, 2 or 3) and the number of tilt angles 3");
@@ -150,9 +151,42 @@ TEST(Ies, WhatIsWrongIsSaid) {
             std::string::npos);
   EXPECT_NE(bad(file(head, "1 1 1 1 2 1 1 0 0 0 1 1 1 0 0 45 1 1")).find("must run"),
             std::string::npos);
-  EXPECT_NE(bad(file(head, "1 1 -1 1 1 1 1 0 0 0 1 1 1 0 0 1")).find("ballast factor is negative"),
+  EXPECT_NE(bad(file(head, "1 1 -1 1 1 1 1 0 0 0 1 1 1 0 0 1")).find("ballast factor is not"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 0 1 1 1 1 0 0 0 1 1 1 0 0 1")).find("multiplier or a ballast"),
+            std::string::npos);
+  EXPECT_NE(bad(file(head, "1 1 1 2 1 3 1 0 0 0 1 1 1 -9 9 0 1 1")).find("two horizontal angles"),
             std::string::npos);
   EXPECT_NE(bad(file(head, "1 1 x")).find("description"), std::string::npos);
+}
+
+// Numbers that are left over would be somebody else's values: a wrong count, or decimal commas.
+TEST(Ies, NumbersThatAreLeftOverAreRefused) {
+  const std::string numbers = "1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 ";
+  EXPECT_NE(bad(file(head, numbers + "1 2 3")).find("more numbers than"), std::string::npos);
+  EXPECT_NE(bad(file(head, numbers + "1,5 2,5")).find("decimal commas 5"), std::string::npos);
+  EXPECT_NE(bad(file(head, numbers + "1.5.5 2")).find("candela"), std::string::npos);
+  EXPECT_NE(bad(file(head, numbers + "0x64 2")).find("candela"), std::string::npos);
+  for (const char* end : {"\r\n\r\n", " ", "\x1a", "\n\x1a", "\nEND\n", "\nend of file 1"})
+    EXPECT_FLOAT_EQ(good(file(head, numbers + "7 8" + end)).intensity(0, 0), 7);
+}
+
+TEST(Ies, LinesOfEverySystemAndTiltInEverySpelling) {
+  const std::string text = file(head, "1 1 1 2 1 1 1 0 0 0\n1 .5 1\n0 90\n0\n7 8");
+  const auto replaced = [](std::string in, const std::string& from, const std::string& to) {
+    for (size_t at = 0; (at = in.find(from, at)) != std::string::npos; at += to.size())
+      in.replace(at, from.size(), to);
+    return in;
+  };
+  for (const char* end : {"\r\n", "\r"}) {
+    EXPECT_FLOAT_EQ(good(replaced(text, "\n", end)).intensity(0, 0), 7);
+    EXPECT_NE(bad(replaced(text + "x", "\n", end)).find(" 9"), std::string::npos);
+  }
+  for (const char* tilt : {"TILT = NONE", "TILT= none ", "  tilt =\tNone"})
+    EXPECT_FLOAT_EQ(good(replaced(text, "TILT=NONE", tilt)).intensity(0, 0), 7);
+  EXPECT_FLOAT_EQ(good("\xef\xbb\xbf" + text).intensity(0, 0), 7) << "a byte order mark";
+  EXPECT_NE(bad(replaced(text, "TILT=NONE", "TILTED=NONE")).find("no line TILT="),
+            std::string::npos);
 }
 
 // Tries every prefix of a good file, and every byte of it changed.

@@ -194,6 +194,13 @@ TEST(GeometryExact, CylinderAndConeHaveExactSurfacesIfAskedFor) {
   ASSERT_EQ(side.exact.size(), 1u);
   EXPECT_EQ(side.kind, Mesh::Kind::triangles) << "for pointing devices";
   EXPECT_EQ(side.exact[0].numbers[9], -1) << "minus the square of the radius";
+  for (const float size : {1e-20f, 1e13f}) { // rtQuadric would refuse them
+    cylinder->radius = cone->height = size;
+    for (const Mesh& facets : {buildMesh(*cylinder, options), buildMesh(*cone, options)}) {
+      EXPECT_TRUE(facets.exact.empty()) << size;
+      EXPECT_EQ(facets.kind, Mesh::Kind::triangles) << size;
+    }
+  }
 }
 
 TEST(GeometryQuadric, TheTrianglesFollowTheSurface) {

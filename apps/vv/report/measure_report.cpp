@@ -59,6 +59,16 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
+// Returns how the light of lamps without extent is found behind glass, for the end of a warning.
+std::string wayToReach(const Measurement& m) {
+  if (m.sensor.luminance) return "";
+  if (!m.sensor.cells) return "; give the sensor a size and use --transport light";
+  // The engine has refused to follow paths from lamps, and says why.
+  const std::string reason = m.stats.transportReason;
+  if (reason.find("not at lamps") != std::string::npos) return "; " + reason;
+  return "; --transport light follows it";
+}
+
 Json numberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 } // namespace
@@ -152,10 +162,7 @@ std::vector<std::string> measurementWarnings(const Measurement& m, double target
   if (m.stats.unreachedLights > 0)
     add(fmt::format("the light that {} lamps without extent send through glass or mirrors is "
                     "missing{}",
-                    m.stats.unreachedLights,
-                    m.sensor.luminance ? ""
-                    : m.sensor.cells   ? "; --transport light follows it"
-                                       : "; give the sensor a size and use --transport light"));
+                    m.stats.unreachedLights, wayToReach(m)));
   return out;
 }
 

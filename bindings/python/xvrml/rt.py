@@ -14,6 +14,9 @@ RaycastingScene.
 0
 >>> caster.cast_rays(rays)["t_hit"]
 """
+import functools
+import threading
+
 import numpy as np
 
 from . import _arguments
@@ -59,13 +62,26 @@ def _check_precision(precision, errors):
         raise ValueError("errors: bounds of errors are known with precision='double' only")
 
 
+def _alone(method):
+    """Lets calls of several threads run one after the other: the numbers of a query's hits belong
+    to the bodies that the query has met."""
+
+    @functools.wraps(method)
+    def call(self, *args, **options):
+        with self._lock:
+            return method(self, *args, **options)
+
+    return call
+
+
 def _is_mesh(thing):
     return hasattr(thing, "kind") and hasattr(thing, "node")
 
 
 class Raycaster:
     """Ray queries on triangle meshes, with arrays as input and dicts of arrays as output. A query
-    uses all threads, and other Python threads continue meanwhile.
+    uses all threads, and other Python threads continue meanwhile. Calls of several threads run one
+    after the other, so that a query sees the bodies before an update or after it.
 
     Rays have shape (..., 6): origin and direction. The direction may have any length, which is the
     unit of t_hit. Results have the leading shape of the rays. geometry_ids are the numbers that
@@ -79,6 +95,7 @@ class Raycaster:
     INVALID_ID = 0xFFFFFFFF
 
     def __init__(self, threads=0):
+        self._lock = threading.RLock()
         self._context = Context(_arguments.whole("Raycaster(): threads", threads, 0, 1024))
         self._kept = {}
         self._instances, self._objects = [], []  # by number
@@ -92,6 +109,7 @@ class Raycaster:
             self._kept[number] = kept
         return number
 
+    @_alone
     def add_triangles(self, vertices, triangles, matrix=None):
         """Adds a mesh with vertices (n, 3) and triangles (m, 3), placed by a matrix (4, 4) for
         column vectors. Returns its number."""
@@ -101,6 +119,7 @@ class Raycaster:
         self.meshes.append((vertices, triangles))
         return number
 
+    @_alone
     def add_sphere(self, center, radius):
         """Adds an exact sphere; its primitive id is 0. Returns its number."""
         matrix = np.eye(4)
@@ -110,6 +129,7 @@ class Raycaster:
         self.meshes.append((center, radius))
         return number
 
+    @_alone
     def add_mesh(self, mesh):
         """Adds an xvrml.Mesh at its place. Returns its number, or None for lines and points."""
         if not hasattr(mesh, "kind"):
@@ -127,6 +147,7 @@ class Raycaster:
         self.meshes.append(mesh)
         return number
 
+    @_alone
     def update(self, which=None, *, matrices=None, vertices=None, triangles=None):
         """Moves or reshapes bodies in place. The next query sees them at their new places, at a
         cost in proportion to what changed.
@@ -249,6 +270,7 @@ class Raycaster:
         points = ("points",) if precision == "double" else ()
         return (*_FIVE, *points, *(_ERRORS if errors else ()))
 
+    @_alone
     def cast_rays(self,
                   rays,
                   nthreads=0,
@@ -277,6 +299,7 @@ class Raycaster:
         _check_precision(precision, False)
         return self._context.count_intersections(rays, tnear=tnear, tfar=tfar, precision=precision)
 
+    @_alone
     def list_intersections(self,
                            rays,
                            nthreads=0,
@@ -291,6 +314,7 @@ class Raycaster:
         found = self._context.list_intersections(rays, tnear=tnear, tfar=tfar, precision=precision)
         return self._numbered(found, (*self._keys(precision, errors), "ray_ids", "ray_splits"))
 
+    @_alone
     def compute_closest_points(self,
                                query_points,
                                nthreads=0,
@@ -316,6 +340,7 @@ class Raycaster:
         """Returns the distances from points (..., 3) to the nearest surface."""
         return self.compute_closest_points(query_points, precision=precision)["distances"]
 
+    @_alone
     def compute_occupancy(self, query_points, nthreads=0, nsamples=1, *, precision="single"):
         """Returns 1 for points (..., 3) inside closed surfaces, otherwise 0. A point is inside if a
         ray from it crosses an odd number of surfaces. nsamples: rays per point, an odd number; the
@@ -332,6 +357,7 @@ class Raycaster:
             votes += self.count_intersections(rays, precision=precision) % 2
         return (votes * 2 > nsamples).astype(np.float32)
 
+    @_alone
     def compute_signed_distance(self, query_points, nthreads=0, nsamples=1, *, precision="single"):
         """Returns the distances to the nearest surface, negative inside closed surfaces."""
         inside = self.compute_occupancy(query_points, nsamples=nsamples, precision=precision) > 0

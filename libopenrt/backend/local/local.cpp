@@ -76,6 +76,8 @@ void LocalBackend::prepare() {
   transportLeavesOut_ = choice.leavesOut;
   transportReason_ = std::move(choice.reason);
   next->mediumLights = findMediumLights(*next);
+  next->absorbingShadows =
+      !next->mediumLights.empty() || (next->transparentShadows && hasAbsorption(*next));
   next->emitters.build(*next, snapshot_.get(), recordsUnmoved_);
   if (!warnedOfNearLamp_ && options_.log &&
       next->emitters.shapes() != (snapshot_ ? snapshot_->emitters.shapes() : nullptr)) {
@@ -139,18 +141,11 @@ void LocalBackend::updateAccel(RenderScene& next) {
   store(origin, next.origin);
   makeCamera(next, origin);
   const PixelFootprint pixel = footprint(next);
-<<<<<<< HEAD
   const double scale = builder_.survey.scale(origin);
   const BuildInput input{
       scene_, flat_, *next.shaders, origin, scale, builder_.survey.reach(origin) * scale, pixel};
-  exactIsFormer_ = preciseIsFormer_ = true;
-  const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, input);
-=======
-  const BuildInput input{scene_, flat_, *next.shaders, origin, builder_.survey.scale(origin),
-                         pixel};
   exactIsFormer_ = preciseIsFormer_ = bodiesAreFormer_ = true;
-  const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, origin, input.scale);
->>>>>>> r23-rays
+  const bool builds = layOut || !AccelBuilder::hasFrame(*accel_, input);
   recordsUnmoved_ = !builds && moved.empty() && c.redefined.empty();
   if (builds)
     accel_ = builder_.build(input);

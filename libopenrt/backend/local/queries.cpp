@@ -173,7 +173,7 @@ bool LocalBackend::isDoubtful(const Doubts& doubts, const Rays& rays, uint32_t i
 template <class Take>
 std::vector<uint8_t> LocalBackend::findNearest(std::span<const RTray> rays, const Take& take) {
   const ClosedBodies& bodies = closedBodies();
-  const Doubts doubts(*accel_);
+  const Doubts doubts(*accel_, accel_->scale());
   std::vector<uint8_t> again(rays.size());
   std::atomic<bool> any{false};
   forBatches(rays, doubts.size, [&](const RayOrder::Block& block, Arena& arena, Rays& batch) {

@@ -60,14 +60,14 @@ void compact(ShadowRays& s, const uint8_t* drop) {
 }
 
 // Attenuates the colours by the media along the rays, up to their hits or ends. A ray that leaves
-// the scene is not inside a closed body (sampleFlights()).
+// the scene is not inside a closed body.
 void attenuate(const RenderScene& scene, const ShadowRays& s, const RayHits& found,
                float* const color[3]) {
   const std::span<const RtsMedium> media = scene.shaders->media();
   for (uint32_t i = 0; i < s.rays.count; i++) {
     const uint16_t medium = mediumOf(s.media[i], media);
     const float length = found.record[i] == noHit ? s.rays.tfar[i] : found.t[i];
-    if (!medium || (!std::isfinite(length) && scatters(media[medium - 1]))) continue;
+    if (!medium || !std::isfinite(length)) continue;
     Vec3f left = load(color, s.lane[i]);
     absorb(medium, std::min(length, 1e30f), media, left);
     store(left, color, s.lane[i]);
@@ -168,7 +168,7 @@ ShadowRays allocateShadowRays(const RenderScene& scene, uint32_t capacity, Arena
   ShadowRays s{};
   s.rays.allocate(arena, capacity);
   s.lane = arena.take<uint32_t>(capacity);
-  if (!scene.mediumLights.empty()) {
+  if (scene.absorbingShadows) {
     s.media = arena.take<MediaStack>(capacity);
     std::fill_n(s.media, capacity, MediaStack{});
   }

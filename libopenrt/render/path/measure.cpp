@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "render/lights/lamps.h"
 #include "render/path/tile.h"
 
 namespace openrt {
@@ -66,7 +67,12 @@ void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
     std::fill_n(white.weight[k], padded(n), 1.0f);
     radiance[k] = arena_.takeZero<float>(padded(n));
   }
-  gatherLight(batch, {}, radiance);
+  // Where there is nothing to hit and no sky, light comes from the lamps alone: the reading is
+  // exact and needs no random path.
+  if (scene_.records.empty() && !scene_.skyShines)
+    addLamps(batch, radiance);
+  else
+    gatherLight(batch, {}, radiance);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t path = wave.states.path[i];
     store(load(found.radiance, path) + load(radiance, i), found.radiance, path);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "render/lights/emitted.h"
 #include "render/lights/environment.h"
@@ -239,9 +240,27 @@ void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundari
   if (emitters && scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);
 }
 
+namespace {
+
+// The largest radiance of a sample. More is the work of a faulty shader or of a hostile world, and
+// sums of such samples would not be finite floats.
+constexpr float brightest = 1e36f;
+
+// Limits the radiance of a sample; `clipped` adds up what it loses. A sum that is not a number
+// counts as dark.
+float clampRadiance(float radiance, float limit, double& clipped) {
+  if (radiance <= limit && radiance >= -brightest) return radiance;
+  if (!(radiance > limit)) return 0;
+  clipped += double(std::min(radiance, std::numeric_limits<float>::max())) - double(limit);
+  return limit;
+}
+
+} // namespace
+
 void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& found,
                                uint32_t firstSample, uint32_t samples) {
-  const float limit = scene_.frame.clamp;
+  const float clamp = scene_.frame.clamp,
+              limit = clamp > 0 ? std::min(clamp, brightest) : brightest;
   for (uint32_t pixel = 0; pixel < range.count(); pixel++) {
     PixelSums& sums = sums_[places_[range.begin + pixel]];
     for (uint32_t s = 0; s < samples; s++) {
@@ -254,11 +273,7 @@ void TileRenderer::addToPixels(const PixelRange& range, const PixelSamples& foun
       float radiance[3] = {found.radiance[0][i], found.radiance[1][i], found.radiance[2][i]};
       if (scene_.frame.measure)
         std::fill_n(radiance, 3, readingOf(scene_.frame, load(found.radiance, i)));
-      for (float& r : radiance) {
-        if (!(limit > 0 && r > limit)) continue;
-        ledger_.clipped += double(r) - double(limit);
-        r = limit;
-      }
+      for (float& r : radiance) r = clampRadiance(r, limit, ledger_.clipped);
       if (required_.spread)
         sums.add(radiance, found.alpha[i]);
       else

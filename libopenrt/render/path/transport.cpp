@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "render/medium/medium_lights.h"
 #include "render/path/sensor_plane.h"
 #include "render/render_scene.h"
 #include "render/surface/media.h"
@@ -32,7 +33,7 @@ constexpr Choice choices[] = {
      "{} scatters the light of the sky"},
     {RT_TRANSPORT_AUTO, hasScattering, hasLamps, RT_TRANSPORT_PATH,
      "{} scatters light of lamps from surface to surface"},
-    {RT_TRANSPORT_AUTO, hasFog, 0, RT_TRANSPORT_PATH, "{} scatters light inside"},
+    {RT_TRANSPORT_AUTO, hasFog, 0, RT_TRANSPORT_PATH, "{} scatters or absorbs light inside"},
     {RT_TRANSPORT_AUTO, hasShading, hasEmitters, RT_TRANSPORT_PATH,
      "{} is lit by [], which emits light"},
     {RT_TRANSPORT_AUTO, hasShading, hasSkyLight, RT_TRANSPORT_PATH,
@@ -86,13 +87,14 @@ std::string reasonOf(const Choice& row, const SceneContents& contents) {
   return text;
 }
 
-// Paths from lamps are not scattered by media, so worlds with fog are followed from the camera.
+// Paths from lamps are not scattered by media and do not know which media they start in, so worlds
+// with fog are followed from the camera.
 void avoidLightTracing(const SceneContents& contents, TransportChoice& choice) {
   if (!(contents.bits & hasFog) || !traitsOf(choice.transport).tracesLamps) return;
   choice.transport = RT_TRANSPORT_PATH;
   choice.reason =
       std::string(firstOf(contents, hasFog)) +
-      " scatters light inside, so paths are followed from the camera and not from lamps";
+      " scatters or absorbs light inside, so paths start at the camera and not at lamps";
 }
 
 // Returns whether the environment emits light. It is evaluated on a coarse grid first. If that is
@@ -130,8 +132,9 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
     const bool emits = shader.traits & RTS_EMISSIVE;
     const bool mirrors = (shader.traits & RTS_SPECULAR) && !(shader.traits & RTS_MEDIUM_ONLY);
     uint32_t bits = mirrors ? uint32_t(hasMirrors) : 0u;
-    if (shader.medium && openrt::scatters(scene.shaders->media()[shader.medium - 1]))
-      bits |= hasFog | hasScattering;
+    if (fillsSpace(scene, shader))
+      bits |= hasFog |
+              (openrt::scatters(scene.shaders->media()[shader.medium - 1]) ? hasScattering : 0u);
     if (shaderClass.shade)
       bits |= (scatters ? hasShading : 0u) | (emits ? hasGlow : 0u);
     else

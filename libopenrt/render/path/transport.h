@@ -30,7 +30,7 @@ enum Contents : uint32_t {
   hasStarts = 1u << 9,      // lights or emitters from which light paths can start
   hasProjection = 1u << 10, // a camera that light paths can be connected to
   asksForAll = 1u << 11,    // surfaces that request indirect light (RTS_GLOBAL)
-  hasFog = 1u << 12,        // media that scatter; light paths from lamps do not know them
+  hasFog = 1u << 12,        // media that fill space; light paths from lamps do not know them
 };
 constexpr uint32_t contentsBits = 13;
 

@@ -171,7 +171,10 @@ Boundaries crossBoundaries(RtsBatch& batch, const RtsClass& shaderClass) {
     const uint32_t lane = batch.order[i];
     const uint8_t channel = states.flagsOf(lane).channel();
     const Crossing& c = out.crossing[i];
-    if (c.unknown) absorbAt(c.from, hits.segment[i], media, states, lane);
+    // Where the media at the start of paths are known, a body that was never entered is one that
+    // the full stack has ignored.
+    if (c.unknown && scene.mediumLights.empty())
+      absorbAt(c.from, hits.segment[i], media, states, lane);
     float* eta = out.eta[i];
     for (int k = 0; k < 3; k++) eta[k] = indexOf(c.from, k, media) / indexOf(c.to, k, media);
     disperses[i] = channel == 0 && (eta[0] != eta[1] || eta[0] != eta[2]);

@@ -64,6 +64,8 @@ class Accel final : public Intersector {
   };
   // Returns the largest coordinate of an origin of a ray, in render space.
   double reach() const { return 1e18 / double(scale_); }
+  // Render space times this factor is the space of Embree's scenes.
+  float scale() const { return scale_; }
   // Returns all visible triangle meshes, spheres and analytic surfaces.
   std::vector<Surface> surfaces() const;
   // Returns the Embree scenes that own the vertices of all records.

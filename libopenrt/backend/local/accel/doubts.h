@@ -15,8 +15,9 @@ struct Doubts {
   Vec3f low, high; // bounds of the scene in render space, with a margin
   float size = 0;  // the largest extent of the bounds
   float error = 0; // what Embree errs by along a ray within the scene
+  float scale = 1; // from render space to that of Embree's scenes (Accel::scale)
 
-  explicit Doubts(const Intersector& scene) {
+  Doubts(const Intersector& scene, float toKernel) : scale(toKernel) {
     float lowest[3], highest[3];
     scene.bounds(lowest, highest);
     low = vectorOf(lowest);
@@ -35,8 +36,28 @@ struct Doubts {
     return !std::isinf(rays.tfar[i]) || (o.x >= low.x && o.y >= low.y && o.z >= low.z &&
                                          o.x <= high.x && o.y <= high.y && o.z <= high.z);
   }
-  // A hit within 2^-12 of the edge of its triangle may belong to the neighbour, or be none.
-  static bool isNearEdge(float u, float v) { return std::min({u, v, 1 - u - v}) < 0x1p-12f; }
+  // A hit near the edge of its triangle may belong to the neighbour, or be none. Embree takes the
+  // corners relative to the origin of the ray. So its weights err by what their distance is rounded
+  // by, over the height of the triangle as the ray sees it.
+  static bool isNearEdge(const Record& r, const Rays& rays, uint32_t i, const RayHits& hits) {
+    const float inner = std::min({hits.u[i], hits.v[i], 1 - hits.u[i] - hits.v[i]});
+    if (!(inner >= 0x1p-12f)) return true;
+    const Vec3f o = load(rays.org, i);
+    Vec3f corner[3];
+    float reach = 0, longest = 0;
+    for (int k = 0; k < 3; k++) {
+      corner[k] = r.placeOf(r.corner(hits.primitive[i], k));
+      // The ray is moved into the frame of an instance, which rounds the coordinates themselves.
+      reach = std::max(reach, r.instanced ? largest(abs(corner[k])) + largest(abs(o))
+                                          : largest(abs(corner[k] - o)));
+    }
+    for (int k = 0; k < 3; k++)
+      longest = std::max(longest, largest(abs(corner[(k + 1) % 3] - corner[k])));
+    const Vec3f direction = load(rays.dir, i), // area: twice that of the triangle's projection
+        n = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const float area = std::fabs(dot(n, direction)) / length(direction);
+    return !(inner * area > 0x1p-20f * reach * longest);
+  }
   // A hit at the start or end of a ray may lie beyond it.
   bool isNearEnd(const Rays& rays, uint32_t i, float t) const {
     const float size = largest(abs(load(rays.dir, i))),
@@ -59,10 +80,15 @@ struct Doubts {
                 *far = rays.tfar;
     for (uint32_t i = 0; i < rays.count; i++) {
       const Vec3f d{dx[i], dy[i], dz[i]}, n{nx[i], ny[i], nz[i]};
-      const float u = us[i], v = vs[i], t = ts[i], along = dot(n, d);
+      const float u = us[i], v = vs[i], t = ts[i], along = dot(n, d), reach = t * scale;
       const float slack = error + 0x1p-22f * largest(abs(Vec3f{ox[i], oy[i], oz[i]})),
-                  size = largest(abs(d));
-      const bool inside = std::min(std::min(u, v), 1 - u - v) >= 0x1p-12f,
+                  size = largest(abs(d)), inner = std::min(std::min(u, v), 1 - u - v);
+      // The longest edge is at most 12 times the root of twice the area: what is longer is a sliver
+      // (sliver_edges.cpp), and is not tested in single precision.
+      const bool inside =
+                     (inner >= 0x1p-12f) &
+                     (inner * inner * (along * along) >
+                      0x1p-33f * (reach * reach) * (dot(d, d) * dot(d, d)) * std::sqrt(dot(n, n))),
                  apart = ((t - near[i]) * size > slack) & ((far[i] - t) * size > slack),
                  steep = along * along > 0x1p-12f * dot(n, n) * dot(d, d), front = along < 0;
       suspects[i] = !(inside & apart & steep & front);
@@ -70,9 +96,9 @@ struct Doubts {
   }
   // Only triangles have edges. Analytic surfaces are met in double precision, at any angle.
   bool hit(const Record& r, const Rays& rays, uint32_t i, const RayHits& hits) const {
-    return isNearEnd(rays, i, hits.t[i]) || (r.primitive == edit::Primitive::Triangles &&
-                                             (isNearEdge(hits.u[i], hits.v[i]) ||
-                                              isGrazing(r, load(hits.ng, i), load(rays.dir, i))));
+    return isNearEnd(rays, i, hits.t[i]) ||
+           (r.primitive == edit::Primitive::Triangles &&
+            (isNearEdge(r, rays, i, hits) || isGrazing(r, load(hits.ng, i), load(rays.dir, i))));
   }
 };
 
