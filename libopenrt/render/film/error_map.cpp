@@ -114,7 +114,7 @@ void ErrorMap::doubtConstants(
       doubted_[pixel] = relativeError(expectedOfBound(here.samples) * behind, here.mean);
       if (!noise_.empty())
         noise_[pixel].own = edge; // the pixel's error if it has an edge; used by picture_error.cpp
-      relative_[pixel] = -relativeError(sum, here.mean);
+      relative_[pixel] = std::copysign(relativeError(sum, here.mean), relative_[pixel]);
       changed(pixel, half);
     }
 }

@@ -49,10 +49,10 @@ class ErrorMap {
   ErrorMap(uint32_t width, uint32_t height, Kind kind);
   bool empty() const { return relative_.empty(); }
   void store(size_t pixel, const PixelError& e);
-  // Widens the intervals of constant pixels beside pixels that differ, and marks them as not
-  // trusted. Such a pixel is not known to be exact: an edge may cut a corner that no sample hit.
-  // The new interval is the bound given by the rule of three. The same is done at the border of a
-  // picture that is not of one colour. Calls `changed` for each such pixel.
+  // Widens the intervals of constant pixels beside pixels that differ. Such a pixel is not known to
+  // be exact: an edge may cut a corner that no sample hit. The new interval is the bound given by
+  // the rule of three, for a corner of any colour that the pixels around it have. The same is done
+  // at the border of a picture that is not of one colour. Calls `changed` for each such pixel.
   void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
   // Records the radiance that each finished pixel of a tile may lack because no sample has found it
   // (ledger.h), summed over the colours.

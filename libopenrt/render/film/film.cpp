@@ -59,7 +59,6 @@ void Film::finishErrors() {
   errors_.doubtConstants([this](size_t pixel, const float halfWidth[3]) {
     if (has(RT_ERROR))
       std::copy_n(halfWidth, 3, plane(RT_ERROR).begin() + std::ptrdiff_t(3 * pixel));
-    if (has(RT_TRUST)) plane(RT_TRUST)[pixel] = 0;
   });
 }
 
