@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "render/film/ledger.h"
 #include "render/film/picture_error.h"
 #include "render/frame/tiles.h"
 
@@ -16,8 +17,6 @@ namespace openrt {
 // Floor for relative errors (sum of the colours), so that errors of dark pixels are not
 // exaggerated.
 inline constexpr float darkest = 0.03f;
-// -ln 0.05. After n misses in a row, a probability is below this / n with 95 % confidence.
-inline constexpr double ruleOfThree = 2.9957;
 
 struct PixelError {
   float mean[3] = {};
