@@ -40,7 +40,7 @@ TEST(GuideTrials, RaysThatFindRareLightAreKept) {
   sendFromAll(trial);
   for (uint32_t c = 0; c < cells; c++) trial.meet(c, {1, 1, 1}, 1e-4);
   trial.endBlock(pixels(1, 1));
-  EXPECT_EQ(trial.choose(rays(20'000)), std::vector<uint8_t>(cells, 1));
+  EXPECT_EQ(trial.choose(rays(20'000)), std::vector<float>(cells, 1));
 }
 
 // Light that BSDF sampling finds as often is not worth another ray.
@@ -49,7 +49,7 @@ TEST(GuideTrials, RaysThatFindWhatOthersFindAreNot) {
   sendFromAll(trial);
   for (uint32_t c = 0; c < cells; c++) trial.meet(c, {.1f, .1f, .1f}, .5);
   trial.endBlock(pixels(1, 1));
-  EXPECT_EQ(trial.choose(rays(20'000)), std::vector<uint8_t>(cells, 0));
+  EXPECT_EQ(trial.choose(rays(20'000)), std::vector<float>(cells, 0));
 }
 
 TEST(GuideTrials, OnlyTheCellsThatGainAreKept) {
@@ -57,14 +57,14 @@ TEST(GuideTrials, OnlyTheCellsThatGainAreKept) {
   sendFromAll(trial);
   trial.meet(3, {1, 1, 1}, 1e-2);
   trial.endBlock(pixels(1, 1));
-  std::vector<uint8_t> third(cells);
+  std::vector<float> third(cells);
   third[3] = 1;
   EXPECT_EQ(trial.choose(rays(20'000)), third);
 }
 
 // Errors count relative to the brightness, so the unit of radiance has no influence.
 TEST(GuideTrials, TheUnitOfLightDoesNotMatter) {
-  std::vector<std::vector<uint8_t>> chosen;
+  std::vector<std::vector<float>> chosen;
   for (const float unit : {1.f, 1000.f}) {
     GuideTrial trial(cells);
     sendFromAll(trial);
@@ -74,17 +74,44 @@ TEST(GuideTrials, TheUnitOfLightDoesNotMatter) {
     chosen.push_back(trial.choose(rays(20'000)));
   }
   EXPECT_EQ(chosen[0], chosen[1]);
-  EXPECT_EQ(std::accumulate(chosen[0].begin(), chosen[0].end(), 0), 2);
+  EXPECT_EQ(std::accumulate(chosen[0].begin(), chosen[0].end(), 0.f), 2);
+}
+
+// A few guided rays are enough where BSDF sampling finds the light now and then.
+TEST(GuideTrials, LightThatIsNotSoRareGetsAFewRays) {
+  GuideTrial trial(cells);
+  sendFromAll(trial);
+  for (uint32_t c = 0; c < cells; c++)
+    for (int i = 0; i < 40; i++) trial.meet(c, {.6f, .6f, .6f}, .02);
+  trial.endBlock(pixels(1, 1));
+  const std::vector<float> chosen = trial.choose(rays(20'000));
+  for (const float share : chosen) {
+    EXPECT_GT(share, 0);
+    EXPECT_LT(share, 1);
+  }
+}
+
+// Where every cell must send rays, those without gain send the fewest.
+TEST(GuideTrials, EveryCellSendsRaysIfItMust) {
+  GuideTrial trial(cells);
+  sendFromAll(trial);
+  trial.meet(3, {1, 1, 1}, 1e-2);
+  trial.endBlock(pixels(1, 1));
+  const std::vector<float> chosen = trial.choose(rays(20'000), true);
+  for (uint32_t c = 0; c < cells; c++) EXPECT_EQ(chosen[c], c == 3 ? 1 : GuideTrial::shares[0]);
+  GuideTrial none(cells);
+  none.endBlock(pixels(1, 1));
+  EXPECT_EQ(none.choose(rays(1000), true), std::vector<float>(cells, GuideTrial::shares[0]));
 }
 
 TEST(GuideTrials, NoRaysAndBlackPicturesKeepNothing) {
   GuideTrial none(cells);
   none.endBlock(pixels(1, 1));
-  EXPECT_EQ(none.choose(rays(1000)), std::vector<uint8_t>(cells, 0));
+  EXPECT_EQ(none.choose(rays(1000)), std::vector<float>(cells, 0));
   GuideTrial black(cells);
   sendFromAll(black);
   black.endBlock(pixels(0, 0));
-  EXPECT_EQ(black.choose(rays(20'000)), std::vector<uint8_t>(cells, 0));
+  EXPECT_EQ(black.choose(rays(20'000)), std::vector<float>(cells, 0));
 }
 
 } // namespace

@@ -48,9 +48,12 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
   };
   const RequiredSums g = requiredSums(frame);
   JobResult result;
-  result.ledger = {
-      number(), number(), number(), {number(), number(), number()}, {number(), number(), number()},
-      job.count};
+  result.ledger = {number(),
+                   number(),
+                   number(),
+                   {number(), number(), number(), number()},
+                   {number(), number(), number()},
+                   job.count};
   result.sums.resize(tile.pixels());
   for (PixelSums& s : result.sums) {
     s.samples = job.count;

@@ -92,16 +92,21 @@ struct Ledger { // all values are summed over the colours
     unsampledSky.add(l.unsampledSky);
   }
   // Returns a bound of the radiance that the mean of `paths` samples may lack, summed over the
-  // colours, if rays of this tile find emitters as often as the rays that `all` sums up. Light that
-  // neither the rays nor light paths have found is less than either of them alone could miss: with
-  // a probability of 95 %, the hits to expect of both together are three.
+  // colours, if rays of this tile find emitters as often as the rays that `all` sums up.
   double missedRadiance(const Ledger& all, double paths) const {
     if (!(paths > 0)) return 0;
-    double shapes = all.unsampled.missedShare() * unsampled.light;
-    if (const double both = shapes + ruleOfThree * unsampled.byLightPath;
-        shapes > 0 && unsampled.byLightPath > 0)
-      shapes *= ruleOfThree * unsampled.byLightPath / both;
-    return (shapes + all.unsampledSky.missedShare() * unsampledSky.light) / paths;
+    return (all.unsampled.missedShare() * unsampled.light +
+            all.unsampledSky.missedShare() * unsampledSky.light) /
+           paths;
+  }
+  // Returns the bound that follows from the rays of this tile and from light paths together: with a
+  // probability of 95 %, less than three of both were to be expected for the light that they lack.
+  double missedByTile(double paths) const {
+    const double lightPaths = ruleOfThree * unsampled.byLightPath,
+                 rays = unsampled.missedShare() * unsampled.light,
+                 all = missedRadiance(*this, paths);
+    if (!(paths > 0 && lightPaths > 0 && rays > 0)) return all;
+    return all - rays * rays / (rays + lightPaths) / paths;
   }
 };
 

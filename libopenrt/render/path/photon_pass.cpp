@@ -18,7 +18,7 @@ namespace {
 
 constexpr uint32_t fewestSamples = 16;
 // One light path for so many camera paths, within bounds.
-constexpr uint64_t cameraPaths = 4, fewestPaths = 1u << 13, mostPaths = 1u << 17;
+constexpr uint64_t cameraPaths = 8, fewestPaths = 1u << 13, mostPaths = 1u << 16;
 // One path of the trial for so many camera paths, within bounds. Blocks of pixels are tried.
 constexpr uint64_t trialShare = 32, fewestBlocks = 4, mostBlocks = 32;
 constexpr uint32_t blockEdge = 4, trialSamples = 16;
