@@ -98,10 +98,12 @@ TEST(Error, inTheDarkAnUpperBoundFromThePixelsAround) {
             lit = sumsOf(calmSamples(1), sixteen);
   dark.random = lit.random = true;
   EXPECT_TRUE(std::isinf(errorOf({&dark}, sixteen).halfWidth[0])); // nothing is known
+  EXPECT_FALSE(errorOf({&dark}, sixteen).trusted);
   // Out of the window's reach: 3 / N of the largest sample, N those of the window's three pixels.
   const PixelError far = errorOf({&dark, &dark, &dark, &lit}, sixteen);
   EXPECT_NEAR(far.halfWidth[0], lit.largest[0] * 2.9957 / 128 / 3, 1e-4);
-  EXPECT_FALSE(far.trusted);
+  EXPECT_TRUE(far.trusted);
+  EXPECT_TRUE(far.dark);
 }
 
 TEST(Error, whereNothingIsRandomEqualSamplesAreExact) {
@@ -166,7 +168,8 @@ TEST(Error, oneBrightSampleIsNotTrusted) {
       << "also out of the window's reach";
 }
 
-TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
+// Its interval is a bound, so it keeps its trust.
+TEST(Error, aConstantPixelBesideAnEdgeGetsABound) {
   ErrorMap map(5, 3, ErrorMap::Kind::full);
   for (size_t i = 0; i < 15; i++) {
     PixelError e;
@@ -186,8 +189,28 @@ TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
   });
   // All but one; also those at the border, whose neighbours are not known.
   EXPECT_EQ(changed, (std::vector<size_t>{0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14}));
-  EXPECT_EQ(map.summary().trusted, 1u);
+  EXPECT_EQ(map.summary().trusted, 15u);
   EXPECT_EQ(map.summary().pixels, 15u);
+  EXPECT_GT(map.summary().halfWidth, 0);
+}
+
+// With n rays and m light paths that have found nothing, light is missing that three of all n + m
+// would find.
+TEST(Error, lightPathsLowerTheBoundOfWhatRaysHaveNotFound) {
+  Ledger ledger;
+  constexpr double paths = 1000;
+  for (int i = 0; i < 500; i++) ledger.unsampled.send({1, 1, 1}, 8);
+  const double rays = ledger.missedByTile(paths);
+  EXPECT_NEAR(rays, ruleOfThree * 8 / paths, 1e-9);
+  EXPECT_EQ(rays, ledger.missedRadiance(ledger, paths));
+  ledger.unsampled.byLightPath = 8; // each tells as much as a ray
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 2, 1e-9);
+  ledger.unsampled.byLightPath = 8e-3;
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001, 1e-9);
+  EXPECT_EQ(ledger.missedRadiance(ledger, paths), rays) << "the picture's own bound";
+  for (int i = 0; i < 40; i++) ledger.unsampledSky.send({1, 1, 1}, 2);
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001 + ruleOfThree * 2 / paths, 1e-9)
+      << "no light paths come from the sky";
 }
 
 TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean) {
