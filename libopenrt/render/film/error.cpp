@@ -277,8 +277,7 @@ class TileErrors {
   }
 
   void judge(const PixelSums& s, const Pooled& p, bool enough, PixelError& e) const {
-    // dark: all samples of the pixel and of its window are equal. If the tile has found any light,
-    // the rule of three bounds what they have missed.
+    // dark: all samples of the pixel and of its window are equal.
     const bool dark = s.random && !(p.variance[0] + p.variance[1] + p.variance[2] > 0);
     double half = 0;
     for (int k = 0; k < 3; k++) {
@@ -291,18 +290,12 @@ class TileErrors {
     }
     finish(e);
     e.dark = dark;
-    e.trusted = enough && !p.few && (!dark || boundsDark());
+    e.trusted = enough && !dark && !p.few;
     // Some features are so rare that most windows have missed them. The means there lack their
     // light, and no variance shows it.
     const double hits = rare_.hits(s.samples) * std::min(windowOf(reach_), rare_.pixels);
     if (s.random && hits < fewestHits && rare_.mean(s.samples) > negligible * half)
       e.trusted = false;
-  }
-
-  // Returns whether the bound of dark pixels can be trusted. A sensor has no neighbours that would
-  // show how bright the light is that it has missed.
-  bool boundsDark() const {
-    return reach_ > 0 && std::max({rare_.largest[0], rare_.largest[1], rare_.largest[2]}) > 0;
   }
 
   uint32_t width_, height_;

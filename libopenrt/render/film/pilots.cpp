@@ -62,7 +62,7 @@ PilotPixel pilotPixel(PixelError& error, const LightSums* light) {
   PilotPixel out;
   double half = 0;
   for (const float h : error.halfWidth) half += double(h);
-  out.trusted = error.trusted && !error.dark; // a pilot is too short for a bound
+  out.trusted = error.trusted;
   if (light) addLight(*light, error);
   const auto scale = double(error.noise.scale);
   out.noise = float(half / scale);

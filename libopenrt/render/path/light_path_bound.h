@@ -1,7 +1,7 @@
 // light_path_bound.h: what the light paths of the photon pass tell about light that they have not
 // found. A light path that ends at a surface of a tile adds some radiance to the tile. If no light
 // path has found a part of the light, the tile may lack what about three of them would add (rule of
-// three). [render]
+// three), in a part of its pixels. [render]
 #pragma once
 
 #include "render/frame/tiles.h"
