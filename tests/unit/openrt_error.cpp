@@ -199,15 +199,16 @@ TEST(Error, lightPathsLowerTheBoundOfWhatRaysHaveNotFound) {
   constexpr double paths = 1000;
   for (int i = 0; i < 500; i++) ledger.unsampled.send({1, 1, 1}, 8);
   const double rays = ledger.missedByTile(paths);
-  EXPECT_NEAR(rays, ruleOfThree * 8 / paths, 1e-9);
+  const double about = .02 * rays; // the bound of rays is an approximation
+  EXPECT_NEAR(rays, ruleOfThree * 8 / paths, about);
   EXPECT_EQ(rays, ledger.missedRadiance(ledger, paths));
   ledger.unsampled.byLightPath = 8; // each tells as much as a ray
-  EXPECT_NEAR(ledger.missedByTile(paths), rays / 2, 1e-9);
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 2, about);
   ledger.unsampled.byLightPath = 8e-3;
-  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001, 1e-9);
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001, about / 1001);
   EXPECT_EQ(ledger.missedRadiance(ledger, paths), rays) << "the picture's own bound";
   for (int i = 0; i < 40; i++) ledger.unsampledSky.send({1, 1, 1}, 2);
-  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001 + ruleOfThree * 2 / paths, 1e-9)
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001 + ruleOfThree * 2 / paths, about)
       << "no light paths come from the sky";
 }
 
