@@ -106,19 +106,6 @@ void drawSlit() {
   eyeAt(.2, -.2, 1.3, 70);
 }
 
-// Fog around two small lamps above a floor, and a ball that throws a shadow into it.
-void drawFog() {
-  floorAt(-1, paint(.5f, .5f, .5f), 4);
-  const RTid fog = shaderOf("Fog");
-  colored(fog, "scattering", .15f, .2f, .3f);
-  colored(fog, "absorption", .02f, .02f, .02f);
-  put(box(fog, 3, 1.5, 3), 0, .4, 0, 0);
-  put(ball(paint(.7f, .3f, .2f), .3f), .4, -.5, .3, 0);
-  put(ball(diffuse(400, 0), .03f), -.6, .5, 0, 0);
-  lampAbove(.7, .9, -.5, .1, 40);
-  eyeAt(0, .6, 5.5, 36);
-}
-
 } // namespace
 
 const std::vector<Scenario>& trainingScenes() {
@@ -137,7 +124,6 @@ const std::vector<Scenario>& trainingScenes() {
        drawDispersion},
       {"slit", "a room lit by way of a slit", RT_TRANSPORT_PATH, 64, 65536, 0, .1, "light is rare",
        drawSlit},
-      {"fog", "two small lamps in fog", RT_TRANSPORT_PATH, 64, 32768, 0, .3, "", drawFog},
   };
   return table;
 }

@@ -95,7 +95,8 @@ def into_page(page, text, names, out, mark="bench-render"):
     begin, end = f"<!-- {mark} -->\n", f"<!-- /{mark} -->\n"
     before, rest = page.read_text().split(begin)
     images = "".join(
-        f"![{n[13:-4].replace('_', ' ')} over CPU seconds](images/{n})\n" for n in names)
+        f"![{n.split('_', 2)[2][:-4].replace('_', ' ')} over CPU seconds](images/{n})\n"
+        for n in names)
     page.write_text(before + begin + text + "\n" + images + end + rest.split(end)[1])
     for name in names:
         (page.parent / "images" / name).write_text((out / name).read_text())
