@@ -180,7 +180,8 @@ TEST(Error, aConstantPixelBesideAnEdgeGetsABound) {
     map.store(i, e);
   }
   std::vector<size_t> changed;
-  map.doubtConstants([&](size_t pixel, const float half[3]) {
+  map.doubtConstants([&](size_t pixel, const float half[3], bool known) {
+    EXPECT_TRUE(known);
     changed.push_back(pixel);
     EXPECT_NEAR(half[0], 2.9957 / 30, 1e-6);
     EXPECT_EQ(half[1], 0);

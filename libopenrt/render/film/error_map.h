@@ -52,7 +52,9 @@ class ErrorMap {
   // be exact: an edge may cut a corner that no sample hit. The new interval is the bound given by
   // the rule of three, for a corner of any colour that the pixels around it have. The same is done
   // at the border of a picture that is not of one colour. Calls `changed` for each such pixel.
-  void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
+  // known: whether the colours around can be trusted. If not, the pixel loses its trust.
+  void doubtConstants(
+      const std::function<void(size_t pixel, const float halfWidth[3], bool known)>& changed);
   // Records the radiance that each finished pixel of a tile may lack because no sample has found it
   // (ledger.h), summed over the colours.
   //  - bound: bound by the samples of the tile. Pixels with random samples whose interval is
@@ -74,6 +76,7 @@ class ErrorMap {
     return x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_;
   }
   bool beside(uint32_t x, uint32_t y) const;
+  bool coloursKnown(uint32_t x, uint32_t y) const;
   void range(uint32_t x, uint32_t y, float out[3]) const;
   uint32_t width_ = 0, height_ = 0;
   std::vector<float> relative_; // NaN: not finished; negative: not trusted
