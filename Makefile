@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -92,6 +92,14 @@ ifndef BINARIES
 endif
 	@$(PYTHON) tools/bench_render.py --out build/bench/render $(if $(FULL),--full) $(if $(DOCS),--docs) \
 	  $(if $(WORLDS),--worlds $(WORLDS)) $(if $(BINARIES),--binaries $(BINARIES))
+
+## make bench-transports  error over CPU time of path, light and auto on eight worlds (CSV, curves) into build/bench/transports;
+##                   FULL=1, DOCS=1 and WORLDS as for bench-render
+bench-transports:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders
+	@$(PYTHON) tools/bench_render.py --out build/bench/transports --transports light,path,auto \
+	  --worlds $(or $(WORLDS),cornell,headlight,interior,board,caustic,caustic_even,glossy,dusk) \
+	  $(if $(FULL),--full) $(if $(DOCS),--docs)
 
 ## make audit         do the error bars hold? coverage over AUDIT_SEEDS (default 200) pictures of each scene, with 64 and 512 samples
 audit:

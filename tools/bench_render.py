@@ -4,6 +4,7 @@
 bench_render.py --out FOLDER [--worlds a,b,FILE.wrl] [--full] [--docs] [--again] [--fresh]
                 [--reference SECONDS] [--picture SECONDS] [--seeds N]
                 [--size WxH] [--threads N] [--vv PROGRAM] [--mitsuba PYTHON]
+bench_render.py --out FOLDER --transports path,light,auto [--docs] ...
 bench_render.py --out FOLDER --binaries OLD NEW [--rounds N] [--spp N] [--worlds ...]
 
 `make bench-render` runs it. Worlds are names from tools/rendering/worlds.py or files. FOLDER gets
@@ -14,6 +15,10 @@ The reference of a world is a long render with other seeds, in two halves; their
 its noise, which is subtracted from the errors. It is kept in FOLDER/references until the world or
 the settings change, or until --fresh. Seconds are CPU seconds of all threads, without the start-up,
 which has a column of its own.
+
+--transports renders every world with the same transports, without Mitsuba. FOLDER gets
+transports.csv, a curve of each world, and transports.md, which says how the error of auto compares
+with the best of the others at equal CPU time. `make bench-transports` runs it for eight worlds.
 
 --binaries decides about a change: two builds of vv take turns with the same seeds. OLD and NEW may
 have options: --binaries "old/vv" "new/vv --depth 8". FOLDER gets binaries.csv and binaries.md.
@@ -31,7 +36,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import export_mitsuba  # noqa: E402
 from export_mitsuba import ROOT, read_pfm, write_pfm  # noqa: E402
-from rendering import renderers, report  # noqa: E402
+from rendering import automatic, renderers, report  # noqa: E402
 from rendering.errors import Measured, Reference, mean, ratio_of_means  # noqa: E402
 from rendering.worlds import WORLDS, find  # noqa: E402
 
@@ -49,9 +54,10 @@ class Bench:
 
     def transports(self, program, entry, file, folder):
         """Returns a renderer for each transport of a world that the build has."""
+        wanted = self.options.transports
         made = [
             renderers.Vv(program, file, transport, self.size, self.options.threads, folder)
-            for transport in entry.transports
+            for transport in (wanted.split(",") if wanted else entry.transports)
         ]
         made = [vv for vv in made if vv.supported()]
         if not made:
@@ -174,8 +180,10 @@ def measure(bench, name, mitsubas):
 
 def measure_all(bench):
     options = bench.options
-    mitsubas = renderers.mitsubas(options.mitsuba, options.threads or os.cpu_count(), bench.out)
-    if not mitsubas:
+    mitsubas = []
+    if not options.transports:
+        mitsubas = renderers.mitsubas(options.mitsuba, options.threads or os.cpu_count(), bench.out)
+    if not mitsubas and not options.transports:
         print("Mitsuba 3 is not installed here (MITSUBA_PYTHON names a Python that has it): "
               "vv alone")  # yapf: disable
     rows = []
@@ -289,6 +297,9 @@ def parse():
                         default=os.environ.get("MITSUBA_PYTHON", sys.executable),
                         help="a Python that has Mitsuba 3")
     parser.add_argument("--binaries", nargs=2, metavar=("OLD", "NEW"), help="compare two builds")
+    parser.add_argument("--transports",
+                        help="of all worlds, by commas; the first of a world that "
+                        "vv has makes the reference")
     parser.add_argument("--rounds", type=int, default=9, help="turns of --binaries (default 9)")
     parser.add_argument("--spp", type=int, help="samples of --binaries (default: about 1 s)")
     options = parser.parse_args()
@@ -298,13 +309,23 @@ def parse():
     return options
 
 
+def write_transports(bench, rows):
+    text, names = automatic.write(rows, bench.out)
+    print(text)
+    if bench.options.docs:
+        report.into_page(ROOT / "docs/benchmarks.md", text, names, bench.out, "bench-transports")
+
+
 def main():
     bench = Bench(parse())
     bench.out.mkdir(parents=True, exist_ok=True)
     if bench.options.binaries:
         return compare_all(bench)
     again = bench.options.again
-    rows = report.read_csv(bench.out / "render.csv") if again else measure_all(bench)
+    table = "transports.csv" if bench.options.transports else "render.csv"
+    rows = report.read_csv(bench.out / table) if again else measure_all(bench)
+    if bench.options.transports:
+        return write_transports(bench, rows)
     with_mitsuba = any(r["renderer"].startswith("Mitsuba") for r in rows)
     text, names = report.write(rows, bench.out, with_mitsuba)
     if bench.options.docs:

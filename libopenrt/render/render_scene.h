@@ -126,6 +126,9 @@ struct RenderScene {
   // Guides camera paths to emissive shapes by way of specular surfaces; null: there is nothing to
   // guide to, or too few samples are taken.
   std::shared_ptr<const PhotonGuide> photonGuide;
+  // Flux of one of the light paths that have left the photons, summed over the colours: whatever
+  // they have found is sampled, so they bound what they have not found. 0: they tell nothing.
+  double lightPathFlux = 0;
   bool transparentShadows = false; // something transparent may lie between a point and a light
   bool absorbingShadows = false;   // so may a medium that absorbs
   // Whether rays from the eye in all directions seldom leave the scene.

@@ -65,6 +65,26 @@ TEST_F(ErrorBars, HoldAtEdges) {
   const audit::Coverage c = measure("edges", 40, 8192, 8);
   EXPECT_GT(c.share(), .93);
   EXPECT_LT(double(c.exact - c.exactHeld), .01 * double(c.pixels));
+  EXPECT_GT(c.trustedShare(), .95) << "what an edge may add to a pixel has a bound";
+}
+
+// A tiny lamp lights a floor beside a ball of glass. Rays that leave the floor by way of the ball
+// would almost never hit the lamp. Light paths find all that comes by way of the ball, so that the
+// pixels are trusted, and rightly.
+TEST_F(ErrorBars, LightPathsTellWhatRaysWouldNotMeet) {
+  audit::Scenario s = scenario("pane");
+  s.draw = [] {
+    audit::floorAt(-1, audit::paint(.7f, .7f, .7f), 10);
+    audit::put(audit::ball(audit::diffuse(4e6f, 0), 1e-3f), .2, .6, 0, 0);
+    audit::put(audit::ball(audit::shaderOf("Glass"), .3f), .5, -.6, 0, 0);
+    audit::eyeAt(0, 2, 2, 40);
+  };
+  s.reference = 4096;
+  s.samples = 64;
+  const audit::Coverage c = audit::measure(s, 6, 12);
+  printf("trusted %.3f, coverage %.4f +- %.4f\n", c.trustedShare(), c.share(), c.shareInterval());
+  EXPECT_GT(c.trustedShare(), .8);
+  EXPECT_GT(c.share() + c.shareInterval(), .93);
 }
 
 TEST_F(ErrorBars, WhatOnlySomePathsMeetIsTrustedWhereEnoughDo) { // lamps are not aimed at behind

@@ -14,7 +14,7 @@ from conftest import HEADER, find_vv
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
-from rendering import errors, report, worlds  # noqa: E402
+from rendering import automatic, errors, report, worlds  # noqa: E402
 
 SIZE = 3 * 20000
 TRUTH = [0.1 + (k % 97) / 40 for k in range(SIZE)]
@@ -120,6 +120,22 @@ def test_the_table_compares_at_equal_time(tmp_path):
     assert all((tmp_path / "images" / name).exists() for name in names)
 
 
+def test_auto_is_compared_with_the_better_transport(tmp_path):
+    rows = []
+    for name, error in (("light", 0.04), ("path", 0.01), ("auto", 0.012)):
+        rows += [row(name, .25, 4 * error), row(name, 4, error / 4)]
+    time, found, mean, largest = automatic.compare(rows, "w")
+    assert time == 4 and found == {"light": 0.01, "path": 0.0025, "auto": 0.003}
+    assert mean == pytest.approx(1.2) and largest == pytest.approx(1.2)
+    text, names = automatic.write(rows, tmp_path)
+    cells = [c.strip() for c in text.splitlines()[2].strip("|").split("|")]
+    assert cells == ["World", "4", "0.01", "0.0025", "0.003", "1.2", "1.2"]
+    assert names == ["bench_transports_w_relmse.svg"] and (tmp_path / names[0]).exists()
+    apart = [row("light", 1, 1), row("auto", 2, 1)]
+    assert automatic.compare(apart, "w") is None
+    assert "| World | - | - | - | - | - |" in automatic.table(apart)
+
+
 @pytest.mark.parametrize("name", [n for n, w in worlds.WORLDS.items() if w.write])
 def test_written_worlds_have_no_problems(vv, tmp_path, name):
     file = worlds.find(name, tmp_path)[2]
@@ -165,6 +181,15 @@ def test_a_whole_run(vv, tmp_path):
     assert {p: p.stat().st_mtime_ns for p in kept} == kept, "the reference is kept"
     again = bench(tmp_path, "--again")
     assert again.returncode == 0 and "lamp" in (tmp_path / "out/render.md").read_text()
+
+
+def test_a_run_of_transports(vv, tmp_path):
+    done = bench(tmp_path, "--transports", "path,light,auto")
+    assert done.returncode == 0, done.stderr
+    rows = report.read_csv(tmp_path / "out/transports.csv")
+    assert {r["renderer"] for r in rows} == {"path", "light", "auto"}
+    assert "auto / best" in (tmp_path / "out/transports.md").read_text()
+    assert "Mitsuba" not in done.stdout
 
 
 def test_two_binaries_take_turns(vv, tmp_path):

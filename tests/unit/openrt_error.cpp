@@ -166,7 +166,8 @@ TEST(Error, oneBrightSampleIsNotTrusted) {
       << "also out of the window's reach";
 }
 
-TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
+// Its interval is a bound, so it keeps its trust.
+TEST(Error, aConstantPixelBesideAnEdgeGetsABound) {
   ErrorMap map(5, 3, ErrorMap::Kind::full);
   for (size_t i = 0; i < 15; i++) {
     PixelError e;
@@ -179,15 +180,37 @@ TEST(Error, aConstantPixelBesideAnEdgeIsInDoubt) {
     map.store(i, e);
   }
   std::vector<size_t> changed;
-  map.doubtConstants([&](size_t pixel, const float half[3]) {
+  map.doubtConstants([&](size_t pixel, const float half[3], bool known) {
+    EXPECT_TRUE(known);
     changed.push_back(pixel);
     EXPECT_NEAR(half[0], 2.9957 / 30, 1e-6);
     EXPECT_EQ(half[1], 0);
   });
   // All but one; also those at the border, whose neighbours are not known.
   EXPECT_EQ(changed, (std::vector<size_t>{0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12, 13, 14}));
-  EXPECT_EQ(map.summary().trusted, 1u);
+  EXPECT_EQ(map.summary().trusted, 15u);
   EXPECT_EQ(map.summary().pixels, 15u);
+  EXPECT_GT(map.summary().halfWidth, 0);
+}
+
+// With n rays and m light paths that have found nothing, light is missing that three of all n + m
+// would find.
+TEST(Error, lightPathsLowerTheBoundOfWhatRaysHaveNotFound) {
+  Ledger ledger;
+  constexpr double paths = 1000;
+  for (int i = 0; i < 500; i++) ledger.unsampled.send({1, 1, 1}, 8);
+  const double rays = ledger.missedByTile(paths);
+  const double about = .02 * rays; // the bound of rays is an approximation
+  EXPECT_NEAR(rays, ruleOfThree * 8 / paths, about);
+  EXPECT_EQ(rays, ledger.missedRadiance(ledger, paths));
+  ledger.unsampled.byLightPath = 8; // each tells as much as a ray
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 2, about);
+  ledger.unsampled.byLightPath = 8e-3;
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001, about / 1001);
+  EXPECT_EQ(ledger.missedRadiance(ledger, paths), rays) << "the picture's own bound";
+  for (int i = 0; i < 40; i++) ledger.unsampledSky.send({1, 1, 1}, 2);
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001 + ruleOfThree * 2 / paths, about)
+      << "no light paths come from the sky";
 }
 
 TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean) {

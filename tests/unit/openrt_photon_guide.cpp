@@ -49,6 +49,25 @@ TEST_F(PhotonGuides, ThePdfIsThatOfTheSamples) {
   EXPECT_NEAR(sum, 2 * M_PI / 3, .02);
 }
 
+TEST_F(PhotonGuides, SharesScaleThePdfAndEndCells) {
+  PhotonGuide guide(onASquare(200, {.5f, .5f, 1}, 1));
+  const Vec3f position{.3f, .6f, 0}, up{0, 0, 1};
+  const uint32_t cell = guide.find(position);
+  ASSERT_NE(cell, PhotonGuide::none);
+  EXPECT_EQ(guide.share(cell), 1);
+  const float pdf = guide.pdf(cell, position, up);
+  std::vector<float> shares(guide.cells(), .25f);
+  guide.setShares(shares);
+  EXPECT_EQ(guide.find(position), cell);
+  EXPECT_FLOAT_EQ(guide.pdf(cell, position, up), pdf / 4);
+  shares[cell] = 0;
+  guide.setShares(shares);
+  EXPECT_EQ(guide.find(position), PhotonGuide::none);
+  EXPECT_FALSE(guide.empty());
+  guide.setShares(std::vector<float>(shares.size(), 0));
+  EXPECT_TRUE(guide.empty());
+}
+
 // Light from one point needs narrow lobes, wherever in the cell they are looked up.
 TEST_F(PhotonGuides, LobesLeadToWhereTheLightCameFrom) {
   const Vec3f from{2, -1, 3};

@@ -63,18 +63,18 @@ def table(rows):
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def plots(rows):
+def plots(rows, prefix="bench_render", measures=None):
     """Yields name and text of the curves of each world: relMSE and RMSE over CPU seconds."""
     for world in dict.fromkeys(r["world"] for r in rows):
         own = [r for r in rows if r["world"] == world]
-        for measure, label in MEASURES.items():
+        for measure, label in (measures or MEASURES).items():
             lines = {
                 renderer: curve(own, world, renderer, measure)
                 for renderer in dict.fromkeys(r["renderer"] for r in own)
             }
             lines = {renderer: points for renderer, points in lines.items() if points}
             if lines:
-                yield (f"bench_render_{world}_{measure}.svg",
+                yield (f"{prefix}_{world}_{measure}.svg",
                        log_plot(own[0]["title"], "CPU seconds", label, lines))
 
 
@@ -90,12 +90,13 @@ def write(rows, out, with_mitsuba):
     return text, names
 
 
-def into_page(page, text, names, out):
+def into_page(page, text, names, out, mark="bench-render"):
     """Puts the table and the curves between the marks of a page of docs/."""
-    begin, end = "<!-- bench-render -->\n", "<!-- /bench-render -->\n"
+    begin, end = f"<!-- {mark} -->\n", f"<!-- /{mark} -->\n"
     before, rest = page.read_text().split(begin)
     images = "".join(
-        f"![{n[13:-4].replace('_', ' ')} over CPU seconds](images/{n})\n" for n in names)
+        f"![{n.split('_', 2)[2][:-4].replace('_', ' ')} over CPU seconds](images/{n})\n"
+        for n in names)
     page.write_text(before + begin + text + "\n" + images + end + rest.split(end)[1])
     for name in names:
         (page.parent / "images" / name).write_text((out / name).read_text())

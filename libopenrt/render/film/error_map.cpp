@@ -78,8 +78,18 @@ void ErrorMap::range(uint32_t x, uint32_t y, float out[3]) const {
   for (int k = 0; k < 3; k++) out[k] = high[k] - low[k];
 }
 
+// Returns whether the colours that range() compares can be trusted.
+bool ErrorMap::coloursKnown(uint32_t x, uint32_t y) const {
+  for (uint32_t j = y - std::min(y, 2u); j <= std::min(y + 2, height_ - 1); j++)
+    for (uint32_t i = x - std::min(x, 2u); i <= std::min(x + 2, width_ - 1); i++) {
+      const size_t at = size_t(j) * width_ + i;
+      if (seen_[at].samples > 0 && !seen_[at].constant && std::signbit(relative_[at])) return false;
+    }
+  return true;
+}
+
 void ErrorMap::doubtConstants(
-    const std::function<void(size_t pixel, const float halfWidth[3])>& changed) {
+    const std::function<void(size_t pixel, const float halfWidth[3], bool known)>& changed) {
   if (seen_.empty()) return;
   // At the border of the picture the far side of an edge may lie outside. It is then assumed to
   // have any colour in the range of 95 % of the pixels. The range excludes outliers: a pixel hit by
@@ -114,8 +124,10 @@ void ErrorMap::doubtConstants(
       doubted_[pixel] = relativeError(expectedOfBound(here.samples) * behind, here.mean);
       if (!noise_.empty())
         noise_[pixel].own = edge; // the pixel's error if it has an edge; used by picture_error.cpp
-      relative_[pixel] = -relativeError(sum, here.mean);
-      changed(pixel, half);
+      const bool known = coloursKnown(x, y);
+      relative_[pixel] =
+          std::copysign(relativeError(sum, here.mean), known ? relative_[pixel] : -1.0f);
+      changed(pixel, half, known);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "render/film/ledger.h"
 #include "render/film/picture_error.h"
 #include "render/frame/tiles.h"
 
@@ -16,8 +17,6 @@ namespace openrt {
 // Floor for relative errors (sum of the colours), so that errors of dark pixels are not
 // exaggerated.
 inline constexpr float darkest = 0.03f;
-// -ln 0.05. After n misses in a row, a probability is below this / n with 95 % confidence.
-inline constexpr double ruleOfThree = 2.9957;
 
 struct PixelError {
   float mean[3] = {};
@@ -49,11 +48,13 @@ class ErrorMap {
   ErrorMap(uint32_t width, uint32_t height, Kind kind);
   bool empty() const { return relative_.empty(); }
   void store(size_t pixel, const PixelError& e);
-  // Widens the intervals of constant pixels beside pixels that differ, and marks them as not
-  // trusted. Such a pixel is not known to be exact: an edge may cut a corner that no sample hit.
-  // The new interval is the bound given by the rule of three. The same is done at the border of a
-  // picture that is not of one colour. Calls `changed` for each such pixel.
-  void doubtConstants(const std::function<void(size_t pixel, const float halfWidth[3])>& changed);
+  // Widens the intervals of constant pixels beside pixels that differ. Such a pixel is not known to
+  // be exact: an edge may cut a corner that no sample hit. The new interval is the bound given by
+  // the rule of three, for a corner of any colour that the pixels around it have. The same is done
+  // at the border of a picture that is not of one colour. Calls `changed` for each such pixel.
+  // known: whether the colours around can be trusted. If not, the pixel loses its trust.
+  void doubtConstants(
+      const std::function<void(size_t pixel, const float halfWidth[3], bool known)>& changed);
   // Records the radiance that each finished pixel of a tile may lack because no sample has found it
   // (ledger.h), summed over the colours.
   //  - bound: bound by the samples of the tile. Pixels with random samples whose interval is
@@ -75,6 +76,7 @@ class ErrorMap {
     return x == 0 || y == 0 || x + 1 == width_ || y + 1 == height_;
   }
   bool beside(uint32_t x, uint32_t y) const;
+  bool coloursKnown(uint32_t x, uint32_t y) const;
   void range(uint32_t x, uint32_t y, float out[3]) const;
   uint32_t width_ = 0, height_ = 0;
   std::vector<float> relative_; // NaN: not finished; negative: not trusted

@@ -57,10 +57,10 @@ void Film::store(uint32_t x, uint32_t y, const PixelSums& s, const LightSums* li
 }
 
 void Film::finishErrors() {
-  errors_.doubtConstants([this](size_t pixel, const float halfWidth[3]) {
+  errors_.doubtConstants([this](size_t pixel, const float halfWidth[3], bool known) {
     if (has(RT_ERROR))
       std::copy_n(halfWidth, 3, plane(RT_ERROR).begin() + std::ptrdiff_t(3 * pixel));
-    if (has(RT_TRUST)) plane(RT_TRUST)[pixel] = 0;
+    if (!known && has(RT_TRUST)) plane(RT_TRUST)[pixel] = 0;
   });
 }
 

@@ -12,6 +12,9 @@
 
 namespace openrt {
 
+// -ln 0.05. After n misses in a row, a probability is below this / n with 95 % confidence.
+inline constexpr double ruleOfThree = 2.9957;
+
 // Emitted light that only BSDF sampling can find: the ray comes from a non-specular surface via
 // mirrors or smooth boundaries, so light sampling cannot connect to the emitter.
 struct UnsampledLight {
@@ -23,11 +26,16 @@ struct UnsampledLight {
   // light.
   double rays = 0;
   double met = 0;
+  // Radiance that one light path of the photon pass would add if it came to where the rays start;
+  // summed over the colours and the camera paths of a tile. 0: no light paths tell what they would
+  // have found.
+  double byLightPath = 0;
 
   void add(const UnsampledLight& c) {
     light += c.light;
     rays += c.rays;
     met += c.met;
+    byLightPath += c.byLightPath;
   }
   // Counts a ray. brightest: radiance of the brightest emitter that the ray can reach, summed over
   // the colours. The colour of the emitter is not known here, so the largest component of the
@@ -59,8 +67,7 @@ struct Ledger { // all values are summed over the colours
   // Throughput of the paths ended by the depth limit and by the energy cut.
   double cutByDepth = 0, cutByEnergy = 0;
   double clipped = 0;       // radiance removed by the clamp
-  UnsampledLight unsampled; // for rays that may hit any emitter
-  // For rays whose hits on area lights are left to light tracing: only the sky counts.
+  UnsampledLight unsampled; // light of emissive shapes, unless it is left to light tracing
   UnsampledLight unsampledSky;
   uint64_t samples = 0; // samples per pixel of the tile
 
@@ -91,6 +98,15 @@ struct Ledger { // all values are summed over the colours
     return (all.unsampled.missedShare() * unsampled.light +
             all.unsampledSky.missedShare() * unsampledSky.light) /
            paths;
+  }
+  // Returns the bound that follows from the rays of this tile and from light paths together: with a
+  // probability of 95 %, less than three of both were to be expected for the light that they lack.
+  double missedByTile(double paths) const {
+    const double lightPaths = ruleOfThree * unsampled.byLightPath,
+                 rays = unsampled.missedShare() * unsampled.light,
+                 all = missedRadiance(*this, paths);
+    if (!(paths > 0 && lightPaths > 0 && rays > 0)) return all;
+    return all - rays * rays / (rays + lightPaths) / paths;
   }
 };
 

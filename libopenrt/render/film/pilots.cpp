@@ -146,7 +146,7 @@ std::vector<PilotPixel> Pilots::pixelsOf(const Tile& tile) const {
 
 std::vector<Pilots::Decision> Pilots::decideAll() {
   doubt_.assign(first_.size(), 0);
-  map_.doubtConstants([this](size_t pixel, const float half[3]) {
+  map_.doubtConstants([this](size_t pixel, const float half[3], bool) {
     doubt_[pixel] = (half[0] + half[1] + half[2]) / scale_[pixel];
   });
   std::vector<Estimate> estimates;

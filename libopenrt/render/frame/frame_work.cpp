@@ -261,7 +261,7 @@ void FrameWork::Impl::judgeErrors() {
   // in the picture may have hit another lamp.
   for (uint32_t i = 0; i < count; i++) {
     const Ledger& tile = tiles[i].ledger;
-    film.addMissing(grid.at(i), tile.missedRadiance(tile, pathsOf(i)),
+    film.addMissing(grid.at(i), tile.missedByTile(pathsOf(i)),
                     tile.missedRadiance(whole, pathsOf(i)));
   }
 }

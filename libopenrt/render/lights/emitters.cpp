@@ -217,9 +217,7 @@ float Emitters::skyPdf(const LightSampleContext& from, const Vec3f& local) const
 }
 
 double Emitters::brightestSky() const { return hasSky() ? sky_->brightest() : 0; }
-double Emitters::brightest() const {
-  return any() ? std::max(brightestSky(), shapes_->brightest()) : 0;
-}
+double Emitters::brightestShape() const { return hasShapes() ? shapes_->brightest() : 0; }
 
 bool Emitters::startsLightPaths(uint32_t record, uint32_t primitive, const Vec3f& direction) const {
   const uint32_t number = shapes_ ? shapes_->find(record, primitive) : EmissiveShapes::none;

@@ -39,9 +39,9 @@ class Emitters {
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
   bool any() const { return hasSky() || hasShapes(); }
   // Return the largest mean radiance, summed over the colours. brightestSky(): of the cells of the
-  // sky. brightest(): of these and of the sides of shapes.
+  // sky. brightestShape(): of the sides of shapes.
   double brightestSky() const;
-  double brightest() const;
+  double brightestShape() const;
   // Samples an emitter as seen from each point that wants a sample. fine: low digits of the random
   // numbers `pick`, by point, which matter with many emitters. No sample is left to other code.
   void choose(const LightPoints& points, const float* fine, Arena& arena,

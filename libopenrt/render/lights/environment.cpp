@@ -50,7 +50,7 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
     if (pdf > 0 && emitters.any())
       misWeight =
           pdf / (pdf + emitters.skyPdf(wave.states.previousOf(lane), load(sky.direction, i)));
-    unsampled.meet(flags, load(sky.rgba, i));
+    unsampled.meetSky(flags, load(sky.rgba, i));
     Vec3f light;
     for (int k = 0; k < 3; k++) {
       const float throughput = wave.states.throughput[k][lane], radiance = sky.rgba[k][i];

@@ -128,7 +128,7 @@ int32_t PhotonGuide::addCell(const std::vector<Photon>& photons, uint32_t begin,
   const Photon* own = photons.data() + begin;
   const uint32_t count = end - begin;
   const auto first = uint32_t(probability_.size());
-  Cell cell{first, first + count, own[0].position, own[0].position};
+  Cell cell{first, first + count, own[0].position, own[0].position, 1};
   double power = 0;
   for (uint32_t i = 0; i < count; i++) {
     cell.low = min(cell.low, own[i].position);
@@ -154,10 +154,9 @@ int32_t PhotonGuide::addCell(const std::vector<Photon>& photons, uint32_t begin,
   return ~int32_t(cells_.size() - 1);
 }
 
-void PhotonGuide::keep(const std::vector<uint8_t>& kept) {
-  for (size_t c = 0; c < cells_.size(); c++)
-    if (!kept[c]) cells_[c].high = cells_[c].low - Vec3f{1, 1, 1}; // contains no point
-  if (std::find(kept.begin(), kept.end(), uint8_t(1)) == kept.end()) cells_.clear();
+void PhotonGuide::setShares(const std::vector<float>& shares) {
+  for (size_t c = 0; c < cells_.size(); c++) cells_[c].share = shares[c];
+  if (std::none_of(shares.begin(), shares.end(), [](float s) { return s > 0; })) cells_.clear();
 }
 
 uint32_t PhotonGuide::find(const Vec3f& position) const {
@@ -168,6 +167,7 @@ uint32_t PhotonGuide::find(const Vec3f& position) const {
     at = node.child[position[node.axis] < node.split ? 0 : 1];
   }
   const Cell& cell = cells_[size_t(~at)];
+  if (!(cell.share > 0)) return none;
   for (size_t k = 0; k < 3; k++)
     if (!(position[k] >= cell.low[k] && position[k] <= cell.high[k])) return none;
   return uint32_t(~at);
@@ -196,7 +196,7 @@ float PhotonGuide::pdf(uint32_t cell, const Vec3f& position, const Vec3f& direct
   }
   float sum = 0;
   for (uint32_t i = 0; i < count; i++) sum += share[i];
-  return sum;
+  return sum * cells_[cell].share;
 }
 
 } // namespace openrt

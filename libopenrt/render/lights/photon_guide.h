@@ -28,17 +28,19 @@ class PhotonGuide {
   explicit PhotonGuide(std::vector<Photon> photons);
   bool empty() const { return cells_.empty(); }
   uint32_t cells() const { return uint32_t(cells_.size()); }
-  // Forgets the photons of the cells whose value is 0.
-  void keep(const std::vector<uint8_t>& kept);
+  // Sets which share of the hits in each cell sends a guided ray, in [0, 1]. Forgets the photons of
+  // the cells whose share is 0. Without a call all hits send one.
+  void setShares(const std::vector<float>& shares);
+  float share(uint32_t cell) const { return cells_[cell].share; }
 
   // Returns the cell with the photons around a point; `none` if there are none nearby.
   static constexpr uint32_t none = ~0u;
   uint32_t find(const Vec3f& position) const;
   // Samples a unit direction in which light reaches a point of a cell. pick, u, v: numbers in
-  // [0, 1). Returns its solid-angle pdf; 0: none was sampled.
+  // [0, 1). Returns its solid-angle pdf times the share of the cell; 0: none was sampled.
   float sample(uint32_t cell, const Vec3f& position, float pick, float u, float v,
                Vec3f& direction) const;
-  // Returns the solid-angle pdf of sample() for a direction.
+  // Returns what sample() returns for a direction.
   float pdf(uint32_t cell, const Vec3f& position, const Vec3f& direction) const;
 
  private:
@@ -52,6 +54,7 @@ class PhotonGuide {
   struct Cell {
     uint32_t begin, end; // of its lobes
     Vec3f low, high;     // where the photons are taken as valid
+    float share = 1;     // of the hits that send a guided ray
   };
   struct Node { // inner node of a kd-tree; a child below 0 is the cell with the number ~child
     int32_t child[2];

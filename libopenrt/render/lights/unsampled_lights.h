@@ -17,35 +17,31 @@ inline bool canOnlyReachSky(const RenderScene& scene, PathFlags path) {
 class UnsampledLights {
  public:
   UnsampledLights(const RenderScene& scene, Ledger& ledger)
-      : scene_(scene), ledger_(ledger), brightest_(scene.emitters.brightest()),
+      : scene_(scene), ledger_(ledger), brightestShape_(scene.emitters.brightestShape()),
         brightestSky_(scene.emitters.brightestSky()) {}
   // Counts a ray, if light sampling cannot find the emitter that it may hit. unguidedWeight: as in
-  // RayState.
+  // RayState. No ray is guided to the sky.
   void send(PathFlags path, const Vec3f& throughput, float unguidedWeight = 1) {
-    if (path.specularSinceDiffuse())
-      countOf(path).send(throughput, brightestFor(path), weightOf(path, unguidedWeight));
+    if (!path.specularSinceDiffuse()) return;
+    ledger_.unsampledSky.send(throughput, brightestSky_);
+    if (!canOnlyReachSky(scene_, path))
+      ledger_.unsampled.send(throughput, brightestShape_, double(unguidedWeight));
   }
-  // Counts the emitted radiance that such a ray has hit.
-  void meet(PathFlags path, const Vec3f& radiance, float unguidedWeight = 1) {
-    if (path.specularSinceDiffuse())
-      countOf(path).meet(radiance, brightestFor(path), weightOf(path, unguidedWeight));
+  // Counts the emission of a shape that such a ray has hit.
+  void meet(PathFlags path, const Vec3f& radiance, float unguidedWeight) {
+    if (path.specularSinceDiffuse() && !canOnlyReachSky(scene_, path))
+      ledger_.unsampled.meet(radiance, brightestShape_, double(unguidedWeight));
+  }
+  // Counts the radiance of the sky that such a ray has reached.
+  void meetSky(PathFlags path, const Vec3f& radiance) {
+    if (path.specularSinceDiffuse()) ledger_.unsampledSky.meet(radiance, brightestSky_);
   }
 
  private:
-  UnsampledLight& countOf(PathFlags path) {
-    return canOnlyReachSky(scene_, path) ? ledger_.unsampledSky : ledger_.unsampled;
-  }
-  double brightestFor(PathFlags path) const {
-    return canOnlyReachSky(scene_, path) ? brightestSky_ : brightest_;
-  }
-  // No ray is guided to the sky.
-  double weightOf(PathFlags path, float unguidedWeight) const {
-    return brightestFor(path) > brightestSky_ ? double(unguidedWeight) : 1.0;
-  }
   const RenderScene& scene_;
   Ledger& ledger_;
-  // Largest radiance of all emitters, and of the sky alone, summed over the colours.
-  const double brightest_, brightestSky_;
+  // Largest radiances, summed over the colours.
+  const double brightestShape_, brightestSky_;
 };
 
 } // namespace openrt

@@ -1,7 +1,8 @@
-// guide_trial.h: decides where photons guide rays (photon_guide.h). A few pixels are rendered with
-// all photons. For each cell of the guide the trial sums up which variance the guided rays have
-// taken away, and how many rays that took. The cells that are kept minimise variance times cost,
-// which is the variance of all pictures that take the same time. One thread.
+// guide_trial.h: decides where photons guide rays (photon_guide.h), and how many. A few pixels are
+// rendered with a guided ray at every hit near photons. For each cell of the guide the trial sums
+// up which variance the guided rays have taken away, and how many rays that took. The shares of
+// hits that send a guided ray minimise variance times cost, which is the variance of all pictures
+// that take the same time. One thread.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +29,10 @@ class GuideTrial {
   // Ends a block of pixels. sums: of its pixels, with `delta2`.
   void endBlock(std::span<const PixelSums> sums);
 
-  // Returns 1 for each cell that is to be kept, else 0. counters: all rays of the trial, with those
-  // of the guide.
-  std::vector<uint8_t> choose(const RayCounters& counters) const;
+  // Returns the share of each cell: 0, one of `shares`, or if `always` is set at least the first of
+  // these. counters: all rays of the trial, with those of the guide.
+  std::vector<float> choose(const RayCounters& counters, bool always = false) const;
+  static constexpr float shares[] = {1 / 16.f, 1 / 4.f, 1};
 
  private:
   struct Block {
@@ -39,7 +41,11 @@ class GuideTrial {
   };
   struct Gain {
     uint32_t cell;
-    double variance;
+    double square, unguidedWeight; // of the light
+    // Returns the variance that guided rays at a share of the hits take away.
+    double at(double share) const {
+      return square * share / (unguidedWeight * (unguidedWeight + share * (1 - unguidedWeight)));
+    }
   };
   std::vector<uint32_t> rays_; // by cell
   std::vector<Gain> gains_;

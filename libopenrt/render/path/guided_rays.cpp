@@ -20,8 +20,8 @@ struct Guided {
   uint32_t count = 0;
   uint32_t* hit;       // index of the hit in the batch
   float* direction[3]; // unit
-  float* pdf;          // with the probability of Russian roulette
-  float* kept;         // that probability
+  float* pdf;          // with the share of the cell
+  float* kept;         // probability of Russian roulette
   Vec3f* position;     // where the guide was asked
 };
 
@@ -52,7 +52,7 @@ Guided sampleGuide(const RtsBatch& batch, const LobeSampling& sampling) {
     if (cell == PhotonGuide::none) continue;
     // The number of rays with the least variance at equal cost is proportional to what they carry.
     const float kept = std::min(1.0f, largest(state.throughput));
-    if (choice[1][i] >= kept) continue;
+    if (choice[1][i] >= kept * scene.photonGuide->share(cell)) continue;
     Vec3f direction;
     const float pdf = scene.photonGuide->sample(cell, position, choice[0][i], place[0][i],
                                                 place[1][i], direction);
@@ -105,9 +105,12 @@ Response* responses(const RtsBatch& batch, const LobeSampling& sampling, const G
 
 } // namespace
 
+bool isGuided(const RenderScene& scene, PathFlags path) {
+  return !scene.lightSources || path.pathClass() == PathClass::specularFirst;
+}
+
 uint32_t guideCellAt(const RenderScene& scene, PathFlags path, const Vec3f& position) {
-  if (!scene.photonGuide) return PhotonGuide::none;
-  if (scene.lightSources && path.pathClass() != PathClass::specularFirst) return PhotonGuide::none;
+  if (!scene.photonGuide || !isGuided(scene, path)) return PhotonGuide::none;
   return scene.photonGuide->find(position);
 }
 

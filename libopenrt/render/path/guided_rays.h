@@ -14,8 +14,11 @@
 
 namespace openrt {
 
+// Returns whether a path may send guided rays from a surface that scatters. Light tracing has the
+// light of paths whose first surface scatters.
+bool isGuided(const RenderScene& scene, PathFlags path);
 // Returns the cell of the guide from which rays are sent at a point of a path; PhotonGuide::none if
-// the path sends none there. Light tracing has the light of paths whose first surface scatters.
+// the path sends none there.
 uint32_t guideCellAt(const RenderScene& scene, PathFlags path, const Vec3f& position);
 
 // Writes the MIS weight of BSDF sampling to the states of the paths that BSDF samples of

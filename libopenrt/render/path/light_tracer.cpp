@@ -201,6 +201,8 @@ void LightTracer::spawnRay(const RtsBatch& batch, uint32_t i, const LobeSampling
   if (first && sample.deflected) {
     if (!departures_.applyEmission(points, i, state)) return;
     state.flags.setClass(PathClass::specularFirst);
+    const Vec3f& flux = state.throughput;
+    largestFlux_ = std::max(largestFlux_, double(flux.x) + double(flux.y) + double(flux.z));
   }
   push(points, i, state, sample.direction);
 }

@@ -29,6 +29,9 @@ class LightTracer {
   // Traces light paths to their first non-specular surfaces and returns what they leave there; less
   // if `stop` was set.
   std::vector<Photon> tracePhotons(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
+  // Returns the largest flux that a light path had after the first surface, summed over the
+  // colours.
+  double largestFlux() const { return largestFlux_; }
   // Traces `paths` light paths into picture() (rgb by pixel). Each part of a frame needs its own
   // seed. Returns false if `stop` was set; it is checked every few thousand paths.
   bool trace(uint32_t paths, uint32_t seed, const std::atomic<bool>& stop);
@@ -57,6 +60,7 @@ class LightTracer {
   // scale_: contribution of one path to the picture. cameraArea_: factor from areas in
   // camera space to areas in render space.
   double scale_ = 0, cameraArea_ = 1;
+  double largestFlux_ = 0;
   Arena arena_;
   RayCounters counters_;
   const StageContext context_{scene_, arena_, counters_};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "render/film/error.h"
 #include "render/lights/light_sources.h"
 #include "render/path/guides.h"
 #include "render/path/light_tracer.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr uint32_t fewestSamples = 16;
 // One light path for so many camera paths, within bounds.
-constexpr uint64_t cameraPaths = 16, fewestPaths = 1u << 11, mostPaths = 1u << 15;
+constexpr uint64_t cameraPaths = 8, fewestPaths = 1u << 13, mostPaths = 1u << 16;
 // One path of the trial for so many camera paths, within bounds. Blocks of pixels are tried.
 constexpr uint64_t trialShare = 32, fewestBlocks = 4, mostBlocks = 32;
 constexpr uint32_t blockEdge = 4, trialSamples = 16;
@@ -40,8 +41,8 @@ Tile trialBlock(const edit::FrameSettingsT& frame, uint32_t i) {
   return {x, y, std::min(x + blockEdge, frame.width), std::min(y + blockEdge, frame.height)};
 }
 
-// Returns which cells are kept; none if `stop` was set.
-std::vector<uint8_t> tryGuide(RenderScene& scene, const std::atomic<bool>& stop) {
+// Returns the shares of the cells.
+std::vector<float> tryGuide(RenderScene& scene, const std::atomic<bool>& stop) {
   const edit::FrameSettingsT settings = scene.frame;
   scene.frame.channels |= RT_VARIANCE;
   scene.frame.lightStride = 1;
@@ -61,13 +62,14 @@ std::vector<uint8_t> tryGuide(RenderScene& scene, const std::atomic<bool>& stop)
     trial.endBlock(sums);
   }
   scene.frame = settings;
-  return trial.choose(renderer.counters());
+  return trial.choose(renderer.counters(), wantsError(settings));
 }
 
 } // namespace
 
 bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.photonGuide = nullptr;
+  scene.lightPathFlux = 0;
   const edit::FrameSettingsT& frame = scene.frame;
   const EmissiveShapes* shapes = scene.emitters.shapes();
   if (!tracesPaths(frame.transport) || showsNoLight(frame) || frame.samples < fewestSamples ||
@@ -78,14 +80,22 @@ bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop) {
   if (sources.empty()) return true;
   const uint64_t paths = std::clamp(cameraPathsOf(frame) / cameraPaths, fewestPaths, mostPaths);
   LightTracer tracer(scene, sources);
-  const auto guide = std::make_shared<PhotonGuide>(
-      tracer.tracePhotons(uint32_t(paths), hash(frame.seed, photonSeed), stop));
+  std::vector<Photon> photons =
+      tracer.tracePhotons(uint32_t(paths), hash(frame.seed, photonSeed), stop);
   if (stop) return false;
+  // With error bars every cell sends guided rays, so that the picture lacks none of the light that
+  // light paths have found.
+  const double flux = wantsError(frame) ? tracer.largestFlux() / double(paths) : 0;
+  if (photons.empty()) scene.lightPathFlux = flux;
+  const auto guide = std::make_shared<PhotonGuide>(std::move(photons));
   if (guide->empty()) return true;
   scene.photonGuide = guide;
-  const std::vector<uint8_t> kept = tryGuide(scene, stop);
-  if (!stop) guide->keep(kept);
-  if (stop || guide->empty()) scene.photonGuide = nullptr;
+  const std::vector<float> shares = tryGuide(scene, stop);
+  if (!stop) guide->setShares(shares);
+  if (stop || guide->empty())
+    scene.photonGuide = nullptr;
+  else
+    scene.lightPathFlux = flux;
   return !stop;
 }
 

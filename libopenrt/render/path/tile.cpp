@@ -29,6 +29,7 @@ void TileRenderer::begin(const Tile& tile) {
   if (tile == tile_) return;
   tile_ = tile;
   listPixels(tile);
+  if (scene_.lightPathFlux > 0) footprint_ = footprintOf(context_, tile);
 }
 
 // Lists the pixels of a tile in blocks of 4 x 4, those with light first.
@@ -237,6 +238,7 @@ void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundari
   }
   spawnRays(pathsOf(batch), sampling, boundaries);
   if (emitters) sampleEmitters(batch, sampling, boundaries, radiance);
+  if (emitters && scene_.lightPathFlux > 0) addLightPathBound(pathsOf(batch), sampling, footprint_);
   if (emitters && scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);
 }
 

@@ -15,6 +15,7 @@
 #include "render/lights/unsampled_lights.h"
 #include "render/path/guided_rays.h"
 #include "render/path/guides.h"
+#include "render/path/light_path_bound.h"
 #include "render/path/light_stride.h"
 #include "render/path/pixel_samples.h"
 #include "render/path/random_numbers.h"
@@ -122,6 +123,7 @@ class TileRenderer {
   Ledger ledger_;
   UnsampledLights unsampled_{scene_, ledger_};
   Tile tile_;
+  TileFootprint footprint_{}; // of the tile; if light paths tell what it may lack
   // pixels_: y * width + x, in blocks of 4x4; places_: index in the tile, row by row. The first
   // `lit_` of them get light, the others do not (RT_LIGHT_STRIDE).
   std::vector<uint32_t> pixels_, places_;

@@ -14,7 +14,7 @@
 
 namespace openrt::cluster {
 
-inline constexpr uint32_t protocolVersion = 3; // other versions are refused
+inline constexpr uint32_t protocolVersion = 4; // other versions are refused
 
 Hash hashOf(std::span<const std::byte> bytes); // XXH3, 128 bits
 std::string hex(const Hash& hash);             // for messages to the user
