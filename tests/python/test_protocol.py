@@ -134,7 +134,7 @@ class Master:
                 return root.get(0, "Q"), content
         raise AssertionError(f"no {kind} has come")
 
-    def welcome(self, session=42, protocol=3):
+    def welcome(self, session=42, protocol=4):
         self.receive("Hello")
         # A busy machine must not count as lost, so long silences are allowed.
         self.send("Welcome", [("I", protocol), ("Q", session), ("f", 0.1), ("f", 60.0)], session)
@@ -183,7 +183,7 @@ def worker():
 def test_a_caller_that_beats_is_told_hello(worker):
     session, hello = Master(worker.address).receive("Hello")
     assert session == 0
-    assert hello.get(0, "I") == 3
+    assert hello.get(0, "I") == 4
     assert hello.get(7, "I") == 1
     assert hello.get(9, "I") == worker.process.pid
     assert hello.text(4) in ("avx512", "avx2", "sse")
@@ -214,7 +214,7 @@ def test_another_protocol_is_refused_with_both_numbers(worker):
     master = Master(worker.address)
     master.welcome(protocol=7)
     _, bye = master.receive("Bye")
-    assert "7" in bye.text(0) and "3" in bye.text(0)
+    assert "7" in bye.text(0) and "4" in bye.text(0)
 
 
 def test_one_master_at_a_time(worker):

@@ -100,12 +100,12 @@ TEST(GuideTrials, EveryCellSendsRaysIfItMust) {
   trial.endBlock(pixels(1, 1));
   const std::vector<float> chosen = trial.choose(rays(20'000), true);
   for (uint32_t c = 0; c < cells; c++) {
-    EXPECT_GE(chosen[c], GuideTrial::shares[0]);
+    EXPECT_GE(chosen[c], GuideTrial::shares[GuideTrial::leastAlways]);
     EXPECT_LE(chosen[c], chosen[3]);
   }
   GuideTrial none(cells);
   none.endBlock(pixels(1, 1));
-  EXPECT_EQ(none.choose(rays(1000), true), std::vector<float>(cells, GuideTrial::shares[0]));
+  EXPECT_EQ(none.choose(rays(1000), true), std::vector<float>(cells, GuideTrial::shares[GuideTrial::leastAlways]));
 }
 
 TEST(GuideTrials, NoRaysAndBlackPicturesKeepNothing) {

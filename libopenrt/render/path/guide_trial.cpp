@@ -124,7 +124,7 @@ std::vector<float> GuideTrial::choose(const RayCounters& counters, bool always) 
       for (size_t l = 0; scale > 0 && l < levels; l++)
         gain[gains_[g].cell][l] += gains_[g].at(double(shares[l])) / scale;
   }
-  std::vector<float> chosen(rays_.size(), always ? shares[0] : 0.f);
+  std::vector<float> chosen(rays_.size(), always ? shares[leastAlways] : 0.f);
   std::vector<Region> regions = divide(rays_, gain);
   Region all{0, 0};
   for (const Region& r : regions) all.add(r.gain, r.rays);
@@ -135,9 +135,9 @@ std::vector<float> GuideTrial::choose(const RayCounters& counters, bool always) 
   double cost = double(counters.camera + counters.shadow + counters.secondary) - all.rays;
   std::vector<Step> steps = stepsOf(regions);
   if (always) {
-    variance -= all.gain[0];
-    cost += costOfGuided * double(shares[0]) * all.rays;
-    std::erase_if(steps, [](const Step& s) { return s.level == 0; });
+    variance -= all.gain[leastAlways];
+    cost += costOfGuided * double(shares[leastAlways]) * all.rays;
+    std::erase_if(steps, [](const Step& s) { return s.level <= leastAlways; });
   }
   double best = variance * cost;
   size_t taken = 0;

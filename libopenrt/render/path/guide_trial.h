@@ -29,10 +29,12 @@ class GuideTrial {
   // Ends a block of pixels. sums: of its pixels, with `delta2`.
   void endBlock(std::span<const PixelSums> sums);
 
-  // Returns the share of each cell: 0, one of `shares`, or if `always` is set at least the first of
-  // these. counters: all rays of the trial, with those of the guide.
+  // Returns the share of each cell: 0 or one of `shares`, if `always` is set one from `leastAlways`
+  // on. counters: all rays of the trial, with those of the guide.
   std::vector<float> choose(const RayCounters& counters, bool always = false) const;
-  static constexpr float shares[] = {1 / 16.f, 1 / 4.f, 1};
+  static constexpr float shares[] = {1 / 16.f, 1 / 4.f, 1 / 2.f, 1};
+  // Samples of a rarely guided ray are few and bright, and intervals become too narrow.
+  static constexpr size_t leastAlways = 2;
 
  private:
   struct Block {
