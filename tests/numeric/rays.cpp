@@ -130,8 +130,8 @@ TEST_P(Watertight, NoRayAimedAtVerticesLeaves) {
   }
 }
 
-// Rays side by side are traced in packets. Their answers are those of the same rays in any order, but
-// for the last digits of few: Embree computes them in another way for rays that are alone.
+// Rays side by side are traced in packets. Their answers are those of the same rays in any order,
+// but for the last digits of few: Embree computes them in another way for rays that are alone.
 TEST_P(Watertight, BundlesHaveTheAnswersOfSingleRays) {
   const double offset = GetParam();
   Ball(offset).place();

@@ -105,7 +105,8 @@ TEST(GuideTrials, EveryCellSendsRaysIfItMust) {
   }
   GuideTrial none(cells);
   none.endBlock(pixels(1, 1));
-  EXPECT_EQ(none.choose(rays(1000), true), std::vector<float>(cells, GuideTrial::shares[GuideTrial::leastAlways]));
+  EXPECT_EQ(none.choose(rays(1000), true),
+            std::vector<float>(cells, GuideTrial::shares[GuideTrial::leastAlways]));
 }
 
 TEST(GuideTrials, NoRaysAndBlackPicturesKeepNothing) {
