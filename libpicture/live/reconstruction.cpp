@@ -47,21 +47,6 @@ FramePlanes planesOf(const Picture& frame) {
           planeOf(frame, RT_REFLECTION, 3)};
 }
 
-// Continues a row of colours by the two pixels that showRow reads beyond the picture, above and
-// below it, too. Otherwise nothing, which is black, would be among the colours that bound a pixel.
-void continueRow(Plane& colours, const Layout& layout, int y) {
-  constexpr int reach = 2;
-  float* const first = colours.data() + layout.row(y);
-  float* const last = first + layout.width - 1;
-  std::fill_n(first - reach, reach, *first);
-  std::fill_n(last + 1, reach, *last);
-  for (int k = 1; k <= reach; k++) {
-    if (y == 0) std::copy(first - reach, last + 1 + reach, first - reach - k * layout.stride);
-    if (y == layout.height - 1)
-      std::copy(first - reach, last + 1 + reach, first - reach + k * layout.stride);
-  }
-}
-
 } // namespace
 
 struct Reconstruction::Impl {
@@ -223,11 +208,8 @@ struct Reconstruction::Impl {
         planes,       grid,           pixelsOfBefore(), sparse ? pixelReading : reading,
         now,          reading.albedo, *result,          coats.result,
         work.verdict, shownBefore};
-    rows(grid, [&](int y) {
-      now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh);
-      for (Plane* plane : {&fresh.colour.x, &fresh.colour.y, &fresh.colour.z})
-        continueRow(*plane, grid.layout, y);
-    });
+    rows(grid,
+         [&](int y) { now.block > 1 ? spreadRow(pass, y, fresh) : colourRow(pass, y, fresh); });
   }
 
   Picture add(const Picture& frame, const FrameCamera& camera, int lightStride,
@@ -266,7 +248,7 @@ struct Reconstruction::Impl {
   Reading reading;
   Work work;
   Layout workLayout;
-  // What coats reflect: `accumulated` of `now` and `before`, and the rest.
+  // These are for what coats reflect: `accumulated` of `now` and `before`, and the working storage.
   struct {
     Accumulated now, before;
     Work work;

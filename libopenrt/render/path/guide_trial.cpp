@@ -62,8 +62,8 @@ void estimateGains(const Region& all, std::vector<Region>& regions) {
   }
 }
 
-// What a region gains if its share is raised to that of a level from the one below, and the guided
-// rays that it then sends.
+// A step raises the share of a region from the level below to this one: it gains so much, and sends
+// so many more guided rays.
 struct Step {
   size_t region, level;
   double gain, rays;
