@@ -25,8 +25,8 @@ void loadWave(const RayQueue& queue, size_t begin, uint32_t n, Wave& wave);
 // Where the rays of a wave come from, which tells which of them may be aimed exactly at vertices of
 // a mesh, where single precision loses hits.
 //   camera    all: they follow the pixels' pattern
-//   surfaces  those that mirrors, glass and openings send on, those within media, and all where rays
-//             seldom leave the scene (RenderScene::enclosed), so that it costs nothing
+//   surfaces  those that mirrors, glass and openings send on, those within media, and, in scenes
+//             that rays seldom leave (RenderScene::enclosed), all, because there it costs nothing
 //   lamps     those within media, because the others have random directions
 enum class WaveSource : uint8_t { camera, surfaces, lamps };
 
