@@ -58,7 +58,9 @@ struct CarPaint : rts::Surface<CarPaint> {
   void surface(const rts::Hit& hit, rts::Closures& out) const {
     rts::Vec3 leaning;
     const float f = 1 - coat::transmittance(hit.cosine(), index);
+    out.coat();
     if (index > 1.001f) out.reflection({f, f, f});
+    out.coat(false);
     if (flakeAt(hit, leaning)) {
       out.normal(leaning);
       out.custom(flakeColor, Flake{{flakeRoughness, {aluminiumN, aluminiumK}}, index, hit.normal});

@@ -81,7 +81,9 @@ void add(const rts::HitOf<F>& hit, rts::ClosuresOf<F>& out, rts::ColorOf<F> albe
   out.albedo(albedo);
   if (!(index > 1.001f)) return out.diffuse(albedo);
   const F f = 1 - rts::eachLane([index](float c) { return transmittance(c, index); }, hit.cosine());
+  out.coat();
   out.reflection({f, f, f});
+  out.coat(false);
   out.custom(colour(albedo, index), CoatedDiffuse::of(index));
 }
 

@@ -27,6 +27,7 @@ struct Phong : rts::Surface<Phong> {
     const rts::ColorOf<F> both = albedo + *specularColor;
     const rts::ColorOf<F> scale{kept(both.r), kept(both.g), kept(both.b)};
     out.diffuse(scale * albedo);
+    out.coat();
     out.custom(scale * *specularColor, blinn_phong::Lobe{128 * shininess});
     out.albedo(scale * albedo);
   }

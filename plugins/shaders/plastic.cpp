@@ -117,7 +117,9 @@ struct Plastic : rts::Surface<Plastic> {
                                    rts::ColorOf<F>{hit.color.x, hit.color.y, hit.color.z};
     if (!rough() || !(body_.mean > 0)) return coat::add(hit, out, albedo, index);
     out.albedo(albedo);
+    out.coat();
     out.custom({1, 1, 1}, microfacet::MicrofacetLobe<Boundary>{roughness, {index}});
+    out.coat(false);
     out.custom(coat::colour(albedo, index), body_);
   }
 

@@ -49,10 +49,12 @@ struct Reflector : rts::Surface<Reflector> {
     const Lacquered metal{n, k, lacquer};
     const rts::Color clean = metal(hit.cosine());
     const float bare = 1 - dust;
+    out.coat(dust > 0);
     if (roughness > microfacet::minAlpha)
       out.custom({bare, bare, bare}, microfacet::MicrofacetLobe<Lacquered>{roughness, metal});
     else
       out.reflection(bare * clean);
+    out.coat(false);
     if (dust > 0) out.diffuse(float(dust) * *dustColor);
     out.albedo(bare * clean + float(dust) * *dustColor);
   }

@@ -105,6 +105,27 @@ TEST_F(ReflectionsOfCoats, AreDimmedByAMirrorThatShowsThem) {
   expectClose(reflected[2], reflected[0] / 4);
 }
 
+// The stock shaders say which of their lobes are coats.
+TEST_F(ReflectionsOfCoats, ExistOnRoughVarnishPaintAndHighlights) {
+  const auto expectACoat = [](const Shader& shader) {
+    place(square(shader, 10));
+    const Seen seen = see(30, 1024);
+    EXPECT_GT(seen.reflected.x, 0);
+    EXPECT_GT(seen.all.x, 1.01 * seen.reflected.x);
+  };
+  const auto beginAnew = [&] {
+    TearDown();
+    SetUp();
+  };
+  expectACoat(plastic().set("roughness", {.3}));
+  beginAnew();
+  expectACoat(Shader("Phong").set("specularColor", {.5, .5, .5}));
+  beginAnew();
+  expectACoat(Shader("CarPaint"));
+  beginAnew();
+  expectACoat(Shader("Reflector").set("dust", {.5}));
+}
+
 TEST_F(ReflectionsOfCoats, DoNotExistWithoutACoat) {
   for (const char* name : {"Diffuse", "Mirror", "Metal", "Glass"}) {
     SCOPED_TRACE(name);

@@ -50,8 +50,8 @@ def test_a_page_survives_its_workers(serve, vv):
     done = vv("other.wrl", "-o", "other.png", "--size", "%dx%d" % SIZE, "--spp", 4)
     assert done.returncode == 0, done.talk
     world = SPINNING + """
-Anchor { url "other.wrl" children Shape {
-  appearance Appearance { material Material { diffuseColor 0 1 0 } } geometry Sphere { radius .6 } } }"""
+Transform { translation 0 1.5 0 children Anchor { url "other.wrl" children Shape {
+  appearance Appearance { material Material { diffuseColor 0 1 0 } } geometry Sphere { radius .6 } } } }"""
     with workers(2) as farm:
         server = serve(world, "--spp", 4, "--workers", addresses(farm))
         page = server.join(*SIZE)
@@ -70,7 +70,7 @@ Anchor { url "other.wrl" children Shape {
         farm[0].start()
         farm[1].resume()
         goes_on()
-        page.click(0, 0)
+        page.click(0, 0.6)  # no box passes in front of it
         page.still(lambda p: blue(*p.at(0, 0)))
         page.send(type="save", format="png")
         answer = server.get("/" + page.told("saved")["path"])

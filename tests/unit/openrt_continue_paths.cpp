@@ -152,7 +152,7 @@ struct ScalarRays {
     if (!specular) ray.previous = lightSampleContext(points, i, transmitsAt(hits.batch, i));
     const PathClass before = ray.flags.pathClass();
     if (sample.deflected) {
-      if (isCoat(hits.batch, hits.batch.lobes[sample.lobe]) && !ray.flags.scattered())
+      if (hits.batch.lobes[sample.lobe].coat && !ray.flags.scattered())
         ray.flags.set(PathFlags::reflectedBit, true);
       if (before == PathClass::undeflected)
         ray.flags.setClass(specular ? PathClass::specularFirst : PathClass::diffuse);

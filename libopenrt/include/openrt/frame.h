@@ -39,11 +39,10 @@ enum {
   RT_MOTION = 1024,
   /* 3: the part of the radiance that coats reflect, which does not have the colour of the surface:
    * varnish, lacquer, highlights of VRML97. It is the light of paths that leave their first
-   * surface, besides mirrors and clear things, by a lobe that reflects like a coat:
-   * RTS_LOBE_REFLECTION or RTS_LOBE_GLOSSY beside RTS_LOBE_DIFFUSE or RTS_LOBE_CUSTOM, or
-   * RTS_LOBE_CUSTOM beside RTS_LOBE_DIFFUSE. Light samples and lamps that such a lobe reflects at
-   * this surface, and light that paths from lamps bring, are not part of it, and RT_CLAMP does not
-   * change it. For callers that rebuild pictures from few samples. */
+   * surface, besides mirrors and clear things, by a lobe that its shader calls a coat
+   * (RtsLobe.coat). Light samples and lamps that such a lobe reflects at this surface, and light
+   * that paths from lamps bring, are not part of it, and RT_CLAMP does not change it. For callers
+   * that rebuild pictures from few samples. */
   RT_REFLECTION = 2048
 };
 

@@ -30,7 +30,7 @@
 
 #define RTS_MAGIC 0x5352544fu /* "OTRS" */
 #define RTS_ABI_MAJOR 1       /* a host refuses another major number */
-#define RTS_ABI_MINOR 3 /* grows with every field appended; a host accepts minors up to its own */
+#define RTS_ABI_MINOR 4 /* grows with every field appended; a host accepts minors up to its own */
 #define RTS_LANES 16
 
 #ifdef __cplusplus
@@ -150,6 +150,10 @@ typedef struct RtsLobe {
   /* Since 1.2, for RTS_LOBE_CUSTOM. */
   const RtsLobeFunctions* functions;
   float* data[RTS_MAX_LOBE_FLOATS]; /* the requested number of arrays, initially 0 */
+  /* Since 1.4. 1: the lobe is a coat over the batch's other lobes, such as varnish or a highlight,
+   * whose light does not have the colour of the surface (RT_REFLECTION in frame.h). No picture of
+   * RT_RGBA depends on it. Initially 0. */
+  uint32_t coat;
 } RtsLobe;
 
 /* The functions of a custom lobe (since 1.2). They get n pairs of a hit of the batch (hit[i] is its

@@ -326,9 +326,10 @@ class LobeList {
   }
   // Returns a lobe of this kind that the hit has not used yet, or null after RTS_MAX_LOBES lobes
   // and on hosts that do not know the kind.
-  RtsLobe* take(RtsLobeKind kind, const RtsLobeFunctions* functions, uint32_t floats) {
+  RtsLobe* take(RtsLobeKind kind, bool coat, const RtsLobeFunctions* functions, uint32_t floats) {
     for (uint32_t i = 0; i < count_; i++) {
       if (!free_[i] || lobes_[i]->kind != kind || functions_[i] != functions) continue;
+      if (coats_[i] != coat) continue;
       free_[i] = false;
       return lobes_[i];
     }
@@ -340,6 +341,8 @@ class LobeList {
     if (made) {
       lobes_[count_] = made;
       functions_[count_] = functions;
+      coats_[count_] = coat;
+      if (host_->minor >= 4) made->coat = coat;
       free_[count_++] = false;
     }
     return made;
@@ -351,6 +354,7 @@ class LobeList {
   uint32_t count_ = 0;
   RtsLobe* lobes_[RTS_MAX_LOBES] = {};
   const RtsLobeFunctions* functions_[RTS_MAX_LOBES] = {};
+  bool coats_[RTS_MAX_LOBES] = {};
   bool free_[RTS_MAX_LOBES] = {};
 };
 } // namespace detail
@@ -387,6 +391,10 @@ template <class F> class ClosuresOf {
     normal_ = unit;
     bent_ = true;
   }
+  // Tells whether the lobes that are added after it are coats over the others, such as varnish or a
+  // highlight, whose light does not have the colour of the surface (RtsLobe.coat); the default is
+  // no.
+  void coat(bool is = true) { coat_ = is; }
 
   // Adds emitted radiance towards the ray's origin.
   void emission(Color radiance) {
@@ -415,7 +423,7 @@ template <class F> class ClosuresOf {
   }
   RtsLobe* add(RtsLobeKind kind, Color weight, F first = 0, F second = 0,
                const RtsLobeFunctions* functions = nullptr, uint32_t floats = 0) {
-    RtsLobe* lobe = lobes_.take(kind, functions, floats);
+    RtsLobe* lobe = lobes_.take(kind, coat_, functions, floats);
     if (!lobe) return nullptr;
     put(lobe->weight, weight.r, weight.g, weight.b);
     if (bent_) put(lobe->normal, normal_.x, normal_.y, normal_.z);
@@ -430,6 +438,7 @@ template <class F> class ClosuresOf {
   uint32_t lane_;
   Vec3Of<F> normal_;
   bool bent_ = false;
+  bool coat_ = false;
 };
 using Closures = ClosuresOf<float>;
 

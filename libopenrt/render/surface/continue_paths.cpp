@@ -57,7 +57,7 @@ Bits flagsAfter(const SampleArrays& sample, Bits flags, Bits samples) {
   flags = flags + hn::IfThenElseZero(adds, bitsOf(1u << PathFlags::splitsShift));
   if (sample.colour) flags = hn::Or(flags, bitsOf(sample.colour << PathFlags::channelShift));
   if (!sample.deflected) return flags;
-  if (sample.coat) {
+  if (sample.lobe->coat) {
     const BitsMask first = hn::Eq(hn::And(flags, bitsOf(PathFlags::scatteredBit)), bitsOf(0));
     flags = hn::Or(flags, hn::IfThenElseZero(first, bitsOf(PathFlags::reflectedBit)));
   }

@@ -270,14 +270,6 @@ bool weightAt(const RtsLobe& lobe, uint32_t hit, Vec3f& out) {
   return largest(out) > 0;
 }
 
-bool isCoat(const RtsBatch& batch, const RtsLobe& lobe) {
-  const bool custom = lobe.kind == RTS_LOBE_CUSTOM;
-  if (!custom && lobe.kind != RTS_LOBE_REFLECTION && lobe.kind != RTS_LOBE_GLOSSY) return false;
-  return std::any_of(batch.lobes, batch.lobes + batch.lobeCount, [&](const RtsLobe& other) {
-    return other.kind == RTS_LOBE_DIFFUSE || (!custom && other.kind == RTS_LOBE_CUSTOM);
-  });
-}
-
 bool transmitsAt(const RtsBatch& batch, uint32_t hit) {
   Vec3f ignored;
   for (uint32_t l = 0; l < batch.lobeCount; l++) {

@@ -16,11 +16,6 @@ const RtsLobeFunctions* nonSpecularFunctions(const RtsLobe& lobe);
 // infinite and negative components become 0.
 bool weightAt(const RtsLobe& lobe, uint32_t hit, Vec3f& out);
 
-// Returns whether a lobe of the batch reflects like varnish, without the colour of the surface: a
-// mirror or glossy lobe beside a diffuse one or one of the plug-in, or a lobe of the plug-in beside
-// a diffuse one.
-bool isCoat(const RtsBatch& batch, const RtsLobe& lobe);
-
 // Returns whether light from behind the surface contributes at a hit.
 bool transmitsAt(const RtsBatch& batch, uint32_t hit);
 // Returns transmitsAt() of all hits as an array in the batch's arena; null: it is false for all.

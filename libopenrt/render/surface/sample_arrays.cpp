@@ -206,7 +206,6 @@ SampleArrays& BsdfSampleArrays::add(const RtsLobe& lobe, const float* const dire
   SampleArrays& sample = list_[count_++];
   sample = {.lobe = &lobe, .direction = {direction[0], direction[1], direction[2]}};
   sample.share = share;
-  sample.coat = isCoat(batch_, lobe);
   sample.number = take<uint32_t>();
   sample.kept = take<float>();
   return sample;

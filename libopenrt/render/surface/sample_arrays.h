@@ -20,7 +20,6 @@ struct SampleArrays {
   const float* pdf = nullptr; // solid-angle pdf of a non-specular lobe; null: specular
   uint32_t colour = 0;        // 1 + index of the only colour that is carried; 0: all colours
   bool deflected = true;      // the direction differs from the incoming ray's
-  bool coat = false;          // a coat reflects the light (isCoat())
   bool transmits = false;     // the direction may lead behind the surface
   // By hit: gets the probability that the sample is followed if it survives. Null: nobody asks.
   float* selectionProbability = nullptr;

@@ -84,8 +84,10 @@ void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurfa
   }
   Lobes lobes{};
   if (summary.lit) lobes.diffuse = host->lobe(batch, RTS_LOBE_DIFFUSE);
-  if (summary.specular)
+  if (summary.specular) {
     lobes.highlight = host->customLobe(batch, rts::lobeFunctions<blinn_phong::Lobe>(), 1);
+    if (lobes.highlight) lobes.highlight->coat = 1;
+  }
   if (clear) lobes.behind = host->lobe(batch, RTS_LOBE_TRANSPARENT);
   fill(hits, t, lobes);
 }
