@@ -152,7 +152,8 @@ void lightOfLamps(benchmark::State& state) {
   std::vector<uint32_t> others(padded(count));
   for (int k = 0; k < 3; k++) std::fill_n(rays.response[k], count, 1.0f);
   float* const radiance[3] = {room.out[0].data(), room.out[1].data(), room.out[2].data()};
-  for (auto _ : state) addOneRadiance(room.shapes(), rays, blocked.data(), radiance, others.data());
+  for (auto _ : state)
+    addOneRadiance(room.shapes(), rays, rays.response, blocked.data(), radiance, others.data());
   setItems(state);
 }
 BENCHMARK(lightOfLamps)->Name("stage/light of lamps of one radiance");
@@ -355,7 +356,8 @@ void surfaceLight(benchmark::State& state) {
   if (state.range(0) > 1) paths.plane.add(batch, RTS_LOBE_REFLECTION, 0.25f);
   RtsSurface surface{};
   for (auto& a : surface.emission) a = paths.plane.arena.takeZero<float>(count);
-  for (auto _ : state) addSurface(batch, surface, {}, {}, found);
+  const SentLight sent{{surface.emission[0], surface.emission[1], surface.emission[2]}};
+  for (auto _ : state) addSurface(batch, surface, sent, {}, {}, found);
   setItems(state);
 }
 BENCHMARK(surfaceLight)->Name("stage/light added to the paths, lobes")->Arg(1)->Arg(2);

@@ -126,6 +126,37 @@ TEST_F(ReflectionsOfCoats, ExistOnRoughVarnishPaintAndHighlights) {
   expectACoat(Shader("Reflector").set("dust", {.5}));
 }
 
+// Under a black body all light comes from the coat: images of the sky, light samples of an area
+// lamp, and the highlight of a point lamp.
+TEST_F(ReflectionsOfCoats, AreAllLightOfABlackBody) {
+  place(square(plastic().set("color", {0, 0, 0}).set("roughness", {.3}), 10));
+  placeAt({0, 3, 4}, square(matt(0, 20), 1), true);
+  use(point({-3, 0, 5}, {1, 0, 0}));
+  for (const double degrees : {0.0, 30.0, 60.0}) {
+    SCOPED_TRACE(degrees);
+    const Seen seen = see(degrees, 64);
+    EXPECT_GT(seen.all.x, 0);
+    expectClose(seen.reflected.x, seen.all.x);
+    expectClose(seen.reflected.y, seen.all.y);
+    expectClose(seen.reflected.z, seen.all.z);
+  }
+}
+
+// The highlight of a lamp has its closed form, and the colour below is not part of it.
+TEST_F(ReflectionsOfCoats, HoldTheHighlightsOfLamps) {
+  rtUseEnvironment(0);
+  Shader phong("Phong");
+  phong.set("specularColor", {.25, .25, .25}).set("diffuseColor", {.5, .5, .5});
+  place(square(phong, 10));
+  use(point({0, 0, 5}, {1, 0, 0}));
+  const Seen both = see(20);
+  phong.set("diffuseColor", {0, 0, 0});
+  const Seen highlight = see(20);
+  EXPECT_GT(highlight.all.x, 0);
+  expectClose(both.reflected.x, highlight.all.x);
+  EXPECT_GT(both.all.x, 1.1 * both.reflected.x);
+}
+
 TEST_F(ReflectionsOfCoats, DoNotExistWithoutACoat) {
   for (const char* name : {"Diffuse", "Mirror", "Metal", "Glass"}) {
     SCOPED_TRACE(name);

@@ -197,7 +197,9 @@ TEST(HitLanes, LightOfHitsIsThatOfTheScalarFormulas) {
     for (uint32_t i = 0; i < n; i++) addHit(at, i, expected);
     expectSameBytes([&](std::vector<float>& out) {
       PixelSamples found = at.samples();
-      addSurface(at.batch, at.surface, at.boundaries, at.fog, found);
+      const SentLight sent{
+          {at.surface.emission[0], at.surface.emission[1], at.surface.emission[2]}};
+      addSurface(at.batch, at.surface, sent, at.boundaries, at.fog, found);
       for (uint32_t i = 0; i < n; i++) {
         EXPECT_EQ(load(found.radiance, i), load(expected.radiance, i)) << i;
         EXPECT_EQ(found.alpha[i], expected.alpha[i]) << i;

@@ -181,7 +181,8 @@ TEST(LightLanes, RaysOfLightSamplesHaveTheSameBytes) {
     float* radiance[3];
     for (auto& a : radiance) a = arena.takeZero<float>(count);
     auto* others = arena.take<uint32_t>(padded(n));
-    const uint32_t left = addOneRadiance(scene.shapes(), rays, blocked, radiance, others);
+    const uint32_t left =
+        addOneRadiance(scene.shapes(), rays, rays.response, blocked, radiance, others);
     for (const float* list : radiance) out.insert(out.end(), list, list + count);
     for (uint32_t r = 0; r < left; r++) out.push_back(float(others[r]));
   });
@@ -304,7 +305,8 @@ TEST(LightLanes, LightOfOneRadianceIsAddedToTheHits) {
   for (auto& a : radiance) a = arena.takeZero<float>(42);
   auto* others = arena.take<uint32_t>(padded(21));
   const ShapeArrays shapes = scene.shapes();
-  const uint32_t left = addOneRadiance(shapes, samples, blocked, radiance, others);
+  const uint32_t left =
+      addOneRadiance(shapes, samples, samples.response, blocked, radiance, others);
   std::vector<uint32_t> expected;
   for (uint32_t r = 0; r < 21; r++) {
     const bool added = r % 2 == 0 && !blocked[r];

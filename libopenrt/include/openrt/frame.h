@@ -38,11 +38,11 @@ enum {
    * equal. */
   RT_MOTION = 1024,
   /* 3: the part of the radiance that coats reflect, which does not have the colour of the surface:
-   * varnish, lacquer, highlights of VRML97. It is the light of paths that leave their first
-   * surface, besides mirrors and clear things, by a lobe that its shader calls a coat
-   * (RtsLobe.coat). Light samples and lamps that such a lobe reflects at this surface, and light
-   * that paths from lamps bring, are not part of it, and RT_CLAMP does not change it. For callers
-   * that rebuild pictures from few samples. */
+   * varnish, lacquer, highlights of VRML97. It is the light that the first surface of a path,
+   * besides mirrors and clear things, reflects by a lobe that its shader calls a coat
+   * (RtsLobe.coat); with the transport whitted only mirror images, with direct nothing. Light that
+   * paths from lamps bring is not part of it, and RT_CLAMP does not change it. For callers that
+   * rebuild pictures from few samples. */
   RT_REFLECTION = 2048
 };
 

@@ -262,50 +262,49 @@ uint32_t listUnblocked(uint32_t n, const uint8_t* blocked, uint32_t* rays) {
   return left;
 }
 
-} // namespace
+// Light samples whose shadow rays are traced.
+struct TracedSamples {
+  const RtsBatch& batch;
+  const Boundaries& boundaries;
+  const LightSamples& samples;
+  const SeenThroughMedia& seen;
+  const uint8_t* blocked;
+};
 
-void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
-                    const Boundaries& boundaries, float* const radiance[3]) {
+// Adds the light of the samples that are not blocked to the hits (`radiance`), by their response.
+void addSeen(const TracedSamples& traced, const float* const response[3],
+             float* const radiance[3]) {
+  const LightSamples& samples = traced.samples;
+  const RtsBatch& batch = traced.batch;
   const StageContext context = contextOf(batch);
   const RenderScene& scene = context.scene;
-  Arena& arena = context.arena;
-  ArenaScope scope(arena);
-  LightSamples samples = chooseLightSamples(batch, sampling);
-  weightLightSamples(batch, sampling, samples);
+  const EmissiveShapes& shapes = *scene.emitters.shapes();
   const Rays& rays = samples.rays;
   const uint32_t n = rays.count;
-  if (n == 0) return;
-  auto* blocked = arena.take<uint8_t>(padded(n));
-  SeenThroughMedia seen;
-  if (!scene.mediumLights.empty()) {
-    seen = traceThroughMedia(batch, samples, boundaries, blocked);
-  } else {
-    context.counters.shadow += n;
-    findBlocked(scene, rays, blocked);
-  }
-  blockUncertain(context, samples, seen.origin[0] ? seen.origin : rays.org, blocked);
-
-  const EmissiveShapes& shapes = *scene.emitters.shapes();
+  Arena& arena = context.arena;
+  ArenaScope scope(arena);
   const bool absorbs = !scene.shaders->media().empty();
   const auto add = [&](uint32_t ray, const Vec3f& light) {
     const uint32_t i = samples.hit[ray];
     Vec3f left = light;
-    if (seen.transmittance[0]) {
-      left *= load(seen.transmittance, ray);
+    if (traced.seen.transmittance[0]) {
+      left *= load(traced.seen.transmittance, ray);
     } else if (absorbs) { // absorption of the medium between hit and emitter
-      const MediaStack& media = mediaTowards(*batch.points, i, load(rays.dir, ray), boundaries,
-                                             batch.states->media[batch.order[i]]);
+      const MediaStack& media =
+          mediaTowards(*batch.points, i, load(rays.dir, ray), traced.boundaries,
+                       batch.states->media[batch.order[i]]);
       absorb(mediumOf(media, scene.shaders->media()), std::min(samples.distance[ray], 1e30f),
              scene.shaders->media(), left);
     }
     for (int k = 0; k < 3; k++)
-      if (std::isfinite(left[k])) radiance[k][i] += samples.response[k][ray] * left[k];
+      if (std::isfinite(left[k])) radiance[k][i] += response[k][ray] * left[k];
   };
   auto *others = arena.take<uint32_t>(padded(n)), *toSky = arena.take<uint32_t>(n),
        *toShade = arena.take<uint32_t>(n);
-  const uint32_t left = absorbs || shapes.empty()
-                            ? listUnblocked(n, blocked, others)
-                            : addOneRadiance(shapes.arrays(), samples, blocked, radiance, others);
+  const uint32_t left =
+      absorbs || shapes.empty()
+          ? listUnblocked(n, traced.blocked, others)
+          : addOneRadiance(shapes.arrays(), samples, response, traced.blocked, radiance, others);
   uint32_t skies = 0, shaded = 0;
   for (uint32_t o = 0; o < left; o++) {
     const uint32_t r = others[o];
@@ -321,6 +320,35 @@ void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
     for (uint32_t i = 0; i < skies; i++) add(toSky[i], load(sky.rgba, i));
   }
   if (shaded) shadeSampledPoints(context, samples, toShade, shaded, add);
+}
+
+} // namespace
+
+void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
+                    const Boundaries& boundaries, const SentLight& sent) {
+  const StageContext context = contextOf(batch);
+  const RenderScene& scene = context.scene;
+  Arena& arena = context.arena;
+  ArenaScope scope(arena);
+  LightSamples samples = chooseLightSamples(batch, sampling);
+  if (sent.coated[0])
+    for (auto& a : samples.coated) a = arena.takeZero<float>(padded(samples.rays.count));
+  weightLightSamples(batch, sampling, samples);
+  const Rays& rays = samples.rays;
+  const uint32_t n = rays.count;
+  if (n == 0) return;
+  auto* blocked = arena.take<uint8_t>(padded(n));
+  SeenThroughMedia seen;
+  if (!scene.mediumLights.empty()) {
+    seen = traceThroughMedia(batch, samples, boundaries, blocked);
+  } else {
+    context.counters.shadow += n;
+    findBlocked(scene, rays, blocked);
+  }
+  blockUncertain(context, samples, seen.origin[0] ? seen.origin : rays.org, blocked);
+  const TracedSamples traced{batch, boundaries, samples, seen, blocked};
+  addSeen(traced, samples.response, sent.radiance);
+  if (sent.coated[0]) addSeen(traced, samples.coated, sent.coated);
 }
 
 } // namespace openrt

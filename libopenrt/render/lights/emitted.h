@@ -5,6 +5,7 @@
 #include "render/lights/light_rays.h"
 #include "render/lights/unsampled_lights.h"
 #include "render/surface/sample_lobes.h"
+#include "render/surface/sent_light.h"
 #include "render/surface/surfaces.h"
 
 namespace openrt {
@@ -27,9 +28,9 @@ LightSamples chooseLightSamples(const RtsBatch& batch, const LobeSampling& sampl
 // sampling (balance heuristic). Removes the samples with response 0.
 void weightLightSamples(const RtsBatch& batch, const LobeSampling& sampling, LightSamples& samples);
 
-// Adds to `radiance` the light of one light sample at each hit: chooses the samples, weights them,
-// traces the shadow rays and evaluates the emission.
+// Adds the light of one light sample at each hit: chooses the samples, weights them, traces the
+// shadow rays and evaluates the emission.
 void sampleEmitters(const RtsBatch& batch, const LobeSampling& sampling,
-                    const Boundaries& boundaries, float* const radiance[3]);
+                    const Boundaries& boundaries, const SentLight& sent);
 
 } // namespace openrt

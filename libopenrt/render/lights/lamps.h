@@ -3,10 +3,11 @@
 #pragma once
 
 #include "render/surface/batch.h"
+#include "render/surface/sent_light.h"
 
 namespace openrt {
 
-// Adds the light of the batch's light shaders to `radiance`, by hit. Casts the shadow rays.
-void addLamps(RtsBatch& batch, float* const radiance[3]);
+// Adds the light of the batch's light shaders to what the hits send back. Casts the shadow rays.
+void addLamps(RtsBatch& batch, const SentLight& sent);
 
 } // namespace openrt

@@ -64,6 +64,7 @@ void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& 
   const Lanes zero = lanesOf(0), one = lanesOf(1);
   const LaneVec none{zero, zero, zero};
   const uint32_t n = samples.rays.count;
+  const bool coated = samples.coated[0] && lobe.coat;
   for (uint32_t r = 0; r < n; r += width()) {
     const Indices hit = indicesFrom(samples.hit, r, n);
     const Lanes share = gather(followed, hit);
@@ -72,6 +73,7 @@ void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& 
     const Lanes scale = one / (load(samples.pdf + r) + share * load(values.pdf + r));
     const LaneVec response = select(lit, weight * load(values.value, r) * scale, none);
     store(more ? load(samples.response, r) + response : response, samples.response, r);
+    if (coated) store(load(samples.coated, r) + response, samples.coated, r);
   }
 }
 
@@ -87,6 +89,7 @@ void removeUseless(LightSamples& samples) {
     move(load(rays.org, r), rays.org);
     move(load(rays.dir, r), rays.dir);
     move(response, samples.response);
+    if (samples.coated[0]) move(load(samples.coated, r), samples.coated);
     move(load(rays.tnear + r), rays.tnear);
     move(load(rays.tfar + r), rays.tfar);
     move(load(samples.distance + r), samples.distance);
@@ -99,7 +102,8 @@ void removeUseless(LightSamples& samples) {
 }
 
 uint32_t addOneRadiance(const ShapeArrays& shapes, const LightSamples& samples,
-                        const uint8_t* blocked, float* const radiance[3], uint32_t* others) {
+                        const float* const response[3], const uint8_t* blocked,
+                        float* const radiance[3], uint32_t* others) {
   const uint32_t n = samples.rays.count;
   uint32_t left = 0;
   for (uint32_t r = 0; r < n; r += width()) {
@@ -116,7 +120,7 @@ uint32_t addOneRadiance(const ShapeArrays& shapes, const LightSamples& samples,
     uint32_t hit[lanes];
     float* const to[3] = {light[0], light[1], light[2]};
     const Compressed append{added, 0};
-    append(load(samples.response, r) * gather(shapes.radiance, shape), to);
+    append(load(response, r) * gather(shapes.radiance, shape), to);
     append(load(samples.hit + r), hit);
     for (uint32_t j = 0, end = countTrue(added); j < end; j++)
       for (int k = 0; k < 3; k++) radiance[k][hit[j]] += light[k][j];
@@ -157,8 +161,9 @@ void weightByLobe(const RtsLobe& lobe, const float* followed, const LobeValues& 
 }
 void removeUseless(LightSamples& samples) { HWY_DYNAMIC_DISPATCH(removeUseless)(samples); }
 uint32_t addOneRadiance(const ShapeArrays& shapes, const LightSamples& samples,
-                        const uint8_t* blocked, float* const radiance[3], uint32_t* others) {
-  return HWY_DYNAMIC_DISPATCH(addOneRadiance)(shapes, samples, blocked, radiance, others);
+                        const float* const response[3], const uint8_t* blocked,
+                        float* const radiance[3], uint32_t* others) {
+  return HWY_DYNAMIC_DISPATCH(addOneRadiance)(shapes, samples, response, blocked, radiance, others);
 }
 
 } // namespace openrt

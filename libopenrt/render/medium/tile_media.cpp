@@ -66,12 +66,12 @@ void TileRenderer::gatherLamps(uint16_t medium, const Wave& wave, std::span<cons
   batch.lightSet = set;
   addPhaseLobe(medium, batch);
   const uint32_t n = points.hits.count;
-  float* radiance[3];
-  for (auto& colour : radiance) colour = arena_.takeZero<float>(padded(n));
-  addLamps(batch, radiance);
+  SentLight sent;
+  for (auto& colour : sent.radiance) colour = arena_.takeZero<float>(padded(n));
+  addLamps(batch, sent);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = lamps.places.lanes[i], path = wave.states.path[lane];
-    const Vec3f light = load(lamps.weight, lane) * load(radiance, i);
+    const Vec3f light = load(lamps.weight, lane) * load(sent.radiance, i);
     if (isFinite(light)) found.add(path, wave.states.flagsOf(lane), light);
   }
 }
@@ -83,13 +83,13 @@ void TileRenderer::scatterInMedium(uint16_t medium, const Wave& wave, const RayP
   const uint32_t n = points.hits.count;
   RtsBatch batch = makeBatch(context_, points, wave.states);
   addPhaseLobe(medium, batch);
-  float* radiance[3];
-  for (auto& colour : radiance) colour = arena_.takeZero<float>(padded(n));
-  continueFromLobes(batch, {}, radiance);
+  SentLight sent;
+  for (auto& colour : sent.radiance) colour = arena_.takeZero<float>(padded(n));
+  continueFromLobes(batch, {}, sent);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = collisions.lanes[i], path = wave.states.path[lane];
     const Vec3f throughput = load(wave.states.throughput, lane);
-    found.add(path, wave.states.flagsOf(lane), throughput * load(radiance, i));
+    found.add(path, wave.states.flagsOf(lane), throughput * load(sent.radiance, i));
     if (!wave.states.flagsOf(lane).deflected())
       found.alpha[path] += (throughput.x + throughput.y + throughput.z) / 3;
   }

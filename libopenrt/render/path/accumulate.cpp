@@ -47,7 +47,7 @@ Lanes attenuate(const Fog& fog, uint32_t i, int colour, Lanes light, Lanes seen)
 
 // Computes what each hit adds to the radiance and the alpha of its path. hidden: not 0 where a
 // boundary has no effect on light; null: nowhere.
-void lightOfHits(const RtsBatch& batch, const RtsSurface& surface, const Fog& fog,
+void lightOfHits(const RtsBatch& batch, const SentLight& sent, const Fog& fog,
                  const uint32_t* hidden, float* const radiance[3], float* alpha) {
   const Lanes zero = lanesOf(0), one = lanesOf(1);
   const auto uncovered = [&](Lanes clear) { return one - min(clear, one); };
@@ -56,7 +56,7 @@ void lightOfHits(const RtsBatch& batch, const RtsSurface& surface, const Fog& fo
     const LaneVec throughput = gather(batch.states->throughput, indicesFrom(batch.order, i, n));
     const Shown shown = shownAt(batch, hidden, i);
     const auto arriving = [&](int colour, Lanes seen) {
-      const Lanes light = load(surface.emission[colour] + i);
+      const Lanes light = load(sent.radiance[colour] + i);
       return attenuate(fog, i, colour, select(isFinite(light), light, zero), seen);
     };
     const LaneVec light{arriving(0, shown.seen.x), arriving(1, shown.seen.y),
@@ -92,6 +92,16 @@ const uint32_t* hiddenHits(const RtsBatch& batch, const Boundaries& boundaries) 
   return hidden;
 }
 
+// Adds light that the coat of the first surface of a path has reflected to RT_REFLECTION.
+void addCoated(const PathStates& states, uint32_t lane, const Vec3f& light, float transmittance,
+               PixelSamples& found) {
+  const PathFlags flags = states.flagsOf(lane);
+  if (flags.reflected() || flags.scattered()) return; // PixelSamples::add(); not the first surface
+  const Vec3f arriving = load(states.throughput, lane) * (transmittance * light);
+  const uint32_t path = states.path[lane];
+  if (isFinite(arriving)) store(load(found.reflection, path) + arriving, found.reflection, path);
+}
+
 } // namespace
 
 void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& fog,
@@ -123,18 +133,21 @@ void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& f
 }
 
 // Several hits may belong to one path, so what the vector lanes have computed is added hit by hit.
-void addSurface(const RtsBatch& batch, const RtsSurface& surface, const Boundaries& boundaries,
-                const Fog& fog, PixelSamples& found) {
+void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLight& sent,
+                const Boundaries& boundaries, const Fog& fog, PixelSamples& found) {
   ArenaScope scope(*batch.arena);
   const PathStates& states = *batch.states;
   const uint32_t n = batch.points->hits.count;
   float *radiance[3], *alpha = batch.arena->take<float>(padded(n));
   for (auto& a : radiance) a = batch.arena->take<float>(padded(n));
   HWY_DYNAMIC_DISPATCH(lightOfHits)
-  (batch, surface, fog, hiddenHits(batch, boundaries), radiance, alpha);
+  (batch, sent, fog, hiddenHits(batch, boundaries), radiance, alpha);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t lane = batch.order[i], path = states.path[lane];
     found.add(path, states.flagsOf(lane), load(radiance, i));
+    if (sent.coated[0])
+      addCoated(states, lane, load(sent.coated, i), fog.transmittance ? fog.transmittance[i] : 1,
+                found);
     if (!states.flagsOf(lane).deflected()) found.alpha[path] += alpha[i];
     if (found.first[path] && boundaries.visibleAt(i)) {
       found.first[path] = 0;

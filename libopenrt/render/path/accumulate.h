@@ -5,6 +5,7 @@
 #include "render/lights/environment.h"
 #include "render/path/pixel_samples.h"
 #include "render/path/spawn_rays.h"
+#include "render/surface/sent_light.h"
 
 namespace openrt {
 
@@ -13,9 +14,8 @@ namespace openrt {
 void addShading(const CameraPaths& paths, const RtsShading& shaded, const Fog& fog,
                 PixelSamples& found);
 
-// Adds the light of surfaces that are described by lobes. surface: its emission is all light that
-// the hits send back.
-void addSurface(const RtsBatch& batch, const RtsSurface& surface, const Boundaries& boundaries,
-                const Fog& fog, PixelSamples& found);
+// Adds the light that surfaces send back that are described by lobes.
+void addSurface(const RtsBatch& batch, const RtsSurface& surface, const SentLight& sent,
+                const Boundaries& boundaries, const Fog& fog, PixelSamples& found);
 
 } // namespace openrt

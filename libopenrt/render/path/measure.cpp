@@ -62,20 +62,20 @@ void TileRenderer::measureIlluminance(const Wave& wave, PixelSamples& found) {
   batch.lightSet = 0; // the lights that shine on everything (flatten.cpp)
   const uint32_t n = points.hits.count;
   const RtsLobe& white = *scene_.host.lobe(&batch, RTS_LOBE_DIFFUSE);
-  float* radiance[3];
+  SentLight sent;
   for (int k = 0; k < 3; k++) {
     std::fill_n(white.weight[k], padded(n), 1.0f);
-    radiance[k] = arena_.takeZero<float>(padded(n));
+    sent.radiance[k] = arena_.takeZero<float>(padded(n));
   }
   // Where there is nothing to hit and no sky, light comes from the lamps alone: the reading is
   // exact and needs no random path.
   if (scene_.records.empty() && !scene_.skyShines)
-    addLamps(batch, radiance);
+    addLamps(batch, sent);
   else
-    gatherLight(batch, {}, radiance);
+    gatherLight(batch, {}, sent);
   for (uint32_t i = 0; i < n; i++) {
     const uint32_t path = wave.states.path[i];
-    store(load(found.radiance, path) + load(radiance, i), found.radiance, path);
+    store(load(found.radiance, path) + load(sent.radiance, i), found.radiance, path);
     found.alpha[path] = 1;
     found.first[path] = 0;
   }

@@ -200,6 +200,17 @@ void TileRenderer::shadeByShade(const Points& points, const Bucket& bucket,
   addShading(pathsOf(batch), shaded, fogAt(context_, points, states), found);
 }
 
+// Returns where the light that surfaces send back is collected: their emission is the first part.
+SentLight TileRenderer::sentLight(const RtsBatch& batch, const RtsSurface& surface) {
+  SentLight sent{{surface.emission[0], surface.emission[1], surface.emission[2]}};
+  const bool coats = has(RT_REFLECTION) && tracesPaths(scene_.frame.transport) &&
+                     std::any_of(batch.lobes, batch.lobes + batch.lobeCount,
+                                 [](const RtsLobe& lobe) { return lobe.coat != 0; });
+  if (coats)
+    for (auto& a : sent.coated) a = arena_.takeZero<float>(padded(batch.points->hits.count));
+  return sent;
+}
+
 // Shades surfaces that are described by lobes. The stages are those of docs/architecture.md, "One
 // hit, stage by stage".
 void TileRenderer::scatter(const Points& points, const Bucket& bucket, const PathStates& states,
@@ -210,23 +221,23 @@ void TileRenderer::scatter(const Points& points, const Bucket& bucket, const Pat
   sanitizeOutput(*bucket.shaderClass, batch, surface);
   const Boundaries boundaries = crossBoundaries(batch, *bucket.shaderClass);
   batch.crossing = boundaries.crossing;
-  float* const* radiance = surface.emission; // all light that the hits send back
-  weightEmission(batch, boundaries, unsampled_, radiance);
-  gatherLight(batch, boundaries, radiance);
-  addSurface(batch, surface, boundaries, fogAt(context_, points, states), found);
+  weightEmission(batch, boundaries, unsampled_, surface.emission);
+  const SentLight sent = sentLight(batch, surface);
+  gatherLight(batch, boundaries, sent);
+  addSurface(batch, surface, sent, boundaries, fogAt(context_, points, states), found);
 }
 
-// Adds the light of lamps and emitters that the lobes of a batch send back to `radiance`, and
-// spawns the rays that find the rest.
+// Adds the light of lamps and emitters that the lobes of a batch send back, and spawns the rays
+// that find the rest.
 void TileRenderer::gatherLight(RtsBatch& batch, const Boundaries& boundaries,
-                               float* const radiance[3]) {
-  addLamps(batch, radiance);
-  continueFromLobes(batch, boundaries, radiance);
+                               const SentLight& sent) {
+  addLamps(batch, sent);
+  continueFromLobes(batch, boundaries, sent);
 }
 
 // Does the same without the lamps.
 void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundaries,
-                                     float* const radiance[3]) {
+                                     const SentLight& sent) {
   LobeSampling sampling;
   const bool path = tracesPaths(scene_.frame.transport);
   const bool emitters = path && scene_.emitters.any() && level_ < scene_.frame.depth;
@@ -237,7 +248,7 @@ void TileRenderer::continueFromLobes(RtsBatch& batch, const Boundaries& boundari
     if (emitters) allocateSelection(batch, sampling);
   }
   spawnRays(pathsOf(batch), sampling, boundaries);
-  if (emitters) sampleEmitters(batch, sampling, boundaries, radiance);
+  if (emitters) sampleEmitters(batch, sampling, boundaries, sent);
   if (emitters && scene_.lightPathFlux > 0) addLightPathBound(pathsOf(batch), sampling, footprint_);
   if (emitters && scene_.photonGuide) guided_.start(pathsOf(batch), sampling, boundaries);
 }

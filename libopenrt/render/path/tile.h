@@ -21,6 +21,7 @@
 #include "render/path/random_numbers.h"
 #include "render/path/spawn_rays.h"
 #include "render/path/wave.h"
+#include "render/surface/sent_light.h"
 #include "scene/transports.h"
 
 namespace openrt {
@@ -105,8 +106,9 @@ class TileRenderer {
   static_assert(std::size(shadings) == size_t(Shading::count));
   void scatter(const Points& points, const Bucket& bucket, const PathStates& states,
                PixelSamples& found);
-  void gatherLight(RtsBatch& batch, const Boundaries& boundaries, float* const radiance[3]);
-  void continueFromLobes(RtsBatch& batch, const Boundaries& boundaries, float* const radiance[3]);
+  SentLight sentLight(const RtsBatch& batch, const RtsSurface& surface);
+  void gatherLight(RtsBatch& batch, const Boundaries& boundaries, const SentLight& sent);
+  void continueFromLobes(RtsBatch& batch, const Boundaries& boundaries, const SentLight& sent);
 
   const RenderScene& scene_;
   const uint32_t width_; // width of the picture
