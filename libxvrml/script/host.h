@@ -59,6 +59,10 @@ struct Script {
   bool startedEarly = false;
   bool startPending = false; // it will be started (again); events wait
   int restarts = 0;
+  // A program that was late is not waited for in its next `unwaited` calls: twice as many as the
+  // time before (`lastUnwaited`), until its function `late` returns in time again.
+  wire::Op late{};
+  uint32_t unwaited = 0, lastUnwaited = 0;
   // eventsProcessed must be called when the current call has returned.
   bool eventsProcessedDue = false;
   size_t nextUrl = 0;
@@ -152,6 +156,8 @@ class ScriptHost : public ScriptRunner {
   XsResult serveCall(Script& script, double first, double next, wire::Clock::time_point until);
   XsResult waitFor(Script& script);
   wire::Clock::time_point patienceEnds() const;
+  wire::Clock::time_point waitEnds(const Script& script) const;
+  static void noteLateness(Script& script, wire::Op op, bool late);
   void handleLostProcess(Script& script, wire::Op op, bool tooLong);
   void detach(Script& script);
   void restartAll(const ScriptProcess& gone);

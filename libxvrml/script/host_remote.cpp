@@ -11,11 +11,18 @@ namespace xvrml {
 namespace {
 
 constexpr double forEver = 1e9;
+// Seconds that also a call gets for which there is no time to wait. Most calls need less.
+constexpr double shortWait = 0.001;
+constexpr uint32_t mostUnwaited = 32; // calls
 // The time per tick for requests of all functions still running, and the time to wait for a further
 // request of each.
 constexpr auto tickShare = std::chrono::milliseconds(5);
 constexpr double linger = 0.0002;
 constexpr int maxRestarts = 3;
+
+wire::Clock::duration durationOf(double seconds) {
+  return std::chrono::duration_cast<wire::Clock::duration>(std::chrono::duration<double>(seconds));
+}
 
 } // namespace
 
@@ -108,22 +115,45 @@ XsResult ScriptHost::callRemote(Script& script, wire::Op op, wire::Writer& messa
   return result == later ? waitFor(script) : result;
 }
 
+// A fifth of the patience is kept for calls that return at once: they complete although others have
+// used up the rest.
 wire::Clock::time_point ScriptHost::patienceEnds() const {
   if (options_.scriptPatience <= 0) return shutdownDeadline_;
-  // When it is used up, calls that return at once still complete.
-  const double least = patience_ > -options_.scriptPatience ? 0.001 : 0;
-  const std::chrono::duration<double> patience(std::clamp(patience_, least, 1e6));
-  return std::min(shutdownDeadline_,
-                  wire::Clock::now() + std::chrono::duration_cast<wire::Clock::duration>(patience));
+  const double kept = 0.2 * options_.scriptPatience;
+  const double wait = std::clamp(patience_ - kept, std::clamp(patience_, 0.0, shortWait), 1e6);
+  return std::min(shutdownDeadline_, wire::Clock::now() + durationOf(wait));
+}
+
+// Returns how long the call that has begun is waited for. A program that is often late costs the
+// world its patience in one of 33 calls, not in each.
+wire::Clock::time_point ScriptHost::waitEnds(const Script& script) const {
+  const wire::Clock::time_point end = patienceEnds();
+  const bool recurs = script.pending == wire::Op::event || script.pending == wire::Op::tick ||
+                      script.pending == wire::Op::eventsProcessed;
+  if (options_.scriptPatience <= 0 || ending_ || !recurs || script.unwaited == 0) return end;
+  return std::min(end, wire::Clock::now() + durationOf(shortWait));
+}
+
+void ScriptHost::noteLateness(Script& script, wire::Op op, bool late) {
+  if (!late) {
+    if (op == script.late) script.unwaited = script.lastUnwaited = 0;
+  } else if (script.unwaited > 0) {
+    --script.unwaited;
+  } else {
+    script.late = op;
+    script.unwaited = script.lastUnwaited = std::clamp(2 * script.lastUnwaited, 1U, mostUnwaited);
+  }
 }
 
 // Calls between two ticks share one patience: a thousand slow Scripts cost no more than one.
 XsResult ScriptHost::waitFor(Script& script) {
   const ProcessRef process = script.process;
+  const wire::Op op = script.pending;
   const auto start = wire::Clock::now();
-  const XsResult result = serveCall(script, forEver, forEver, patienceEnds());
+  const XsResult result = serveCall(script, forEver, forEver, waitEnds(script));
   const auto taken = wire::Clock::now() - start;
   if (options_.scriptPatience > 0) patience_ -= std::chrono::duration<double>(taken).count();
+  noteLateness(script, op, result == later);
   const double seconds = std::chrono::duration<double>(taken).count();
   chargeTime(taken, process->dead() ? std::min(seconds, options_.scriptSeconds)
                                     : process->takeProcessorTime());

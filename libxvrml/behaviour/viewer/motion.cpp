@@ -44,10 +44,27 @@ NavigationInput usable(const NavigationInput& in) {
           usable(in.turn),  usable(in.tilt),  usable(in.roll)};
 }
 
+// Surfaces that are less steep than this are ground to the knees, not walls: avatarSize[2] bounds
+// the objects that one steps over, not the ramps that one follows (6.29).
+const double steepestGround = std::cos(45 * std::numbers::pi / 180);
+
+// A part of the body that collides with walls. knees: the lowest part, which meets ramps.
+struct BodyPart {
+  Vector offset;
+  bool knees = false;
+};
+
+// Returns the room along `direction` before a hit at distance t: the eye stays `distance` away from
+// the plane of the wall, also where it comes aslant. On a grazing course that would be far before
+// the wall, which may not reach there: then it is mostLead distances before it.
+constexpr double mostLead = 4;
+double roomBefore(double t, const Vector& normal, const Vector& direction, double distance) {
+  return std::max(0.0, t - distance / std::max(std::abs(normal.dot(direction)), 1 / mostLead));
+}
+
 // Returns the motion from `eye` along `wish`. It stays `distance` away from walls and slides along
-// them. offsets: the parts of the body that collide with walls. level: if not null, walls deflect
-// the motion only about this axis.
-Vector slide(const Vector& eye, Vector wish, std::initializer_list<Vector> offsets, double distance,
+// them. level: if not null, walls deflect the motion only about this axis.
+Vector slide(const Vector& eye, Vector wish, std::initializer_list<BodyPart> parts, double distance,
              const Vector* level, const Obstacle& obstacle) {
   Vector moved(0);
   for (int wall = 0; wall < 3; ++wall) {
@@ -57,13 +74,17 @@ Vector slide(const Vector& eye, Vector wish, std::initializer_list<Vector> offse
     double allowed = length;
     Vector normal(0);
     bool blocked = false;
-    for (const Vector& offset : offsets) {
+    for (const BodyPart& part : parts) {
+      const PickRay ray{eye + part.offset + moved, direction, 0, length + mostLead * distance};
       double t;
       Vector n;
-      if (!obstacle({eye + offset + moved, direction, 0, length + distance}, true, t, n)) continue;
-      const double room = std::max(0.0, t - distance);
+      if (!obstacle(ray, false, t, n)) continue;
+      if (part.knees && level && std::abs(level->dot(n)) > steepestGround) continue;
+      const double room = roomBefore(t, n, direction, distance);
+      if (room >= length) continue;
+      obstacle(ray, true, t, n); // it is near enough for a collision
       if (blocked && room >= allowed) continue;
-      allowed = std::min(allowed, room);
+      allowed = room;
       normal = n;
       blocked = true;
     }
@@ -107,8 +128,9 @@ Vector settle(const Vector& eye, const Vector& moved, double seconds, const Avat
   const bool stood = floorUnder(eye, before);
   Vector to = eye + moved;
   bool stands = floorUnder(to, after);
+  // Higher than a step, and steeper than ground: a wall.
   if (stands && after < 0 &&
-      std::min(stood ? before : 0, 0.0) - after > a.step) { // higher than a step: a wall
+      std::min(stood ? before : 0, 0.0) - after > std::max(a.step, moved.length())) {
     to = eye;
     after = before;
     stands = stood;
@@ -143,7 +165,9 @@ Motion walk(const Motion& from, const NavigationInput& raw, double seconds, cons
     const Vector ahead = headingOf(m.view, a.up), right = ahead.cross(a.up);
     const Vector wish = (ahead * in.ahead + right * in.right) * (a.speed * s);
     const Vector knee = -a.up * (std::max(0.0, a.height - a.step) * 0.999);
-    const Vector moved = slide(eye, wish, {Vector(0), knee / 2, knee}, a.distance, &a.up, obstacle);
+    if (!(a.speed > 0)) continue; // the position stays (6.29): no gravity, either
+    const Vector moved =
+        slide(eye, wish, {{Vector(0)}, {knee / 2}, {knee, true}}, a.distance, &a.up, obstacle);
     setEye(m.view, settle(eye, moved, s, a, obstacle, m.fall));
   }
   return m;
@@ -165,7 +189,7 @@ Motion fly(const Motion& from, const NavigationInput& raw, double seconds, const
     const Vector wish =
         (axis(m.view, 0) * in.right + axis(m.view, 1) * in.up - axis(m.view, 2) * in.ahead) *
         (a.speed * s);
-    setEye(m.view, eye + slide(eye, wish, {Vector(0)}, a.distance, nullptr, obstacle));
+    setEye(m.view, eye + slide(eye, wish, {{Vector(0)}}, a.distance, nullptr, obstacle));
   }
   return m;
 }

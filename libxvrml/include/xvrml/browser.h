@@ -51,9 +51,10 @@ struct BrowserOptions {
     never,
     always
   } scriptIsolation = Isolation::automatic;
-  // Seconds that a call waits for a Script in a process of its own. Events that the Script sends
-  // later belong to a later tick. 0 waits until the Script returns, so that the same input gives
-  // the same world on any machine.
+  // Seconds that all calls between two ticks together wait for Scripts in processes of their own;
+  // those that are often late are not waited for in every call. Events that a Script sends later
+  // belong to a later tick. 0 waits until the Script returns, so that the same input gives the same
+  // world on any machine.
   double scriptPatience = 0;
   // Receives the text that Scripts print; null: the text becomes notes in world().diagnostics.
   std::function<void(const std::string& text)> print;

@@ -68,6 +68,21 @@ TEST(Walk, AlongAWallTheViewerSlides) {
   EXPECT_GT(eye(r, 2), 1);
 }
 
+// avatarSize[0] is the distance to geometry (6.29), from whatever direction it is approached.
+TEST(Walk, AslantTheViewerKeepsItsDistance) {
+  for (const double degrees : {20.0, 45.0, 65.0, 75.0}) {
+    Running r(walks +
+              fmt::format("Viewpoint {{ position 0 1.6 3 orientation 0 1 0 {} }} ",
+                          degrees * std::numbers::pi / 180) +
+              floor20 +
+              "Transform { translation 0 2 0 children Shape { geometry Box { size 400 4 2 } } }");
+    for (int i = 0; i < 200; ++i) r.browser.navigate({.ahead = 1}, 1. / 30);
+    EXPECT_GE(eye(r, 2), 1.25 - 1e-6) << degrees;
+    EXPECT_LT(eye(r, 2), 3) << degrees;
+    EXPECT_LT(eye(r, 0), -1) << degrees;
+  }
+}
+
 TEST(Walk, TheBackOfAWallIsAWall) {
   Running r(
       walks + "Viewpoint { position 0 1.6 -3 orientation 0 1 0 3.1415927 } " + floor20 +
@@ -112,6 +127,40 @@ TEST(Walk, ARampIsFollowed) {
   r.browser.navigate({.ahead = 1}, 2);
   EXPECT_NEAR(eye(r, 2), 6, 1e-6);
   EXPECT_NEAR(eye(r, 1), 3.6, 1e-4);
+}
+
+// avatarSize[2] bounds objects that one steps over, not the slope of the ground.
+TEST(Walk, ARampIsFollowedAlsoWithLowSteps) {
+  for (const char* step : {"0", "0.01", "0.1"}) {
+    Running r(fmt::format("NavigationInfo {{ type \"WALK\" speed 2 avatarSize [ .25 1.6 {} ] }} "
+                          "Viewpoint {{ position 0 1.6 10 }} ",
+                          step) +
+              "Shape { geometry IndexedFaceSet { coord Coordinate { point [ -9 0 10, 9 0 10, 9 6 0,"
+              " -9 6 0 ] } coordIndex [ 0 1 2 3 ] } }");
+    for (int i = 0; i < 60; ++i) r.browser.navigate({.ahead = 1}, 1. / 30);
+    EXPECT_NEAR(eye(r, 2), 6, 1e-4) << step;
+    EXPECT_NEAR(eye(r, 1), 4, 1e-3) << step;
+  }
+}
+
+TEST(Walk, ARampSteeperThanTheGroundIsAWallForLowSteps) {
+  Running r(
+      "NavigationInfo { type \"WALK\" speed 2 avatarSize [ .25 1.6 .1 ] } Viewpoint { position 0 "
+      "1.6 15 } " +
+      floor20 +
+      "Shape { geometry IndexedFaceSet { coord Coordinate { point [ -9 0 10, 9 0 10, 9 30 0,"
+      " -9 30 0 ] } coordIndex [ 0 1 2 3 ] } }");
+  r.browser.navigate({.ahead = 1}, 10);
+  EXPECT_GT(eye(r, 2), 9.9);
+  EXPECT_NEAR(eye(r, 1), 1.6, 0.2);
+}
+
+// With speed 0 the position stays and the orientation may change (6.29).
+TEST(Walk, WithSpeedZeroOnlyTheOrientationChanges) {
+  Running r("NavigationInfo { type \"WALK\" speed 0 } Viewpoint { position 0 21.6 10 } " + floor20);
+  r.browser.navigate({.ahead = 1, .right = 1, .turn = 1}, 1);
+  EXPECT_EQ(eyeOf(r.browser), "0 21.6 10");
+  EXPECT_EQ(lookOf(r.browser), "-1 0 0");
 }
 
 TEST(Walk, ATunnelLowerThanTheEyeIsAWall) {
@@ -255,6 +304,19 @@ TEST(Collision, SendsCollideTimeWhenItsChildrenStopTheViewer) {
   r.browser.navigate({.ahead = 1}, 10);
   EXPECT_EQ(r.take(), Log{"7 C.collideTime 7"});
   EXPECT_NEAR(eye(r, 2), 1.25, 1e-6);
+}
+
+// A wall that is seen ahead but not reached is no collision (6.8).
+TEST(Collision, SendsNothingBeforeTheViewerIsAtItsDistance) {
+  Running r(
+      "NavigationInfo { type \"WALK\" speed 1 } Viewpoint { position 0 1.6 10 } " + floor20 +
+      "DEF C Collision { children Transform { translation 0 2 0 children Shape { geometry Box { "
+      "size 40 4 2 } } } }");
+  r.log("C", "collideTime");
+  for (int i = 0; i < 260; ++i) r.browser.navigate({.ahead = 1}, 1. / 30); // as far as z = 1.33
+  EXPECT_EQ(r.take(), Log{});
+  for (int i = 0; i < 10; ++i) r.browser.navigate({.ahead = 1}, 1. / 30);
+  EXPECT_FALSE(r.take().empty());
 }
 
 TEST(Collision, WithCollideFalseTheViewerPasses) {

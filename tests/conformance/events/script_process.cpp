@@ -372,6 +372,35 @@ TEST_F(ScriptProcess, ManyLoopsCostOnePatience) {
   EXPECT_EQ(r.messages(), Log{});
 }
 
+// A tick waits for at most the patience, however many Scripts are late; and not in every tick for
+// one that is always late.
+TEST_F(ScriptProcess, SlowScriptsDoNotSlowDownEveryTick) {
+  std::string text = "DEF T Transform {}";
+  for (int i = 0; i < 6; ++i)
+    text +=
+        fmt::format("DEF S{} Script {{ eventIn SFVec3f go url \"hostile:go: slow 150\" }} ROUTE "
+                    "T.translation TO S{}.go\n",
+                    i, i);
+  constexpr double patience = 0.1;
+  constexpr int ticks = 100;
+  Scripted r(text, limits(patience, 60));
+  r.browser.tick(1);
+  double waited = 0;
+  std::vector<double> each;
+  for (int i = 0; i < ticks; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    r.set("T", "translation", Vec3f{float(i), 0, 0});
+    r.browser.tick(1 + i / 30.);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    waited += taken.count();
+    each.push_back(taken.count());
+    usleep(10'000);
+  }
+  std::nth_element(each.begin(), each.begin() + ticks / 2, each.end());
+  EXPECT_LT(each[ticks / 2], patience / 2);
+  EXPECT_LT(waited, ticks * patience / 4);
+}
+
 TEST_F(ScriptProcess, WithHardlyAnyPatienceScriptsBeginByAndBy) {
   std::string text = "DEF T Transform {}";
   for (int i = 0; i < 100; ++i)
