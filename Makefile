@@ -121,11 +121,12 @@ fuzz:
 	@$(CONFIGURE) fuzz && cmake --build build/fuzz -j $(JOBS)
 	@tools/run-fuzz.sh build/fuzz/bin $(FUZZ_SECONDS)
 
-## make asan, tsan    all tests under the sanitizers
+## make asan          all tests under the sanitizers for addresses and undefined behaviour
 asan: packages
 	@$(CONFIGURE) asan-ubsan && cmake --build build/asan-ubsan -j $(JOBS) && ctest --preset asan-ubsan -j $(JOBS)
+## make tsan          tests under the thread sanitizer; reports about programs are in build/tsan/races (TESTS="test_control ...")
 tsan: packages
-	@$(CONFIGURE) tsan && cmake --build build/tsan -j $(JOBS) && ctest --preset tsan -j $(JOBS)
+	@$(CONFIGURE) tsan && cmake --build build/tsan -j $(JOBS) && PYTHON=$(PYTHON) tools/run-tsan.sh build/tsan $(JOBS)
 
 ## make test-alloc-failures   load and draw a world once for each allocation, with this one failing
 test-alloc-failures:

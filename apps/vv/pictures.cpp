@@ -268,7 +268,7 @@ class Pictures {
     } catch (const std::exception& error) { sayWarning(error.what()); }
     sayError(fmt::format("a shader did not stop within {} s of the interrupt; {}", stuckSeconds,
                          saved ? "the picture so far is saved" : "there is no picture yet"));
-    picture::removeTemporary();
+    picture::removeTemporaries();
     ::_exit(exitInterrupted);
   }
 

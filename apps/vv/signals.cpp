@@ -32,7 +32,7 @@ void onInterrupt(int number) {
     if (patience > 0) ::alarm(patience);
     return;
   }
-  picture::removeTemporary();
+  picture::removeTemporaries();
   ::_exit(exitInterrupted);
 }
 
@@ -55,7 +55,7 @@ void onCrash(int number) {
   put(shader ? ") in the shader " : "), not in a shader");
   put(shader ? shader : "");
   put("\n");
-  picture::removeTemporary();
+  picture::removeTemporaries();
   ::signal(number, SIG_DFL);
   ::raise(number);
 }

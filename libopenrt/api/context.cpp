@@ -61,10 +61,16 @@ std::exception_ptr Context::close() noexcept {
   try {
     if (backend_) backend_->finish();
   } catch (...) { wrong = std::current_exception(); }
-  const std::lock_guard lock(backendMutex_);
-  open_ = false;
+  // A backend waits for its threads when it is destroyed. One of them may be in the application's
+  // log callback, which may ask for the progress: so this happens without the lock.
+  std::unique_ptr<Backend> backend;
+  {
+    const std::lock_guard lock(backendMutex_);
+    open_ = false;
+    backend = std::move(backend_);
+  }
+  backend.reset();
   inFlight_.clear();
-  backend_.reset();
   unsent_.clear();
   definition.reset();
   scene = SceneState();

@@ -2,6 +2,7 @@
 // (backend=cluster, vv --workers). This file handles options and signals;
 // backend/cluster/worker/serve.h does the work. Exit codes: 0 done (also by SIGTERM), 1 something
 // failed, 2 usage, 3 key file missing or unusable, 75 port in use or out of memory, 130 by SIGINT.
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -48,15 +49,19 @@ struct Options {
   bool once = false, quiet = false;
 };
 
-WorkerService* service = nullptr; // used by the signal handler
-volatile std::sig_atomic_t signalled = 0;
+// Used by the signal handler, which may run on any thread.
+std::atomic<WorkerService*> service{nullptr};
+std::atomic<int> signalled{0};
+static_assert(std::atomic<int>::is_always_lock_free &&
+              std::atomic<WorkerService*>::is_always_lock_free);
 
 extern "C" void onSignal(int number) {
-  if (signalled || number == SIGALRM || !service)
+  WorkerService* const running = service;
+  int first = 0;
+  if (number == SIGALRM || !running || !signalled.compare_exchange_strong(first, number))
     _exit(signalled == SIGTERM || number == SIGTERM ? Done : Interrupted);
-  signalled = number;
   alarm(graceSeconds);
-  service->stop();
+  running->stop();
 }
 
 int reportError(ExitCode code, const std::string& message) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -17,13 +18,22 @@ namespace picture {
 
 namespace {
 
-char temporaryName[PATH_MAX];
-std::atomic<bool> temporaryExists{false};
+// The name of a temporary file, where a signal handler finds it: no lock and no memory of the heap
+// may be needed. Each write uses one place; `exists` publishes the name.
+struct Place {
+  std::atomic<bool> taken{false}, exists{false};
+  char name[PATH_MAX] = {};
+};
+// More writes at a time than this are possible, but a signal leaves the files of the others behind.
+constexpr size_t mostPlaces = 64;
+Place places[mostPlaces];
 
+std::mutex keptMutex; // guards `kept`
 // protected files: device and inode, description
 std::map<std::pair<dev_t, ino_t>, std::string> kept;
 
 std::string whyProtected(const std::string& path, const struct stat& info) {
+  const std::lock_guard lock(keptMutex);
   const auto found = kept.find({info.st_dev, info.st_ino});
   return found == kept.end()
              ? ""
@@ -61,21 +71,57 @@ void writeDirectly(const std::string& path, std::string_view bytes) {
   if (::close(descriptor) != 0) fail(path, errno);
 }
 
-int makeTemporary(const std::string& path, const std::string& target, mode_t mode) {
-  const std::string base = folderOf(target) + "/.vv-" + std::to_string(::getpid()) + "-";
-  for (int i = 0; i < 1000; ++i) {
-    const std::string name = base + std::to_string(i);
-    if (name.size() >= sizeof temporaryName) fail(path, ENAMETOOLONG);
-    std::memcpy(temporaryName, name.c_str(), name.size() + 1);
-    int descriptor = ::open(temporaryName, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (descriptor >= 0) {
-      temporaryExists = true;
-      return descriptor;
+// A temporary file beside the file that it will replace. Unless it has been moved there, it is
+// removed.
+class Temporary {
+ public:
+  // path: the file as the caller calls it, for messages; target: the file that is replaced.
+  Temporary(const std::string& path, const std::string& target, mode_t mode) : path_(path) {
+    const std::string base = folderOf(target) + "/.vv-" + std::to_string(::getpid()) + "-";
+    for (int i = 0; i < 1000 && descriptor_ < 0; ++i) {
+      name_ = base + std::to_string(i);
+      if (name_.size() >= PATH_MAX) fail(path, ENAMETOOLONG);
+      descriptor_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+      if (descriptor_ < 0 && errno != EEXIST) fail(path, errno);
     }
-    if (errno != EEXIST) fail(path, errno);
+    if (descriptor_ < 0) fail(path, EEXIST);
+    publish();
   }
-  fail(path, EEXIST);
-}
+  ~Temporary() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!moved_) ::unlink(name_.c_str());
+    if (!place_) return;
+    place_->exists = false;
+    place_->taken = false;
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  // Closes the file and gives it the name of the target. Throws std::runtime_error.
+  void moveTo(const std::string& target) {
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno);
+    if (::rename(name_.c_str(), target.c_str()) != 0) fail(path_, errno);
+    moved_ = true;
+  }
+
+ private:
+  void publish() {
+    for (Place& place : places) {
+      if (place.taken.exchange(true)) continue;
+      place_ = &place;
+      std::memcpy(place.name, name_.c_str(), name_.size() + 1);
+      place.exists = true;
+      return;
+    }
+  }
+
+  const std::string path_;
+  std::string name_;
+  int descriptor_ = -1;
+  bool moved_ = false;
+  Place* place_ = nullptr; // null: all places are taken
+};
 
 } // namespace
 
@@ -100,29 +146,17 @@ void writeFile(const std::string& path, std::string_view bytes) {
       throw std::runtime_error(why);
   if (exists && ::access(target.c_str(), W_OK) != 0) fail(path, errno);
 
-  int descriptor = makeTemporary(path, target, 0666);
-  if (exists) (void)!::fchmod(descriptor, info.st_mode & 0777);
-  int reason = 0;
-  try {
-    writeDescriptor(descriptor, bytes, path);
-  } catch (...) {
-    ::close(descriptor);
-    removeTemporary();
-    throw;
-  }
-  if (::close(descriptor) != 0) reason = errno;
-  if (!reason && ::rename(temporaryName, target.c_str()) != 0) reason = errno;
-  if (reason) {
-    removeTemporary();
-    fail(path, reason);
-  }
-  temporaryExists = false;
+  Temporary temporary(path, target, 0666);
+  if (exists) (void)!::fchmod(temporary.descriptor(), info.st_mode & 0777);
+  writeDescriptor(temporary.descriptor(), bytes, path);
+  temporary.moveTo(target);
 }
 
 void protectFile(const std::string& path, const std::string& what) {
   struct stat info;
-  if (::stat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode))
-    kept.try_emplace({info.st_dev, info.st_ino}, what);
+  if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return;
+  const std::lock_guard lock(keptMutex);
+  kept.try_emplace({info.st_dev, info.st_ino}, what);
 }
 
 std::string whyNotWritable(const std::string& path) {
@@ -143,8 +177,9 @@ std::string whyNotWritable(const std::string& path) {
   return reason ? "cannot write " + path + ": " + std::strerror(reason) : "";
 }
 
-void removeTemporary() noexcept {
-  if (temporaryExists.exchange(false)) ::unlink(temporaryName);
+void removeTemporaries() noexcept {
+  for (Place& place : places)
+    if (place.exists.exchange(false)) ::unlink(place.name);
 }
 
 } // namespace picture

@@ -1,5 +1,6 @@
 // atomic_file.h: Writes files atomically: the content goes to a temporary file in the same folder,
-// which is then renamed. A file is either complete or absent. [one thread at a time]
+// which is then renamed. A file is either complete or absent. Several threads may write at a time;
+// of those that write the same file, the last one wins. [any thread]
 #pragma once
 
 #include <string>
@@ -22,8 +23,8 @@ void protectFile(const std::string& path, const std::string& what);
 // reason is known.
 std::string whyNotWritable(const std::string& path);
 
-// Removes the temporary file of a write in progress. A signal handler that ends the process may
+// Removes the temporary files of all writes in progress. A signal handler that ends the process may
 // call it.
-void removeTemporary() noexcept;
+void removeTemporaries() noexcept;
 
 } // namespace picture

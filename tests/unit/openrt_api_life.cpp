@@ -177,6 +177,28 @@ void hear(RTenum error, const char* message, void* user) {
 }
 void throwSomething(RTenum, const char*, void*) { throw 1; }
 
+// A backend waits for its threads in its destructor. One of them may be in the log callback.
+TEST(ApiLife, AThreadOfABackendThatEndsMayStillAsk) {
+  const auto captured = std::make_shared<Captured>(std::vector<std::string>());
+  Context context(ContextConfig(), std::make_unique<CaptureBackend>(captured));
+  float progress = -1;
+  size_t workers = 1;
+  bool copied = true;
+  captured->end = [&] {
+    std::thread([&] {
+      progress = context.progress();
+      workers = context.workers().size();
+      copied = context.snapshot(RT_DEPTH, {});
+      context.cancel();
+    }).join();
+  };
+  EXPECT_EQ(context.progress(), 0.25f);
+  EXPECT_EQ(context.close(), nullptr);
+  EXPECT_EQ(progress, 0);
+  EXPECT_EQ(workers, 0u);
+  EXPECT_FALSE(copied);
+}
+
 TEST_F(ApiTest, TheErrorCallbackHearsEveryErrorAtOnce) {
   Heard heard;
   rtErrorCallback(hear, &heard);

@@ -3,6 +3,7 @@
 // Used by the tests of the C API.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,13 +26,17 @@ struct Captured {
   std::vector<std::shared_ptr<const Commit>> commits;
   int starts = 0, waits = 0, cancels = 0;
   bool failNextApply = false, failNextWait = false, pipelines = false;
-  std::string backendCalls; // backend calls so far: a apply, s start, w wait, c cancel
-  std::string cancelIn;     // letters of the calls during which rtCancel() is called
+  std::string backendCalls;  // backend calls so far: a apply, s start, w wait, c cancel
+  std::string cancelIn;      // letters of the calls during which rtCancel() is called
+  std::function<void()> end; // called by the backend's destructor
 };
 
 class CaptureBackend final : public Backend {
  public:
   explicit CaptureBackend(std::shared_ptr<Captured> captured) : captured_(std::move(captured)) {}
+  ~CaptureBackend() override {
+    if (captured_->end) captured_->end();
+  }
   void apply(std::shared_ptr<const Commit> commit) override {
     if (captured_->failNextApply) {
       captured_->failNextApply = false;

@@ -14,7 +14,7 @@ void stopOrExit(Session* session, int code) {
   constexpr double patience = .5; // seconds
   const bool stopped = !session || session->stop(patience);
   if (stopped && !WorldLoader::working()) return;
-  picture::removeTemporary();
+  picture::removeTemporaries();
   std::fflush(nullptr);
   ::_exit(code);
 }

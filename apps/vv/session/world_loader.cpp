@@ -75,9 +75,10 @@ void WorldLoader::startIfPossible() {
   job_ = std::make_shared<Job>();
   job_->request = *std::exchange(wanted_, {});
   ++threads;
-  std::thread([job = job_] {
+  std::thread([job = job_]() mutable {
     job->answer = load(job->request);
     job->done = true;
+    job = nullptr; // destroys a world that nobody wants any more, before the process may end
     --threads;
   }).detach();
 }

@@ -1,0 +1,36 @@
+#!/bin/bash
+# run-tsan.sh FOLDER JOBS: runs the tests of a build with ThreadSanitizer (preset tsan): first those
+# in C++, with ctest, then those in Python whose programs share a world among threads: the page, the
+# control channel, the window, and clusters. TESTS="test_control ..." names other ones.
+#
+# What the sanitizer reports about programs that the Python tests start goes to FOLDER/races, because
+# a test need not notice how its program ends. One report ends the run with exit code 1. Programs are
+# about ten times slower than usual here, so a Python test may fail by a limit of time that it sets
+# itself: such tests are named, and do not decide.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+folder=$(realpath "$1") jobs=$2
+tests=${TESTS:-test_vv_serve test_vv_serve_access test_vv_serve_files test_control
+  test_control_clients test_vv_window test_vv_window_input test_vv_window_previews test_vv_cluster
+  test_cluster_faults test_vv_time}
+races=$folder/races
+rm -rf "$races"
+mkdir -p "$races"
+
+found=0
+ctest --preset tsan -j "$jobs" || found=1
+
+export TSAN_OPTIONS="suppressions=$PWD/tests/checks/tsan.supp:history_size=4:log_path=$races/race"
+export OPENRT_VV=$folder/bin/vv PYTHONDONTWRITEBYTECODE=1
+for test in $tests; do
+  if ! "${PYTHON:-python3}" -m pytest -q -p no:cacheprovider "tests/python/$test.py" >"$races/$test.log" 2>&1; then
+    echo "$test: $(tail -n 1 "$races/$test.log") (all of it: $races/$test.log)"
+  fi
+done
+
+for report in "$races"/race.*; do
+  [ -e "$report" ] || continue
+  found=1
+  cat "$report"
+done
+exit $found
