@@ -61,14 +61,19 @@ struct UnsampledLight {
                  bound = n * std::pow(1 - 1 / (9 * n) + normal95 / (3 * std::sqrt(n)), 3);
     return std::min(1.0, (bound - met) / rays);
   }
+  // Returns by how much light paths lower the bound missedShare() * light.
+  double lessByLightPaths() const {
+    const double byLightPaths = ruleOfThree * byLightPath, byRays = missedShare() * light;
+    return byLightPaths > 0 && byRays > 0 ? byRays * byRays / (byRays + byLightPaths) : 0;
+  }
 };
 
 struct Ledger { // all values are summed over the colours
   // Throughput of the paths ended by the depth limit and by the energy cut.
   double cutByDepth = 0, cutByEnergy = 0;
-  double clipped = 0;       // radiance removed by the clamp
-  UnsampledLight unsampled; // light of emissive shapes, unless it is left to light tracing
-  UnsampledLight unsampledSky;
+  double clipped = 0; // radiance removed by the clamp
+  // Light of emissive shapes and of the sky. What is left to light tracing is not in them.
+  UnsampledLight unsampled, unsampledSky;
   uint64_t samples = 0; // samples per pixel of the tile
 
   void add(const Ledger& l) {
@@ -102,11 +107,9 @@ struct Ledger { // all values are summed over the colours
   // Returns the bound that follows from the rays of this tile and from light paths together: with a
   // probability of 95 %, less than three of both were to be expected for the light that they lack.
   double missedByTile(double paths) const {
-    const double lightPaths = ruleOfThree * unsampled.byLightPath,
-                 rays = unsampled.missedShare() * unsampled.light,
-                 all = missedRadiance(*this, paths);
-    if (!(paths > 0 && lightPaths > 0 && rays > 0)) return all;
-    return all - rays * rays / (rays + lightPaths) / paths;
+    if (!(paths > 0)) return 0;
+    return missedRadiance(*this, paths) -
+           (unsampled.lessByLightPaths() + unsampledSky.lessByLightPaths()) / paths;
   }
 };
 

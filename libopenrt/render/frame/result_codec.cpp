@@ -107,13 +107,13 @@ class Source {
 };
 
 bool getLedger(Source& source, Ledger& ledger) {
-  double v[10];
+  double v[11];
   if (!source.get(v, sizeof v)) return false;
   ledger.cutByDepth = v[0];
   ledger.cutByEnergy = v[1];
   ledger.clipped = v[2];
   ledger.unsampled = {v[3], v[4], v[5], v[6]};
-  ledger.unsampledSky = {v[7], v[8], v[9]};
+  ledger.unsampledSky = {v[7], v[8], v[9], v[10]};
   return true;
 }
 
@@ -195,7 +195,7 @@ std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job
                                     const JobResult& result) {
   std::vector<std::byte> out;
   const Ledger& l = result.ledger;
-  const double ledger[10] = {l.cutByDepth,
+  const double ledger[11] = {l.cutByDepth,
                              l.cutByEnergy,
                              l.clipped,
                              l.unsampled.light,
@@ -204,7 +204,8 @@ std::vector<std::byte> encodeResult(const edit::FrameSettingsT& frame, const Job
                              l.unsampled.byLightPath,
                              l.unsampledSky.light,
                              l.unsampledSky.rays,
-                             l.unsampledSky.met};
+                             l.unsampledSky.met,
+                             l.unsampledSky.byLightPath};
   put(out, ledger, sizeof ledger);
   if (job.kind == Job::Kind::light) {
     putLight(out, result.light);

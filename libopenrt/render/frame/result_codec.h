@@ -3,7 +3,7 @@
 // if they all have the same, as floats if that loses nothing, else as doubles. Ray counts, faults
 // and seconds are not encoded. [any]
 //
-// A tile: 9 doubles (Ledger), then each field of all pixels, row by row: a byte for the form (0:
+// A tile: 11 doubles (Ledger), then each field of all pixels, row by row: a byte for the form (0:
 // one value; 1: floats; 2: all values as they are) and the values.
 // Light: 9 doubles, then runs of the picture's numbers: the number of zeros, the number of values
 // that follow, these values. Zeros at the end are left out.

@@ -216,6 +216,17 @@ float Emitters::skyPdf(const LightSampleContext& from, const Vec3f& local) const
   return hasSky() ? skyShare(from) * sky_->pdf(local) / skyJacobian(local) : 0.0f;
 }
 
+bool Emitters::hasSun() const { return hasSky() && sky_->hasSun(); }
+
+double Emitters::sampleSun(double pick, float u, float v, Vec3f& direction) const {
+  Vec3f local;
+  const double pdf =
+      sky_->sampleSun(pick, double(u), double(v), local) / double(skyJacobian(local));
+  const Vec3d towards = scene_->environment.fromLocal.direction(Vec3d(local));
+  direction = Vec3f(towards / length(towards));
+  return pdf > 0 && std::isfinite(pdf) && isFinite(direction) ? pdf : 0;
+}
+
 double Emitters::brightestSky() const { return hasSky() ? sky_->brightest() : 0; }
 double Emitters::brightestShape() const { return hasShapes() ? shapes_->brightest() : 0; }
 

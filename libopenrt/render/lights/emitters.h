@@ -38,6 +38,11 @@ class Emitters {
   // this scene.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
   bool any() const { return hasSky() || hasShapes(); }
+  // Returns whether the sky has a sun, from which light paths start (SkySampler::hasSun).
+  bool hasSun() const;
+  // Samples a direction to the sun as SkySampler::sampleSun does, in render space. Returns its
+  // solid-angle pdf; 0: no sample.
+  double sampleSun(double pick, float u, float v, Vec3f& direction) const;
   // Return the largest mean radiance, summed over the colours. brightestSky(): of the cells of the
   // sky. brightestShape(): of the sides of shapes.
   double brightestSky() const;

@@ -50,7 +50,14 @@ void addEnvironment(const StageContext& context, const Wave& wave, UnsampledLigh
     if (pdf > 0 && emitters.any())
       misWeight =
           pdf / (pdf + emitters.skyPdf(wave.states.previousOf(lane), load(sky.direction, i)));
-    unsampled.meetSky(flags, load(sky.rgba, i));
+    const float unguidedWeight = wave.states.unguidedWeight[lane];
+    unsampled.meetSky(flags, load(sky.rgba, i), unguidedWeight);
+    // Light paths start in the sun, and photons guide other rays there.
+    if (flags.specularSinceDiffuse() && emitters.hasSun()) {
+      const bool leftToLightTracing =
+          canOnlyReachSky(context.scene, flags) && emitters.sky()->isInSun(load(sky.direction, i));
+      misWeight *= leftToLightTracing ? 0 : unguidedWeight;
+    }
     Vec3f light;
     for (int k = 0; k < 3; k++) {
       const float throughput = wave.states.throughput[k][lane], radiance = sky.rgba[k][i];

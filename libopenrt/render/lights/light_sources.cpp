@@ -97,7 +97,9 @@ LightSources::LightSources(const RenderScene& scene, const RenderScene* before, 
   const EmissiveShapes* shapes = scene.emitters.shapes();
   for (uint32_t i = 0; shapes && i < shapes->size(); i++)
     add({none, i, {}}, (*shapes)[i].power * M_PI);
-  if (kind == Kind::shapes) return;
+  if (scene.emitters.hasSun())
+    add({none, none, {}}, scene.emitters.sky()->sunIrradiance() * M_PI * radius_ * radius_);
+  if (kind == Kind::emitters) return;
   for (uint32_t i = 0; i < scene.lights.size(); i++) {
     // Without shadows a light shines straight through glass, so its light paths would count twice.
     if (!scene.frame.shadows || (scene.lights[i].shader.traits & RTS_NO_SHADOW)) continue;
@@ -116,6 +118,15 @@ double LightSources::coneToSpecular(const Vec3f& from, Vec3f& axis) const {
   return sine < 1 ? std::sqrt(1 - sine * sine) : -1;
 }
 
+// Returns a point of the disc through which all light of one direction passes that reaches the
+// specular surfaces.
+Vec3f LightSources::startOfParallel(const Vec3f& towards, const float place[2]) const {
+  Vec3f s, t;
+  basisOf(towards, s, t);
+  const float r = radius_ * std::sqrt(place[0]), phi = float(2 * M_PI) * place[1];
+  return centre_ + r * (std::cos(phi) * s + std::sin(phi) * t) - far_ * towards;
+}
+
 LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double pick,
                                                const float place[2],
                                                const float direction[2]) const {
@@ -124,7 +135,8 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
       std::min(std::upper_bound(cumulative_.begin(), cumulative_.end(), at) - cumulative_.begin(),
                ptrdiff_t(cumulative_.size()) - 1));
   const Source& source = sources_[i];
-  const double probability = (cumulative_[i] - (i ? cumulative_[i - 1] : 0)) / cumulative_.back();
+  const double before = i ? cumulative_[i - 1] : 0, power = cumulative_[i] - before,
+               probability = power / cumulative_.back();
   LightRay start;
   start.light = source.light;
   start.shape = source.shape;
@@ -140,13 +152,18 @@ LightSources::LightRay LightSources::sampleRay(const RenderScene& scene, double 
       start.weight = 2 * M_PI * (1 - cosine) / probability;
       return start;
     }
-    const Vec3f towards = vectorOf(e.direction);
-    Vec3f s, t;
-    basisOf(towards, s, t);
-    const float r = radius_ * std::sqrt(place[0]), phi = float(2 * M_PI) * place[1];
-    start.origin = centre_ + r * (std::cos(phi) * s + std::sin(phi) * t) - far_ * towards;
-    start.direction = towards;
+    start.direction = vectorOf(e.direction);
+    start.origin = startOfParallel(start.direction, place);
     start.weight = M_PI * radius_ * radius_ / probability;
+    return start;
+  }
+  if (source.shape == none) {
+    const double rest = std::clamp((at - before) / power, 0.0, 1 - 0x1p-53),
+                 pdf = scene.emitters.sampleSun(rest, direction[0], direction[1], axis);
+    start.sun = true;
+    start.direction = -axis;
+    start.origin = startOfParallel(start.direction, place);
+    start.weight = pdf > 0 ? M_PI * radius_ * radius_ / (probability * pdf) : 0;
     return start;
   }
   const EmissiveShapes& shapes = *scene.emitters.shapes();

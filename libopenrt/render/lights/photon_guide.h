@@ -1,9 +1,9 @@
-// photon_guide.h: the directions in which the light of emissive shapes reaches non-specular
-// surfaces by way of mirrors and smooth glass. Light paths leave photons on those surfaces; the
-// photons around a point say where such light comes from, and camera paths sample directions from
-// them: H. W. Jensen, "Importance Driven Path Tracing using the Photon Map", 1995. Only the
-// sampling depends on the photons, not the expected value of the picture. Built between frames,
-// read by all render threads.
+// photon_guide.h: the directions in which the light of emissive shapes and of the sun reaches
+// non-specular surfaces by way of mirrors and smooth glass. Light paths leave photons on those
+// surfaces; the photons around a point say where such light comes from, and camera paths sample
+// directions from them: H. W. Jensen, "Importance Driven Path Tracing using the Photon Map", 1995.
+// Only the sampling depends on the photons, not the expected value of the picture. Built between
+// frames, read by all render threads.
 #pragma once
 
 #include <cstdint>

@@ -18,6 +18,10 @@ constexpr uint32_t coarsest = 512, finest = 4096; // columns
 // brighter than `mostContrast` times the mean. BSDF sampling finds such a sky with little noise. It
 // would rarely find a small sun, however little of the light that sends.
 constexpr double leastShare = 1.0 / 64, mostContrast = 4;
+// The sun are the cells that are so many times brighter than the mean, and so at most an eighth of
+// the sphere. There is none if they have less than this share of the light: light paths that start
+// there would bring little.
+constexpr double sunContrast = 8, leastSun = 1.0 / 16;
 
 // Returns the number of columns: as many as the widest texture has texels around the horizon. A
 // single texture covers the whole horizon, one of several covers a quarter.
@@ -131,12 +135,13 @@ SkySampler::SkySampler(const RenderScene& scene) {
   inRow_.resize(cells.size());
   byRow_.resize(rows_);
   std::vector<double> mass(columns_);
+  std::vector<float> expected(cells.size()); // radiance that a cell may have
   for (uint32_t row = 0; row < rows_; row++) {
     double sum = 0;
     for (uint32_t column = 0; column < columns_; column++) {
-      const double radiance = std::max(double(cells[size_t(row) * columns_ + column]),
-                                       double(beside(row, column)) / 16);
-      mass[column] = sum += std::max(radiance - mean, 0.0);
+      const size_t cell = size_t(row) * columns_ + column;
+      expected[cell] = std::max(cells[cell], beside(row, column) / 16);
+      mass[column] = sum += std::max(double(expected[cell]) - mean, 0.0);
     }
     float* shares = inRow_.data() + size_t(row) * columns_;
     for (uint32_t column = 0; column < columns_; column++)
@@ -146,6 +151,19 @@ SkySampler::SkySampler(const RenderScene& scene) {
   const double most = *std::max_element(cells.begin(), cells.end());
   if (!(total_ > leastShare * emitted_ || most > mostContrast * mean)) total_ = 0;
   for (double& share : byRow_) share /= total_ > 0 ? total_ : 1;
+  if (total_ > 0) listSun(expected);
+}
+
+// radiance: by cell.
+void SkySampler::listSun(const std::vector<float>& radiance) {
+  const double least = sunContrast * emitted_ / (4 * M_PI);
+  double sum = 0;
+  for (size_t cell = 0; cell < radiance.size(); cell++) {
+    if (!(double(radiance[cell]) > least)) continue;
+    sum += double(radiance[cell]) * solidAngle(uint32_t(cell / columns_));
+    sun_.push_back({uint32_t(cell), sum});
+  }
+  if (sum < leastSun * emitted_ || !std::isfinite(sum)) sun_.clear();
 }
 
 float SkySampler::cellPdf(uint32_t row, uint32_t column) const {
@@ -165,22 +183,50 @@ float SkySampler::sample(double u, double v, Vec3f& direction) const {
   const double before = row ? byRow_[row - 1] : 0, left = column ? shares[column - 1] : 0;
   const double down = std::clamp((v - before) / (byRow_[row] - before), 0.0, 1.0);
   const double along = std::clamp((u - left) / (shares[column] - left), 0.0, 1.0);
-  const double y = edge_[row] + (edge_[row + 1] - edge_[row]) * down,
-               phi = 2 * M_PI * (column + along) / columns_;
-  const double s = std::sqrt(std::max(0.0, 1 - y * y));
-  direction = {float(s * std::cos(phi)), float(y), float(s * std::sin(phi))};
+  direction = directionIn(row, column, down, along);
   return cellPdf(row, column);
 }
 
-float SkySampler::pdf(const Vec3f& d) const {
-  if (!usable()) return 0;
+Vec3f SkySampler::directionIn(uint32_t row, uint32_t column, double down, double along) const {
+  const double y = edge_[row] + (edge_[row + 1] - edge_[row]) * down,
+               phi = 2 * M_PI * (column + along) / columns_;
+  const double s = std::sqrt(std::max(0.0, 1 - y * y));
+  return {float(s * std::cos(phi)), float(y), float(s * std::sin(phi))};
+}
+
+bool SkySampler::cellOf(const Vec3f& d, uint32_t& row, uint32_t& column) const {
   const double theta = std::acos(std::clamp(double(d.y), -1.0, 1.0));
   double phi = std::atan2(double(d.z), double(d.x));
   if (phi < 0) phi += 2 * M_PI;
-  if (!(theta >= 0) || !(phi >= 0)) return 0;
-  const uint32_t row = std::min(uint32_t(theta / M_PI * rows_), rows_ - 1),
-                 column = std::min(uint32_t(phi / (2 * M_PI) * columns_), columns_ - 1);
-  return cellPdf(row, column);
+  if (!(theta >= 0) || !(phi >= 0)) return false;
+  row = std::min(uint32_t(theta / M_PI * rows_), rows_ - 1);
+  column = std::min(uint32_t(phi / (2 * M_PI) * columns_), columns_ - 1);
+  return true;
+}
+
+float SkySampler::pdf(const Vec3f& direction) const {
+  uint32_t row, column;
+  return usable() && cellOf(direction, row, column) ? cellPdf(row, column) : 0;
+}
+
+double SkySampler::sampleSun(double pick, double u, double v, Vec3f& direction) const {
+  const double at = pick * sun_.back().cumulative;
+  const auto found =
+      std::upper_bound(sun_.begin(), sun_.end() - 1, at,
+                       [](double value, const SunCell& cell) { return value < cell.cumulative; });
+  const uint32_t row = found->cell / columns_, column = found->cell % columns_;
+  const double before = found == sun_.begin() ? 0 : (found - 1)->cumulative;
+  direction = directionIn(row, column, u, v);
+  return (found->cumulative - before) / sun_.back().cumulative / solidAngle(row);
+}
+
+bool SkySampler::isInSun(const Vec3f& direction) const {
+  uint32_t row, column;
+  if (sun_.empty() || !cellOf(direction, row, column)) return false;
+  const uint32_t cell = row * columns_ + column;
+  const auto at = std::lower_bound(sun_.begin(), sun_.end(), cell,
+                                   [](const SunCell& c, uint32_t value) { return c.cell < value; });
+  return at != sun_.end() && at->cell == cell;
 }
 
 } // namespace openrt

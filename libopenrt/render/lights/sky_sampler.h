@@ -34,6 +34,15 @@ class SkySampler {
   // Returns whether the scene's environment emits light in any of 2048 directions. The environment
   // must have `miss`.
   static bool shines(const RenderScene& scene);
+  // Returns whether the sky has a sun: cells so bright and so small that light paths find their
+  // light by way of mirrors and glass with less noise than BSDF sampling does.
+  bool hasSun() const { return !sun_.empty(); }
+  // Returns the luminance of the sun, integrated over its solid angle.
+  double sunIrradiance() const { return sun_.empty() ? 0 : sun_.back().cumulative; }
+  // Samples a local unit direction of the sun. pick, u, v: in [0, 1). Returns its solid-angle pdf.
+  double sampleSun(double pick, double u, double v, Vec3f& direction) const;
+  // Returns whether sampleSun() can return a local direction.
+  bool isInSun(const Vec3f& direction) const;
   // Samples a local unit direction from a point of the unit square and returns its solid-angle pdf;
   // 0: no sample.
   float sample(double u, double v, Vec3f& direction) const;
@@ -47,6 +56,11 @@ class SkySampler {
   double measure(const RenderScene& scene, std::vector<float>& cells) const;
   double solidAngle(uint32_t row) const;
   float cellPdf(uint32_t row, uint32_t column) const;
+  void listSun(const std::vector<float>& radiance);
+  // Finds the cell of a local direction. Returns false if that is not a number.
+  bool cellOf(const Vec3f& direction, uint32_t& row, uint32_t& column) const;
+  // Returns the direction at a place of a cell, given as shares of its height and width.
+  Vec3f directionIn(uint32_t row, uint32_t column, double down, double along) const;
   uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> inRow_;  // by cell: cumulative share of its row
   std::vector<double> byRow_; // by row: cumulative share of the sphere
@@ -54,6 +68,11 @@ class SkySampler {
   // Luminance, integrated over the sphere: of the whole sky, and of what is sampled.
   double emitted_ = 0, total_ = 0;
   double brightest_ = 0;
+  struct SunCell {
+    uint32_t cell;     // row times columns, plus column; ascending
+    double cumulative; // luminance times solid angle of this cell and those before it
+  };
+  std::vector<SunCell> sun_;
 };
 
 } // namespace openrt

@@ -8,8 +8,8 @@
 
 namespace openrt {
 
-// Returns whether the hits of a camera path on area lights are left to light tracing, so that only
-// the sky counts.
+// Returns whether the hits of a camera path on area lights and on the sun are left to light
+// tracing, so that only the rest of the sky counts.
 inline bool canOnlyReachSky(const RenderScene& scene, PathFlags path) {
   return scene.lightSources && path.pathClass() == PathClass::caustic;
 }
@@ -18,14 +18,16 @@ class UnsampledLights {
  public:
   UnsampledLights(const RenderScene& scene, Ledger& ledger)
       : scene_(scene), ledger_(ledger), brightestShape_(scene.emitters.brightestShape()),
-        brightestSky_(scene.emitters.brightestSky()) {}
+        brightestSky_(scene.emitters.brightestSky()), hasSun_(scene.emitters.hasSun()) {}
   // Counts a ray, if light sampling cannot find the emitter that it may hit. unguidedWeight: as in
-  // RayState. No ray is guided to the sky.
+  // RayState. A sky without sun has no brighter part that rays could be guided to. Without its sun
+  // a sky has none that rays could miss.
   void send(PathFlags path, const Vec3f& throughput, float unguidedWeight = 1) {
     if (!path.specularSinceDiffuse()) return;
-    ledger_.unsampledSky.send(throughput, brightestSky_);
-    if (!canOnlyReachSky(scene_, path))
-      ledger_.unsampled.send(throughput, brightestShape_, double(unguidedWeight));
+    const bool reachesLights = !canOnlyReachSky(scene_, path);
+    if (reachesLights || !hasSun_)
+      ledger_.unsampledSky.send(throughput, brightestSky_, hasSun_ ? double(unguidedWeight) : 1);
+    if (reachesLights) ledger_.unsampled.send(throughput, brightestShape_, double(unguidedWeight));
   }
   // Counts the emission of a shape that such a ray has hit.
   void meet(PathFlags path, const Vec3f& radiance, float unguidedWeight) {
@@ -33,8 +35,9 @@ class UnsampledLights {
       ledger_.unsampled.meet(radiance, brightestShape_, double(unguidedWeight));
   }
   // Counts the radiance of the sky that such a ray has reached.
-  void meetSky(PathFlags path, const Vec3f& radiance) {
-    if (path.specularSinceDiffuse()) ledger_.unsampledSky.meet(radiance, brightestSky_);
+  void meetSky(PathFlags path, const Vec3f& radiance, float unguidedWeight) {
+    if (path.specularSinceDiffuse() && (!hasSun_ || !canOnlyReachSky(scene_, path)))
+      ledger_.unsampledSky.meet(radiance, brightestSky_, hasSun_ ? double(unguidedWeight) : 1);
   }
 
  private:
@@ -42,6 +45,7 @@ class UnsampledLights {
   Ledger& ledger_;
   // Largest radiances, summed over the colours.
   const double brightestShape_, brightestSky_;
+  const bool hasSun_;
 };
 
 } // namespace openrt

@@ -177,6 +177,7 @@ void GuidedRays::follow(const PathSamples& samples, uint32_t level, PixelSamples
     forEachBucket(context_, wave, [&](const Points& points, const Bucket& bucket) {
       visit(stage, points, bucket, wave.states);
     });
+    addSun(stage, wave);
   }
 }
 
@@ -206,6 +207,29 @@ void GuidedRays::visit(const Stage& stage, const Points& points, const Bucket& b
   }
 }
 
+// Adds the light of a sky with a sun that rays see which have left the scene.
+void GuidedRays::addSun(const Stage& stage, const Wave& wave) {
+  const auto n = uint32_t(wave.missed.size());
+  if (n == 0 || !context_.scene.emitters.hasSun()) return;
+  ArenaScope scope(context_.arena);
+  const SkyAlongRays sky = evaluateSky(context_, wave.rays, wave.missed.data(), n);
+  for (uint32_t i = 0; i < n; i++) {
+    const RayState state = wave.states[wave.missed[i]];
+    if (state.flags.specularSinceDiffuse()) addLight(stage, state, load(sky.rgba, i));
+  }
+}
+
+// radiance: at the end of a ray.
+void GuidedRays::addLight(const Stage& stage, const RayState& state, const Vec3f& radiance) {
+  Vec3f light = state.throughput * radiance;
+  for (int k = 0; k < 3; k++)
+    if (!std::isfinite(light[k])) light[k] = 0;
+  stage.found.add(state.path, state.flags, light);
+  if (trial_ && state.unguidedWeight > 0)
+    trial_->meet(context_.scene.photonGuide->find(state.previous.position), light,
+                 double(state.unguidedWeight));
+}
+
 void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const RtsSurface& surface,
                              const Boundaries& boundaries) {
   ArenaScope scope(context_.arena);
@@ -222,13 +246,7 @@ void GuidedRays::addEmission(const Stage& stage, const RtsBatch& batch, const Rt
       continue;
     const Vec3f emission = load(surface.emission, i);
     const float through = fog.transmittance ? fog.transmittance[i] : 1;
-    Vec3f light = state.throughput * (emission * through);
-    for (int k = 0; k < 3; k++)
-      if (!std::isfinite(light[k])) light[k] = 0;
-    stage.found.add(state.path, state.flags, light);
-    if (trial_ && state.unguidedWeight > 0)
-      trial_->meet(context_.scene.photonGuide->find(state.previous.position), light,
-                   double(state.unguidedWeight));
+    addLight(stage, state, emission * through);
   }
 }
 

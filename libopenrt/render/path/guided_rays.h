@@ -1,9 +1,9 @@
 // guided_rays.h: rays of camera paths that photons guide from non-specular surfaces by way of
-// mirrors and smooth glass to emissive shapes (photon_guide.h). Light sampling cannot connect such
-// surfaces to the light, and BSDF sampling finds small lamps with a low probability. Each hit near
-// photons sends one more ray, which follows specular surfaces only and counts the emission alone.
-// It is combined with BSDF sampling by MIS (E. Veach, L. Guibas, SIGGRAPH 1995, balance heuristic).
-// One instance per render thread.
+// mirrors and smooth glass to emissive shapes and to the sun (photon_guide.h). Light sampling
+// cannot connect such surfaces to the light, and BSDF sampling finds small lamps with a low
+// probability. Each hit near photons sends one more ray, which follows specular surfaces only and
+// counts the emission alone. It is combined with BSDF sampling by MIS (E. Veach, L. Guibas,
+// SIGGRAPH 1995, balance heuristic). One instance per render thread.
 #pragma once
 
 #include "render/lights/photon_guide.h"
@@ -54,6 +54,8 @@ class GuidedRays {
   };
   void visit(const Stage& stage, const Points& points, const Bucket& bucket,
              const PathStates& states);
+  void addSun(const Stage& stage, const Wave& wave);
+  void addLight(const Stage& stage, const RayState& state, const Vec3f& radiance);
   void addEmission(const Stage& stage, const RtsBatch& batch, const RtsSurface& surface,
                    const Boundaries& boundaries);
   void spawnRay(const RtsBatch& batch, uint32_t i, float choice, const Boundaries& boundaries);

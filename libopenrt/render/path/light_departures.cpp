@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/lights/environment.h"
 #include "shading/running.h"
 
 namespace openrt {
@@ -33,6 +34,27 @@ void LightDepartures::start(const PathSamples& samples, uint32_t n, RayQueue& qu
     if (ray.weight > 0 && std::isfinite(ray.weight))
       queue.push(ray.origin, ray.direction, RayState{.path = i});
   }
+  evaluateSun();
+}
+
+// Computes the flux of the paths that start in the sun.
+void LightDepartures::evaluateSun() {
+  Arena& arena = context_.arena;
+  ArenaScope scope(arena);
+  const auto all = uint32_t(rays_.size());
+  Rays towards;
+  towards.allocate(arena, all);
+  auto* paths = arena.take<uint32_t>(all);
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < all; i++) {
+    if (!rays_[i].sun || !(rays_[i].weight > 0)) continue;
+    store(-rays_[i].direction, towards.dir, n);
+    paths[n++] = i;
+  }
+  if (n == 0) return;
+  const SkyAlongRays sky = evaluateSky(context_, towards, arena.takeNumbers(n), n);
+  for (uint32_t r = 0; r < n; r++)
+    departures_[paths[r]].flux = checked(Vec3f(Vec3d(load(sky.rgba, r)) * rays_[paths[r]].weight));
 }
 
 // Returns the flux that a light without extent sends to a point, ignoring occlusion.
@@ -72,6 +94,8 @@ bool LightDepartures::applyEmission(const Points& points, uint32_t i, RayState& 
     const Vec3f radiance = context_.scene.emitters.shapes()->radiance(
         context_.scene, start.shape, start.place, start.direction, context_.arena);
     flux = checked(Vec3f(Vec3d(radiance) * start.weight));
+  } else if (start.sun) {
+    flux = departure.flux;
   } else {
     flux = departure.flux = lampFlux(start, load(points.hits.position, i));
     departure.attenuationKnown = start.parallel;

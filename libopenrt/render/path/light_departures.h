@@ -23,8 +23,11 @@ class LightDepartures {
   void start(const PathSamples& samples, uint32_t n, RayQueue& queue);
   // Adds the length of the ray that has reached the next surface.
   void travel(uint32_t path, float length) { departures_[path].pathLength += double(length); }
-  // Returns the length of the path so far.
-  float length(uint32_t path) const { return float(departures_[path].pathLength); }
+  // Returns the length of the path so far. The sun is so far away that its direction is the same
+  // wherever light arrives.
+  float length(uint32_t path) const {
+    return float(departures_[path].pathLength * (rays_[path].sun ? 0x1p20 : 1));
+  }
   // Multiplies the throughput by the emitted flux when a path has reached its first surface, hit i.
   // Returns whether any throughput is left.
   bool applyEmission(const Points& points, uint32_t i, RayState& state);
@@ -41,17 +44,18 @@ class LightDepartures {
   void applyAttenuation(RayState& state);
 
  private:
-  // State of a path that started at a light without extent. The attenuation is that of the unfolded
-  // path, as if mirrors and smooth boundaries had not bent it, up to the first non-specular
-  // surface.
+  // State of a path that started at a light without extent, or in the sun. The attenuation is that
+  // of the unfolded path, as if mirrors and smooth boundaries had not bent it, up to the first
+  // non-specular surface.
   struct Departure {
     double pathLength = 0;      // path length from the light to the current hit
-    Vec3f flux;                 // flux at the first surface; already contained in the throughput
+    Vec3f flux;                 // flux at the first surface; contained in the throughput after that
     Vec3f attenuation{1, 1, 1}; // flux at the current hit divided by `flux`
     // the attenuation has been applied, or the light does not depend on distance
     bool attenuationKnown = true;
   };
   Vec3f lampFlux(const LightSources::LightRay& start, const Vec3f& at);
+  void evaluateSun();
 
   const StageContext context_;
   const LightSources& sources_;

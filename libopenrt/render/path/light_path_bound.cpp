@@ -76,12 +76,16 @@ void addLightPathBound(const CameraPaths& paths, const LobeSampling& sampling,
                        const TileFootprint& footprint) {
   const RtsBatch& batch = paths.batch;
   const double flux = concentration * batch.scene->lightPathFlux;
+  const Emitters& emitters = batch.scene->emitters;
+  const bool shapes = emitters.brightestShape() > 0, sun = emitters.hasSun();
   for (uint32_t i = 0; i < batch.points->hits.count; i++) {
     const RayState state = (*batch.states)[batch.order[i]];
     if (!isGuided(*batch.scene, state.flags)) continue;
     const double radiance = double(largest(state.throughput * responseAt(batch, sampling, i))) *
                             double(densityAt(batch, state, i, footprint)) * flux;
-    if (std::isfinite(radiance)) paths.ledger.unsampled.byLightPath += radiance;
+    if (!std::isfinite(radiance)) continue;
+    if (shapes) paths.ledger.unsampled.byLightPath += radiance;
+    if (sun) paths.ledger.unsampledSky.byLightPath += radiance;
   }
 }
 

@@ -71,12 +71,11 @@ bool guideByPhotons(RenderScene& scene, const std::atomic<bool>& stop) {
   scene.photonGuide = nullptr;
   scene.lightPathFlux = 0;
   const edit::FrameSettingsT& frame = scene.frame;
-  const EmissiveShapes* shapes = scene.emitters.shapes();
   if (!tracesPaths(frame.transport) || showsNoLight(frame) || frame.samples < fewestSamples ||
       frame.measure != RT_MEASURE_NOTHING || !scene.mediumLights.empty() ||
-      scene.transport.shaderClass || !scene.camera.shader.shaderClass || !shapes || shapes->empty())
+      scene.transport.shaderClass || !scene.camera.shader.shaderClass)
     return true;
-  const LightSources sources(scene, &scene, LightSources::Kind::shapes);
+  const LightSources sources(scene, &scene, LightSources::Kind::emitters);
   if (sources.empty()) return true;
   const uint64_t paths = std::clamp(cameraPathsOf(frame) / cameraPaths, fewestPaths, mostPaths);
   LightTracer tracer(scene, sources);

@@ -11,7 +11,8 @@ namespace openrt {
 // Makes scene.photonGuide. It becomes null if
 // * the frame's transport samples no paths, or it takes so few samples that light paths do not pay;
 // * the pixels are sensors, or a medium of the scene scatters: guided rays know neither;
-// * there is no emissive shape or no specular surface, or few light paths end on other surfaces;
+// * there is no emissive shape and no sun, or no specular surface, or few light paths end on other
+// surfaces;
 // * a trial shows that guided rays do not lower the error at equal time (guide_trial.h).
 // The result depends on the scene and its frame alone. stop: checked every few thousand paths;
 // returns false if it was set. Then there is no guide.
