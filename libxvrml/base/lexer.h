@@ -5,11 +5,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 
-#include "xvrml/diagnostics.h"
+#include "base/locator.h"
 
 namespace xvrml {
 
@@ -31,6 +30,7 @@ struct Token {
   // A string includes its quotes; the end token is empty, placed at the end of the text.
   std::string_view text;
   const char* at() const { return text.data(); }
+  operator Name() const { return {text, at()}; }
   bool is(TokenKind k) const { return kind == k; }
   bool is(std::string_view keyword) const {
     return kind == TokenKind::identifier && text == keyword;
@@ -63,7 +63,8 @@ bool isIdentifier(std::string_view text);
 
 class Lexer {
  public:
-  Lexer(std::string_view bytes, std::shared_ptr<const std::string> file, Diagnostics& diagnostics);
+  // Reads the locator's text, and reports its own messages there.
+  explicit Lexer(Locator& locator);
 
   const Token& peek() {
     if (!peeked_) lex();
@@ -102,35 +103,23 @@ class Lexer {
     return p < end_ && *p == '#' ? skipComments(p) : p;
   }
 
-  // Returns the line and column (in characters, from 1) of a position in the text. The cost is
-  // proportional to the distance from the position of the last call.
-  SourcePosition place(const char* at);
-  void error(const char* at, std::string message) {
-    report(Severity::error, at, std::move(message));
-  }
-  void warn(const char* at, std::string message) {
-    report(Severity::warning, at, std::move(message));
-  }
-  Diagnostics& diagnostics() { return diagnostics_; }
+  SourcePosition place(const char* at) { return locator_.place(at); }
+  void error(const char* at, std::string message) { locator_.error(at, std::move(message)); }
+  void warn(const char* at, std::string message) { locator_.warn(at, std::move(message)); }
+  Diagnostics& diagnostics() { return locator_.diagnostics(); }
 
  private:
   void lex();
   const char* skipComments(const char* p);
   const char* lexNumber(const char* p, bool& valid) const;
   const char* lexString(const char* p, bool& valid) const;
-  void report(Severity severity, const char* at, std::string message);
 
-  const char* const begin_;
+  Locator& locator_;
   const char* const end_;
   const char* position_;
   Token token_;
   bool peeked_ = false;
   std::string_view comment_;
-  std::shared_ptr<const std::string> file_;
-  Diagnostics& diagnostics_;
-  // Position of the last call of place(), with its line and column.
-  const char* mark_;
-  uint32_t line_ = 1, column_ = 1;
 };
 
 // Returns the description of a token for "found ..." in a message: 'word', the string "...", the

@@ -50,8 +50,8 @@ class Reader {
  public:
   Reader(std::string_view text, std::shared_ptr<const std::string> file, Model& model,
          Component& component)
-      : lexer_(text, std::move(file), model.diagnostics), values_(lexer_, limits_),
-        gap_(text.data()), component_(component) {}
+      : locator_(text, std::move(file), model.diagnostics), lexer_(locator_),
+        values_(lexer_, limits_), gap_(text.data()), component_(component) {}
 
   // file ::= "component" string { stanza }
   void read() {
@@ -313,6 +313,7 @@ class Reader {
   }
 
   const Limits limits_{};
+  Locator locator_;
   Lexer lexer_;
   ValueParser values_;
   const char* gap_; // end of the last token taken; comments after it are not checked yet

@@ -17,8 +17,8 @@
 
 namespace xvrml {
 
-Builder::Builder(Lexer& lexer, LoadState& state, ParsedFile& file)
-    : lexer_(lexer), state_(state), file_(file) {
+Builder::Builder(Locator& locator, LoadState& state, ParsedFile& file)
+    : locator_(locator), state_(state), file_(file) {
   pushScope(&file.scope, nullptr, nullptr);
 }
 
@@ -53,9 +53,9 @@ bool Builder::isScript() const {
 }
 
 // Makes a node of a type. Returns false, with a message, if it cannot.
-bool Builder::makeNode(const Token& type, NodeFrame& frame) {
+bool Builder::makeNode(const Name& type, NodeFrame& frame) {
   if (isBeingDeclared(type.text)) {
-    lexer_.error(type.at(), fmt::format("prototype {} contains an instance of itself (4.8.3)",
+    locator_.error(type.at, fmt::format("prototype {} contains an instance of itself (4.8.3)",
                                         describe(type)));
     return false;
   }
@@ -66,10 +66,10 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
   const NodeType* known = findNodeType(type.text);
   if (!known) {
     if (isLost(type.text)) {
-      lexer_.warn(type.at(), fmt::format("this node is left out, because prototype {} was left out",
+      locator_.warn(type.at, fmt::format("this node is left out, because prototype {} was left out",
                                          describe(type)));
     } else {
-      lexer_.error(type.at(), fmt::format("{} is not a known node type{}{}", describe(type),
+      locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
                                           isX3dNode(type.text) ? " (it is X3D's)" : "",
                                           nearest::suggestion(type.text, nodeTypes())));
     }
@@ -86,21 +86,21 @@ bool Builder::makeNode(const Token& type, NodeFrame& frame) {
 }
 
 // Reserves memory from the world's budget. Returns false, after one message, if not enough is left.
-bool Builder::reserveMemory(uint64_t bytes, const Token& at) {
+bool Builder::reserveMemory(uint64_t bytes, const Name& at) {
   if (state_.budget.take(bytes)) return true;
   if (!std::exchange(state_.full, true))
-    lexer_.error(at.at(),
-                 fmt::format("the world takes more memory than {}; nodes from {} on are left out",
-                             state_.budget.name(), describe(at)));
+    locator_.error(at.at,
+                   fmt::format("the world takes more memory than {}; nodes from {} on are left out",
+                               state_.budget.name(), describe(at)));
   return false;
 }
 
-bool Builder::openNode(const Token& type, const Token* def) {
+bool Builder::openNode(const Name& type, const Name* def) {
   NodeFrame frame{{}, type, {}, mark(), 1, {}, nullptr, nullptr};
   const uint64_t limit = state_.options.limits.expandedNodes;
   bool made = false;
   if (state_.world.nodeCount >= limit) {
-    lexer_.error(type.at(), fmt::format("more nodes than limit expandedNodes={}; {} is left out",
+    locator_.error(type.at, fmt::format("more nodes than limit expandedNodes={}; {} is left out",
                                         limit, describe(type)));
   } else if (!reserveMemory((def ? bytesOfName + def->text.size() : 0), type)) {
     made = false;
@@ -113,7 +113,7 @@ bool Builder::openNode(const Token& type, const Token* def) {
   }
   ++state_.world.nodeCount;
   Node& node = *frame.node;
-  node.source = lexer_.place(type.at());
+  node.source = locator_.place(type.at);
   if (!inTemplate()) {
     if (node.type().index < 0 && dynamic_cast<ProtoInstance*>(&node))
       file_.instances.push_back(frame.node);
@@ -134,7 +134,7 @@ void Builder::closeNode(bool good) {
   nodes_.pop_back();
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (good && frame.expanded > limit) {
-    lexer_.error(frame.type.at(), fmt::format("{} contains {} nodes, shared ones counted at each "
+    locator_.error(frame.type.at, fmt::format("{} contains {} nodes, shared ones counted at each "
                                               "USE: more than limit expandedNodes={}",
                                               describe(frame.type), frame.expanded, limit));
     good = false;
@@ -198,7 +198,7 @@ bool Builder::acceptsType(const NodeTarget& nodeTarget, const NodeType* type) co
   return !type || wanted.empty() || typeAccepted(wanted, *type);
 }
 
-bool Builder::accepts(const NodeTarget& nodeTarget, const Token& at, const Node& node,
+bool Builder::accepts(const NodeTarget& nodeTarget, const Name& at, const Node& node,
                       std::string_view remedy) {
   const NodeType* type = effectiveType(node);
   if (acceptsType(nodeTarget, type)) return true;
@@ -206,12 +206,12 @@ bool Builder::accepts(const NodeTarget& nodeTarget, const Token& at, const Node&
   const std::string_view wanted = acceptedTypes(nodeTarget);
   const std::string stands = type == &node.type() ? "" : fmt::format(" ({})", type->name);
   if (root) {
-    lexer_.error(
-        at.at(),
+    locator_.error(
+        at.at,
         fmt::format("{}{} cannot stand at the root of a file: expected a child node (4.6.5){}",
                     describe(at), stands, remedy));
   } else {
-    lexer_.error(at.at(), fmt::format("{}{} cannot be in field {} of {}: expected {}{}",
+    locator_.error(at.at, fmt::format("{}{} cannot be in field {} of {}: expected {}{}",
                                       describe(at), stands, nodeTarget.field->name,
                                       nodeTarget.holder->type().name, wanted, remedy));
   }
@@ -219,19 +219,19 @@ bool Builder::accepts(const NodeTarget& nodeTarget, const Token& at, const Node&
 }
 
 // Adds a node. Returns false, after a message, if it is not accepted where it is written.
-bool Builder::deliver(const Token& at, const NodeRef& node, uint64_t expanded) {
+bool Builder::deliver(const Name& at, const NodeRef& node, uint64_t expanded) {
   return accepts(nodeTargets_.back(), at, *node, "") && place(at, node, expanded);
 }
 
 // Adds an accepted node. Returns false, after a message, if there are too many nodes.
-bool Builder::place(const Token& at, const NodeRef& node, uint64_t expanded) {
+bool Builder::place(const Name& at, const NodeRef& node, uint64_t expanded) {
   NodeTarget& nodeTarget = nodeTargets_.back();
   const bool root = nodeTarget.kind == NodeTarget::Kind::roots;
   uint64_t& sum = root || nodes_.empty() || nodeTarget.holder == nullptr ? scope().expanded
                                                                          : nodes_.back().expanded;
   const uint64_t limit = state_.options.limits.expandedNodes;
   if (root && saturatingAdd(sum, expanded) > limit) {
-    lexer_.error(at.at(), fmt::format("more nodes, shared ones counted at each use, than limit "
+    locator_.error(at.at, fmt::format("more nodes, shared ones counted at each use, than limit "
                                       "expandedNodes={}; {} is left out",
                                       limit, describe(at)));
     return false;
@@ -245,7 +245,7 @@ bool Builder::place(const Token& at, const NodeRef& node, uint64_t expanded) {
   return true;
 }
 
-void Builder::nullNode(const Token& token) {
+void Builder::nullNode(const Name& token) {
   const NodeTarget& nodeTarget = nodeTargets_.back();
   if (nodeTarget.kind == NodeTarget::Kind::single)
     *static_cast<NodeRef*>(nodeTarget.storage) = {};
@@ -254,7 +254,7 @@ void Builder::nullNode(const Token& token) {
            nodeTarget.holder->type().index < 0)
     static_cast<MFNode*>(nodeTarget.storage)->emplace_back();
   else
-    lexer_.warn(token.at(), "NULL cannot be in a list of nodes; it is left out");
+    locator_.warn(token.at, "NULL cannot be in a list of nodes; it is left out");
 }
 
 bool Builder::hasField(std::string_view name) const {
@@ -262,33 +262,33 @@ bool Builder::hasField(std::string_view name) const {
          nodes_.back().node->type().find(name) != nullptr;
 }
 
-FieldTarget Builder::openField(const Token& name) {
+FieldTarget Builder::openField(const Name& name) {
   NodeFrame& frame = nodes_.back();
   Node& node = *frame.node;
   const FieldInfo* field = node.type().find(name.text);
   if (!field) {
     const std::string near = nearest::suggestion(name.text, node.type().fields);
     const char* dialect = isX3dField(node.type().name, name.text) ? " (it is X3D's)" : "";
-    lexer_.error(name.at(),
-                 fmt::format("{} has no field {}{}{}{}he field is ignored", node.type().name,
-                             describe(name), dialect, near, near.empty() ? "; t" : " T"));
+    locator_.error(name.at,
+                   fmt::format("{} has no field {}{}{}{}he field is ignored", node.type().name,
+                               describe(name), dialect, near, near.empty() ? "; t" : " T"));
     return {};
   }
   if (!holdsValue(*field)) {
-    lexer_.error(name.at(),
-                 fmt::format("{} is an {} of {}: it has no value in a file", describe(name),
-                             field->access == Access::eventIn ? "eventIn" : "eventOut",
-                             node.type().name));
+    locator_.error(name.at,
+                   fmt::format("{} is an {} of {}: it has no value in a file", describe(name),
+                               field->access == Access::eventIn ? "eventIn" : "eventOut",
+                               node.type().name));
     return {};
   }
   if (std::find(frame.given.begin(), frame.given.end(), name.text) != frame.given.end()) {
-    lexer_.warn(name.at(),
-                fmt::format("field {} is given twice; the last one counts", describe(name)));
+    locator_.warn(name.at,
+                  fmt::format("field {} is given twice; the last one counts", describe(name)));
   } else {
     frame.given.push_back(name.text);
   }
   frame.field = field;
-  frame.fieldAt = name.at();
+  frame.fieldAt = name.at;
   if (node.type().index < 0)
     if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(*field);
   void* storage = node.storage(*field);
@@ -299,36 +299,22 @@ FieldTarget Builder::openField(const Token& name) {
     static_cast<MFNode*>(storage)->clear();
     nodeTargets_.push_back({NodeTarget::Kind::multiple, storage, field, &node});
   }
-  return {true, field->type, storage};
-}
-
-// Returns the lines of the strings of a list that was just read, for messages about the programs in
-// it.
-std::vector<uint32_t> Builder::linesOfStrings(const char* from) {
-  std::vector<uint32_t> lines;
-  const char* end = lexer_.cursor();
-  for (const char* p = lexer_.skipSpace(from); p < end; p = lexer_.skipSpace(p + 1)) {
-    if (*p != '"') continue;
-    lines.push_back(lexer_.place(p).line);
-    for (++p; p < end && *p != '"'; ++p)
-      if (*p == '\\') ++p;
-  }
-  return lines;
+  FieldTarget target{true, field->type, storage};
+  if (frame.scriptType && field->name == "url")
+    target.stringLines = &static_cast<ScriptNode&>(node).urlLines;
+  return target;
 }
 
 void Builder::closeField(bool good) {
   NodeFrame& frame = nodes_.back();
   const FieldInfo& field = *frame.field;
-  if (frame.scriptType && field.name == "url" && good)
-    static_cast<ScriptNode&>(*frame.node).urlLines =
-        linesOfStrings(frame.fieldAt + field.name.size());
   if (holdsNodes(field)) {
     nodeTargets_.pop_back();
   } else if (good && hasNormalizedAxes(field)) {
     Rotation first;
     const size_t outside = normalizeAxes(field.type, frame.node->storage(field), &first);
     if (outside > 0)
-      lexer_.warn(
+      locator_.warn(
           frame.fieldAt,
           fmt::format("{}.{}: the axis {} {} {} has length {:.3g}, not 1; {} normalised",
                       frame.node->type().name, field.name, first.x, first.y, first.z,
@@ -336,7 +322,7 @@ void Builder::closeField(bool good) {
                       outside == 1 ? "it is" : fmt::format("it and {} more are", outside - 1)));
   } else if (RangeFault fault; good && field.range.bounded() &&
                                !enforceRange(field, frame.node->storage(field), &fault)) {
-    lexer_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
+    locator_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
   }
 }
 

@@ -14,32 +14,32 @@ namespace xvrml {
 
 class Builder : public ParseSink {
  public:
-  Builder(Lexer& lexer, LoadState& state, ParsedFile& file);
+  Builder(Locator& locator, LoadState& state, ParsedFile& file);
   void dropUnplacedNames(); // called at the end of the file or of a prototype's body
-  bool openNode(const Token& type, const Token* def) override;
+  bool openNode(const Name& type, const Name* def) override;
   void closeNode(bool good) override;
   SourcePosition openNodePlace() const override;
   const NodeType* typeNamed(std::string_view name) const override;
   size_t nodeTarget() const override { return nodeTargets_.size(); }
   bool wouldAccept(size_t nodeTarget, std::string_view name, bool use) const override;
   bool isScript() const override;
-  void useNode(const Token& name) override;
-  void nullNode(const Token& token) override;
-  void lostName(const Token& name) override;
-  FieldTarget openField(const Token& name) override;
+  void useNode(const Name& name) override;
+  void nullNode(const Name& token) override;
+  void lostName(const Name& name) override;
+  FieldTarget openField(const Name& name) override;
   bool hasField(std::string_view name) const override;
   void closeField(bool good) override;
-  void connect(const Token& field, const Token& interfaceName) override;
-  FieldTarget openDeclaration(Access access, FieldType type, const Token& name,
+  void connect(const Name& field, const Name& interfaceName) override;
+  FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
                               bool hasValue) override;
   void closeDeclaration(bool good) override;
-  void openProto(const Token& name) override;
+  void openProto(const Name& name) override;
   void openProtoBody() override;
   void closeProto(bool good) override;
-  void openExternProto(const Token& name) override;
+  void openExternProto(const Name& name) override;
   std::vector<std::string>& externUrls() override;
   void closeExternProto(bool good) override;
-  void route(const Token& keyword, const RouteNames& names) override;
+  void route(const Name& keyword, const RouteNames& names) override;
 
  private:
   // Sizes of the lists that grow while a node is read. rollBack() restores them if the node is
@@ -49,7 +49,7 @@ class Builder : public ParseSink {
   };
   struct NodeFrame {
     NodeRef node;
-    Token type;
+    Name type;
     std::shared_ptr<NodeType> scriptType; // a Script's own type grows while it is read
     Mark mark;
     // Number of nodes in the open node, shared ones counted at each use.
@@ -98,26 +98,25 @@ class Builder : public ParseSink {
   bool inTemplate() const { return scopes_.size() > 1; }
   void pushScope(Scope* scope, ProtoPtr proto, std::shared_ptr<NodeType> type);
   void popScope();
-  bool reserveMemory(uint64_t bytes, const Token& at);
-  bool makeNode(const Token& type, NodeFrame& frame);
+  bool reserveMemory(uint64_t bytes, const Name& at);
+  bool makeNode(const Name& type, NodeFrame& frame);
   void checkChild(const NodeFrame& frame);
-  bool deliver(const Token& at, const NodeRef& node, uint64_t expanded);
-  bool place(const Token& at, const NodeRef& node, uint64_t expanded);
+  bool deliver(const Name& at, const NodeRef& node, uint64_t expanded);
+  bool place(const Name& at, const NodeRef& node, uint64_t expanded);
   std::string_view acceptedTypes(const NodeTarget& nodeTarget) const;
   bool acceptsType(const NodeTarget& nodeTarget, const NodeType* type) const;
-  bool accepts(const NodeTarget& nodeTarget, const Token& at, const Node& node,
+  bool accepts(const NodeTarget& nodeTarget, const Name& at, const Node& node,
                std::string_view remedy);
-  std::vector<uint32_t> linesOfStrings(const char* from);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;
   bool isBeingDeclared(std::string_view name) const;
   bool isLost(std::string_view name) const;
-  bool declarationConflicts(const NodeType& type, const FieldInfo& field, const Token& name);
+  bool declarationConflicts(const NodeType& type, const FieldInfo& field, const Name& name);
   NodeType* declaringType();
-  NodeRef findName(const Token& name);
+  NodeRef findName(const Name& name);
   bool isOpen(const Node* node) const;
 
-  Lexer& lexer_;
+  Locator& locator_;
   LoadState& state_;
   ParsedFile& file_;
   std::deque<ScopeFrame> scopes_; // deques do not move their elements

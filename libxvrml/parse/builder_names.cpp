@@ -91,7 +91,7 @@ void Builder::dropUnplacedNames() {
   }
 }
 
-void Builder::lostName(const Token& name) { scope().lost.insert(name.text); }
+void Builder::lostName(const Name& name) { scope().lost.insert(name.text); }
 
 bool Builder::isLost(std::string_view name) const {
   return std::any_of(scopes_.begin(), scopes_.end(),
@@ -104,19 +104,19 @@ bool Builder::isOpen(const Node* node) const {
 }
 
 // Returns the node that a name refers to here, or null after a message.
-NodeRef Builder::findName(const Token& name) {
+NodeRef Builder::findName(const Name& name) {
   const auto& names = scope().scope->names;
   const auto found = names.find(name.text);
   if (found != names.end()) return found->second;
   if (scope().lost.contains(name.text)) {
-    lexer_.warn(name.at(), fmt::format("{} was left out above", describe(name)));
+    locator_.warn(name.at, fmt::format("{} was left out above", describe(name)));
     return {};
   }
   std::string hint = nearest::suggestion(name.text, namesOf(*scope().scope));
   if (inTemplate() && scopes_.front().scope->names.contains(name.text))
     hint = "; a prototype has names of its own (4.8.4)";
-  lexer_.error(name.at(),
-               fmt::format("no node is named {} by a DEF above{}", describe(name), hint));
+  locator_.error(name.at,
+                 fmt::format("no node is named {} by a DEF above{}", describe(name), hint));
   return {};
 }
 
@@ -124,7 +124,7 @@ NodeRef Builder::findName(const Token& name) {
 // Scripts and prototype instances are not part of it. A node may therefore be USEd within itself if
 // a Script or an instance is in between. Expansion finds out whether a prototype passes the field
 // into its body.
-void Builder::useNode(const Token& name) {
+void Builder::useNode(const Name& name) {
   const NodeRef node = findName(name);
   if (!node) return;
   if (!isOpen(node.get())) {
@@ -137,8 +137,8 @@ void Builder::useNode(const Token& name) {
     if (frame->node == node) break;
   }
   if (!between || !nodeTargets_.back().holder) {
-    lexer_.error(
-        name.at(),
+    locator_.error(
+        name.at,
         fmt::format("{} is USEd inside itself: a node cannot be its own descendant (4.4.4)",
                     describe(name)));
     return;
@@ -149,39 +149,39 @@ void Builder::useNode(const Token& name) {
   state_.world.cyclic.emplace_back(between);
 }
 
-void Builder::route(const Token& keyword, const RouteNames& names) {
+void Builder::route(const Name& keyword, const RouteNames& names) {
   const NodeRef from = findName(names.from);
   const NodeRef to = findName(names.to);
   if (!from || !to) return;
   const FieldInfo* out = from->type().findEventOut(names.fromField.text);
   if (!out) {
-    lexer_.error(names.fromField.at(), fmt::format("{} has no eventOut {}", from->type().name,
+    locator_.error(names.fromField.at, fmt::format("{} has no eventOut {}", from->type().name,
                                                    describe(names.fromField)));
   }
   const FieldInfo* in = to->type().findEventIn(names.toField.text);
   if (!in)
-    lexer_.error(names.toField.at(),
-                 fmt::format("{} has no eventIn {}", to->type().name, describe(names.toField)));
+    locator_.error(names.toField.at,
+                   fmt::format("{} has no eventIn {}", to->type().name, describe(names.toField)));
   if (!out || !in) return;
   if (out->type != in->type) {
-    lexer_.error(names.toField.at(),
-                 fmt::format("a route joins events of one type: {} is {}, {} is {}",
-                             describe(names.fromField), fieldTypeName(out->type),
-                             describe(names.toField), fieldTypeName(in->type)));
+    locator_.error(names.toField.at,
+                   fmt::format("a route joins events of one type: {} is {}, {} is {}",
+                               describe(names.fromField), fieldTypeName(out->type),
+                               describe(names.toField), fieldTypeName(in->type)));
     return;
   }
   if (!reserveMemory(bytesOfRoute, keyword)) return;
   ++state_.routes;
   scope().placed.insert({names.from.text, names.to.text});
   scope().scope->routes.push_back({from, std::string(names.fromField.text), to,
-                                   std::string(names.toField.text), lexer_.place(keyword.at())});
+                                   std::string(names.toField.text), locator_.place(keyword.at)});
 }
 
 Builder::ScopeFrame* Builder::protoFrame() {
   return scope().proto && !scope().proto->isExtern ? &scope() : nullptr;
 }
 
-void Builder::connect(const Token& name, const Token& interfaceName) {
+void Builder::connect(const Name& name, const Name& interfaceName) {
   NodeFrame& frame = nodes_.back();
   Node& node = *frame.node;
   const NodeType& type = node.type();
@@ -194,39 +194,39 @@ void Builder::connect(const Token& name, const Token& interfaceName) {
       access = Access::eventOut;
   }
   if (!field) {
-    lexer_.error(name.at(), fmt::format("{} has no field or event {}{}", type.name, describe(name),
+    locator_.error(name.at, fmt::format("{} has no field or event {}{}", type.name, describe(name),
                                         nearest::suggestion(name.text, type.fields)));
     return;
   }
   ScopeFrame* proto = protoFrame();
   if (!proto) {
-    lexer_.error(name.at(),
-                 fmt::format("{} IS {}: IS stands in the body of a prototype only (4.8.2)",
-                             describe(name), describe(interfaceName)));
+    locator_.error(name.at,
+                   fmt::format("{} IS {}: IS stands in the body of a prototype only (4.8.2)",
+                               describe(name), describe(interfaceName)));
     return;
   }
   const FieldInfo* declared = proto->protoType->find(interfaceName.text);
   if (!declared) {
-    lexer_.error(interfaceName.at(),
-                 fmt::format("prototype {} declares no {}{}", proto->protoType->name,
-                             describe(interfaceName),
-                             nearest::suggestion(interfaceName.text, proto->protoType->fields)));
+    locator_.error(interfaceName.at,
+                   fmt::format("prototype {} declares no {}{}", proto->protoType->name,
+                               describe(interfaceName),
+                               nearest::suggestion(interfaceName.text, proto->protoType->fields)));
     return;
   }
   if (declared->type != field->type) {
-    lexer_.error(interfaceName.at(),
-                 fmt::format("IS joins one type: {} of {} is {}, {} of the interface is {}",
-                             describe(name), type.name, fieldTypeName(field->type),
-                             describe(interfaceName), fieldTypeName(declared->type)));
+    locator_.error(interfaceName.at,
+                   fmt::format("IS joins one type: {} of {} is {}, {} of the interface is {}",
+                               describe(name), type.name, fieldTypeName(field->type),
+                               describe(interfaceName), fieldTypeName(declared->type)));
     return;
   }
   if (!mayConnect(access, declared->access)) {
     const std::string_view meant = intendedMeaning(access, declared->access);
-    lexer_.error(interfaceName.at(),
-                 fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
-                             accessName(access), describe(name), type.name,
-                             accessName(declared->access), describe(interfaceName),
-                             meant.empty() ? "" : ": ", meant));
+    locator_.error(interfaceName.at,
+                   fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
+                               accessName(access), describe(name), type.name,
+                               accessName(declared->access), describe(interfaceName),
+                               meant.empty() ? "" : ": ", meant));
     if (meant.empty()) return;
   }
   proto->proto->is.push_back({frame.node, std::string(name.text), std::string(interfaceName.text)});

@@ -45,10 +45,9 @@ NodeType* Builder::declaringType() {
 
 // Reports a declaration whose name is taken. An exposedField x also occupies set_x and x_changed
 // (4.7). Some exporters declare these as well; that is only a warning if the types agree.
-bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field,
-                                   const Token& name) {
+bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field, const Name& name) {
   const auto report = [&] {
-    lexer_.error(name.at(), fmt::format("{} is declared already in the interface of {} (4.7)",
+    locator_.error(name.at, fmt::format("{} is declared already in the interface of {} (4.7)",
                                         describe(name), type.name));
     return true;
   };
@@ -73,16 +72,16 @@ bool Builder::declarationConflicts(const NodeType& type, const FieldInfo& field,
   }
   if (!implied) return false;
   if (implied->type != field.type) return report();
-  lexer_.warn(name.at(), fmt::format("{} and {} of {} declare the same event twice (4.7)",
+  locator_.warn(name.at, fmt::format("{} and {} of {} declare the same event twice (4.7)",
                                      describe(name), implied->name, type.name));
   return false;
 }
 
-FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token& name,
+FieldTarget Builder::openDeclaration(Access access, FieldType type, const Name& name,
                                      bool hasValue) {
   NodeType& target = *declaringType();
   Declaration& declaration = declarations_.emplace_back();
-  declaration.at = name.at();
+  declaration.at = name.at;
   declaration.hasValue = hasValue;
   declaration.scoped = false;
   FieldInfo& field = declaration.field;
@@ -96,8 +95,8 @@ FieldTarget Builder::openDeclaration(Access access, FieldType type, const Token&
   const uint64_t limit = state_.options.limits.interfaceFields;
   declaration.accepted = target.fields.size() < limit;
   if (!declaration.accepted && std::exchange(fullInterface_, &target) != &target)
-    lexer_.error(
-        name.at(),
+    locator_.error(
+        name.at,
         fmt::format("{} declares more than limit interfaceFields={}; those from {} on are left out",
                     target.name, limit, describe(name)));
   declaration.accepted = declaration.accepted && !declarationConflicts(target, field, name);
@@ -143,7 +142,7 @@ void Builder::closeDeclaration(bool good) {
     addField(*scope().protoType, std::move(declaration.field));
 }
 
-void Builder::openProto(const Token& name) {
+void Builder::openProto(const Name& name) {
   reserveMemory(bytesOfPrototype, name);
   auto proto = std::make_shared<ProtoDeclaration>();
   auto type = std::make_shared<NodeType>();
@@ -151,7 +150,7 @@ void Builder::openProto(const Token& name) {
   type->index = -1;
   type->create = nullptr;
   proto->type = type;
-  proto->source = lexer_.place(name.at());
+  proto->source = locator_.place(name.at);
   if (proto->source.file) proto->baseUrl = *proto->source.file;
   Scope* body = &proto->body;
   pushScope(body, std::move(proto), std::move(type));
@@ -175,7 +174,7 @@ void Builder::closeProto(bool good) {
   scope().types.emplace(proto->type->name, proto);
 }
 
-void Builder::openExternProto(const Token& name) {
+void Builder::openExternProto(const Name& name) {
   openProto(name);
   scope().proto->isExtern = true;
 }

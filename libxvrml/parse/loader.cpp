@@ -64,8 +64,9 @@ void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>
 
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
-  Lexer lexer(source.text(), name, state_.diagnostics);
-  Builder builder(lexer, state_, file);
+  Locator locator(source.text(), name, state_.diagnostics);
+  Lexer lexer(locator);
+  Builder builder(locator, state_, file);
   Parser(lexer, state_.options.limits, builder, budget_.get()).vrmlScene();
   builder.dropUnplacedNames();
 }

@@ -41,7 +41,8 @@ bool Parser::nodeStatement() {
     lexer_.next();
     Token def;
     if (!name(def, "a name after DEF")) return false;
-    if (!lexer_.peek().is(TokenKind::braceOpen)) return node(&def);
+    const Name named = def;
+    if (!lexer_.peek().is(TokenKind::braceOpen)) return node(&named);
     lexer_.error(def.at(), fmt::format("expected a name after DEF before {}", describe(def)));
     lexer_.seek(def.at()); // the node exists, only its name is missing
     return node(nullptr);
@@ -57,7 +58,7 @@ bool Parser::nodeStatement() {
 }
 
 // node ::= nodeTypeId { nodeBody } | Script { scriptBody }
-bool Parser::node(const Token* def) {
+bool Parser::node(const Name* def) {
   const Token type = lexer_.peek();
   if (!type.is(TokenKind::identifier)) return fail(type, "a node");
   lexer_.next();
@@ -137,13 +138,28 @@ bool Parser::field() {
     return true;
   }
   const bool listOfValues = isMultiple(target.type) && lexer_.peek().is(TokenKind::bracketOpen);
+  const char* const from = lexer_.cursor();
   bool good = fieldValue(target);
+  if (good && target.stringLines) *target.stringLines = linesOfStrings(from);
   // If a known field follows, only the closing bracket of the list is missing, and its values are
   // kept.
   if (!good && listOfValues)
     good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
   sink_.closeField(good);
   return good;
+}
+
+// Returns the lines of the strings of a value that was just read; `from`: where it begins.
+std::vector<uint32_t> Parser::linesOfStrings(const char* from) {
+  std::vector<uint32_t> lines;
+  const char* end = lexer_.cursor();
+  for (const char* p = lexer_.skipSpace(from); p < end; p = lexer_.skipSpace(p + 1)) {
+    if (*p != '"') continue;
+    lines.push_back(lexer_.place(p).line);
+    for (++p; p < end && *p != '"'; ++p)
+      if (*p == '\\') ++p;
+  }
+  return lines;
 }
 
 // fieldValue ::= sfboolValue | sfcolorValue | ... | mfvec3fValue
@@ -197,12 +213,12 @@ bool Parser::nodesOfList() {
 // routeStatement ::= ROUTE nodeNameId . eventOutId TO nodeNameId . eventInId
 bool Parser::routeStatement() {
   const Token keyword = lexer_.next();
-  ParseSink::RouteNames names;
-  if (!routeEnd(names.from, names.fromField)) return false;
+  Token from, fromField, to, toField;
+  if (!routeEnd(from, fromField)) return false;
   if (!lexer_.peek().is("TO")) return fail(lexer_.peek(), "TO");
   lexer_.next();
-  if (!routeEnd(names.to, names.toField)) return false;
-  sink_.route(keyword, names);
+  if (!routeEnd(to, toField)) return false;
+  sink_.route(keyword, {from, fromField, to, toField});
   return true;
 }
 

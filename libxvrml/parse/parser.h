@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "base/lexer.h"
 #include "base/value_parser.h"
 #include "parse/sink.h"
 
@@ -45,11 +46,12 @@ class Parser {
   void statements(TokenKind end);
   bool statement();
   bool nodeStatement();
-  bool node(const Token* def);
+  bool node(const Name* def);
   bool nodeBody(const Token& type);
   bool nodeBodyElement();
   bool field();
   bool fieldValue(const FieldTarget& target);
+  std::vector<uint32_t> linesOfStrings(const char* from);
   bool nodeValue();
   bool nodeValues();
   bool nodesOfList();

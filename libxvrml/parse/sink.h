@@ -1,9 +1,14 @@
-// sink.h: the interface between the parser and the builder. The parser knows only tokens and
-// productions; the builder, which is one sink, knows node types, names and prototypes. Calls nest
-// like the text. Every open call is followed by its close call, also after errors.
+// sink.h: the interface between the readers of files and the builder. A reader knows only how a
+// file is written: tokens and productions, elements and attributes. The builder, which is one sink,
+// knows node types, names and prototypes. Calls nest like the text. Every open call is followed by
+// its close call, also after errors. The texts of names must live as long as the sink.
 #pragma once
 
-#include "base/lexer.h"
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/locator.h"
 #include "xvrml/node.h"
 
 namespace xvrml {
@@ -13,6 +18,9 @@ struct FieldTarget {
   bool known = false;
   FieldType type = FieldType::SFBool;
   void* storage = nullptr; // null for SFNode and MFNode
+  // Not null: the reader puts the line of each string of the value here. They are used in messages
+  // about programs in these strings.
+  std::vector<uint32_t>* stringLines = nullptr;
 };
 
 class ParseSink {
@@ -23,7 +31,7 @@ class ParseSink {
   // openNode: `def` is the DEF name or null. It returns false if the type is unknown; then the body
   // is skipped and the node is not closed. closeNode: `good` is false if the body could not be
   // read.
-  virtual bool openNode(const Token& type, const Token* def) = 0;
+  virtual bool openNode(const Name& type, const Name* def) = 0;
   virtual void closeNode(bool good) = 0;
   virtual SourcePosition openNodePlace() const = 0; // where the innermost open node begins
   // Returns the interface of a node type that is known here: a prototype's or the standard's. Null
@@ -35,35 +43,35 @@ class ParseSink {
   virtual size_t nodeTarget() const = 0;
   virtual bool wouldAccept(size_t nodeTarget, std::string_view name, bool use) const = 0;
   virtual bool isScript() const = 0; // whether the open node may have scriptBodyElements
-  virtual void useNode(const Token& name) = 0;
-  virtual void nullNode(const Token& token) = 0;
+  virtual void useNode(const Name& name) = 0;
+  virtual void nullNode(const Name& token) = 0;
   // Reports the DEF name of a node that was left out.
-  virtual void lostName(const Token& name) = 0;
+  virtual void lostName(const Name& name) = 0;
 
   // fieldId fieldValue in the open node
-  virtual FieldTarget openField(const Token& name) = 0;
+  virtual FieldTarget openField(const Name& name) = 0;
   virtual bool hasField(std::string_view name) const = 0;
   virtual void closeField(bool good) = 0;
   // id IS interfaceId in the open node
-  virtual void connect(const Token& field, const Token& interfaceName) = 0;
+  virtual void connect(const Name& field, const Name& interfaceName) = 0;
 
   // A declaration in the interface of the open PROTO, EXTERNPROTO or Script. With hasValue, a value
   // follows as after openField.
-  virtual FieldTarget openDeclaration(Access access, FieldType type, const Token& name,
+  virtual FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
                                       bool hasValue) = 0;
   virtual void closeDeclaration(bool good) = 0;
 
-  virtual void openProto(const Token& name) = 0;
+  virtual void openProto(const Name& name) = 0;
   virtual void openProtoBody() = 0;
   virtual void closeProto(bool good) = 0;
-  virtual void openExternProto(const Token& name) = 0;
+  virtual void openExternProto(const Name& name) = 0;
   virtual std::vector<std::string>& externUrls() = 0;
   virtual void closeExternProto(bool good) = 0;
 
   struct RouteNames {
-    Token from, fromField, to, toField;
+    Name from, fromField, to, toField;
   };
-  virtual void route(const Token& keyword, const RouteNames& names) = 0;
+  virtual void route(const Name& keyword, const RouteNames& names) = 0;
 };
 
 } // namespace xvrml

@@ -118,7 +118,8 @@ std::string_view firstLine(std::string_view text) {
 bool looksLikeVrml(std::string_view text) {
   Diagnostics none;
   none.limit = 0;
-  Lexer lexer(text, nullptr, none);
+  Locator locator(text, nullptr, none);
+  Lexer lexer(locator);
   const Token first = lexer.next();
   if (!first.is(TokenKind::identifier)) return false;
   if (first.text == "DEF" || first.text == "PROTO" || first.text == "EXTERNPROTO")

@@ -10,7 +10,8 @@ namespace xvrml {
 std::optional<Value> parseValue(FieldType type, std::string_view text, std::string& problem,
                                 const Limits& limits) {
   Diagnostics diagnostics;
-  Lexer lexer(text, std::make_shared<const std::string>("value"), diagnostics);
+  Locator locator(text, std::make_shared<const std::string>("value"), diagnostics);
+  Lexer lexer(locator);
   Value value = defaultValue(type);
   const bool good = ValueParser(lexer, limits).parse(type, value);
   if (!good || !diagnostics.list().empty()) {

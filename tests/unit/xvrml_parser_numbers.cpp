@@ -22,7 +22,8 @@ struct Parsed {
 
 Parsed parseValue(FieldType type, const std::string& text, const Limits& limits = {}) {
   Diagnostics diagnostics;
-  Lexer lexer(text, std::make_shared<const std::string>("f"), diagnostics);
+  Locator locator(text, std::make_shared<const std::string>("f"), diagnostics);
+  Lexer lexer(locator);
   Parsed parsed;
   parsed.good = ValueParser(lexer, limits).parse(type, parsed.value);
   if (!diagnostics.list().empty()) parsed.message = diagnostics.list().front().message;
@@ -232,7 +233,8 @@ TEST(ParserValues, Images) {
 TEST(ParserPlaces, LinesOfAllKindsAndCharacters) {
   const std::string text = "a\nb\r\nc\rd\xc3\xa4 e";
   Diagnostics diagnostics;
-  Lexer lexer(text, nullptr, diagnostics);
+  Locator locator(text, nullptr, diagnostics);
+  Lexer lexer(locator);
   const auto place = [&](char c) {
     const SourcePosition where = lexer.place(text.data() + text.find(c));
     return std::pair(where.line, where.column);
