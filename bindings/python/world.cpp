@@ -298,6 +298,12 @@ void defineWorld(py::module_& module) {
           },
           "The world's own clock at time 0, in seconds since 1970. Assign epoch + time to a "
           "startTime to start something now.")
+      .def("_set_script_patience",
+           [](const WorldPtr& self, double seconds) {
+             Browser& browser = self->live();
+             const auto lock = self->lock();
+             browser.setScriptPatience(seconds);
+           })
       .def_property_readonly("_edits", [](const WorldPtr& self) { return self->edits; })
       .def("__getitem__",
            [](const WorldPtr& self, const py::object& name) {

@@ -40,6 +40,9 @@ bool Browser::hasChanges() const { return impl_->engine->hasChanges(); }
 ScriptCounts Browser::scripts() const {
   return impl_->scripts ? impl_->scripts->counts() : ScriptCounts{};
 }
+void Browser::setScriptPatience(double seconds) {
+  impl_->options.scriptPatience = seconds > 0 ? seconds : 0;
+}
 uint64_t Browser::generation() const { return impl_->generation; }
 
 NodeRef Browser::node(std::string_view name) const {

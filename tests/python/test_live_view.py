@@ -464,3 +464,30 @@ def test_wrong_arguments(world):
             xvrml.LiveView(world, **options)
     with pytest.raises(TypeError, match="World"):
         xvrml.LiveView("world.wrl")
+
+
+# Scripts ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("program", [
+    "javascript: function turn() { while (true); }",
+    "tcl: proc turn {v t} { while 1 {} }",
+])
+def test_a_script_that_never_ends_leaves_the_view_alone(program):
+    """A call of a Script may take two seconds before it is stopped; the steps of a view do not wait
+    for that."""
+    world = xvrml.loads(
+        WORLD.replace("enabled FALSE", "") + """
+DEF S Script { eventIn SFFloat turn url "%s" } ROUTE Clock.fraction_changed TO S.turn""" % program)
+    if any("engine" in str(one) for one in world.warnings):
+        pytest.skip("the engine is not built")
+    with xvrml.LiveView(world, **SIZE) as view:
+        pictures, longest, end = 0, 0.0, time.monotonic() + 60
+        while pictures < 12:
+            began = time.monotonic()
+            view.step()
+            longest = max(longest, time.monotonic() - began)
+            pictures += view.look() is not None
+            time.sleep(0.005)
+            assert time.monotonic() < end
+        assert longest < 1  # also on a busy machine

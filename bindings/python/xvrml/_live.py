@@ -11,6 +11,7 @@ from ._xvrml import Viewer
 _SOON = 0.008  # seconds until the next step while a frame is rendered or something moves
 _QUIET = 0.1  # while nothing moves: a TimeSensor or a Script may begin by itself
 _FRAME = 1 / 30  # seconds between the starts of two frames of something that moves
+_PATIENCE = 0.05  # seconds that a step waits for Scripts, as in vv's window
 _LONGEST = 0.25  # seconds of world time in one step: a long wait is no jump of the world
 
 
@@ -48,8 +49,10 @@ class _Clock:
         try:
             for view in views:
                 view._take_pictures(now)
+            self.world._set_script_patience(_PATIENCE)
             self._advance(passed, shown)
         finally:  # the pictures go on after an exception of a callback
+            self.world._set_script_patience(0)
             self.stepping = False
             self._draw(state, views, shown, now)
         if any(view._is_busy() for view in shown):

@@ -114,6 +114,9 @@ class Browser {
   FieldChanges takeChanges();
   bool hasChanges() const;      // true if takeChanges would return any
   ScriptCounts scripts() const; // what the world's Scripts have done so far
+  // Changes BrowserOptions::scriptPatience from the next tick on, in seconds. Negative values and
+  // NaN count as 0. Programs that are late then go on beside the world.
+  void setScriptPatience(double seconds);
   // Grows by one when another world takes the place of this one (loadUrl, replaceWorld). Make a new
   // mapper then.
   uint64_t generation() const;
