@@ -189,7 +189,7 @@ def test_wrong_pickles_of_measurements_are_refused(room):
                      (11, grid[:0]), (12, 5)):
         made = xvrml.Measurement.__new__(xvrml.Measurement)
         with pytest.raises(ValueError, match="no pickled Measurement"):
-            made.__setstate__(state[:i] + (wrong, ) + state[i + 1:])
+            made.__setstate__(state[:i] + (wrong,) + state[i + 1:])
     with pytest.raises(ValueError, match="no pickled Measurement"):
         xvrml.Measurement.__new__(xvrml.Measurement).__setstate__(())
 
