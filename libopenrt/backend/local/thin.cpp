@@ -27,7 +27,7 @@ class LineSplitter {
         perspective_(footprint.slope > 0) {}
 
   // Returns the places where the line from a to b is cut, as parts of its length in rising order,
-  // without 0 and 1. None for most lines, at most 53.
+  // without 0 and 1. None for most lines, at most 51.
   std::span<const double> cuts(const Vec3d& a, const Vec3d& b) {
     cuts_.clear();
     if (!perspective_) return cuts_; // the radius is the same everywhere
