@@ -1,5 +1,7 @@
 // render.cpp: Implements World.render() and World.measure(): they render without the GIL, with
 // Ctrl-C and progress callbacks. [GIL held]
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -172,6 +174,23 @@ std::vector<picture::Measurement> measure(const WorldPtr& self, const RenderArgu
   return sensors;
 }
 
+// What Python gets for a Measurement: pickled objects have the statistics, not the struct of C.
+struct MeasurementObject {
+  picture::Measurement readings;
+  py::dict stats;
+};
+
+std::vector<MeasurementObject> measureForPython(const WorldPtr& self,
+                                                const RenderArguments& given) {
+  std::vector<MeasurementObject> made;
+  for (picture::Measurement& readings : measure(self, given)) {
+    MeasurementObject object{std::move(readings), {}};
+    describePicture(object.stats, object.readings.stats);
+    made.push_back(std::move(object));
+  }
+  return made;
+}
+
 // Returns a copy of a vector as an array of rows and columns.
 template <class T>
 py::array_t<T> gridOf(const picture::Measurement& m, const std::vector<T>& values) {
@@ -184,6 +203,68 @@ py::array_t<double> positionsOf(const picture::Measurement& m) {
     for (int column = 0; column < m.sensor.columns; ++column)
       m.sensor.pointAt(column, row, out.mutable_data(row, column, 0));
   return out;
+}
+
+using Place = std::array<double, 3>;
+Place placeOf(const double (&from)[3]) { return {from[0], from[1], from[2]}; }
+
+constexpr int pickleVersion = 1;
+
+// Returns the pickled members: version, name, luminance, cells, first, column, row, direction,
+// values, half-widths, trusted, samples, stats.
+py::tuple pickled(const MeasurementObject& object) {
+  const picture::Measurement& m = object.readings;
+  const picture::PlacedSensor& s = m.sensor;
+  return py::make_tuple(pickleVersion, s.name, s.luminance, s.cells, placeOf(s.first),
+                        placeOf(s.column), placeOf(s.row), placeOf(s.direction), gridOf(m, m.value),
+                        gridOf(m, m.halfWidth), gridOf(m, m.trusted), gridOf(m, m.samples),
+                        object.stats);
+}
+
+MeasurementObject unpickled(const py::tuple& state) {
+  const auto refuse = [] {
+    throw py::value_error("this is no pickled Measurement of this version");
+  };
+  if (state.size() != 13 || !py::isinstance<py::int_>(state[0]) ||
+      state[0].cast<int>() != pickleVersion)
+    refuse();
+  MeasurementObject object;
+  picture::Measurement& m = object.readings;
+  picture::PlacedSensor& s = m.sensor;
+  try {
+    s.name = state[1].cast<std::string>();
+    s.luminance = state[2].cast<bool>();
+    s.cells = state[3].cast<bool>();
+    double(*const places[])[3] = {&s.first, &s.column, &s.row, &s.direction};
+    for (size_t i = 0; i < 4; i++) {
+      const auto place = state[4 + i].cast<Place>();
+      std::copy(place.begin(), place.end(), *places[i]);
+    }
+    if (!py::isinstance<py::dict>(state[12])) refuse();
+    object.stats = py::reinterpret_borrow<py::dict>(state[12]);
+  } catch (const py::cast_error&) { refuse(); }
+  bool first = true;
+  const auto take = [&](size_t member, auto& to) {
+    using T = typename std::remove_reference_t<decltype(to)>::value_type;
+    const auto grid =
+        py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(state[member]);
+    constexpr py::ssize_t most = 1 << 24; // of rows and of columns
+    if (!grid || grid.ndim() != 2 || grid.shape(0) < 1 || grid.shape(1) < 1 ||
+        grid.shape(0) > most || grid.shape(1) > most)
+      refuse();
+    if (first) {
+      s.rows = int(grid.shape(0));
+      s.columns = int(grid.shape(1));
+    }
+    if (grid.shape(0) != s.rows || grid.shape(1) != s.columns) refuse();
+    first = false;
+    to.assign(grid.data(), grid.data() + grid.size());
+  };
+  take(8, m.value);
+  take(9, m.halfWidth);
+  take(10, m.trusted);
+  take(11, m.samples);
+  return object;
 }
 
 } // namespace
@@ -228,41 +309,44 @@ void interruptible(const std::function<void(picture::ProgressCallback watch)>& w
 }
 
 void defineMeasurement(py::module_& module) {
-  using M = picture::Measurement;
+  using M = MeasurementObject;
   py::class_<M>(module, "Measurement",
                 "The readings of one ORTSensor. Arrays have a row for each row of the sensor; each "
                 "value lies within half_widths of the truth with a probability of 95 %.")
-      .def_property_readonly("name", [](const M& m) { return m.sensor.name; })
+      .def_property_readonly("name", [](const M& m) { return m.readings.sensor.name; })
       .def_property_readonly(
-          "quantity", [](const M& m) { return m.sensor.luminance ? "luminance" : "illuminance"; })
-      .def_property_readonly("unit", [](const M& m) { return m.sensor.luminance ? "cd/m2" : "lx"; })
+          "quantity",
+          [](const M& m) { return m.readings.sensor.luminance ? "luminance" : "illuminance"; })
+      .def_property_readonly(
+          "unit", [](const M& m) { return m.readings.sensor.luminance ? "cd/m2" : "lx"; })
       .def_property_readonly("direction",
                              [](const M& m) {
-                               const double* d = m.sensor.direction;
+                               const double* d = m.readings.sensor.direction;
                                return py::make_tuple(d[0], d[1], d[2]);
                              })
-      .def_property_readonly("positions", positionsOf)
-      .def_property_readonly("values", [](const M& m) { return gridOf(m, m.value); })
-      .def_property_readonly("half_widths", [](const M& m) { return gridOf(m, m.halfWidth); })
-      .def_property_readonly("trusted",
-                             [](const M& m) { return gridOf(m, m.trusted).attr("astype")("bool"); })
-      .def_property_readonly("samples", [](const M& m) { return gridOf(m, m.samples); })
-      .def_property_readonly("stats",
-                             [](const M& m) {
-                               py::dict stats;
-                               describePicture(stats, m.stats);
-                               return stats;
-                             })
-      .def("__repr__", [](const M& m) {
-        return fmt::format("<xvrml.Measurement {}, {} x {} points>", m.sensor.name,
-                           m.sensor.columns, m.sensor.rows);
-      });
+      .def_property_readonly("positions", [](const M& m) { return positionsOf(m.readings); })
+      .def_property_readonly("values",
+                             [](const M& m) { return gridOf(m.readings, m.readings.value); })
+      .def_property_readonly("half_widths",
+                             [](const M& m) { return gridOf(m.readings, m.readings.halfWidth); })
+      .def_property_readonly(
+          "trusted",
+          [](const M& m) { return gridOf(m.readings, m.readings.trusted).attr("astype")("bool"); })
+      .def_property_readonly("samples",
+                             [](const M& m) { return gridOf(m.readings, m.readings.samples); })
+      .def_property_readonly("stats", [](const M& m) { return m.stats; })
+      .def("__repr__",
+           [](const M& m) {
+             return fmt::format("<xvrml.Measurement {}, {} x {} points>", m.readings.sensor.name,
+                                m.readings.sensor.columns, m.readings.sensor.rows);
+           })
+      .def(py::pickle(&pickled, &unpickled));
 }
 
 void defineRender(py::object worldClass) {
   using A = RenderArguments;
   auto world = py::reinterpret_borrow<py::class_<WorldObject, WorldPtr>>(worldClass);
-  defineMethod(world, "measure", measure, parameterList(),
+  defineMethod(world, "measure", measureForPython, parameterList(),
                parameterList(
                    parameter("spp", &A::spp), qualityParameter<long long>(RT_SEED),
                    parameter("threads", &A::threads), qualityParameter<long long>(RT_MAX_DEPTH),

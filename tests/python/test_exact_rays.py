@@ -198,6 +198,40 @@ def test_hits_of_small_bodies_far_away_are_hits(moves):
     assert hit > 100
 
 
+@pytest.mark.parametrize("ratio", [1e-1, 1e-3, 1e-6])
+def test_bodies_seen_from_outside(ratio):
+    """Rays from outside at vertices, edges and outlines of a body, which is small for its distance.
+    What docs/ray-queries.md promises: counts are even, double precision and the first hit of a list
+    agree, and single precision seldom misses."""
+    random = np.random.default_rng(int(-np.log10(ratio)))
+    points, triangles = check_rays.icosphere(2)
+    points = (points * (1 + .2 * random.random((len(points), 1)))).astype(np.float32)
+    caster = rt.Raycaster()
+    caster.add_triangles(points, triangles)
+    count = 3000
+    away = random.normal(size=(count, 3))
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    origins = (away * 2 / ratio).astype(np.float32)
+    corners = points[triangles[random.integers(len(triangles), size=count)]].astype(float)
+    share = random.random((count, 1))
+    outline = np.argmax(np.cross(away, random.normal(size=(count, 3))) @ points.T, axis=1)
+    targets = {
+        "vertex": (corners[:, 0], .02),
+        "edge": (corners[:, 0] * share + corners[:, 1] * (1 - share), .02),
+        "outline": (points[outline], .1)
+    }
+    for name, (to, most) in targets.items():
+        rays = np.concatenate([origins, to - origins], 1).astype(np.float32)
+        assert (caster.count_intersections(rays) % 2 == 0).all(), name
+        truth = np.isfinite(caster.cast_rays(rays, precision="double")["t_hit"])
+        assert np.array_equal(truth, caster.count_intersections(rays, precision="double") > 0), name
+        assert np.array_equal(truth, caster.test_occlusions(rays, precision="double")), name
+        listed = np.bincount(caster.list_intersections(rays)["ray_ids"], minlength=count) > 0
+        assert np.array_equal(truth, listed), name
+        for single in (np.isfinite(caster.cast_rays(rays)["t_hit"]), caster.test_occlusions(rays)):
+            assert (single != truth).mean() < most, name
+
+
 def test_triangles_without_area_leave_no_gap_in_double_precision():
     """A tetrahedron with a vertex in the middle of an edge, closed by a triangle without area. It is
     closed wherever it is put (docs: in single precision, where no matrix moves it)."""

@@ -1,8 +1,10 @@
 """Tests photometric sensors: vv --measure, World.measure() and --false-colour."""
+import copy
 import csv
 import io
 import json
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -166,6 +168,30 @@ def test_python_reads_the_same(room):
     assert (desk.samples == 256).all()
     more = world.measure(spp=65536, error=.02)
     assert more[0].stats["error_half_width"] < .03
+
+
+def test_measurements_can_be_pickled_and_copied(room):
+    for given in xvrml.load(room.folder / "room.wrl").measure(spp=64):
+        for made in (pickle.loads(pickle.dumps(given)), copy.deepcopy(given)):
+            for name in ("name", "quantity", "unit", "direction", "stats"):
+                assert getattr(made, name) == getattr(given, name)
+            for name in ("positions", "values", "half_widths", "trusted", "samples"):
+                assert np.array_equal(getattr(made, name), getattr(given, name))
+                assert getattr(made, name).dtype == getattr(given, name).dtype
+            assert repr(made) == repr(given)
+
+
+def test_wrong_pickles_of_measurements_are_refused(room):
+    given = xvrml.load(room.folder / "room.wrl").measure(spp=1)[0]
+    state = given.__getstate__()
+    grid = np.zeros((2, 2), np.float32)
+    for i, wrong in ((0, 99), (0, None), (1, 3), (4, (0, 0)), (8, "x"), (8, grid[:1]), (9, grid[0]),
+                     (11, grid[:0]), (12, 5)):
+        made = xvrml.Measurement.__new__(xvrml.Measurement)
+        with pytest.raises(ValueError, match="no pickled Measurement"):
+            made.__setstate__(state[:i] + (wrong,) + state[i + 1:])
+    with pytest.raises(ValueError, match="no pickled Measurement"):
+        xvrml.Measurement.__new__(xvrml.Measurement).__setstate__(())
 
 
 def test_python_places_sensors(room):

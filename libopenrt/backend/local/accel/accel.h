@@ -116,6 +116,8 @@ class Accel final : public Intersector {
   // Maps Embree's ids to record and primitive.
   static PrimitiveId find(const PartScene& scene, uint32_t instance, uint32_t geometry,
                           uint32_t primitive);
+  // Maps the place on a piece of a line to that on the line. The scene is the top level.
+  static float placeOnLine(const PartScene& scene, uint32_t geometry, uint32_t primitive, float u);
   struct FilterContext {
     const Accel* accel;
     const Level* level;

@@ -1,6 +1,7 @@
 // accel_trace.cpp: traces rays through both Embree scenes. Every ray is checked first, because an
 // Embree build with assertions aborts the process on a ray that is not finite. Called by render
 // threads and the threads of queries.
+#include <algorithm>
 #include <limits>
 
 #include "backend/local/accel/accel.h"
@@ -69,6 +70,13 @@ PrimitiveId Accel::find(const PartScene& root, uint32_t instance, uint32_t geome
   PrimitiveId found = scene->parts[geometry].part->primitives.find(primitive);
   found.record += base;
   return found;
+}
+
+float Accel::placeOnLine(const PartScene& scene, uint32_t geometry, uint32_t primitive, float u) {
+  const std::vector<Part::Span>& spans = scene.parts[geometry].part->spans;
+  if (spans.empty()) return u;
+  const Part::Span& span = spans[primitive];
+  return span.from + std::clamp(u, 0.0f, 1.0f) * (span.to - span.from);
 }
 
 PrimitiveId Accel::primitiveOfHit(const RTCFilterFunctionNArguments* a, unsigned i) {
@@ -147,6 +155,9 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
         hits.primitive[lane] = found.primitive;
         if (far.lanes >> i & 1) hits.t[lane] = float(far.distance(i, packet.ray.tfar[i]));
         const Record& record = records[found.record];
+        if (record.primitive == edit::Primitive::Lines)
+          hits.u[lane] =
+              placeOnLine(*level.scene, packet.hit.geomID[i], packet.hit.primID[i], hits.u[lane]);
         if (record.instanced || met.grazing >> i & 1)
           refineGrazingHit(record, rays, rays.tfar[lane], hits, lane);
       }
@@ -162,6 +173,9 @@ template <class Packet> void Accel::intersectPackets(const Level& level, const R
       hits.t[lane] = far.lanes >> i & 1 ? float(far.distance(i, packet.ray.tfar[i]))
                                         : packet.ray.tfar[i] * unscale;
       hits.u[lane] = packet.hit.u[i];
+      if (records[found.record].primitive == edit::Primitive::Lines)
+        hits.u[lane] =
+            placeOnLine(*level.scene, packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i]);
       hits.v[lane] = packet.hit.v[i];
       hits.ng[0][lane] = packet.hit.Ng_x[i];
       hits.ng[1][lane] = packet.hit.Ng_y[i];

@@ -34,6 +34,11 @@ struct Part {
   std::vector<float> vertices; // in the layout that Embree reads
   std::vector<uint32_t> indices;
   ArrayPtr sharedIndices;
+  // For lines: which part of its line each primitive is, from 0 to 1; empty if all are whole.
+  struct Span {
+    float from, to;
+  };
+  std::vector<Span> spans;
   // For slivers. A primitive is a piece of a triangle; the indices of all pieces are those of the
   // triangle.
   std::vector<uint8_t> openEdges; // bits of the open edges of the piece's triangle (sliver_edges.h)
