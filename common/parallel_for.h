@@ -1,6 +1,7 @@
-// parallel_for.h: A parallel loop that ThreadSanitizer understands. oneTBB is not built with the
-// sanitizer, which therefore sees no order between the caller and the tasks. Without the sanitizer
-// this is tbb::parallel_for. [any thread]
+// parallel_for.h: A parallel loop that ThreadSanitizer can check. oneTBB is not built with the
+// sanitizer, which sees no order among its tasks; reports about them would all be wrong and are
+// suppressed, and races of the loop's body with them. So a build with the sanitizer runs the parts
+// on threads of its own. Otherwise this is tbb::parallel_for. [any thread]
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -15,24 +16,35 @@
 #endif
 
 #ifdef PARALLEL_FOR_SANITIZED
-extern "C" void __tsan_acquire(void* address);
-extern "C" void __tsan_release(void* address);
+#include <exception>
+#include <thread>
+
+// Halves the range until it has a part for each of four threads, or cannot be divided.
+template <class Range, class F> void parallelForParts(Range range, const F& f, int halvings) {
+  if (halvings == 0 || !range.is_divisible()) return f(range);
+  std::exception_ptr failure;
+  Range second(range, tbb::split()); // takes half of the range away
+  std::thread other([&] {
+    try {
+      parallelForParts(second, f, halvings - 1);
+    } catch (...) { failure = std::current_exception(); }
+  });
+  try {
+    parallelForParts(range, f, halvings - 1);
+  } catch (...) {
+    other.join();
+    throw;
+  }
+  other.join();
+  if (failure) std::rethrow_exception(failure);
+}
 #endif
 
 // Calls f(part) for parts that make up a range, on several threads at once. Returns when all calls
 // have returned.
 template <class Range, class F> void parallelFor(const Range& range, const F& f) {
 #ifdef PARALLEL_FOR_SANITIZED
-  // Two marks: what the caller has done comes before each task, and each task before what the
-  // caller does afterwards. Tasks have no order among each other, so that their races are found.
-  char begin = 0, end = 0;
-  __tsan_release(&begin);
-  tbb::parallel_for(range, [&](const Range& part) {
-    __tsan_acquire(&begin);
-    f(part);
-    __tsan_release(&end);
-  });
-  __tsan_acquire(&end);
+  if (!range.empty()) parallelForParts(range, f, 2);
 #else
   tbb::parallel_for(range, f);
 #endif
