@@ -1,8 +1,6 @@
 // rt_queries.cpp: Implements the ray and point queries of xvrml.rt over arrays: the input has shape
 // (..., 6), the result is a dict of arrays of shape (...). The input is processed in chunks that
 // fit into the caches. All threads pack, trace and unpack each chunk, without the GIL.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstring>
@@ -14,6 +12,7 @@
 #include "numbers.h"
 #include "objects.h"
 #include "openrt/queries.h"
+#include "parallel_for.h"
 #include "rt_objects.h"
 
 namespace {
@@ -45,7 +44,7 @@ template <class T> py::array_t<T> like(const Shape& shape, py::ssize_t width = 0
 }
 
 template <class F> void parallel(size_t count, const F& f) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain), [&](const auto& range) {
+  parallelFor(tbb::blocked_range<size_t>(0, count, grain), [&](const auto& range) {
     for (size_t i = range.begin(); i < range.end(); ++i) f(i);
   });
 }

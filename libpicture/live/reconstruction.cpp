@@ -7,12 +7,11 @@
 #include <string>
 #include <utility>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include "libpicture/live/denoise.h"
 #include "libpicture/live/stages.h"
+#include "parallel_for.h"
 
 namespace picture::live {
 
@@ -55,10 +54,10 @@ struct Reconstruction::Impl {
   // Calls stage(y) for each row of pixels or cells.
   template <class Stage> void rows(const Moment& grid, const Stage& stage) {
     constexpr int together = 4; // rows that are worth a task
-    tbb::parallel_for(tbb::blocked_range<int>(0, grid.layout.height, together),
-                      [&](const tbb::blocked_range<int>& range) {
-                        for (int y = range.begin(); y < range.end(); y++) stage(y);
-                      });
+    parallelFor(tbb::blocked_range<int>(0, grid.layout.height, together),
+                [&](const tbb::blocked_range<int>& range) {
+                  for (int y = range.begin(); y < range.end(); y++) stage(y);
+                });
   }
 
   // Prepares the planes of a frame of width x height pixels. `now` and `reading` are those of

@@ -39,7 +39,6 @@ class Unattended {
   }
 
   int run() {
-    deferInterrupt(true, 1);
     if (!options_.input.empty()) open({{options_.input}, "", {}});
     constexpr double shortest = .002; // while something is under way that tells nobody of its end
     double next = 0;
@@ -139,6 +138,7 @@ class Unattended {
 
 int runUnattended(const Options& options) {
   for (const std::string& refused : xvrml::loadNodePlugins(options.nodePath)) sayWarning(refused);
+  deferInterrupt(true, 1); // before clients hear of the address: its socket file must not stay
   Unattended unattended(options);
   return unattended.run();
 }

@@ -54,6 +54,7 @@ class Window {
                       fmt::format("--record-input: cannot write {}", options_.recordInput)};
     }
     painter_ = std::make_unique<PanelPainter>(int(14 * screen_.scale()));
+    deferInterrupt(true, 1); // before clients hear of the address: its socket file must not stay
     if (!options_.control.empty())
       control_ = std::make_unique<control::Control>(
           options_, control::Host{[this](const std::vector<std::string>& urls) {
@@ -63,7 +64,6 @@ class Window {
   }
 
   int run() {
-    deferInterrupt(true, 1);
     if (!options_.input.empty()) open({{options_.input}, "", {}}, false);
     double next = 0;
     while (!ended_ && !interrupted()) {

@@ -1,7 +1,5 @@
 // precise_queries.cpp: answers the ray queries in double precision of LocalBackend, on its threads.
 // Called on the application's thread.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <stdexcept>
 
 #include "backend/local/local.h"
+#include "parallel_for.h"
 
 namespace openrt {
 namespace {
@@ -52,7 +51,7 @@ template <class Use, class Refuse> void
 LocalBackend::forEachPrecise(std::span<const RTrayd> rays, const Use& use, const Refuse& refuse) {
   tbb::task_arena arena{int(threads_)};
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, rays.size(), block), [&](const auto& range) {
+    parallelFor(tbb::blocked_range<size_t>(0, rays.size(), block), [&](const auto& range) {
       uint64_t refused = 0;
       for (size_t i = range.begin(); i < range.end(); i++) {
         PreciseRay ray;
@@ -140,7 +139,7 @@ void LocalBackend::closestPrecise(std::span<const double> points, double radius,
                              "triangles, or ask in single precision");
   tbb::task_arena arena{int(threads_)};
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, closest.size(), block), [&](const auto& range) {
+    parallelFor(tbb::blocked_range<size_t>(0, closest.size(), block), [&](const auto& range) {
       for (size_t i = range.begin(); i < range.end(); i++) {
         const Vec3d point = vectorOf(&points[3 * i]);
         RThitd& hit = closest[i] = nothing();

@@ -4,9 +4,7 @@
 // All hits of a ray are found exactly (accel/exact_scene.h). Nearest hits and occlusion are found
 // by Embree, and again exactly where its single precision may have decided wrongly: see
 // accel/doubts.h.
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -16,6 +14,7 @@
 
 #include "backend/local/accel/doubts.h"
 #include "backend/local/local.h"
+#include "parallel_for.h"
 
 namespace openrt {
 namespace {
@@ -60,18 +59,18 @@ bool areCoherent(const Rays& rays, float sceneSize) {
 }
 
 // Calls f(block) for the numbers below `count`, on all threads.
-template <class F> void parallelFor(uint32_t threads, size_t count, const F& f) {
+template <class F> void forNumbers(uint32_t threads, size_t count, const F& f) {
   tbb::task_arena arena{int(threads)};
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1), [&](const auto& range) {
+    parallelFor(tbb::blocked_range<size_t>(0, count, 1), [&](const auto& range) {
       for (size_t b = range.begin(); b < range.end(); b++) f(b);
     });
   });
 }
 
 template <class F> void parallelBlocks(uint32_t threads, size_t count, const F& f) {
-  parallelFor(threads, (count + block - 1) / block,
-              [&](size_t b) { f(b * block, std::min(block, count - b * block)); });
+  forNumbers(threads, (count + block - 1) / block,
+             [&](size_t b) { f(b * block, std::min(block, count - b * block)); });
 }
 
 } // namespace
@@ -100,7 +99,7 @@ void LocalBackend::forBatches(
   };
   tbb::enumerable_thread_specific<Memory> memories;
   const RayOrder order(rays, sceneSize);
-  parallelFor(threads_, order.blocks(), [&](size_t number) {
+  forNumbers(threads_, order.blocks(), [&](size_t number) {
     Memory& own = memories.local();
     ArenaScope scope(own.arena);
     order.get(number, own.block);

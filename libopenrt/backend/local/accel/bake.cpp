@@ -2,14 +2,12 @@
 // element is independent, so the result does not depend on the number of threads.
 #include "backend/local/accel/bake.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "backend/local/sliver_edges.h"
+#include "parallel_for.h"
 
 namespace openrt {
 namespace {
@@ -18,8 +16,8 @@ namespace {
 template <class F> void forRanges(size_t count, const F& f) {
   constexpr size_t grain = 16384;
   if (count <= grain) return f(0, count); // worlds have millions of small geometries
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, grain),
-                    [&](const auto& range) { f(range.begin(), range.end()); });
+  parallelFor(tbb::blocked_range<size_t>(0, count, grain),
+              [&](const auto& range) { f(range.begin(), range.end()); });
 }
 
 } // namespace
