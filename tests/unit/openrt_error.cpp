@@ -211,6 +211,9 @@ TEST(Error, lightPathsLowerTheBoundOfWhatRaysHaveNotFound) {
   for (int i = 0; i < 40; i++) ledger.unsampledSky.send({1, 1, 1}, 2);
   EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001 + ruleOfThree * 2 / paths, about)
       << "no light paths come from the sky";
+  ledger.unsampledSky.byLightPath = 2;
+  EXPECT_NEAR(ledger.missedByTile(paths), rays / 1001 + ruleOfThree / paths, .2 * about)
+      << "light paths come from its sun";
 }
 
 TEST(Error, whatMayBeMissingTakesTheTrustOfNarrowIntervalsAndWidensThatOfTheMean) {

@@ -52,7 +52,7 @@ JobResult resultOf(const edit::FrameSettingsT& frame, const Job& job, uint32_t s
                    number(),
                    number(),
                    {number(), number(), number(), number()},
-                   {number(), number(), number()},
+                   {number(), number(), number(), number()},
                    job.count};
   result.sums.resize(tile.pixels());
   for (PixelSums& s : result.sums) {
@@ -128,7 +128,7 @@ TEST(ResultCodec, FloatsTravelAsFloats) {
   in.sums.resize(tile.pixels());
   for (size_t i = 0; i < in.sums.size(); i++)
     for (int k = 0; k < 4; k++) in.sums[i].rgba[k] = double(float(i) / 3);
-  EXPECT_EQ(encodeResult(frame, job, in).size(), 10 * 8 + 4 * (1 + 4 * tile.pixels()));
+  EXPECT_EQ(encodeResult(frame, job, in).size(), 11 * 8 + 4 * (1 + 4 * tile.pixels()));
 }
 
 TEST(ResultCodec, LightComesBackExactly) {
@@ -141,7 +141,7 @@ TEST(ResultCodec, LightComesBackExactly) {
     for (float& x : in.light)
       if (int(random() % 100) < density) x = random() % 9 ? float(random()) : -0.0f;
     const std::vector<std::byte> bytes = encodeResult(frame, job, in);
-    EXPECT_LE(bytes.size(), 80 + 12 + in.light.size() * 4 * 2);
+    EXPECT_LE(bytes.size(), 88 + 12 + in.light.size() * 4 * 2);
     ASSERT_TRUE(decodeResult(frame, job, tile, bytes, out));
     ASSERT_EQ(out.light.size(), in.light.size());
     EXPECT_EQ(std::memcmp(in.light.data(), out.light.data(), in.light.size() * 4), 0);
@@ -160,7 +160,7 @@ TEST(ResultCodec, WhatIsCutOrTooLongIsRefused) {
     const std::vector<std::byte> bytes = encodeResult(frame, job, in);
     ASSERT_TRUE(decodeResult(frame, job, tile, bytes, out));
     for (size_t size = 0; size < bytes.size(); size += 1 + size / 50) {
-      const bool whole = job.kind == Job::Kind::light && size >= 80 && (size - 80) % 12 == 0;
+      const bool whole = job.kind == Job::Kind::light && size >= 88 && (size - 88) % 12 == 0;
       EXPECT_EQ(decodeResult(frame, job, tile, std::span(bytes).first(size), out), whole)
           << size; // the light sums may end in zeros
     }

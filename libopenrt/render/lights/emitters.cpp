@@ -25,17 +25,21 @@ bool sameEmission(const RenderScene& a, const RenderScene& b) {
 
 } // namespace
 
-void Emitters::build(const RenderScene& scene, const RenderScene* before, bool samePlaces) {
-  if (!tracesPaths(scene.frame.transport)) return;
-  scene_ = &scene;
-  const bool sameTextures = before && before->textures == scene.textures;
+const SkySampler& Emitters::tabulateSky(const RenderScene& scene, const RenderScene* before) {
   const ShaderSlot& environment = scene.environment.shader;
-  if (sameTextures && before->emitters.sky_ &&
+  if (!sky_ && before && before->textures == scene.textures && before->emitters.sky_ &&
       before->environment.shader.params == environment.params &&
       before->environment.shader.shaderClass == environment.shaderClass)
     sky_ = before->emitters.sky_;
-  else
-    sky_ = std::make_shared<const SkySampler>(scene);
+  if (!sky_) sky_ = std::make_shared<const SkySampler>(scene);
+  return *sky_;
+}
+
+void Emitters::build(const RenderScene& scene, const RenderScene* before, bool samePlaces) {
+  if (!tracesPaths(scene.frame.transport)) return;
+  scene_ = &scene;
+  tabulateSky(scene, before);
+  const bool sameTextures = before && before->textures == scene.textures;
   if (sameTextures && samePlaces && before->emitters.shapes_ && sameEmission(scene, *before))
     shapes_ = before->emitters.shapes_;
   else

@@ -37,6 +37,9 @@ class Emitters {
   // before: the last snapshot, or null. samePlaces: its records and their transforms equal those of
   // this scene.
   void build(const RenderScene& scene, const RenderScene* before, bool samePlaces);
+  // Tabulates the sky ahead of build(), which then takes the table. The environment must have
+  // `miss`. before: as for build().
+  const SkySampler& tabulateSky(const RenderScene& scene, const RenderScene* before);
   bool any() const { return hasSky() || hasShapes(); }
   // Returns whether the sky has a sun, from which light paths start (SkySampler::hasSun).
   bool hasSun() const;

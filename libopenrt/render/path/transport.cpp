@@ -109,6 +109,15 @@ bool shines(const RenderScene& scene, const RenderScene* before) {
   return SkySampler::shines(scene) || !SkySampler(scene).black();
 }
 
+// Returns whether light paths that start in the sun of the sky decide about the transport.
+bool sunMatters(RenderScene& scene, const SceneContents& contents, const RenderScene* before) {
+  constexpr uint32_t needed = hasMirrors | hasProjection;
+  if (scene.frame.transport != RT_TRANSPORT_AUTO || (contents.bits & needed) != needed ||
+      (contents.bits & hasStarts) || scene.frame.measure)
+    return false;
+  return scene.emitters.tabulateSky(scene, before).hasSun();
+}
+
 } // namespace
 
 SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
@@ -158,6 +167,8 @@ SceneContents contentsOf(RenderScene& scene, const RenderScene* before) {
       environment.shaderClass && ((c.bits & hasScattering) || ((c.bits & hasShading) && !backdrop));
   scene.skyShines = scene.skyKnown && shines(scene, before);
   if (scene.skyShines) set(hasSky | (backdrop ? 0u : hasSkyLight), environment.shaderClass->name);
+  if (scene.skyShines && sunMatters(scene, c, before))
+    set(hasStarts, environment.shaderClass->name);
   return c;
 }
 

@@ -27,7 +27,7 @@ enum Contents : uint32_t {
   hasSky = 1u << 6,         // an environment that is not black
   hasSkyLight = 1u << 7,    // an environment that is meant as light and not as a backdrop
   hasLamps = 1u << 8,       // light shaders, which have no extent
-  hasStarts = 1u << 9,      // lights or emitters from which light paths can start
+  hasStarts = 1u << 9,      // lights, emitters or a sun from which light paths can start
   hasProjection = 1u << 10, // a camera that light paths can be connected to
   asksForAll = 1u << 11,    // surfaces that request indirect light (RTS_GLOBAL)
   hasFog = 1u << 12,        // media that fill space; light paths from lamps do not know them
