@@ -133,7 +133,9 @@ bool ValueParser::single(bool& out) {
     out = token.text == "TRUE";
   } else if (token.is("true") || token.is("false")) {
     out = token.text == "true";
-    lexer_.warn(token.at(), fmt::format("SFBool is written {} in VRML97", out ? "TRUE" : "FALSE"));
+    if (!lowerCase_)
+      lexer_.warn(token.at(),
+                  fmt::format("SFBool is written {} in VRML97", out ? "TRUE" : "FALSE"));
   } else {
     return failFound(token, "TRUE or FALSE of SFBool");
   }

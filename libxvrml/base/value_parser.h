@@ -15,6 +15,9 @@ class ValueParser {
   ValueParser(Lexer& lexer, const Limits& limits, Budget* budget = nullptr)
       : lexer_(lexer), limits_(limits), budget_(budget) {}
 
+  // Reads true and false as X3D writes them, too, without a warning.
+  void acceptLowerCase() { lowerCase_ = true; }
+
   // Reads a value into *storage, whose C++ type must be that of `type`. SFNode accepts only NULL
   // and MFNode only [ ]; the file parser reads nodes. Returns false after it has reported an error.
   // The lexer then stands at or behind the error, and the storage is unspecified.
@@ -37,6 +40,7 @@ class ValueParser {
   Lexer& lexer_;
   const Limits& limits_;
   Budget* budget_;
+  bool lowerCase_ = false;
   bool refused_ = false; // the budget has refused memory; reported once
 };
 

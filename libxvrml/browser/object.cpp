@@ -163,8 +163,10 @@ MFNode Browser::createVrmlFromString(std::string_view text, const std::string& b
   LoadOptions options = impl_->world->options;
   uint64_t& most = options.limits.expandedNodes;
   most -= std::min<uint64_t>(most, impl_->engine->nodes());
-  const auto loaded = loadFragment(text, name, options, TemporaryCharge(*impl_->world).budget(),
-                                   fileDepth(impl_->callerPosition().file) + 1);
+  const SourcePosition caller = impl_->callerPosition();
+  const auto loaded = loadFragment(
+      text, name, options, TemporaryCharge(*impl_->world).budget(), fileDepth(caller.file) + 1,
+      caller.file ? fileVersion(caller.file) : impl_->world->head.version);
   MFNode nodes = impl_->adopt(*loaded);
   impl_->settle();
   return nodes;

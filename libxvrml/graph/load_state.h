@@ -36,6 +36,7 @@ struct LoadState {
 // The graph of a file, and its nodes that parsing leaves incomplete. Nodes in prototype bodies are
 // not listed, because only their copies are completed.
 struct ParsedFile {
+  FileHead head;
   Scope scope;
   std::vector<NodeRef> instances; // prototype instances to expand
   std::vector<NodeRef> inlines;   // Inline nodes to load

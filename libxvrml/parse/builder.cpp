@@ -69,9 +69,7 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
       locator_.warn(type.at, fmt::format("this node is left out, because prototype {} was left out",
                                          describe(type)));
     } else {
-      locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
-                                          isX3dNode(type.text) ? " (it is X3D's)" : "",
-                                          nearest::suggestion(type.text, nodeTypes())));
+      reportUnknownNode(type);
     }
     return false;
   }
@@ -258,15 +256,17 @@ void Builder::nullNode(const Name& token) {
 }
 
 bool Builder::hasField(std::string_view name) const {
-  return nodes_.size() > scopes_.back().outerNodes &&
-         nodes_.back().node->type().find(name) != nullptr;
+  if (nodes_.size() <= scopes_.back().outerNodes) return false;
+  const NodeType& type = nodes_.back().node->type();
+  return type.find(spelled(type, name)) || lacksField(type, name);
 }
 
 FieldTarget Builder::openField(const Name& name) {
   NodeFrame& frame = nodes_.back();
   Node& node = *frame.node;
-  const FieldInfo* field = node.type().find(name.text);
+  const FieldInfo* field = node.type().find(spelled(node.type(), name.text));
   if (!field) {
+    if (isMissingField(node.type(), name)) return {};
     const std::string near = nearest::suggestion(name.text, node.type().fields);
     const char* dialect = isX3dField(node.type().name, name.text) ? " (it is X3D's)" : "";
     locator_.error(name.at,
@@ -275,10 +275,8 @@ FieldTarget Builder::openField(const Name& name) {
     return {};
   }
   if (!holdsValue(*field)) {
-    locator_.error(name.at,
-                   fmt::format("{} is an {} of {}: it has no value in a file", describe(name),
-                               field->access == Access::eventIn ? "eventIn" : "eventOut",
-                               node.type().name));
+    locator_.error(name.at, fmt::format("{} is an {} of {}: it has no value in a file",
+                                        describe(name), word(field->access), node.type().name));
     return {};
   }
   if (std::find(frame.given.begin(), frame.given.end(), name.text) != frame.given.end()) {

@@ -40,6 +40,11 @@ class Builder : public ParseSink {
   std::vector<std::string>& externUrls() override;
   void closeExternProto(bool good) override;
   void route(const Name& keyword, const RouteNames& names) override;
+  void profile(const Name& name) override;
+  void component(const Name& name, int32_t level) override;
+  void meta(const Name& keyword, std::string name, std::string content) override;
+  void unit(const Name& category, const Name& name, double factor) override;
+  void importNode(const Name& keyword, const Name& local) override;
 
  private:
   // Sizes of the lists that grow while a node is read. rollBack() restores them if the node is
@@ -107,6 +112,13 @@ class Builder : public ParseSink {
   bool acceptsType(const NodeTarget& nodeTarget, const NodeType* type) const;
   bool accepts(const NodeTarget& nodeTarget, const Name& at, const Node& node,
                std::string_view remedy);
+  bool isX3d() const { return file_.head.version.isX3d(); }
+  std::string_view spelled(const NodeType& type, std::string_view name) const;
+  std::string_view word(Access access) const;
+  bool isFirst(const std::string& missing) { return missing_.insert(missing).second; }
+  bool lacksField(const NodeType& type, std::string_view name) const;
+  bool isMissingField(const NodeType& type, const Name& name);
+  void reportUnknownNode(const Name& type);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;
   bool isBeingDeclared(std::string_view name) const;
@@ -124,6 +136,7 @@ class Builder : public ParseSink {
   std::vector<NodeFrame> nodes_;
   std::vector<NodeTarget> nodeTargets_;
   std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1 of named nodes
+  std::unordered_set<std::string> missing_;            // nodes and fields of X3D that were reported
   const NodeType* fullInterface_ = nullptr; // the last type that declares more than the limit
 };
 

@@ -153,15 +153,20 @@ void Builder::route(const Name& keyword, const RouteNames& names) {
   const NodeRef from = findName(names.from);
   const NodeRef to = findName(names.to);
   if (!from || !to) return;
-  const FieldInfo* out = from->type().findEventOut(names.fromField.text);
+  const std::string_view fromField = spelled(from->type(), names.fromField.text);
+  const std::string_view toField = spelled(to->type(), names.toField.text);
+  const FieldInfo* out = from->type().findEventOut(fromField);
+  const FieldInfo* in = to->type().findEventIn(toField);
+  if (!out && isMissingField(from->type(), names.fromField)) return;
+  if (!in && isMissingField(to->type(), names.toField)) return;
   if (!out) {
-    locator_.error(names.fromField.at, fmt::format("{} has no eventOut {}", from->type().name,
-                                                   describe(names.fromField)));
+    locator_.error(names.fromField.at,
+                   fmt::format("{} has no {} {}", from->type().name, word(Access::eventOut),
+                               describe(names.fromField)));
   }
-  const FieldInfo* in = to->type().findEventIn(names.toField.text);
   if (!in)
-    locator_.error(names.toField.at,
-                   fmt::format("{} has no eventIn {}", to->type().name, describe(names.toField)));
+    locator_.error(names.toField.at, fmt::format("{} has no {} {}", to->type().name,
+                                                 word(Access::eventIn), describe(names.toField)));
   if (!out || !in) return;
   if (out->type != in->type) {
     locator_.error(names.toField.at,
@@ -173,8 +178,8 @@ void Builder::route(const Name& keyword, const RouteNames& names) {
   if (!reserveMemory(bytesOfRoute, keyword)) return;
   ++state_.routes;
   scope().placed.insert({names.from.text, names.to.text});
-  scope().scope->routes.push_back({from, std::string(names.fromField.text), to,
-                                   std::string(names.toField.text), locator_.place(keyword.at)});
+  scope().scope->routes.push_back(
+      {from, std::string(fromField), to, std::string(toField), locator_.place(keyword.at)});
 }
 
 Builder::ScopeFrame* Builder::protoFrame() {
@@ -185,14 +190,16 @@ void Builder::connect(const Name& name, const Name& interfaceName) {
   NodeFrame& frame = nodes_.back();
   Node& node = *frame.node;
   const NodeType& type = node.type();
-  const FieldInfo* field = type.find(name.text);
+  const std::string_view own = spelled(type, name.text);
+  const FieldInfo* field = type.find(own);
   Access access = field ? field->access : Access::eventIn;
   if (!field) { // set_x and x_changed of an exposedField x refer to its events
-    if ((field = type.findEventIn(name.text)))
+    if ((field = type.findEventIn(own)))
       access = Access::eventIn;
-    else if ((field = type.findEventOut(name.text)))
+    else if ((field = type.findEventOut(own)))
       access = Access::eventOut;
   }
+  if (!field && isMissingField(type, name)) return;
   if (!field) {
     locator_.error(name.at, fmt::format("{} has no field or event {}{}", type.name, describe(name),
                                         nearest::suggestion(name.text, type.fields)));
@@ -222,14 +229,16 @@ void Builder::connect(const Name& name, const Name& interfaceName) {
   }
   if (!mayConnect(access, declared->access)) {
     const std::string_view meant = intendedMeaning(access, declared->access);
-    locator_.error(interfaceName.at,
-                   fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
-                               accessName(access), describe(name), type.name,
-                               accessName(declared->access), describe(interfaceName),
-                               meant.empty() ? "" : ": ", meant));
+    // An inputOutput of a Script was read as initializeOnly, and reported there.
+    const bool reported = isX3d() && frame.scriptType && access == Access::field && !meant.empty();
+    if (!reported)
+      locator_.error(interfaceName.at,
+                     fmt::format("{} {} of {} cannot be {} {} of the interface (4.8.2){}{}",
+                                 word(access), describe(name), type.name, word(declared->access),
+                                 describe(interfaceName), meant.empty() ? "" : ": ", meant));
     if (meant.empty()) return;
   }
-  proto->proto->is.push_back({frame.node, std::string(name.text), std::string(interfaceName.text)});
+  proto->proto->is.push_back({frame.node, std::string(own), std::string(interfaceName.text)});
 }
 
 } // namespace xvrml

@@ -40,12 +40,16 @@ Loader::Loader(World& world, const LoadOptions& options, uint64_t depth)
       expander_(state_,
                 [this](ProtoDeclaration& declaration) { return resolveExtern(declaration); }) {}
 
-void Loader::load(const Source& source, const std::string& name, bool header) {
+void Loader::load(const Source& source, const std::string& name,
+                  const std::optional<FileVersion>& fragment) {
   const auto start = std::chrono::steady_clock::now();
   ParsedFile file;
   const auto sharedName = source.nameWithComments(name, depth_);
-  if (header) source.checkHeader(sharedName, state_.diagnostics);
-  state_.anyRoots = !header;
+  if (fragment)
+    setFileVersion(sharedName, *fragment);
+  else
+    source.identify(sharedName, state_.diagnostics);
+  state_.anyRoots = fragment.has_value();
   parse(source, sharedName, file);
   state_.anyRoots = false;
   world_.times.parse = secondsSince(start);
@@ -53,6 +57,7 @@ void Loader::load(const Source& source, const std::string& name, bool header) {
   inlined_[key].reading = true;
   complete(file, depth_);
   world_.scope = std::move(file.scope);
+  world_.head = std::move(file.head);
   if (composed_) checkSize(world_.scope);
   world_.times.load = secondsSince(start) - world_.times.parse;
 }
@@ -64,10 +69,12 @@ void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>
 
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
+  file.head.version = fileVersion(name);
   Locator locator(source.text(), name, state_.diagnostics);
   Lexer lexer(locator);
   Builder builder(locator, state_, file);
-  Parser(lexer, state_.options.limits, builder, budget_.get()).vrmlScene();
+  Parser(lexer, state_.options.limits, builder, budget_.get(), file.head.version.isX3d())
+      .vrmlScene();
   builder.dropUnplacedNames();
 }
 
@@ -122,7 +129,7 @@ bool Loader::loadInlineFrom(InlineNode& node, const std::string& path, uint64_t 
   try {
     const Source source = Source::open(path, limits, budget_);
     const auto name = fileName(path, depth);
-    source.checkHeader(name, state_.diagnostics);
+    source.identify(name, state_.diagnostics);
     const uint64_t before = budget_->used(), routes = state_.routes, scripts = state_.scripts;
     known.reading = true;
     ParsedFile file;
@@ -188,7 +195,7 @@ ProtoPtr Loader::findIn(const std::string& path, const std::string& name, std::s
     try {
       const Source source = Source::open(path, state_.options.limits, budget_);
       const auto sharedName = fileName(path, depth_);
-      source.checkHeader(sharedName, state_.diagnostics);
+      source.identify(sharedName, state_.diagnostics);
       library = std::make_unique<ParsedFile>();
       parse(source, sharedName, *library);
     } catch (const LoadError& error) {
@@ -308,7 +315,8 @@ constexpr size_t deepestStack = size_t(6) << 20;
 
 template <class MakeSource>
 std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& options,
-                                MakeSource makeSource, bool header = true,
+                                MakeSource makeSource,
+                                const std::optional<FileVersion>& fragment = {},
                                 const BudgetPtr& budget = nullptr, uint64_t depth = 0) {
   // One level more than Inlines have: an Inline of the text reports the limit by itself.
   if (depth > 0 && depth - 1 > options.limits.inlineDepth)
@@ -327,7 +335,7 @@ std::unique_ptr<World> loadFrom(const std::string& name, const LoadOptions& opti
     if (budget) setBudget(*world, budget);
     const Source source = makeSource(budgetOf(*world));
     return onStackOf(deepestStack, [&] {
-      Loader(*world, world->options, depth).load(source, name, header);
+      Loader(*world, world->options, depth).load(source, name, fragment);
       return std::move(world);
     });
   } catch (const std::bad_alloc&) {
@@ -354,16 +362,16 @@ std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string&
                                      const LoadOptions& options, uint64_t depth) {
   return loadFrom(
       path, options, [&](const BudgetPtr& its) { return Source::open(path, options.limits, its); },
-      true, budget, depth);
+      {}, budget, depth);
 }
 
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
                                     const LoadOptions& options, const BudgetPtr& budget,
-                                    uint64_t depth) {
+                                    uint64_t depth, const FileVersion& version) {
   return loadFrom(
       name, options,
       [&](const BudgetPtr& its) { return Source::fromMemory(text, name, options.limits, its); },
-      false, budget, depth);
+      version, budget, depth);
 }
 
 } // namespace xvrml

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 #include "graph/expander.h"
 #include "parse/source.h"
@@ -16,7 +17,9 @@ class Loader {
   // depth: number of files around the world's own file (fileDepth()).
   Loader(World& world, const LoadOptions& options, uint64_t depth = 0);
   // Loads the world's own file. Throws LoadError if nothing of it can be used.
-  void load(const Source& source, const std::string& name, bool header = true);
+  // fragment: the version that a text without a header follows; empty: the file has a header.
+  void load(const Source& source, const std::string& name,
+            const std::optional<FileVersion>& fragment = {});
   // Loads the content of an Inline of a world that has already been loaded. enclosing: the files
   // around the Inline, innermost last, one for each enclosing Inline and one for itself.
   // node.content stays null if nothing could be loaded.
@@ -62,12 +65,12 @@ class Loader {
 };
 
 // Loads a text that needs no header (Browser::createVrmlFromString). name: for messages; relative
-// URLs are relative to its folder. budget: the budget of the world that the text becomes part of.
-// depth: number of files around the text. Throws LoadError if it is more than one above limit
-// inlineDepth.
+// URLs are relative to its folder. version: of the standard that the text follows. budget: the
+// budget of the world that the text becomes part of. depth: number of files around the text. Throws
+// LoadError if it is more than one above limit inlineDepth.
 std::unique_ptr<World> loadFragment(std::string_view text, const std::string& name,
                                     const LoadOptions& options, const BudgetPtr& budget,
-                                    uint64_t depth);
+                                    uint64_t depth, const FileVersion& version);
 // Does the same as loadWorld() for a world that becomes part of another one.
 std::unique_ptr<World> loadWorldInto(const BudgetPtr& budget, const std::string& path,
                                      const LoadOptions& options, uint64_t depth);

@@ -73,7 +73,8 @@ bool is3ds(std::string_view bytes) {
 constexpr std::string_view exportIt =
     "export it as VRML97 (.wrl), for example from MeshLab or Blender, or hand its mesh to Python's "
     "xvrml.interop.from_trimesh";
-constexpr std::string_view saveIt = "save it as VRML97 (.wrl) in the program that made it";
+constexpr std::string_view saveIt =
+    "save it as VRML97 (.wrl) or X3D ClassicVRML (.x3dv) in the program that made it";
 
 struct Signature {
   bool (*matches)(std::string_view bytes);
@@ -81,8 +82,6 @@ struct Signature {
 };
 
 const Signature signatures[] = {
-    {[](std::string_view b) { return b.starts_with("#X3D"); },
-     {"an X3D world (classic encoding)", saveIt}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<X3D"); },
      {"an X3D world (XML encoding)", saveIt}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('{') && holds(b, "\"X3D\""); },

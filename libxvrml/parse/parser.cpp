@@ -9,9 +9,11 @@
 
 namespace xvrml {
 
-Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget)
+Parser::Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget, bool x3d)
     : lexer_(lexer), values_(lexer, limits, budget), sink_(sink),
-      nesting_(std::min(limits.nesting, maximumNesting)) {}
+      nesting_(std::min(limits.nesting, maximumNesting)), x3d_(x3d) {
+  if (x3d) values_.acceptLowerCase();
+}
 
 // vrmlScene ::= statements
 void Parser::vrmlScene() { statements(TokenKind::end); }
@@ -30,6 +32,7 @@ bool Parser::statement() {
   const Token token = lexer_.peek();
   if (token.is("PROTO") || token.is("EXTERNPROTO")) return protoStatement();
   if (token.is("ROUTE")) return routeStatement();
+  if (x3d_ && isX3dStatement(token)) return x3dStatement();
   if (token.is(TokenKind::identifier)) return nodeStatement();
   return fail(token, "a node, DEF, USE, PROTO, EXTERNPROTO or ROUTE");
 }

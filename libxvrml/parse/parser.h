@@ -1,7 +1,7 @@
-// parser.h: a recursive descent parser for VRML97 (ISO/IEC 14772-1 Annex A.2), one function per
-// production. It reports to an abstract sink. After an error it continues at the next node.
-// Recursion follows the nesting of nodes; limits.nesting and maximumNesting bound the stack. [any
-// thread]
+// parser.h: a recursive descent parser for VRML97 (ISO/IEC 14772-1 Annex A.2) and X3D ClassicVRML
+// (ISO/IEC 19776-2 Annex A), one function per production. It reports to an abstract sink. After an
+// error it continues at the next node. Recursion follows the nesting of nodes; limits.nesting and
+// maximumNesting bound the stack. [any thread]
 #pragma once
 
 #include <vector>
@@ -12,19 +12,15 @@
 
 namespace xvrml {
 
-// Returns whether a token begins a declaration of an interface.
-inline bool declares(const Token& token) {
-  return token.is("field") || token.is("eventIn") || token.is("eventOut") ||
-         token.is("exposedField");
-}
-
 class Parser {
  public:
   // Limit for the nesting of nodes that no option can exceed: the thread's stack allows no more.
   static constexpr uint64_t maximumNesting = 2500;
 
   // budget: the memory budget of the values; null: memory is not counted.
-  Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget = nullptr);
+  // x3d: the text is X3D ClassicVRML.
+  Parser(Lexer& lexer, const Limits& limits, ParseSink& sink, Budget* budget = nullptr,
+         bool x3d = false);
   // Parses the whole text. The header is a comment to the lexer.
   void vrmlScene();
 
@@ -61,6 +57,15 @@ class Parser {
   bool interfaceDeclarations(bool isExtern);
   bool interfaceDeclaration(bool isExtern);
   bool scriptBodyElement();
+  bool declares(const Token& token) const;
+  bool readAccess(const Token& keyword, Access& access);
+  bool skipForeignType(const Token& typeName);
+  bool x3dStatement();
+  bool componentStatement();
+  bool metaStatement(const Token& keyword);
+  bool unitStatement();
+  bool importStatement(const Token& keyword);
+  bool exportStatement();
   bool routeStatement();
   bool routeEnd(Token& node, Token& field);
 
@@ -98,6 +103,7 @@ class Parser {
   ValueParser values_;
   ParseSink& sink_;
   const uint64_t nesting_;
+  const bool x3d_;
   uint64_t depth_ = 0;
   bool endReported_ = false;
   std::vector<RecoveryPoint> recoveryPoints_;

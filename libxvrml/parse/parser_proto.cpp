@@ -1,28 +1,70 @@
 // parser_proto.cpp: prototypes, interface declarations and Script bodies of the VRML97 grammar
 // (Annex A.2).
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "parse/parser.h"
+#include "parse/x3d.h"
 
 namespace xvrml {
 
 namespace {
 
-bool accessFromName(std::string_view text, Access& access) {
-  if (text == "eventIn")
-    access = Access::eventIn;
-  else if (text == "eventOut")
-    access = Access::eventOut;
-  else if (text == "field")
-    access = Access::field;
-  else if (text == "exposedField")
-    access = Access::exposedField;
-  else
-    return false;
+constexpr Access accesses[] = {Access::field, Access::exposedField, Access::eventIn,
+                               Access::eventOut};
+
+// The field types of X3D (ISO/IEC 19775-1 clause 5) that VRML97 does not have.
+constexpr std::string_view foreignTypes[] = {
+    "MFBool",      "MFColorRGBA", "MFDouble",   "MFImage",    "MFMatrix3d", "MFMatrix3f",
+    "MFMatrix4d",  "MFMatrix4f",  "MFVec2d",    "MFVec3d",    "MFVec4d",    "MFVec4f",
+    "SFColorRGBA", "SFDouble",    "SFMatrix3d", "SFMatrix3f", "SFMatrix4d", "SFMatrix4f",
+    "SFVec2d",     "SFVec3d",     "SFVec4d",    "SFVec4f"};
+
+} // namespace
+
+// Returns whether a token begins a declaration of an interface.
+bool Parser::declares(const Token& token) const {
+  return token.is(TokenKind::identifier) &&
+         std::any_of(std::begin(accesses), std::end(accesses), [&](Access access) {
+           return token.text == accessName(access) || (x3d_ && token.text == x3dAccessName(access));
+         });
+}
+
+// Reads what a word says about an access. Returns false for other words.
+bool Parser::readAccess(const Token& keyword, Access& access) {
+  if (!declares(keyword)) return false;
+  for (const Access one : accesses)
+    if (keyword.text == accessName(one) || keyword.text == x3dAccessName(one)) access = one;
+  if (x3d_ && keyword.text == accessName(access))
+    lexer_.warn(keyword.at(), fmt::format("{} is VRML97's word: X3D writes {}", describe(keyword),
+                                          x3dAccessName(access)));
   return true;
 }
 
-} // namespace
+// Reads over a declaration if its type is one of X3D that no field can hold yet. Returns false for
+// other types.
+bool Parser::skipForeignType(const Token& typeName) {
+  if (!x3d_ || std::find(std::begin(foreignTypes), std::end(foreignTypes), typeName.text) ==
+                   std::end(foreignTypes))
+    return false;
+  lexer_.next();
+  const Token id = lexer_.nextName();
+  lexer_.warn(typeName.at(), fmt::format("fields of type {} are not supported: {} is left out",
+                                         typeName.text, describe(id)));
+  if (lexer_.peek().is("IS")) {
+    lexer_.next();
+    lexer_.nextName();
+  } else if (lexer_.accept(TokenKind::bracketOpen)) {
+    while (!lexer_.peek().is(TokenKind::end) && !lexer_.accept(TokenKind::bracketClose))
+      lexer_.next();
+  } else {
+    while (lexer_.peek().is(TokenKind::number) || lexer_.peek().is("TRUE") ||
+           lexer_.peek().is("FALSE"))
+      lexer_.next();
+  }
+  return true;
+}
 
 // protoStatement ::= proto | externproto
 bool Parser::protoStatement() {
@@ -104,13 +146,15 @@ bool Parser::interfaceDeclarations(bool isExtern) {
 // externInterfaceDeclaration: the same without values
 bool Parser::interfaceDeclaration(bool isExtern) {
   const Token keyword = lexer_.peek();
-  Access access;
-  if (!keyword.is(TokenKind::identifier) || !accessFromName(keyword.text, access)) {
-    return fail(keyword, "eventIn, eventOut, field, exposedField or ]");
+  Access access{};
+  if (!readAccess(keyword, access)) {
+    return fail(keyword, x3d_ ? "inputOnly, outputOnly, initializeOnly, inputOutput or ]"
+                              : "eventIn, eventOut, field, exposedField or ]");
   }
   lexer_.next();
   FieldType type;
   const Token typeName = lexer_.peek();
+  if (skipForeignType(typeName)) return true;
   if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type))
     return fail(typeName, "a field type");
   lexer_.next();
@@ -129,12 +173,13 @@ bool Parser::interfaceDeclaration(bool isExtern) {
 //                     | field fieldType fieldId IS fieldId
 bool Parser::scriptBodyElement() {
   const Token keyword = lexer_.next();
-  Access access;
-  accessFromName(keyword.text, access);
+  Access access{};
+  readAccess(keyword, access);
   const bool exposed = access == Access::exposedField;
   if (exposed) access = Access::field; // the program needs the value
   FieldType type;
   const Token typeName = lexer_.peek();
+  if (skipForeignType(typeName)) return true;
   if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) {
     fail(typeName, "a field type");
     skipDeclaration();
@@ -143,7 +188,11 @@ bool Parser::scriptBodyElement() {
   lexer_.next();
   Token id;
   if (!name(id, "a name for the interface")) return false;
-  if (exposed)
+  if (exposed && x3d_)
+    lexer_.warn(keyword.at(), fmt::format("inputOutput of a Script is read as initializeOnly: {} "
+                                          "takes and sends no events",
+                                          describe(id)));
+  else if (exposed)
     lexer_.error(keyword.at(), fmt::format("a Script declares field, eventIn and eventOut, not "
                                            "exposedField (6.40): {} is read as a field",
                                            describe(id)));

@@ -25,7 +25,7 @@ constexpr X3dStatement x3dStatements[] = {
     {"IMPORT", "the imported name is unknown"},
     {"EXPORT", "the name is not exported"}};
 
-const X3dStatement* x3dStatement(const Token& token) {
+const X3dStatement* findX3dStatement(const Token& token) {
   if (!token.is(TokenKind::identifier)) return nullptr;
   const auto found =
       std::find_if(std::begin(x3dStatements), std::end(x3dStatements),
@@ -35,13 +35,13 @@ const X3dStatement* x3dStatement(const Token& token) {
 
 } // namespace
 
-bool Parser::isX3dStatement(const Token& token) { return x3dStatement(token) != nullptr; }
+bool Parser::isX3dStatement(const Token& token) { return findX3dStatement(token) != nullptr; }
 
 // Reports the keyword of an X3D statement. skipToStatement() then skips the rest of it. Returns
 // false for other keywords.
 bool Parser::leaveOutX3d(const Token& keyword) {
-  const X3dStatement* statement = x3dStatement(keyword);
-  if (!statement) return false;
+  const X3dStatement* statement = findX3dStatement(keyword);
+  if (!statement || x3d_) return false;
   const std::string text =
       fmt::format("{} is a statement of X3D, not of VRML97: it is left out", statement->keyword);
   if (statement->lost)
@@ -76,7 +76,8 @@ bool Parser::name(Token& out, const char* what) {
     lexer_.seek(token.at()); // a brace is left to the caller, which counts braces
     return fail(token, what);
   }
-  lexer_.warn(out.at(), fmt::format("{} is not a name as VRML97 spells them (A.3)", describe(out)));
+  lexer_.warn(out.at(), fmt::format("{} is not a name as {} spells them (A.3)", describe(out),
+                                    x3d_ ? "X3D" : "VRML97"));
   return true;
 }
 

@@ -72,6 +72,15 @@ class ParseSink {
     Name from, fromField, to, toField;
   };
   virtual void route(const Name& keyword, const RouteNames& names) = 0;
+
+  // The statements of X3D (ISO/IEC 19775-1 7.2.5). A unit of a category is `factor` of the
+  // standard's. IMPORT inlineName.exported AS local. EXPORT is only checked by the reader: nothing
+  // can import from this file yet.
+  virtual void profile(const Name& name) = 0;
+  virtual void component(const Name& name, int32_t level) = 0;
+  virtual void meta(const Name& keyword, std::string name, std::string content) = 0;
+  virtual void unit(const Name& category, const Name& name, double factor) = 0;
+  virtual void importNode(const Name& keyword, const Name& local) = 0;
 };
 
 } // namespace xvrml

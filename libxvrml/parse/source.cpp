@@ -1,4 +1,4 @@
-// source.cpp: reads, maps and unpacks files, and checks their header.
+// source.cpp: reads, maps and unpacks files, and finds out what they are.
 #include "parse/source.h"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ namespace {
 // Refuses a file of a known format other than VRML97.
 [[noreturn]] void refuseOther(const std::string& name, std::string_view bytes) {
   const OtherFormat& format = *otherFormat(bytes);
-  refuse(name, fmt::format("this file is {}, not a VRML97 world: {}", format.name, format.remedy));
+  refuse(name, fmt::format("this file is {}, not a world in VRML97 or X3D ClassicVRML: {}",
+                           format.name, format.remedy));
 }
 
 struct Descriptor {
@@ -122,7 +123,8 @@ bool looksLikeVrml(std::string_view text) {
   Lexer lexer(locator);
   const Token first = lexer.next();
   if (!first.is(TokenKind::identifier)) return false;
-  if (first.text == "DEF" || first.text == "PROTO" || first.text == "EXTERNPROTO")
+  if (first.text == "PROFILE" || first.text == "DEF" || first.text == "PROTO" ||
+      first.text == "EXTERNPROTO")
     return lexer.peek().is(TokenKind::identifier);
   return lexer.peek().is(TokenKind::braceOpen);
 }
@@ -223,9 +225,46 @@ Source::~Source() {
   if (mapping_) munmap(mapping_, mappedBytes_);
 }
 
+namespace {
+
+// Reads a line that begins with "#X3D": "#X3D V3.3 utf8 [optional comment]" (ISO/IEC 19776-2
+// 4.3.2.2). `complaint` becomes what is wrong with it, or stays empty.
+FileVersion x3dVersion(std::string_view line, std::string& complaint) {
+  FileVersion version{Encoding::x3dClassic, 3, 0};
+  const std::string_view numbers = line.substr(std::min<size_t>(line.size(), 6));
+  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+  if (!line.starts_with("#X3D V") || numbers.size() < 3 || !isDigit(numbers[0]) ||
+      numbers[1] != '.' || !isDigit(numbers[2])) {
+    complaint = "the header does not name a version as in '#X3D V3.3 utf8'; read as X3D 3.0";
+    return version;
+  }
+  version.major = numbers[0] - '0';
+  version.minor = numbers[2] - '0';
+  if (!numbers.substr(3).starts_with(" utf8"))
+    complaint = "the header does not say utf8 after X3D's version; read as UTF-8";
+  if (version.major < 3 || version.major > 4) {
+    complaint = fmt::format("X3D {}.{} is not known; read as X3D {}", version.major, version.minor,
+                            version.major < 3 ? "3.0" : "4.0");
+    version.minor = 0;
+    version.major = version.major < 3 ? 3 : 4;
+  }
+  return version;
+}
+
+bool namesX3dClassic(std::string_view file) {
+  return file.ends_with(".x3dv") || file.ends_with(".x3dvz") || file.ends_with(".x3dv.gz");
+}
+
+} // namespace
+
+void Source::identify(const std::shared_ptr<const std::string>& file,
+                      Diagnostics& diagnostics) const {
+  setFileVersion(file, version(file, diagnostics));
+}
+
 // "#VRML V2.0 utf8 [optional comment] <line terminator>"
-void Source::checkHeader(const std::shared_ptr<const std::string>& file,
-                         Diagnostics& diagnostics) const {
+FileVersion Source::version(const std::shared_ptr<const std::string>& file,
+                            Diagnostics& diagnostics) const {
   constexpr std::string_view exact = "#VRML V2.0 utf8";
   const auto ends = [](std::string_view rest) {
     return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
@@ -236,7 +275,7 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
   };
   if (byteOrderMark_)
     warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
-  if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return;
+  if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return {};
   // Search the first lines with content: blank lines and other comments may precede the header.
   std::string_view rest = text_;
   for (int line = 1; line <= 10 && !rest.empty(); ++line) {
@@ -246,27 +285,37 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
       if (current.find("V1.0") != current.npos) {
         refuse(
             *file,
-            "this file is VRML 1.0; only VRML97 (#VRML V2.0 utf8) can be read. Convert it first, "
-            "for example with vrml1tovrml2",
+            "this file is VRML 1.0; only VRML97 (#VRML V2.0 utf8) and X3D ClassicVRML (#X3D V3.3 "
+            "utf8) can be read. Convert it first, for example with vrml1tovrml2",
             1);
       }
       if (current.find("2.0") != current.npos) {
-        return warn(
+        warn(
             fmt::format("the file does not begin with exactly '{}'; read as VRML97 anyway", exact));
+        return {};
       }
       refuse(*file,
              fmt::format("this file is not VRML97: expected '{}', found '{}'", exact,
                          current.substr(0, 60)),
              1);
     }
-    if (comment && (current.starts_with("#X3D") || current.starts_with("#Inventor")))
-      refuseOther(*file, rest);
+    if (comment && current.starts_with("#X3D")) {
+      std::string complaint;
+      const FileVersion found = x3dVersion(current, complaint);
+      if (!complaint.empty()) warn(complaint);
+      return found;
+    }
+    if (comment && current.starts_with("#Inventor")) refuseOther(*file, rest);
     if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
     rest.remove_prefix(std::min(rest.size(), current.size() + 1));
   }
   if (otherFormat(text_)) refuseOther(*file, text_);
-  if (looksLikeVrml(text_))
-    return warn(fmt::format("the header '{}' is missing; read as VRML97 anyway", exact));
+  if (looksLikeVrml(text_)) {
+    const bool x3d = namesX3dClassic(*file) || text_.starts_with("PROFILE");
+    warn(x3d ? "the header '#X3D V3.3 utf8' is missing; read as X3D 3.3 anyway"
+             : fmt::format("the header '{}' is missing; read as VRML97 anyway", exact));
+    return x3d ? FileVersion{Encoding::x3dClassic, 3, 3} : FileVersion();
+  }
   if (text_.empty()) refuse(*file, fmt::format("this file is empty: expected '{}'", exact));
   refuse(*file,
          fmt::format("this file is not a VRML97 world: expected it to begin with '{}'", exact), 1);
@@ -274,24 +323,36 @@ void Source::checkHeader(const std::shared_ptr<const std::string>& file,
 
 namespace {
 
-// The deleter of a file's name. It stores the file's comments and its depth, so that they live as
-// long as the name, which all nodes of the file share.
+// The deleter of a file's name. It stores the file's comments, depth and version, so that they live
+// as long as the name, which all nodes of the file share.
 struct NameDeleter {
   std::string comments;
   uint64_t depth = 0;
+  FileVersion version{};
   void operator()(const std::string* name) const { delete name; }
 };
 
 } // namespace
 
 std::shared_ptr<const std::string> fileName(const std::string& name, uint64_t depth) {
-  return {new std::string(name), NameDeleter{{}, depth}};
+  return {new std::string(name), NameDeleter{{}, depth, {}}};
 }
 
 uint64_t fileDepth(const std::shared_ptr<const std::string>& file) {
   const NameDeleter* known = std::get_deleter<NameDeleter>(file);
   return known ? known->depth : 0;
 }
+
+FileVersion fileVersion(const std::shared_ptr<const std::string>& file) {
+  const NameDeleter* known = std::get_deleter<NameDeleter>(file);
+  return known ? known->version : FileVersion();
+}
+
+void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVersion& version) {
+  if (NameDeleter* known = std::get_deleter<NameDeleter>(file)) known->version = version;
+}
+
+FileVersion versionOf(const Node& node) { return fileVersion(node.source.file); }
 
 std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name,
                                                             uint64_t depth) const {
@@ -306,7 +367,7 @@ std::shared_ptr<const std::string> Source::nameWithComments(const std::string& n
       comments += std::string(line.substr(begin + 1, most - comments.size())) + "\n";
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
   }
-  return {new std::string(name), NameDeleter{std::move(comments), depth}};
+  return {new std::string(name), NameDeleter{std::move(comments), depth, {}}};
 }
 
 std::string_view openingComments(const World& world) {

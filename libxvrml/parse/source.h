@@ -43,6 +43,10 @@ class TextBuffer {
 std::shared_ptr<const std::string> fileName(const std::string& name, uint64_t depth);
 // Returns that depth; 0 for other names and for null.
 uint64_t fileDepth(const std::shared_ptr<const std::string>& file);
+// Return and set the version of the standard that the file of this name follows; VRML97 for other
+// names and for null.
+FileVersion fileVersion(const std::shared_ptr<const std::string>& file);
+void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVersion& version);
 
 class Source {
  public:
@@ -65,12 +69,15 @@ class Source {
 
   // Returns the text after a byte-order mark.
   std::string_view text() const { return text_; }
-  // Throws LoadError if this is no VRML97 world. Warns if its header is not exact (clause 4.2.2,
-  // Annex A.2).
-  void checkHeader(const std::shared_ptr<const std::string>& file, Diagnostics& diagnostics) const;
+  // Finds out what the file is: by its content or, where that says nothing, by its suffix. The name
+  // `file` then carries the version (fileVersion). Throws LoadError if this is no world that can be
+  // read. Warns if its header is not exact (ISO/IEC 14772-1 4.2.2, ISO/IEC 19776-2 4.3.2.2).
+  void identify(const std::shared_ptr<const std::string>& file, Diagnostics& diagnostics) const;
 
  private:
   explicit Source(const BudgetPtr& budget) : buffer_(budget) {}
+  FileVersion version(const std::shared_ptr<const std::string>& file,
+                      Diagnostics& diagnostics) const;
   void unpack(const std::string& name, const Limits& limits, const BudgetPtr& budget);
 
   std::string_view text_;

@@ -1,13 +1,25 @@
-// x3d.h: Recognises the common nodes and fields of X3D (ISO/IEC 19775-1) that VRML97 does not have,
-// for messages. Pure functions, any thread.
+// x3d.h: the nodes and fields of X3D (ISO/IEC 19775-1) that VRML97 does not have, for messages, and
+// those that it spells otherwise. Pure functions, any thread.
 #pragma once
 
 #include <string_view>
 
+#include "xvrml/node.h"
+
 namespace xvrml {
+
+// Returns the word of ISO/IEC 19775-1 for an access.
+constexpr std::string_view x3dAccessName(Access access) {
+  constexpr std::string_view names[] = {"initializeOnly", "inputOutput", "inputOnly", "outputOnly"};
+  return names[static_cast<size_t>(access)];
+}
 
 bool isX3dNode(std::string_view type);
 // Returns whether X3D adds this field to a node type of VRML97.
 bool isX3dField(std::string_view type, std::string_view field);
+// Returns the name in VRML97 of a field or event of a node of X3D: "choice" for a Switch's
+// "children", "set_choice" for its "set_children". Other names are returned as
+// they are.
+std::string_view ownName(std::string_view type, std::string_view name);
 
 } // namespace xvrml

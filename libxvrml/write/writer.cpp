@@ -130,6 +130,8 @@ class Writer {
       if (first.starts_with(header)) text += first.substr(header.size());
       comments.remove_prefix(std::min(first.size() + 1, comments.size()));
     }
+    if (comments.starts_with("X3D V")) // the text is VRML97 now
+      comments.remove_prefix(std::min(comments.find('\n'), comments.size() - 1) + 1);
     for (text += '\n'; !comments.empty();) {
       const std::string_view one = comments.substr(0, comments.find('\n'));
       text += fmt::format("#{}\n", one);

@@ -17,7 +17,8 @@ using namespace xvrml;
 std::vector<std::string> filesOf(const std::string& folder) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".wrl") paths.push_back(entry.path().string());
+    const auto suffix = entry.path().extension();
+    if (suffix == ".wrl" || suffix == ".x3dv") paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());
   return paths;

@@ -225,10 +225,12 @@ TEST(VrmlLighting, LinearColoursDecodeWhatTheAuthorSaw) {
 }
 
 // Table 4.6: a colour texture replaces diffuseColor, a grey one multiplies it. X3D's rule always
-// multiplies.
+// multiplies; files of X3D follow it without being asked.
 TEST(VrmlLighting, ColourTexturesReplaceOrMultiply) {
-  const auto look = [](const char* image, const char* colors, bool multiplies) {
+  std::string header = "#VRML V2.0 utf8";
+  const auto look = [&](const char* image, const char* colors, bool multiplies) {
     SceneOptions options;
+    options.header = header;
     options.multiplyTextures = multiplies;
     return ahead(dark + "DirectionalLight { }" +
                      square(std::string("Appearance { material Material { diffuseColor 0.5 0.25 1 "
@@ -250,6 +252,8 @@ TEST(VrmlLighting, ColourTexturesReplaceOrMultiply) {
   const char* own = "color Color { color [ 1 0.5 0 ] } colorPerVertex FALSE";
   expect(look("1 1 3 0xFF6633", own, false), 1, 0.4f, 0.2f);
   expect(look("1 1 3 0xFF6633", own, true), 1, 0.2f, 0);
+  header = "#X3D V3.3 utf8";
+  expect(look("1 1 3 0xFF6633", "", false), 0.5f, 0.1f, 0.2f);
 }
 
 } // namespace

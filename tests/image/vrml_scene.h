@@ -23,6 +23,7 @@ struct SceneOptions {
   bool shadows = true, linearColor = false, multiplyTextures = false;
   MapOptions::Headlight headlight = MapOptions::Headlight::automatic;
   uint32_t channels = RT_RGBA;
+  std::string header = "#VRML V2.0 utf8";
 };
 
 class Scene {
@@ -30,7 +31,7 @@ class Scene {
   explicit Scene(const std::string& body, const SceneOptions& options = {}) : options_(options) {
     context_ = rtNewContext(options.config.c_str());
     if (!context_) ADD_FAILURE() << "no context: " << (rtGetError(), rtGetErrorMessage());
-    world = loadWorldFromMemory("#VRML V2.0 utf8\n" + body, "scene.wrl");
+    world = loadWorldFromMemory(options.header + "\n" + body, "scene.wrl");
     MapOptions map;
     map.linearColor = options.linearColor;
     map.headlight = options.headlight;

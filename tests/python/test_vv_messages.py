@@ -63,7 +63,6 @@ def test_usage(vv, arguments, word):
 
 
 @pytest.mark.parametrize("content, name", [
-    (b"#X3D V3.3 utf8\nPROFILE Interchange\n", "X3D world (classic encoding)"),
     (b"<?xml version='1.0'?>\n<X3D profile='Full'><Scene/></X3D>", "X3D world (XML encoding)"),
     (b"solid part\n facet normal 0 0 1\n", "STL mesh"),
     (b"a part".ljust(80) + (2).to_bytes(4, "little") + bytes(100), "STL mesh"),
@@ -80,7 +79,7 @@ def test_usage(vv, arguments, word):
 def test_files_of_other_formats_are_named(vv, content, name):
     (vv.folder / "other.wrl").write_bytes(content)
     done = vv("other.wrl", "-o", "x.png", *SMALL)
-    assert done.returncode == 3 and name in done.talk and "not a VRML97 world" in done.talk, done.talk
+    assert done.returncode == 3 and name in done.talk and "not a world in VRML97 or X3D" in done.talk, done.talk
 
 
 def test_folders_that_do_not_exist(vv):

@@ -292,6 +292,35 @@ def test_info(vv):
     assert json.loads(vv("nothing.wrl", "--info", "--json").text)["bounds"] is None
 
 
+def test_info_of_the_head_of_an_x3d_file(vv):
+    assert "file        VRML97 2.0\n" in vv("box.wrl", "--info").text
+    vv.write(
+        "head.x3dv", '#X3D V3.3 utf8\nPROFILE Interchange\nCOMPONENT Text:1\n'
+        'UNIT mass gram 0.001\nMETA "title" "a box"\nShape { geometry Box { } }\n')
+    text = vv("head.x3dv", "--info").text
+    for line in ("file        X3D ClassicVRML 3.3, profile Interchange", "component   Text:1",
+                 "unit        mass gram 0.001", "meta        title: a box"):
+        assert line + "\n" in text, text
+    assert json.loads(vv("head.x3dv", "--info", "--json").text)["file"] == {
+        "encoding": "X3D ClassicVRML",
+        "version": "3.3",
+        "profile": "Interchange",
+        "components": [{
+            "name": "Text",
+            "level": 1
+        }],
+        "units": [{
+            "category": "mass",
+            "name": "gram",
+            "factor": 0.001
+        }],
+        "meta": [{
+            "name": "title",
+            "content": "a box"
+        }]
+    }
+
+
 def test_write_round_trip(vv):
     done = vv("box.wrl", "--write", "copy.wrl")
     assert done.returncode == 0, done.talk

@@ -165,4 +165,17 @@ WorldCounts countWorld(const World& world) {
   return counts;
 }
 
+std::string headText(const xvrml::FileHead& head) {
+  std::string text = fmt::format("file        {} {}.{}{}\n", encodingName(head.version.encoding),
+                                 head.version.major, head.version.minor,
+                                 head.profile.empty() ? "" : ", profile " + head.profile);
+  for (const auto& one : head.components)
+    text += fmt::format("component   {}:{}\n", one.name, one.level);
+  for (const auto& one : head.units)
+    text += fmt::format("unit        {} {} {}\n", one.category, one.name, one.factor);
+  for (const auto& one : head.meta)
+    text += fmt::format("meta        {}: {}\n", oneLine(one.name), oneLine(one.content));
+  return text;
+}
+
 } // namespace vv

@@ -38,5 +38,8 @@ void forEachNodeBelow(const xvrml::Node& node,
 // suffix; "none" without any url.
 std::string scriptProtocol(const std::vector<std::string>& urls);
 WorldCounts countWorld(const xvrml::World& world);
+// Returns how a file is written, and what the statements of an X3D file's head say: lines of
+// --info.
+std::string headText(const xvrml::FileHead& head);
 
 } // namespace vv

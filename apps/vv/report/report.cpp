@@ -429,6 +429,25 @@ std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, 
   return text;
 }
 
+namespace {
+
+Json headJson(const xvrml::FileHead& head) {
+  Json json = {{"encoding", encodingName(head.version.encoding)},
+               {"version", fmt::format("{}.{}", head.version.major, head.version.minor)},
+               {"profile", head.profile}};
+  json["components"] = json["units"] = json["meta"] = Json::array();
+  for (const auto& one : head.components)
+    json["components"].push_back({{"name", one.name}, {"level", one.level}});
+  for (const auto& one : head.units)
+    json["units"].push_back(
+        {{"category", one.category}, {"name", one.name}, {"factor", one.factor}});
+  for (const auto& one : head.meta)
+    json["meta"].push_back({{"name", one.name}, {"content", one.content}});
+  return json;
+}
+
+} // namespace
+
 std::string describeWorld(const xvrml::World& world,
                           const std::vector<xvrml::ViewpointInfo>& viewpoints,
                           const xvrml::Bounds& bounds, const UpAxis& up,
@@ -436,6 +455,7 @@ std::string describeWorld(const xvrml::World& world,
   const WorldCounts counts = countWorld(world);
   if (json) {
     Json all = {{"path", world.path},
+                {"file", headJson(world.head)},
                 {"nodes", world.nodeCount},
                 {"types", Json(counts.types)},
                 {"routes", counts.routes}};
@@ -456,9 +476,9 @@ std::string describeWorld(const xvrml::World& world,
     all["warnings"] = world.diagnostics.warnings();
     return dump(all);
   }
-  std::string text = fmt::format(
-      "world       {}\nnodes       {}\nroutes      {}\nprototypes  {}\nviewpoints  {}\n",
-      world.path, world.nodeCount, counts.routes, counts.prototypes.size(), viewpoints.size());
+  std::string text = fmt::format("world       {}\n{}", world.path, headText(world.head));
+  text += fmt::format("nodes       {}\nroutes      {}\nprototypes  {}\nviewpoints  {}\n",
+                      world.nodeCount, counts.routes, counts.prototypes.size(), viewpoints.size());
   if (bounds.empty)
     text += "bounds      nothing to see\n";
   else

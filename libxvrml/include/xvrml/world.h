@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "xvrml/diagnostics.h"
+#include "xvrml/file_head.h"
 #include "xvrml/limits.h"
 #include "xvrml/node.h"
 
@@ -164,7 +165,12 @@ class World {
   uint64_t nodeCount = 0; // nodes made, expansions included
   // Scripts and prototype instances whose fields may hold a node that they are part of.
   std::vector<NodeRef> cyclic;
+  FileHead head; // of the world's own file
 };
+
+// Returns the version of the standard that the node's file follows; VRML97 for a node that is in no
+// file.
+FileVersion versionOf(const Node& node);
 
 // Thrown if nothing of a file can be used: missing, unreadable, not VRML97, or VRML 1.0.
 struct LoadError {

@@ -212,9 +212,12 @@ void Surfaces::makeSurface(Entry& entry) {
   }
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
+  // In X3D a colour texture always multiplies diffuseColor (ISO/IEC 19775-1 17.2.2.3).
+  const bool multiplies =
+      multiplyTextures || (entry.appearance && versionOf(*entry.appearance).isX3d());
   const bool first = entry.own == 0 && !entry.shared;
   if (entry.shared || (first && mayShare(entry))) {
-    const std::string key = keyOf(parts, texture, linear_, multiplyTextures);
+    const std::string key = keyOf(parts, texture, linear_, multiplies);
     if (entry.shared && *entry.shared->key == key) {
       entry.surface.shader = entry.shared->shader;
       return;
@@ -241,7 +244,7 @@ void Surfaces::makeSurface(Entry& entry) {
   const bool fallback = parts.shader != nullptr;
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
-  if (multiplyTextures && shader.fresh()) shader.integer("multiplyTexture", 1);
+  if (multiplies && shader.fresh()) shader.integer("multiplyTexture", 1);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
     shader.matrix("textureTransform",
                   textureMatrix(t->center, t->rotation, t->scale, t->translation));

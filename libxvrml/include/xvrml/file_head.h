@@ -1,0 +1,51 @@
+// file_head.h: what the head of a world's file says: how it is written, the version of the
+// standard, and the statements of X3D (ISO/IEC 19775-1 7.2.5). Plain values.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace xvrml {
+
+enum class Encoding : uint8_t { vrml97, x3dClassic };
+// Returns the name of an encoding as users call it.
+constexpr std::string_view encodingName(Encoding encoding) {
+  constexpr std::string_view names[] = {"VRML97", "X3D ClassicVRML"};
+  return names[static_cast<size_t>(encoding)];
+}
+
+// The encoding and the version of the standard that a file follows. VRML97 is version 2.0, X3D
+// begins with 3.0.
+struct FileVersion {
+  Encoding encoding = Encoding::vrml97;
+  int major = 2, minor = 0;
+  bool isX3d() const { return major >= 3; }
+  bool operator==(const FileVersion&) const = default;
+};
+
+struct FileHead {
+  // COMPONENT name:level
+  struct Component {
+    std::string name;
+    int32_t level = 1;
+  };
+  // META "name" "content"
+  struct Meta {
+    std::string name, content;
+  };
+  // UNIT category name factor: one unit is `factor` of the standard's own (4.3.6)
+  struct Unit {
+    std::string category, name;
+    double factor = 1;
+  };
+
+  FileVersion version;
+  std::string profile; // PROFILE; empty if the file has none
+  std::vector<Component> components;
+  std::vector<Meta> meta;
+  std::vector<Unit> units;
+};
+
+} // namespace xvrml

@@ -1,0 +1,68 @@
+// corpus_x3d.cpp: real files in X3D ClassicVRML by many authors (the corpus beside the repository,
+// or $OPENRT_CORPUS_X3D; skipped if there is none). None may be refused or silently empty.
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "xvrml/world.h"
+
+namespace {
+
+using namespace xvrml;
+
+// Returns the paths of the corpus's .x3dv files; empty if there is no corpus.
+std::vector<std::string> classicFiles() {
+  const char* given = std::getenv("OPENRT_CORPUS_X3D");
+  const std::string folder = given ? given : "../shared/corpus-x3d";
+  std::vector<std::string> paths;
+  std::ifstream table(folder + "/MANIFEST.tsv");
+  for (std::string line; std::getline(table, line);) {
+    std::istringstream columns(line);
+    std::string origin, path;
+    std::getline(columns, origin, '\t');
+    std::getline(columns, path, '\t');
+    if (path.ends_with(".x3dv")) paths.push_back(folder + '/' + origin + '/' + path);
+  }
+  return paths;
+}
+
+// Returns whether a file is in UTF-16, which X3D does not allow.
+bool isUtf16(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return file.get() == 0xff && file.get() == 0xfe;
+}
+
+bool hasNodes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(file), {}).find('{') != std::string::npos;
+}
+
+TEST(CorpusX3d, ClassicFilesAreReadAndSurviveWriting) {
+  const auto files = classicFiles();
+  if (files.empty()) GTEST_SKIP() << "no corpus of X3D files";
+  size_t clean = 0, withoutErrors = 0;
+  for (const std::string& path : files) {
+    if (isUtf16(path)) continue;
+    LoadOptions options;
+    options.loadInlines = false; // they may name files in encodings that are not read yet
+    std::unique_ptr<World> world;
+    ASSERT_NO_THROW(world = loadWorld(path, options)) << path;
+    const Diagnostics& said = world->diagnostics;
+    clean += said.list().empty();
+    withoutErrors += said.errors() == 0;
+    EXPECT_FALSE(hasNodes(path) && world->scope.roots.empty() && world->scope.prototypes.empty() &&
+                 said.list().empty())
+        << path << " is silently empty";
+    const std::string text = writeWorld(*world);
+    const auto again = loadWorldFromMemory(text, path, options);
+    EXPECT_EQ(writeWorld(*again), text) << path;
+  }
+  RecordProperty("files", static_cast<int>(files.size()));
+  RecordProperty("clean", static_cast<int>(clean));
+  RecordProperty("without_errors", static_cast<int>(withoutErrors));
+  EXPECT_GE(withoutErrors * 4, files.size() * 3);
+}
+
+} // namespace

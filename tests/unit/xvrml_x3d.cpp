@@ -1,0 +1,135 @@
+// xvrml_x3d.cpp: files in X3D ClassicVRML: how they are found out, what their head says, and the
+// messages about what X3D has and this library lacks.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "xvrml/nodes.h"
+#include "xvrml/world.h"
+
+namespace {
+
+using namespace xvrml;
+using Messages = std::vector<std::string>;
+
+std::unique_ptr<World> load(std::string text, const std::string& name = "test.x3dv") {
+  return loadWorldFromMemory(text, name);
+}
+
+Messages messagesOf(const World& world) {
+  Messages all;
+  for (const Diagnostic& one : world.diagnostics.list())
+    all.push_back(one.text().substr(0, one.text().find('\n')));
+  return all;
+}
+
+TEST(X3d, ContentDecidesBeforeTheSuffix) {
+  EXPECT_EQ(load("#X3D V3.2 utf8\nGroup { }", "a.wrl")->head.version,
+            (FileVersion{Encoding::x3dClassic, 3, 2}));
+  EXPECT_EQ(load("#VRML V2.0 utf8\nGroup { }", "a.x3dv")->head.version, FileVersion());
+  const auto headless = load("Group { }", "a.x3dv");
+  EXPECT_EQ(headless->head.version, (FileVersion{Encoding::x3dClassic, 3, 3}));
+  EXPECT_EQ(messagesOf(*headless), Messages{"a.x3dv:1:1: warning: the header '#X3D V3.3 utf8' is "
+                                            "missing; read as X3D 3.3 anyway"});
+  EXPECT_TRUE(load("PROFILE Core\nGroup { }", "a.wrl")->head.version.isX3d());
+  EXPECT_FALSE(load("Group { }", "a.wrl")->head.version.isX3d());
+}
+
+TEST(X3d, HeadersThatDiffer) {
+  for (const char* good : {"#X3D V3.0 utf8\n", "#X3D V3.3 utf8 Titania V1.2\r\n", "#X3D V4.0 utf8",
+                           "\n\n#X3D V3.1 utf8\n"}) {
+    const auto world = load(good);
+    EXPECT_EQ(messagesOf(*world), Messages()) << good;
+    EXPECT_TRUE(world->head.version.isX3d());
+  }
+  for (const char* odd : {"#X3D\n", "#X3D V\n", "#X3D V3\n", "#X3D V3.3 iso8859\n",
+                          "#X3D V9.0 utf8\n", "#X3D V2.0 utf8\n", "#X3Dx"}) {
+    const auto world = load(odd);
+    EXPECT_EQ(world->diagnostics.warnings(), 1u) << odd;
+    EXPECT_TRUE(world->head.version.isX3d()) << odd;
+    EXPECT_LE(world->head.version.major, 4);
+  }
+}
+
+TEST(X3d, TheHeadIsKept) {
+  const auto world =
+      load("#X3D V3.3 utf8\nPROFILE Interchange\nCOMPONENT Text:1\nCOMPONENT Shape : 3\n"
+           "UNIT length foot 0.3048\nMETA \"a\" \"b\"\nMETA \"a\" \"c\"\nGroup { }");
+  const FileHead& head = world->head;
+  EXPECT_EQ(head.profile, "Interchange");
+  ASSERT_EQ(head.components.size(), 2u);
+  EXPECT_EQ(head.components[0].name, "Text");
+  EXPECT_EQ(head.components[1].name, "Shape");
+  EXPECT_EQ(head.components[1].level, 3);
+  ASSERT_EQ(head.units.size(), 1u);
+  EXPECT_EQ(head.units[0].factor, 0.3048);
+  ASSERT_EQ(head.meta.size(), 2u);
+  EXPECT_EQ(head.meta[1].content, "c");
+  EXPECT_EQ(messagesOf(*world),
+            Messages{"test.x3dv:5:6: warning: units are not applied: numbers in "
+                     "'foot' are taken as metres"});
+  EXPECT_TRUE(versionOf(*world->scope.roots[0]).isX3d());
+}
+
+TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
+  const auto world =
+      load("#X3D V3.3 utf8\nStringSensor { }\nDEF L LoadSensor { children Inline { } }\n"
+           "LoadSensor { }\nViewpoint { centerOfRotation 0 0 0 position 1 2 3 }\n"
+           "Viewpoint { centerOfRotation 0 0 0 metadata MetadataString { } }\n"
+           "ROUTE L.isActive TO L.enabled");
+  EXPECT_EQ(
+      messagesOf(*world),
+      (Messages{"test.x3dv:2:1: warning: nodes of type 'StringSensor' are not supported: they "
+                "are left out here and below, with all that they hold",
+                "test.x3dv:3:7: warning: nodes of type 'LoadSensor' are not supported: they are "
+                "left out here and below, with all that they hold",
+                "test.x3dv:5:13: warning: field 'centerOfRotation' of Viewpoint is not "
+                "supported: it is left out here and below",
+                "test.x3dv:6:36: warning: field 'metadata' of Viewpoint is not supported: it is "
+                "left out here and below",
+                "test.x3dv:7:7: warning: 'L' was left out above",
+                "test.x3dv:7:21: warning: 'L' was left out above"}));
+  ASSERT_EQ(world->scope.roots.size(), 2u);
+  EXPECT_EQ(nodeCast<nodes::Viewpoint>(world->scope.roots[0])->position, (Vec3f{1, 2, 3}));
+}
+
+TEST(X3d, FieldTypesThatCannotBeHeldAreReadOver) {
+  const auto world =
+      load("#X3D V3.3 utf8\nPROTO P [ initializeOnly SFVec4f v 1 2 3 4\n"
+           "  inputOutput MFDouble d [ 1 2 ] inputOnly SFColorRGBA c\n"
+           "  initializeOnly MFBool b [ TRUE FALSE ] initializeOnly SFFloat f 1 ] { Group { } }\n"
+           "P { f 2 }");
+  EXPECT_EQ(world->diagnostics.errors(), 0u) << messagesOf(*world)[0];
+  EXPECT_EQ(world->diagnostics.warnings(), 4u);
+  ASSERT_EQ(world->scope.prototypes.size(), 1u);
+  EXPECT_EQ(world->scope.prototypes[0]->type->fields.size(), 1u);
+  EXPECT_EQ(world->scope.roots.size(), 1u);
+}
+
+TEST(X3d, ImportedNamesAreLeftOutWithAMessage) {
+  const auto world =
+      load("#X3D V3.3 utf8\nDEF I Inline { }\nIMPORT I.Arm AS A\nDEF T Transform { }\n"
+           "ROUTE A.translation TO T.translation");
+  EXPECT_EQ(
+      messagesOf(*world),
+      (Messages{"test.x3dv:3:1: warning: IMPORT is not supported: what refers to 'A' is left out",
+                "test.x3dv:5:7: warning: 'A' was left out above"}));
+}
+
+// VRML97 keeps its own rules: none of X3D's words is accepted there.
+TEST(X3d, NothingOfItIsReadInVrml97) {
+  for (const char* text :
+       {"Switch { children Group { } }", "PROTO P [ inputOnly SFBool b ] { Group { } }",
+        "StringSensor { }", "DEF S Script { inputOnly SFBool b }"})
+    EXPECT_GT(load(std::string("#VRML V2.0 utf8\n") + text)->diagnostics.errors(), 0u) << text;
+}
+
+// A written world is VRML97, whatever it was read from.
+TEST(X3d, IsWrittenAsVrml97) {
+  const auto world = load("#X3D V3.3 utf8 by hand\n# a comment\nSwitch { children Group { } }");
+  EXPECT_TRUE(writeWorld(*world).starts_with("#VRML V2.0 utf8\n# a comment\n"))
+      << writeWorld(*world);
+  EXPECT_EQ(load(writeWorld(*world))->diagnostics.list().size(), 0u);
+}
+
+} // namespace
