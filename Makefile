@@ -95,10 +95,11 @@ endif
 
 ## make bench-transports  error over CPU time of path, light and auto on eight worlds (CSV, curves) into build/bench/transports;
 ##                   FULL=1 for larger pictures, which needs an idle machine (6 to 8 minutes); DOCS=1 and WORLDS as for bench-render
+bench-transports: WORLDS ?= cornell,headlight,interior,board,caustic,caustic_even,glossy,dusk
 bench-transports:
 	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders
 	@$(PYTHON) tools/bench_render.py --out build/bench/transports --transports light,path,auto \
-	  --worlds $(or $(WORLDS),cornell,headlight,interior,board,caustic,caustic_even,glossy,dusk) --seeds 2 \
+	  --worlds $(WORLDS) --seeds 2 \
 	  $(if $(FULL),--size 160x120 --reference 40 --picture 2,--size 64x48 --reference 8 --picture .5) \
 	  $(if $(DOCS),--docs)
 
