@@ -319,6 +319,29 @@ TEST_P(Scripts, BadPluginsAreRefusedWithTheReason) {
   EXPECT_EQ(messages.size(), 9u); // and that there is no engine
 }
 
+// What was built against an earlier minor version loads, and is not told of types that came later.
+TEST_P(Scripts, AnEngineOfAnEarlierVersionSeesTheTypesItKnows) {
+  BrowserOptions options;
+  options.scriptPath = XVRML_OLD_SCRIPTS;
+  const std::string world = "DEF S Script { field SFVec3f u 1 2 3 field SFVec4f v 1 2 3 4 eventIn "
+                            "MFBool flags eventIn SFBool go url \"test:initialize: print alive "
+                            "u\\ngo: print gone\" }";
+  Scripted r(world, options);
+  EXPECT_EQ(r.printed(), Log{"alive u"});
+  r.set("S", "flags", MFBool{true});
+  r.set("S", "go", true);
+  EXPECT_EQ(r.printed(), Log{"gone"});
+  const auto warning = [](const char* type, const char* field) {
+    return fmt::format(
+        "1: Script S: the engine test was built for script ABI 1.1, which has no {}: it "
+        "does not see {}",
+        type, field);
+  };
+  EXPECT_EQ(r.messages(), (Log{warning("SFVec4f", "v"), warning("MFBool", "flags")}));
+  Scripted now(world);
+  EXPECT_EQ(now.messages(), Log{});
+}
+
 TEST_P(Scripts, AProgramComesFromADataUrl) {
   Scripted r("Script { url \"data:text/x-test,initialize:%20print%20plain\" } Script { url "
              "\"data:Text/X-Test;base64,aW5pdGlhbGl6ZTogcHJpbnQgYmFzZTY0\" } Script { url [ "
