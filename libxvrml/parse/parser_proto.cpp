@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "base/x3d.h"
 #include "parse/parser.h"
-#include "parse/x3d.h"
 
 namespace xvrml {
 

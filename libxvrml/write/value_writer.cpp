@@ -113,4 +113,18 @@ void writeValue(std::string& out, FieldType type, const void* storage, size_t in
   });
 }
 
+void writeXmlValue(std::string& out, FieldType type, const void* storage, size_t indent) {
+  if (type == FieldType::SFBool) {
+    out += *static_cast<const bool*>(storage) ? "true" : "false";
+  } else if (type == FieldType::SFString) {
+    out += *static_cast<const std::string*>(storage);
+  } else {
+    const size_t begin = out.size();
+    writeValue(out, type, storage, indent);
+    if (!isMultiple(type)) return;
+    out.erase(begin, 2); // "[ " and " ]"
+    out.resize(std::max(begin, out.size() - 2));
+  }
+}
+
 } // namespace xvrml
