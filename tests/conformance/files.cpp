@@ -37,6 +37,15 @@ std::string messages(const World& world) {
   return text;
 }
 
+// Leaves out the warnings that other browsers of VRML97 do not know a node or a field.
+std::string messagesButOfX3d(const World& world) {
+  std::string text;
+  for (const Diagnostic& diagnostic : world.diagnostics.list())
+    if (diagnostic.message.find("other browsers of VRML97 do not know it") == std::string::npos)
+      text += diagnostic.text() + '\n';
+  return text;
+}
+
 class Good : public testing::TestWithParam<std::string> {};
 class Bad : public testing::TestWithParam<std::string> {};
 
@@ -45,7 +54,9 @@ TEST_P(Good, LoadsSilentlyAndRoundTrips) {
   EXPECT_EQ(messages(*world), "");
   const std::string text = writeWorld(*world);
   const auto again = loadWorldFromMemory(text, GetParam());
-  EXPECT_EQ(messages(*again), "") << text;
+  // What X3D adds to VRML97 is reported when it is read from the VRML97 that is written.
+  EXPECT_EQ(GetParam().ends_with(".x3dv") ? messagesButOfX3d(*again) : messages(*again), "")
+      << text;
   std::string difference;
   EXPECT_TRUE(equalScopes(world->scope, again->scope, &difference)) << difference << '\n' << text;
   EXPECT_EQ(writeWorld(*again), text);
