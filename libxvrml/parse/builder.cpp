@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include "base/rotation.h"
+#include "base/x3d.h"
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
 #include "graph/node_kinds.h"
 #include "graph/range.h"
 #include "nearest.h"
-#include "parse/x3d.h"
 
 namespace xvrml {
 

@@ -2,9 +2,9 @@
 // (ISO/IEC 19775-1).
 #include <fmt/format.h>
 
+#include "base/x3d.h"
 #include "nearest.h"
 #include "parse/builder.h"
-#include "parse/x3d.h"
 
 namespace xvrml {
 
