@@ -68,8 +68,9 @@ class Reader {
   }
 
  private:
-  // stanza ::= "abstract" name [ ":" { name } ] string [ "{" { field } "}" ]
-  //          | name ":" name { name } "{" [ "clause" number ] string { field } "}"
+  // stanza ::= "abstract" name [ ":" { name } ] string [ "container" name ] [ "{" { field } "}" ]
+  //          | name ":" name { name } "{" [ "clause" number ] [ "container" name ] string
+  //            { field } "}"
   void readStanza() {
     TypeSpec type;
     type.component = component_.name;
@@ -83,7 +84,10 @@ class Reader {
       fail(lexer_.peek(), fmt::format("expected : and the abstract types of {}, found {}",
                                       type.name, describe(lexer_.peek())));
     }
-    if (type.isAbstract) type.text = readText("what the abstract type stands for");
+    if (type.isAbstract) {
+      type.text = readText("what the abstract type stands for");
+      readContainer(type);
+    }
     if (!type.isAbstract || lexer_.peek().is(TokenKind::braceOpen)) readBody(type);
     component_.types.push_back(std::move(type));
   }
@@ -93,11 +97,17 @@ class Reader {
     if (!type.isAbstract) {
       if (acceptWord("clause"))
         type.clause = take(TokenKind::number, "the number of a clause").text;
+      readContainer(type);
       type.text = readText("what the node is");
     }
     while (!lexer_.peek().is(TokenKind::braceClose))
       type.fields.push_back(readField(type.isAbstract));
     take();
+  }
+
+  void readContainer(TypeSpec& type) {
+    SourcePosition source;
+    if (acceptWord("container")) readName(type.container, source, "the name of a field");
   }
 
   // field ::= access type name [ value ] [ "#" range ] { attribute }

@@ -4,6 +4,7 @@
 
 #include "nearest.h"
 #include "parse/builder.h"
+#include "parse/source.h"
 #include "parse/x3d.h"
 
 namespace xvrml {
@@ -47,6 +48,12 @@ void Builder::reportUnknownNode(const Name& type) {
   locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
                                       ofX3d ? " (it is X3D's)" : "",
                                       nearest::suggestion(type.text, nodeTypes())));
+}
+
+void Builder::version(int major, int minor) {
+  file_.head.version.major = major;
+  file_.head.version.minor = minor;
+  setFileVersion(locator_.file(), file_.head.version);
 }
 
 void Builder::profile(const Name& name) {
