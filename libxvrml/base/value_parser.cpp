@@ -12,49 +12,10 @@
 namespace xvrml {
 namespace {
 
-// The number of components of a tuple, and the field type that messages name.
-template <class T> struct Tuple;
-template <> struct Tuple<float> {
-  static constexpr int size = 1;
-  static constexpr auto type = FieldType::SFFloat;
-};
-template <> struct Tuple<double> {
-  static constexpr int size = 1;
-  static constexpr auto type = FieldType::SFTime;
-};
-template <> struct Tuple<int32_t> {
-  static constexpr int size = 1;
-  static constexpr auto type = FieldType::SFInt32;
-};
-template <> struct Tuple<Vec2f> {
-  static constexpr int size = 2;
-  static constexpr auto type = FieldType::SFVec2f;
-};
-template <> struct Tuple<Vec3f> {
-  static constexpr int size = 3;
-  static constexpr auto type = FieldType::SFVec3f;
-};
-template <> struct Tuple<Color> {
-  static constexpr int size = 3;
-  static constexpr auto type = FieldType::SFColor;
-};
-template <> struct Tuple<Rotation> {
-  static constexpr int size = 4;
-  static constexpr auto type = FieldType::SFRotation;
-};
-
-template <class T>
-concept HasTuple = requires {
-  Tuple<T>::size;
-};
-
-template <class T> auto* numbers(T& value) {
-  if constexpr (Tuple<T>::size == 1) {
-    return &value;
-  } else {
-    static_assert(sizeof(T) == Tuple<T>::size * sizeof(float));
-    return reinterpret_cast<float*>(&value);
-  }
+// Whether a value of this type is one number.
+bool isWhole(FieldType type) {
+  return type == FieldType::SFFloat || type == FieldType::SFInt32 || type == FieldType::SFTime ||
+         type == FieldType::SFDouble;
 }
 
 inline bool endsNumber(const char* p, const char* end) {
@@ -108,22 +69,20 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
       return true;
     }
   }
-  const bool whole = isMultiple(type) || type == FieldType::SFFloat || type == FieldType::SFInt32 ||
-                     type == FieldType::SFTime;
   return failFound(found, fmt::format("a{} {} of {}", std::is_integral_v<Scalar> ? "n" : "",
                                       std::is_integral_v<Scalar> ? "integer"
-                                      : whole                    ? "number"
+                                      : isWhole(type)            ? "number"
                                                                  : "component",
                                       name));
 }
 
-// SFFloat, SFInt32, SFTime, SFVec2f, SFVec3f, SFColor, SFRotation: one to four numbers.
-template <class T> bool ValueParser::single(T& out) {
+// One or several numbers.
+template <Numeric T> bool ValueParser::single(T& out) {
   const char* p = lexer_.cursor();
-  auto* components = numbers(out);
-  for (int i = 0; i < Tuple<T>::size; ++i) {
+  auto* components = numbersOf(out);
+  for (int i = 0; i < numberCount<T>; ++i) {
     p = lexer_.skipSpace(p);
-    if (!scalar(p, components[i], Tuple<T>::type)) return false;
+    if (!scalar(p, components[i], fieldTypeOf<T>)) return false;
   }
   lexer_.seek(p);
   return true;
@@ -237,7 +196,12 @@ void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to)
 // mfXValue ::= sfXValue | [ ] | [ sfXValues ]
 template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   out.clear();
-  if (!lexer_.accept(TokenKind::bracketOpen)) return single(out.emplace_back());
+  if (!lexer_.accept(TokenKind::bracketOpen)) {
+    T value{};
+    if (!single(value)) return false;
+    out.push_back(std::move(value));
+    return true;
+  }
   if (!elements(out)) return false;
   if (lexer_.accept(TokenKind::bracketClose)) return true;
   if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
@@ -255,19 +219,19 @@ template <class T> bool ValueParser::elements(std::vector<T>& out) {
   for (; p < lexer_.end() && *p != ']' && *p != '}'; p = lexer_.skipSpace(p)) {
     T value{};
     const char* start = p;
-    if constexpr (HasTuple<T>) {
-      auto* components = numbers(value);
-      for (int i = 0; i < Tuple<T>::size; ++i) {
+    if constexpr (Numeric<T>) {
+      auto* components = numbersOf(value);
+      for (int i = 0; i < numberCount<T>; ++i) {
         if (i > 0) p = lexer_.skipSpace(p);
         if (i > 0 && (p < lexer_.end() ? *p == ']' : wholeText_)) {
           lexer_.seek(p);
           return fail(start,
                       fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
-                                  fieldTypeName(Tuple<T>::type), Tuple<T>::size));
+                                  fieldTypeName(fieldTypeOf<T>), numberCount<T>));
         }
-        if (!scalar(p, components[i], Tuple<T>::type)) return false;
+        if (!scalar(p, components[i], fieldTypeOf<T>)) return false;
       }
-      if (out.size() * Tuple<T>::size >= limits_.arrayElements) {
+      if (out.size() * numberCount<T> >= limits_.arrayElements) {
         lexer_.seek(p);
         return fail(start, fmt::format("more numbers in one field than limit arrayElements={}",
                                        limits_.arrayElements));

@@ -6,6 +6,7 @@
 #include "base/budget.h"
 #include "base/lexer.h"
 #include "xvrml/limits.h"
+#include "xvrml/numbers.h"
 
 namespace xvrml {
 
@@ -35,7 +36,7 @@ class ValueParser {
   bool single(std::string& out);
   bool single(Image& out);
   bool single(NodeRef& out);
-  template <class T> bool single(T& out); // numbers and tuples of numbers
+  template <Numeric T> bool single(T& out);
   template <class Scalar> bool scalar(const char*& p, Scalar& out, FieldType type);
   bool take(const char* at, uint64_t bytes);
   bool fail(const char* at, std::string message);

@@ -11,6 +11,7 @@
 #include "base/value_parser.h"
 #include "nodegen/model.h"
 #include "nodegen/range.h"
+#include "xvrml/numbers.h"
 
 namespace xvrml::nodegen {
 namespace {
@@ -119,7 +120,7 @@ class Reader {
                                describe(access)));
     const Token type = take();
     if (!fieldTypeFromName(type.text, field.type))
-      fail(type, fmt::format("expected a field type, SFBool to MFVec3f, found {}", describe(type)));
+      fail(type, fmt::format("expected a field type such as SFBool, found {}", describe(type)));
     readName(field.name, field.source, "the name of the field");
     if (!isAbstract && field.hasStorage()) readValue(field);
     readRange(field, isAbstract);
@@ -164,15 +165,9 @@ class Reader {
   }
 
   static bool takesRange(FieldType type) {
-    switch (type) {
-    case FieldType::SFBool:
-    case FieldType::SFImage:
-    case FieldType::SFNode:
-    case FieldType::SFString:
-    case FieldType::MFNode:
-    case FieldType::MFString: return false;
-    default: return true;
-    }
+    return std::visit(
+        [](const auto& value) { return Numeric<ElementOf<std::decay_t<decltype(value)>>>; },
+        defaultValue(type));
   }
 
   // attribute ::= "change" kind | "accepts" name { name } | "urls" | string

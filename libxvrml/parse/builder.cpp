@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/rotation.h"
+#include "base/x3d.h"
 #include "graph/expander.h"
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
@@ -14,7 +15,6 @@
 #include "graph/range.h"
 #include "nearest.h"
 #include "nodes/registry.h"
-#include "parse/x3d.h"
 
 namespace xvrml {
 

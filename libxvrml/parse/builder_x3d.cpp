@@ -2,10 +2,10 @@
 // (ISO/IEC 19775-1).
 #include <fmt/format.h>
 
+#include "base/x3d.h"
 #include "nearest.h"
 #include "parse/builder.h"
 #include "parse/source.h"
-#include "parse/x3d.h"
 
 namespace xvrml {
 

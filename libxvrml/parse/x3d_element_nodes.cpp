@@ -117,6 +117,7 @@ void X3dElements::appendSource(Frame& frame) {
   if (!values_.reserve(frame.sourceAt, frame.source.size())) return;
   const FieldTarget target = sink_.resumeField({"url", frame.sourceAt});
   if (!target.known) return;
+  frame.source.resize(trimmed(frame.source).size()); // its beginning has no blanks
   static_cast<MFString*>(target.storage)->push_back(std::move(frame.source));
   if (target.stringLines) target.stringLines->push_back(locator_.place(frame.sourceAt).line);
   sink_.closeField(true);

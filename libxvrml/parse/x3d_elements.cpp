@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "parse/parser.h"
-#include "parse/x3d.h"
+#include "base/x3d.h"
 
 namespace xvrml {
 namespace {

@@ -330,6 +330,19 @@ def test_write_round_trip(vv):
     assert vv.picture() == vv.picture(world="copy.wrl")
 
 
+def test_write_x3d(vv):
+    done = vv("box.wrl", "--write", "copy.x3dv")
+    assert done.returncode == 0, done.talk
+    text = (vv.folder / "copy.x3dv").read_bytes()
+    assert text.startswith(b"#X3D V3.3 utf8\n")
+    assert vv("box.wrl", "--write", "x3dv:-").stdout == text
+    assert vv("copy.x3dv", "--write", "x3dv:again").returncode == 0
+    assert (vv.folder / "again").read_bytes() == text
+    assert vv.picture() == vv.picture(world="copy.x3dv")
+    assert b"<X3D profile='Immersive' version='3.3'>" in vv("box.wrl", "--write", "x3d:-").stdout
+    assert vv("box.wrl", "--write", "x3d:").returncode == 2
+
+
 def test_recording(vv):
     assert vv("box.wrl", "-o", "a.png", "--record", "scene.ort", *SMALL).returncode == 0
     assert (vv.folder / "scene.ort").stat().st_size > 0

@@ -7,6 +7,7 @@
 #include <set>
 
 #include <xvrml/nodes.h>
+#include <xvrml/numbers.h>
 
 namespace xvrml {
 namespace {
@@ -315,8 +316,9 @@ struct Maker {
   int seed;
   float number(int i = 0) const { return 100.5f + float(seed) + 0.125f * float(i); }
   void operator()(SFBool& v) const { v = seed % 2 == 0; }
-  void operator()(SFColor& v) const { v = {number(), number(1), number(2)}; }
-  void operator()(SFFloat& v) const { v = number(); }
+  template <Numeric T> void operator()(T& v) const {
+    for (int i = 0; i < numberCount<T>; ++i) numbersOf(v)[i] = number(i);
+  }
   void operator()(SFImage& v) const { v = {2, 1, 1, {uint8_t(seed), 7}}; }
   void operator()(SFInt32& v) const { v = 1000 + seed; }
   void operator()(SFNode& v) const { v = NodeRef(new nodes::Group); }
@@ -326,12 +328,12 @@ struct Maker {
   void operator()(SFString& v) const {
     v = "a string too long for a short one " + std::to_string(seed);
   }
-  void operator()(SFTime& v) const { v = 1e9 + seed; }
-  void operator()(SFVec2f& v) const { v = {number(), number(1)}; }
-  void operator()(SFVec3f& v) const { v = {number(), number(1), number(2)}; }
   template <class T> void operator()(std::vector<T>& v) const {
-    v.resize(2);
-    for (T& value : v) (*this)(value);
+    for (int i = 0; i < 2; ++i) {
+      T value{};
+      (*this)(value);
+      v.push_back(value);
+    }
   }
 };
 

@@ -93,19 +93,6 @@ TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
   EXPECT_EQ(nodeCast<nodes::Viewpoint>(world->scope.roots[0])->position, (Vec3f{1, 2, 3}));
 }
 
-TEST(X3d, FieldTypesThatCannotBeHeldAreReadOver) {
-  const auto world =
-      load("#X3D V3.3 utf8\nPROTO P [ initializeOnly SFVec4f v 1 2 3 4\n"
-           "  inputOutput MFDouble d [ 1 2 ] inputOnly SFColorRGBA c\n"
-           "  initializeOnly MFBool b [ TRUE FALSE ] initializeOnly SFFloat f 1 ] { Group { } }\n"
-           "P { f 2 }");
-  EXPECT_EQ(world->diagnostics.errors(), 0u) << messagesOf(*world)[0];
-  EXPECT_EQ(world->diagnostics.warnings(), 4u);
-  ASSERT_EQ(world->scope.prototypes.size(), 1u);
-  EXPECT_EQ(world->scope.prototypes[0]->type->fields.size(), 1u);
-  EXPECT_EQ(world->scope.roots.size(), 1u);
-}
-
 TEST(X3d, ImportedNamesAreLeftOutWithAMessage) {
   const auto world =
       load("#X3D V3.3 utf8\nDEF I Inline { }\nIMPORT I.Arm AS A\nDEF T Transform { }\n"

@@ -312,7 +312,7 @@ TEST_P(Scripts, BadPluginsAreRefusedWithTheReason) {
   EXPECT_TRUE(told("small_symbol", "its xsPlugin has 4 bytes"));
   EXPECT_TRUE(told("wrong_magic", "wrong magic number"));
   EXPECT_TRUE(told("other_major", "made for script ABI 2.1; this library has 1.1"));
-  EXPECT_TRUE(told("newer_minor", "made for script ABI 1.2; this library has 1.1"));
+  EXPECT_TRUE(told("newer_minor", "made for script ABI 1.3; this library has 1.2"));
   EXPECT_TRUE(told("plugin_size", "claims a plug-in structure of 8 bytes"));
   EXPECT_TRUE(told("engine_size", "claims an engine structure of 40 bytes"));
   EXPECT_TRUE(told("no_create", "lacks the function create"));

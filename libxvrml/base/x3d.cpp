@@ -1,4 +1,4 @@
-#include "parse/x3d.h"
+#include "base/x3d.h"
 
 #include <algorithm>
 #include <iterator>
@@ -368,6 +368,12 @@ constexpr Renamed renamed[] = {
 std::string_view ownName(std::string_view type, std::string_view name) {
   for (const Renamed& one : renamed)
     if (one.type == type && one.x3d == name) return one.own;
+  return name;
+}
+
+std::string_view x3dName(std::string_view type, std::string_view name) {
+  for (const Renamed& one : renamed)
+    if (one.type == type && one.own == name) return one.x3d;
   return name;
 }
 
