@@ -48,6 +48,7 @@ struct TypeSpec {
   bool isAbstract = false;
   std::string name;
   std::string clause;
+  std::string container; // the field that holds the node where X3D's XML does not say it, or ""
   std::string text;
   std::vector<Reference> parents; // abstract types, as written
   std::vector<FieldSpec> fields;

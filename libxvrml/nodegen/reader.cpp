@@ -73,8 +73,9 @@ class Reader {
   }
 
  private:
-  // stanza ::= "abstract" name [ ":" { name } ] string [ "{" { field } "}" ]
-  //          | name ":" name { name } "{" [ "clause" clause ] string { field } "}"
+  // stanza ::= "abstract" name [ ":" { name } ] string [ "container" name ] [ "{" { field } "}" ]
+  //          | name ":" name { name } "{" [ "clause" clause ] [ "container" name ] string
+  //            { field } "}"
   void readStanza() {
     TypeSpec type;
     type.component = component_.name;
@@ -89,7 +90,10 @@ class Reader {
       fail(lexer_.peek(), fmt::format("expected : and the abstract types of {}, found {}",
                                       type.name, describe(lexer_.peek())));
     }
-    if (type.isAbstract) type.text = readText("what the abstract type stands for");
+    if (type.isAbstract) {
+      type.text = readText("what the abstract type stands for");
+      readContainer(type);
+    }
     if (!type.isAbstract || lexer_.peek().is(TokenKind::braceOpen)) readBody(type);
     component_.types.push_back(std::move(type));
   }
@@ -98,6 +102,7 @@ class Reader {
     expect(TokenKind::braceOpen, "{");
     if (!type.isAbstract) {
       if (acceptWord("clause")) readClause(type);
+      readContainer(type);
       type.text = readText("what the node is");
     }
     while (!lexer_.peek().is(TokenKind::braceClose))
@@ -111,6 +116,11 @@ class Reader {
     if (token.text.empty() || token.text.find_first_not_of("0123456789.") != token.text.npos)
       fail(token, fmt::format("expected the number of a clause, found {}", describe(token)));
     type.clause = take().text;
+  }
+
+  void readContainer(TypeSpec& type) {
+    SourcePosition source;
+    if (acceptWord("container")) readName(type.container, source, "the name of a field");
   }
 
   // field ::= access type name [ value ] [ "#" range ] { attribute }

@@ -165,17 +165,35 @@ std::string writeTables(const Component& component, const std::string& plugin) {
   return text + "} // namespace\n\n" + functions + "} // namespace xvrml::nodes\n";
 }
 
+namespace {
+
+// The fields that hold nodes where X3D's XML does not say it, by node and by abstract type.
+std::string writeContainers(const Model& model) {
+  std::string rows;
+  for (const Component& component : model.components)
+    for (const TypeSpec& type : component.types)
+      if (!type.container.empty())
+        rows += fmt::format("      {{{}, {}}},\n", cppString(type.name), cppString(type.container));
+  const std::string body =
+      rows.empty() ? "return {};"
+                   : "static constexpr Container table[] = {\n" + rows + "  };\n  return table;";
+  return "std::span<const Container> containers() {\n  " + body + "\n}\n\n";
+}
+
+} // namespace
+
 std::string writeList(const Model& model) {
   std::string text(notice);
   text += "// All node types, in the order of their typeIndex.\n#include <span>\n\n#include "
-          "\"xvrml/nodes.h\"\n\n"
-          "namespace xvrml::nodes {\n\nstd::span<const NodeType* const> builtinNodeTypes();\n\n"
+          "\"nodes/registry.h\"\n#include \"xvrml/nodes.h\"\n\n"
+          "namespace xvrml::nodes {\n\n"
           "std::span<const NodeType* const> builtinNodeTypes() {\n  static const NodeType* const "
           "types[] = {\n";
   std::map<int, std::string> names; // by number
   eachNode(model, [&](const TypeSpec& type) { names.emplace(type.number, type.name); });
   for (const auto& [number, name] : names) text += fmt::format("      &{}::nodeType(),\n", name);
-  return text + "  };\n  return types;\n}\n\n} // namespace xvrml::nodes\n";
+  return text + "  };\n  return types;\n}\n\n" + writeContainers(model) +
+         "} // namespace xvrml::nodes\n";
 }
 
 std::string writePlugin(const Model& model, const std::string& plugin) {

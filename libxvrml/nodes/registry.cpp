@@ -112,4 +112,16 @@ const NodeType* findNodeType(std::string_view name) {
   return found == snapshot.byName.end() ? nullptr : found->second;
 }
 
+std::string_view containerOf(const NodeType& type) {
+  static const auto& byName = *[] {
+    auto* const table = new std::unordered_map<std::string_view, std::string_view>();
+    for (const nodes::Container& one : nodes::containers()) table->emplace(one.type, one.field);
+    return table;
+  }();
+  if (const auto own = byName.find(type.name); own != byName.end()) return own->second;
+  for (const std::string& role : type.abstract)
+    if (const auto found = byName.find(role); found != byName.end()) return found->second;
+  return "children";
+}
+
 } // namespace xvrml

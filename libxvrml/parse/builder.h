@@ -27,7 +27,9 @@ class Builder : public ParseSink {
   void nullNode(const Name& token) override;
   void lostName(const Name& name) override;
   FieldTarget openField(const Name& name) override;
+  FieldTarget resumeField(const Name& name) override;
   bool hasField(std::string_view name) const override;
+  std::string_view fieldFor(std::string_view name, bool use) const override;
   void closeField(bool good) override;
   void connect(const Name& field, const Name& interfaceName) override;
   FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
@@ -40,6 +42,7 @@ class Builder : public ParseSink {
   std::vector<std::string>& externUrls() override;
   void closeExternProto(bool good) override;
   void route(const Name& keyword, const RouteNames& names) override;
+  void version(int major, int minor) override;
   void profile(const Name& name) override;
   void component(const Name& name, int32_t level) override;
   void meta(const Name& keyword, std::string name, std::string content) override;
@@ -118,6 +121,8 @@ class Builder : public ParseSink {
   std::string_view word(Access access) const;
   bool isFirst(const std::string& name) { return reported_.insert(name).second; }
   bool lacksField(const NodeType& type, std::string_view name) const;
+  FieldTarget targetOf(const FieldInfo& field, bool resumed);
+  const NodeType* typeOf(std::string_view name, bool use) const;
   bool isMissingField(const NodeType& type, const Name& name);
   void reportUnknownNode(const Name& type);
   void warnOfX3d(const NodeType& type, const Name& at);

@@ -5,6 +5,7 @@
 #include "base/x3d.h"
 #include "nearest.h"
 #include "parse/builder.h"
+#include "parse/source.h"
 
 namespace xvrml {
 
@@ -62,6 +63,12 @@ void Builder::warnOfX3d(const NodeType& type, const FieldInfo& field, const Name
   locator_.warn(at.at, fmt::format("{} is a field that X3D adds to {}: other browsers of VRML97 do "
                                    "not know it",
                                    describe(at), type.name));
+}
+
+void Builder::version(int major, int minor) {
+  file_.head.version.major = major;
+  file_.head.version.minor = minor;
+  setFileVersion(locator_.file(), file_.head.version);
 }
 
 void Builder::profile(const Name& name) {

@@ -18,7 +18,7 @@ std::vector<std::string> filesOf(const std::string& folder) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const auto suffix = entry.path().extension();
-    if (suffix == ".wrl" || suffix == ".x3dv") paths.push_back(entry.path().string());
+    if (suffix == ".wrl" || suffix == ".x3dv" || suffix == ".x3d" || suffix == ".x3dj") paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -55,7 +55,7 @@ void expectRoundTrip(const World& world, const std::string& name, Encoding encod
 TEST_P(Good, LoadsSilentlyAndRoundTrips) {
   const auto world = loadWorld(GetParam());
   EXPECT_EQ(messages(*world), "");
-  for (const Encoding encoding : {Encoding::vrml97, Encoding::x3dClassic})
+  for (const Encoding encoding : {Encoding::vrml97, Encoding::x3dClassic, Encoding::x3dXml})
     expectRoundTrip(*world, GetParam(), encoding);
 }
 
