@@ -148,6 +148,22 @@ bool X3dElements::checkName(const Name& name) {
   return good;
 }
 
+// Checks a name that may begin a line of ClassicVRML: that of a prototype or of a field that a file
+// declares. Words of the grammar cannot be names there.
+bool X3dElements::checkDeclaredName(const Name& name) {
+  constexpr std::string_view words[] = {
+      "DEF",          "EXTERNPROTO", "FALSE",          "IS",         "NULL",        "PROTO",
+      "ROUTE",        "TO",          "TRUE",           "USE",        "eventIn",     "eventOut",
+      "exposedField", "field",       "initializeOnly", "inputOnly",  "inputOutput", "outputOnly",
+      "PROFILE",      "COMPONENT",   "META",           "UNIT",       "IMPORT",      "EXPORT"};
+  const bool good = std::find(std::begin(words), std::end(words), name.text) == std::end(words);
+  if (!good)
+    locator_.error(name.at, fmt::format("{} is a word of the ClassicVRML encoding: it cannot be the "
+                                        "name of a field or prototype",
+                                        describe(name)));
+  return good;
+}
+
 // Reads the name in an attribute that an element must have. Returns false after a message.
 bool X3dElements::nameOf(Name& out, const Name& element, Attributes attributes,
                          std::string_view attribute) {
@@ -287,7 +303,8 @@ void X3dElements::import(const Name& element, Attributes attributes) {
 
 void X3dElements::openProto(const Name& element, Attributes attributes) {
   Name name;
-  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name"))
+  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name") ||
+      !checkDeclaredName(name))
     return skip(attributes);
   ++depth_;
   sink_.openProto(name);
@@ -296,7 +313,8 @@ void X3dElements::openProto(const Name& element, Attributes attributes) {
 
 void X3dElements::openExternProto(const Name& element, Attributes attributes) {
   Name name;
-  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name"))
+  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name") ||
+      !checkDeclaredName(name))
     return skip(attributes);
   ++depth_;
   sink_.openExternProto(name);
@@ -346,7 +364,8 @@ void X3dElements::openDeclaration(const Name& element, Attributes attributes) {
   const Attribute* const word = findAttribute(attributes, "accessType");
   const Attribute* const typeName = findAttribute(attributes, "type");
   Name name;
-  if (!nameOf(name, element, attributes, "name")) return skip(attributes);
+  if (!nameOf(name, element, attributes, "name") || !checkDeclaredName(name))
+    return skip(attributes);
   if (!word || !typeName) {
     locator_.error(element.at, fmt::format("the field {} has no {}", describe(name),
                                            word ? "type" : "accessType"));

@@ -65,6 +65,7 @@ class X3dElements {
   std::string_view keep(std::string_view text);
   bool nameOf(Name& out, const Name& element, Attributes attributes, std::string_view attribute);
   bool checkName(const Name& name);
+  bool checkDeclaredName(const Name& name);
   Name canonical(const Name& element);
 
   void openRoot(const Name& element, Attributes attributes);

@@ -274,6 +274,7 @@ std::string writeWorld(const World& world, const std::string& path, Encoding enc
     case Encoding::vrml97:
     case Encoding::x3dClassic: return makeVrmlWriter(world, path, version)->write();
     case Encoding::x3dXml: return makeXmlWriter(world, path, version)->write();
+    case Encoding::x3dJson: break; // is only read
     }
     throw std::invalid_argument(
         fmt::format("worlds cannot be written as {}", encodingName(encoding)));
