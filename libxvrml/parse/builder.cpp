@@ -74,6 +74,7 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
     }
     return false;
   }
+  warnOfX3d(*known, type);
   if (known->name == "Script") {
     ++state_.scripts;
     frame.scriptType = scriptType(*known);
@@ -299,12 +300,14 @@ FieldTarget Builder::openField(const Name& name) {
   if (!field) {
     if (isMissingField(node.type(), name)) return {};
     const std::string near = nearest::suggestion(name.text, node.type().fields);
+    // A field of X3D that we lack: a file of VRML97 may not have it in any case.
     const char* dialect = isX3dField(node.type().name, name.text) ? " (it is X3D's)" : "";
     locator_.error(name.at,
                    fmt::format("{} has no field {}{}{}{}he field is ignored", node.type().name,
                                describe(name), dialect, near, near.empty() ? "; t" : " T"));
     return {};
   }
+  warnOfX3d(node.type(), *field, name);
   if (!holdsValue(*field)) {
     locator_.error(name.at, fmt::format("{} is an {} of {}: it has no value in a file",
                                         describe(name), word(field->access), node.type().name));

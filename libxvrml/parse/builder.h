@@ -116,14 +116,17 @@ class Builder : public ParseSink {
   bool accepts(const NodeTarget& nodeTarget, const Name& at, const Node& node,
                std::string_view remedy);
   bool isX3d() const { return file_.head.version.isX3d(); }
+  bool isVrml97() const { return file_.head.version.encoding == Encoding::vrml97; }
   std::string_view spelled(const NodeType& type, std::string_view name) const;
   std::string_view word(Access access) const;
-  bool isFirst(const std::string& missing) { return missing_.insert(missing).second; }
+  bool isFirst(const std::string& name) { return reported_.insert(name).second; }
   bool lacksField(const NodeType& type, std::string_view name) const;
   FieldTarget targetOf(const FieldInfo& field, bool resumed);
   const NodeType* typeOf(std::string_view name, bool use) const;
   bool isMissingField(const NodeType& type, const Name& name);
   void reportUnknownNode(const Name& type);
+  void warnOfX3d(const NodeType& type, const Name& at);
+  void warnOfX3d(const NodeType& type, const FieldInfo& field, const Name& at);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;
   bool isBeingDeclared(std::string_view name) const;
@@ -141,7 +144,7 @@ class Builder : public ParseSink {
   std::vector<NodeFrame> nodes_;
   std::vector<NodeTarget> nodeTargets_;
   std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1 of named nodes
-  std::unordered_set<std::string> missing_;            // nodes and fields of X3D that were reported
+  std::unordered_set<std::string> reported_;           // nodes and fields of X3D that were reported
   const NodeType* fullInterface_ = nullptr; // the last type that declares more than the limit
 };
 
