@@ -208,9 +208,8 @@ std::string_view Builder::fieldFor(std::string_view name, bool use) const {
   if (field && takes(*field)) return usual;
   auto first = std::find_if(parent.fields.begin(), parent.fields.end(), takes);
   if (first == parent.fields.end() && !field)
-    first = std::find_if(parent.fields.begin(), parent.fields.end(), [](const FieldInfo& one) {
-      return holdsValue(one) && holdsNodes(one);
-    });
+    first = std::find_if(parent.fields.begin(), parent.fields.end(),
+                         [](const FieldInfo& one) { return holdsValue(one) && holdsNodes(one); });
   return first == parent.fields.end() ? usual : std::string_view(first->name);
 }
 

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "parse/parser.h"
 #include "base/x3d.h"
+#include "parse/parser.h"
 
 namespace xvrml {
 namespace {
@@ -152,15 +152,16 @@ bool X3dElements::checkName(const Name& name) {
 // declares. Words of the grammar cannot be names there.
 bool X3dElements::checkDeclaredName(const Name& name) {
   constexpr std::string_view words[] = {
-      "DEF",          "EXTERNPROTO", "FALSE",          "IS",         "NULL",        "PROTO",
-      "ROUTE",        "TO",          "TRUE",           "USE",        "eventIn",     "eventOut",
-      "exposedField", "field",       "initializeOnly", "inputOnly",  "inputOutput", "outputOnly",
-      "PROFILE",      "COMPONENT",   "META",           "UNIT",       "IMPORT",      "EXPORT"};
+      "DEF",          "EXTERNPROTO", "FALSE",          "IS",        "NULL",        "PROTO",
+      "ROUTE",        "TO",          "TRUE",           "USE",       "eventIn",     "eventOut",
+      "exposedField", "field",       "initializeOnly", "inputOnly", "inputOutput", "outputOnly",
+      "PROFILE",      "COMPONENT",   "META",           "UNIT",      "IMPORT",      "EXPORT"};
   const bool good = std::find(std::begin(words), std::end(words), name.text) == std::end(words);
   if (!good)
-    locator_.error(name.at, fmt::format("{} is a word of the ClassicVRML encoding: it cannot be the "
-                                        "name of a field or prototype",
-                                        describe(name)));
+    locator_.error(name.at,
+                   fmt::format("{} is a word of the ClassicVRML encoding: it cannot be the "
+                               "name of a field or prototype",
+                               describe(name)));
   return good;
 }
 
@@ -295,9 +296,10 @@ void X3dElements::route(const Name& element, Attributes attributes) {
 
 void X3dElements::import(const Name& element, Attributes attributes) {
   Name local;
-  const bool renamed = findAttribute(attributes, "AS") != nullptr;
-  if (nameOf(local, element, attributes, renamed ? "AS" : "importedDEF"))
-    sink_.importNode(element, local);
+  std::string_view which = "importedDEF"; // X3D 3.0 said exportedDEF
+  for (const std::string_view other : {"AS", "exportedDEF"})
+    if (which == "importedDEF" && findAttribute(attributes, other)) which = other;
+  if (nameOf(local, element, attributes, which)) sink_.importNode(element, local);
   push(Kind::leaf, element);
 }
 

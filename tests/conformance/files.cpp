@@ -18,7 +18,8 @@ std::vector<std::string> filesOf(const std::string& folder) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const auto suffix = entry.path().extension();
-    if (suffix == ".wrl" || suffix == ".x3dv" || suffix == ".x3d" || suffix == ".x3dj") paths.push_back(entry.path().string());
+    if (suffix == ".wrl" || suffix == ".x3dv" || suffix == ".x3d" || suffix == ".x3dj")
+      paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());
   return paths;
