@@ -117,7 +117,6 @@ void X3dElements::readField(const Name& type, const Attribute& attribute) {
 void X3dElements::appendSource(Frame& frame) {
   if (frame.source.empty() || !frame.good) return;
   locator_.setAnchor(frame.sourceAt);
-  if (!values_.reserve(frame.sourceAt, frame.source.size())) return;
   const FieldTarget target = sink_.resumeField({"url", frame.sourceAt});
   if (!target.known) return;
   frame.source.resize(trimmed(frame.source).size()); // its beginning has no blanks

@@ -43,7 +43,7 @@ std::string_view X3dElements::keep(std::string_view text) {
   const std::string_view file = locator_.text();
   if (!before(text.data(), file.data()) && !before(file.data() + file.size(), text.data()))
     return text;
-  return kept_.emplace_back(text);
+  return *kept_.emplace(text).first;
 }
 
 // Returns the name of an element without its prefix. Pages of HTML have names in lower case.
@@ -91,8 +91,9 @@ void X3dElements::characters(std::string_view text, const char* at) {
       frame.sourceAt = at + blanks;
       text.remove_prefix(blanks);
     }
-    if (frame.source.size() + text.size() <= limits_.stringBytes && frame.good) {
-      frame.source += text;
+    if (frame.good && frame.source.size() + text.size() <= limits_.stringBytes) {
+      frame.good = values_.reserve(at, text.size());
+      if (frame.good) frame.source += text;
     } else if (frame.good) {
       locator_.error(at, fmt::format("the text of a Script has more bytes than limit "
                                      "stringBytes={}; it is left out",
