@@ -63,7 +63,6 @@ def test_usage(vv, arguments, word):
 
 
 @pytest.mark.parametrize("content, name", [
-    (b"<?xml version='1.0'?>\n<X3D profile='Full'><Scene/></X3D>", "X3D world (XML encoding)"),
     (b"solid part\n facet normal 0 0 1\n", "STL mesh"),
     (b"a part".ljust(80) + (2).to_bytes(4, "little") + bytes(100), "STL mesh"),
     (b"glTF\x02\0\0\0", "binary glTF"),
