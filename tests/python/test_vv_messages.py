@@ -79,7 +79,7 @@ def test_usage(vv, arguments, word):
 def test_files_of_other_formats_are_named(vv, content, name):
     (vv.folder / "other.wrl").write_bytes(content)
     done = vv("other.wrl", "-o", "x.png", *SMALL)
-    assert done.returncode == 3 and name in done.talk and "not a world in VRML97 or X3D" in done.talk, done.talk
+    assert done.returncode == 3 and name in done.talk and "which cannot be read (VRML97, X3D ClassicVRML" in done.talk, done.talk
 
 
 def test_folders_that_do_not_exist(vv):
