@@ -13,6 +13,8 @@
 #include "parse/mesh/mesh_file.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
+#include "parse/x3d_json.h"
+#include "parse/x3d_xml.h"
 
 namespace xvrml {
 namespace {
@@ -71,6 +73,25 @@ void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
+  const Limits& limits = state_.options.limits;
+  switch (file.head.version.encoding) {
+  case Encoding::x3dXml: {
+    const XmlText text(source.text(), *name, budget_);
+    Locator locator(text.text(), name, state_.diagnostics);
+    Builder builder(locator, state_, file);
+    X3dElements elements(locator, limits, builder, budget_.get());
+    readX3dXml(text, locator, elements);
+    return builder.dropUnplacedNames();
+  }
+  case Encoding::x3dJson: {
+    Locator locator(source.text(), name, state_.diagnostics);
+    Builder builder(locator, state_, file);
+    X3dElements elements(locator, limits, builder, budget_.get());
+    readX3dJson(locator, budget_, elements);
+    return builder.dropUnplacedNames();
+  }
+  default: break;
+  }
   Locator locator(source.text(), name, state_.diagnostics);
   std::deque<std::string> names; // DEF names that a reader makes; they outlive the builder
   Builder builder(locator, state_, file);
@@ -79,7 +100,7 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
              {source.text(), *name, locator, builder, state_.options, budget_, names});
   } else {
     Lexer lexer(locator);
-    Parser(lexer, state_.options.limits, builder, budget_.get(), version.isX3d()).vrmlScene();
+    Parser(lexer, limits, builder, budget_.get(), version.isX3d()).vrmlScene();
   }
   builder.dropUnplacedNames();
 }

@@ -9,12 +9,12 @@
 
 namespace xvrml {
 
-enum class Encoding : uint8_t { vrml97, x3dClassic, stl, ply, obj, gltf };
-inline constexpr int encodingCount = 6;
+enum class Encoding : uint8_t { vrml97, x3dClassic, x3dXml, x3dJson, stl, ply, obj, gltf };
+inline constexpr int encodingCount = 8;
 // Returns the name of an encoding as users call it.
 constexpr std::string_view encodingName(Encoding encoding) {
-  constexpr std::string_view names[encodingCount] = {"VRML97", "X3D ClassicVRML", "STL",
-                                                     "PLY",    "Wavefront OBJ",   "glTF"};
+  constexpr std::string_view names[encodingCount] = {
+      "VRML97", "X3D ClassicVRML", "X3D XML", "X3D JSON", "STL", "PLY", "Wavefront OBJ", "glTF"};
   return names[static_cast<size_t>(encoding)];
 }
 // Returns whether a file is a mesh. Its nodes follow X3D 4.0.
