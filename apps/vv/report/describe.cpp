@@ -165,9 +165,13 @@ WorldCounts countWorld(const World& world) {
 }
 
 std::string headText(const xvrml::FileHead& head) {
-  std::string text = fmt::format("file        {} {}.{}{}\n", encodingName(head.version.encoding),
-                                 head.version.major, head.version.minor,
-                                 head.profile.empty() ? "" : ", profile " + head.profile);
+  std::string text =
+      fmt::format("file        {} {}.{}{}\n",
+                  isMesh(head.version.encoding)
+                      ? fmt::format("{}, read as X3D", encodingName(head.version.encoding))
+                      : std::string(encodingName(head.version.encoding)),
+                  head.version.major, head.version.minor,
+                  head.profile.empty() ? "" : ", profile " + head.profile);
   for (const auto& one : head.components)
     text += fmt::format("component   {}:{}\n", one.name, one.level);
   for (const auto& one : head.units)
