@@ -12,6 +12,7 @@
 #include "parse/builder.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
+#include "parse/vrml1/vrml1.h"
 
 namespace xvrml {
 namespace {
@@ -71,6 +72,11 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
   Locator locator(source.text(), name, state_.diagnostics);
+  if (file.head.version.encoding == Encoding::vrml1) {
+    readVrml1(locator, state_, file, Parser::maximumNesting);
+    composed_ = true; // its nodes are counted when the world is complete
+    return;
+  }
   Lexer lexer(locator);
   Builder builder(locator, state_, file);
   Parser(lexer, state_.options.limits, builder, budget_.get(), file.head.version.isX3d())

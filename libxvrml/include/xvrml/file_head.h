@@ -9,19 +9,21 @@
 
 namespace xvrml {
 
-enum class Encoding : uint8_t { vrml97, x3dClassic };
+enum class Encoding : uint8_t { vrml97, x3dClassic, vrml1 };
 // Returns the name of an encoding as users call it.
 constexpr std::string_view encodingName(Encoding encoding) {
-  constexpr std::string_view names[] = {"VRML97", "X3D ClassicVRML"};
+  constexpr std::string_view names[] = {"VRML97", "X3D ClassicVRML", "VRML 1.0"};
   return names[static_cast<size_t>(encoding)];
 }
 
-// The encoding and the version of the standard that a file follows. VRML97 is version 2.0, X3D
-// begins with 3.0.
+// The encoding and the version of the standard that a file follows. VRML 1.0 is version 1.0, VRML97
+// is 2.0, X3D begins with 3.0.
 struct FileVersion {
   Encoding encoding = Encoding::vrml97;
   int major = 2, minor = 0;
   bool isX3d() const { return major >= 3; }
+  // Returns whether colour textures multiply diffuseColor. In VRML97 they replace it.
+  bool texturesMultiply() const { return major != 2; }
   bool operator==(const FileVersion&) const = default;
 };
 
