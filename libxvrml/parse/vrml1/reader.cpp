@@ -43,7 +43,7 @@ Tree Reader::read() {
 }
 
 // Returns whether a node begins here: DEF, USE, or a word before a brace.
-bool Reader::beginsNode(const Token& token) {
+bool Reader::beginsNode(Token token) {
   if (!token.is(TokenKind::identifier)) return false;
   if (token.text == "DEF" || token.text == "USE") return true;
   lexer_.next();
@@ -64,9 +64,11 @@ const TreeNode* Reader::statement() {
     lexer_.seek(name.at());
     return nullptr;
   }
-  if (beginsNode(lexer_.peek())) return node(name.text, name.at());
-  lexer_.error(name.at(), fmt::format("expected a node after DEF {}, found {}", name.text,
-                                      describe(lexer_.peek())));
+  const Token next = lexer_.peek();
+  if (beginsNode(next) && next.text != "DEF" && next.text != "USE")
+    return node(name.text, name.at());
+  lexer_.error(name.at(),
+               fmt::format("expected a node after DEF {}, found {}", name.text, describe(next)));
   return nullptr;
 }
 
@@ -267,8 +269,7 @@ void Reader::vrml97Field(TreeNode& node, const Token& name) {
 }
 
 // Returns whether a token cannot belong to a value: it ends the node, or begins a field or a node.
-bool Reader::endsValue(const TreeNode& node, const Token& token,
-                       const std::vector<Declared>& declared) {
+bool Reader::endsValue(const TreeNode& node, Token token, const std::vector<Declared>& declared) {
   if (token.is(TokenKind::end) || token.is(TokenKind::braceClose)) return true;
   if (!token.is(TokenKind::identifier)) return false;
   if (beginsNode(token) || (node.type && node.type->find(token.text) >= 0)) return true;

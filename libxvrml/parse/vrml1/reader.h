@@ -40,8 +40,8 @@ class Reader {
   void parents(TreeNode& node);
   void setType(TreeNode& node, const Type& type);
   void vrml97Field(TreeNode& node, const Token& name);
-  bool beginsNode(const Token& token);
-  bool endsValue(const TreeNode& node, const Token& token, const std::vector<Declared>& declared);
+  bool beginsNode(Token token);
+  bool endsValue(const TreeNode& node, Token token, const std::vector<Declared>& declared);
   void skipValue(const TreeNode& node, const std::vector<Declared>& declared);
   void skipBlock();
   void skipMask(const Token& opened);

@@ -46,7 +46,8 @@ std::vector<Field> camera(Field size) {
           field("focalDistance", 5.0f),
           std::move(size),
           extension("direction", Vec3f{0, 0, -1}),
-          extension("up", Vec3f{0, 1, 0})};
+          extension("up", Vec3f{0, 1, 0}),
+          extension("gravityUp", Vec3f{0, 1, 0})};
 }
 
 std::vector<Type> makeTypes() {
