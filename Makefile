@@ -12,7 +12,7 @@ R = build/release
 SOURCES = $(shell git ls-files '*.cpp' '*.h' '*.hpp' '*.c')
 export CTEST_OUTPUT_ON_FAILURE = 1
 
-.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
+.PHONY: docs build demo test install bench bench-live bench-render bench-transports audit accuracy corpus corpus-x3d fuzz test-alloc-failures test-write-failures cluster-campaign soak asan tsan coverage format format-check tidy packages python-sequences bench-rays test-rays bench-isa bench-parts clean help wheel deb container test-embree4 test-wheel
 
 help:
 	@sed -n 's/^## //p' Makefile
@@ -116,6 +116,11 @@ accuracy:
 ## make corpus        table and contact sheets of a folder of VRML files (CORPUS=...) into build/corpus
 corpus: build
 	@$(PYTHON) tests/corpus/corpus.py --vv $(R)/bin/vv --corpus $(CORPUS) --out build/corpus
+
+## make corpus-x3d    table of a folder of X3D, VRML 1.0 and glTF files (CORPUS_X3D=...) into build/corpus-x3d; SHEETS=1 pictures
+corpus-x3d:
+	@$(CONFIGURE) release && cmake --build $(R) -j $(JOBS) --target vv shaders scripts
+	@$(PYTHON) tests/corpus/corpus_x3d.py --vv $(R)/bin/vv $(if $(CORPUS_X3D),--corpus $(CORPUS_X3D)) --jobs $(JOBS) $(if $(SHEETS),--sheets)
 
 ## make fuzz          every fuzz target for FUZZ_SECONDS (default 60) each
 fuzz:

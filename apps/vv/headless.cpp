@@ -14,6 +14,7 @@
 #include "report/describe.h"
 #include "report/engine_list.h"
 #include "report/messages.h"
+#include "report/node_list.h"
 #include "report/problems.h"
 #include "report/progress.h"
 #include "report/report.h"
@@ -96,8 +97,8 @@ class Headless {
  private:
   // Returns the text for --write. Relative URLs of a text for standard output stay as they are.
   std::string written(const xvrml::World& world) const {
-    return options_.write == "-" ? xvrml::writeWorld(world)
-                                 : xvrml::writeWorld(world, options_.write);
+    return xvrml::writeWorld(world, options_.write == "-" ? "" : options_.write,
+                             options_.writeEncoding);
   }
 
   picture::RenderSettings withoutPicture() const {

@@ -1,4 +1,4 @@
-// convert.cpp: Converts the 20 field types to and from Python. plugins/script/python/values.cpp
+// convert.cpp: Converts the field types to and from Python. plugins/script/python/values.cpp
 // does the same for Scripts; a change of what counts as a number, a truth value or a text is made
 // in both (docs/decisions/0045-two-conversions-to-python.md). [GIL held]
 #include <cmath>
@@ -7,45 +7,17 @@
 
 #include <fmt/format.h>
 
+#include "expectation.h"
 #include "nearest.h"
 #include "numbers.h"
 #include "objects.h"
+#include "xvrml/numbers.h"
 #include "xvrml/viewed.h"
 #include "xvrml/walk.h"
 
 using namespace xvrml;
 
 namespace {
-
-// Number of floats (or doubles) in one value, and the name of such a value in Python.
-template <class T> constexpr size_t width = sizeof(T) / sizeof(float);
-static_assert(width<Vec2f> == 2 && width<Vec3f> == 3 && width<Color> == 3 && width<Rotation> == 4);
-
-std::string expectation(FieldType type) {
-  switch (type) {
-  case FieldType::SFBool: return "True or False";
-  case FieldType::SFColor: return "3 numbers (red, green, blue)";
-  case FieldType::SFFloat:
-  case FieldType::SFTime: return "a number";
-  case FieldType::SFImage: return "an array of bytes of shape (height, width, components)";
-  case FieldType::SFInt32: return "a whole number of 32 bits";
-  case FieldType::SFNode: return "a Node or None";
-  case FieldType::SFRotation: return "4 numbers (axis x, y, z and angle in radians)";
-  case FieldType::SFString: return "a str";
-  case FieldType::SFVec2f: return "2 numbers";
-  case FieldType::SFVec3f: return "3 numbers";
-  case FieldType::MFColor:
-  case FieldType::MFVec3f: return "numbers of shape (n, 3)";
-  case FieldType::MFFloat:
-  case FieldType::MFTime: return "numbers of shape (n,)";
-  case FieldType::MFInt32: return "whole numbers of 32 bits of shape (n,)";
-  case FieldType::MFNode: return "a sequence of Nodes";
-  case FieldType::MFRotation: return "numbers of shape (n, 4)";
-  case FieldType::MFString: return "a sequence of str";
-  case FieldType::MFVec2f: return "numbers of shape (n, 2)";
-  }
-  return "";
-}
 
 // The field that is being assigned, for messages.
 struct Target {
@@ -73,8 +45,7 @@ struct Target {
   void checkRange(double v) const {
     const FieldRange& r = field.range;
     checkFinite(v);
-    const bool wide = field.type == FieldType::SFTime || field.type == FieldType::MFTime ||
-                      field.type == FieldType::SFInt32 || field.type == FieldType::MFInt32;
+    const bool wide = hasWideNumbers(field.type);
     const auto rounded = [wide](double number) { return wide ? number : double(float(number)); };
     const double number = rounded(v), minimum = rounded(r.minimum), maximum = rounded(r.maximum);
     const bool low = r.minimumOpen ? number <= minimum : number < minimum;
@@ -103,7 +74,7 @@ std::string shapeText(const py::array& array) {
 }
 
 // Converts any array-like of numbers. Text, objects and complex numbers raise TypeError.
-py::array numbersOf(const py::handle& object, const Target& target, const char* kinds) {
+py::array arrayOf(const py::handle& object, const Target& target, const char* kinds) {
   if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object) || object.is_none())
     target.wrongType(object);
   py::array array;
@@ -136,39 +107,33 @@ float single(double v, const Target& target, bool free = false) {
 // stays and has no effect.
 template <class T> constexpr bool isFree = std::is_same_v<T, Rotation>;
 
-template <class T> T fixed(const py::handle& object, const Target& target) {
-  Dense<double> array(numbersOf(object, target, "fiu"));
-  if (array.ndim() != 1 || size_t(array.size()) != width<T>) target.wrongValue(shapeText(array));
-  float numbers[width<T>];
-  for (size_t i = 0; i < width<T>; ++i) numbers[i] = single(array.data()[i], target, isFree<T>);
+// Checks numbers of Python and stores them as floats or doubles.
+template <class T>
+void store(const double* numbers, size_t count, ScalarOf<T>* out, const Target& target) {
+  for (size_t i = 0; i < count; ++i) {
+    if constexpr (std::is_same_v<ScalarOf<T>, float>)
+      out[i] = single(numbers[i], target, isFree<T>);
+    else
+      target.checkRange(out[i] = numbers[i]);
+  }
+}
+
+template <Numeric T> T tuple(const py::handle& object, const Target& target) {
+  Dense<double> array(arrayOf(object, target, "fiu"));
+  if (array.ndim() != 1 || array.size() != numberCount<T>) target.wrongValue(shapeText(array));
   T value;
-  std::memcpy(static_cast<void*>(&value), numbers, sizeof value);
+  store<T>(array.data(), size_t(array.size()), numbersOf(value), target);
   return value;
 }
 
-template <class T> std::vector<T> rows(const py::handle& object, const Target& target) {
-  Dense<double> array(numbersOf(object, target, "fiu"));
+template <Numeric T> std::vector<T> rows(const py::handle& object, const Target& target) {
+  Dense<double> array(arrayOf(object, target, "fiu"));
   if (array.size() == 0) return {};
-  const bool fits = array.ndim() == 2 && size_t(array.shape(1)) == width<T>;
+  const bool fits = numberCount<T> == 1 ? array.ndim() == 1
+                                        : array.ndim() == 2 && array.shape(1) == numberCount<T>;
   if (!fits) target.wrongValue(shapeText(array));
   std::vector<T> list(size_t(array.shape(0)));
-  float* out = reinterpret_cast<float*>(list.data());
-  for (size_t i = 0; i < size_t(array.size()); ++i)
-    out[i] = single(array.data()[i], target, isFree<T>);
-  return list;
-}
-
-template <class T> std::vector<T> numberList(const py::handle& object, const Target& target) {
-  Dense<double> array(numbersOf(object, target, "fiu"));
-  if (array.size() == 0) return {};
-  if (array.ndim() != 1) target.wrongValue(shapeText(array));
-  std::vector<T> list(size_t(array.size()));
-  for (size_t i = 0; i < list.size(); ++i) {
-    if constexpr (std::is_same_v<T, float>)
-      list[i] = single(array.data()[i], target);
-    else
-      target.checkRange(list[i] = array.data()[i]);
-  }
+  store<T>(array.data(), size_t(array.size()), numbersOf(list.front()), target);
   return list;
 }
 
@@ -180,7 +145,7 @@ int32_t wholeNumber(long long v, const Target& target) {
 }
 
 std::vector<int32_t> integerList(const py::handle& object, const Target& target) {
-  py::array any = numbersOf(object, target, "iu");
+  py::array any = arrayOf(object, target, "iu");
   if (any.size() == 0) return {};
   if (any.ndim() != 1) target.wrongValue(shapeText(any));
   if (any.dtype().kind() == 'u') { // 64 bits without a sign do not fit into the array below
@@ -238,7 +203,7 @@ std::string text(const py::handle& object, const Target& target) {
 
 // Converts an image. Python stores rows from the top, VRML from the bottom.
 Image image(const py::handle& object, const Target& target) {
-  py::array any = numbersOf(object, target, "iu");
+  py::array any = arrayOf(object, target, "iu");
   if (any.size() == 0) return {};
   if (any.ndim() != 2 && any.ndim() != 3) target.wrongValue(shapeText(any));
   const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
@@ -305,23 +270,60 @@ template <class T> py::object readOnly(const T* data, std::vector<py::ssize_t> s
   return array;
 }
 
-template <class T> py::object rowsToPython(const std::vector<T>& list) {
-  return readOnly(reinterpret_cast<const float*>(list.data()),
-                  {py::ssize_t(list.size()), py::ssize_t(width<T>)});
+// Each function reads a value of one C++ type.
+void read(const py::handle& object, const Target& target, bool& value) {
+  value = boolean(object, target);
+}
+void read(const py::handle& object, const Target& target, std::string& value) {
+  value = text(object, target);
+}
+void read(const py::handle& object, const Target& target, Image& value) {
+  value = image(object, target);
+}
+void read(const py::handle& object, const Target& target, NodeRef& value) {
+  if (!object.is_none()) value = nodeOf(object, target);
+}
+void read(const py::handle& object, const Target& target, int32_t& value) {
+  value = integer(object, target);
+}
+template <Numeric T> void read(const py::handle& object, const Target& target, T& value) {
+  if constexpr (numberCount<T> == 1) {
+    const double v = number(object, target);
+    store<T>(&v, 1, numbersOf(value), target);
+  } else {
+    value = tuple<T>(object, target);
+  }
+}
+template <class T> void read(const py::handle& object, const Target& target, std::vector<T>& list) {
+  if constexpr (std::is_same_v<T, int32_t>) {
+    list = integerList(object, target);
+  } else if constexpr (Numeric<T>) {
+    list = rows<T>(object, target);
+  } else {
+    const bool keepsNull = mayHoldNull(*target.owner.node);
+    for (const py::object one : sequenceOf(object, target)) { // may be made anew
+      T element{};
+      if constexpr (std::is_same_v<T, NodeRef>)
+        element = keepsNull && one.is_none() ? NodeRef() : nodeOf(one, target);
+      else
+        read(one, target, element);
+      list.push_back(std::move(element));
+    }
+  }
 }
 
 struct ToPython {
   const WorldPtr& world;
 
   py::object operator()(bool v) const { return py::bool_(v); }
-  py::object operator()(float v) const { return py::float_(double(v)); }
-  py::object operator()(double v) const { return py::float_(v); }
   py::object operator()(int32_t v) const { return py::int_(v); }
+  template <Numeric T> py::object operator()(const T& v) const {
+    if constexpr (numberCount<T> == 1) return py::float_(double(*numbersOf(v)));
+    py::tuple out(numberCount<T>);
+    for (int i = 0; i < numberCount<T>; ++i) out[size_t(i)] = double(numbersOf(v)[i]);
+    return out;
+  }
   py::object operator()(const std::string& v) const { return toText(v); }
-  py::object operator()(const Color& v) const { return py::make_tuple(v.r, v.g, v.b); }
-  py::object operator()(const Vec2f& v) const { return py::make_tuple(v.x, v.y); }
-  py::object operator()(const Vec3f& v) const { return py::make_tuple(v.x, v.y, v.z); }
-  py::object operator()(const Rotation& v) const { return py::make_tuple(v.x, v.y, v.z, v.angle); }
   py::object operator()(const NodeRef& v) const { return asNode(world, v); }
   py::object operator()(const Image& v) const {
     const size_t row = size_t(v.width) * size_t(v.components);
@@ -332,28 +334,22 @@ struct ToPython {
     if (flipped.empty()) return readOnly(flipped.data(), {0, 0, 0});
     return readOnly(flipped.data(), {v.height, v.width, v.components});
   }
-  py::object operator()(const MFColor& v) const { return rowsToPython(v); }
-  py::object operator()(const MFVec2f& v) const { return rowsToPython(v); }
-  py::object operator()(const MFVec3f& v) const { return rowsToPython(v); }
-  py::object operator()(const MFRotation& v) const { return rowsToPython(v); }
-  py::object operator()(const MFFloat& v) const {
-    return readOnly(v.data(), {py::ssize_t(v.size())});
+  py::object operator()(const MFBool& v) const {
+    py::array_t<bool> array(py::ssize_t(v.size()));
+    for (size_t i = 0; i < v.size(); ++i) array.mutable_at(py::ssize_t(i)) = v[i];
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
   }
-  py::object operator()(const MFTime& v) const {
-    return readOnly(v.data(), {py::ssize_t(v.size())});
-  }
-  py::object operator()(const MFInt32& v) const {
-    return readOnly(v.data(), {py::ssize_t(v.size())});
-  }
-  py::object operator()(const MFString& v) const {
-    py::tuple out(v.size());
-    for (size_t i = 0; i < v.size(); ++i) out[i] = toText(v[i]);
-    return out;
-  }
-  py::object operator()(const MFNode& v) const {
-    py::tuple out(v.size());
-    for (size_t i = 0; i < v.size(); ++i) out[i] = (*this)(v[i]);
-    return out;
+  template <class T> py::object operator()(const std::vector<T>& v) const {
+    if constexpr (Numeric<T>) {
+      std::vector<py::ssize_t> shape{py::ssize_t(v.size())};
+      if (numberCount < T >> 1) shape.push_back(numberCount<T>);
+      return readOnly(reinterpret_cast<const ScalarOf<T>*>(v.data()), std::move(shape));
+    } else {
+      py::tuple out(v.size());
+      for (size_t i = 0; i < v.size(); ++i) out[i] = (*this)(v[i]);
+      return out;
+    }
   }
 };
 
@@ -411,15 +407,18 @@ py::object fieldToPython(const NodeObject& object, const FieldInfo& field) {
   if (!view || view->size() == 0) return toPython(object.node->get(field), object.world());
   const auto n = py::ssize_t(view->size());
   auto* viewing = new Viewing{object, std::move(view)};
-  switch (field.type) {
-  case FieldType::MFColor: return viewArray<float>(viewing, {n, 3});
-  case FieldType::MFRotation: return viewArray<float>(viewing, {n, 4});
-  case FieldType::MFVec2f: return viewArray<float>(viewing, {n, 2});
-  case FieldType::MFVec3f: return viewArray<float>(viewing, {n, 3});
-  case FieldType::MFInt32: return viewArray<int32_t>(viewing, {n});
-  case FieldType::MFTime: return viewArray<double>(viewing, {n});
-  default: return viewArray<float>(viewing, {n});
-  }
+  return std::visit(
+      [&](const auto& value) -> py::object {
+        using T = std::decay_t<decltype(value)>;
+        if constexpr (isNumberList<T>) {
+          std::vector<py::ssize_t> shape{n};
+          if (numberCount < ElementOf < T >>> 1) shape.push_back(numberCount<ElementOf<T>>);
+          return viewArray<ScalarOf<ElementOf<T>>>(viewing, std::move(shape));
+        } else {
+          return py::none(); // no view is made of other types
+        }
+      },
+      defaultValue(field.type));
 }
 
 void joinWorlds(const NodeObject& owner, const py::handle& object) {
@@ -459,41 +458,10 @@ void refuseLoops(const NodeObject& owner, const FieldInfo& field, const Value& v
 
 Value fromPython(const py::handle& object, const FieldInfo& field, const NodeObject& owner) {
   const Target target{field, owner, nullptr};
-  switch (field.type) {
-  case FieldType::SFBool: return boolean(object, target);
-  case FieldType::SFColor: return fixed<Color>(object, target);
-  case FieldType::SFFloat: return single(number(object, target), target);
-  case FieldType::SFImage: return image(object, target);
-  case FieldType::SFInt32: return integer(object, target);
-  case FieldType::SFNode: return object.is_none() ? NodeRef() : nodeOf(object, target);
-  case FieldType::SFRotation: return fixed<Rotation>(object, target);
-  case FieldType::SFString: return text(object, target);
-  case FieldType::SFTime: {
-    const double v = number(object, target);
-    target.checkRange(v);
-    return v;
-  }
-  case FieldType::SFVec2f: return fixed<Vec2f>(object, target);
-  case FieldType::SFVec3f: return fixed<Vec3f>(object, target);
-  case FieldType::MFColor: return rows<Color>(object, target);
-  case FieldType::MFFloat: return numberList<float>(object, target);
-  case FieldType::MFInt32: return integerList(object, target);
-  case FieldType::MFNode: {
-    MFNode list;
-    const bool keeps = mayHoldNull(*owner.node);
-    for (const py::object one : sequenceOf(object, target)) // may be made anew
-      list.push_back(keeps && one.is_none() ? NodeRef() : nodeOf(one, target));
-    return list;
-  }
-  case FieldType::MFRotation: return rows<Rotation>(object, target);
-  case FieldType::MFString: {
-    MFString list;
-    for (const py::object one : sequenceOf(object, target)) list.push_back(text(one, target));
-    return list;
-  }
-  case FieldType::MFTime: return numberList<double>(object, target);
-  case FieldType::MFVec2f: return rows<Vec2f>(object, target);
-  case FieldType::MFVec3f: return rows<Vec3f>(object, target);
-  }
-  throw py::type_error("unknown field type");
+  return std::visit(
+      [&](auto value) -> Value {
+        read(object, target, value);
+        return value;
+      },
+      defaultValue(field.type));
 }

@@ -77,6 +77,14 @@ py::str toVrml(const WorldPtr& self) {
   return toText(writeWorld(self->graph()));
 }
 
+py::str toX3d(const WorldPtr& self, const std::string& encoding) {
+  if (encoding != "xml" && encoding != "classic")
+    throw py::value_error(fmt::format("encoding: 'xml' or 'classic' expected, not '{}'", encoding));
+  const auto lock = self->lockGraph();
+  return toText(
+      writeWorld(self->graph(), "", encoding == "xml" ? Encoding::x3dXml : Encoding::x3dClassic));
+}
+
 void save(const WorldPtr& self, const py::object& file) {
   const std::string path = toPath(file);
   std::string failure;
@@ -350,8 +358,12 @@ void defineWorld(py::module_& module) {
           py::arg("from_node"), py::arg("out"), py::arg("to_node"), py::arg("in_"),
           "Removes a route. Returns False if it did not exist.")
       .def("to_vrml", toVrml, "Returns the world as VRML97 text.")
+      .def("to_x3d", toX3d, py::arg("encoding") = "xml",
+           "Returns the world as X3D text, in the encoding 'xml' or 'classic' (ClassicVRML).")
       .def("save", save, py::arg("path"),
-           "Writes the world as a VRML97 file. Relative urls of nodes that were read from a file "
+           "Writes the world as a file: as X3D in XML if its suffix is .x3d, as X3D ClassicVRML if "
+           "it "
+           "is .x3dv, else as VRML97. Relative urls of nodes that were read from a file "
            "lead to the same files as before.")
       .def("__repr__",
            [](const WorldPtr& self) { return toText("<World " + self->graph().path + ">"); });

@@ -28,23 +28,21 @@ class RangeCheck {
  public:
   explicit RangeCheck(const FieldRange& range) : range_(range) {}
 
-  bool operator()(float number) const { return contains<float>(number); }
-  bool operator()(double number) const { return contains<double>(number); }
-  bool operator()(int32_t number) const { return contains<double>(number); }
-  bool operator()(const Vec2f& v) const { return all({v.x, v.y}); }
-  bool operator()(const Vec3f& v) const { return all({v.x, v.y, v.z}); }
-  bool operator()(const Color& c) const { return all({c.r, c.g, c.b}); }
-  bool operator()(const Rotation& r) const { return all({r.x, r.y, r.z}); }
-  template <class T> bool operator()(const std::vector<T>& values) const {
-    return std::all_of(values.begin(), values.end(),
-                       [this](const T& value) { return (*this)(value); });
+  template <class T> bool operator()(const T& value) const {
+    if constexpr (std::is_same_v<T, Rotation>) // the angle may be any
+      return all(numbersOf(value), 3);
+    else if constexpr (Numeric<T>)
+      return numberCount<T> == 1 ? contains(*numbersOf(value))
+                                 : all(numbersOf(value), numberCount<T>);
+    else if constexpr (isNumberList<T>)
+      return std::all_of(value.begin(), value.end(),
+                         [this](const auto& element) { return (*this)(element); });
+    else
+      return true;
   }
-  bool operator()(bool) const { return true; }
-  bool operator()(const std::string&) const { return true; }
-  bool operator()(const Image&) const { return true; }
-  bool operator()(const NodeRef&) const { return true; }
 
  private:
+  bool contains(int32_t number) const { return contains(double(number)); }
   template <class T> bool contains(T number) const {
     const T minimum = T(range_.minimum), maximum = T(range_.maximum);
     const bool above = range_.minimumOpen ? number > minimum : number >= minimum;
@@ -52,12 +50,11 @@ class RangeCheck {
     return (above && below) || number == T(range_.also);
   }
   // The exceptional number is allowed only if all numbers have it: bboxSize -1 -1 -1.
-  bool all(std::initializer_list<float> numbers) const {
-    const auto exceptional = [this](float number) { return number == float(range_.also); };
-    if (std::any_of(numbers.begin(), numbers.end(), exceptional))
-      return std::all_of(numbers.begin(), numbers.end(), exceptional);
-    return std::all_of(numbers.begin(), numbers.end(),
-                       [this](float number) { return contains<float>(number); });
+  template <class T> bool all(const T* numbers, int count) const {
+    const auto exceptional = [this](T number) { return number == T(range_.also); };
+    if (std::any_of(numbers, numbers + count, exceptional))
+      return std::all_of(numbers, numbers + count, exceptional);
+    return std::all_of(numbers, numbers + count, [this](T number) { return contains(number); });
   }
 
   const FieldRange& range_;

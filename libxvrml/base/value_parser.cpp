@@ -12,49 +12,10 @@
 namespace xvrml {
 namespace {
 
-// The number of components of a tuple, and the field type that messages name.
-template <class T> struct Tuple;
-template <> struct Tuple<float> {
-  static constexpr int size = 1;
-  static constexpr auto type = FieldType::SFFloat;
-};
-template <> struct Tuple<double> {
-  static constexpr int size = 1;
-  static constexpr auto type = FieldType::SFTime;
-};
-template <> struct Tuple<int32_t> {
-  static constexpr int size = 1;
-  static constexpr auto type = FieldType::SFInt32;
-};
-template <> struct Tuple<Vec2f> {
-  static constexpr int size = 2;
-  static constexpr auto type = FieldType::SFVec2f;
-};
-template <> struct Tuple<Vec3f> {
-  static constexpr int size = 3;
-  static constexpr auto type = FieldType::SFVec3f;
-};
-template <> struct Tuple<Color> {
-  static constexpr int size = 3;
-  static constexpr auto type = FieldType::SFColor;
-};
-template <> struct Tuple<Rotation> {
-  static constexpr int size = 4;
-  static constexpr auto type = FieldType::SFRotation;
-};
-
-template <class T>
-concept HasTuple = requires {
-  Tuple<T>::size;
-};
-
-template <class T> auto* numbers(T& value) {
-  if constexpr (Tuple<T>::size == 1) {
-    return &value;
-  } else {
-    static_assert(sizeof(T) == Tuple<T>::size * sizeof(float));
-    return reinterpret_cast<float*>(&value);
-  }
+// Whether a value of this type is one number.
+bool isWhole(FieldType type) {
+  return type == FieldType::SFFloat || type == FieldType::SFInt32 || type == FieldType::SFTime ||
+         type == FieldType::SFDouble;
 }
 
 inline bool endsNumber(const char* p, const char* end) {
@@ -69,7 +30,10 @@ bool ValueParser::fail(const char* at, std::string message) {
 }
 
 bool ValueParser::failFound(const Token& found, std::string_view expected) {
-  return fail(found.at(), fmt::format("expected {}, found {}", expected, describe(found)));
+  return fail(found.at(),
+              fmt::format("expected {}, found {}", expected,
+                          wholeText_ && found.is(TokenKind::end) ? "the end of the value"
+                                                                 : describe(found)));
 }
 
 // Reserves memory for a value from the budget. Returns false, after one message, if not enough is
@@ -105,22 +69,20 @@ template <class Scalar> bool ValueParser::scalar(const char*& p, Scalar& out, Fi
       return true;
     }
   }
-  const bool whole = isMultiple(type) || type == FieldType::SFFloat || type == FieldType::SFInt32 ||
-                     type == FieldType::SFTime;
   return failFound(found, fmt::format("a{} {} of {}", std::is_integral_v<Scalar> ? "n" : "",
                                       std::is_integral_v<Scalar> ? "integer"
-                                      : whole                    ? "number"
+                                      : isWhole(type)            ? "number"
                                                                  : "component",
                                       name));
 }
 
-// SFFloat, SFInt32, SFTime, SFVec2f, SFVec3f, SFColor, SFRotation: one to four numbers.
-template <class T> bool ValueParser::single(T& out) {
+// One or several numbers.
+template <Numeric T> bool ValueParser::single(T& out) {
   const char* p = lexer_.cursor();
-  auto* components = numbers(out);
-  for (int i = 0; i < Tuple<T>::size; ++i) {
+  auto* components = numbersOf(out);
+  for (int i = 0; i < numberCount<T>; ++i) {
     p = lexer_.skipSpace(p);
-    if (!scalar(p, components[i], Tuple<T>::type)) return false;
+    if (!scalar(p, components[i], fieldTypeOf<T>)) return false;
   }
   lexer_.seek(p);
   return true;
@@ -220,7 +182,9 @@ bool ValueParser::single(NodeRef& out) {
 // big array is not copied while it grows.
 template <class T>
 void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to) {
-  const char* close = static_cast<const char*>(std::memchr(to, ']', lexer_.end() - to));
+  const char* close =
+      wholeText_ ? lexer_.end()
+                 : static_cast<const char*>(std::memchr(to, ']', size_t(lexer_.end() - to)));
   if (!close) close = lexer_.end();
   const double perByte =
       static_cast<double>(out.size()) / static_cast<double>(std::max<ptrdiff_t>(to - from, 1));
@@ -232,7 +196,22 @@ void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to)
 // mfXValue ::= sfXValue | [ ] | [ sfXValues ]
 template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   out.clear();
-  if (!lexer_.accept(TokenKind::bracketOpen)) return single(out.emplace_back());
+  if (!lexer_.accept(TokenKind::bracketOpen)) {
+    T value{};
+    if (!single(value)) return false;
+    out.push_back(std::move(value));
+    return true;
+  }
+  if (!elements(out)) return false;
+  if (lexer_.accept(TokenKind::bracketClose)) return true;
+  if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
+  lexer_.error(lexer_.cursor(),
+               "']' is missing before '}'"); // the brace ends the node and its list
+  return true;
+}
+
+// Reads the values of a list up to a bracket or brace, or to the end of the text.
+template <class T> bool ValueParser::elements(std::vector<T>& out) {
   constexpr size_t sample = 1024;
   uint64_t taken = 0; // number of values for which memory has been reserved
   const char* const first = lexer_.cursor();
@@ -240,18 +219,19 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   for (; p < lexer_.end() && *p != ']' && *p != '}'; p = lexer_.skipSpace(p)) {
     T value{};
     const char* start = p;
-    if constexpr (HasTuple<T>) {
-      auto* components = numbers(value);
-      for (int i = 0; i < Tuple<T>::size; ++i) {
-        if (i > 0 && (p = lexer_.skipSpace(p)) < lexer_.end() && *p == ']') {
+    if constexpr (Numeric<T>) {
+      auto* components = numbersOf(value);
+      for (int i = 0; i < numberCount<T>; ++i) {
+        if (i > 0) p = lexer_.skipSpace(p);
+        if (i > 0 && (p < lexer_.end() ? *p == ']' : wholeText_)) {
           lexer_.seek(p);
           return fail(start,
                       fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
-                                  fieldTypeName(Tuple<T>::type), Tuple<T>::size));
+                                  fieldTypeName(fieldTypeOf<T>), numberCount<T>));
         }
-        if (!scalar(p, components[i], Tuple<T>::type)) return false;
+        if (!scalar(p, components[i], fieldTypeOf<T>)) return false;
       }
-      if (out.size() * Tuple<T>::size >= limits_.arrayElements) {
+      if (out.size() * numberCount<T> >= limits_.arrayElements) {
         lexer_.seek(p);
         return fail(start, fmt::format("more numbers in one field than limit arrayElements={}",
                                        limits_.arrayElements));
@@ -278,9 +258,6 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   }
   lexer_.seek(p);
   if (budget_) budget_->give((taken - out.size()) * sizeof(T));
-  if (lexer_.accept(TokenKind::bracketClose)) return true;
-  if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
-  lexer_.error(p, "']' is missing before '}'"); // the brace ends the node and its list
   return true;
 }
 
@@ -291,6 +268,23 @@ bool ValueParser::parse(FieldType type, void* storage) {
     else
       return single(value);
   });
+}
+
+bool ValueParser::parseAll(FieldType type, void* storage) {
+  wholeText_ = true;
+  const bool good = visitStorage(type, storage, [this](auto& value) {
+    if constexpr (isList<std::remove_reference_t<decltype(value)>>) {
+      value.clear();
+      return elements(value);
+    } else {
+      return single(value);
+    }
+  });
+  const bool ended = !good || lexer_.peek().is(TokenKind::end) ||
+                     failFound(lexer_.peek(), isMultiple(type) ? "a value or the end of the value"
+                                                               : "the end of the value");
+  wholeText_ = false;
+  return good && ended;
 }
 
 bool ValueParser::parse(FieldType type, Value& value) {

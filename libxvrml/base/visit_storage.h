@@ -2,10 +2,7 @@
 // time. [any thread that owns the value]
 #pragma once
 
-#include <type_traits>
-#include <vector>
-
-#include "xvrml/types.h"
+#include "xvrml/numbers.h"
 
 namespace xvrml {
 
@@ -20,12 +17,5 @@ decltype(auto) visitStorage(FieldType type, void* storage, Visitor&& visit) {
   }
   return visit(*static_cast<MFVec3f*>(storage)); // for a number that is no type
 }
-
-// Whether a type is that of an MF field, and whether of one that holds numbers.
-template <class T> inline constexpr bool isList = false;
-template <class T> inline constexpr bool isList<std::vector<T>> = true;
-template <class T> inline constexpr bool isNumberList = false;
-template <class T> inline constexpr bool isNumberList<std::vector<T>> =
-    std::is_trivially_copyable_v<T>;
 
 } // namespace xvrml

@@ -29,25 +29,23 @@ void appendNodes(const Value& value, std::vector<Node*>& nodes) {
   }
 }
 
+// The bytes that an element holds outside of its object.
+uint64_t bytesOutside(const std::string& text) { return text.size() > 15 ? text.size() + 1 : 0; }
+uint64_t bytesOutside(const Image& image) { return image.pixels.size(); }
+template <class T> uint64_t bytesOutside(const T&) { return 0; }
+
 } // namespace
 
 uint64_t valueBytes(FieldType type, const void* storage) {
   return visitStorage(type, const_cast<void*>(storage), [](auto& value) -> uint64_t {
     using T = std::remove_reference_t<decltype(value)>;
-    const auto outside = [](const std::string& text) {
-      return text.size() > 15 ? text.size() + 1 : 0;
-    };
-    if constexpr (std::is_same_v<T, std::string>) {
-      return outside(value);
-    } else if constexpr (std::is_same_v<T, Image>) {
-      return value.pixels.size();
-    } else if constexpr (requires { value.front(); }) {
-      uint64_t bytes = value.size() * sizeof(value.front());
-      if constexpr (std::is_same_v<T, MFString>)
-        for (const std::string& text : value) bytes += outside(text);
+    if constexpr (isList<T>) {
+      uint64_t bytes = value.size() * sizeof(ElementOf<T>);
+      if constexpr (!Numeric<ElementOf<T>>)
+        for (const auto& element : value) bytes += bytesOutside(element);
       return bytes;
     } else {
-      return 0;
+      return bytesOutside(value);
     }
   });
 }

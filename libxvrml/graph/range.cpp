@@ -75,29 +75,13 @@ template <class T> bool isAlso(T number, const FieldRange& range) {
   return static_cast<double>(number) == range.also;
 }
 
-// The number of components that a range applies to. Rotations are normalised instead.
-template <class T> struct Numbers;
-template <> struct Numbers<float> { static constexpr int count = 1; };
-template <> struct Numbers<double> { static constexpr int count = 1; };
-template <> struct Numbers<int32_t> { static constexpr int count = 1; };
-template <> struct Numbers<Vec2f> { static constexpr int count = 2; };
-template <> struct Numbers<Vec3f> { static constexpr int count = 3; };
-template <> struct Numbers<Color> { static constexpr int count = 3; };
+// Whether a range applies to an element's numbers. Rotations are normalised instead.
 template <class T>
-concept Numeric = requires {
-  Numbers<T>::count;
-};
+concept Ranged = Numeric<T> && !std::is_same_v<T, Rotation>;
 
-template <Numeric T> auto* first(T& value) {
-  if constexpr (Numbers<T>::count == 1)
-    return &value;
-  else
-    return &reinterpret_cast<float&>(value);
-}
-
-template <Numeric T> bool enforce(T& value, const FieldRange& range) {
-  auto* numbers = first(value);
-  const auto end = numbers + Numbers<T>::count;
+template <Ranged T> bool enforce(T& value, const FieldRange& range) {
+  auto* numbers = numbersOf(value);
+  const auto end = numbers + numberCount<T>;
   if (std::all_of(numbers, end, [&](auto number) { return inside(number, range); })) return true;
   if (std::all_of(numbers, end, [&](auto number) { return isAlso(number, range); })) return true;
   bool good = true;
@@ -108,10 +92,10 @@ template <Numeric T> bool enforce(T& value, const FieldRange& range) {
 }
 
 // Returns the numbers of a value as a file shows them.
-template <Numeric T> std::string textOf(T value) {
+template <Ranged T> std::string textOf(T value) {
   std::string text;
-  auto* numbers = first(value);
-  for (int i = 0; i < Numbers<T>::count; ++i) text += fmt::format("{}{}", i ? " " : "", numbers[i]);
+  auto* numbers = numbersOf(value);
+  for (int i = 0; i < numberCount<T>; ++i) text += fmt::format("{}{}", i ? " " : "", numbers[i]);
   return text;
 }
 
@@ -141,15 +125,15 @@ bool enforceRange(const FieldInfo& field, void* storage, RangeFault* fault) {
   };
   return visitStorage(field.type, storage, [&](auto& value) {
     using T = std::remove_reference_t<decltype(value)>;
-    if constexpr (Numeric<T>) {
+    if constexpr (Ranged<T>) {
       const T given = value;
       if (enforce(value, field.range)) return true;
-      if constexpr (Numbers<T>::count == 1) {
-        if (!inside(value, field.range)) value = std::get<T>(field.defaultValue);
+      if constexpr (numberCount<T> == 1) {
+        if (!inside(*numbersOf(value), field.range)) value = std::get<T>(field.defaultValue);
       }
       tell(given, value, 0);
       return false;
-    } else if constexpr (requires { requires Numeric<typename T::value_type>; }) {
+    } else if constexpr (isList<T> && Ranged<ElementOf<T>>) {
       bool good = true;
       for (size_t i = 0; i < value.size(); ++i) {
         const auto given = value[i];
@@ -176,7 +160,7 @@ std::string describe(const FieldRange& range) {
 }
 
 std::string describe(const NodeType& type, const FieldInfo& field, const RangeFault& fault) {
-  const bool list = field.type >= FieldType::MFColor;
+  const bool list = isMultiple(field.type);
   const std::string where = list ? fmt::format("{}.{}[{}]", type.name, field.name, fault.index)
                                  : type.name + "." + field.name;
   const std::string done = fault.given == fault.used

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "nodegen/writers.h"
+#include "xvrml/numbers.h"
 
 namespace xvrml::nodegen {
 namespace {
@@ -43,27 +44,20 @@ std::string literal(float number) {
   if (text.find_first_of(".e") != std::string::npos) text += 'f';
   return text;
 }
+std::string literal(int32_t number) { return std::to_string(number); }
 std::string literal(double number) { return fmt::format("{}", number); }
 
 struct Initializer {
   std::string operator()(bool value) const { return value ? "true" : "false"; }
-  std::string operator()(float value) const { return literal(value); }
-  std::string operator()(double value) const { return literal(value); }
-  std::string operator()(int32_t value) const { return std::to_string(value); }
   std::string operator()(const std::string& value) const { return cppString(value); }
   std::string operator()(const NodeRef&) const { return {}; }
-  std::string operator()(const Vec2f& v) const {
-    return fmt::format("{}, {}", literal(v.x), literal(v.y));
+  template <class T> std::string operator()(const Boxed<T>& value) const {
+    return '{' + (*this)(*value) + '}';
   }
-  std::string operator()(const Vec3f& v) const {
-    return fmt::format("{}, {}, {}", literal(v.x), literal(v.y), literal(v.z));
-  }
-  std::string operator()(const Color& c) const {
-    return fmt::format("{}, {}, {}", literal(c.r), literal(c.g), literal(c.b));
-  }
-  std::string operator()(const Rotation& r) const {
-    return fmt::format("{}, {}, {}, {}", literal(r.x), literal(r.y), literal(r.z),
-                       literal(r.angle));
+  template <Numeric T> std::string operator()(const T& value) const {
+    std::string text;
+    for (int i = 0; i < numberCount<T>; ++i) text += (i ? ", " : "") + literal(numbersOf(value)[i]);
+    return text;
   }
   std::string operator()(const Image& image) const {
     return fmt::format("{}, {}, {}, {{{}}}", image.width, image.height, image.components,
@@ -72,8 +66,8 @@ struct Initializer {
   std::string operator()(const MFNode&) const { return {}; }
   template <class T> std::string operator()(const std::vector<T>& values) const {
     std::string text;
-    for (const T& value : values) {
-      const std::string item = (*this)(value);
+    for (const auto& value : values) {
+      const std::string item = (*this)(ElementOf<std::vector<T>>(value));
       constexpr bool scalar = std::is_arithmetic_v<T> || std::is_same_v<T, std::string>;
       text += (text.empty() ? "" : ", ") + (scalar ? item : '{' + item + '}');
     }

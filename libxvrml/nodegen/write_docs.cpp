@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "nodegen/writers.h"
+#include "xvrml/numbers.h"
 
 namespace xvrml::nodegen {
 namespace {
@@ -31,8 +32,8 @@ std::string referenceRow(const FieldSpec& field) {
 }
 
 std::string referenceOf(const TypeSpec& type) {
-  const std::string clause =
-      type.clause.empty() ? "" : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
+  std::string clause = clauseText(type);
+  if (!clause.empty()) clause = ' ' + clause + '.';
   std::string text = fmt::format("### {}\n\n{}{} Roles: {}.\n\n", type.name, type.text, clause,
                                  fmt::join(type.roles, ", "));
   if (type.fields.empty()) return text;
@@ -42,8 +43,8 @@ std::string referenceOf(const TypeSpec& type) {
   return text + '\n';
 }
 
-// The beginning of the Python stub. Each field has the type that the binding returns and the type
-// that it accepts (any array of the shape, a list of rows and so on).
+// The beginning of the Python stub. A field has the type that the binding returns and the type that
+// it accepts (any array of the shape, a list of rows and so on).
 constexpr std::string_view stubPrologue =
     R"("""Node classes of xvrml. Written by nodegen from the .node files.
 
@@ -63,26 +64,6 @@ class Field(Generic[_Read, _Write]):
     def __get__(self, node: Any, owner: Any = ...) -> _Read: ...
     def __set__(self, node: Any, value: _Write) -> None: ...
 
-SFBool = Field[bool, bool]
-SFColor = Field[Tuple[float, float, float], npt.ArrayLike]
-SFFloat = Field[float, float]
-SFImage = Field[npt.NDArray[np.uint8], npt.ArrayLike]
-SFInt32 = Field[int, int]
-SFNode = Field[Optional[Node], Optional[Node]]
-SFRotation = Field[Tuple[float, float, float, float], npt.ArrayLike]
-SFString = Field[str, str]
-SFTime = Field[float, float]
-SFVec2f = Field[Tuple[float, float], npt.ArrayLike]
-SFVec3f = Field[Tuple[float, float, float], npt.ArrayLike]
-MFColor = Field[npt.NDArray[np.float32], npt.ArrayLike]
-MFFloat = Field[npt.NDArray[np.float32], npt.ArrayLike]
-MFInt32 = Field[npt.NDArray[np.int32], npt.ArrayLike]
-MFNode = Field[Tuple[Node, ...], Sequence[Node]]
-MFRotation = Field[npt.NDArray[np.float32], npt.ArrayLike]
-MFString = Field[Tuple[str, ...], Sequence[str]]
-MFTime = Field[npt.NDArray[np.float64], npt.ArrayLike]
-MFVec2f = Field[npt.NDArray[np.float32], npt.ArrayLike]
-MFVec3f = Field[npt.NDArray[np.float32], npt.ArrayLike]
 )";
 
 // Returns whether Python reserves the name. Such a field has no attribute; the stub names it in a
@@ -105,19 +86,75 @@ std::string docString(std::string_view text) {
   return result;
 }
 
-// Returns the type of a constructor's keyword argument.
-std::string_view written(FieldType type) {
-  switch (type) {
-  case FieldType::SFBool: return "bool";
-  case FieldType::SFFloat:
-  case FieldType::SFTime: return "float";
-  case FieldType::SFInt32: return "int";
-  case FieldType::SFNode: return "Optional[Node]";
-  case FieldType::SFString: return "str";
-  case FieldType::MFNode: return "Sequence[Node]";
-  case FieldType::MFString: return "Sequence[str]";
-  default: return "npt.ArrayLike";
+// The types that Python returns for an element, and that it takes.
+template <class T> std::string readOne() {
+  if constexpr (std::is_same_v<T, bool>)
+    return "bool";
+  else if constexpr (std::is_same_v<T, std::string>)
+    return "str";
+  else if constexpr (std::is_same_v<T, NodeRef>)
+    return "Optional[Node]";
+  else if constexpr (std::is_same_v<T, Image>)
+    return "npt.NDArray[np.uint8]";
+  else if constexpr (std::is_same_v<T, int32_t>)
+    return "int";
+  else if constexpr (numberCount<T> == 1)
+    return "float";
+  else {
+    std::string text = "Tuple[float";
+    for (int i = 1; i < numberCount<T>; ++i) text += ", float";
+    return text + "]";
   }
+}
+template <class T> std::string readType() {
+  using Element = ElementOf<T>;
+  if constexpr (!isList<T>)
+    return readOne<T>();
+  else if constexpr (std::is_same_v<Element, bool>)
+    return "npt.NDArray[np.bool_]";
+  else if constexpr (std::is_same_v<ScalarOf<Element>, float>)
+    return "npt.NDArray[np.float32]";
+  else if constexpr (std::is_same_v<ScalarOf<Element>, double>)
+    return "npt.NDArray[np.float64]";
+  else if constexpr (std::is_same_v<ScalarOf<Element>, int32_t>)
+    return "npt.NDArray[np.int32]";
+  else if constexpr (std::is_same_v<Element, NodeRef>)
+    return "Tuple[Node, ...]";
+  else
+    return fmt::format("Tuple[{}, ...]", readOne<Element>());
+}
+template <class T> std::string writtenType() {
+  if constexpr (std::is_same_v<T, MFNode>)
+    return "Sequence[Node]";
+  else if constexpr (std::is_same_v<T, MFString>)
+    return "Sequence[str]";
+  else if constexpr (std::is_same_v<T, MFImage>)
+    return "Sequence[npt.ArrayLike]";
+  else if constexpr (isList<T> || std::is_same_v<T, Image>)
+    return "npt.ArrayLike";
+  else
+    return readOne<T>().starts_with("Tuple") ? "npt.ArrayLike" : readOne<T>();
+}
+
+// Returns the type of a constructor's keyword argument.
+std::string written(FieldType type) {
+  return std::visit([](const auto& value) { return writtenType<std::decay_t<decltype(value)>>(); },
+                    defaultValue(type));
+}
+
+// Each field type of the stub: what the binding returns, and what it takes.
+std::string stubTypes() {
+  std::string text;
+  for (int i = 0; i < fieldTypeCount; ++i) {
+    const auto type = FieldType(i);
+    text += std::visit(
+        [&](const auto& value) {
+          return fmt::format("{} = Field[{}, {}]\n", fieldTypeName(type),
+                             readType<std::decay_t<decltype(value)>>(), written(type));
+        },
+        defaultValue(type));
+  }
+  return text;
 }
 
 // Returns the stub of one class: first the fields, then the events, which have values in a running
@@ -160,7 +197,7 @@ std::string writeReference(const Model& model) {
 }
 
 std::string writeStub(const Model& model) {
-  std::string text(stubPrologue);
+  std::string text = std::string(stubPrologue) + stubTypes();
   text += "\n__all__ = [\n";
   for (const Component& component : model.components)
     for (const TypeSpec& type : component.types)

@@ -13,6 +13,8 @@
 #include "parse/parser.h"
 #include "parse/urn.h"
 #include "parse/vrml1/vrml1.h"
+#include "parse/x3d_json.h"
+#include "parse/x3d_xml.h"
 
 namespace xvrml {
 namespace {
@@ -71,16 +73,34 @@ void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
-  Locator locator(source.text(), name, state_.diagnostics);
-  if (file.head.version.encoding == Encoding::vrml1) {
-    readVrml1(locator, state_, file, Parser::maximumNesting);
-    composed_ = true; // its nodes are counted when the world is complete
-    return;
+  const Limits& limits = state_.options.limits;
+  switch (file.head.version.encoding) {
+  case Encoding::x3dXml: {
+    const XmlText text(source.text(), *name, budget_);
+    Locator locator(text.text(), name, state_.diagnostics);
+    Builder builder(locator, state_, file);
+    X3dElements elements(locator, limits, builder, budget_.get());
+    readX3dXml(text, locator, elements);
+    return builder.dropUnplacedNames();
   }
+  case Encoding::x3dJson: {
+    Locator locator(source.text(), name, state_.diagnostics);
+    Builder builder(locator, state_, file);
+    X3dElements elements(locator, limits, builder, budget_.get());
+    readX3dJson(locator, budget_, elements);
+    return builder.dropUnplacedNames();
+  }
+  case Encoding::vrml1: {
+    Locator locator(source.text(), name, state_.diagnostics);
+    composed_ = true; // its nodes are counted when the world is complete
+    return readVrml1(locator, state_, file, Parser::maximumNesting);
+  }
+  default: break;
+  }
+  Locator locator(source.text(), name, state_.diagnostics);
   Lexer lexer(locator);
   Builder builder(locator, state_, file);
-  Parser(lexer, state_.options.limits, builder, budget_.get(), file.head.version.isX3d())
-      .vrmlScene();
+  Parser(lexer, limits, builder, budget_.get(), file.head.version.isX3d()).vrmlScene();
   builder.dropUnplacedNames();
 }
 

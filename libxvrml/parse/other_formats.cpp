@@ -82,10 +82,6 @@ struct Signature {
 };
 
 const Signature signatures[] = {
-    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<X3D"); },
-     {"an X3D world (XML encoding)", saveIt}},
-    {[](std::string_view b) { return withoutBlanks(b).starts_with('{') && holds(b, "\"X3D\""); },
-     {"an X3D world (JSON encoding)", saveIt}},
     {[](std::string_view b) { return b.starts_with("#Inventor"); },
      {"an Open Inventor file", saveIt}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); },

@@ -4,6 +4,7 @@
 // maximumNesting bound the stack. [any thread]
 #pragma once
 
+#include <bitset>
 #include <vector>
 
 #include "base/lexer.h"
@@ -47,7 +48,6 @@ class Parser {
   bool nodeBodyElement();
   bool field();
   bool fieldValue(const FieldTarget& target);
-  std::vector<uint32_t> linesOfStrings(const char* from);
   bool nodeValue();
   bool nodeValues();
   bool nodesOfList();
@@ -59,7 +59,7 @@ class Parser {
   bool scriptBodyElement();
   bool declares(const Token& token) const;
   bool readAccess(const Token& keyword, Access& access);
-  bool skipForeignType(const Token& typeName);
+  bool fieldType(FieldType& type);
   bool x3dStatement();
   bool componentStatement();
   bool metaStatement(const Token& keyword);
@@ -104,6 +104,7 @@ class Parser {
   ParseSink& sink_;
   const uint64_t nesting_;
   const bool x3d_;
+  std::bitset<fieldTypeCount> foreignTypes_; // types of X3D that were reported
   uint64_t depth_ = 0;
   bool endReported_ = false;
   std::vector<RecoveryPoint> recoveryPoints_;

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "base/x3d.h"
 #include "parse/parser.h"
-#include "parse/x3d.h"
 
 namespace xvrml {
 
@@ -13,13 +13,6 @@ namespace {
 
 constexpr Access accesses[] = {Access::field, Access::exposedField, Access::eventIn,
                                Access::eventOut};
-
-// The field types of X3D (ISO/IEC 19775-1 clause 5) that VRML97 does not have.
-constexpr std::string_view foreignTypes[] = {
-    "MFBool",      "MFColorRGBA", "MFDouble",   "MFImage",    "MFMatrix3d", "MFMatrix3f",
-    "MFMatrix4d",  "MFMatrix4f",  "MFVec2d",    "MFVec3d",    "MFVec4d",    "MFVec4f",
-    "SFColorRGBA", "SFDouble",    "SFMatrix3d", "SFMatrix3f", "SFMatrix4d", "SFMatrix4f",
-    "SFVec2d",     "SFVec3d",     "SFVec4d",    "SFVec4f"};
 
 } // namespace
 
@@ -42,26 +35,18 @@ bool Parser::readAccess(const Token& keyword, Access& access) {
   return true;
 }
 
-// Reads over a declaration if its type is one of X3D that no field can hold yet. Returns false for
-// other types.
-bool Parser::skipForeignType(const Token& typeName) {
-  if (!x3d_ || std::find(std::begin(foreignTypes), std::end(foreignTypes), typeName.text) ==
-                   std::end(foreignTypes))
-    return false;
+// fieldType ::= MFBool | MFColor | ... | SFVec4f
+// In a file of VRML97, a type that only X3D has is read with a warning, once for each type.
+bool Parser::fieldType(FieldType& type) {
+  const Token token = lexer_.peek();
+  if (!token.is(TokenKind::identifier) || !fieldTypeFromName(token.text, type))
+    return fail(token, "a field type");
   lexer_.next();
-  const Token id = lexer_.nextName();
-  lexer_.warn(typeName.at(), fmt::format("fields of type {} are not supported: {} is left out",
-                                         typeName.text, describe(id)));
-  if (lexer_.peek().is("IS")) {
-    lexer_.next();
-    lexer_.nextName();
-  } else if (lexer_.accept(TokenKind::bracketOpen)) {
-    while (!lexer_.peek().is(TokenKind::end) && !lexer_.accept(TokenKind::bracketClose))
-      lexer_.next();
-  } else {
-    while (lexer_.peek().is(TokenKind::number) || lexer_.peek().is("TRUE") ||
-           lexer_.peek().is("FALSE"))
-      lexer_.next();
+  if (!x3d_ && !isVrml97Type(type) && !foreignTypes_.test(size_t(type))) {
+    foreignTypes_.set(size_t(type));
+    lexer_.warn(token.at(), fmt::format("{} is a type of X3D: other browsers of VRML97 do not know "
+                                        "it",
+                                        token.text));
   }
   return true;
 }
@@ -153,11 +138,7 @@ bool Parser::interfaceDeclaration(bool isExtern) {
   }
   lexer_.next();
   FieldType type;
-  const Token typeName = lexer_.peek();
-  if (skipForeignType(typeName)) return true;
-  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type))
-    return fail(typeName, "a field type");
-  lexer_.next();
+  if (!fieldType(type)) return false;
   Token id;
   if (!name(id, "a name for the interface")) return false;
   const bool hasValue = !isExtern && (access == Access::field || access == Access::exposedField);
@@ -178,14 +159,10 @@ bool Parser::scriptBodyElement() {
   const bool exposed = access == Access::exposedField;
   if (exposed) access = Access::field; // the program needs the value
   FieldType type;
-  const Token typeName = lexer_.peek();
-  if (skipForeignType(typeName)) return true;
-  if (!typeName.is(TokenKind::identifier) || !fieldTypeFromName(typeName.text, type)) {
-    fail(typeName, "a field type");
+  if (!fieldType(type)) {
     skipDeclaration();
     return true;
   }
-  lexer_.next();
   Token id;
   if (!name(id, "a name for the interface")) return false;
   if (exposed && x3d_)

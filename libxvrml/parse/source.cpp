@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <initializer_list>
 #include <new>
 #include <utility>
 
@@ -28,8 +29,8 @@ namespace {
 // Refuses a file of a known format other than VRML97.
 [[noreturn]] void refuseOther(const std::string& name, std::string_view bytes) {
   const OtherFormat& format = *otherFormat(bytes);
-  refuse(name, fmt::format("this file is {}, not a world in VRML97 or X3D ClassicVRML: {}",
-                           format.name, format.remedy));
+  refuse(name, fmt::format("this file is {}, not a world in VRML97 or X3D: {}", format.name,
+                           format.remedy));
 }
 
 struct Descriptor {
@@ -251,8 +252,35 @@ FileVersion x3dVersion(std::string_view line, std::string& complaint) {
   return version;
 }
 
+bool endsWithOneOf(std::string_view file, std::initializer_list<std::string_view> suffixes) {
+  return std::any_of(suffixes.begin(), suffixes.end(),
+                     [&](std::string_view suffix) { return file.ends_with(suffix); });
+}
 bool namesX3dClassic(std::string_view file) {
-  return file.ends_with(".x3dv") || file.ends_with(".x3dvz") || file.ends_with(".x3dv.gz");
+  return endsWithOneOf(file, {".x3dv", ".x3dvz", ".x3dv.gz"});
+}
+
+// Returns whether a text is X3D in XML: it begins with an element, and an X3D follows. Texts in
+// UTF-16 have a zero beside each of these characters. The suffix decides where a long comment comes
+// first.
+bool isX3dXml(std::string_view text, std::string_view file) {
+  std::string ascii;
+  for (const char c : text.substr(0, 8192))
+    if (c > 0) ascii += c;
+  const size_t first = ascii.find_first_not_of(" \t\r\n");
+  if (first == ascii.npos || ascii[first] != '<') return false;
+  constexpr std::string_view marks[] = {"<X3D", "<x3d", ":X3D", "<!DOCTYPE X3D"};
+  return std::any_of(std::begin(marks), std::end(marks),
+                     [&](std::string_view mark) { return ascii.find(mark) != ascii.npos; }) ||
+         endsWithOneOf(file, {".x3d", ".x3dz", ".x3d.gz"});
+}
+
+// Returns whether a text is X3D in JSON: an object with an X3D in it.
+bool isX3dJson(std::string_view text, std::string_view file) {
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  return first != text.npos && text[first] == '{' &&
+         (text.substr(first, 4096).find("\"X3D\"") != text.npos ||
+          endsWithOneOf(file, {".x3dj", ".x3djz", ".x3dj.gz"}));
 }
 
 } // namespace
@@ -273,6 +301,9 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
   const auto warn = [&](std::string message) {
     diagnostics.warn({file, 1, 1}, std::move(message));
   };
+  // XML says that it may begin with a byte-order mark. The version stands in the X3D element.
+  if (isX3dXml(text_, *file)) return {Encoding::x3dXml, 3, 3};
+  if (isX3dJson(text_, *file)) return {Encoding::x3dJson, 3, 3};
   if (byteOrderMark_)
     warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
   if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return {};

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "graph/expander.h"
 #include "graph/field_access.h"
 #include "script/host_table.h"
 
@@ -14,21 +15,7 @@ namespace {
 
 uint64_t bytesOf(const Value& value) {
   return std::visit(
-      [](const auto& v) -> uint64_t {
-        using T = std::decay_t<decltype(v)>;
-        if constexpr (std::is_same_v<T, Image>) {
-          return sizeof v + v.pixels.size();
-        } else if constexpr (std::is_same_v<T, MFString>) {
-          uint64_t sum = 0;
-          for (const std::string& text : v) sum += sizeof text + text.size();
-          return sum;
-        } else if constexpr (requires { v.size(); }) {
-          return sizeof v + v.size() * sizeof(*v.data());
-        } else {
-          return sizeof v;
-        }
-      },
-      value);
+      [&](const auto& v) { return sizeof v + valueBytes(FieldType(value.index()), &v); }, value);
 }
 
 } // namespace
@@ -192,7 +179,7 @@ void ScriptHost::queue(Script& script, const FieldInfo& in, const Value& value) 
 }
 
 void ScriptHost::deliver(Script& script, const FieldInfo& in, const Value& value) {
-  if (!script.ready() || !script.engine->event) return;
+  if (!script.ready() || !script.engine->event || !script.knows(in.type)) return;
   const auto named = std::find_if(script.fields.begin(), script.fields.end(),
                                   [&](const XsField& f) { return f.name == in.name; });
   const auto index = uint32_t(named - script.fields.begin());

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "xvrml/numbers.h"
+#include "xvrml/xscript_types.h"
+
 namespace xvrml {
 namespace {
 
@@ -30,31 +33,6 @@ bool isUtf8(std::string_view text) {
       return false;
     i += length;
   }
-  return true;
-}
-
-// Reads one element of the ABI's array; the type of `out` selects the array.
-bool element(const XsValue& v, size_t i, bool& out) {
-  out = v.of.ints[i] != 0;
-  return true;
-}
-bool element(const XsValue& v, size_t i, int32_t& out) {
-  out = v.of.ints[i];
-  return true;
-}
-bool element(const XsValue& v, size_t i, float& out) {
-  out = v.of.floats[i];
-  return true;
-}
-bool element(const XsValue& v, size_t i, double& out) {
-  out = v.of.doubles[i];
-  return true;
-}
-template <class T>
-requires(sizeof(T) % sizeof(float) == 0 && std::is_trivially_copyable_v<T>) bool element(
-    const XsValue& v, size_t i,
-    T& out) { // Vec2f, Vec3f, Color, Rotation: tuples of floats
-  std::memcpy(static_cast<void*>(&out), v.of.floats + i * (sizeof(T) / sizeof(float)), sizeof(T));
   return true;
 }
 
@@ -97,7 +75,16 @@ struct ValueReader {
     out.pixels.assign(image.pixels, image.pixels + (image.pixels ? bytes : 0));
     return true;
   }
-  template <class T> bool one(size_t i, T& out) { return element(value, i, out); }
+  bool one(size_t i, bool& out) {
+    out = value.of.ints[i] != 0;
+    return true;
+  }
+  template <Numeric T> bool one(size_t i, T& out) {
+    const auto* numbers = static_cast<const ScalarOf<T>*>(value.of.data);
+    std::memcpy(numbersOf(out), numbers + i * size_t(numberCount<T>),
+                size_t(numberCount<T>) * sizeof *numbers);
+    return true;
+  }
   template <class T> bool all(T& out) {
     if (value.count != 1) {
       why = fmt::format("a single value has {} elements", value.count);
@@ -110,68 +97,66 @@ struct ValueReader {
       why = fmt::format("more than limit arrayElements={}", limits.arrayElements);
       return false;
     }
-    out.resize(value.count);
-    for (size_t i = 0; i < value.count; ++i)
-      if (!one(i, out[i])) return false;
+    out.reserve(value.count);
+    for (size_t i = 0; i < value.count; ++i) {
+      T element{};
+      if (!one(i, element)) return false;
+      out.push_back(std::move(element));
+    }
     return true;
   }
 };
 
 } // namespace
 
-// The types of the SDK have the order of FieldType.
-constexpr XsType xsTypeOf(FieldType type) { return XsType(int(type) + XS_SFBOOL); }
-static_assert(
-    xsTypeOf(FieldType::SFBool) == XS_SFBOOL && xsTypeOf(FieldType::SFColor) == XS_SFCOLOR &&
-    xsTypeOf(FieldType::SFFloat) == XS_SFFLOAT && xsTypeOf(FieldType::SFImage) == XS_SFIMAGE &&
-    xsTypeOf(FieldType::SFInt32) == XS_SFINT32 && xsTypeOf(FieldType::SFNode) == XS_SFNODE &&
-    xsTypeOf(FieldType::SFRotation) == XS_SFROTATION &&
-    xsTypeOf(FieldType::SFString) == XS_SFSTRING && xsTypeOf(FieldType::SFTime) == XS_SFTIME &&
-    xsTypeOf(FieldType::SFVec2f) == XS_SFVEC2F && xsTypeOf(FieldType::SFVec3f) == XS_SFVEC3F &&
-    xsTypeOf(FieldType::MFColor) == XS_MFCOLOR && xsTypeOf(FieldType::MFNode) == XS_MFNODE &&
-    xsTypeOf(FieldType::MFVec3f) == XS_MFVEC3F);
+// The types of the SDK have the order of FieldType, and arrays hold the same numbers.
+static_assert(fieldTypeCount == XS_LAST_TYPE && xsType(FieldType::SFBool) == XS_SFBOOL &&
+              xsType(FieldType::MFVec3f) == XS_MFVEC3F && xsType(FieldType::MFVec4f) == XS_MFVEC4F);
 
 const XsValue& LentValue::lend(Value value, Handles& handles) {
   value_ = std::move(value);
   strings_.clear();
   nodes_.clear();
-  view_ = {xsTypeOf(FieldType(value_.index())), 1, {nullptr}};
-  std::visit(
-      [&](const auto& v) {
-        using T = std::decay_t<decltype(v)>;
-        if constexpr (std::is_same_v<T, bool>) {
-          boolean_ = v;
-          view_.of.ints = &boolean_;
-        } else if constexpr (std::is_same_v<T, std::string>) {
-          strings_.push_back(view(v));
-          view_.of.strings = strings_.data();
-        } else if constexpr (std::is_same_v<T, NodeRef>) {
-          nodes_.push_back(handles.handleOf(v.get()));
-          view_.of.nodes = nodes_.data();
-        } else if constexpr (std::is_same_v<T, Image>) {
-          image_ = {v.width, v.height, v.components, 0, v.pixels.data()};
-          view_.of.images = &image_;
-        } else if constexpr (std::is_same_v<T, MFString>) {
-          for (const std::string& text : v) strings_.push_back(view(text));
-          view_.count = uint32_t(v.size());
-          view_.of.strings = strings_.data();
-        } else if constexpr (std::is_same_v<T, MFNode>) {
-          for (const NodeRef& node : v) nodes_.push_back(handles.handleOf(node.get()));
-          view_.count = uint32_t(v.size());
-          view_.of.nodes = nodes_.data();
-        } else if constexpr (requires { v.size(); }) {
-          view_.count = uint32_t(v.size());
-          view_.of.data = v.data();
-        } else {
-          view_.of.data = &v;
-        }
-      },
-      value_);
+  booleans_.clear();
+  images_.clear();
+  view_ = {xsType(FieldType(value_.index())), 1, {nullptr}};
+  std::visit([&](const auto& v) { lendAll(v, handles); }, value_);
   return view_;
+}
+
+template <class T> void LentValue::lendAll(const T& value, Handles& handles) {
+  using Element = ElementOf<T>;
+  if constexpr (isList<T>) {
+    view_.count = uint32_t(value.size());
+    if constexpr (Numeric<Element>) {
+      view_.of.data = value.data();
+    } else {
+      for (const auto& element : value) lendOne(element, handles);
+    }
+  } else if constexpr (Numeric<T>) {
+    view_.of.data = numbersOf(value);
+  } else {
+    lendOne(value, handles);
+  }
+  if constexpr (std::is_same_v<Element, bool>) view_.of.ints = booleans_.data();
+  if constexpr (std::is_same_v<Element, std::string>) view_.of.strings = strings_.data();
+  if constexpr (std::is_same_v<Element, NodeRef>) view_.of.nodes = nodes_.data();
+  if constexpr (std::is_same_v<Element, Image>) view_.of.images = images_.data();
+}
+
+void LentValue::lendOne(bool value, Handles&) { booleans_.push_back(value); }
+void LentValue::lendOne(const std::string& text, Handles&) { strings_.push_back(view(text)); }
+void LentValue::lendOne(const NodeRef& node, Handles& handles) {
+  nodes_.push_back(handles.handleOf(node.get()));
+}
+void LentValue::lendOne(const Image& image, Handles&) {
+  images_.push_back({image.width, image.height, image.components, 0, image.pixels.data()});
 }
 
 void LentValue::clear() {
   value_ = false;
+  booleans_.clear();
+  images_.clear();
   strings_.clear();
   nodes_.clear();
 }
@@ -201,10 +186,9 @@ bool takeValue(const XsValue* value, FieldType wanted, const Handles& handles, c
     return false;
   }
   if (value->type != xsType(wanted)) {
-    const bool known = value->type >= XS_SFBOOL && value->type <= XS_MFVEC3F;
-    why =
-        fmt::format("expected {}, got {}", fieldTypeName(wanted),
-                    known ? fieldTypeName(FieldType(value->type - XS_SFBOOL)) : "an unknown type");
+    const XsTypeInfo* known = xsTypeInfo(value->type);
+    why = fmt::format("expected {}, got {}", fieldTypeName(wanted),
+                      known ? known->name : "an unknown type");
     return false;
   }
   if (value->count > 0 && !value->of.data) {

@@ -7,7 +7,7 @@
 
 namespace xvrml {
 
-inline XsType xsType(FieldType type) { return XsType(int(type) + XS_SFBOOL); }
+constexpr XsType xsType(FieldType type) { return XsType(int(type) + XS_SFBOOL); }
 inline XsAccess xsAccess(Access access) {
   constexpr XsAccess table[] = {XS_FIELD, XS_EXPOSED_FIELD, XS_EVENT_IN, XS_EVENT_OUT};
   return table[size_t(access)];
@@ -21,11 +21,17 @@ class LentValue {
   void clear();
 
  private:
+  template <class T> void lendAll(const T& value, Handles& handles);
+  void lendOne(bool value, Handles& handles);
+  void lendOne(const std::string& text, Handles& handles);
+  void lendOne(const NodeRef& node, Handles& handles);
+  void lendOne(const Image& image, Handles& handles);
+
   Value value_;
-  int32_t boolean_ = 0;
+  std::vector<int32_t> booleans_;
   std::vector<XsString> strings_;
   std::vector<XsNode> nodes_;
-  XsImage image_{};
+  std::vector<XsImage> images_;
   XsValue view_{};
 };
 

@@ -22,41 +22,13 @@ template <class T> void writeFinite(std::string& out, T number) {
   out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
 }
 
-void writeTuple(std::string& out, std::initializer_list<float> numbers) {
-  bool first = true;
-  for (const float number : numbers) {
-    if (!std::exchange(first, false)) out += ' ';
-    writeNumber(out, number);
-  }
-}
-
 void write(std::string& out, bool value) { out += value ? "TRUE" : "FALSE"; }
-void write(std::string& out, float value) { writeNumber(out, value); }
-void write(std::string& out, double value) { writeNumber(out, value); }
-void write(std::string& out, int32_t value) { writeNumber(out, value); }
 void write(std::string& out, const std::string& value) { writeString(out, value); }
-void write(std::string& out, const Vec2f& v) { writeTuple(out, {v.x, v.y}); }
-void write(std::string& out, const Vec3f& v) { writeTuple(out, {v.x, v.y, v.z}); }
-void write(std::string& out, const Color& c) { writeTuple(out, {c.r, c.g, c.b}); }
-void write(std::string& out, const Rotation& r) { writeTuple(out, {r.x, r.y, r.z, r.angle}); }
-
-// Tuples are separated by commas; single numbers need none.
-template <class T> constexpr std::string_view separator = std::is_class_v<T> ? ", " : " ";
-
-template <class T> void writeList(std::string& out, const std::vector<T>& values, size_t indent) {
-  size_t lineStart = out.size();
-  out += "[ ";
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (out.size() - lineStart > lineWidth) {
-      while (out.back() == ' ') out.pop_back();
-      out += '\n';
-      lineStart = out.size();
-      out.append(indent + 2, ' ');
-    }
-    write(out, values[i]);
-    if (i + 1 < values.size()) out += separator<T>;
+template <Numeric T> void write(std::string& out, const T& element) {
+  for (int i = 0; i < numberCount<T>; ++i) {
+    if (i > 0) out += ' ';
+    writeNumber(out, numbersOf(element)[i]);
   }
-  out += " ]";
 }
 
 void writeImage(std::string& out, const Image& image, size_t indent) {
@@ -79,6 +51,31 @@ void writeImage(std::string& out, const Image& image, size_t indent) {
     }
     fmt::format_to(std::back_inserter(out), "0x{:0{}x}", pixel, 2 * image.components);
   }
+}
+
+// Elements of several numbers are separated by commas; single numbers need none.
+template <class T> constexpr std::string_view separator() {
+  if constexpr (Numeric<T>) return numberCount<T> == 1 ? " " : ", ";
+  return std::is_class_v<T> ? ", " : " ";
+}
+
+template <class T> void writeList(std::string& out, const std::vector<T>& values, size_t indent) {
+  size_t lineStart = out.size();
+  out += "[ ";
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (out.size() - lineStart > lineWidth) {
+      while (out.back() == ' ') out.pop_back();
+      out += '\n';
+      lineStart = out.size();
+      out.append(indent + 2, ' ');
+    }
+    if constexpr (std::is_same_v<T, Image>)
+      writeImage(out, values[i], indent + 2);
+    else
+      write(out, values[i]);
+    if (i + 1 < values.size()) out += separator<T>();
+  }
+  out += " ]";
 }
 
 } // namespace
@@ -108,12 +105,29 @@ void writeValue(std::string& out, FieldType type, const void* storage, size_t in
       // The world's writer writes nodes.
     } else if constexpr (std::is_same_v<T, std::string>) {
       writeString(out, value);
-    } else if constexpr (requires { typename T::value_type; }) {
+    } else if constexpr (isList<T>) {
       writeList(out, value, indent);
     } else {
       write(out, value);
     }
   });
+}
+
+void writeXmlValue(std::string& out, FieldType type, const void* storage, size_t indent) {
+  if (type == FieldType::SFBool) {
+    out += *static_cast<const bool*>(storage) ? "true" : "false";
+  } else if (type == FieldType::SFString) {
+    out += *static_cast<const std::string*>(storage);
+  } else {
+    const size_t begin = out.size();
+    writeValue(out, type, storage, indent);
+    if (!isMultiple(type)) return;
+    out.erase(begin, 2); // "[ " and " ]"
+    out.resize(std::max(begin, out.size() - 2));
+    if (type != FieldType::MFBool) return;
+    for (size_t i = begin; i < out.size(); ++i)
+      if (out[i] >= 'A' && out[i] <= 'Z') out[i] = char(out[i] + 32);
+  }
 }
 
 } // namespace xvrml

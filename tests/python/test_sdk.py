@@ -269,6 +269,19 @@ def test_callbacks_without_end_are_ended(world):
         world["Lamp"].intensity = 0.25
 
 
+def test_worlds_are_written_as_x3d(tmp_path):
+    world = xvrml.loads("#VRML V2.0 utf8\nDEF S Switch { choice Group { } }")
+    classic = world.to_x3d("classic")
+    assert classic.startswith("#X3D V3.3 utf8\n") and "children" in classic
+    assert xvrml.loads(classic).to_x3d("classic") == classic
+    assert "<Switch DEF='S'>" in world.to_x3d()
+    for name, start in [("w.x3d", "<?xml"), ("w.x3dv", "#X3D"), ("w.wrl", "#VRML")]:
+        world.save(tmp_path / name)
+        assert (tmp_path / name).read_text().startswith(start)
+    with pytest.raises(ValueError, match="'xml' or 'classic' expected, not 'json'"):
+        world.to_x3d("json")
+
+
 def test_routes_are_written(world):
     world.route("Clock.fraction_changed", "Paint.transparency")
     world.time = 1

@@ -260,6 +260,15 @@ def test_list_nodes(vv):
     assert len(nodes) >= 54
     size = next(f for f in nodes["Box"]["fields"] if f["name"] == "size")
     assert (size["type"], size["access"], size["default"]) == ("SFVec3f", "field", "2 2 2")
+    assert "standard" not in size
+    solid = next(f for f in nodes["Box"]["fields"] if f["name"] == "solid")
+    assert solid["standard"] == "ISO/IEC 19775-1"
+    assert (nodes["Box"]["standard"], nodes["Box"]["clause"]) == ("ISO/IEC 14772-1", "6.7")
+    group = nodes["StaticGroup"]
+    assert (group["standard"], group["clause"]) == ("ISO/IEC 19775-1", "10.4.2")
+    assert "standard" not in nodes["ORTSensor"]
+    assert "ISO/IEC 19775-1 clause 10.4.2." in text and "solid         TRUE  # X3D" in " ".join(
+        text.split("\n"))
     vv.write("proto.wrl", HEADER + "PROTO Lamp [ field SFFloat power 2.5 ] { Group { } } Lamp { }")
     data = json.loads(vv("proto.wrl", "--list-nodes", "--json").text)
     assert data["prototypes"][0]["name"] == "Lamp" and data["prototypes"][0]["fields"][0][
@@ -328,6 +337,19 @@ def test_write_round_trip(vv):
     assert (vv.folder / "copy.wrl").read_bytes() == (vv.folder / "again.wrl").read_bytes()
     assert vv("box.wrl", "--write", "-").stdout == (vv.folder / "copy.wrl").read_bytes()
     assert vv.picture() == vv.picture(world="copy.wrl")
+
+
+def test_write_x3d(vv):
+    done = vv("box.wrl", "--write", "copy.x3dv")
+    assert done.returncode == 0, done.talk
+    text = (vv.folder / "copy.x3dv").read_bytes()
+    assert text.startswith(b"#X3D V3.3 utf8\n")
+    assert vv("box.wrl", "--write", "x3dv:-").stdout == text
+    assert vv("copy.x3dv", "--write", "x3dv:again").returncode == 0
+    assert (vv.folder / "again").read_bytes() == text
+    assert vv.picture() == vv.picture(world="copy.x3dv")
+    assert b"<X3D profile='Immersive' version='3.3'>" in vv("box.wrl", "--write", "x3d:-").stdout
+    assert vv("box.wrl", "--write", "x3d:").returncode == 2
 
 
 def test_recording(vv):

@@ -86,6 +86,28 @@ TEST_F(ControlValues, EveryTypeGoesThereAndBack) {
       {"aMFTime", "[0.1,-1]"},
       {"aMFVec2f", "[[0,1]]"},
       {"aMFVec3f", "[[0,1,2],[3,4,5]]"},
+      {"aMFBool", "[true,false]"},
+      {"aSFColorRGBA", "[0.1,0.2,1,0.5]"},
+      {"aMFColorRGBA", "[[0.1,0.2,1,0.5],[0.1,0.2,1,0.5]]"},
+      {"aSFDouble", "0.1"},
+      {"aMFDouble", "[0.1,1e+300]"},
+      {"aMFImage", R"([{"width":2,"height":1,"components":3,"pixels":[16711680,65535]}])"},
+      {"aSFMatrix3d", "[1,0,0,0,1.5,0,0,0,0.1]"},
+      {"aMFMatrix3d", "[[1,0,0,0,1.5,0,0,0,0.1],[1,0,0,0,1.5,0,0,0,0.1]]"},
+      {"aSFMatrix3f", "[1,0,0,0,1.5,0,0,0,0.1]"},
+      {"aMFMatrix3f", "[[1,0,0,0,1.5,0,0,0,0.1],[1,0,0,0,1.5,0,0,0,0.1]]"},
+      {"aSFMatrix4d", "[1,0,0,0,0,1,0,0,0,0,1,0,2,3,0.1,1]"},
+      {"aMFMatrix4d", "[[1,0,0,0,0,1,0,0,0,0,1,0,2,3,0.1,1],[1,0,0,0,0,1,0,0,0,0,1,0,2,3,0.1,1]]"},
+      {"aSFMatrix4f", "[1,0,0,0,0,1,0,0,0,0,1,0,2,3,0.1,1]"},
+      {"aMFMatrix4f", "[[1,0,0,0,0,1,0,0,0,0,1,0,2,3,0.1,1],[1,0,0,0,0,1,0,0,0,0,1,0,2,3,0.1,1]]"},
+      {"aSFVec2d", "[0.1,2]"},
+      {"aMFVec2d", "[[0.1,2],[0.1,2]]"},
+      {"aSFVec3d", "[0.1,2,3e-07]"},
+      {"aMFVec3d", "[[0.1,2,3e-07],[0.1,2,3e-07]]"},
+      {"aSFVec4d", "[0.1,2,3,4]"},
+      {"aMFVec4d", "[[0.1,2,3,4],[0.1,2,3,4]]"},
+      {"aSFVec4f", "[0.1,2,3,4]"},
+      {"aMFVec4f", "[[0.1,2,3,4],[0.1,2,3,4]]"},
   };
   numbers.of(NodeRef(&node("Turn")));
   EXPECT_EQ(std::size(cases), size_t(fieldTypeCount));
@@ -104,6 +126,11 @@ TEST_F(ControlValues, WrongTypesAndCountsAreNamed) {
   refused(all, "aMFVec3f", "[[1,2,3],[1,2]]", "not an array of 2 at value[1]");
   refused(all, "aMFVec3f", "[[1,2,3],[1,2,null]]", "not null at value[1][2]");
   refused(all, "aMFVec3f", "[1,2,3]", "not 1 at value[0]");
+  refused(all, "aSFVec4d", "[1,2,3]", "an array of 4 numbers was expected, not an array of 3");
+  refused(all, "aMFMatrix3f", "[[1]]", "an array of arrays of 9 numbers was expected");
+  refused(all, "aMFBool", "[true,1]", "an array of truth values was expected, not 1 at value[1]");
+  refused(all, "aMFImage", "[[]]", "an array of objects with width");
+  refused(all, "aSFDouble", "null", "a number was expected, not null");
   refused(all, "aSFFloat", "true", "a number was expected, not true");
   refused(all, "aSFFloat", "1e39", "a number of 32 bits was expected, not 1e+39");
   refused(all, "aSFInt32", "1.5", "a whole number of 32 bits was expected, not 1.5");

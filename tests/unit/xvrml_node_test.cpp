@@ -159,7 +159,7 @@ TEST(FieldTypes, HaveNamesAndNeutralValues) {
     EXPECT_EQ(isMultiple(type), fieldTypeName(type).starts_with("MF"));
   }
   FieldType type = FieldType::SFBool;
-  for (const char* name : {"", "SF", "sfbool", "SFBoolean", "MFBool", "SFVec4f"})
+  for (const char* name : {"", "SF", "sfbool", "SFBoolean", "MFbool", "SFVec5f"})
     EXPECT_FALSE(fieldTypeFromName(name, type)) << name;
   EXPECT_TRUE(defaultValue(FieldType::SFRotation) == Value(SFRotation{0, 0, 1, 0}));
 }

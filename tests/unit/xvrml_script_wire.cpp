@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "script/looking_host.h"
+#include "xvrml/xscript_types.h"
 
 namespace xvrml {
 namespace {
@@ -29,8 +30,8 @@ XsValue valueOf(XsType type, uint32_t count, const void* data) {
 }
 
 TEST(ScriptWire, EveryTypeComesOutAsItWentIn) {
-  const std::vector<float> numbers(64, 1.5f);
-  for (int type = XS_SFBOOL; type <= XS_MFVEC3F; ++type) {
+  const std::vector<double> numbers(64, 1.5);
+  for (int type = XS_SFBOOL; type <= XS_LAST_TYPE; ++type) {
     const Element element = elementOf(XsType(type));
     if (element.kind != Kind::plain) continue;
     for (const uint32_t count : {0u, 1u, 3u}) {

@@ -5,8 +5,9 @@ from pygments.token import Comment, Keyword, Name, Number, Operator, Punctuation
 ACCESS = ("field", "exposedField", "eventIn", "eventOut")
 TYPES = tuple(k + t
               for k in ("SF", "MF")
-              for t in ("Bool", "Color", "Float", "Image", "Int32", "Node", "Rotation", "String",
-                        "Time", "Vec2f", "Vec3f"))
+              for t in ("Bool", "Color", "ColorRGBA", "Double", "Float", "Image", "Int32", "Matrix3d",
+                        "Matrix3f", "Matrix4d", "Matrix4f", "Node", "Rotation", "String", "Time",
+                        "Vec2d", "Vec2f", "Vec3d", "Vec3f", "Vec4d", "Vec4f"))
 
 
 class VrmlLexer(RegexLexer):

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "xvrml/numbers.h"
 #include "xvrml/world.h"
 
 namespace vv::control {
@@ -16,40 +17,45 @@ using namespace xvrml;
 
 namespace {
 
-template <class T> constexpr size_t width = sizeof(T) / sizeof(float);
-static_assert(width<Vec2f> == 2 && width<Vec3f> == 3 && width<Color> == 3 && width<Rotation> == 4);
-
-const char* expectation(FieldType type) {
-  switch (type) {
-  case FieldType::SFBool: return "true or false";
-  case FieldType::SFColor: return "an array of 3 numbers (red, green, blue)";
-  case FieldType::SFFloat:
-  case FieldType::SFTime: return "a number";
-  case FieldType::SFImage:
-    return "an object with width, height, components and pixels (a whole number for each pixel, as "
-           "in VRML)";
-  case FieldType::SFInt32: return "a whole number of 32 bits";
-  case FieldType::SFNode: return "the DEF name or the number of a node, or null";
-  case FieldType::SFRotation: return "an array of 4 numbers (axis x, y, z and angle in radians)";
-  case FieldType::SFString: return "a text";
-  case FieldType::SFVec2f: return "an array of 2 numbers";
-  case FieldType::SFVec3f: return "an array of 3 numbers";
-  case FieldType::MFColor:
-  case FieldType::MFVec3f: return "an array of arrays of 3 numbers";
-  case FieldType::MFFloat:
-  case FieldType::MFTime: return "an array of numbers";
-  case FieldType::MFInt32: return "an array of whole numbers of 32 bits";
-  case FieldType::MFNode: return "an array of DEF names or numbers of nodes";
-  case FieldType::MFRotation: return "an array of arrays of 4 numbers";
-  case FieldType::MFString: return "an array of texts";
-  case FieldType::MFVec2f: return "an array of arrays of 2 numbers";
-  }
-  return "";
+// Says what the value of a field looks like, from the C++ type of its elements.
+template <class T> std::string expectation() {
+  using Element = ElementOf<T>;
+  std::string one;
+  if constexpr (std::is_same_v<T, Color>)
+    return "an array of 3 numbers (red, green, blue)";
+  else if constexpr (std::is_same_v<T, Rotation>)
+    return "an array of 4 numbers (axis x, y, z and angle in radians)";
+  else if constexpr (std::is_same_v<Element, bool>)
+    one = isList<T> ? "truth values" : "true or false";
+  else if constexpr (std::is_same_v<Element, Image>)
+    one = isList<T> ? "objects with width, height, components and pixels"
+                    : "an object with width, height, components and pixels (a whole number for "
+                      "each pixel, as in VRML)";
+  else if constexpr (std::is_same_v<Element, NodeRef>)
+    one = isList<T> ? "DEF names or numbers of nodes"
+                    : "the DEF name or the number of a node, or null";
+  else if constexpr (std::is_same_v<Element, std::string>)
+    one = isList<T> ? "texts" : "a text";
+  else if constexpr (std::is_same_v<Element, int32_t>)
+    one = isList<T> ? "whole numbers of 32 bits" : "a whole number of 32 bits";
+  else if constexpr (numberCount<Element> == 1)
+    one = isList<T> ? "numbers" : "a number";
+  else
+    one = fmt::format("{} of {} numbers", isList<T> ? "arrays" : "an array", numberCount<Element>);
+  return (isList<T> ? "an array of " : "") + one;
+}
+std::string expectation(FieldType type) {
+  return std::visit([](const auto& value) { return expectation<std::decay_t<decltype(value)>>(); },
+                    defaultValue(type));
 }
 
+// Whether the numbers of a type are more exact than floats.
 bool hasWideNumbers(FieldType type) {
-  return type == FieldType::SFTime || type == FieldType::MFTime || type == FieldType::SFInt32 ||
-         type == FieldType::MFInt32;
+  return std::visit(
+      [](const auto& value) {
+        return !std::is_same_v<ScalarOf<ElementOf<std::decay_t<decltype(value)>>>, float>;
+      },
+      defaultValue(type));
 }
 
 // Returns whether a field of these node types accepts the node. nodeTypes: names and abstract
@@ -77,31 +83,12 @@ class Reader {
       : owner_(owner), field_(field), findNode_(findNode) {}
 
   Value read(const Json& json) {
-    switch (field_.type) {
-    case FieldType::SFBool:
-      if (!json.is_boolean()) wrong(json);
-      return json.get<bool>();
-    case FieldType::SFColor: return tuple<Color>(json);
-    case FieldType::SFFloat: return single(json);
-    case FieldType::SFImage: return image(json);
-    case FieldType::SFInt32: return integer(json);
-    case FieldType::SFNode: return json.is_null() ? NodeRef() : node(json);
-    case FieldType::SFRotation: return tuple<Rotation>(json);
-    case FieldType::SFString: return text(json);
-    case FieldType::SFTime: return number(json);
-    case FieldType::SFVec2f: return tuple<Vec2f>(json);
-    case FieldType::SFVec3f: return tuple<Vec3f>(json);
-    case FieldType::MFColor: return list<Color>(json, &Reader::tuple<Color>);
-    case FieldType::MFFloat: return list<float>(json, &Reader::single);
-    case FieldType::MFInt32: return list<int32_t>(json, &Reader::integer);
-    case FieldType::MFNode: return list<NodeRef>(json, &Reader::listedNode);
-    case FieldType::MFRotation: return list<Rotation>(json, &Reader::tuple<Rotation>);
-    case FieldType::MFString: return list<std::string>(json, &Reader::text);
-    case FieldType::MFTime: return list<double>(json, &Reader::number);
-    case FieldType::MFVec2f: return list<Vec2f>(json, &Reader::tuple<Vec2f>);
-    case FieldType::MFVec3f: return list<Vec3f>(json, &Reader::tuple<Vec3f>);
-    }
-    wrong(json);
+    return std::visit(
+        [&](auto value) -> Value {
+          read(json, value);
+          return value;
+        },
+        defaultValue(field_.type));
   }
 
  private:
@@ -144,6 +131,45 @@ class Reader {
     if ((low || high) && v != r.also) wrongNumber(number);
   }
 
+  template <class T> void read(const Json& json, std::vector<T>& list) {
+    if (!json.is_array()) wrong(json);
+    list.reserve(json.size());
+    for (size_t i = 0; i < json.size(); ++i)
+      list.push_back(inside(i, [&] {
+        T element{};
+        if constexpr (std::is_same_v<T, NodeRef>)
+          element = listedNode(json[i]);
+        else
+          read(json[i], element);
+        return element;
+      }));
+  }
+  template <Numeric T> void read(const Json& json, T& value) {
+    auto* numbers = numbersOf(value);
+    if constexpr (numberCount<T> == 1) return readNumber(json, *numbers);
+    if (!json.is_array() || json.size() != size_t(numberCount<T>)) wrong(json);
+    for (int i = 0; i < numberCount<T>; ++i)
+      inside(size_t(i), [&] {
+        readNumber(json[size_t(i)], numbers[i]);
+        return 0;
+      });
+  }
+  void read(const Json& json, bool& value) {
+    if (!json.is_boolean()) wrong(json);
+    value = json.get<bool>();
+  }
+  void read(const Json& json, std::string& value) {
+    if (!json.is_string()) wrong(json);
+    value = json.get<std::string>();
+  }
+  void read(const Json& json, Image& value) { value = image(json); }
+  void read(const Json& json, NodeRef& value) {
+    if (!json.is_null()) value = node(json);
+  }
+  void readNumber(const Json& json, float& value) { value = single(json); }
+  void readNumber(const Json& json, double& value) { value = number(json); }
+  void readNumber(const Json& json, int32_t& value) { value = integer(json); }
+
   double number(const Json& json) {
     if (!json.is_number()) wrong(json);
     const double value = json.get<double>();
@@ -172,11 +198,6 @@ class Reader {
     return int32_t(value);
   }
 
-  std::string text(const Json& json) {
-    if (!json.is_string()) wrong(json);
-    return json.get<std::string>();
-  }
-
   NodeRef node(const Json& json) {
     if (!json.is_string() && !json.is_number_unsigned()) wrong(json);
     NodeRef found = findNode_(json);
@@ -190,27 +211,6 @@ class Reader {
   NodeRef listedNode(const Json& json) {
     const bool mayBeNull = owner_.type().index < 0 || owner_.type().is("selecting");
     return json.is_null() && mayBeNull ? NodeRef() : node(json);
-  }
-
-  template <class T> T tuple(const Json& json) {
-    if (!json.is_array() || json.size() != width<T>) wrong(json);
-    float numbers[width<T>];
-    for (size_t i = 0; i < width<T>; ++i) numbers[i] = inside(i, [&] { return single(json[i]); });
-    if constexpr (width<T> == 2)
-      return {numbers[0], numbers[1]};
-    else if constexpr (width<T> == 3)
-      return {numbers[0], numbers[1], numbers[2]};
-    else
-      return {numbers[0], numbers[1], numbers[2], numbers[3]};
-  }
-
-  template <class T> std::vector<T> list(const Json& json, T (Reader::*read)(const Json&)) {
-    if (!json.is_array()) wrong(json);
-    std::vector<T> values;
-    values.reserve(json.size());
-    for (size_t i = 0; i < json.size(); ++i)
-      values.push_back(inside(i, [&] { return (this->*read)(json[i]); }));
-    return values;
   }
 
   int32_t imageNumber(const Json& json, const char* name, int32_t most) {
@@ -258,27 +258,22 @@ struct Writer {
   const NumberOfNode& numberOf;
 
   template <class T> void write(T number) {
-    if (std::isfinite(number))
+    if (std::isfinite(double(number)))
       fmt::format_to(std::back_inserter(out), "{}", number);
     else
       out += "null";
   }
-  template <class... T> void array(T... numbers) {
-    out += '[';
-    const char* comma = "";
-    ((out += std::exchange(comma, ","), write(numbers)), ...);
+  void operator()(bool v) { out += v ? "true" : "false"; }
+  template <Numeric T> void operator()(const T& v) {
+    const auto* numbers = numbersOf(v);
+    if constexpr (numberCount<T> == 1) return write(*numbers);
+    for (int i = 0; i < numberCount<T>; ++i) {
+      out += i ? ',' : '[';
+      write(numbers[i]);
+    }
     out += ']';
   }
-
-  void operator()(bool v) { out += v ? "true" : "false"; }
-  void operator()(float v) { write(v); }
-  void operator()(double v) { write(v); }
-  void operator()(int32_t v) { fmt::format_to(std::back_inserter(out), "{}", v); }
   void operator()(const std::string& v) { out += jsonText(v); }
-  void operator()(const Color& v) { array(v.r, v.g, v.b); }
-  void operator()(const Vec2f& v) { array(v.x, v.y); }
-  void operator()(const Vec3f& v) { array(v.x, v.y, v.z); }
-  void operator()(const Rotation& v) { array(v.x, v.y, v.z, v.angle); }
   void operator()(const NodeRef& v) {
     if (v)
       fmt::format_to(std::back_inserter(out), "{}", numberOf(v));
@@ -301,7 +296,7 @@ struct Writer {
     out += '[';
     for (size_t i = 0; i < list.size(); ++i) {
       if (i) out += ',';
-      (*this)(list[i]);
+      (*this)(ElementOf<std::vector<T>>(list[i]));
     }
     out += ']';
   }

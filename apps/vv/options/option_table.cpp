@@ -43,6 +43,23 @@ void addOutput(Options& o, const std::string& value) {
   o.outputs.push_back({value, format});
 }
 
+void notEmpty(const std::string& value, const char* what) {
+  if (value.empty()) throw UsageError(fmt::format("{} was expected", what));
+}
+
+void setWrite(Options& o, const std::string& value) {
+  o.write = value;
+  const size_t colon = value.find(':');
+  const std::string format = value.substr(0, colon == value.npos ? 0 : colon);
+  if (format == "wrl" || format == "x3dv" || format == "x3d") {
+    o.writeEncoding = xvrml::writtenEncoding("." + format);
+    o.write = value.substr(colon + 1);
+  } else {
+    o.writeEncoding = xvrml::writtenEncoding(value);
+  }
+  notEmpty(o.write, "a file name");
+}
+
 void setHeadlight(Options& o, const std::string& value) {
   if (value == "auto")
     o.render.headlight = MapOptions::Headlight::automatic;
@@ -137,10 +154,6 @@ void setLimit(Options& o, const std::string& value) {
 
 double secondsSince1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-void notEmpty(const std::string& value, const char* what) {
-  if (value.empty()) throw UsageError(fmt::format("{} was expected", what));
 }
 
 const OptionInfo table[] = {
@@ -403,11 +416,10 @@ const OptionInfo table[] = {
      "Make the pictures again whenever the world's file, or one that it uses, changes, until "
      "interrupted. In the window, reload the world and keep the view.",
      [](Options& o, const std::string&) { o.watch = true; }},
-    {"--write", "FILE", "Write", "Write the world as VRML97; - is standard output.",
-     [](Options& o, const std::string& v) {
-       notEmpty(v, "a file name");
-       o.write = v;
-     }},
+    {"--write", "FILE", "Write",
+     "Write the world: .x3dv gives X3D in the ClassicVRML encoding, .x3d X3D in XML, every other "
+     "name VRML97. FORMAT:FILE (wrl, x3dv, x3d) selects it for any name; - is standard output.",
+     setWrite},
     {"--record", "FILE", "Write", "Write the scene as OpenRT edits, for openrt-replay.",
      [](Options& o, const std::string& v) {
        notEmpty(v, "a file name");

@@ -80,8 +80,9 @@ struct Options {
   std::string inputScript, recordInput;      // files of user input; empty: none
   std::shared_ptr<const InputScript> script; // contents of inputScript
   std::string write, stats;
-  std::string compare; // reference picture; empty: none
-  int audit = 0;       // number of pictures to check the error bars with; 0: none
+  xvrml::Encoding writeEncoding = xvrml::Encoding::vrml97; // of --write
+  std::string compare;                                     // reference picture; empty: none
+  int audit = 0; // number of pictures to check the error bars with; 0: none
   ServeOptions serve;
   std::string nodePath; // folders, separated by colons
   xvrml::LoadOptions load;

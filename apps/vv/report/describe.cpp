@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "openrt/openrt.h"
+#include "xvrml/numbers.h"
 #include "xvrml/walk.h"
 
 namespace vv {
@@ -15,13 +16,10 @@ namespace {
 using namespace xvrml;
 
 std::string text(bool v) { return v ? "TRUE" : "FALSE"; }
-std::string text(float v) { return fmt::format("{}", v); }
-std::string text(double v) { return fmt::format("{}", v); }
-std::string text(int32_t v) { return fmt::format("{}", v); }
-std::string text(const Vec2f& v) { return fmt::format("{} {}", v.x, v.y); }
-std::string text(const Vec3f& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
-std::string text(const Color& v) { return fmt::format("{} {} {}", v.r, v.g, v.b); }
-std::string text(const Rotation& v) { return fmt::format("{} {} {} {}", v.x, v.y, v.z, v.angle); }
+template <Numeric T> std::string text(const T& v) {
+  const auto* numbers = numbersOf(v);
+  return fmt::format("{}", fmt::join(numbers, numbers + numberCount<T>, " "));
+}
 std::string text(const NodeRef& v) { return v ? v->type().name + " { }" : "NULL"; }
 std::string text(const Image& v) {
   std::string out = fmt::format("{} {} {}", v.width, v.height, v.components);
@@ -42,7 +40,8 @@ std::string text(const std::string& v) {
 }
 template <class T> std::string text(const std::vector<T>& list) {
   std::string out = "[";
-  for (const T& v : list) out += (out.size() > 1 ? ", " : "") + text(v);
+  for (const auto& v : list)
+    out += (out.size() > 1 ? ", " : "") + text(ElementOf<std::vector<T>>(v));
   return out + "]";
 }
 
@@ -166,9 +165,12 @@ WorldCounts countWorld(const World& world) {
 }
 
 std::string headText(const xvrml::FileHead& head) {
-  std::string text = fmt::format("file        {} {}.{}{}\n", encodingName(head.version.encoding),
-                                 head.version.major, head.version.minor,
-                                 head.profile.empty() ? "" : ", profile " + head.profile);
+  // The name of VRML 1.0 says its version.
+  const std::string version = head.version.encoding == xvrml::Encoding::vrml1
+                                  ? ""
+                                  : fmt::format(" {}.{}", head.version.major, head.version.minor);
+  std::string text = fmt::format("file        {}{}{}\n", encodingName(head.version.encoding),
+                                 version, head.profile.empty() ? "" : ", profile " + head.profile);
   for (const auto& one : head.components)
     text += fmt::format("component   {}:{}\n", one.name, one.level);
   for (const auto& one : head.units)

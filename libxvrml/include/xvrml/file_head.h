@@ -9,10 +9,11 @@
 
 namespace xvrml {
 
-enum class Encoding : uint8_t { vrml97, x3dClassic, vrml1 };
+enum class Encoding : uint8_t { vrml97, x3dClassic, x3dXml, x3dJson, vrml1 };
 // Returns the name of an encoding as users call it.
 constexpr std::string_view encodingName(Encoding encoding) {
-  constexpr std::string_view names[] = {"VRML97", "X3D ClassicVRML", "VRML 1.0"};
+  constexpr std::string_view names[] = {"VRML97", "X3D ClassicVRML", "X3D XML", "X3D JSON",
+                                        "VRML 1.0"};
   return names[static_cast<size_t>(encoding)];
 }
 

@@ -1,4 +1,5 @@
-// types.h: the 20 field types of ISO/IEC 14772-1 clause 5 as plain C++ values.
+// types.h: the 42 field types of X3D (ISO/IEC 19775-1 clause 5) as plain C++ values. The first 20
+// are those of VRML97 (ISO/IEC 14772-1 clause 5).
 #pragma once
 
 #include <cstdint>
@@ -35,22 +36,56 @@ class NodeRef {
   Node* node_ = nullptr;
 };
 
-struct Vec2f {
-  float x = 0, y = 0;
-  bool operator==(const Vec2f&) const = default;
+// An element of several numbers. `Scalar` is the type of its numbers, which are its only members,
+// so that numbers.h can treat all such types alike.
+#define XVRML_TUPLE(Name, Number, ...)                                                             \
+  struct Name {                                                                                    \
+    using Scalar = Number;                                                                         \
+    Number __VA_ARGS__;                                                                            \
+    bool operator==(const Name&) const = default;                                                  \
+  }
+XVRML_TUPLE(Vec2f, float, x = 0, y = 0);
+XVRML_TUPLE(Vec3f, float, x = 0, y = 0, z = 0);
+XVRML_TUPLE(Vec4f, float, x = 0, y = 0, z = 0, w = 1);
+XVRML_TUPLE(Vec2d, double, x = 0, y = 0);
+XVRML_TUPLE(Vec3d, double, x = 0, y = 0, z = 0);
+XVRML_TUPLE(Vec4d, double, x = 0, y = 0, z = 0, w = 1);
+XVRML_TUPLE(Color, float, r = 0, g = 0, b = 0);
+XVRML_TUPLE(ColorRGBA, float, r = 0, g = 0, b = 0, a = 0);
+XVRML_TUPLE(Rotation, float, x = 0, y = 0, z = 1, angle = 0); // radians
+// Row by row. The default is the identity matrix.
+XVRML_TUPLE(Matrix3f, float, m[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1});
+XVRML_TUPLE(Matrix3d, double, m[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1});
+XVRML_TUPLE(Matrix4f, float, m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+XVRML_TUPLE(Matrix4d, double, m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+#undef XVRML_TUPLE
+// The number of an SFDouble. It is a type of its own because Value has one alternative for each
+// field type, and SFTime is double.
+struct Double {
+  using Scalar = double;
+  double value = 0;
+  operator double() const { return value; }
+  bool operator==(const Double&) const = default;
 };
-struct Vec3f {
-  float x = 0, y = 0, z = 0;
-  bool operator==(const Vec3f&) const = default;
+// A value on the heap. Large types are boxed where a field has one, so that a Value, of which each
+// field of a prototype's instance has one, stays small.
+template <class T> class Boxed {
+ public:
+  using Content = T;
+  using Scalar = typename T::Scalar;
+  Boxed(const T& value = T()) : value_(std::make_unique<T>(value)) {}
+  Boxed(const Boxed& other) : Boxed(*other) {}
+  Boxed& operator=(Boxed other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  T& operator*() { return *value_; }
+  const T& operator*() const { return *value_; }
+  bool operator==(const Boxed& other) const { return **this == *other; }
+
+ private:
+  std::unique_ptr<T> value_; // never null
 };
-struct Color {
-  float r = 0, g = 0, b = 0;
-  bool operator==(const Color&) const = default;
-};
-struct Rotation {
-  float x = 0, y = 0, z = 1, angle = 0;
-  bool operator==(const Rotation&) const = default;
-}; // radians
 // Pixels row by row from the bottom left, `components` bytes each (0: no image).
 struct Image {
   int32_t width = 0, height = 0, components = 0;
@@ -58,8 +93,8 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-// The field types and their C++ types. This order is that of FieldType and of the alternatives of
-// Value; MFColor is the first MF type.
+// The field types and their C++ types. This order is that of FieldType, of the alternatives of
+// Value and of XsType. A new type goes to the end.
 #define XVRML_FIELD_TYPES(X)                                                                       \
   X(SFBool, bool)                                                                                  \
   X(SFColor, Color)                                                                                \
@@ -80,7 +115,29 @@ struct Image {
   X(MFString, std::vector<std::string>)                                                            \
   X(MFTime, std::vector<double>)                                                                   \
   X(MFVec2f, std::vector<Vec2f>)                                                                   \
-  X(MFVec3f, std::vector<Vec3f>)
+  X(MFVec3f, std::vector<Vec3f>)                                                                   \
+  X(MFBool, std::vector<bool>)                                                                     \
+  X(SFColorRGBA, ColorRGBA)                                                                        \
+  X(MFColorRGBA, std::vector<ColorRGBA>)                                                           \
+  X(SFDouble, Double)                                                                              \
+  X(MFDouble, std::vector<Double>)                                                                 \
+  X(MFImage, std::vector<Image>)                                                                   \
+  X(SFMatrix3d, Boxed<Matrix3d>)                                                                   \
+  X(MFMatrix3d, std::vector<Matrix3d>)                                                             \
+  X(SFMatrix3f, Matrix3f)                                                                          \
+  X(MFMatrix3f, std::vector<Matrix3f>)                                                             \
+  X(SFMatrix4d, Boxed<Matrix4d>)                                                                   \
+  X(MFMatrix4d, std::vector<Matrix4d>)                                                             \
+  X(SFMatrix4f, Boxed<Matrix4f>)                                                                   \
+  X(MFMatrix4f, std::vector<Matrix4f>)                                                             \
+  X(SFVec2d, Vec2d)                                                                                \
+  X(MFVec2d, std::vector<Vec2d>)                                                                   \
+  X(SFVec3d, Vec3d)                                                                                \
+  X(MFVec3d, std::vector<Vec3d>)                                                                   \
+  X(SFVec4d, Vec4d)                                                                                \
+  X(MFVec4d, std::vector<Vec4d>)                                                                   \
+  X(SFVec4f, Vec4f)                                                                                \
+  X(MFVec4f, std::vector<Vec4f>)
 
 #define XVRML_ALIAS(name, type) using name = type;
 XVRML_FIELD_TYPES(XVRML_ALIAS)
@@ -97,11 +154,16 @@ template <class First, class... Others> using VariantOfOthers = std::variant<Oth
 #define XVRML_ARGUMENT(name, type) , type
 using Value = detail::VariantOfOthers<void XVRML_FIELD_TYPES(XVRML_ARGUMENT)>;
 #undef XVRML_ARGUMENT
+static_assert(sizeof(Value) <= 48); // see Boxed
 inline constexpr int fieldTypeCount = std::variant_size_v<Value>;
 
 std::string_view fieldTypeName(FieldType type); // "SFBool" ...
 bool fieldTypeFromName(std::string_view name, FieldType& type);
-inline bool isMultiple(FieldType type) { return type >= FieldType::MFColor; }
-Value defaultValue(FieldType type); // FALSE, zeros, empty; SFRotation 0 0 1 0 (clause 5)
+// Whether VRML97 has the type, too (ISO/IEC 14772-1 clause 5).
+constexpr bool isVrml97Type(FieldType type) { return type <= FieldType::MFVec3f; }
+bool isMultiple(FieldType type);       // an MF type
+FieldType elementType(FieldType type); // the SF type of an MF type; an SF type itself
+// FALSE, zeros, empty; SFRotation 0 0 1 0, SFVec4f 0 0 0 1, the identity matrix (clause 5).
+Value defaultValue(FieldType type);
 
 } // namespace xvrml

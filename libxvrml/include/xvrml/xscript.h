@@ -22,7 +22,8 @@
 
 #define XS_MAGIC 0x50435358u /* "XSCP" */
 #define XS_ABI_MAJOR 1       /* a host refuses another major number */
-#define XS_ABI_MINOR 1 /* grows with every field appended; a host accepts minors up to its own */
+/* grows with everything that is appended; a host accepts minors up to its own */
+#define XS_ABI_MINOR 2
 
 #ifdef __cplusplus
 extern "C" {
@@ -39,7 +40,8 @@ typedef uint64_t XsNode;
 
 /* --- Values --- */
 
-/* Field types, with the C type of an array's element */
+/* Field types, with the C type of an array's element. MF types are arrays of the elements of the SF
+ * type of the same name; xscript_types.h has a table. */
 typedef enum XsType {
   XS_SFBOOL = 1, /* int32_t, 0 or 1 */
   XS_SFCOLOR,    /* float[3], rgb */
@@ -52,7 +54,7 @@ typedef enum XsType {
   XS_SFTIME,     /* double, seconds */
   XS_SFVEC2F,    /* float[2] */
   XS_SFVEC3F,    /* float[3] */
-  XS_MFCOLOR,    /* from here on: arrays of the elements above */
+  XS_MFCOLOR,
   XS_MFFLOAT,
   XS_MFINT32,
   XS_MFNODE,
@@ -61,6 +63,28 @@ typedef enum XsType {
   XS_MFTIME,
   XS_MFVEC2F,
   XS_MFVEC3F,
+  XS_MFBOOL,      /* since minor version 2, as all that follow */
+  XS_SFCOLORRGBA, /* float[4], rgba */
+  XS_MFCOLORRGBA,
+  XS_SFDOUBLE, /* double */
+  XS_MFDOUBLE,
+  XS_MFIMAGE,
+  XS_SFMATRIX3D, /* double[9], row by row */
+  XS_MFMATRIX3D,
+  XS_SFMATRIX3F, /* float[9], row by row */
+  XS_MFMATRIX3F,
+  XS_SFMATRIX4D, /* double[16], row by row */
+  XS_MFMATRIX4D,
+  XS_SFMATRIX4F, /* float[16], row by row */
+  XS_MFMATRIX4F,
+  XS_SFVEC2D, /* double[2] */
+  XS_MFVEC2D,
+  XS_SFVEC3D, /* double[3] */
+  XS_MFVEC3D,
+  XS_SFVEC4D, /* double[4] */
+  XS_MFVEC4D,
+  XS_SFVEC4F, /* float[4] */
+  XS_MFVEC4F,
   XS_TYPE_32_BITS = 0x7fffffff /* not a type: fixes the size of the enumeration */
 } XsType;
 
@@ -77,15 +101,15 @@ typedef struct XsImage {
   const uint8_t* pixels;
 } XsImage;
 
-/* A value of one of the 20 types. The side that passes it owns the memory that it points to. */
+/* A value of one of the types above. The side that passes it owns the memory that it points to. */
 typedef struct XsValue {
   XsType type;
   uint32_t count; /* number of elements: 1 for SF types */
   union {
-    const void* data;    /* NULL only if count is 0 */
-    const int32_t* ints; /* SFBool, SFInt32 */
-    const float* floats; /* SFFloat, SFVec2f, SFVec3f, SFColor, SFRotation: count tuples in a row */
-    const double* doubles;   /* SFTime */
+    const void* data;        /* NULL only if count is 0 */
+    const int32_t* ints;     /* SFBool, SFInt32 */
+    const float* floats;     /* SFFloat and tuples of floats: count tuples in a row */
+    const double* doubles;   /* SFTime, SFDouble and tuples of doubles: count tuples in a row */
     const XsNode* nodes;     /* SFNode */
     const XsString* strings; /* SFString */
     const XsImage* images;   /* SFImage */

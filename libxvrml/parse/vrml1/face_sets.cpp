@@ -1,5 +1,6 @@
 // face_sets.cpp: IndexedFaceSet, and Cube where its faces have materials of their own.
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/texture_mapping.h"
 #include "parse/vrml1/shapes.h"
@@ -201,8 +202,12 @@ void Shapes::dressTexture(const Faces& faces, State& state, bool split, Dress& d
 // A Cube is a Box, or a set of faces if its faces have materials of their own: front, back, left,
 // right, top, bottom.
 MFNode Shapes::cube(const TreeNode& node, State& state) {
-  const float x = node.get<float>("width") / 2, y = node.get<float>("height") / 2,
-              z = node.get<float>("depth") / 2;
+  const auto half = [&](const char* edge) { return std::abs(node.get<float>(edge)) / 2; };
+  // VRML97 wants a Box to be thick; one that is flat keeps a trace of its thickness.
+  const float thin = std::max({half("width"), half("height"), half("depth")}) * 1e-6f;
+  const float x = std::max(half("width"), thin), y = std::max(half("height"), thin),
+              z = std::max(half("depth"), thin);
+  if (thin == 0) return {};
   const Binding bound = binding(state, Slot::materialBinding, Binding::overall);
   const bool whole = bound == Binding::overall || bound == Binding::perVertex ||
                      bound == Binding::perVertexIndexed || looks_.list(state).count == 1;

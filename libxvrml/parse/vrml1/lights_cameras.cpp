@@ -114,13 +114,16 @@ NodeRef convertCamera(Graph& graph, const TreeNode& node) {
   if (node.kind == Kind::perspectiveCamera) {
     view->fieldOfView = std::clamp(node.get<float>("heightAngle"), 1e-3f, pi - 1e-3f);
   } else {
-    // A view from its distance that shows as much of what lies at the focal distance.
-    const float distance = std::max(node.get<float>("focalDistance"), 1e-3f);
-    const float height = std::max(node.get<float>("height"), 1e-6f);
-    view->fieldOfView = std::clamp(2 * std::atan(height / 2 / distance), 1e-3f, pi - 1e-3f);
+    // VRML97 has views in perspective only. The eye is so far back that the picture shows as much
+    // of what lies at the focal distance.
+    const double height = std::max(std::abs(double(node.get<float>("height"))), 1e-6);
+    const double distance = height / 2 / std::tan(double(view->fieldOfView) / 2);
+    const Vector back = transformDirection(rotation(view->orientation), Vector(0, 0, 1)) *
+                        (distance - double(node.get<float>("focalDistance")));
+    view->position = narrowed(vector(view->position) + back);
     graph.warnOnce(node, "orthographic",
-                   "OrthographicCamera is shown in perspective, at the same height at "
-                   "focalDistance");
+                   "OrthographicCamera is shown in perspective: at focalDistance the picture has "
+                   "the camera's height");
   }
   return graph.finish(view);
 }

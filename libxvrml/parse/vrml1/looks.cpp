@@ -69,15 +69,16 @@ Looks::List& Looks::list(State& state) {
         },
         value);
   }
-  // What a Color node cannot say. Ambient light differs by rounding only where files write a
-  // constant share of each colour, so that share is rounded, too.
+  // What a Color node cannot say. A list of ambient colours mostly holds a constant share of each
+  // colour, rounded as files do it; one ambient colour for all is no difference, either.
   using Rest = std::tuple<long, float, float, float, float, float, float, float, float>;
   std::map<Rest, uint32_t> seen;
   const bool precomputed = isPrecomputed(material);
+  const bool severalAmbient = material.get<MFColor>("ambientColor").size() > 1;
   for (size_t i = 0; i < list.count; ++i) {
     const SFColor specular = at(material.get<MFColor>("specularColor"), i, SFColor{});
     const SFColor own = precomputed ? SFColor{} : emissive(material, i);
-    const Rest rest{std::lround(ambientIntensity(material, i) * 64),
+    const Rest rest{severalAmbient ? std::lround(ambientIntensity(material, i) * 16) : 0,
                     specular.r,
                     specular.g,
                     specular.b,

@@ -2,6 +2,7 @@
 #include "parse/vrml1/shapes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,10 @@ void setIfThere(Node& node, std::string_view name, Value value) {
   const FieldInfo* field = node.type().find(name);
   if (field && holdsValue(*field)) node.set(*field, std::move(value));
 }
+
+// Returns a size as VRML97 allows it: positive. A negative one has meant the same shape, and a flat
+// shape keeps a trace of its thickness. 0 only if all are 0.
+float positive(float size, float largest) { return std::max(std::abs(size), largest * 1e-6f); }
 
 } // namespace
 
@@ -37,8 +42,9 @@ MFNode Shapes::make(const TreeNode& node, State& state, bool last) {
   case Kind::asciiText: return text(node, state);
   case Kind::cube: return cube(node, state);
   case Kind::sphere: {
+    if (node.get<float>("radius") == 0) return {};
     auto* sphere = graph_.make<nodes::Sphere>(node);
-    sphere->radius = node.get<float>("radius");
+    sphere->radius = std::abs(node.get<float>("radius"));
     return {shape(node, looks_.appearance(node, state, 0, Use::surface), graph_.finish(sphere))};
   }
   default: return parts(node, state);
@@ -66,19 +72,22 @@ MFNode Shapes::parts(const TreeNode& node, State& state) {
       graph_.warnOnce(node, "part " + part,
                       fmt::format("{} has no part '{}'", node.type->name, part));
   }
+  const float radius = std::abs(node.get<float>(cone ? "bottomRadius" : "radius"));
+  const float height = positive(node.get<float>("height"), radius);
+  if (radius == 0) return {};
   const auto make = [&](bool withSide, bool withTop, bool withBottom, size_t material) {
     NodeRef geometry;
     if (cone) {
       auto* made = graph_.make<nodes::Cone>(node);
-      made->bottomRadius = node.get<float>("bottomRadius");
-      made->height = node.get<float>("height");
+      made->bottomRadius = radius;
+      made->height = height;
       made->side = withSide;
       made->bottom = withBottom;
       geometry = NodeRef(made);
     } else {
       auto* made = graph_.make<nodes::Cylinder>(node);
-      made->radius = node.get<float>("radius");
-      made->height = node.get<float>("height");
+      made->radius = radius;
+      made->height = height;
       made->side = withSide;
       made->top = withTop;
       made->bottom = withBottom;

@@ -40,8 +40,9 @@ void pushString(duk_context* ctx, const XsString& text) {
 }
 
 void pushTuple(duk_context* ctx, Interpreter& self, const XsValue& value) {
-  double v[4] = {};
-  for (int i = 0; i < components(value.type); ++i) v[i] = widen(value.of.floats[i]);
+  double v[XS_MOST_COMPONENTS];
+  for (int i = 0; i < components(value.type); ++i)
+    v[i] = numberAt(value.type, value.of.data, size_t(i));
   pushSf(ctx, self, value.type, v);
 }
 
@@ -57,6 +58,12 @@ void pushPixels(duk_context* ctx, Interpreter& self, const XsImage& image, Place
       pixel = pixel << 8 | image.pixels[i * uint64_t(image.components) + uint64_t(k)];
     intsOf(mf)[i] = int32_t(pixel);
   }
+}
+
+void pushHostImage(duk_context* ctx, Interpreter& self, const XsImage& image, Place place) {
+  const double v[] = {double(image.width), double(image.height), double(image.components)};
+  pushPixels(ctx, self, image, place);
+  pushImage(ctx, self, v, place);
 }
 
 void pushNodes(duk_context* ctx, Interpreter& self, const XsValue& value, Place place) {
@@ -84,16 +91,8 @@ void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place 
   case XS_SFTIME: return duk_push_number(ctx, value.of.doubles[0]);
   case XS_SFSTRING: return pushString(ctx, value.of.strings[0]);
   case XS_SFNODE: return pushNode(ctx, self, value.of.nodes[0]);
-  case XS_SFCOLOR:
-  case XS_SFROTATION:
-  case XS_SFVEC2F:
-  case XS_SFVEC3F: return pushTuple(ctx, self, value);
-  case XS_SFIMAGE: {
-    const XsImage image = value.of.images[0];
-    pushPixels(ctx, self, image, place);
-    const double v[4] = {double(image.width), double(image.height), double(image.components), 0};
-    return pushImage(ctx, self, v, place);
-  }
+  case XS_SFDOUBLE: return duk_push_number(ctx, value.of.doubles[0]);
+  case XS_SFIMAGE: return pushHostImage(ctx, self, value.of.images[0], place);
   case XS_MFNODE: return pushNodes(ctx, self, value, place);
   case XS_MFSTRING:
     if (value.count > maxElements) throwRange(ctx, "more than %u elements", maxElements);
@@ -104,8 +103,18 @@ void pushValue(duk_context* ctx, Interpreter& self, const XsValue& value, Place 
       duk_put_prop_index(ctx, -2, i);
     }
     return duk_pop(ctx);
+  case XS_MFIMAGE:
+    if (value.count > maxElements) throwRange(ctx, "more than %u elements", maxElements);
+    pushMf(ctx, self, XS_MFIMAGE, 0, place)->count = value.count;
+    duk_get_prop_heapptr(ctx, -1, self.keyList);
+    for (uint32_t i = 0; i < value.count; ++i) {
+      pushHostImage(ctx, self, value.of.images[i], {});
+      duk_put_prop_index(ctx, -2, i);
+    }
+    return duk_pop(ctx);
   default: break;
   }
+  if (!isMf(value.type)) return pushTuple(ctx, self, value);
   if (value.count > maxElements) throwRange(ctx, "more than %u elements", maxElements);
   MfData* mf = pushMf(ctx, self, value.type, value.count, place);
   if (value.count > 0)

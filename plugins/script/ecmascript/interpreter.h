@@ -14,7 +14,7 @@
 #include <vector>
 
 #include <duktape.h>
-#include <xvrml/xscript.h>
+#include <xvrml/xscript_types.h>
 
 namespace ecma {
 
@@ -33,7 +33,7 @@ struct Slot {
   // The host call in which the value was read; the Script's own slots have 1 after that.
   uint64_t call = 0;
   // Value of SFBool, SFInt32, SFFloat, SFTime and tuples; other values are in the array `values`.
-  double plain[4] = {};
+  double plain[XS_MOST_COMPONENTS] = {};
 };
 
 struct NodeRecord {
@@ -65,8 +65,8 @@ struct Interpreter {
        *keyNode = nullptr, *keyMatrix = nullptr, *keyRow = nullptr;
   void *values = nullptr, *held = nullptr, *types = nullptr, *mfHandler = nullptr,
        *nodePrototype = nullptr, *matrixPrototype = nullptr, *rowPrototype = nullptr;
-  void* prototypes[XS_MFVEC3F + 1] = {};
-  void *componentGet[4] = {}, *componentSet[4] = {};
+  void* prototypes[XS_LAST_TYPE + 1] = {};
+  void *componentGet[XS_MOST_COMPONENTS] = {}, *componentSet[XS_MOST_COMPONENTS] = {};
 
   std::deque<Slot> slots; // a deque, because references to slots must stay valid
   std::vector<int> freeSlots, dirty;
@@ -78,11 +78,11 @@ struct Interpreter {
   std::vector<float> floats;
   std::vector<XsString> strings;
   std::vector<XsNode> handles;
-  std::deque<std::string> texts; // strings converted during this call
-  std::vector<uint8_t> pixels;
+  std::deque<std::string> texts;           // strings converted during this call
+  std::deque<std::vector<uint8_t>> pixels; // of each image
+  std::vector<XsImage> images;
   std::string program; // the program as compiled
   int32_t integer = 0;
-  XsImage image{};
 
   std::jmp_buf fatal;
   bool fatalSet = false;

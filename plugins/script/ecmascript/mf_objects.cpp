@@ -1,5 +1,6 @@
 // mf_objects.cpp: Implements VRML's arrays (C.6.10 to C.6.18): storage, elements, constructors.
 // Indexing is in mf_traps.cpp.
+#include <algorithm>
 #include <cstring>
 
 #include "slots.h"
@@ -7,20 +8,35 @@
 namespace ecma {
 namespace {
 
+bool isZeroByDefault(XsType type) {
+  double v[XS_MOST_COMPONENTS];
+  defaultNumbers(elementType(type), v);
+  return std::all_of(v, v + components(type), [](double number) { return number == 0; });
+}
+
 // Sets the elements [from, to) to their defaults.
 void clearElements(duk_context* ctx, Interpreter& self, duk_idx_t index, MfData* mf, uint32_t from,
                    uint32_t to) {
   if (const size_t bytes = elementBytes(mf->type)) {
+    double v[XS_MOST_COMPONENTS];
+    const XsType element = elementType(mf->type);
+    const auto n = size_t(components(element));
+    defaultNumbers(element, v);
     std::memset(reinterpret_cast<char*>(mf + 1) + bytes * from, 0, bytes * (to - from));
-    for (uint32_t i = from; mf->type == XS_MFROTATION && i < to; ++i) floatsOf(mf)[4 * i + 2] = 1;
+    for (size_t k = 0; k < n; ++k)
+      for (size_t i = from; v[k] != 0 && i < to; ++i) setNumberAt(element, mf + 1, i * n + k, v[k]);
     return;
   }
-  const bool texts = mf->type == XS_MFSTRING;
+  const XsType type = mf->type;
+  const double noImage[3] = {};
   duk_get_prop_heapptr(ctx, index, self.keyList);
   for (uint32_t i = from; i < to; ++i) {
-    if (texts)
+    if (type == XS_MFSTRING) {
       duk_push_string(ctx, "");
-    else
+    } else if (type == XS_MFIMAGE) {
+      pushMf(ctx, self, XS_MFINT32, 0);
+      pushImage(ctx, self, noImage, {});
+    } else
       duk_push_null(ctx);
     duk_put_prop_index(ctx, -2, i);
   }
@@ -58,7 +74,7 @@ MfData* pushMf(duk_context* ctx, Interpreter& self, XsType type, uint32_t count,
     duk_push_array(ctx);
     duk_put_prop_heapptr(ctx, -2, self.keyList);
   }
-  if (bytes == 0 || type == XS_MFROTATION) clearElements(ctx, self, -1, mf, 0, count);
+  if (bytes == 0 || !isZeroByDefault(type)) clearElements(ctx, self, -1, mf, 0, count);
   duk_push_heapptr(ctx, self.mfHandler);
   duk_push_proxy(ctx, 0);
   return mf;
@@ -96,9 +112,12 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   if (beyond && (elementBytes(mf->type) == 0 || components(elementType(mf->type)) == 1))
     return duk_push_undefined(ctx);
   switch (mf->type) {
-  case XS_MFFLOAT: return duk_push_number(ctx, widen(floatsOf(mf)[i]));
-  case XS_MFINT32: return duk_push_int(ctx, intsOf(mf)[i]);
-  case XS_MFTIME: return duk_push_number(ctx, doublesOf(mf)[i]);
+  case XS_MFBOOL: return duk_push_boolean(ctx, intsOf(mf)[i] != 0);
+  case XS_MFDOUBLE:
+  case XS_MFFLOAT:
+  case XS_MFINT32:
+  case XS_MFTIME: return duk_push_number(ctx, numberAt(mf->type, mf + 1, i));
+  case XS_MFIMAGE:
   case XS_MFSTRING:
   case XS_MFNODE:
     duk_get_prop_heapptr(ctx, index, self.keyList);
@@ -108,9 +127,10 @@ void pushElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t 
   }
   const XsType element = elementType(mf->type);
   const int n = components(element);
-  double v[4] = {0, 0, element == XS_SFROTATION ? 1.0 : 0.0, 0};
+  double v[XS_MOST_COMPONENTS];
+  defaultNumbers(element, v);
   for (int k = 0; k < n && !beyond; ++k)
-    v[k] = widen(floatsOf(mf)[size_t(i) * size_t(n) + size_t(k)]);
+    v[k] = numberAt(element, mf + 1, size_t(i) * size_t(n) + size_t(k));
   // The element is a copy that writes changes back to the array, also beyond its end:
   // mf[mf.length].x = 1 makes the array longer.
   SfData* sf = pushSf(ctx, self, element, v);
@@ -126,21 +146,19 @@ void setElement(duk_context* ctx, Interpreter& self, duk_idx_t index, uint32_t i
   value = duk_normalize_index(ctx, value);
   const XsType type = mfData(ctx, index)->type, element = elementType(type);
   if (elementBytes(type) > 0) {
-    double v[4];
+    double v[XS_MOST_COMPONENTS];
     toPlain(ctx, value, element, v, what);
     MfData* mf = mfData(ctx, index);
     if (i >= mf->count) mf = resizeMf(ctx, self, index, i + 1);
     const int n = components(element);
-    if (type == XS_MFTIME)
-      doublesOf(mf)[i] = v[0];
-    else if (type == XS_MFINT32)
-      intsOf(mf)[i] = int32_t(v[0]);
-    else
-      for (int k = 0; k < n; ++k) floatsOf(mf)[size_t(i) * size_t(n) + size_t(k)] = float(v[k]);
+    for (int k = 0; k < n; ++k)
+      setNumberAt(element, mf + 1, size_t(i) * size_t(n) + size_t(k), v[k]);
     return;
   }
   if (type == XS_MFSTRING)
     pushText(ctx, value, what);
+  else if (type == XS_MFIMAGE)
+    pushImageFrom(ctx, self, value, {}, what);
   else
     pushNode(ctx, self, nodeOf(ctx, self, value, what));
   if (i >= mfData(ctx, index)->count) resizeMf(ctx, self, index, i + 1);
@@ -192,7 +210,8 @@ void touchMf(duk_context* ctx, Interpreter& self, duk_idx_t index) {
 void registerMf(duk_context* ctx, Interpreter& self) {
   registerMfTraps(ctx, self);
   static constexpr Method methods[] = {{"toString", notationMethod, 0}};
-  for (int type = XS_MFCOLOR; type <= XS_MFVEC3F; ++type) {
+  for (int type = XS_SFBOOL; type <= XS_LAST_TYPE; ++type) {
+    if (!isMf(XsType(type))) continue;
     duk_push_object(ctx); // join, push, pop, slice, sort and others are inherited from Array
     duk_get_global_string(ctx, "Array");
     duk_get_prop_string(ctx, -1, "prototype");

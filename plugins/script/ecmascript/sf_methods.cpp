@@ -1,5 +1,5 @@
-// sf_methods.cpp: Implements the methods of SFColor, SFRotation, SFVec2f and SFVec3f (C.6.4, C.6.7
-// to C.6.9).
+// sf_methods.cpp: Implements the methods of colours, rotations and vectors (C.6.4, C.6.7 to C.6.9;
+// X3D's types have those of VRML97's types alike, ISO/IEC 19777-1 7.6).
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -28,7 +28,7 @@ duk_ret_t answer(duk_context* ctx, XsType type, const double* v) {
   return 1;
 }
 
-// --- SFVec2f, SFVec3f: the type is the function's magic number ---
+// --- Vectors: the type is the function's magic number ---
 
 XsType vectorType(duk_context* ctx) { return XsType(duk_get_current_magic(ctx)); }
 
@@ -91,18 +91,18 @@ duk_ret_t normalize(duk_context* ctx) {
   return scaled(ctx, "normalize", [n](double a) { return n > 0 ? a / n : a; });
 }
 duk_ret_t cross(duk_context* ctx) {
-  const SfData* a = receiver(ctx, XS_SFVEC3F, "cross");
+  const SfData* a = receiver(ctx, vectorType(ctx), "cross");
   double b[4];
-  argument(ctx, XS_SFVEC3F, b, "cross");
+  argument(ctx, vectorType(ctx), b, "cross");
   const double v[4] = {a->v[1] * b[2] - a->v[2] * b[1], a->v[2] * b[0] - a->v[0] * b[2],
                        a->v[0] * b[1] - a->v[1] * b[0], 0};
-  return answer(ctx, XS_SFVEC3F, v);
+  return answer(ctx, vectorType(ctx), v);
 }
 
-// --- SFColor: hue in degrees ---
+// --- SFColor and SFColorRGBA: hue in degrees ---
 
 duk_ret_t setHsv(duk_context* ctx) {
-  SfData* c = receiver(ctx, XS_SFCOLOR, "setHSV");
+  SfData* c = receiver(ctx, vectorType(ctx), "setHSV");
   const double h = toNumber(ctx, 0, XS_SFFLOAT, "setHSV"),
                s = toNumber(ctx, 1, XS_SFFLOAT, "setHSV"),
                v = toNumber(ctx, 2, XS_SFFLOAT, "setHSV");
@@ -117,7 +117,7 @@ duk_ret_t setHsv(duk_context* ctx) {
 }
 
 duk_ret_t getHsv(duk_context* ctx) {
-  const double* c = receiver(ctx, XS_SFCOLOR, "getHSV")->v;
+  const double* c = receiver(ctx, vectorType(ctx), "getHSV")->v;
   const double most = std::max({c[0], c[1], c[2]}), delta = most - std::min({c[0], c[1], c[2]});
   double h = 0;
   if (delta > 0) {
@@ -237,7 +237,7 @@ constexpr Method rotationMethods[] = {
     {"getAxis", getAxis, 0},        {"setAxis", setAxis, 1}, {"inverse", inverse, 0},
     {"multVec", multVec, 1},        {"slerp", slerp, 2},     {"multiply", multiplyRotation, 1},
     {"toString", notationMethod, 0}};
-constexpr Method imageMethods[] = {{"toString", notationMethod, 0}};
+constexpr Method textMethods[] = {{"toString", notationMethod, 0}};
 
 template <size_t n>
 void put(duk_context* ctx, Interpreter& self, XsType type, const Method (&methods)[n]) {
@@ -249,12 +249,16 @@ void put(duk_context* ctx, Interpreter& self, XsType type, const Method (&method
 } // namespace
 
 void registerSfMethods(duk_context* ctx, Interpreter& self) {
-  put(ctx, self, XS_SFVEC2F, vectorMethods);
-  put(ctx, self, XS_SFVEC3F, vectorMethods);
+  for (const XsType type : {XS_SFVEC2F, XS_SFVEC3F, XS_SFVEC4F, XS_SFVEC2D, XS_SFVEC3D, XS_SFVEC4D})
+    put(ctx, self, type, vectorMethods);
   put(ctx, self, XS_SFVEC3F, vector3Methods);
+  put(ctx, self, XS_SFVEC3D, vector3Methods);
   put(ctx, self, XS_SFCOLOR, colorMethods);
+  put(ctx, self, XS_SFCOLORRGBA, colorMethods);
+  for (const XsType type : {XS_SFMATRIX3F, XS_SFMATRIX3D, XS_SFMATRIX4F, XS_SFMATRIX4D})
+    put(ctx, self, type, textMethods);
   put(ctx, self, XS_SFROTATION, rotationMethods);
-  put(ctx, self, XS_SFIMAGE, imageMethods);
+  put(ctx, self, XS_SFIMAGE, textMethods);
 }
 
 } // namespace ecma

@@ -1,6 +1,8 @@
-// sf_objects.cpp: Implements the constructors and components of SFColor, SFRotation, SFVec2f,
-// SFVec3f and SFImage (C.6.4 to C.6.9).
+// sf_objects.cpp: Implements the constructors and components of tuples of numbers and of SFImage
+// (C.6.4 to C.6.9).
 #include <cmath>
+#include <cstddef>
+#include <cstdio>
 #include <cstring>
 
 #include "slots.h"
@@ -17,7 +19,9 @@ duk_ret_t getComponent(duk_context* ctx) {
   step(Interpreter::of(ctx));
   const SfData* data = thisData(ctx);
   if (!data) return 0; // the prototype itself
-  duk_push_number(ctx, data->v[duk_get_current_magic(ctx)]);
+  const int component = duk_get_current_magic(ctx);
+  if (component >= numbersIn(data->type)) return 0; // an accessor of another type
+  duk_push_number(ctx, data->v[component]);
   return 1;
 }
 
@@ -28,6 +32,8 @@ duk_ret_t setComponent(duk_context* ctx) {
   if (!data) throwType(ctx, "not a value of VRML");
   const int component = duk_get_current_magic(ctx);
   const double value = toNumber(ctx, 0, XS_SFFLOAT, typeName(data->type));
+  if (component >= numbersIn(data->type))
+    throwType(ctx, "%s: no component %d", typeName(data->type), component);
   data->v[component] = data->type == XS_SFIMAGE ? std::trunc(value) : value;
   writeBack(ctx, self, 1, data, component, 1);
   return 0;
@@ -81,7 +87,8 @@ duk_ret_t construct(duk_context* ctx) {
   const auto type = XsType(duk_get_current_magic(ctx));
   const duk_idx_t given = duk_get_top(ctx);
   const int count = components(type);
-  double v[4] = {0, 0, type == XS_SFROTATION ? 1.0 : 0.0, 0};
+  double v[XS_MOST_COMPONENTS];
+  defaultNumbers(type, v);
   const SfData* first = given > 0 ? sfData(ctx, 0) : nullptr;
   if (type == XS_SFROTATION && given >= 2 && first && components(first->type) == 3) {
     const SfData* second = sfData(ctx, 1);
@@ -105,7 +112,7 @@ duk_ret_t constructImage(duk_context* ctx) {
   Interpreter& self = Interpreter::of(ctx);
   step(self);
   const duk_idx_t given = duk_get_top(ctx);
-  double v[4] = {};
+  double v[3] = {};
   const SfData* other = given == 1 ? sfData(ctx, 0) : nullptr;
   if (other && other->type == XS_SFIMAGE) {
     std::memcpy(v, other->v, sizeof v);
@@ -136,16 +143,35 @@ void putComponent(duk_context* ctx, Interpreter& self, const char* name, int ind
                DUK_DEFPROP_HAVE_GETTER | DUK_DEFPROP_HAVE_SETTER | DUK_DEFPROP_SET_ENUMERABLE);
 }
 
+// Creates the prototype and the constructor of a tuple of numbers. Its numbers are x[0], x[1] and
+// so on; those of up to four have names, too.
+void registerTuple(duk_context* ctx, Interpreter& self, XsType type) {
+  const char* const names = type == XS_SFCOLOR || type == XS_SFCOLORRGBA ? "rgba" : "xyzw";
+  duk_push_object(ctx);
+  keepPrototype(ctx, self, type);
+  for (int i = 0; i < components(type); ++i) {
+    char text[8];
+    std::snprintf(text, sizeof text, "%d", i);
+    putComponent(ctx, self, text, i);
+    if (components(type) > 4) continue;
+    std::snprintf(text, sizeof text, "%c", names[i]);
+    putComponent(ctx, self, type == XS_SFROTATION && i == 3 ? "angle" : text, i);
+  }
+  putConstructor(ctx, typeName(type), construct, type);
+}
+
 } // namespace
 
 SfData* pushSf(duk_context* ctx, Interpreter& self, XsType type, const double* v) {
   duk_push_bare_object(ctx);
   duk_push_heapptr(ctx, self.prototypes[type]);
   duk_set_prototype(ctx, -2);
-  auto* data = static_cast<SfData*>(duk_push_fixed_buffer(ctx, sizeof(SfData)));
-  *data = SfData{};
+  const size_t bytes = size_t(numbersIn(type)) * sizeof *v;
+  auto* data =
+      static_cast<SfData*>(duk_push_fixed_buffer(ctx, offsetof(SfData, v) + bytes)); // all zero
   data->type = type;
-  std::memcpy(data->v, v, sizeof data->v);
+  data->place = {};
+  std::memcpy(data->v, v, bytes);
   duk_put_prop_heapptr(ctx, -2, self.keySf);
   return data;
 }
@@ -158,6 +184,15 @@ void pushImage(duk_context* ctx, Interpreter& self, const double* v, Place place
   duk_remove(ctx, -2);
 }
 
+void pushImageFrom(duk_context* ctx, Interpreter& self, duk_idx_t index, Place place,
+                   const char* what) {
+  const SfData* image = sfData(ctx, index);
+  if (!image || image->type != XS_SFIMAGE)
+    throwType(ctx, "%s: expected SFImage, got %s", what, describe(ctx, index));
+  duk_get_prop_heapptr(ctx, index, self.keyList);
+  pushImage(ctx, self, image->v, place);
+}
+
 void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* data, int first,
                int count) {
   index = duk_normalize_index(ctx, index);
@@ -166,8 +201,9 @@ void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* dat
     MfData* mf = mfData(ctx, -1);
     if (mf && elementType(mf->type) == data->type) {
       if (data->index >= mf->count) mf = resizeMf(ctx, self, -1, data->index + 1);
-      float* at = floatsOf(mf) + size_t(data->index) * size_t(components(data->type));
-      for (int i = first; i < first + count; ++i) at[i] = float(data->v[i]);
+      const size_t at = size_t(data->index) * size_t(components(data->type));
+      for (int i = first; i < first + count; ++i)
+        setNumberAt(data->type, mf + 1, at + size_t(i), data->v[i]);
       touchMf(ctx, self, -1);
     }
     duk_pop(ctx);
@@ -177,12 +213,12 @@ void writeBack(duk_context* ctx, Interpreter& self, duk_idx_t index, SfData* dat
   if (data->type == XS_SFIMAGE) return markDirty(ctx, self, slot);
   loadSlot(ctx, self, slot);
   for (int i = first; i < first + count; ++i)
-    self.slots[size_t(slot)].plain[i] = widen(float(data->v[i]));
+    self.slots[size_t(slot)].plain[i] = rounded(data->type, data->v[i]);
   markDirty(ctx, self, slot);
 }
 
 void registerSf(duk_context* ctx, Interpreter& self) {
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < XS_MOST_COMPONENTS; ++i) {
     duk_push_c_function(ctx, getComponent, 0);
     duk_set_magic(ctx, -1, i);
     self.componentGet[i] = keep(ctx);
@@ -190,22 +226,9 @@ void registerSf(duk_context* ctx, Interpreter& self) {
     duk_set_magic(ctx, -1, i);
     self.componentSet[i] = keep(ctx);
   }
-  static const struct {
-    XsType type;
-    const char* names[4];
-  } types[] = {{XS_SFCOLOR, {"r", "g", "b", nullptr}},
-               {XS_SFROTATION, {"x", "y", "z", "angle"}},
-               {XS_SFVEC2F, {"x", "y", nullptr, nullptr}},
-               {XS_SFVEC3F, {"x", "y", "z", nullptr}}};
-  static const char* const indices[] = {"0", "1", "2", "3"};
-  for (const auto& type : types) {
-    duk_push_object(ctx);
-    keepPrototype(ctx, self, type.type);
-    for (int i = 0; i < components(type.type); ++i) {
-      putComponent(ctx, self, type.names[i], i);
-      putComponent(ctx, self, indices[i], i);
-    }
-    putConstructor(ctx, typeName(type.type), construct, type.type);
+  for (int i = XS_SFBOOL; i <= XS_LAST_TYPE; ++i) {
+    const auto type = XsType(i);
+    if (!isMf(type) && components(type) > 1) registerTuple(ctx, self, type);
   }
   duk_push_object(ctx);
   keepPrototype(ctx, self, XS_SFIMAGE);

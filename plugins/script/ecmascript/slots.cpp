@@ -160,6 +160,7 @@ void pushSlot(duk_context* ctx, Interpreter& self, int slot) {
   switch (it.type) {
   case XS_SFBOOL: return duk_push_boolean(ctx, it.plain[0] != 0);
   case XS_SFINT32:
+  case XS_SFDOUBLE:
   case XS_SFFLOAT:
   case XS_SFTIME: return duk_push_number(ctx, it.plain[0]);
   default: break;
@@ -174,13 +175,13 @@ void assignSlot(duk_context* ctx, Interpreter& self, int slot, duk_idx_t value) 
   value = duk_normalize_index(ctx, value);
   const char* name = self.slots[size_t(slot)].name.c_str();
   const XsType type = self.slots[size_t(slot)].type;
-  double plain[4];
+  double plain[XS_MOST_COMPONENTS];
   if (!self.slots[size_t(slot)].writable) throwType(ctx, "%s cannot be written", name);
   if (isPlain(type)) {
     toPlain(ctx, value, type, plain, name);
-    for (int i = 0; i < components(type) && components(type) > 1; ++i)
-      plain[i] = widen(float(plain[i]));
-    std::memcpy(self.slots[size_t(slot)].plain, plain, sizeof plain);
+    const int count = components(type);
+    for (int i = 0; i < count; ++i)
+      self.slots[size_t(slot)].plain[i] = count > 1 ? rounded(type, plain[i]) : plain[i];
     return markDirty(ctx, self, slot);
   }
   const Place place = placeOf(self, slot);
@@ -192,11 +193,7 @@ void assignSlot(duk_context* ctx, Interpreter& self, int slot, duk_idx_t value) 
   } else if (type == XS_SFNODE) {
     pushNode(ctx, self, nodeOf(ctx, self, value, name));
   } else {
-    const SfData* image = sfData(ctx, value);
-    if (!image || image->type != XS_SFIMAGE)
-      throwType(ctx, "%s: expected SFImage, got %s", name, describe(ctx, value));
-    duk_get_prop_heapptr(ctx, value, self.keyList);
-    pushImage(ctx, self, image->v, place);
+    pushImageFrom(ctx, self, value, place, name);
   }
   if (isMf(type) || type == XS_SFIMAGE) detachKept(ctx, self, slot);
   keepValue(ctx, self, slot);

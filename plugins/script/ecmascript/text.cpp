@@ -31,12 +31,20 @@ struct Pieces {
   }
 };
 
-void addNumbers(Pieces& pieces, const double* v, int count) {
-  char text[200];
+void addNumbers(Pieces& pieces, XsType type, const double* v, int count) {
+  char text[25 * XS_MOST_COMPONENTS]; // a float takes at most 24 characters
   size_t length = 0;
   for (int i = 0; i < count; ++i) {
     if (i > 0) text[length++] = ' ';
-    length += printFloat(text + length, sizeof text - length, v[i]);
+    if (xsHasDoubles(type)) { // written as ECMAScript writes numbers
+      pieces.add(text, length);
+      length = 0;
+      duk_push_number(pieces.ctx, v[i]);
+      duk_to_string(pieces.ctx, -1);
+      pieces.added();
+    } else {
+      length += printFloat(text + length, sizeof text - length, v[i]);
+    }
   }
   pieces.add(text, length);
 }
@@ -66,15 +74,18 @@ void pushMfNotation(duk_context* ctx, Interpreter& self, duk_idx_t index) {
   for (uint32_t i = 0; i < count; ++i) {
     if (i > 0) pieces.add(", ");
     MfData* mf = mfData(ctx, index);
-    if (type == XS_MFTIME || type == XS_MFINT32) {
-      duk_push_number(ctx, type == XS_MFTIME ? doublesOf(mf)[i] : double(intsOf(mf)[i]));
+    if (type == XS_MFBOOL) {
+      pieces.add(intsOf(mf)[i] ? "TRUE" : "FALSE");
+    } else if (type == XS_MFINT32) {
+      duk_push_number(ctx, double(intsOf(mf)[i]));
       duk_to_string(ctx, -1);
       pieces.added();
     } else if (elementBytes(type) > 0) {
-      double v[4];
+      double v[XS_MOST_COMPONENTS];
       const int n = components(element);
-      for (int k = 0; k < n; ++k) v[k] = double(floatsOf(mf)[i * uint32_t(n) + uint32_t(k)]);
-      addNumbers(pieces, v, n);
+      for (int k = 0; k < n; ++k)
+        v[k] = numberAt(element, mf + 1, size_t(i) * size_t(n) + size_t(k));
+      addNumbers(pieces, element, v, n);
     } else {
       pushElement(ctx, self, index, i);
       if (type == XS_MFSTRING)
@@ -107,7 +118,7 @@ void pushNotation(duk_context* ctx, Interpreter& self, duk_idx_t index) {
   if (mfData(ctx, index)) return pushMfNotation(ctx, self, index);
   if (const SfData* sf = sfData(ctx, index)) {
     Pieces pieces{ctx};
-    addNumbers(pieces, sf->v, sf->type == XS_SFIMAGE ? 3 : components(sf->type));
+    addNumbers(pieces, sf->type, sf->v, numbersIn(sf->type));
     if (sf->type == XS_SFIMAGE) {
       duk_get_prop_heapptr(ctx, index, self.keyList);
       const duk_idx_t array = duk_get_top_index(ctx);

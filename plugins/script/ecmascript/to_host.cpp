@@ -59,7 +59,8 @@ void addString(duk_context* ctx, Interpreter& self, duk_idx_t index) {
   guardMemory(ctx, [&] { self.strings.push_back(text); });
 }
 
-void imageValue(duk_context* ctx, Interpreter& self, XsImage& image, const char* name) {
+// Adds the SFImage on top to the images for the host.
+void addImage(duk_context* ctx, Interpreter& self, const char* name) {
   const SfData* sf = sfData(ctx, -1);
   duk_get_prop_heapptr(ctx, -1, self.keyList);
   MfData* mf = mfData(ctx, -1);
@@ -67,13 +68,15 @@ void imageValue(duk_context* ctx, Interpreter& self, XsImage& image, const char*
   const double w = sf->v[0], h = sf->v[1], n = sf->v[2];
   if (!mf || !(w >= 0 && h >= 0 && n >= 0 && n <= 4) || w * h > maxElements)
     throwType(ctx, "%s: not an image: %g x %g x %g", name, w, h, n);
-  image = {int32_t(w), int32_t(h), int32_t(n), 0, nullptr};
+  XsImage image = {int32_t(w), int32_t(h), int32_t(n), 0, nullptr};
   const size_t count = size_t(image.width) * size_t(image.height), bytes = size_t(image.components);
-  guardMemory(ctx, [&] { self.pixels.assign(count * bytes + 1, 0); });
+  guardMemory(ctx, [&] { self.pixels.emplace_back(count * bytes + 1, 0); });
+  std::vector<uint8_t>& pixels = self.pixels.back();
   for (size_t i = 0; i < count && i < mf->count; ++i) // missing pixels are 0
     for (size_t k = 0; k < bytes; ++k)
-      self.pixels[i * bytes + k] = uint8_t(uint32_t(intsOf(mf)[i]) >> (8 * (bytes - 1 - k)));
-  image.pixels = self.pixels.data();
+      pixels[i * bytes + k] = uint8_t(uint32_t(intsOf(mf)[i]) >> (8 * (bytes - 1 - k)));
+  image.pixels = pixels.data();
+  guardMemory(ctx, [&] { self.images.push_back(image); });
 }
 
 void pushListOf(duk_context* ctx, Interpreter& self, duk_idx_t index, XsType type,
@@ -96,6 +99,15 @@ void listValue(duk_context* ctx, Interpreter& self, XsValue& out) {
   if (mf->type == XS_MFNODE) {
     nodesForHost(ctx, self, index, "");
     out.of.nodes = self.handles.data();
+  } else if (mf->type == XS_MFIMAGE) {
+    duk_get_prop_heapptr(ctx, index, self.keyList);
+    for (uint32_t i = 0; i < out.count; ++i) {
+      duk_get_prop_index(ctx, -1, i);
+      addImage(ctx, self, "MFImage");
+      duk_pop(ctx); // the list keeps it alive
+    }
+    duk_pop(ctx);
+    out.of.images = self.images.data();
   } else {
     textsForHost(ctx, self, index, "");
     out.of.strings = self.strings.data();
@@ -152,6 +164,8 @@ void nodesForHost(duk_context* ctx, Interpreter& self, duk_idx_t index, const ch
 void slotValue(duk_context* ctx, Interpreter& self, int slot, XsValue& out) {
   const Slot& it = self.slots[size_t(slot)];
   out = {it.type, 1, {nullptr}};
+  self.pixels.clear();
+  self.images.clear();
   duk_set_top(ctx, 0); // discards what was pushed for the previous slot
   switch (it.type) {
   case XS_SFBOOL:
@@ -159,16 +173,13 @@ void slotValue(duk_context* ctx, Interpreter& self, int slot, XsValue& out) {
     self.integer = int32_t(it.plain[0]);
     out.of.ints = &self.integer;
     return;
-  case XS_SFTIME: out.of.doubles = it.plain; return;
-  case XS_SFFLOAT:
-  case XS_SFCOLOR:
-  case XS_SFROTATION:
-  case XS_SFVEC2F:
-  case XS_SFVEC3F:
-    guardMemory(ctx, [&] { self.floats.assign(it.plain, it.plain + 4); });
-    out.of.floats = self.floats.data();
-    return;
   default: break;
+  }
+  if (const int count = components(it.type); count > 0 && !isMf(it.type)) {
+    if (!xsHasDoubles(it.type))
+      guardMemory(ctx, [&] { self.floats.assign(it.plain, it.plain + count); });
+    out.of.data = xsHasDoubles(it.type) ? static_cast<const void*>(it.plain) : self.floats.data();
+    return;
   }
   duk_push_heapptr(ctx, self.values);
   duk_get_prop_index(ctx, -1, duk_uarridx_t(slot));
@@ -183,8 +194,8 @@ void slotValue(duk_context* ctx, Interpreter& self, int slot, XsValue& out) {
     self.handles[0] = nodeOf(ctx, self, -1, it.name.c_str());
     out.of.nodes = self.handles.data();
   } else {
-    imageValue(ctx, self, self.image, it.name.c_str());
-    out.of.images = &self.image;
+    addImage(ctx, self, it.name.c_str());
+    out.of.images = self.images.data();
   }
 }
 

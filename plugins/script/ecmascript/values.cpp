@@ -37,6 +37,36 @@ bool tupleOfText(const char* text, double* out, int count) {
 XsType elementType(XsType type) { return xsTypeInfo(type)->element; }
 int components(XsType type) { return xsTypeInfo(type)->components; }
 
+int numbersIn(XsType type) { return type == XS_SFIMAGE ? 3 : components(type); }
+
+void defaultNumbers(XsType type, double* out) {
+  const int count = numbersIn(type), side = count == 9 ? 3 : 4;
+  for (int i = 0; i < count; ++i) out[i] = count >= 9 && i % (side + 1) == 0 ? 1 : 0;
+  if (type == XS_SFROTATION) out[2] = 1;
+  if (type == XS_SFVEC4F || type == XS_SFVEC4D) out[3] = 1;
+}
+
+double numberAt(XsType type, const void* array, size_t at) {
+  const XsType element = elementType(type);
+  if (element == XS_SFBOOL || element == XS_SFINT32) return static_cast<const int32_t*>(array)[at];
+  return xsHasDoubles(element) ? static_cast<const double*>(array)[at]
+                               : widen(static_cast<const float*>(array)[at]);
+}
+
+void setNumberAt(XsType type, void* array, size_t at, double value) {
+  const XsType element = elementType(type);
+  if (element == XS_SFBOOL || element == XS_SFINT32)
+    static_cast<int32_t*>(array)[at] = int32_t(value);
+  else if (xsHasDoubles(element))
+    static_cast<double*>(array)[at] = value;
+  else
+    static_cast<float*>(array)[at] = float(value);
+}
+
+double rounded(XsType type, double value) {
+  return xsHasDoubles(type) ? value : widen(float(value));
+}
+
 size_t elementBytes(XsType type) {
   const XsTypeInfo* info = xsTypeInfo(type);
   return info->components > 0 ? info->bytes : 0;
@@ -122,6 +152,7 @@ void toPlain(duk_context* ctx, duk_idx_t index, XsType type, double* out, const 
     duk_pop(ctx);
     return;
   case XS_SFFLOAT: out[0] = widen(float(toNumber(ctx, index, type, what))); return;
+  case XS_SFDOUBLE: out[0] = toNumber(ctx, index, type, what); return;
   case XS_SFTIME: // a Date counts milliseconds
     out[0] = toNumber(ctx, index, type, what);
     if (!duk_is_object(ctx, index)) return;
@@ -144,8 +175,8 @@ void toPlain(duk_context* ctx, duk_idx_t index, XsType type, double* out, const 
     return;
   }
   if (MfData* mf = mfData(ctx, index);
-      mf && mf->type == XS_MFFLOAT && mf->count == uint32_t(count)) {
-    for (int i = 0; i < count; ++i) out[i] = widen(floatsOf(mf)[i]);
+      mf && (mf->type == XS_MFFLOAT || mf->type == XS_MFDOUBLE) && mf->count == uint32_t(count)) {
+    for (int i = 0; i < count; ++i) out[i] = numberAt(mf->type, mf + 1, size_t(i));
     return;
   }
   if (duk_is_string(ctx, index) && tupleOfText(duk_get_string(ctx, index), out, count)) return;

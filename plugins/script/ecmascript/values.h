@@ -15,14 +15,15 @@ struct Place {
   uint32_t serial = 0;
 };
 
-// Data of SFColor, SFRotation, SFVec2f, SFVec3f and SFImage (x, y, comp). An element of an MF
-// object refers to it by the property `parent`.
+// Data of tuples of numbers (SFVec3f, SFColor, SFMatrix4d and so on) and of SFImage (x, y, comp).
+// An element of an MF object refers to it by the property `parent`. The buffer ends behind the
+// numbers that the type has.
 struct SfData {
   XsType type;
   uint32_t index; // index in the parent
   Place place;
   uint32_t hasParent, unused;
-  double v[4];
+  double v[XS_MOST_COMPONENTS];
 };
 
 // Header of an MF object; `count` elements follow in the same buffer.
@@ -36,6 +37,15 @@ inline bool isMf(XsType type) { return xsIsMany(type); }
 XsType elementType(XsType type); // type: an MF type
 // Returns the numbers in an SF type; 0 for SFString, SFNode and SFImage.
 int components(XsType type);
+// Returns the numbers in the data of a tuple or an SFImage.
+int numbersIn(XsType type);
+// Writes the default of an SF type of numbers.
+void defaultNumbers(XsType type, double* out);
+// Reads and writes number `at` of the array of an SF or MF type of numbers.
+double numberAt(XsType type, const void* array, size_t at);
+void setNumberAt(XsType type, void* array, size_t at, double value);
+// Rounds a number to what a field of the type holds.
+double rounded(XsType type, double value);
 // Returns the bytes of an MF type's element; 0: the elements are in an array.
 size_t elementBytes(XsType type);
 const char* typeName(XsType type);
@@ -46,7 +56,6 @@ SfData* sfData(duk_context* ctx, duk_idx_t index);
 MfData* mfData(duk_context* ctx, duk_idx_t index);
 inline float* floatsOf(MfData* data) { return reinterpret_cast<float*>(data + 1); }
 inline int32_t* intsOf(MfData* data) { return reinterpret_cast<int32_t*>(data + 1); }
-inline double* doublesOf(MfData* data) { return reinterpret_cast<double*>(data + 1); }
 
 // Converts a float to the double with the same shortest decimal form, so that the program reads 0.1
 // as 0.1 instead of 0.10000000149011612.
@@ -66,6 +75,9 @@ void pushText(duk_context* ctx, duk_idx_t index, const char* what);
 SfData* pushSf(duk_context* ctx, Interpreter& self, XsType type, const double* v);
 // Creates an SFImage with a copy of the pixels on top, which it replaces on the stack.
 void pushImage(duk_context* ctx, Interpreter& self, const double* v, Place place);
+// Pushes a copy of the SFImage at `index`; throws if it is none.
+void pushImageFrom(duk_context* ctx, Interpreter& self, duk_idx_t index, Place place,
+                   const char* what);
 void registerSf(duk_context* ctx, Interpreter& self);
 void registerSfMethods(duk_context* ctx, Interpreter& self);
 // Writes a change of the object at `index` to the field or MF object that contains it.

@@ -33,7 +33,8 @@ Number defaultNumber(XsType type) {
   case XS_SFBOOL:
   case XS_SFINT32: return Number::i32;
   case XS_SFFLOAT: return Number::f32;
-  case XS_SFTIME: return Number::f64;
+  case XS_SFTIME:
+  case XS_SFDOUBLE: return Number::f64;
   case XS_SFNODE: return Number::u64;
   default: return Number::none;
   }
@@ -80,7 +81,8 @@ double get(const Cell& cell, Number number) {
 double numberIn(Slot& slot) {
   switch (slot.type()) {
   case XS_SFFLOAT: return double(*static_cast<float*>(slot.data()));
-  case XS_SFTIME: return *static_cast<double*>(slot.data());
+  case XS_SFTIME:
+  case XS_SFDOUBLE: return *static_cast<double*>(slot.data());
   default: return *static_cast<int32_t*>(slot.data());
   }
 }
@@ -88,7 +90,8 @@ double numberIn(Slot& slot) {
 void setNumber(Slot& slot, double v) {
   switch (slot.type()) {
   case XS_SFFLOAT: *static_cast<float*>(slot.data()) = float(v); break;
-  case XS_SFTIME: *static_cast<double*>(slot.data()) = v; break;
+  case XS_SFTIME:
+  case XS_SFDOUBLE: *static_cast<double*>(slot.data()) = v; break;
   case XS_SFBOOL: *static_cast<int32_t*>(slot.data()) = v != 0; break;
   default:
     *static_cast<int32_t*>(slot.data()) = int32_t(bounded(v, -2147483648.0, 2147483647.0));
@@ -97,8 +100,7 @@ void setNumber(Slot& slot, double v) {
 }
 
 void* pointerTo(Slot& slot) {
-  if (slot.type() == XS_SFSTRING) return const_cast<char*>(slot.text());
-  return slot.type() == XS_SFIMAGE ? const_cast<XsImage*>(slot.image()) : slot.data();
+  return slot.type() == XS_SFSTRING ? const_cast<char*>(slot.text()) : slot.data();
 }
 
 } // namespace
@@ -191,7 +193,7 @@ PreparedCall::PreparedCall(const Call& call, void* function, const XsScriptInfo&
 XsResult PreparedCall::run(const World& world) {
   for (Place& written : places_) {
     const bool state = info_.fields[written.field].access != XS_EVENT_OUT;
-    const bool many = written.slot.type() >= XS_MFCOLOR;
+    const bool many = xsIsMany(written.slot.type());
     written.slot.makeRoom(many || written.slot.type() == XS_SFSTRING ? written.room : 1);
     written.count = written.room;
     written.cell.u = 0;
@@ -246,7 +248,7 @@ XsResult PreparedCall::giveAll(const World& world, const Cell& result) {
   for (Place& written : places_) {
     Slot& slot = written.slot;
     const std::string name = info_.fields[written.field].name;
-    if (slot.type() >= XS_MFCOLOR && written.count > written.room) {
+    if (xsIsMany(slot.type()) && written.count > written.room) {
       world.log(3, call_.line,
                 call_.function + " says that it wrote " + std::to_string(written.count) +
                     " elements to " + name + ", which has room for " +
@@ -254,7 +256,7 @@ XsResult PreparedCall::giveAll(const World& world, const Cell& result) {
       return XS_FAILED;
     }
     if (written.number != Number::none) setNumber(slot, get(written.cell, written.number));
-    if (slot.type() == XS_SFBOOL) setNumber(slot, numberIn(slot));
+    if (elementType(slot.type()) == XS_SFBOOL) slot.makeBooleans();
     if (slot.type() == XS_SFSTRING) {
       const std::string text(static_cast<const char*>(slot.data()),
                              strnlen(static_cast<const char*>(slot.data()), written.room));

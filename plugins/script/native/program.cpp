@@ -11,6 +11,10 @@
 #include <charconv>
 #include <cstring>
 
+#include <xvrml/xscript_types.h>
+
+#include "slots.h"
+
 namespace native {
 namespace {
 
@@ -31,7 +35,8 @@ constexpr Word words[] = {
 static_assert(sizeof(long) == 8 && sizeof(size_t) == 8);
 
 bool isScalar(XsType type) {
-  return type == XS_SFBOOL || type == XS_SFFLOAT || type == XS_SFINT32 || type == XS_SFTIME;
+  return type == XS_SFBOOL || type == XS_SFFLOAT || type == XS_SFINT32 || type == XS_SFTIME ||
+         type == XS_SFDOUBLE;
 }
 bool isLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
@@ -150,7 +155,7 @@ class Reader {
         argument.write = info_.fields[i].access == XS_EVENT_OUT;
         if (number != Number::none && !isScalar(info_.fields[i].type))
           fail("'" + word +
-               "': only SFBool, SFFloat, SFInt32 and SFTime can have another type in C");
+               "': only SFBool, SFDouble, SFFloat, SFInt32 and SFTime can have another type in C");
         return argument;
       }
     if (word == "host" || word == "self" || word == "time") {
@@ -168,7 +173,8 @@ class Reader {
     if (!field || field->access == XS_EVENT_IN) fail("a result goes to an eventOut or a field");
     if (!isScalar(field->type) && field->type != XS_SFSTRING && field->type != XS_SFNODE)
       fail(std::string("'") + field->name +
-           "': a function returns SFBool, SFFloat, SFInt32, SFTime, SFString or SFNode; other "
+           "': a function returns SFBool, SFDouble, SFFloat, SFInt32, SFTime, SFString or SFNode; "
+           "other "
            "types are arguments that it writes to");
   }
 
@@ -226,16 +232,16 @@ class Reader {
     } else if (take('[')) {
       if (!more()) fail("a number was expected");
       const double room = number();
-      if (!argument.write || (field.type < XS_MFCOLOR && field.type != XS_SFSTRING) ||
+      if (!argument.write || (!xsIsMany(field.type) && field.type != XS_SFSTRING) ||
           !(room >= 1 && room <= maxRoom) || room != double(uint32_t(room)))
         fail(std::string("'") + field.name +
              "[...]': a number of elements that the function writes to an MF type or an SFString");
       argument.room = uint32_t(room);
       if (!take(']')) fail("']' was expected");
     }
-    if (argument.write && (field.type == XS_SFIMAGE || field.type == XS_MFSTRING))
+    if (argument.write && (elementType(field.type) == XS_SFIMAGE || field.type == XS_MFSTRING))
       fail(std::string("'") + field.name +
-           "': a function cannot write an SFImage or MFString; give it host and self");
+           "': a function cannot write an SFImage, MFImage or MFString; give it host and self");
     return argument;
   }
 

@@ -22,7 +22,7 @@ void Slot::makeRoom(uint32_t elements) {
   words_.assign(bytes / sizeof(uint64_t) + 1, 0);
   texts_.assign(elementType(type_) == XS_SFSTRING ? count_ : 0, "");
   pixels_.clear();
-  image_ = {};
+  images_.assign(elementType(type_) == XS_SFIMAGE ? count_ : 0, XsImage{});
   point();
 }
 
@@ -34,10 +34,10 @@ void Slot::copy(const XsValue& from) {
   if (elementType(type_) == XS_SFSTRING)
     for (uint32_t i = 0; i < from.count; ++i)
       texts_[i].assign(from.of.strings[i].data, from.of.strings[i].bytes);
-  if (type_ == XS_SFIMAGE) {
-    image_ = *from.of.images;
-    const size_t size = size_t(image_.width) * size_t(image_.height) * size_t(image_.components);
-    if (size > 0) pixels_.assign(image_.pixels, image_.pixels + size);
+  for (size_t i = 0; i < images_.size(); ++i) {
+    const XsImage& image = images_[i] = from.of.images[i];
+    const size_t size = size_t(image.width) * size_t(image.height) * size_t(image.components);
+    pixels_.emplace_back(image.pixels, image.pixels + size);
   }
   point();
 }
@@ -49,7 +49,7 @@ void Slot::point() {
     pointers_.push_back(text.c_str());
     strings_.push_back({text.c_str(), text.size()});
   }
-  image_.pixels = pixels_.data();
+  for (size_t i = 0; i < pixels_.size(); ++i) images_[i].pixels = pixels_[i].data();
 }
 
 void Slot::setText(const char* text) {
@@ -58,17 +58,22 @@ void Slot::setText(const char* text) {
 }
 
 void* Slot::data() {
-  return type_ == XS_MFSTRING ? static_cast<void*>(pointers_.data()) : words_.data();
+  if (type_ == XS_MFSTRING) return pointers_.data();
+  return images_.empty() ? static_cast<void*>(words_.data()) : images_.data();
 }
 const char* Slot::text() { return texts_.empty() ? "" : texts_[0].c_str(); }
-const XsImage* Slot::image() { return &image_; }
+
+void Slot::makeBooleans() {
+  auto* numbers = reinterpret_cast<int32_t*>(words_.data());
+  for (uint32_t i = 0; i < count_; ++i) numbers[i] = numbers[i] != 0;
+}
 
 XsValue Slot::value(uint32_t count) {
   XsValue value{type_, xsIsMany(type_) ? count : 1, {nullptr}};
   if (elementType(type_) == XS_SFSTRING)
     value.of.strings = strings_.data();
-  else if (type_ == XS_SFIMAGE)
-    value.of.images = &image_;
+  else if (elementType(type_) == XS_SFIMAGE)
+    value.of.images = images_.data();
   else
     value.of.data = words_.data();
   return value;

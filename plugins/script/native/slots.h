@@ -28,9 +28,10 @@ class Slot {
   XsValue value(uint32_t count);
   void setText(const char* text);
 
-  void* data();           // returns the elements; for strings, const char* const*
-  const char* text();     // returns the text of an SFString
-  const XsImage* image(); // returns the image of an SFImage
+  void makeBooleans(); // makes 1 of every number but 0
+
+  void* data();       // returns the elements; for strings, const char* const*
+  const char* text(); // returns the text of an SFString
   uint32_t count() const { return count_; }
   XsType type() const { return type_; }
 
@@ -42,8 +43,8 @@ class Slot {
   std::vector<std::string> texts_;
   std::vector<const char*> pointers_;
   std::vector<XsString> strings_;
-  std::vector<uint8_t> pixels_;
-  XsImage image_{};
+  std::vector<std::vector<uint8_t>> pixels_; // of each image
+  std::vector<XsImage> images_;
 };
 
 } // namespace native

@@ -10,28 +10,23 @@
 namespace python {
 namespace {
 
-const char* expected(XsType type) {
-  static const char* const texts[] = {"True or False",
-                                      "3 numbers",
-                                      "a number",
-                                      "an array of bytes of shape (height, width, components)",
-                                      "a whole number of 32 bits",
-                                      "a Node or None",
-                                      "4 numbers",
-                                      "a str",
-                                      "a number",
-                                      "2 numbers",
-                                      "3 numbers",
-                                      "numbers of shape (n, 3)",
-                                      "numbers of shape (n,)",
-                                      "whole numbers of 32 bits of shape (n,)",
-                                      "a sequence of Nodes",
-                                      "numbers of shape (n, 4)",
-                                      "a sequence of str",
-                                      "numbers of shape (n,)",
-                                      "numbers of shape (n, 2)",
-                                      "numbers of shape (n, 3)"};
-  return texts[type - XS_SFBOOL];
+std::string expected(XsType type) {
+  const XsTypeInfo& info = *xsTypeInfo(type);
+  const bool many = xsIsMany(type);
+  const std::string width = std::to_string(info.components);
+  switch (info.element) {
+  case XS_SFBOOL: return many ? "a sequence of True and False" : "True or False";
+  case XS_SFIMAGE:
+    return std::string(many ? "a sequence of arrays" : "an array") +
+           " of bytes of shape (height, width, components)";
+  case XS_SFINT32:
+    return many ? "whole numbers of 32 bits of shape (n,)" : "a whole number of 32 bits";
+  case XS_SFNODE: return many ? "a sequence of Nodes" : "a Node or None";
+  case XS_SFSTRING: return many ? "a sequence of str" : "a str";
+  default: break;
+  }
+  if (info.components == 1) return many ? "numbers of shape (n,)" : "a number";
+  return many ? "numbers of shape (n, " + width + ")" : width + " numbers";
 }
 
 // The field that is being assigned, for messages.
@@ -81,7 +76,8 @@ template <class T> py::object arrayOf(const T* data, size_t count, size_t width)
   return array;
 }
 
-py::object vectorOf(const float* numbers, size_t width) {
+template <class T> py::object vectorOf(const T* numbers, size_t width) {
+  if (width == 1) return py::float_(double(numbers[0]));
   py::tuple all(width);
   for (size_t i = 0; i < width; ++i) all[i] = double(numbers[i]);
   return all;
@@ -231,6 +227,29 @@ std::string textOf(const py::handle& object, const Target& target) {
   return fromText(object);
 }
 
+XsImage imageFrom(const py::handle& object, const Target& target, std::vector<uint8_t>& pixels) {
+  if (!hasNumpy()) throw py::type_error(target.text() + ", which needs numpy");
+  const py::array any = py::array(py::module_::import("numpy").attr("asarray")(object));
+  const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
+  if (any.size() > 0 && any.dtype().kind() != 'i' && any.dtype().kind() != 'u')
+    target.wrongType(object);
+  if (any.size() > 0 && ((any.ndim() != 2 && any.ndim() != 3) || components < 1 || components > 4 ||
+                         any.shape(0) > 65536 || any.shape(1) > 65536))
+    target.wrongValue("not of shape " + std::string(py::str(any.attr("shape"))));
+  XsImage image{};
+  if (any.size() > 0)
+    image = {int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), 0, nullptr};
+  const py::array_t<int64_t, py::array::c_style | py::array::forcecast> dense(any);
+  const size_t row = size_t(image.width) * size_t(image.components);
+  for (size_t y = size_t(image.height); y-- > 0;) // VRML stores rows from the bottom
+    for (size_t x = 0; x < row; ++x) {
+      const int64_t v = dense.data()[y * row + x];
+      if (v < 0 || v > 255) target.wrongValue("from 0 to 255, not " + std::to_string(v));
+      pixels.push_back(uint8_t(v));
+    }
+  return image;
+}
+
 } // namespace
 
 const char* typeName(XsType type) { return xsTypeInfo(type)->name; }
@@ -259,61 +278,53 @@ std::vector<std::string> textsOf(const py::handle& object, const char* what) {
 }
 
 py::object toPython(const XsValue& value, const Nodes& nodes) {
-  const size_t width = size_t(xsTypeInfo(value.type)->components);
-  switch (value.type) {
-  case XS_SFBOOL: return py::bool_(value.of.ints[0] != 0);
-  case XS_SFINT32: return py::int_(value.of.ints[0]);
-  case XS_SFFLOAT: return py::float_(double(value.of.floats[0]));
-  case XS_SFTIME: return py::float_(value.of.doubles[0]);
-  case XS_SFCOLOR:
-  case XS_SFROTATION:
-  case XS_SFVEC2F:
-  case XS_SFVEC3F: return vectorOf(value.of.floats, width);
-  case XS_SFIMAGE: return imageOf(value.of.images[0]);
-  case XS_SFNODE: return nodes.toPython(value.of.nodes[0]);
-  case XS_SFSTRING: return toText(value.of.strings[0]);
-  case XS_MFINT32: return arrayOf(value.of.ints, value.count, 1);
-  case XS_MFTIME: return arrayOf(value.of.doubles, value.count, 1);
-  case XS_MFNODE: {
-    const std::vector<XsNode> numbers(value.of.nodes, value.of.nodes + value.count);
-    py::tuple all(numbers.size());
-    for (size_t i = 0; i < numbers.size(); ++i) all[i] = nodes.toPython(numbers[i]);
-    return all;
-  }
-  case XS_MFSTRING: {
+  const XsTypeInfo& info = *xsTypeInfo(value.type);
+  const size_t width = size_t(info.components);
+  const bool many = xsIsMany(value.type);
+  // Converts an SF value, or a list of values that are no numbers.
+  const auto each = [&](const auto& convert) -> py::object {
+    if (!many) return convert(size_t(0));
     py::tuple all(value.count);
-    for (size_t i = 0; i < value.count; ++i) all[i] = toText(value.of.strings[i]);
+    for (size_t i = 0; i < value.count; ++i) all[i] = convert(i);
     return all;
+  };
+  switch (info.element) {
+  case XS_SFBOOL: return each([&](size_t i) { return py::bool_(value.of.ints[i] != 0); });
+  case XS_SFIMAGE: return each([&](size_t i) { return imageOf(value.of.images[i]); });
+  case XS_SFSTRING: return each([&](size_t i) { return toText(value.of.strings[i]); });
+  case XS_SFNODE: { // copied, because the host's list is valid only until its next call
+    const std::vector<XsNode> numbers(value.of.nodes, value.of.nodes + value.count);
+    return each([&](size_t i) { return nodes.toPython(numbers[i]); });
   }
-  default: return arrayOf(value.of.floats, value.count, width);
+  case XS_SFINT32:
+    return many ? arrayOf(value.of.ints, value.count, 1) : py::int_(value.of.ints[0]);
+  default: break;
   }
+  if (xsHasDoubles(value.type))
+    return many ? arrayOf(value.of.doubles, value.count, width) : vectorOf(value.of.doubles, width);
+  return many ? arrayOf(value.of.floats, value.count, width) : vectorOf(value.of.floats, width);
 }
 
 Owned::Owned(const py::handle& object, XsType type, const std::string& name, const Nodes& nodes) {
+  value_.type = type;
+  read(object, name, nodes);
+  if (!xsIsMany(type)) value_.count = 1;
+}
+
+void Owned::read(const py::handle& object, const std::string& name, const Nodes& nodes) {
+  const XsType type = value_.type;
   const Target target{type, name};
   const XsTypeInfo& info = *xsTypeInfo(type);
   const bool many = xsIsMany(type);
-  value_.type = type;
-  value_.count = 1;
-  switch (type) {
+  switch (info.element) {
   case XS_SFBOOL:
-    ints_.push_back(boolOf(object, target));
-    value_.of.ints = ints_.data();
-    break;
-  case XS_SFINT32:
-  case XS_MFINT32:
-    ints_ = wholesOf(object, many, target);
-    value_.count = uint32_t(ints_.size());
-    value_.of.ints = ints_.data();
-    break;
-  case XS_SFTIME:
-  case XS_MFTIME:
-    doubles_ = numbersOf(object, 1, many, target);
-    value_.count = uint32_t(doubles_.size());
-    value_.of.doubles = doubles_.data();
-    break;
+    if (!many)
+      ints_.push_back(boolOf(object, target));
+    else
+      for (const py::handle one : sequenceOf(object, target)) ints_.push_back(boolOf(one, target));
+    return hold(ints_);
+  case XS_SFINT32: ints_ = wholesOf(object, many, target); return hold(ints_);
   case XS_SFSTRING:
-  case XS_MFSTRING:
     if (!many) texts_.push_back(textOf(object, target));
     // its characters would be taken as elements
     else if (py::isinstance<py::str>(object))
@@ -321,50 +332,32 @@ Owned::Owned(const py::handle& object, XsType type, const std::string& name, con
     else
       texts_ = textsOf(object, name.c_str());
     for (const std::string& text : texts_) strings_.push_back({text.c_str(), text.size()});
-    value_.count = uint32_t(strings_.size());
-    value_.of.strings = strings_.data();
-    break;
+    return hold(strings_);
   case XS_SFNODE:
-    nodes_.push_back(nodes.toHost(object));
-    value_.of.nodes = nodes_.data();
-    break;
-  case XS_MFNODE: {
-    const py::object fast = sequenceOf(object, target);
-    for (size_t i = 0; i < sizeOf(fast); ++i) nodes_.push_back(nodes.toHost(itemOf(fast, i)));
-    value_.count = uint32_t(nodes_.size());
-    value_.of.nodes = nodes_.data();
-    break;
+    if (!many)
+      nodes_.push_back(nodes.toHost(object));
+    else
+      for (const py::handle one : sequenceOf(object, target)) nodes_.push_back(nodes.toHost(one));
+    return hold(nodes_);
+  case XS_SFIMAGE:
+    if (!many)
+      images_.push_back(imageFrom(object, target, pixels_.emplace_back()));
+    else
+      for (const py::handle one : sequenceOf(object, target))
+        images_.push_back(imageFrom(one, target, pixels_.emplace_back()));
+    for (size_t i = 0; i < images_.size(); ++i) images_[i].pixels = pixels_[i].data();
+    return hold(images_);
+  default: break;
   }
-  case XS_SFIMAGE: {
-    if (!hasNumpy()) throw py::type_error(target.text() + ", which needs numpy");
-    const py::array any = py::array(py::module_::import("numpy").attr("asarray")(object));
-    const py::ssize_t components = any.ndim() == 3 ? any.shape(2) : 1;
-    if (any.size() > 0 && any.dtype().kind() != 'i' && any.dtype().kind() != 'u')
-      target.wrongType(object);
-    if (any.size() > 0 && ((any.ndim() != 2 && any.ndim() != 3) || components < 1 ||
-                           components > 4 || any.shape(0) > 65536 || any.shape(1) > 65536))
-      target.wrongValue("not of shape " + std::string(py::str(any.attr("shape"))));
-    if (any.size() > 0)
-      image_ = {int32_t(any.shape(1)), int32_t(any.shape(0)), int32_t(components), 0, nullptr};
-    const py::array_t<int64_t, py::array::c_style | py::array::forcecast> dense(any);
-    const size_t row = size_t(image_.width) * size_t(image_.components);
-    for (size_t y = size_t(image_.height); y-- > 0;) // VRML stores rows from the bottom
-      for (size_t x = 0; x < row; ++x) {
-        const int64_t v = dense.data()[y * row + x];
-        if (v < 0 || v > 255) target.wrongValue("from 0 to 255, not " + std::to_string(v));
-        pixels_.push_back(uint8_t(v));
-      }
-    image_.pixels = pixels_.data();
-    value_.of.images = &image_;
-    break;
+  const std::vector<double> numbers = numbersOf(object, size_t(info.components), many, target);
+  if (xsHasDoubles(type)) {
+    doubles_ = numbers;
+    hold(doubles_);
+  } else {
+    for (const double v : numbers) floats_.push_back(singleOf(v, target));
+    hold(floats_);
   }
-  default:
-    for (const double v : numbersOf(object, size_t(info.components), many, target))
-      floats_.push_back(singleOf(v, target));
-    value_.count = uint32_t(floats_.size() / size_t(info.components));
-    value_.of.floats = floats_.data();
-    break;
-  }
+  value_.count = uint32_t(numbers.size() / size_t(info.components));
 }
 
 } // namespace python

@@ -36,6 +36,11 @@ class Owned {
   const XsValue& value() const { return value_; }
 
  private:
+  void read(const py::handle& object, const std::string& name, const Nodes& nodes);
+  template <class T> void hold(const std::vector<T>& elements) {
+    value_.count = uint32_t(elements.size());
+    value_.of.data = elements.data();
+  }
   XsValue value_{};
   std::vector<float> floats_;
   std::vector<double> doubles_;
@@ -43,8 +48,8 @@ class Owned {
   std::vector<XsNode> nodes_;
   std::vector<std::string> texts_;
   std::vector<XsString> strings_;
-  std::vector<uint8_t> pixels_;
-  XsImage image_{};
+  std::vector<std::vector<uint8_t>> pixels_; // one list for each image
+  std::vector<XsImage> images_;
 };
 
 const char* typeName(XsType type);

@@ -31,8 +31,6 @@ Tcl_Obj* element(Interpreter& interpreter, const XsTypeInfo& kind, const XsValue
   switch (kind.element) {
   case XS_SFBOOL: return Tcl_NewBooleanObj(value.of.ints[i]);
   case XS_SFINT32: return Tcl_NewIntObj(value.of.ints[i]);
-  case XS_SFTIME: return Tcl_NewDoubleObj(value.of.doubles[i]);
-  case XS_SFFLOAT: return number(value.of.floats[i]);
   case XS_SFSTRING: {
     const XsString& s = value.of.strings[i];
     const Object text = tclText({s.data ? s.data : "", size_t(s.bytes)});
@@ -54,10 +52,13 @@ Tcl_Obj* element(Interpreter& interpreter, const XsTypeInfo& kind, const XsValue
     return Tcl_NewListObj(4, parts);
   }
   default: {
-    Tcl_Obj* parts[4];
-    for (int k = 0; k < kind.components; ++k)
-      parts[k] = number(value.of.floats[i * size_t(kind.components) + size_t(k)]);
-    return Tcl_NewListObj(kind.components, parts);
+    Tcl_Obj* parts[XS_MOST_COMPONENTS];
+    for (int k = 0; k < kind.components; ++k) {
+      const size_t at = i * size_t(kind.components) + size_t(k);
+      parts[k] = xsHasDoubles(kind.element) ? Tcl_NewDoubleObj(value.of.doubles[at])
+                                            : number(value.of.floats[at]);
+    }
+    return kind.components == 1 ? parts[0] : Tcl_NewListObj(kind.components, parts);
   }
   }
 }
@@ -133,6 +134,12 @@ struct Reader {
   int tuple(Tcl_Obj* const* parts) const {
     for (int k = 0; k < kind.components; ++k) {
       float f = 0;
+      double d = 0;
+      if (xsHasDoubles(kind.element)) {
+        if (one(parts[k], d) != TCL_OK) return TCL_ERROR;
+        out.doubles.push_back(d);
+        continue;
+      }
       if (one(parts[k], f) != TCL_OK) return TCL_ERROR;
       out.floats.push_back(f);
     }
@@ -151,11 +158,6 @@ struct Reader {
       int32_t i = 0;
       return integer(object, i) == TCL_OK ? (out.ints.push_back(i), TCL_OK) : TCL_ERROR;
     }
-    case XS_SFTIME: {
-      double d = 0;
-      return one(object, d) == TCL_OK ? (out.doubles.push_back(d), TCL_OK) : TCL_ERROR;
-    }
-    case XS_SFFLOAT: return tuple(&object);
     case XS_SFSTRING: out.texts.push_back(hostText(object)); return TCL_OK;
     case XS_SFIMAGE: return image(object);
     case XS_SFNODE: {
@@ -165,12 +167,13 @@ struct Reader {
       return TCL_OK;
     }
     default: {
-      static constexpr const char* expected[] = {"", "", "2 numbers", "3 numbers", "4 numbers"};
+      if (kind.components == 1) return tuple(&object);
+      const std::string expected = std::to_string(kind.components) + " numbers";
       Tcl_Obj** parts;
       int count;
       if (Tcl_ListObjGetElements(nullptr, object, &count, &parts) != TCL_OK ||
           count != kind.components)
-        return wrong(expected[kind.components], object);
+        return wrong(expected.c_str(), object);
       return tuple(parts);
     }
     }
@@ -196,16 +199,20 @@ const void* dataOf(Converted& c, XsType element) {
   switch (element) {
   case XS_SFBOOL:
   case XS_SFINT32: return c.ints.data();
-  case XS_SFTIME: return c.doubles.data();
   case XS_SFNODE: return c.nodes.data();
   case XS_SFIMAGE:
-    if (!c.images.empty() && !c.bytes.empty()) c.images[0].pixels = c.bytes.data();
+    for (size_t i = 0, at = 0; i < c.images.size(); ++i) {
+      XsImage& image = c.images[i];
+      image.pixels = c.bytes.data() + at;
+      at += size_t(image.width) * size_t(image.height) * size_t(image.components);
+    }
     return c.images.data();
   case XS_SFSTRING:
     for (const std::string& text : c.texts) c.strings.push_back({text.c_str(), text.size()});
     return c.strings.data();
-  default: return c.floats.data();
+  default: break;
   }
+  return xsHasDoubles(element) ? static_cast<const void*>(c.doubles.data()) : c.floats.data();
 }
 
 } // namespace

@@ -53,8 +53,8 @@ struct Converted {
   std::vector<XsNode> nodes;
   std::vector<std::string> texts;
   std::vector<XsString> strings;
-  std::vector<uint8_t> bytes;
-  std::vector<XsImage> images; // contains at most one
+  std::vector<uint8_t> bytes; // of all images, one behind the other
+  std::vector<XsImage> images;
 };
 
 const char* typeName(XsType type); // "SFVec3f"

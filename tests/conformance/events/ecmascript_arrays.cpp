@@ -14,6 +14,22 @@ TEST_P(EcmaScriptArrays, Prints) {
 }
 
 constexpr EcmaRow rows[] = {
+    // Types of X3D (ISO/IEC 19777-1 7.6)
+    {"MFBool", "field MFBool f [ TRUE FALSE ]",
+     "print(f[0], f[1], f.length, f); f[3] = true; print(f); print(new MFBool(0, 'x', true))",
+     "true false 2 [TRUE, FALSE]\n[TRUE, FALSE, FALSE, TRUE]\n[FALSE, TRUE, TRUE]"},
+    {"MFDouble", "field MFDouble f [ 0.1 1e300 ]",
+     "print(f[0] * 10 == 1, f); f[2] = 3; print(f.length, new MFDouble(f)[1] == 1e300)",
+     "true [0.1, 1e+300]\n3 true"},
+    {"MFVec4f", "field MFVec4f f [ 1 2 3 4 ]",
+     "f[0].w = 5; f[2] = new SFVec4f(1, 1, 1, 1); print(f)", "[1 2 3 5, 0 0 0 1, 1 1 1 1]"},
+    {"MFMatrix3d", "field MFMatrix3d f [ ]", "f.length = 1; f[0][1] = 0.1; print(f)",
+     "[1 0.1 0 0 1 0 0 0 1]"},
+    {"MFColorRGBA", "", "var c = new MFColorRGBA(new SFColorRGBA(1, 0, 0, 0.5)); print(c[0].a, c)",
+     "0.5 [1 0 0 0.5]"},
+    {"MFImage", "field MFImage f [ 1 1 1 7, 2 1 1 1 2 ]",
+     "print(f.length, f[1]); f[0] = f[1]; f.length = 3; print(f)",
+     "2 2 1 1 0x1 0x2\n[2 1 1 0x1 0x2, 2 1 1 0x1 0x2, 0 0 0]"},
     {"MFColor", "",
      "var m = new MFColor(new SFColor(1, 0, 0), new SFColor(0, 0.5, 0)); print(m, m.length, "
      "m[1].g)",

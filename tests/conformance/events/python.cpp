@@ -62,6 +62,20 @@ TEST_F(Python, EveryTypeGoesInAndComesOut) {
   EXPECT_EQ(same("MFVec3f", MFVec3f{}), "[]");
   EXPECT_EQ(same("MFColor", MFColor{{1, 0, 0}}), "[1 0 0]");
   EXPECT_EQ(same("MFRotation", MFRotation{{1, 0, 0, 3}}), "[1 0 0 3]");
+  EXPECT_EQ(same("MFBool", MFBool{true, false}), "[TRUE, FALSE]");
+  EXPECT_EQ(same("SFDouble", Double{0.5}), "0.5");
+  EXPECT_EQ(same("MFDouble", MFDouble{{1e300}, {2.5}}), "[1.0000000000000001e+300, 2.5]");
+  EXPECT_EQ(same("SFColorRGBA", ColorRGBA{0, 0.5f, 1, 0.25f}), "0 0.5 1 0.25");
+  EXPECT_EQ(same("MFColorRGBA", MFColorRGBA{{0, 0.5f, 1, 0.25f}}), "[0 0.5 1 0.25]");
+  EXPECT_EQ(same("SFVec2d", Vec2d{1, 2}), "1 2");
+  EXPECT_EQ(same("SFVec3d", Vec3d{1, 2, 1e100}), "1 2 1e+100");
+  EXPECT_EQ(same("SFVec4d", Vec4d{1, 2, 3, 4}), "1 2 3 4");
+  EXPECT_EQ(same("SFVec4f", Vec4f{1, 2, 3, 4}), "1 2 3 4");
+  EXPECT_EQ(same("MFVec4f", MFVec4f{{1, 2, 3, 4}, {5, 6, 7, 8}}), "[1 2 3 4, 5 6 7 8]");
+  EXPECT_EQ(same("SFMatrix3d", SFMatrix3d()), "1 0 0 0 1 0 0 0 1");
+  EXPECT_EQ(same("SFMatrix3f", Matrix3f()), "1 0 0 0 1 0 0 0 1");
+  EXPECT_EQ(same("MFMatrix3f", MFMatrix3f(1)), "[1 0 0 0 1 0 0 0 1]");
+  EXPECT_EQ(same("SFMatrix4f", SFMatrix4f()), "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1");
 }
 
 TEST_F(Python, ListsTuplesAndArraysAreTaken) {
@@ -76,6 +90,11 @@ TEST_F(Python, ListsTuplesAndArraysAreTaken) {
   EXPECT_EQ(gives("MFString", "('a', 'b')"), gives("MFString", "['a', 'b']"));
   EXPECT_EQ(gives("SFVec3f", "(1, 2)"),
             "4: Script S: ValueError: out (SFVec3f): 3 numbers expected, not 2");
+  EXPECT_EQ(gives("SFMatrix3f", "(1, 2)"),
+            "4: Script S: ValueError: out (SFMatrix3f): 9 numbers expected, not 2");
+  EXPECT_EQ(gives("MFBool", "[True, 1]"),
+            "4: Script S: TypeError: out (MFBool): a sequence of True and False expected, not int");
+  EXPECT_EQ(gives("SFVec3d", "(1e300, 0, 0)"), "1.0000000000000001e+300 0 0");
   EXPECT_EQ(gives("SFVec3f", "'no'"),
             "4: Script S: TypeError: out (SFVec3f): 3 numbers expected, not str");
   EXPECT_EQ(gives("SFFloat", "True"),

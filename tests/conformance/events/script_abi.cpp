@@ -26,8 +26,8 @@ static_assert(sizeof(void*) != 8 ||
 static_assert(sizeof(void*) != 8 ||
               (offsetof(XsHost, send) == 8 && offsetof(XsHost, read) == 24 &&
                offsetof(XsHost, lastError) == 8 + 8 * 24 && sizeof(XsHost) >= 208));
-static_assert(XS_SFBOOL == 1 && XS_MFCOLOR == 12 && XS_MFVEC3F == 20 && XS_EVENT_OUT == 4 &&
-              XS_FAILED == 6);
+static_assert(XS_SFBOOL == 1 && XS_MFCOLOR == 12 && XS_MFVEC3F == 20 && XS_MFBOOL == 21 &&
+              XS_MFVEC4F == 42 && XS_EVENT_OUT == 4 && XS_FAILED == 6);
 
 XsResult create(const XsHost*, const XsScriptInfo*, XsInterpreter*) { return XS_OK; }
 void destroy(XsInterpreter) {}
@@ -84,7 +84,7 @@ TEST(ScriptAbi, RefusalsNameWhatIsWrong) {
               p.major = 7;
               p.minor = 3;
             }),
-            "script library abc.so: made for script ABI 7.3; this library has 1.1");
+            "script library abc.so: made for script ABI 7.3; this library has 1.2");
   EXPECT_TRUE(has(refusal([](XsPlugin& p, XsEngine&) { p.magic = 1; }), "wrong magic number"));
   EXPECT_TRUE(
       has(refusal([](XsPlugin& p, XsEngine&) { p.size += 8; }), "claims a plug-in structure of"));

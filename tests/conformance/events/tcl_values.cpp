@@ -1,5 +1,5 @@
-// tcl_values.cpp: values of the 20 types in Tcl, in both directions, and values that are refused.
-// See docs/scripts.md "Tcl/Tk".
+// tcl_values.cpp: values of all field types in Tcl, in both directions, and values that are
+// refused. See docs/scripts.md "Tcl/Tk".
 #include "conformance/events/tcl_world.h"
 
 namespace xvrml {
@@ -36,9 +36,50 @@ const Case cases[] = {
     {"MFString", "[\"a b\" \"\"]", "{a b} {}", "{", "a list"},
     {"MFTime", "[1 2]", "1.0 2.0", "1 {2 3}", "a number"},
     {"MFVec2f", "[1 2 3 4]", "{1.0 2.0} {3.0 4.0}", "1 2 3", "2 numbers"},
-    {"MFVec3f", "[1 2 3]", "{1.0 2.0 3.0}", "1 2", "3 numbers"}};
+    {"MFVec3f", "[1 2 3]", "{1.0 2.0 3.0}", "1 2", "3 numbers"},
+    {"MFBool", "[TRUE FALSE]", "1 0", "1 perhaps", "a boolean"},
+    {"SFColorRGBA", "0.1 0.2 1 0.5", "0.1 0.2 1.0 0.5", "1", "4 numbers"},
+    {"MFColorRGBA", "[0.1 0.2 1 0.5, 0.1 0.2 1 0.5]", "{0.1 0.2 1.0 0.5} {0.1 0.2 1.0 0.5}", "{1}",
+     "4 numbers"},
+    {"SFDouble", "0.1", "0.1", "now", "a number"},
+    {"MFDouble", "[0.1 1e300]", "0.1 1e+300", "1 x", "a number"},
+    {"MFImage", "[2 1 3 0xff0000 0x0102ff, 0 0 0]", "{2 1 3 {255 0 0 1 2 255}} {0 0 0 {}}",
+     "{2 2 3 {1 2 3}}", "as many bytes"},
+    {"SFMatrix3d", "1 0 0 0 1.5 0 0 0 0.1", "1.0 0.0 0.0 0.0 1.5 0.0 0.0 0.0 0.1", "1",
+     "9 numbers"},
+    {"MFMatrix3d", "[1 0 0 0 1.5 0 0 0 0.1, 1 0 0 0 1.5 0 0 0 0.1]",
+     "{1.0 0.0 0.0 0.0 1.5 0.0 0.0 0.0 0.1} {1.0 0.0 0.0 0.0 1.5 0.0 0.0 0.0 0.1}", "{1}",
+     "9 numbers"},
+    {"SFMatrix3f", "1 0 0 0 1.5 0 0 0 0.1", "1.0 0.0 0.0 0.0 1.5 0.0 0.0 0.0 0.1", "1",
+     "9 numbers"},
+    {"MFMatrix3f", "[1 0 0 0 1.5 0 0 0 0.1, 1 0 0 0 1.5 0 0 0 0.1]",
+     "{1.0 0.0 0.0 0.0 1.5 0.0 0.0 0.0 0.1} {1.0 0.0 0.0 0.0 1.5 0.0 0.0 0.0 0.1}", "{1}",
+     "9 numbers"},
+    {"SFMatrix4d", "1 0 0 0 0 1 0 0 0 0 1 0 2 3 0.1 1",
+     "1.0 0.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0 0.0 2.0 3.0 0.1 1.0", "1", "16 numbers"},
+    {"MFMatrix4d", "[1 0 0 0 0 1 0 0 0 0 1 0 2 3 0.1 1, 1 0 0 0 0 1 0 0 0 0 1 0 2 3 0.1 1]",
+     "{1.0 0.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0 0.0 2.0 3.0 0.1 1.0} {1.0 0.0 0.0 0.0 0.0 1.0 "
+     "0.0 0.0 0.0 0.0 1.0 0.0 2.0 3.0 0.1 1.0}",
+     "{1}", "16 numbers"},
+    {"SFMatrix4f", "1 0 0 0 0 1 0 0 0 0 1 0 2 3 0.1 1",
+     "1.0 0.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0 0.0 2.0 3.0 0.1 1.0", "1", "16 numbers"},
+    {"MFMatrix4f", "[1 0 0 0 0 1 0 0 0 0 1 0 2 3 0.1 1, 1 0 0 0 0 1 0 0 0 0 1 0 2 3 0.1 1]",
+     "{1.0 0.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 0.0 1.0 0.0 2.0 3.0 0.1 1.0} {1.0 0.0 0.0 0.0 0.0 1.0 "
+     "0.0 0.0 0.0 0.0 1.0 0.0 2.0 3.0 0.1 1.0}",
+     "{1}", "16 numbers"},
+    {"SFVec2d", "0.1 2", "0.1 2.0", "1", "2 numbers"},
+    {"MFVec2d", "[0.1 2, 0.1 2]", "{0.1 2.0} {0.1 2.0}", "{1}", "2 numbers"},
+    {"SFVec3d", "0.1 2 3e-7", "0.1 2.0 3e-7", "1", "3 numbers"},
+    {"MFVec3d", "[0.1 2 3e-7, 0.1 2 3e-7]", "{0.1 2.0 3e-7} {0.1 2.0 3e-7}", "{1}", "3 numbers"},
+    {"SFVec4d", "0.1 2 3 4", "0.1 2.0 3.0 4.0", "1", "4 numbers"},
+    {"MFVec4d", "[0.1 2 3 4, 0.1 2 3 4]", "{0.1 2.0 3.0 4.0} {0.1 2.0 3.0 4.0}", "{1}",
+     "4 numbers"},
+    {"SFVec4f", "0.1 2 3 4", "0.1 2.0 3.0 4.0", "1", "4 numbers"},
+    {"MFVec4f", "[0.1 2 3 4, 0.1 2 3 4]", "{0.1 2.0 3.0 4.0} {0.1 2.0 3.0 4.0}", "{1}",
+     "4 numbers"}};
 
 TEST_F(TclValues, GoBothWays) {
+  EXPECT_EQ(std::size(cases), size_t(fieldTypeCount));
   for (const Case& c : cases) {
     const std::string type = c.type;
     TclWorld r(TclWorld::script("field " + type + " f " + c.vrml + " eventOut " + type +

@@ -1,4 +1,4 @@
-#include "parse/x3d.h"
+#include "base/x3d.h"
 
 #include <algorithm>
 #include <iterator>
@@ -180,7 +180,6 @@ constexpr std::string_view nodes[] = {"AcousticProperties",
                                       "SplinePositionInterpolator2D",
                                       "SplineScalarInterpolator",
                                       "SquadOrientationInterpolator",
-                                      "StaticGroup",
                                       "StreamAudioDestination",
                                       "StreamAudioSource",
                                       "StringSensor",
@@ -239,11 +238,8 @@ constexpr Field fields[] = {{"Anchor", "bboxDisplay"},
                             {"Background", "transparency"},
                             {"Billboard", "bboxDisplay"},
                             {"Billboard", "visible"},
-                            {"Box", "solid"},
                             {"Collision", "bboxDisplay"},
                             {"Collision", "visible"},
-                            {"Cone", "solid"},
-                            {"Cylinder", "solid"},
                             {"CylinderSensor", "axisRotation"},
                             {"CylinderSensor", "description"},
                             {"DirectionalLight", "global"},
@@ -315,7 +311,6 @@ constexpr Field fields[] = {{"Anchor", "bboxDisplay"},
                             {"Shape", "bboxSize"},
                             {"Shape", "castShadow"},
                             {"Shape", "visible"},
-                            {"Sphere", "solid"},
                             {"SphereSensor", "description"},
                             {"SpotLight", "global"},
                             {"SpotLight", "shadowIntensity"},
@@ -328,7 +323,6 @@ constexpr Field fields[] = {{"Anchor", "bboxDisplay"},
                             {"Switch", "visible"},
                             {"Text", "lineBounds"},
                             {"Text", "origin"},
-                            {"Text", "solid"},
                             {"Text", "textBounds"},
                             {"TextureCoordinate", "mapping"},
                             {"TextureTransform", "mapping"},
@@ -368,6 +362,12 @@ constexpr Renamed renamed[] = {
 std::string_view ownName(std::string_view type, std::string_view name) {
   for (const Renamed& one : renamed)
     if (one.type == type && one.x3d == name) return one.own;
+  return name;
+}
+
+std::string_view x3dName(std::string_view type, std::string_view name) {
+  for (const Renamed& one : renamed)
+    if (one.type == type && one.own == name) return one.x3d;
   return name;
 }
 

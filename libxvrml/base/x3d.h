@@ -21,5 +21,7 @@ bool isX3dField(std::string_view type, std::string_view field);
 // "children", "set_choice" for its "set_children". Other names are returned as
 // they are.
 std::string_view ownName(std::string_view type, std::string_view name);
+// Returns the name in X3D of a field or event of ours: the reverse of ownName.
+std::string_view x3dName(std::string_view type, std::string_view name);
 
 } // namespace xvrml

@@ -1,0 +1,154 @@
+// vrml_writer.cpp: writes VRML97 (ISO/IEC 14772-1 annex A) and X3D's ClassicVRML encoding (ISO/IEC
+// 19776-2), which differ in the head of the file, in words and in some names.
+#include <fmt/format.h>
+
+#include "base/x3d.h"
+#include "write/value_writer.h"
+#include "write/writer.h"
+
+namespace xvrml {
+namespace {
+
+class VrmlWriter : public Writer {
+ public:
+  using Writer::Writer;
+
+ private:
+  void writeHead() override {
+    std::string header;
+    const std::vector<std::string> comments = commentsOf(world_, header);
+    text_ = isX3d() ? fmt::format("#X3D V{}.{} utf8\n", version_.major, version_.minor)
+                    : fmt::format("#VRML V2.0 utf8{}\n", header);
+    for (const std::string& comment : comments) text_ += fmt::format("#{}\n", comment);
+    if (isX3d()) statements(world_.head);
+  }
+
+  void statements(const FileHead& head) {
+    text_ += fmt::format("PROFILE {}\n", profileOf(head));
+    for (const FileHead::Component& one : head.components)
+      text_ += fmt::format("COMPONENT {}:{}\n", nameText(one.name), one.level);
+    for (const FileHead::Meta& one : head.meta) {
+      text_ += "META ";
+      writeString(text_, one.name);
+      text_ += ' ';
+      writeString(text_, one.content);
+      text_ += '\n';
+    }
+  }
+
+  void writeEnd() override { text_ += '\n'; }
+
+  void writeNode(const Content& content, std::string_view) override {
+    if (content.name) text_ += "DEF " + *content.name + " ";
+    text_ += content.node->type().name + " {";
+    const size_t before = text_.size();
+    indent_ += 2;
+    for (const Field& field : content.fields) writeField(content.node->type(), field);
+    for (const auto& [event, interfaceName] : content.events) {
+      line();
+      text_ += fmt::format("{} IS {}", event, interfaceName);
+    }
+    indent_ -= 2;
+    if (text_.size() > before) line();
+    text_ += text_.size() > before ? "}" : " }";
+  }
+
+  void writeField(const NodeType& type, const Field& field) {
+    const std::string_view name =
+        field.declared ? field.info->name : spelled(type, field.info->name);
+    bool first = true;
+    if (field.value || field.declared) {
+      line();
+      if (field.declared) words(*field.info);
+      text_ += name;
+      if (field.value) value(field);
+      if (field.declared && !field.interfaces.empty()) {
+        text_ += " IS " + field.interfaces.front();
+        first = false;
+      }
+    }
+    for (size_t i = first ? 0 : 1; i < field.interfaces.size(); ++i) {
+      line();
+      text_ += fmt::format("{} IS {}", name, field.interfaces[i]);
+    }
+  }
+
+  void words(const FieldInfo& info) {
+    text_ += fmt::format("{} {} ", isX3d() ? x3dAccessName(info.access) : accessName(info.access),
+                         fieldTypeName(info.type));
+  }
+
+  void value(const Field& field) {
+    text_ += ' ';
+    if (field.info->type == FieldType::SFNode) {
+      node(static_cast<const NodeRef*>(field.value)->get(), field.info->name);
+    } else if (field.info->type == FieldType::MFNode) {
+      const auto& list = *static_cast<const MFNode*>(field.value);
+      text_ += '[';
+      indent_ += 2;
+      for (const NodeRef& child : list) {
+        line();
+        node(child.get(), field.info->name);
+      }
+      indent_ -= 2;
+      if (!list.empty()) line();
+      text_ += list.empty() ? " ]" : "]";
+    } else {
+      writeValue(text_, field.info->type, field.value, indent_);
+    }
+  }
+
+  void writeUse(const Node&, const std::string& name, std::string_view) override {
+    text_ += "USE " + name;
+  }
+  void writeNull() override { text_ += "NULL"; }
+
+  void writeRoute(const RouteText& route) override {
+    text_ +=
+        fmt::format("ROUTE {}.{} TO {}.{}", route.from, route.fromField, route.to, route.toField);
+  }
+
+  void openPrototype(const std::string& name, const MFString* urls) override {
+    text_ += fmt::format("{} {} [", urls ? "EXTERNPROTO" : "PROTO", name);
+    interface_ = text_.size();
+    indent_ += 2;
+  }
+  void writeDeclaration(const Field& field) override {
+    line();
+    words(*field.info);
+    text_ += field.info->name;
+    if (field.value) value(field);
+  }
+  void closeInterface() {
+    indent_ -= 2;
+    if (text_.size() > interface_) line();
+    text_ += ']';
+  }
+  void openBody() override {
+    closeInterface();
+    text_ += " {";
+    indent_ += 2;
+  }
+  void closePrototype(const MFString* urls) override {
+    if (urls) {
+      closeInterface();
+      text_ += ' ';
+      writeValue(text_, FieldType::MFString, urls, indent_);
+      return;
+    }
+    indent_ -= 2;
+    line();
+    text_ += '}';
+  }
+
+  size_t interface_ = 0; // where the interface of the open prototype begins in the text
+};
+
+} // namespace
+
+std::unique_ptr<Writer> makeVrmlWriter(const World& world, const std::string& target,
+                                       const FileVersion& version) {
+  return std::make_unique<VrmlWriter>(world, target, version);
+}
+
+} // namespace xvrml
