@@ -333,12 +333,9 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
     const bool comment = current.starts_with('#');
     if (comment && current.find("VRML") != current.npos) {
       if (current.find("V1.0") != current.npos) {
-        refuse(*file,
-               fmt::format(
-                   "this file is VRML 1.0, which cannot be read ({} can). Convert it first, for "
-                   "example with vrml1tovrml2",
-                   readableFormats()),
-               1);
+        if (!current.starts_with("#VRML V1.0 ascii"))
+          warn("the file does not begin with exactly '#VRML V1.0 ascii'; read as VRML 1.0 anyway");
+        return {Encoding::vrml1, 1, 0};
       }
       if (current.find("2.0") != current.npos) {
         warn(
