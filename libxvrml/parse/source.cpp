@@ -286,6 +286,11 @@ bool isX3dXml(std::string_view text, std::string_view file) {
     if (c > 0) ascii += c;
   const size_t first = ascii.find_first_not_of(" \t\r\n");
   if (first == ascii.npos || ascii[first] != '<') return false;
+  std::string begin = ascii.substr(first, 14);
+  for (char& c : begin)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  // A page may hold a scene, but it is not well-formed XML.
+  if (begin.starts_with("<html") || begin.starts_with("<!doctype html")) return false;
   constexpr std::string_view marks[] = {"<X3D", "<x3d", ":X3D", "<!DOCTYPE X3D"};
   return std::any_of(std::begin(marks), std::end(marks),
                      [&](std::string_view mark) { return ascii.find(mark) != ascii.npos; }) ||
