@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "parse/parser.h"
 #include "base/x3d.h"
+#include "parse/parser.h"
 
 namespace xvrml {
 namespace {

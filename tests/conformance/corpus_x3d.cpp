@@ -1,5 +1,6 @@
-// corpus_x3d.cpp: real files in X3D ClassicVRML by many authors (the corpus beside the repository,
-// or $OPENRT_CORPUS_X3D; skipped if there is none). None may be refused or silently empty.
+// corpus_x3d.cpp: real files in X3D ClassicVRML and in VRML 1.0 by many authors (the corpus beside
+// the repository, or $OPENRT_CORPUS_X3D; skipped if there is none). None may be refused or silently
+// empty.
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -12,8 +13,8 @@ namespace {
 
 using namespace xvrml;
 
-// Returns the paths of the corpus's .x3dv files; empty if there is no corpus.
-std::vector<std::string> classicFiles() {
+// Returns the paths of the corpus's files that end with the suffix; empty if there is no corpus.
+std::vector<std::string> listedFiles(std::string_view suffix) {
   const char* given = std::getenv("OPENRT_CORPUS_X3D");
   const std::string folder = given ? given : "../shared/corpus-x3d";
   std::vector<std::string> paths;
@@ -23,7 +24,7 @@ std::vector<std::string> classicFiles() {
     std::string origin, path;
     std::getline(columns, origin, '\t');
     std::getline(columns, path, '\t');
-    if (path.ends_with(".x3dv")) paths.push_back(folder + '/' + origin + '/' + path);
+    if (path.ends_with(suffix)) paths.push_back(folder + '/' + origin + '/' + path);
   }
   return paths;
 }
@@ -40,7 +41,7 @@ bool hasNodes(const std::string& path) {
 }
 
 TEST(CorpusX3d, ClassicFilesAreReadAndSurviveWriting) {
-  const auto files = classicFiles();
+  const auto files = listedFiles(".x3dv");
   if (files.empty()) GTEST_SKIP() << "no corpus of X3D files";
   size_t clean = 0, withoutErrors = 0;
   for (const std::string& path : files) {
@@ -63,6 +64,37 @@ TEST(CorpusX3d, ClassicFilesAreReadAndSurviveWriting) {
   RecordProperty("clean", static_cast<int>(clean));
   RecordProperty("without_errors", static_cast<int>(withoutErrors));
   EXPECT_GE(withoutErrors * 4, files.size() * 3);
+}
+
+// Returns the paths of the corpus's files in VRML 1.0; empty if there is no corpus.
+std::vector<std::string> vrml1Files() {
+  std::vector<std::string> paths;
+  for (const std::string& path : listedFiles(".wrl")) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    if (std::getline(file, line) && line.starts_with("#VRML V1.0")) paths.push_back(path);
+  }
+  return paths;
+}
+
+TEST(CorpusX3d, FilesInVrml1AreReadAndSurviveWriting) {
+  const auto files = vrml1Files();
+  if (files.empty()) GTEST_SKIP() << "no corpus of VRML 1.0 files";
+  size_t withoutErrors = 0;
+  for (const std::string& path : files) {
+    LoadOptions options;
+    options.loadInlines = false;
+    std::unique_ptr<World> world;
+    ASSERT_NO_THROW(world = loadWorld(path, options)) << path;
+    const Diagnostics& said = world->diagnostics;
+    withoutErrors += said.errors() == 0;
+    EXPECT_EQ(world->head.version.encoding, Encoding::vrml1) << path;
+    const std::string text = writeWorld(*world);
+    const auto again = loadWorldFromMemory(text, path, options);
+    EXPECT_EQ(again->diagnostics.errors(), 0u) << path;
+    EXPECT_EQ(writeWorld(*again), text) << path;
+  }
+  EXPECT_GE(withoutErrors * 100, files.size() * 95);
 }
 
 } // namespace
