@@ -13,6 +13,7 @@
 #include "parse/mesh/mesh_file.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
+#include "parse/vrml1/vrml1.h"
 #include "parse/x3d_json.h"
 #include "parse/x3d_xml.h"
 
@@ -89,6 +90,11 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
     X3dElements elements(locator, limits, builder, budget_.get());
     readX3dJson(locator, budget_, elements);
     return builder.dropUnplacedNames();
+  }
+  case Encoding::vrml1: {
+    Locator locator(source.text(), name, state_.diagnostics);
+    composed_ = true; // its nodes are counted when the world is complete
+    return readVrml1(locator, state_, file, Parser::maximumNesting);
   }
   default: break;
   }

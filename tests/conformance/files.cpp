@@ -72,13 +72,13 @@ std::vector<Expected> expectations(const std::string& path) {
   std::string line;
   std::getline(file, line);
   std::getline(file, line);
+  // In XML the line is a comment, in JSON a string.
   const std::string mark = "# expect ";
   std::vector<Expected> all;
-  // Meshes have comments of their own, or none: a text of the file says it.
-  const size_t begin = line.find(mark);
+  const size_t begin = line.find(mark); // meshes may have no comments, but some text
   if (begin == line.npos) return all;
   line.erase(0, begin + mark.size());
-  if (path.ends_with(".gltf")) line.resize(std::min(line.find('"'), line.size()));
+  line.erase(std::min({line.size(), line.find(" -->"), line.find("\"")}));
   for (size_t at = 0; at < line.size();) {
     const size_t end = std::min(line.find(" | ", at), line.size());
     std::istringstream item(line.substr(at, end - at));

@@ -63,7 +63,6 @@ def test_usage(vv, arguments, word):
 
 
 @pytest.mark.parametrize("content, name", [
-    (b"<?xml version='1.0'?>\n<X3D profile='Full'><Scene/></X3D>", "X3D world (XML encoding)"),
     (b"OFF\n8 6 12\n", "OFF mesh"),
     (b"ISO-10303-21;\n", "STEP model"),
     (b"(kicad_pcb (version 20221018)", "KiCad board"),

@@ -39,7 +39,7 @@ TEST(ParserSource, HeadersThatAreNearlyRight) {
 TEST(ParserSource, WhatIsNoWorldIsRefused) {
   const std::pair<std::string, const char*> cases[] = {
       {"#VRML V1.0 ascii\nSeparator { }", "VRML 1.0"},
-      {"<?xml version='1.0'?><X3D profile='Full'/>", "X3D world (XML encoding)"},
+      {"<?xml version='1.0'?><svg/>", "#VRML V2.0 utf8"},
       {"#Inventor V2.1 ascii\nSeparator { }", "Inventor"},
       {"<html></html>", "web page"},
       {"\x89PNG\r\n\x1a\n", "picture"},

@@ -1,0 +1,21 @@
+// vrml1.cpp: reads the text into a tree, and converts the tree.
+#include "parse/vrml1/vrml1.h"
+
+#include "parse/vrml1/converter.h"
+#include "parse/vrml1/reader.h"
+
+namespace xvrml {
+
+void readVrml1(Locator& locator, LoadState& state, ParsedFile& file, uint64_t depthLimit) {
+  using namespace vrml1;
+  const Limits& limits = state.options.limits;
+  const uint64_t nesting = std::min(limits.nesting, depthLimit);
+  const uint64_t before = state.budget.used();
+  const Tree tree = Reader(locator, limits, state.budget, nesting).read();
+  const uint64_t ofTree = state.budget.used() - std::min(before, state.budget.used());
+  Graph graph(locator, state, file);
+  file.scope.roots = Converter(graph, nesting).convert(tree);
+  state.budget.give(ofTree); // the tree ends here
+}
+
+} // namespace xvrml
