@@ -194,7 +194,7 @@ bool Builder::wouldAccept(size_t nodeTarget, std::string_view name, bool use) co
 }
 
 // The node type's own containerField counts (ISO/IEC 19776-1 5.2), then the first field that takes
-// the node.
+// the node. Where none does, a field that the message about it can name.
 std::string_view Builder::fieldFor(std::string_view name, bool use) const {
   if (use ? !scopes_.back().scope->names.contains(name) : !typeNamed(name)) return {};
   const NodeType* const type = typeOf(name, use);
@@ -206,7 +206,10 @@ std::string_view Builder::fieldFor(std::string_view name, bool use) const {
   };
   const FieldInfo* const field = parent.find(spelled(parent, usual));
   if (field && takes(*field)) return usual;
-  const auto first = std::find_if(parent.fields.begin(), parent.fields.end(), takes);
+  auto first = std::find_if(parent.fields.begin(), parent.fields.end(), takes);
+  if (first == parent.fields.end() && !field)
+    first = std::find_if(parent.fields.begin(), parent.fields.end(),
+                         [](const FieldInfo& one) { return holdsValue(one) && holdsNodes(one); });
   return first == parent.fields.end() ? usual : std::string_view(first->name);
 }
 

@@ -10,6 +10,7 @@
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
 #include "parse/builder.h"
+#include "parse/mesh/mesh_file.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
 #include "parse/vrml1/vrml1.h"
@@ -98,9 +99,15 @@ void Loader::parse(const Source& source, const std::shared_ptr<const std::string
   default: break;
   }
   Locator locator(source.text(), name, state_.diagnostics);
-  Lexer lexer(locator);
+  std::deque<std::string> names; // DEF names that a reader makes; they outlive the builder
   Builder builder(locator, state_, file);
-  Parser(lexer, limits, builder, budget_.get(), file.head.version.isX3d()).vrmlScene();
+  if (const FileVersion& version = file.head.version; isMesh(version.encoding)) {
+    readMesh(version.encoding,
+             {source.text(), *name, locator, builder, state_.options, budget_, names});
+  } else {
+    Lexer lexer(locator);
+    Parser(lexer, limits, builder, budget_.get(), version.isX3d()).vrmlScene();
+  }
   builder.dropUnplacedNames();
 }
 

@@ -16,6 +16,7 @@
 #include <zlib.h>
 
 #include "base/lexer.h"
+#include "parse/mesh/mesh_file.h"
 #include "parse/other_formats.h"
 #include "xvrml/comments.h"
 
@@ -26,11 +27,23 @@ namespace {
   throw LoadError{{Severity::error, name, line, line, std::move(message), {}, 0}};
 }
 
-// Refuses a file of a known format other than VRML97.
+// Returns "VRML97, X3D ClassicVRML, ... and glTF".
+std::string readableFormats() {
+  std::string text;
+  for (int i = 0; i < encodingCount; ++i)
+    text += fmt::format("{}{}",
+                        i == 0                  ? ""
+                        : i + 1 < encodingCount ? ", "
+                                                : " and ",
+                        encodingName(static_cast<Encoding>(i)));
+  return text;
+}
+
+// Refuses a file of a known format that cannot be read.
 [[noreturn]] void refuseOther(const std::string& name, std::string_view bytes) {
   const OtherFormat& format = *otherFormat(bytes);
-  refuse(name, fmt::format("this file is {}, not a world in VRML97 or X3D: {}", format.name,
-                           format.remedy));
+  refuse(name, fmt::format("this file is {}, which cannot be read ({} can): {}", format.name,
+                           readableFormats(), format.remedy));
 }
 
 struct Descriptor {
@@ -252,10 +265,14 @@ FileVersion x3dVersion(std::string_view line, std::string& complaint) {
   return version;
 }
 
+// Nodes made from a mesh follow X3D 4.0, which has physical materials.
+FileVersion meshVersion(Encoding encoding) { return {encoding, 4, 0}; }
+
 bool endsWithOneOf(std::string_view file, std::initializer_list<std::string_view> suffixes) {
   return std::any_of(suffixes.begin(), suffixes.end(),
                      [&](std::string_view suffix) { return file.ends_with(suffix); });
 }
+
 bool namesX3dClassic(std::string_view file) {
   return endsWithOneOf(file, {".x3dv", ".x3dvz", ".x3dv.gz"});
 }
@@ -298,6 +315,8 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
     return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
   };
   if (!damage_.empty()) diagnostics.warn({file, 0, 0}, damage_);
+  Encoding mesh{};
+  if (!text_.starts_with(exact) && findMeshEncoding(text_, mesh)) return meshVersion(mesh);
   const auto warn = [&](std::string message) {
     diagnostics.warn({file, 1, 1}, std::move(message));
   };
@@ -336,9 +355,7 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
     }
     if (comment && current.starts_with("#Inventor")) {
       if (current.find("ascii") == current.npos) refuseOther(*file, rest);
-      warn("Open Inventor is read as VRML 1.0: nodes and fields that VRML 1.0 does not have are "
-           "left "
-           "out");
+      warn("Open Inventor is read as VRML 1.0: nodes and fields that VRML 1.0 lacks are left out");
       return {Encoding::vrml1, 1, 0};
     }
     if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
@@ -351,9 +368,14 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
              : fmt::format("the header '{}' is missing; read as VRML97 anyway", exact));
     return x3d ? FileVersion{Encoding::x3dClassic, 3, 3} : FileVersion();
   }
+  if (findMeshSuffix(*file, mesh)) return meshVersion(mesh);
   if (text_.empty()) refuse(*file, fmt::format("this file is empty: expected '{}'", exact));
-  refuse(*file,
-         fmt::format("this file is not a VRML97 world: expected it to begin with '{}'", exact), 1);
+  refuse(
+      *file,
+      fmt::format("this file is not a VRML97 world: expected it to begin with '{}'. Formats that "
+                  "can be read are {}",
+                  exact, readableFormats()),
+      1);
 }
 
 namespace {

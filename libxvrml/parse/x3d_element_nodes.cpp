@@ -28,9 +28,9 @@ bool equalsWithoutCase(std::string_view a, std::string_view b) {
 void X3dElements::openNode(const Name& element, Attributes attributes) {
   Name type = element;
   const bool instance = element.text == "ProtoInstance";
-  if (instance && !nameOf(type, element, attributes, "name")) return skip(attributes);
-  if (instance) type.at = element.at;
   const Attribute* const use = findAttribute(attributes, "USE");
+  if (instance && !use && !nameOf(type, element, attributes, "name")) return skip(attributes);
+  type.at = element.at;
   const Attribute* const container = findAttribute(attributes, "containerField");
   if (use) {
     const Name name{keep(trimmed(use->value)), use->at};
@@ -94,10 +94,13 @@ void X3dElements::leaveField() {
 void X3dElements::readField(const Name& type, const Attribute& attribute) {
   Name name{keep(attribute.name.text), attribute.name.at};
   locator_.setAnchor(name.at);
-  if (!sink_.hasField(name.text))
+  if (!sink_.hasField(name.text)) {
+    // A page's handlers of events, like onclick, are nothing to the world.
+    if (name.text.starts_with("on") && name.text.size() > 3) return;
     if (const NodeType* known = sink_.typeNamed(type.text))
       for (const FieldInfo& field : known->fields)
         if (equalsWithoutCase(field.name, name.text)) name.text = field.name;
+  }
   const FieldTarget target = sink_.openField(name);
   if (!target.known) return;
   if (target.type != FieldType::SFNode && target.type != FieldType::MFNode)
@@ -114,7 +117,6 @@ void X3dElements::readField(const Name& type, const Attribute& attribute) {
 void X3dElements::appendSource(Frame& frame) {
   if (frame.source.empty() || !frame.good) return;
   locator_.setAnchor(frame.sourceAt);
-  if (!values_.reserve(frame.sourceAt, frame.source.size())) return;
   const FieldTarget target = sink_.resumeField({"url", frame.sourceAt});
   if (!target.known) return;
   frame.source.resize(trimmed(frame.source).size()); // its beginning has no blanks

@@ -43,7 +43,7 @@ std::string_view X3dElements::keep(std::string_view text) {
   const std::string_view file = locator_.text();
   if (!before(text.data(), file.data()) && !before(file.data() + file.size(), text.data()))
     return text;
-  return kept_.emplace_back(text);
+  return *kept_.emplace(text).first;
 }
 
 // Returns the name of an element without its prefix. Pages of HTML have names in lower case.
@@ -91,8 +91,9 @@ void X3dElements::characters(std::string_view text, const char* at) {
       frame.sourceAt = at + blanks;
       text.remove_prefix(blanks);
     }
-    if (frame.source.size() + text.size() <= limits_.stringBytes && frame.good) {
-      frame.source += text;
+    if (frame.good && frame.source.size() + text.size() <= limits_.stringBytes) {
+      frame.good = values_.reserve(at, text.size());
+      if (frame.good) frame.source += text;
     } else if (frame.good) {
       locator_.error(at, fmt::format("the text of a Script has more bytes than limit "
                                      "stringBytes={}; it is left out",
@@ -145,6 +146,23 @@ bool X3dElements::checkName(const Name& name) {
                                 : fmt::format("{} is not a name: it has white space, a bracket, a "
                                               "quote or #",
                                               describe(name)));
+  return good;
+}
+
+// Checks a name that may begin a line of ClassicVRML: that of a prototype or of a field that a file
+// declares. Words of the grammar cannot be names there.
+bool X3dElements::checkDeclaredName(const Name& name) {
+  constexpr std::string_view words[] = {
+      "DEF",          "EXTERNPROTO", "FALSE",          "IS",        "NULL",        "PROTO",
+      "ROUTE",        "TO",          "TRUE",           "USE",       "eventIn",     "eventOut",
+      "exposedField", "field",       "initializeOnly", "inputOnly", "inputOutput", "outputOnly",
+      "PROFILE",      "COMPONENT",   "META",           "UNIT",      "IMPORT",      "EXPORT"};
+  const bool good = std::find(std::begin(words), std::end(words), name.text) == std::end(words);
+  if (!good)
+    locator_.error(name.at,
+                   fmt::format("{} is a word of the ClassicVRML encoding: it cannot be the "
+                               "name of a field or prototype",
+                               describe(name)));
   return good;
 }
 
@@ -279,15 +297,17 @@ void X3dElements::route(const Name& element, Attributes attributes) {
 
 void X3dElements::import(const Name& element, Attributes attributes) {
   Name local;
-  const bool renamed = findAttribute(attributes, "AS") != nullptr;
-  if (nameOf(local, element, attributes, renamed ? "AS" : "importedDEF"))
-    sink_.importNode(element, local);
+  std::string_view which = "importedDEF"; // X3D 3.0 said exportedDEF
+  for (const std::string_view other : {"AS", "exportedDEF"})
+    if (which == "importedDEF" && findAttribute(attributes, other)) which = other;
+  if (nameOf(local, element, attributes, which)) sink_.importNode(element, local);
   push(Kind::leaf, element);
 }
 
 void X3dElements::openProto(const Name& element, Attributes attributes) {
   Name name;
-  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name"))
+  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name") ||
+      !checkDeclaredName(name))
     return skip(attributes);
   ++depth_;
   sink_.openProto(name);
@@ -296,7 +316,8 @@ void X3dElements::openProto(const Name& element, Attributes attributes) {
 
 void X3dElements::openExternProto(const Name& element, Attributes attributes) {
   Name name;
-  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name"))
+  if (tooDeep(element, "prototypes") || !nameOf(name, element, attributes, "name") ||
+      !checkDeclaredName(name))
     return skip(attributes);
   ++depth_;
   sink_.openExternProto(name);
@@ -346,7 +367,8 @@ void X3dElements::openDeclaration(const Name& element, Attributes attributes) {
   const Attribute* const word = findAttribute(attributes, "accessType");
   const Attribute* const typeName = findAttribute(attributes, "type");
   Name name;
-  if (!nameOf(name, element, attributes, "name")) return skip(attributes);
+  if (!nameOf(name, element, attributes, "name") || !checkDeclaredName(name))
+    return skip(attributes);
   if (!word || !typeName) {
     locator_.error(element.at, fmt::format("the field {} has no {}", describe(name),
                                            word ? "type" : "accessType"));

@@ -3,9 +3,9 @@
 // recursive. [the thread that loads]
 #pragma once
 
-#include <deque>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -65,6 +65,7 @@ class X3dElements {
   std::string_view keep(std::string_view text);
   bool nameOf(Name& out, const Name& element, Attributes attributes, std::string_view attribute);
   bool checkName(const Name& name);
+  bool checkDeclaredName(const Name& name);
   Name canonical(const Name& element);
 
   void openRoot(const Name& element, Attributes attributes);
@@ -102,7 +103,7 @@ class X3dElements {
   // Elements that are open within one that is left out, with it.
   uint64_t skipped_ = 0;
   bool sawScene_ = false, saidText_ = false;
-  std::deque<std::string> kept_; // names that are not bytes of the file
+  std::unordered_set<std::string> kept_; // names that are not bytes of the file
   std::unordered_map<std::string, std::string_view> lowerCase_; // names of elements
 };
 

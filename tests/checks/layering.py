@@ -155,6 +155,7 @@ FOREIGN = [
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
     (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),
+    (re.compile(r"expat\.h$"), {"xvrml-parse", "test"}, "expat"),
 ]
 # A public header includes only the language's own headers and no third-party ones.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")

@@ -18,7 +18,10 @@ std::vector<std::string> filesOf(const std::string& folder) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const auto suffix = entry.path().extension();
-    if (suffix == ".wrl" || suffix == ".x3dv" || suffix == ".x3d" || suffix == ".x3dj") paths.push_back(entry.path().string());
+    if (suffix == ".wrl" || suffix == ".x3dv" || suffix == ".x3d" || suffix == ".x3dj" ||
+        suffix == ".stl" || suffix == ".ply" || suffix == ".obj" || suffix == ".gltf" ||
+        suffix == ".glb")
+      paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -69,10 +72,13 @@ std::vector<Expected> expectations(const std::string& path) {
   std::string line;
   std::getline(file, line);
   std::getline(file, line);
+  // In XML the line is a comment, in JSON a string.
   const std::string mark = "# expect ";
   std::vector<Expected> all;
-  if (!line.starts_with(mark)) return all;
-  line.erase(0, mark.size());
+  const size_t begin = line.find(mark); // meshes may have no comments, but some text
+  if (begin == line.npos) return all;
+  line.erase(0, begin + mark.size());
+  line.erase(std::min({line.size(), line.find(" -->"), line.find("\"")}));
   for (size_t at = 0; at < line.size();) {
     const size_t end = std::min(line.find(" | ", at), line.size());
     std::istringstream item(line.substr(at, end - at));
