@@ -360,9 +360,7 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
     }
     if (comment && current.starts_with("#Inventor")) {
       if (current.find("ascii") == current.npos) refuseOther(*file, rest);
-      warn("Open Inventor is read as VRML 1.0: nodes and fields that VRML 1.0 does not have are "
-           "left "
-           "out");
+      warn("Open Inventor is read as VRML 1.0: nodes and fields that VRML 1.0 lacks are left out");
       return {Encoding::vrml1, 1, 0};
     }
     if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
