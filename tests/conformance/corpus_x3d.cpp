@@ -1,6 +1,6 @@
-// corpus_x3d.cpp: real files of X3D by many authors, in ClassicVRML, XML and JSON, and of VRML 1.0
-// (the corpus beside the repository, or $OPENRT_CORPUS_X3D; skipped if there is none). None may be
-// refused or silently empty.
+// corpus_x3d.cpp: real files of X3D by many authors, in ClassicVRML, XML and JSON, and of
+// VRML 1.0 (the corpus beside the repository, or $OPENRT_CORPUS_X3D; skipped if there is none).
+// None may be refused or silently empty.
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
