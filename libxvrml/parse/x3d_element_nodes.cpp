@@ -59,9 +59,11 @@ void X3dElements::openNode(const Name& element, Attributes attributes) {
   ++depth_;
   push(Kind::node, type);
   top().isScript = sink_.isScript();
-  for (const Attribute& attribute : attributes)
-    if (!isNoField(attribute.name.text) && !(instance && attribute.name.text == "name"))
-      readField(type, attribute);
+  for (const Attribute& attribute : attributes) {
+    const std::string_view name = attribute.name.text;
+    const bool field = !isNoField(name) || (name == "style" && sink_.hasField(name)); // FontStyle
+    if (field && !(instance && name == "name")) readField(type, attribute);
+  }
 }
 
 // Opens the field of the open node, if there is one, that takes a node. Returns false if there is

@@ -54,12 +54,11 @@ Binding Shapes::binding(State& state, Slot slot, Binding ifDefault) {
       {"PER_FACE", Binding::perFace},
       {"PER_FACE_INDEXED", Binding::perFaceIndexed},
       {"PER_VERTEX", Binding::perVertex},
-      {"PER_VERTEX_INDEXED", Binding::perVertexIndexed},
-      {"DEFAULT", ifDefault},
-      {"NONE", ifDefault}}; // of Open Inventor
+      {"PER_VERTEX_INDEXED", Binding::perVertexIndexed}};
   const TreeNode* node = state.node(slot);
   if (!node) return ifDefault;
   const std::string& value = node->get<SFString>("value");
+  if (value == "DEFAULT" || value == "NONE") return ifDefault; // NONE is Open Inventor's
   for (const auto& [name, binding] : names)
     if (name == value) return binding;
   graph_.warnOnce(*node, "binding " + value,

@@ -66,7 +66,7 @@ MFNode Shapes::parts(const TreeNode& node, State& state) {
   for (const std::string& part : node.get<MFString>("parts")) {
     const bool all = part == "ALL";
     side = side || all || part == "SIDES";
-    top = top || all || (part == "TOP" && !cone);
+    top = top || (!cone && (all || part == "TOP"));
     bottom = bottom || all || part == "BOTTOM";
     if (!all && part != "SIDES" && part != "BOTTOM" && part != "NONE" && (part != "TOP" || cone))
       graph_.warnOnce(node, "part " + part,
