@@ -40,8 +40,6 @@ bool is3ds(std::string_view bytes) {
 constexpr std::string_view exportIt =
     "export it as VRML97 (.wrl), for example from MeshLab or Blender, or hand its mesh to Python's "
     "xvrml.interop.from_trimesh";
-constexpr std::string_view saveIt =
-    "save it as VRML97 (.wrl) or X3D ClassicVRML (.x3dv) in the program that made it";
 
 struct Signature {
   bool (*matches)(std::string_view bytes);
@@ -50,7 +48,8 @@ struct Signature {
 
 const Signature signatures[] = {
     {[](std::string_view b) { return b.starts_with("#Inventor"); },
-     {"an Open Inventor file", saveIt}},
+     {"a binary Open Inventor file",
+      "save it as text (#Inventor V2.1 ascii), or as VRML97 (.wrl)"}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); },
      {"a COLLADA document", exportIt}},
     {[](std::string_view b) { return b.starts_with("OFF\n") || b.starts_with("OFF\r"); },

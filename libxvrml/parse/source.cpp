@@ -286,6 +286,11 @@ bool isX3dXml(std::string_view text, std::string_view file) {
     if (c > 0) ascii += c;
   const size_t first = ascii.find_first_not_of(" \t\r\n");
   if (first == ascii.npos || ascii[first] != '<') return false;
+  std::string begin = ascii.substr(first, 14);
+  for (char& c : begin)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  // A page may hold a scene, but it is not well-formed XML.
+  if (begin.starts_with("<html") || begin.starts_with("<!doctype html")) return false;
   constexpr std::string_view marks[] = {"<X3D", "<x3d", ":X3D", "<!DOCTYPE X3D"};
   return std::any_of(std::begin(marks), std::end(marks),
                      [&](std::string_view mark) { return ascii.find(mark) != ascii.npos; }) ||
@@ -353,7 +358,11 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
       if (!complaint.empty()) warn(complaint);
       return found;
     }
-    if (comment && current.starts_with("#Inventor")) refuseOther(*file, rest);
+    if (comment && current.starts_with("#Inventor")) {
+      if (current.find("ascii") == current.npos) refuseOther(*file, rest);
+      warn("Open Inventor is read as VRML 1.0: nodes and fields that VRML 1.0 lacks are left out");
+      return {Encoding::vrml1, 1, 0};
+    }
     if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
     rest.remove_prefix(std::min(rest.size(), current.size() + 1));
   }
@@ -407,10 +416,31 @@ void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVe
 
 FileVersion versionOf(const Node& node) { return fileVersion(node.source.file); }
 
+namespace {
+
+constexpr size_t mostComments = 4096; // bytes of comments that are kept
+
+// Returns the comments of an XML file before its first element, each with an end of line.
+std::string xmlComments(std::string_view rest) {
+  std::string comments;
+  while (comments.size() < mostComments) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+    const bool comment = rest.starts_with("<!--");
+    if (!comment && !rest.starts_with("<?")) break;
+    const size_t end = rest.find(comment ? "-->" : "?>", 2);
+    if (end == rest.npos || (comment && end < 4)) break;
+    if (comment) comments += std::string(rest.substr(4, std::min(end - 4, mostComments))) + "\n";
+    rest.remove_prefix(end + (comment ? 3 : 2));
+  }
+  return comments;
+}
+
+} // namespace
+
 std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name,
                                                             uint64_t depth) const {
-  constexpr size_t most = 4096;
-  std::string comments;
+  constexpr size_t most = mostComments;
+  std::string comments = xmlComments(text_);
   std::string_view rest = text_;
   while (!rest.empty() && comments.size() < most) {
     const std::string_view line = firstLine(rest);

@@ -1,6 +1,6 @@
-// corpus_x3d.cpp: real files of X3D by many authors, in ClassicVRML, XML and JSON (the corpus
-// beside the repository, or $OPENRT_CORPUS_X3D; skipped if there is none). None may be refused or
-// silently empty.
+// corpus_x3d.cpp: real files of X3D by many authors, in ClassicVRML, XML and JSON, and of
+// VRML 1.0 (the corpus beside the repository, or $OPENRT_CORPUS_X3D; skipped if there is none).
+// None may be refused or silently empty.
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -74,6 +74,37 @@ TEST(CorpusX3d, ClassicFilesAreReadAndSurviveWriting) { expectToBeRead(filesWith
 
 TEST(CorpusX3d, FilesInXmlAndJsonAreReadAndSurviveWriting) {
   expectToBeRead(filesWith({".x3d", ".x3dz", ".x3dj"}), 90);
+}
+
+// Returns the paths of the corpus's files in VRML 1.0; empty if there is no corpus.
+std::vector<std::string> vrml1Files() {
+  std::vector<std::string> paths;
+  for (const std::string& path : filesWith({".wrl"})) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    if (std::getline(file, line) && line.starts_with("#VRML V1.0")) paths.push_back(path);
+  }
+  return paths;
+}
+
+TEST(CorpusX3d, FilesInVrml1AreReadAndSurviveWriting) {
+  const auto files = vrml1Files();
+  if (files.empty()) GTEST_SKIP() << "no corpus of VRML 1.0 files";
+  size_t withoutErrors = 0;
+  for (const std::string& path : files) {
+    LoadOptions options;
+    options.loadInlines = false;
+    std::unique_ptr<World> world;
+    ASSERT_NO_THROW(world = loadWorld(path, options)) << path;
+    const Diagnostics& said = world->diagnostics;
+    withoutErrors += said.errors() == 0;
+    EXPECT_EQ(world->head.version.encoding, Encoding::vrml1) << path;
+    const std::string text = writeWorld(*world);
+    const auto again = loadWorldFromMemory(text, path, options);
+    EXPECT_EQ(again->diagnostics.errors(), 0u) << path;
+    EXPECT_EQ(writeWorld(*again), text) << path;
+  }
+  EXPECT_GE(withoutErrors * 100, files.size() * 95);
 }
 
 } // namespace

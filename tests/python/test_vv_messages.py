@@ -103,7 +103,7 @@ def test_help_and_version(vv):
     (None, "", "missing.wrl"),
     ("", "", "world.wrl"),
     ("hello world\n", "world.wrl", "VRML"),
-    ("#VRML V1.0 ascii\nSeparator { }\n", "world.wrl", "VRML 1.0"),
+    ("#VRML V3.0 utf8\nGroup { }\n", "world.wrl", "VRML97"),
     (b"\x89PNG\r\n\x1a\n\0\0\0\0", "world.wrl", "VRML"),
     (b"\x1f\x8b\x08\0broken", "world.wrl", ""),
 ])

@@ -226,6 +226,9 @@ TEST(Meshes, GltfModesOfPrimitives) {
     return MFInt32();
   };
   EXPECT_TRUE(findNode<nodes::PointSet>(world->scope.roots[0].get()));
+  // No lamp lights points: without a material they are white.
+  auto* material = findNode<nodes::Material>(world->scope.roots[0].get());
+  if (material) { EXPECT_EQ(material->emissiveColor, (Color{1, 1, 1})); }
   EXPECT_EQ(index(1), (MFInt32{0, 1, -1, 2, 3, -1}));
   EXPECT_EQ(index(2), (MFInt32{0, 1, 3, 2, 0, -1}));
   EXPECT_EQ(index(3), (MFInt32{0, 1, 2, 3, -1}));

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "parse/x3d.h"
+#include "base/x3d.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 

@@ -58,6 +58,7 @@ TEST(X3dXml, ContentDecidesBeforeTheSuffix) {
   EXPECT_EQ(loadWorldFromMemory(late, "a.x3dz")->scope.roots.size(), 1u);
   EXPECT_THROW(loadWorldFromMemory(late, "a.wrl"), LoadError);
   EXPECT_THROW(loadWorldFromMemory("<html><body/></html>", "a.wrl"), LoadError);
+  EXPECT_THROW(loadWorldFromMemory("<!DOCTYPE html><br><X3D>", "a.x3d"), LoadError);
 }
 
 TEST(X3dXml, TheVersionIsThatOfTheRoot) {

@@ -133,6 +133,7 @@ class ObjReader {
 
   // A file name may contain blanks; several names stand in one line.
   void readLibraries() {
+    text_.skipBlanks();
     const char* at = text_.at();
     const std::string_view whole = text_.rest();
     if (whole.empty()) return;

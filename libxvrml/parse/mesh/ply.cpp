@@ -22,6 +22,11 @@ class Numbers {
       : text_(bytes), order_(header.order), p_(bytes.data()), end_(p_ + bytes.size()) {}
 
   const char* at() const { return order_ == PlyOrder::text ? text_.at() : nullptr; }
+  // Moves to the next number and returns its place.
+  const char* startRow() {
+    if (order_ == PlyOrder::text) text_.skipSpace();
+    return at();
+  }
   uint64_t left() const {
     return order_ == PlyOrder::text ? uint64_t(text_.end() - text_.at()) : uint64_t(end_ - p_);
   }
@@ -129,6 +134,7 @@ class PlyReader {
   }
 
   void readRow(const PlyElement& element) {
+    row_ = numbers_.startRow();
     list_.clear();
     corners_.clear();
     std::fill(std::begin(values_), std::end(values_), 0.0);
@@ -191,7 +197,7 @@ class PlyReader {
   void addFace() {
     if (list_.size() < 3 ||
         !std::all_of(list_.begin(), list_.end(), [this](double index) { return isVertex(index); }))
-      return bad_.add(numbers_.at());
+      return bad_.add(row_);
     reserveCorners(list_.size() + 1);
     for (const double index : list_) shape_.coordIndex.push_back(int32_t(index));
     shape_.coordIndex.push_back(-1);
@@ -225,7 +231,7 @@ class PlyReader {
       if (i < first + 2) continue;
       const double* corner = &list_[i - 2];
       if (!isVertex(corner[0]) || !isVertex(corner[1]) || !isVertex(corner[2])) {
-        bad_.add(numbers_.at());
+        bad_.add(row_);
         continue;
       }
       if (corner[0] == corner[1] || corner[1] == corner[2] || corner[0] == corner[2]) continue;
@@ -239,7 +245,7 @@ class PlyReader {
 
   void addEdge() {
     const double from = values_[size_t(PlyUse::vertex1)], to = values_[size_t(PlyUse::vertex2)];
-    if (!isVertex(from) || !isVertex(to)) return bad_.add(numbers_.at());
+    if (!isVertex(from) || !isVertex(to)) return bad_.add(row_);
     scratch_.take(3 * sizeof(int32_t));
     for (const double index : {from, to, -1.0}) edges_.push_back(int32_t(index));
   }
@@ -269,6 +275,7 @@ class PlyReader {
   bool hasNormals_ = false, hasColors_ = false, hasTexCoords_ = false;
   double values_[size_t(PlyUse::count)] = {};
   std::vector<double> list_, corners_; // of the face that is being read
+  const char* row_ = nullptr;          // where it begins in a text
   FaultCount bad_;
 };
 

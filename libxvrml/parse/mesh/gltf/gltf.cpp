@@ -1,11 +1,12 @@
 // gltf.cpp: recognises glTF files, takes binary ones (.glb) apart, and reads version 2.0 (Khronos,
-// glTF 2.0 specification; ISO/IEC 12113).
+// glTF 2.0 specification; ISO/IEC 12113). Version 1.0 is converted first.
 #include <algorithm>
 #include <cstring>
 
 #include <fmt/format.h>
 
 #include "parse/mesh/gltf/scene.h"
+#include "parse/mesh/gltf/version1.h"
 
 namespace xvrml {
 
@@ -48,11 +49,19 @@ Chunks chunksOf(std::string_view bytes) {
   return chunks;
 }
 
-void checkVersion(const Item& root) {
+// Files of version 1 are converted. Many of them have no version.
+void checkVersion(const MeshFile& file, Json& document) {
+  const Item root(file.locator, &document, {});
   const std::string version = root.object("asset").text("version");
-  if (!version.starts_with("2."))
-    throw MeshFault{nullptr, fmt::format("this is glTF {}: only version 2 can be read",
-                                         version.empty() ? "without a version" : version)};
+  if (version.starts_with("2.")) return;
+  if (!version.empty() && !version.starts_with("1."))
+    throw MeshFault{
+        nullptr, fmt::format("this is glTF {}: versions 1 and 2 can be read", shortened(version))};
+  const bool named = root.has("meshes") && document["meshes"].is_object();
+  if (version.empty() && !named)
+    throw MeshFault{nullptr, "this glTF file does not say its version in asset: expected 2.0"};
+  if (!document["asset"].is_object()) document["asset"] = Json::object();
+  if (convertVersion1(document)) root.warn("animations and skins of glTF 1.0 are left out");
 }
 
 // What a file cannot be read without.
@@ -101,11 +110,11 @@ bool isGltf(std::string_view bytes) {
 void readGltf(const MeshFile& file) {
   const Chunks chunks = chunksOf(file.bytes);
   Scratch memory(file.budget);
-  const Json document = parseJson(chunks.json, file.options.limits, memory);
+  Json document = parseJson(chunks.json, file.options.limits, memory);
   if (!document.is_object())
     throw MeshFault{file.bytes.data(), "expected an object as the whole of a glTF file"};
+  checkVersion(file, document);
   const Item root(file.locator, &document, {});
-  checkVersion(root);
   checkExtensions(root);
   writeHead(file, root);
   NodeStream nodes(file);

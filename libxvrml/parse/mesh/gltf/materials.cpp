@@ -161,10 +161,8 @@ void Materials::writePhong(const Item& material) {
 void Materials::writeUnlit(std::optional<size_t> material) {
   nodes_.openIn("appearance", "Appearance");
   nodes_.openIn("material", hasPhysical() ? "UnlitMaterial" : "Material");
-  if (material) {
-    nodes_.set("emissiveColor", colorOf(baseFactor(materials_[*material]), {1, 1, 1}));
-    nodes_.set("transparency", transparencyOf(materials_[*material]));
-  }
+  nodes_.set("emissiveColor", baseColor(material));
+  if (material) nodes_.set("transparency", transparencyOf(materials_[*material]));
   nodes_.closeIn();
   nodes_.closeIn();
 }

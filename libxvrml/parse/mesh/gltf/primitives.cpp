@@ -18,7 +18,8 @@ enum Mode : uint64_t { points, lines, lineLoop, lineStrip, triangles, triangleSt
 template <class T> std::vector<T> valuesOf(const Values& values) {
   static_assert(sizeof(T) % sizeof(float) == 0);
   std::vector<T> out(values.size());
-  std::memcpy(static_cast<void*>(out.data()), values.numbers.data(), out.size() * sizeof(T));
+  if (!out.empty())
+    std::memcpy(static_cast<void*>(out.data()), values.numbers.data(), out.size() * sizeof(T));
   return out;
 }
 
