@@ -104,17 +104,10 @@ TEST_F(Nodegen, WhatItWritesCompiles) {
           .code,
       0);
   for (const char* file : {"nodes_tiny.cpp", "nodes_list.cpp", "skeleton.cpp"}) {
-<<<<<<< HEAD
-    const Result result =
-        run(fmt::format("'{0}' -std=c++20 -fsyntax-only -Wall -Wextra "
-                        "-Wno-missing-field-initializers -Werror -I{1} -Ilibxvrml/include -Ilibxvrml {1}/{2}",
-                        NODEGEN_COMPILER, out.string(), file));
-=======
     const Result result = run(fmt::format(
         "'{0}' -std=c++20 -fsyntax-only -Wall -Wextra "
         "-Wno-missing-field-initializers -Werror -I{1} -Ilibxvrml/include -Ilibxvrml {1}/{2}",
         NODEGEN_COMPILER, out.string(), file));
->>>>>>> r25-xml
     EXPECT_EQ(result.code, 0) << result.output;
   }
 }
