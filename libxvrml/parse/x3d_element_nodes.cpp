@@ -1,6 +1,7 @@
 // x3d_element_nodes.cpp: nodes, the fields that their attributes give, and the fields that their
 // child nodes stand in (containerField, ISO/IEC 19776-1 5.2).
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -25,7 +26,18 @@ bool equalsWithoutCase(std::string_view a, std::string_view b) {
 
 } // namespace
 
+// Returns whether an SFNode field of an interface or instance has its node already. Reports it.
+bool X3dElements::isSecondNode(const Name& element) {
+  Frame& frame = top();
+  if ((frame.kind != Kind::declaration && frame.kind != Kind::value) || frame.isList) return false;
+  if (!std::exchange(frame.filled, true)) return false;
+  locator_.error(element.at,
+                 fmt::format("an SFNode holds one node: {} is left out", describe(element)));
+  return true;
+}
+
 void X3dElements::openNode(const Name& element, Attributes attributes) {
+  if (isSecondNode(element)) return skip(attributes);
   Name type = element;
   const bool instance = element.text == "ProtoInstance";
   const Attribute* const use = findAttribute(attributes, "USE");

@@ -392,6 +392,7 @@ void X3dElements::openDeclaration(const Name& element, Attributes attributes) {
   const FieldTarget target = sink_.openDeclaration(access, type, name, hasValue);
   push(Kind::declaration, element);
   top().holdsNodes = hasValue && (type == FieldType::SFNode || type == FieldType::MFNode);
+  top().isList = type == FieldType::MFNode;
   const Attribute* const value = findAttribute(attributes, "value");
   if (!value || !hasValue) return;
   if (!top().holdsNodes)
@@ -409,7 +410,11 @@ void X3dElements::openFieldValue(const Name& element, Attributes attributes) {
   if (!target.known) return skip(attributes);
   const bool nodes = target.type == FieldType::SFNode || target.type == FieldType::MFNode;
   const Attribute* const value = findAttribute(attributes, "value");
-  if (nodes) return push(Kind::value, element);
+  if (nodes) {
+    push(Kind::value, element);
+    top().isList = target.type == FieldType::MFNode;
+    return;
+  }
   if (!value) locator_.error(element.at, fmt::format("fieldValue {} has no value", describe(name)));
   sink_.closeField(value && values_.read(target, *value));
   push(Kind::leaf, element);

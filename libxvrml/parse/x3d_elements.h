@@ -50,7 +50,9 @@ class X3dElements {
     bool isScript = false;
     bool holdsNodes = false;     // declaration: its value is made of nodes
     std::string_view nodesField; // node: the field that its child nodes are in, while it is open
-    bool isList = false;         // that field is an MFNode
+    // node: that field is an MFNode. declaration, value: its type is MFNode.
+    bool isList = false;
+    bool filled = false; // declaration, value: a node stands in it
     std::vector<Connection> connections;
     std::string source; // Script: the text between its tags
     const char* sourceAt = nullptr;
@@ -60,6 +62,7 @@ class X3dElements {
   void push(Kind kind, const Name& element) { frames_.push_back({kind, element}); }
   Frame& top() { return frames_.back(); }
   void skip(Attributes attributes);
+  bool isSecondNode(const Name& element);
   void refuse(const Name& element, std::string_view expected, Attributes attributes);
   bool tooDeep(const Name& element, std::string_view what);
   std::string_view keep(std::string_view text);

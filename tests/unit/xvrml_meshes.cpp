@@ -191,6 +191,13 @@ TEST(Meshes, ObjIndicesCountFromBothEnds) {
   EXPECT_EQ(find<nodes::TextureCoordinate>(*world)->point, (MFVec2f{{0, 1}, {1, 0}, {0, 0}}));
 }
 
+TEST(Meshes, ObjNumbersThatCannotBeReadAreZero) {
+  const auto world = load("v 1 1e400 2\nv nan 0 0\nv 1 0 0\nf 1 2 3\n", "a.obj");
+  EXPECT_NE(messages(*world).find("2 lines without the numbers"), std::string::npos);
+  EXPECT_EQ(pointsOf(find<nodes::IndexedFaceSet>(*world)->coord),
+            (MFVec3f{{1, 0, 0}, {0, 0, 0}, {1, 0, 0}}));
+}
+
 TEST(Meshes, ObjSmoothingGroupsAreShapesOfTheirOwn) {
   const auto world = load("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n"
                           "s off\nf 1 2 3\ns 2\nf 2 4 3\nf 1 2 4\n",

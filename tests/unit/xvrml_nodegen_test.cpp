@@ -106,7 +106,7 @@ TEST_F(Nodegen, WhatItWritesCompiles) {
   for (const char* file : {"nodes_tiny.cpp", "nodes_list.cpp", "skeleton.cpp"}) {
     const Result result =
         run(fmt::format("'{0}' -std=c++20 -fsyntax-only -Wall -Wextra "
-                        "-Wno-missing-field-initializers -Werror -I{1} -Ilibxvrml/include {1}/{2}",
+                        "-Wno-missing-field-initializers -Werror -I{1} -Ilibxvrml/include -Ilibxvrml {1}/{2}",
                         NODEGEN_COMPILER, out.string(), file));
     EXPECT_EQ(result.code, 0) << result.output;
   }

@@ -80,9 +80,9 @@ TEST(WriteX3d, FieldsAreAttributesAndNodesAreElements) {
   EXPECT_EQ(scene("Transform { translation 1 2 3 children [ Shape { geometry DEF B Box { size 1 1 "
                   "1 } } Shape { geometry USE B } ] }"),
             "\n    <Transform translation='1 2 3'>"
-            "\n      <Shape>\n        <Box DEF='B' containerField='geometry' size='1 1 1'/>"
+            "\n      <Shape>\n        <Box DEF='B' size='1 1 1'/>"
             "\n      </Shape>"
-            "\n      <Shape>\n        <Box USE='B' containerField='geometry'/>\n      </Shape>"
+            "\n      <Shape>\n        <Box USE='B'/>\n      </Shape>"
             "\n    </Transform>");
 }
 

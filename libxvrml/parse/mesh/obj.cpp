@@ -170,6 +170,7 @@ class ObjReader {
     float numbers[7] = {};
     int count = 0;
     while (count < 7 && !atStatementEnd() && text_.number(numbers[count])) ++count;
+    if (count < 7) numbers[count] = 0; // a number out of range
     if (count < 3) badValues_.add(at_);
     grow(points_);
     points_.push_back({numbers[0], numbers[1], numbers[2]});
