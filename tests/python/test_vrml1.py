@@ -24,7 +24,7 @@ def test_the_graph():
     assert world["Ball"].geometry.type == "Sphere"
     world["Paint"].diffuseColor = 0, 1, 0
     picture = world.render(size=(32, 24), spp=1, seed=1)
-    assert picture.rgba.shape == (24, 32, 4)
+    assert picture.shape == (24, 32, 4)
 
 
 def test_gzip_and_errors(tmp_path):
