@@ -3,11 +3,13 @@
 
 tools/count_nodes.py FOLDER [--at-least N] [--missing]
 
-FOLDER holds X3D files (.x3dv, .x3d), or a MANIFEST.tsv that lists them (folder, path, bytes). The
-table in docs/worlds.md is its output. Prototypes that a file declares are not counted.
+FOLDER holds X3D files (.x3dv, .x3d, .x3dj, gzipped or not), or a MANIFEST.tsv that lists them
+(folder, path, bytes). The column .x3d also counts files in JSON. The table in docs/worlds.md is its
+output. Prototypes that a file declares are not counted.
 """
 import argparse
 import collections
+import gzip
 import pathlib
 import re
 
@@ -18,6 +20,8 @@ STATEMENTS = {
     "ExternProtoDeclare", "ROUTE", "IS", "IMPORT", "EXPORT"
 }
 CLASSIC = re.compile(r'"(?:\\.|[^"\\])*"|#[^\n]*|(?:PROTO|EXTERNPROTO)\s+(\w+)|([A-Za-z_]\w*)\s*\{')
+JSON = re.compile(r'"([A-Z]\w*)"\s*:')
+KINDS = {".x3dv": ".x3dv", ".x3dvz": ".x3dv", ".x3d": ".x3d", ".x3dz": ".x3d", ".x3dj": ".x3d"}
 XML = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<([A-Z]\w*)", re.DOTALL)
 
 
@@ -31,8 +35,12 @@ def known_nodes():
 
 def nodes_of(path):
     """Returns the types of the nodes in a file."""
-    text = path.read_bytes().decode("utf-8", "replace")
-    if path.suffix == ".x3d":
+    packed = path.read_bytes()
+    text = (gzip.decompress(packed) if packed[:2] == b"\x1f\x8b" else packed).decode(
+        "utf-8", "replace")
+    if path.suffix == ".x3dj":
+        return set(JSON.findall(text)) - STATEMENTS
+    if KINDS[path.suffix] == ".x3d":
         return {m[1] for m in XML.finditer(text) if m[1]} - STATEMENTS
     found = list(CLASSIC.finditer(text))
     return {m[2] for m in found if m[2]} - {m[1] for m in found if m[1]}
@@ -46,7 +54,7 @@ def files_of(folder):
         paths = [folder / row[0] / row[1] for row in rows]
     else:
         paths = sorted(folder.rglob("*"))
-    return [path for path in paths if path.suffix in (".x3dv", ".x3d") and path.is_file()]
+    return [path for path in paths if path.suffix in KINDS and path.is_file()]
 
 
 def main():
@@ -61,7 +69,7 @@ def main():
     for path in paths:
         for node in nodes_of(path):
             counts[node] += 1
-            of_suffix[node, path.suffix] += 1
+            of_suffix[node, KINDS[path.suffix]] += 1
     known = known_nodes()
     print(f"{len(paths)} files.\n")
     print("| node | files | .x3dv | .x3d | libxvrml |\n| --- | --- | --- | --- | --- |")

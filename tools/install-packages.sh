@@ -10,6 +10,7 @@ build=(
   libembree-dev libtbb-dev libhwy-dev                           # ray kernels, threads, vectors
   libimath-dev libopenexr-dev libpng-dev libjpeg-dev libgif-dev # small maths, pictures
   zlib1g-dev libzstd-dev libxxhash-dev                          # compression, hashes
+  libexpat1-dev                                                 # X3D in XML
   libflatbuffers-dev flatbuffers-compiler # scene edits
   libzmq3-dev cppzmq-dev liblz4-dev       # the cluster
   libfast-float-dev libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev

@@ -18,7 +18,7 @@ for target in "$folder"/fuzz_*; do
   seeds=()
   if [ -d "tests/fuzz/seeds/$name" ]; then seeds+=("tests/fuzz/seeds/$name"); fi
   case $name in
-    fuzz_xvrml_vrml | fuzz_xvrml_geometry) seeds+=(tests/conformance/good tests/conformance/bad) ;;
+    fuzz_xvrml_vrml | fuzz_xvrml_geometry | fuzz_xvrml_x3d_xml | fuzz_xvrml_x3d_json) seeds+=(tests/conformance/good tests/conformance/bad) ;;
   esac
   dictionary=()
   if [ -f "tests/fuzz/$name.dict" ]; then dictionary=("-dict=tests/fuzz/$name.dict"); fi

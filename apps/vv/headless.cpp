@@ -14,6 +14,7 @@
 #include "report/describe.h"
 #include "report/engine_list.h"
 #include "report/messages.h"
+#include "report/node_list.h"
 #include "report/problems.h"
 #include "report/progress.h"
 #include "report/report.h"

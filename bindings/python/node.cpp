@@ -148,7 +148,8 @@ PyTypeObject* nodeClass = nullptr;
 
 std::string description(const NodeType& type) {
   std::string text = type.text + "\n";
-  if (!type.clause.empty()) text += fmt::format("ISO/IEC 14772-1 clause {}.\n", type.clause);
+  if (!type.clause.empty())
+    text += fmt::format("{} clause {}.\n", standardName(type.standard), type.clause);
   text += "\n";
   for (const FieldInfo& field : type.fields) {
     const char* kind[] = {"field", "exposedField", "eventIn", "eventOut"};

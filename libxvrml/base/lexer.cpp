@@ -46,6 +46,23 @@ Lexer::Lexer(Locator& locator)
     : locator_(locator), end_(locator.text().data() + locator.text().size()),
       position_(locator.text().data()) {}
 
+void Lexer::enter(std::string_view text) {
+  end_ = text.data() + text.size();
+  comments_ = false;
+  seek(text.data());
+}
+
+std::vector<uint32_t> Lexer::linesOfStrings(const char* from, const char* to) {
+  std::vector<uint32_t> lines;
+  for (const char* p = skipSpace(from); p < to; p = skipSpace(p + 1)) {
+    if (*p != '"') continue;
+    lines.push_back(place(p).line);
+    for (++p; p < to && *p != '"'; ++p)
+      if (*p == '\\') ++p;
+  }
+  return lines;
+}
+
 const char* Lexer::skipComments(const char* p) {
   for (; p < end_; ++p) {
     if (isVrmlSpace(*p)) continue;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/locator.h"
 
@@ -65,6 +66,9 @@ class Lexer {
  public:
   // Reads the locator's text, and reports its own messages there.
   explicit Lexer(Locator& locator);
+  // Goes on with another text: a part of the locator's, or one that was decoded from it. It has no
+  // comments.
+  void enter(std::string_view text);
 
   const Token& peek() {
     if (!peeked_) lex();
@@ -100,9 +104,11 @@ class Lexer {
   // Returns the first position from p on that is not white space, a comma or a comment.
   const char* skipSpace(const char* p) {
     while (p < end_ && isVrmlSpace(*p)) ++p;
-    return p < end_ && *p == '#' ? skipComments(p) : p;
+    return p < end_ && *p == '#' && comments_ ? skipComments(p) : p;
   }
 
+  // Returns the lines of the strings in a part of the text.
+  std::vector<uint32_t> linesOfStrings(const char* from, const char* to);
   SourcePosition place(const char* at) { return locator_.place(at); }
   void error(const char* at, std::string message) { locator_.error(at, std::move(message)); }
   void warn(const char* at, std::string message) { locator_.warn(at, std::move(message)); }
@@ -115,8 +121,9 @@ class Lexer {
   const char* lexString(const char* p, bool& valid) const;
 
   Locator& locator_;
-  const char* const end_;
+  const char* end_;
   const char* position_;
+  bool comments_ = true;
   Token token_;
   bool peeked_ = false;
   std::string_view comment_;

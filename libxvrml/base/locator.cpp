@@ -2,6 +2,7 @@
 #include "base/locator.h"
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -48,9 +49,15 @@ const char* endOfLine(const char* p, const char* end) {
 Locator::Locator(std::string_view text, std::shared_ptr<const std::string> file,
                  Diagnostics& diagnostics)
     : begin_(text.data()), end_(text.data() + text.size()), file_(std::move(file)),
-      diagnostics_(diagnostics), mark_(text.data()) {}
+      diagnostics_(diagnostics), anchor_(text.data()), mark_(text.data()) {}
+
+const char* Locator::inText(const char* at) const {
+  constexpr std::less<const char*> before; // compares pointers into different texts, too
+  return at && (before(at, begin_) || before(end_, at)) ? anchor_ : at;
+}
 
 SourcePosition Locator::place(const char* at) {
+  at = inText(at);
   if (!at) return {file_, 0, 0};
   const char* from = std::min(at, mark_);
   const char* to = std::max(at, mark_);
@@ -67,6 +74,7 @@ SourcePosition Locator::place(const char* at) {
 }
 
 void Locator::report(Severity severity, const char* at, std::string message) {
+  at = inText(at);
   if (!diagnostics_.keeps(severity)) { // it is only counted, so its line is not needed
     diagnostics_.add({severity, {}, 0, 0, {}, {}, 0});
     return;

@@ -31,6 +31,9 @@ class Locator {
   // stands for the file as a whole, for example for a binary one: line and column 0. The cost is
   // proportional to the distance from the position of the last call.
   SourcePosition place(const char* at);
+  // Sets the position that stands for every one outside of the text, such as those of characters
+  // that a reader had to decode.
+  void setAnchor(const char* at) { anchor_ = at; }
   void error(const char* at, std::string message) {
     report(Severity::error, at, std::move(message));
   }
@@ -40,12 +43,14 @@ class Locator {
   Diagnostics& diagnostics() { return diagnostics_; }
 
  private:
+  const char* inText(const char* at) const;
   void report(Severity severity, const char* at, std::string message);
 
   const char* const begin_;
   const char* const end_;
   const std::shared_ptr<const std::string> file_;
   Diagnostics& diagnostics_;
+  const char* anchor_;
   // Position of the last call of place(), with its line and column.
   const char* mark_;
   uint32_t line_ = 1, column_ = 1;

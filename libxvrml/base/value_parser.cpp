@@ -30,7 +30,10 @@ bool ValueParser::fail(const char* at, std::string message) {
 }
 
 bool ValueParser::failFound(const Token& found, std::string_view expected) {
-  return fail(found.at(), fmt::format("expected {}, found {}", expected, describe(found)));
+  return fail(found.at(),
+              fmt::format("expected {}, found {}", expected,
+                          wholeText_ && found.is(TokenKind::end) ? "the end of the value"
+                                                                 : describe(found)));
 }
 
 // Reserves memory for a value from the budget. Returns false, after one message, if not enough is
@@ -179,7 +182,9 @@ bool ValueParser::single(NodeRef& out) {
 // big array is not copied while it grows.
 template <class T>
 void ValueParser::reserve(std::vector<T>& out, const char* from, const char* to) {
-  const char* close = static_cast<const char*>(std::memchr(to, ']', lexer_.end() - to));
+  const char* close =
+      wholeText_ ? lexer_.end()
+                 : static_cast<const char*>(std::memchr(to, ']', size_t(lexer_.end() - to)));
   if (!close) close = lexer_.end();
   const double perByte =
       static_cast<double>(out.size()) / static_cast<double>(std::max<ptrdiff_t>(to - from, 1));
@@ -197,6 +202,16 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
     out.push_back(std::move(value));
     return true;
   }
+  if (!elements(out)) return false;
+  if (lexer_.accept(TokenKind::bracketClose)) return true;
+  if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
+  lexer_.error(lexer_.cursor(),
+               "']' is missing before '}'"); // the brace ends the node and its list
+  return true;
+}
+
+// Reads the values of a list up to a bracket or brace, or to the end of the text.
+template <class T> bool ValueParser::elements(std::vector<T>& out) {
   constexpr size_t sample = 1024;
   uint64_t taken = 0; // number of values for which memory has been reserved
   const char* const first = lexer_.cursor();
@@ -207,7 +222,8 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
     if constexpr (Numeric<T>) {
       auto* components = numbersOf(value);
       for (int i = 0; i < numberCount<T>; ++i) {
-        if (i > 0 && (p = lexer_.skipSpace(p)) < lexer_.end() && *p == ']') {
+        if (i > 0) p = lexer_.skipSpace(p);
+        if (i > 0 && (p < lexer_.end() ? *p == ']' : wholeText_)) {
           lexer_.seek(p);
           return fail(start,
                       fmt::format("{} number{} left over: {} takes {} each", i, i > 1 ? "s" : "",
@@ -242,9 +258,6 @@ template <class T> bool ValueParser::multiple(std::vector<T>& out) {
   }
   lexer_.seek(p);
   if (budget_) budget_->give((taken - out.size()) * sizeof(T));
-  if (lexer_.accept(TokenKind::bracketClose)) return true;
-  if (!lexer_.peek().is(TokenKind::braceClose)) return failFound(lexer_.peek(), "a value or ]");
-  lexer_.error(p, "']' is missing before '}'"); // the brace ends the node and its list
   return true;
 }
 
@@ -255,6 +268,23 @@ bool ValueParser::parse(FieldType type, void* storage) {
     else
       return single(value);
   });
+}
+
+bool ValueParser::parseAll(FieldType type, void* storage) {
+  wholeText_ = true;
+  const bool good = visitStorage(type, storage, [this](auto& value) {
+    if constexpr (isList<std::remove_reference_t<decltype(value)>>) {
+      value.clear();
+      return elements(value);
+    } else {
+      return single(value);
+    }
+  });
+  const bool ended = !good || lexer_.peek().is(TokenKind::end) ||
+                     failFound(lexer_.peek(), isMultiple(type) ? "a value or the end of the value"
+                                                               : "the end of the value");
+  wholeText_ = false;
+  return good && ended;
 }
 
 bool ValueParser::parse(FieldType type, Value& value) {

@@ -24,9 +24,13 @@ class ValueParser {
   // The lexer then stands at or behind the error, and the storage is unspecified.
   bool parse(FieldType type, void* storage);
   bool parse(FieldType type, Value& value);
+  // Does the same with a value that is the lexer's whole text, as the encodings in XML and JSON
+  // have it: lists have no brackets.
+  bool parseAll(FieldType type, void* storage);
 
  private:
   template <class T> bool multiple(std::vector<T>& out);
+  template <class T> bool elements(std::vector<T>& out);
   template <class T> void reserve(std::vector<T>& out, const char* from, const char* to);
   bool single(bool& out);
   bool single(std::string& out);
@@ -42,7 +46,8 @@ class ValueParser {
   const Limits& limits_;
   Budget* budget_;
   bool lowerCase_ = false;
-  bool refused_ = false; // the budget has refused memory; reported once
+  bool wholeText_ = false; // the value ends with the text
+  bool refused_ = false;   // the budget has refused memory; reported once
 };
 
 // Returns the characters that a string token stands for. \" and \\ are unescaped; other backslashes

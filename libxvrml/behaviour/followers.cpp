@@ -107,7 +107,8 @@ template <class Follower> std::unique_ptr<NodeState> begin(Events& events, Node&
   auto& follower = static_cast<Follower&>(node);
   auto state = std::make_unique<State<Follower>>();
   if constexpr (isDamper<Follower>)
-    state->filter = {follower.order, follower.tau, double(follower.tolerance)};
+    state->filter =
+        typename FilterOf<Follower>::Type(follower.order, follower.tau, double(follower.tolerance));
   else
     state->filter = typename FilterOf<Follower>::Type(follower.duration);
   const auto& from = listOf(follower.initialValue);

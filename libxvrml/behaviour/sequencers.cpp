@@ -6,6 +6,7 @@
 #include "behaviour/builtin.h"
 #include "behaviour/keys.h"
 #include "xvrml/nodes.h"
+#include "xvrml/numbers.h"
 
 namespace xvrml {
 namespace {

@@ -1,6 +1,7 @@
 // squad_interpolator.cpp: SquadOrientationInterpolator (ISO/IEC 19775-1 19.4.13).
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 

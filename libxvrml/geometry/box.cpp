@@ -46,6 +46,7 @@ Mesh buildBox(const nodes::Box& node, const MeshOptions&, Faults& faults) {
   }
   if (mesh.ownIndices.empty()) return Mesh();
   mesh.kind = Mesh::Kind::triangles;
+  mesh.solid = node.solid;
   mesh.viewOwn();
   return mesh;
 }

@@ -8,6 +8,7 @@ namespace xvrml {
 
 Mesh buildCone(const nodes::Cone& node, const MeshOptions& options, Faults& faults) {
   Mesh mesh;
+  mesh.solid = node.solid;
   float radius = std::abs(node.bottomRadius), height = std::abs(node.height);
   if (!isFinite(radius) || !isFinite(height)) {
     faults.note("bottomRadius and height must be finite; nothing is drawn");

@@ -7,6 +7,7 @@ namespace xvrml {
 
 Mesh buildCylinder(const nodes::Cylinder& node, const MeshOptions& options, Faults& faults) {
   Mesh mesh;
+  mesh.solid = node.solid;
   float radius = std::abs(node.radius), half = std::abs(node.height) / 2;
   if (!isFinite(radius) || !isFinite(half)) {
     faults.note("radius and height must be finite; nothing is drawn");

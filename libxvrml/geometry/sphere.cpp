@@ -15,6 +15,7 @@ Mesh buildSphere(const nodes::Sphere& node, const MeshOptions&, Faults& faults) 
   if (node.radius < 0) faults.note("negative radius taken as positive");
   mesh.kind = Mesh::Kind::sphere;
   mesh.radius = radius;
+  mesh.solid = node.solid;
   return mesh;
 }
 

@@ -19,12 +19,4 @@ std::string urlScheme(std::string_view url);
 // URLs with a scheme, absolute paths and "#name" stay as they are.
 void rebaseUrls(MFString& urls, const std::string& from, const std::string& to);
 
-// The content of a data: URL (RFC 2397). decodeDataUrl returns false, and the reason in `why`, if
-// the URL is none or holds more than `most` bytes.
-struct DataUrl {
-  std::string type; // MIME type in lower case, without parameters; may be empty
-  std::string bytes;
-};
-bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::string& why);
-
 } // namespace xvrml

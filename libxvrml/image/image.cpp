@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/data_url.h"
 #include "base/regular_file.h"
 #include "image/decoders.h"
 
@@ -69,6 +70,14 @@ Image decodeImage(const uint8_t* bytes, size_t size, const ImageRoom& room) {
 }
 
 std::vector<uint8_t> readPictureFile(const std::string& path, const ImageRoom& room) {
+  if (isDataUrl(path)) {
+    DataUrl data;
+    std::string why;
+    const uint64_t most = room.budget ? room.budget->left() : room.limits.fileBytes;
+    if (!decodeDataUrl(path, std::min(most, room.limits.fileBytes), data, why))
+      throw std::runtime_error(why);
+    return {data.bytes.begin(), data.bytes.end()};
+  }
   const RegularFile file(path);
   if (file.size() > room.limits.fileBytes)
     throw std::runtime_error(fmt::format("{} bytes are beyond the limit 'fileBytes' ({})",

@@ -126,6 +126,10 @@ class Checker {
       checkAttributes(type, field);
       checkDefault(field);
     }
+    if (type.ofX3d && type.clause.empty())
+      model_.error(type.source, fmt::format("{} is a node of X3D: its clause of ISO/IEC 19775-1 is "
+                                            "missing",
+                                            type.name));
   }
 
   // Copies attributes from an abstract type. A node's specification lists the whole interface, as
@@ -173,6 +177,9 @@ class Checker {
                                fieldTypeName(field.type)));
     }
     if (field.urls && field.urlsSource.line) checkUrls(field);
+    if (field.ofX3d && type.ofX3d)
+      model_.error(field.ofX3dSource,
+                   fmt::format("{} is a node of X3D: all its fields are X3D's", type.name));
     for (const Reference& name : field.accepts) {
       if (!types_.count(name.name) &&
           reported_.insert({*name.source.file, name.source.line, name.source.column}).second)

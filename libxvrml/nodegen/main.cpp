@@ -116,6 +116,16 @@ int writeSkeletonFile(const Model& model, const Options& options) {
              : fail(unwritable, fmt::format("cannot write {}", path));
 }
 
+// The library knows only the containers of its own types.
+void refuseContainers(Model& model) {
+  for (const Component& component : model.components)
+    for (const TypeSpec& type : component.types)
+      if (!component.imported && !type.container.empty())
+        model.error(type.source, fmt::format("{} names a container: the nodes of a plug-in have "
+                                             "that of their abstract types in the library",
+                                             type.name));
+}
+
 int run(const Options& options) {
   Model model;
   const auto readAll = [&model](const std::vector<std::string>& paths, bool imported) {
@@ -129,6 +139,7 @@ int run(const Options& options) {
   };
   if (!readAll(options.imports, true) || !readAll(options.specifications, false)) return unreadable;
   if (model.diagnostics.errors() == 0) check(model);
+  if (!options.plugin.empty()) refuseContainers(model);
   if (options.numbers.empty())
     numberInOrder(model);
   else if (model.diagnostics.errors() == 0 && !readNumbers(options.numbers, model))

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include <fmt/format.h>
+
 namespace xvrml::nodegen {
 namespace {
 
@@ -31,6 +33,11 @@ std::string_view lineOf(std::string_view text, uint32_t line) {
 } // namespace
 
 std::string_view changeName(Change change) { return changeNames[size_t(change)]; }
+std::string clauseText(const TypeSpec& type) {
+  if (type.clause.empty()) return {};
+  return fmt::format("{} clause {}", standardName(type.ofX3d ? Standard::x3d : Standard::vrml97),
+                     type.clause);
+}
 bool accessFromName(std::string_view name, Access& access) {
   for (const Access each :
        {Access::field, Access::exposedField, Access::eventIn, Access::eventOut}) {

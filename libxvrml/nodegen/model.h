@@ -35,6 +35,8 @@ struct FieldSpec {
   std::vector<Reference> accepts;
   bool urls = false;         // the strings are URLs
   SourcePosition urlsSource; // where the field says so; an inherited `urls` has none
+  bool ofX3d = false;        // X3D adds the field to a node of VRML97
+  SourcePosition ofX3dSource;
   std::string text;
 
   bool hasStorage() const { return access == Access::field || access == Access::exposedField; }
@@ -46,10 +48,12 @@ struct TypeSpec {
   bool isAbstract = false;
   std::string name;
   std::string clause;
+  std::string container; // the field that holds the node where X3D's XML does not say it, or ""
   std::string text;
   std::vector<Reference> parents; // abstract types, as written
   std::vector<FieldSpec> fields;
   std::string component; // the file's name without folder and extension
+  bool ofX3d = false;    // the component is one of ISO/IEC 19775-1
   SourcePosition source;
   std::vector<std::string> roles; // all abstract types of the node, nearest first; set by check()
   int number = -1;                // typeIndex of a node; set by readNumbers() or numberInOrder()
@@ -59,6 +63,7 @@ struct TypeSpec {
 struct Component {
   std::string name; // the file's name without folder and extension
   std::string title;
+  bool ofX3d = false;    // `standard X3D`: its nodes are those of ISO/IEC 19775-1
   bool imported = false; // read only for its abstract types: nothing is written for it
   std::vector<TypeSpec> types;
 };
@@ -74,6 +79,9 @@ struct Model {
 };
 
 std::string_view changeName(Change change);
+// Returns the document that describes the node, with the clause: "ISO/IEC 14772-1 clause 6.7". ""
+// for a node of no standard.
+std::string clauseText(const TypeSpec& type);
 bool accessFromName(std::string_view name, Access& access);
 bool changeFromName(std::string_view name, Change& change);
 

@@ -54,11 +54,15 @@ class Reader {
       : locator_(text, std::move(file), model.diagnostics), lexer_(locator_),
         values_(lexer_, limits_), gap_(text.data()), component_(component) {}
 
-  // file ::= "component" string { stanza }
+  // file ::= "component" string [ "standard" "X3D" ] { stanza }
   void read() {
     try {
       expectWord("component", "the component that the file describes");
       component_.title = readText("its title");
+      if (acceptWord("standard")) {
+        expectWord("X3D", "the standard of the component, if it is not VRML97");
+        component_.ofX3d = true;
+      }
     } catch (const Failed&) {} // the stanzas may still be good
     while (!lexer_.peek().is(TokenKind::end)) {
       try {
@@ -69,11 +73,13 @@ class Reader {
   }
 
  private:
-  // stanza ::= "abstract" name [ ":" { name } ] string [ "{" { field } "}" ]
-  //          | name ":" name { name } "{" [ "clause" number ] string { field } "}"
+  // stanza ::= "abstract" name [ ":" { name } ] string [ "container" name ] [ "{" { field } "}" ]
+  //          | name ":" name { name } "{" [ "clause" clause ] [ "container" name ] string
+  //            { field } "}"
   void readStanza() {
     TypeSpec type;
     type.component = component_.name;
+    type.ofX3d = component_.ofX3d;
     type.isAbstract = acceptWord("abstract");
     readName(type.name, type.source,
              type.isAbstract ? "the name of an abstract type" : "the name of a node, or abstract");
@@ -84,7 +90,10 @@ class Reader {
       fail(lexer_.peek(), fmt::format("expected : and the abstract types of {}, found {}",
                                       type.name, describe(lexer_.peek())));
     }
-    if (type.isAbstract) type.text = readText("what the abstract type stands for");
+    if (type.isAbstract) {
+      type.text = readText("what the abstract type stands for");
+      readContainer(type);
+    }
     if (!type.isAbstract || lexer_.peek().is(TokenKind::braceOpen)) readBody(type);
     component_.types.push_back(std::move(type));
   }
@@ -92,13 +101,26 @@ class Reader {
   void readBody(TypeSpec& type) {
     expect(TokenKind::braceOpen, "{");
     if (!type.isAbstract) {
-      if (acceptWord("clause"))
-        type.clause = take(TokenKind::number, "the number of a clause").text;
+      if (acceptWord("clause")) readClause(type);
+      readContainer(type);
       type.text = readText("what the node is");
     }
     while (!lexer_.peek().is(TokenKind::braceClose))
       type.fields.push_back(readField(type.isAbstract));
     take();
+  }
+
+  // Reads the number of a clause: 6.7, 12.4.1. VRML97 has no token for the second form.
+  void readClause(TypeSpec& type) {
+    const Token token = lexer_.peek();
+    if (token.text.empty() || token.text.find_first_not_of("0123456789.") != token.text.npos)
+      fail(token, fmt::format("expected the number of a clause, found {}", describe(token)));
+    type.clause = take().text;
+  }
+
+  void readContainer(TypeSpec& type) {
+    SourcePosition source;
+    if (acceptWord("container")) readName(type.container, source, "the name of a field");
   }
 
   // field ::= access type name [ value ] [ "#" range ] { attribute }
@@ -160,7 +182,7 @@ class Reader {
         defaultValue(type));
   }
 
-  // attribute ::= "change" kind | "accepts" name { name } | "urls" | string
+  // attribute ::= "change" kind | "accepts" name { name } | "urls" | "x3d" | string
   bool readAttribute(FieldSpec& field) {
     const Token token = lexer_.peek();
     if (token.is(TokenKind::string)) {
@@ -179,6 +201,13 @@ class Reader {
       take();
       field.urls = true;
       field.urlsSource = lexer_.place(token.at());
+      return true;
+    }
+    if (token.is("x3d")) {
+      if (field.ofX3d) fail(token, fmt::format("{} says twice that it is X3D's", field.name));
+      take();
+      field.ofX3d = true;
+      field.ofX3dSource = lexer_.place(token.at());
       return true;
     }
     if (!token.is("accepts")) return false;
@@ -206,7 +235,7 @@ class Reader {
     Access access = Access::field;
     return token.is(TokenKind::identifier) &&
            (token.text == "change" || token.text == "accepts" || token.text == "urls" ||
-            accessFromName(token.text, access));
+            token.text == "x3d" || accessFromName(token.text, access));
   }
 
   // Reads a name. Names become C++ and Python names, so they have letters, digits and underscores
@@ -283,8 +312,7 @@ class Reader {
   }
 
   [[noreturn]] void fail(const Token& token, std::string message) {
-    if (!token.is(TokenKind::invalid))
-      lexer_.error(token.at(), std::move(message)); // invalid tokens were reported by the lexer
+    lexer_.error(token.at(), std::move(message));
     throw Failed();
   }
   [[noreturn]] void failAt(const char* at, std::string message) {

@@ -13,9 +13,26 @@ namespace {
 constexpr std::string_view notice =
     "// Written by nodegen from the .node files: change those, not this.\n";
 
-std::string clauseText(const TypeSpec& type) {
-  return type.clause.empty() ? std::string()
-                             : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
+// Returns the sentence that names the standard and the clause, after a blank.
+std::string clauseSentence(const TypeSpec& type) {
+  const std::string clause = clauseText(type);
+  return clause.empty() ? clause : ' ' + clause + '.';
+}
+
+// Returns the clause as NodeRow has it.
+std::string clauseInRow(const TypeSpec& type) {
+  return type.ofX3d ? "X3D " + type.clause : type.clause;
+}
+
+// Returns FieldRow::words.
+std::string wordsOf(const FieldSpec& field) {
+  std::string words;
+  const auto add = [&](bool says, std::string_view word) {
+    if (says) words += (words.empty() ? "" : " | ") + std::string(word);
+  };
+  add(field.urls, "fieldHoldsUrls");
+  add(field.ofX3d, "fieldOfX3d");
+  return words.empty() ? "0" : words;
 }
 
 std::string writeMember(const FieldSpec& field) {
@@ -37,7 +54,7 @@ constexpr std::string_view pluginMembers =
 
 std::string writeStruct(const TypeSpec& type, bool plugin) {
   std::string text =
-      fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseText(type), type.name);
+      fmt::format("/// {}{}\nstruct {} : Node {{\n", type.text, clauseSentence(type), type.name);
   if (plugin)
     text += pluginMembers;
   else
@@ -71,7 +88,7 @@ std::string writeRow(const TypeSpec& type, const FieldSpec& field) {
       field.hasStorage() ? fmt::format("offsetof({}, {})", type.name, cppMember(field)) : "0";
   return fmt::format("    {{{}, FieldType::{}, Access::{}, Change::{}, {}, {}, {}, {}, {}}},\n",
                      cppString(field.name), fieldTypeName(field.type), accessName(field.access),
-                     changeName(*field.change), field.urls, offset, writeRange(field.range),
+                     changeName(*field.change), wordsOf(field), offset, writeRange(field.range),
                      cppString(joinNames(field.accepts)), cppString(field.text));
 }
 
@@ -86,7 +103,7 @@ std::string writeTable(const TypeSpec& type) {
   rows += fmt::format(
       "constexpr NodeRow rowOf{0} = {{{1}, {2}, {3}, {4}, {5}, {6}, createNode<{0}>}};\n\n",
       type.name, cppString(type.name), cppString(fmt::format("{}", fmt::join(type.roles, " "))),
-      cppString(type.component), cppString(type.clause), cppString(type.text), fields);
+      cppString(type.component), cppString(clauseInRow(type)), cppString(type.text), fields);
   return rows;
 }
 
@@ -148,17 +165,35 @@ std::string writeTables(const Component& component, const std::string& plugin) {
   return text + "} // namespace\n\n" + functions + "} // namespace xvrml::nodes\n";
 }
 
+namespace {
+
+// The fields that hold nodes where X3D's XML does not say it, by node and by abstract type.
+std::string writeContainers(const Model& model) {
+  std::string rows;
+  for (const Component& component : model.components)
+    for (const TypeSpec& type : component.types)
+      if (!type.container.empty())
+        rows += fmt::format("      {{{}, {}}},\n", cppString(type.name), cppString(type.container));
+  const std::string body =
+      rows.empty() ? "return {};"
+                   : "static constexpr Container table[] = {\n" + rows + "  };\n  return table;";
+  return "std::span<const Container> containers() {\n  " + body + "\n}\n\n";
+}
+
+} // namespace
+
 std::string writeList(const Model& model) {
   std::string text(notice);
   text += "// All node types, in the order of their typeIndex.\n#include <span>\n\n#include "
-          "\"xvrml/nodes.h\"\n\n"
-          "namespace xvrml::nodes {\n\nstd::span<const NodeType* const> builtinNodeTypes();\n\n"
+          "\"nodes/registry.h\"\n#include \"xvrml/nodes.h\"\n\n"
+          "namespace xvrml::nodes {\n\n"
           "std::span<const NodeType* const> builtinNodeTypes() {\n  static const NodeType* const "
           "types[] = {\n";
   std::map<int, std::string> names; // by number
   eachNode(model, [&](const TypeSpec& type) { names.emplace(type.number, type.name); });
   for (const auto& [number, name] : names) text += fmt::format("      &{}::nodeType(),\n", name);
-  return text + "  };\n  return types;\n}\n\n} // namespace xvrml::nodes\n";
+  return text + "  };\n  return types;\n}\n\n" + writeContainers(model) +
+         "} // namespace xvrml::nodes\n";
 }
 
 std::string writePlugin(const Model& model, const std::string& plugin) {

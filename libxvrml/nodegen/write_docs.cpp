@@ -32,8 +32,8 @@ std::string referenceRow(const FieldSpec& field) {
 }
 
 std::string referenceOf(const TypeSpec& type) {
-  const std::string clause =
-      type.clause.empty() ? "" : fmt::format(" ISO/IEC 14772-1 clause {}.", type.clause);
+  std::string clause = clauseText(type);
+  if (!clause.empty()) clause = ' ' + clause + '.';
   std::string text = fmt::format("### {}\n\n{}{} Roles: {}.\n\n", type.name, type.text, clause,
                                  fmt::join(type.roles, ", "));
   if (type.fields.empty()) return text;

@@ -67,20 +67,28 @@ std::vector<std::string> splitWords(std::string_view words) {
 
 } // namespace
 
-// The flag must not move the members after it: plug-ins are refused only for another size.
-static_assert(offsetof(FieldRow, holdsUrls) == offsetof(FieldRow, change) + sizeof(Change) &&
+// The words must not move the members after them: plug-ins are refused only for another size.
+static_assert(offsetof(FieldRow, words) == offsetof(FieldRow, change) + sizeof(Change) &&
               offsetof(FieldRow, offset) == sizeof(const char*) + sizeof(uint32_t));
 
 NodeType makeNodeType(const NodeRow& row, int index) {
-  NodeType type{row.name,   index,     splitWords(row.roles), row.component, row.text, {},
-                row.create, row.clause};
+  constexpr std::string_view x3d = "X3D "; // begins the clause of a node of X3D
+  std::string_view clause = row.clause;
+  Standard standard = clause.empty() ? Standard::none : Standard::vrml97;
+  if (clause.starts_with(x3d)) {
+    clause.remove_prefix(x3d.size());
+    standard = Standard::x3d;
+  }
+  NodeType type{row.name, index, standard,   splitWords(row.roles), row.component,
+                row.text, {},    row.create, std::string(clause)};
   type.fields.reserve(row.fields.size());
   for (const FieldRow& field : row.fields) {
     type.fields.push_back({field.name,
                            field.type,
                            field.access,
                            field.change,
-                           field.holdsUrls,
+                           (field.words & fieldHoldsUrls) != 0,
+                           (field.words & fieldOfX3d) != 0,
                            field.offset,
                            {},
                            field.range,
@@ -102,6 +110,18 @@ const NodeType* findNodeType(std::string_view name) {
   const Snapshot& snapshot = Registry::instance().current();
   const auto found = snapshot.byName.find(name);
   return found == snapshot.byName.end() ? nullptr : found->second;
+}
+
+std::string_view containerOf(const NodeType& type) {
+  static const auto& byName = *[] {
+    auto* const table = new std::unordered_map<std::string_view, std::string_view>();
+    for (const nodes::Container& one : nodes::containers()) table->emplace(one.type, one.field);
+    return table;
+  }();
+  if (const auto own = byName.find(type.name); own != byName.end()) return own->second;
+  for (const std::string& role : type.abstract)
+    if (const auto found = byName.find(role); found != byName.end()) return found->second;
+  return "children";
 }
 
 } // namespace xvrml

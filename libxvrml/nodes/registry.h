@@ -12,7 +12,18 @@ namespace xvrml {
 // thread]
 bool addNodeTypes(std::span<const NodeType* const> types);
 
+// Returns the name of the field that holds a node of this type in the XML encoding of X3D, where
+// the file does not say it (containerField, ISO/IEC 19776-1): "geometry" for a Box. It is that of
+// the type or of the nearest abstract type that has one, otherwise "children".  [any thread]
+std::string_view containerOf(const NodeType& type);
+
 namespace nodes {
+// The nodes and abstract types whose description names a container. Written by nodegen.
+struct Container {
+  std::string_view type, field;
+};
+std::span<const Container> containers();
+
 // The types of all .node files, in the order of their numbers. Written by nodegen.
 std::span<const NodeType* const> builtinNodeTypes();
 } // namespace nodes

@@ -14,6 +14,7 @@
 #include "graph/node_kinds.h"
 #include "graph/range.h"
 #include "nearest.h"
+#include "nodes/registry.h"
 
 namespace xvrml {
 
@@ -73,6 +74,7 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
     }
     return false;
   }
+  warnOfX3d(*known, type);
   if (known->name == "Script") {
     ++state_.scripts;
     frame.scriptType = scriptType(*known);
@@ -168,18 +170,47 @@ const NodeType* Builder::typeNamed(std::string_view name) const {
   return proto ? proto->type.get() : findNodeType(name);
 }
 
-bool Builder::wouldAccept(size_t nodeTarget, std::string_view name, bool use) const {
+// Returns the type that a node of the named type stands for, or the node with that DEF name. Null
+// if it is not known, as for a prototype in another file.
+const NodeType* Builder::typeOf(std::string_view name, bool use) const {
   const Node* node = nullptr;
   if (use) {
     const auto found = scopes_.back().scope->names.find(name);
-    if (found == scopes_.back().scope->names.end() || isOpen(found->second.get())) return false;
-    node = found->second.get();
+    node = found == scopes_.back().scope->names.end() ? nullptr : found->second.get();
   } else if (const ProtoPtr proto = findPrototype(name)) {
     node = firstNode(proto.get());
   } else {
-    return acceptsType(nodeTargets_[nodeTarget - 1], findNodeType(name));
+    return findNodeType(name);
   }
-  return acceptsType(nodeTargets_[nodeTarget - 1], node ? effectiveType(*node) : nullptr);
+  return node ? effectiveType(*node) : nullptr;
+}
+
+bool Builder::wouldAccept(size_t nodeTarget, std::string_view name, bool use) const {
+  if (use) {
+    const auto found = scopes_.back().scope->names.find(name);
+    if (found == scopes_.back().scope->names.end() || isOpen(found->second.get())) return false;
+  }
+  return acceptsType(nodeTargets_[nodeTarget - 1], typeOf(name, use));
+}
+
+// The node type's own containerField counts (ISO/IEC 19776-1 5.2), then the first field that takes
+// the node. Where none does, a field that the message about it can name.
+std::string_view Builder::fieldFor(std::string_view name, bool use) const {
+  if (use ? !scopes_.back().scope->names.contains(name) : !typeNamed(name)) return {};
+  const NodeType* const type = typeOf(name, use);
+  const NodeType& parent = nodes_.back().node->type();
+  const std::string_view usual = type ? containerOf(*type) : "children";
+  const auto takes = [&](const FieldInfo& field) {
+    return holdsValue(field) && holdsNodes(field) &&
+           (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type));
+  };
+  const FieldInfo* const field = parent.find(spelled(parent, usual));
+  if (field && takes(*field)) return usual;
+  auto first = std::find_if(parent.fields.begin(), parent.fields.end(), takes);
+  if (first == parent.fields.end() && !field)
+    first = std::find_if(parent.fields.begin(), parent.fields.end(),
+                         [](const FieldInfo& one) { return holdsValue(one) && holdsNodes(one); });
+  return first == parent.fields.end() ? usual : std::string_view(first->name);
 }
 
 // Returns the node types that may be added here; "" means all.
@@ -268,12 +299,14 @@ FieldTarget Builder::openField(const Name& name) {
   if (!field) {
     if (isMissingField(node.type(), name)) return {};
     const std::string near = nearest::suggestion(name.text, node.type().fields);
+    // A field of X3D that we lack: a file of VRML97 may not have it in any case.
     const char* dialect = isX3dField(node.type().name, name.text) ? " (it is X3D's)" : "";
     locator_.error(name.at,
                    fmt::format("{} has no field {}{}{}{}he field is ignored", node.type().name,
                                describe(name), dialect, near, near.empty() ? "; t" : " T"));
     return {};
   }
+  warnOfX3d(node.type(), *field, name);
   if (!holdsValue(*field)) {
     locator_.error(name.at, fmt::format("{} is an {} of {}: it has no value in a file",
                                         describe(name), word(field->access), node.type().name));
@@ -285,20 +318,38 @@ FieldTarget Builder::openField(const Name& name) {
   } else {
     frame.given.push_back(name.text);
   }
-  frame.field = field;
   frame.fieldAt = name.at;
+  return targetOf(*field, false);
+}
+
+FieldTarget Builder::resumeField(const Name& name) {
+  NodeFrame& frame = nodes_.back();
+  const NodeType& type = frame.node->type();
+  const FieldInfo* field = type.find(spelled(type, name.text));
+  const bool given =
+      std::find(frame.given.begin(), frame.given.end(), name.text) != frame.given.end();
+  if (!field || !given || !isMultiple(field->type)) return openField(name);
+  frame.fieldAt = name.at;
+  return targetOf(*field, true);
+}
+
+// Makes a field of the open node the one that is read. `resumed`: its value stays.
+FieldTarget Builder::targetOf(const FieldInfo& field, bool resumed) {
+  NodeFrame& frame = nodes_.back();
+  Node& node = *frame.node;
+  frame.field = &field;
   if (node.type().index < 0)
-    if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(*field);
-  void* storage = node.storage(*field);
-  if (field->type == FieldType::SFNode) {
+    if (auto* instance = dynamic_cast<ProtoInstance*>(&node)) instance->give(field);
+  void* storage = node.storage(field);
+  if (field.type == FieldType::SFNode) {
     *static_cast<NodeRef*>(storage) = {};
-    nodeTargets_.push_back({NodeTarget::Kind::single, storage, field, &node});
-  } else if (field->type == FieldType::MFNode) {
-    static_cast<MFNode*>(storage)->clear();
-    nodeTargets_.push_back({NodeTarget::Kind::multiple, storage, field, &node});
+    nodeTargets_.push_back({NodeTarget::Kind::single, storage, &field, &node});
+  } else if (field.type == FieldType::MFNode) {
+    if (!resumed) static_cast<MFNode*>(storage)->clear();
+    nodeTargets_.push_back({NodeTarget::Kind::multiple, storage, &field, &node});
   }
-  FieldTarget target{true, field->type, storage};
-  if (frame.scriptType && field->name == "url")
+  FieldTarget target{true, field.type, storage};
+  if (frame.scriptType && field.name == "url")
     target.stringLines = &static_cast<ScriptNode&>(node).urlLines;
   return target;
 }
@@ -308,7 +359,9 @@ void Builder::closeField(bool good) {
   const FieldInfo& field = *frame.field;
   if (holdsNodes(field)) {
     nodeTargets_.pop_back();
-  } else if (good && hasNormalizedAxes(field)) {
+  } else if (!good) {
+    frame.node->set(field, field.defaultValue);
+  } else if (hasNormalizedAxes(field)) {
     Rotation first;
     const size_t outside = normalizeAxes(field.type, frame.node->storage(field), &first);
     if (outside > 0)
@@ -318,8 +371,8 @@ void Builder::closeField(bool good) {
                       frame.node->type().name, field.name, first.x, first.y, first.z,
                       axisLength(first),
                       outside == 1 ? "it is" : fmt::format("it and {} more are", outside - 1)));
-  } else if (RangeFault fault; good && field.range.bounded() &&
-                               !enforceRange(field, frame.node->storage(field), &fault)) {
+  } else if (RangeFault fault;
+             field.range.bounded() && !enforceRange(field, frame.node->storage(field), &fault)) {
     locator_.warn(frame.fieldAt, xvrml::describe(frame.node->type(), field, fault));
   }
 }

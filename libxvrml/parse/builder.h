@@ -27,7 +27,9 @@ class Builder : public ParseSink {
   void nullNode(const Name& token) override;
   void lostName(const Name& name) override;
   FieldTarget openField(const Name& name) override;
+  FieldTarget resumeField(const Name& name) override;
   bool hasField(std::string_view name) const override;
+  std::string_view fieldFor(std::string_view name, bool use) const override;
   void closeField(bool good) override;
   void connect(const Name& field, const Name& interfaceName) override;
   FieldTarget openDeclaration(Access access, FieldType type, const Name& name,
@@ -40,6 +42,7 @@ class Builder : public ParseSink {
   std::vector<std::string>& externUrls() override;
   void closeExternProto(bool good) override;
   void route(const Name& keyword, const RouteNames& names) override;
+  void version(int major, int minor) override;
   void profile(const Name& name) override;
   void component(const Name& name, int32_t level) override;
   void meta(const Name& keyword, std::string name, std::string content) override;
@@ -113,12 +116,17 @@ class Builder : public ParseSink {
   bool accepts(const NodeTarget& nodeTarget, const Name& at, const Node& node,
                std::string_view remedy);
   bool isX3d() const { return file_.head.version.isX3d(); }
+  bool isVrml97() const { return file_.head.version.encoding == Encoding::vrml97; }
   std::string_view spelled(const NodeType& type, std::string_view name) const;
   std::string_view word(Access access) const;
-  bool isFirst(const std::string& missing) { return missing_.insert(missing).second; }
+  bool isFirst(const std::string& name) { return reported_.insert(name).second; }
   bool lacksField(const NodeType& type, std::string_view name) const;
+  FieldTarget targetOf(const FieldInfo& field, bool resumed);
+  const NodeType* typeOf(std::string_view name, bool use) const;
   bool isMissingField(const NodeType& type, const Name& name);
   void reportUnknownNode(const Name& type);
+  void warnOfX3d(const NodeType& type, const Name& at);
+  void warnOfX3d(const NodeType& type, const FieldInfo& field, const Name& at);
   uint64_t expandedCount(const Node* node) const;
   ProtoPtr findPrototype(std::string_view name) const;
   bool isBeingDeclared(std::string_view name) const;
@@ -136,7 +144,7 @@ class Builder : public ParseSink {
   std::vector<NodeFrame> nodes_;
   std::vector<NodeTarget> nodeTargets_;
   std::unordered_map<const Node*, uint64_t> expanded_; // counts of more than 1 of named nodes
-  std::unordered_set<std::string> missing_;            // nodes and fields of X3D that were reported
+  std::unordered_set<std::string> reported_;           // nodes and fields of X3D that were reported
   const NodeType* fullInterface_ = nullptr; // the last type that declares more than the limit
 };
 

@@ -168,6 +168,8 @@ void Builder::route(const Name& keyword, const RouteNames& names) {
     locator_.error(names.toField.at, fmt::format("{} has no {} {}", to->type().name,
                                                  word(Access::eventIn), describe(names.toField)));
   if (!out || !in) return;
+  warnOfX3d(from->type(), *out, names.fromField);
+  warnOfX3d(to->type(), *in, names.toField);
   if (out->type != in->type) {
     locator_.error(names.toField.at,
                    fmt::format("a route joins events of one type: {} is {}, {} is {}",
@@ -205,6 +207,7 @@ void Builder::connect(const Name& name, const Name& interfaceName) {
                                         nearest::suggestion(name.text, type.fields)));
     return;
   }
+  warnOfX3d(type, *field, name);
   ScopeFrame* proto = protoFrame();
   if (!proto) {
     locator_.error(name.at,

@@ -5,6 +5,7 @@
 #include "base/x3d.h"
 #include "nearest.h"
 #include "parse/builder.h"
+#include "parse/source.h"
 
 namespace xvrml {
 
@@ -47,6 +48,27 @@ void Builder::reportUnknownNode(const Name& type) {
   locator_.error(type.at, fmt::format("{} is not a known node type{}{}", describe(type),
                                       ofX3d ? " (it is X3D's)" : "",
                                       nearest::suggestion(type.text, nodeTypes())));
+}
+
+// Warns once in a file of VRML97 that a node is X3D's.
+void Builder::warnOfX3d(const NodeType& type, const Name& at) {
+  if (type.standard != Standard::x3d || !isVrml97() || !isFirst(type.name)) return;
+  locator_.warn(at.at, fmt::format("{} is a node of X3D: other browsers of VRML97 do not know it",
+                                   describe(at)));
+}
+
+// Warns once in a file of VRML97 that a field is X3D's.
+void Builder::warnOfX3d(const NodeType& type, const FieldInfo& field, const Name& at) {
+  if (!field.ofX3d || !isVrml97() || !isFirst(fmt::format("{}.{}", type.name, field.name))) return;
+  locator_.warn(at.at, fmt::format("{} is a field that X3D adds to {}: other browsers of VRML97 do "
+                                   "not know it",
+                                   describe(at), type.name));
+}
+
+void Builder::version(int major, int minor) {
+  file_.head.version.major = major;
+  file_.head.version.minor = minor;
+  setFileVersion(locator_.file(), file_.head.version);
 }
 
 void Builder::profile(const Name& name) {

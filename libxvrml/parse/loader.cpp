@@ -10,8 +10,12 @@
 #include "graph/field_access.h"
 #include "graph/inline_node.h"
 #include "parse/builder.h"
+#include "parse/mesh/mesh_file.h"
 #include "parse/parser.h"
 #include "parse/urn.h"
+#include "parse/vrml1/vrml1.h"
+#include "parse/x3d_json.h"
+#include "parse/x3d_xml.h"
 
 namespace xvrml {
 namespace {
@@ -70,11 +74,40 @@ void Loader::loadDeferredInline(InlineNode& node, const std::vector<std::string>
 void Loader::parse(const Source& source, const std::shared_ptr<const std::string>& name,
                    ParsedFile& file) {
   file.head.version = fileVersion(name);
+  const Limits& limits = state_.options.limits;
+  switch (file.head.version.encoding) {
+  case Encoding::x3dXml: {
+    const XmlText text(source.text(), *name, budget_);
+    Locator locator(text.text(), name, state_.diagnostics);
+    Builder builder(locator, state_, file);
+    X3dElements elements(locator, limits, builder, budget_.get());
+    readX3dXml(text, locator, elements);
+    return builder.dropUnplacedNames();
+  }
+  case Encoding::x3dJson: {
+    Locator locator(source.text(), name, state_.diagnostics);
+    Builder builder(locator, state_, file);
+    X3dElements elements(locator, limits, builder, budget_.get());
+    readX3dJson(locator, budget_, elements);
+    return builder.dropUnplacedNames();
+  }
+  case Encoding::vrml1: {
+    Locator locator(source.text(), name, state_.diagnostics);
+    composed_ = true; // its nodes are counted when the world is complete
+    return readVrml1(locator, state_, file, Parser::maximumNesting);
+  }
+  default: break;
+  }
   Locator locator(source.text(), name, state_.diagnostics);
-  Lexer lexer(locator);
+  std::deque<std::string> names; // DEF names that a reader makes; they outlive the builder
   Builder builder(locator, state_, file);
-  Parser(lexer, state_.options.limits, builder, budget_.get(), file.head.version.isX3d())
-      .vrmlScene();
+  if (const FileVersion& version = file.head.version; isMesh(version.encoding)) {
+    readMesh(version.encoding,
+             {source.text(), *name, locator, builder, state_.options, budget_, names});
+  } else {
+    Lexer lexer(locator);
+    Parser(lexer, limits, builder, budget_.get(), version.isX3d()).vrmlScene();
+  }
   builder.dropUnplacedNames();
 }
 

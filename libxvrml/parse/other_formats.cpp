@@ -29,39 +29,6 @@ bool beginsWithoutCase(std::string_view bytes, std::string_view word) {
          });
 }
 
-// 80 bytes of any content, the number of triangles, and 50 bytes for each triangle.
-bool isBinaryStl(std::string_view bytes) {
-  if (bytes.size() < 84) return false;
-  uint32_t count = 0;
-  std::memcpy(&count, bytes.data() + 80, sizeof count);
-  return count > 0 && uint64_t(84) + uint64_t(50) * count == bytes.size();
-}
-
-bool isAsciiStl(std::string_view bytes) {
-  return bytes.starts_with("solid") && holds(bytes, "facet");
-}
-
-// The text begins with vertices ("v 1 2 3") or a material library; only comments and groups may
-// come before.
-bool isObj(std::string_view bytes) {
-  bytes = bytes.substr(0, searched);
-  for (int line = 0; line < 100 && !bytes.empty(); ++line) {
-    const size_t end = std::min(bytes.find('\n'), bytes.size());
-    const std::string_view current = withoutBlanks(bytes.substr(0, end));
-    bytes.remove_prefix(std::min(end + 1, bytes.size()));
-    if (current.starts_with("mtllib ") || current.starts_with("v ")) return true;
-    const bool passed = current.empty() || current[0] == '#' || current.starts_with("o ") ||
-                        current.starts_with("g ");
-    if (!passed) return false;
-  }
-  return false;
-}
-
-bool isGltfText(std::string_view bytes) {
-  return withoutBlanks(bytes).starts_with('{') && holds(bytes, "\"asset\"") &&
-         holds(bytes, "\"version\"");
-}
-
 // The main chunk of a 3D Studio file contains its own length.
 bool is3ds(std::string_view bytes) {
   uint32_t length = 0;
@@ -73,8 +40,6 @@ bool is3ds(std::string_view bytes) {
 constexpr std::string_view exportIt =
     "export it as VRML97 (.wrl), for example from MeshLab or Blender, or hand its mesh to Python's "
     "xvrml.interop.from_trimesh";
-constexpr std::string_view saveIt =
-    "save it as VRML97 (.wrl) or X3D ClassicVRML (.x3dv) in the program that made it";
 
 struct Signature {
   bool (*matches)(std::string_view bytes);
@@ -82,24 +47,13 @@ struct Signature {
 };
 
 const Signature signatures[] = {
-    {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<X3D"); },
-     {"an X3D world (XML encoding)", saveIt}},
-    {[](std::string_view b) { return withoutBlanks(b).starts_with('{') && holds(b, "\"X3D\""); },
-     {"an X3D world (JSON encoding)", saveIt}},
     {[](std::string_view b) { return b.starts_with("#Inventor"); },
-     {"an Open Inventor file", saveIt}},
+     {"a binary Open Inventor file",
+      "save it as text (#Inventor V2.1 ascii), or as VRML97 (.wrl)"}},
     {[](std::string_view b) { return withoutBlanks(b).starts_with('<') && holds(b, "<COLLADA"); },
      {"a COLLADA document", exportIt}},
-    {[](std::string_view b) { return b.starts_with("glTF"); },
-     {"a binary glTF model (.glb)", exportIt}},
-    {isGltfText, {"a glTF model", exportIt}},
-    {isAsciiStl, {"an STL mesh", exportIt}},
-    {isBinaryStl, {"an STL mesh", exportIt}},
-    {[](std::string_view b) { return b.starts_with("ply\n") || b.starts_with("ply\r"); },
-     {"a PLY mesh", exportIt}},
     {[](std::string_view b) { return b.starts_with("OFF\n") || b.starts_with("OFF\r"); },
      {"an OFF mesh", exportIt}},
-    {isObj, {"a Wavefront OBJ mesh", exportIt}},
     {is3ds, {"a 3D Studio mesh", exportIt}},
     {[](std::string_view b) { return b.starts_with("Kaydara FBX Binary"); },
      {"an FBX scene", exportIt}},

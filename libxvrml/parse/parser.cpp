@@ -143,26 +143,14 @@ bool Parser::field() {
   const bool listOfValues = isMultiple(target.type) && lexer_.peek().is(TokenKind::bracketOpen);
   const char* const from = lexer_.cursor();
   bool good = fieldValue(target);
-  if (good && target.stringLines) *target.stringLines = linesOfStrings(from);
+  if (good && target.stringLines)
+    *target.stringLines = lexer_.linesOfStrings(from, lexer_.cursor());
   // If a known field follows, only the closing bracket of the list is missing, and its values are
   // kept.
   if (!good && listOfValues)
     good = lexer_.peek().is(TokenKind::identifier) && sink_.hasField(lexer_.peek().text);
   sink_.closeField(good);
   return good;
-}
-
-// Returns the lines of the strings of a value that was just read; `from`: where it begins.
-std::vector<uint32_t> Parser::linesOfStrings(const char* from) {
-  std::vector<uint32_t> lines;
-  const char* end = lexer_.cursor();
-  for (const char* p = lexer_.skipSpace(from); p < end; p = lexer_.skipSpace(p + 1)) {
-    if (*p != '"') continue;
-    lines.push_back(lexer_.place(p).line);
-    for (++p; p < end && *p != '"'; ++p)
-      if (*p == '\\') ++p;
-  }
-  return lines;
 }
 
 // fieldValue ::= sfboolValue | sfcolorValue | ... | mfvec3fValue

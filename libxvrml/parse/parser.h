@@ -48,7 +48,6 @@ class Parser {
   bool nodeBodyElement();
   bool field();
   bool fieldValue(const FieldTarget& target);
-  std::vector<uint32_t> linesOfStrings(const char* from);
   bool nodeValue();
   bool nodeValues();
   bool nodesOfList();

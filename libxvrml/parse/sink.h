@@ -50,7 +50,15 @@ class ParseSink {
 
   // fieldId fieldValue in the open node
   virtual FieldTarget openField(const Name& name) = 0;
+  // Goes on with a list of nodes or strings after its closeField(): what follows is appended. A
+  // field that has no value yet is opened.
+  virtual FieldTarget resumeField(const Name& name) = 0;
   virtual bool hasField(std::string_view name) const = 0;
+  // Returns the field of the open node that takes a node of the named type, or the node with that
+  // DEF name (`use`), where the file does not say which. Empty if there is no such type or name;
+  // the sink then adds nothing.
+  virtual std::string_view fieldFor(std::string_view name, bool use) const = 0;
+  // Closes the field. `good` is false if its value could not be read; it then has its default.
   virtual void closeField(bool good) = 0;
   // id IS interfaceId in the open node
   virtual void connect(const Name& field, const Name& interfaceName) = 0;
@@ -76,6 +84,7 @@ class ParseSink {
   // The statements of X3D (ISO/IEC 19775-1 7.2.5). A unit of a category is `factor` of the
   // standard's. IMPORT inlineName.exported AS local. EXPORT is only checked by the reader: nothing
   // can import from this file yet.
+  virtual void version(int major, int minor) = 0; // of X3D, where the reader finds it
   virtual void profile(const Name& name) = 0;
   virtual void component(const Name& name, int32_t level) = 0;
   virtual void meta(const Name& keyword, std::string name, std::string content) = 0;

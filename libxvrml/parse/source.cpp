@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <initializer_list>
 #include <new>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include <zlib.h>
 
 #include "base/lexer.h"
+#include "parse/mesh/mesh_file.h"
 #include "parse/other_formats.h"
 #include "xvrml/comments.h"
 
@@ -25,11 +27,23 @@ namespace {
   throw LoadError{{Severity::error, name, line, line, std::move(message), {}, 0}};
 }
 
-// Refuses a file of a known format other than VRML97.
+// Returns "VRML97, X3D ClassicVRML, ... and glTF".
+std::string readableFormats() {
+  std::string text;
+  for (int i = 0; i < encodingCount; ++i)
+    text += fmt::format("{}{}",
+                        i == 0                  ? ""
+                        : i + 1 < encodingCount ? ", "
+                                                : " and ",
+                        encodingName(static_cast<Encoding>(i)));
+  return text;
+}
+
+// Refuses a file of a known format that cannot be read.
 [[noreturn]] void refuseOther(const std::string& name, std::string_view bytes) {
   const OtherFormat& format = *otherFormat(bytes);
-  refuse(name, fmt::format("this file is {}, not a world in VRML97 or X3D ClassicVRML: {}",
-                           format.name, format.remedy));
+  refuse(name, fmt::format("this file is {}, which cannot be read ({} can): {}", format.name,
+                           readableFormats(), format.remedy));
 }
 
 struct Descriptor {
@@ -251,8 +265,44 @@ FileVersion x3dVersion(std::string_view line, std::string& complaint) {
   return version;
 }
 
+// Nodes made from a mesh follow X3D 4.0, which has physical materials.
+FileVersion meshVersion(Encoding encoding) { return {encoding, 4, 0}; }
+
+bool endsWithOneOf(std::string_view file, std::initializer_list<std::string_view> suffixes) {
+  return std::any_of(suffixes.begin(), suffixes.end(),
+                     [&](std::string_view suffix) { return file.ends_with(suffix); });
+}
+
 bool namesX3dClassic(std::string_view file) {
-  return file.ends_with(".x3dv") || file.ends_with(".x3dvz") || file.ends_with(".x3dv.gz");
+  return endsWithOneOf(file, {".x3dv", ".x3dvz", ".x3dv.gz"});
+}
+
+// Returns whether a text is X3D in XML: it begins with an element, and an X3D follows. Texts in
+// UTF-16 have a zero beside each of these characters. The suffix decides where a long comment comes
+// first.
+bool isX3dXml(std::string_view text, std::string_view file) {
+  std::string ascii;
+  for (const char c : text.substr(0, 8192))
+    if (c > 0) ascii += c;
+  const size_t first = ascii.find_first_not_of(" \t\r\n");
+  if (first == ascii.npos || ascii[first] != '<') return false;
+  std::string begin = ascii.substr(first, 14);
+  for (char& c : begin)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  // A page may hold a scene, but it is not well-formed XML.
+  if (begin.starts_with("<html") || begin.starts_with("<!doctype html")) return false;
+  constexpr std::string_view marks[] = {"<X3D", "<x3d", ":X3D", "<!DOCTYPE X3D"};
+  return std::any_of(std::begin(marks), std::end(marks),
+                     [&](std::string_view mark) { return ascii.find(mark) != ascii.npos; }) ||
+         endsWithOneOf(file, {".x3d", ".x3dz", ".x3d.gz"});
+}
+
+// Returns whether a text is X3D in JSON: an object with an X3D in it.
+bool isX3dJson(std::string_view text, std::string_view file) {
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  return first != text.npos && text[first] == '{' &&
+         (text.substr(first, 4096).find("\"X3D\"") != text.npos ||
+          endsWithOneOf(file, {".x3dj", ".x3djz", ".x3dj.gz"}));
 }
 
 } // namespace
@@ -270,9 +320,14 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
     return rest.empty() || rest[0] == ' ' || rest[0] == '\t' || rest[0] == '\n' || rest[0] == '\r';
   };
   if (!damage_.empty()) diagnostics.warn({file, 0, 0}, damage_);
+  Encoding mesh{};
+  if (!text_.starts_with(exact) && findMeshEncoding(text_, mesh)) return meshVersion(mesh);
   const auto warn = [&](std::string message) {
     diagnostics.warn({file, 1, 1}, std::move(message));
   };
+  // XML says that it may begin with a byte-order mark. The version stands in the X3D element.
+  if (isX3dXml(text_, *file)) return {Encoding::x3dXml, 3, 3};
+  if (isX3dJson(text_, *file)) return {Encoding::x3dJson, 3, 3};
   if (byteOrderMark_)
     warn("the file begins with a byte-order mark, which a VRML97 header does not have; ignored");
   if (text_.starts_with(exact) && ends(text_.substr(exact.size()))) return {};
@@ -283,11 +338,9 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
     const bool comment = current.starts_with('#');
     if (comment && current.find("VRML") != current.npos) {
       if (current.find("V1.0") != current.npos) {
-        refuse(
-            *file,
-            "this file is VRML 1.0; only VRML97 (#VRML V2.0 utf8) and X3D ClassicVRML (#X3D V3.3 "
-            "utf8) can be read. Convert it first, for example with vrml1tovrml2",
-            1);
+        if (!current.starts_with("#VRML V1.0 ascii"))
+          warn("the file does not begin with exactly '#VRML V1.0 ascii'; read as VRML 1.0 anyway");
+        return {Encoding::vrml1, 1, 0};
       }
       if (current.find("2.0") != current.npos) {
         warn(
@@ -305,7 +358,11 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
       if (!complaint.empty()) warn(complaint);
       return found;
     }
-    if (comment && current.starts_with("#Inventor")) refuseOther(*file, rest);
+    if (comment && current.starts_with("#Inventor")) {
+      if (current.find("ascii") == current.npos) refuseOther(*file, rest);
+      warn("Open Inventor is read as VRML 1.0: nodes and fields that VRML 1.0 lacks are left out");
+      return {Encoding::vrml1, 1, 0};
+    }
     if (!comment && current.find_first_not_of(" \t,") != current.npos) break;
     rest.remove_prefix(std::min(rest.size(), current.size() + 1));
   }
@@ -316,9 +373,14 @@ FileVersion Source::version(const std::shared_ptr<const std::string>& file,
              : fmt::format("the header '{}' is missing; read as VRML97 anyway", exact));
     return x3d ? FileVersion{Encoding::x3dClassic, 3, 3} : FileVersion();
   }
+  if (findMeshSuffix(*file, mesh)) return meshVersion(mesh);
   if (text_.empty()) refuse(*file, fmt::format("this file is empty: expected '{}'", exact));
-  refuse(*file,
-         fmt::format("this file is not a VRML97 world: expected it to begin with '{}'", exact), 1);
+  refuse(
+      *file,
+      fmt::format("this file is not a VRML97 world: expected it to begin with '{}'. Formats that "
+                  "can be read are {}",
+                  exact, readableFormats()),
+      1);
 }
 
 namespace {
@@ -354,10 +416,31 @@ void setFileVersion(const std::shared_ptr<const std::string>& file, const FileVe
 
 FileVersion versionOf(const Node& node) { return fileVersion(node.source.file); }
 
+namespace {
+
+constexpr size_t mostComments = 4096; // bytes of comments that are kept
+
+// Returns the comments of an XML file before its first element, each with an end of line.
+std::string xmlComments(std::string_view rest) {
+  std::string comments;
+  while (comments.size() < mostComments) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+    const bool comment = rest.starts_with("<!--");
+    if (!comment && !rest.starts_with("<?")) break;
+    const size_t end = rest.find(comment ? "-->" : "?>", 2);
+    if (end == rest.npos || (comment && end < 4)) break;
+    if (comment) comments += std::string(rest.substr(4, std::min(end - 4, mostComments))) + "\n";
+    rest.remove_prefix(end + (comment ? 3 : 2));
+  }
+  return comments;
+}
+
+} // namespace
+
 std::shared_ptr<const std::string> Source::nameWithComments(const std::string& name,
                                                             uint64_t depth) const {
-  constexpr size_t most = 4096;
-  std::string comments;
+  constexpr size_t most = mostComments;
+  std::string comments = xmlComments(text_);
   std::string_view rest = text_;
   while (!rest.empty() && comments.size() < most) {
     const std::string_view line = firstLine(rest);

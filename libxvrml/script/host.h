@@ -35,6 +35,9 @@ struct Script {
   static bool isOwn(const FieldInfo& field) {
     return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate";
   }
+  // Returns whether the engine has the type in its table. Before minor version 2 of the ABI there
+  // were the types of VRML97 alone.
+  bool knows(FieldType type) const { return abiMinor >= 2 || isVrml97Type(type); }
   bool flag(uint32_t bit) const { return info.flags & bit; }
   // Returns whether a call is running in its process, for this Script or another one. Events wait
   // meanwhile.
@@ -45,6 +48,7 @@ struct Script {
   NodeRef nodeCopy; // copy of a destroyed node's fields, for shutdown()
   const XsNode self;
   const XsEngine* engine = nullptr; // null: no runnable program
+  uint32_t abiMinor = XS_ABI_MINOR; // of the engine
   XsInterpreter interpreter = 0;
   SourcePosition start; // position of the program text
   std::string scheme, origin, text;

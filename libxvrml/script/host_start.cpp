@@ -156,9 +156,19 @@ void ScriptHost::describe(Script& script, ScriptProgram program) {
   script.text = std::move(program.text);
   script.origin = script.start.file ? *script.start.file : world_.path;
   script.fields.clear();
-  for (const FieldInfo& field : script.node->type().fields)
-    if (Script::isOwn(field))
+  script.abiMinor = abiMinorOf(*script.engine);
+  for (const FieldInfo& field : script.node->type().fields) {
+    if (!Script::isOwn(field)) continue;
+    if (script.knows(field.type))
       script.fields.push_back({field.name.c_str(), xsType(field.type), xsAccess(field.access)});
+    else
+      log(script, 2, 0,
+          fmt::format(
+              "the engine {} was built for script ABI {}.{}, which has no {}: it does not see "
+              "{}",
+              script.engine->name, XS_ABI_MAJOR, script.abiMinor, fieldTypeName(field.type),
+              field.name));
+  }
   XsScriptInfo& info = script.info;
   info.size = sizeof(XsScriptInfo);
   info.flags =

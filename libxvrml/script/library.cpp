@@ -10,7 +10,7 @@
 
 namespace xvrml {
 
-std::vector<XsEngine> loadScriptLibrary(const std::string& path) {
+ScriptLibrary loadScriptLibrary(const std::string& path) {
   void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
     const char* reason = dlerror();
@@ -22,8 +22,8 @@ std::vector<XsEngine> loadScriptLibrary(const std::string& path) {
     if (!symbol)
       throw std::runtime_error("script library " + path +
                                ": exports no " XS_ENTRY_NAME ", so it is not a script plug-in");
-    return checkScriptPlugin(static_cast<const XsPlugin*>(symbol),
-                             plugin_files::exportedBytes(symbol), path);
+    const auto* plugin = static_cast<const XsPlugin*>(symbol);
+    return {checkScriptPlugin(plugin, plugin_files::exportedBytes(symbol), path), plugin->minor};
   } catch (...) {
     dlclose(handle);
     throw;

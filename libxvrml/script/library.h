@@ -9,8 +9,13 @@
 
 namespace xvrml {
 
-// Returns the engines of a library. The library is never unloaded, because language interpreters do
+struct ScriptLibrary {
+  std::vector<XsEngine> engines;
+  uint32_t minor = XS_ABI_MINOR; // of the ABI that it was built against
+};
+
+// Loads the engines of a library. The library is never unloaded, because language interpreters do
 // not tolerate it. Throws std::runtime_error if it is not a valid plug-in.
-std::vector<XsEngine> loadScriptLibrary(const std::string& path);
+ScriptLibrary loadScriptLibrary(const std::string& path);
 
 } // namespace xvrml

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/data_url.h"
 #include "graph/url.h"
 #include "parse/source.h"
 

@@ -124,6 +124,9 @@ void writeXmlValue(std::string& out, FieldType type, const void* storage, size_t
     if (!isMultiple(type)) return;
     out.erase(begin, 2); // "[ " and " ]"
     out.resize(std::max(begin, out.size() - 2));
+    if (type != FieldType::MFBool) return;
+    for (size_t i = begin; i < out.size(); ++i)
+      if (out[i] >= 'A' && out[i] <= 'Z') out[i] = char(out[i] + 32);
   }
 }
 

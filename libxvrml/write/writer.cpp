@@ -270,11 +270,9 @@ std::string writeWorld(const World& world, const std::string& path, Encoding enc
   if (encoding != Encoding::vrml97) // version 3.3 is what most programs read
     version = {encoding, own.isX3d() ? own.major : 3, own.isX3d() ? own.minor : 3};
   return onStackOf(deepestStack, [&] {
-    switch (encoding) {
-    case Encoding::vrml97:
-    case Encoding::x3dClassic: return makeVrmlWriter(world, path, version)->write();
-    case Encoding::x3dXml: return makeXmlWriter(world, path, version)->write();
-    }
+    if (encoding == Encoding::vrml97 || encoding == Encoding::x3dClassic)
+      return makeVrmlWriter(world, path, version)->write();
+    if (encoding == Encoding::x3dXml) return makeXmlWriter(world, path, version)->write();
     throw std::invalid_argument(
         fmt::format("worlds cannot be written as {}", encodingName(encoding)));
   });

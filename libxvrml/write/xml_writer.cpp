@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/x3d.h"
+#include "nodes/registry.h"
 #include "printable.h"
 #include "write/value_writer.h"
 #include "write/writer.h"
@@ -153,10 +154,10 @@ class XmlWriter : public Writer {
   }
 
   void attributeOfPlace(const Node& node, std::string_view place) {
-    if (!place.empty() && place != defaultContainer(node)) attribute("containerField", place);
+    const bool instance = dynamic_cast<const ProtoInstance*>(&node) != nullptr;
+    const std::string_view usual = instance ? "children" : containerOf(node.type());
+    if (!place.empty() && place != usual) attribute("containerField", place);
   }
-
-  static std::string_view defaultContainer(const Node&) { return "children"; }
 
   void writeNode(const Content& content, std::string_view place) override {
     const Node& node = *content.node;

@@ -68,6 +68,23 @@ const std::vector<Case> cases = {
     {"PlasticRough10", "Plastic", {whiteColor, {"roughness", {.1f}}}, true},
     {"PlasticRough40", "Plastic", {whiteColor, {"roughness", {.4f}}}, true},
     {"PlasticRough100", "Plastic", {whiteColor, {"roughness", {1}}}, true},
+    {"Physical", "Physical", {}},
+    {"PhysicalGold", "Physical", {{"baseColor", {1, .77f, .34f}}, {"roughness", {.3f}}}},
+    {"PhysicalPolished", "Physical", {{"roughness", {0}}}, true},
+    {"PhysicalWhite", "Physical", {{"metallic", {0}}}, true},
+    {"PhysicalWhite00", "Physical", {{"metallic", {0}}, {"roughness", {0}}}, true},
+    {"PhysicalWhite05", "Physical", {{"metallic", {0}}, {"roughness", {.05f}}}, true},
+    {"PhysicalWhite20", "Physical", {{"metallic", {0}}, {"roughness", {.2f}}}, true},
+    {"PhysicalWhite37", "Physical", {{"metallic", {0}}, {"roughness", {.37f}}}, true},
+    {"PhysicalDense", "Physical", {{"metallic", {0}}, {"roughness", {.5f}}, {"ior", {3}}}, true},
+    {"PhysicalNoStep", "Physical", {{"metallic", {0}}, {"roughness", {.7f}}, {"ior", {1}}}, true},
+    {"PhysicalMixed",
+     "Physical",
+     {{"metallic", {.5f}}, {"roughness", {.4f}}, {"baseColor", {.9f, .5f, .1f}}}},
+    {"PhysicalBlended",
+     "Physical",
+     {{"metallic", {0}}, {"roughness", {.6f}}, {"alphaMode", {2}}, {"transparency", {.3f}}},
+     true},
     {"CarPaint", "CarPaint", {{"flakeSize", {.1f}}}},
     {"CarPaintFlakes",
      "CarPaint",
@@ -282,7 +299,7 @@ TEST_P(ShaderPhysics, EverythingIsFinite) {
 
 // Between polished and rough, where pdfs are of the order of 1e7.
 TEST(Facets, NearlyPolishedIsFinite) {
-  for (const char* shader : {"Metal", "Plastic", "Reflector", "RoughGlass"})
+  for (const char* shader : {"Metal", "Physical", "Plastic", "Reflector", "RoughGlass"})
     for (const float roughness : {0.f, 1e-30f, 1e-4f, 1.01e-4f, 1e-3f}) {
       SurfaceAtOneHit surface(shader, {{"roughness", {roughness}}});
       for (const float angle : {0.f, 45.f, 89.99f, 90.f}) {

@@ -80,8 +80,11 @@ TABLE = [
     part("xvrml-graph", "libxvrml/graph/",
          "the scene graph: access to fields, ranges, prototypes and their expansion, equality",
          "xvrml-h xvrml-base common"),
+    part("xvrml-vrml1", "libxvrml/parse/vrml1/",
+         "reads VRML 1.0: carries its traversal state, and builds the VRML97 graph",
+         "xvrml-h xvrml-base xvrml-graph xvrml-geometry common"),
     part("xvrml-parse", "libxvrml/parse/", "reads worlds: parser, builder, loader",
-         "xvrml-h xvrml-base xvrml-graph common"),
+         "xvrml-h xvrml-base xvrml-graph xvrml-vrml1 common"),
     part("xvrml-write", "libxvrml/write/", "writes worlds and values as VRML97 text",
          "xvrml-h xvrml-base xvrml-graph common"),
     part("xvrml-geometry", "libxvrml/geometry/",
@@ -152,6 +155,7 @@ FOREIGN = [
     (re.compile(r"(OpenEXR/|Imf)"), {"picture", "test"}, "OpenEXR"),
     (re.compile(r"(CLI/|CLI11)"), {"app", "openrt-tools", "nodegen"}, "CLI11"),
     (re.compile(r"pybind11/"), {"binding", "script-plugin"}, "pybind11"),
+    (re.compile(r"expat\.h$"), {"xvrml-parse", "test"}, "expat"),
 ]
 # A public header includes only the language's own headers and no third-party ones.
 STANDARD = re.compile(r"[a-z_0-9]+(\.h)?$")

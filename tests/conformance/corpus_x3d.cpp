@@ -1,5 +1,7 @@
-// corpus_x3d.cpp: real files in X3D ClassicVRML by many authors (the corpus beside the repository,
-// or $OPENRT_CORPUS_X3D; skipped if there is none). None may be refused or silently empty.
+// corpus_x3d.cpp: real files of X3D by many authors, in ClassicVRML, XML and JSON, and of
+// VRML 1.0 (the corpus beside the repository, or $OPENRT_CORPUS_X3D; skipped if there is none).
+// None may be refused or silently empty.
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -12,8 +14,8 @@ namespace {
 
 using namespace xvrml;
 
-// Returns the paths of the corpus's .x3dv files; empty if there is no corpus.
-std::vector<std::string> classicFiles() {
+// Returns the paths of the corpus's files with one of these suffixes; empty if there is no corpus.
+std::vector<std::string> filesWith(const std::vector<std::string>& suffixes) {
   const char* given = std::getenv("OPENRT_CORPUS_X3D");
   const std::string folder = given ? given : "../shared/corpus-x3d";
   std::vector<std::string> paths;
@@ -23,12 +25,14 @@ std::vector<std::string> classicFiles() {
     std::string origin, path;
     std::getline(columns, origin, '\t');
     std::getline(columns, path, '\t');
-    if (path.ends_with(".x3dv")) paths.push_back(folder + '/' + origin + '/' + path);
+    if (std::any_of(suffixes.begin(), suffixes.end(),
+                    [&](const std::string& suffix) { return path.ends_with(suffix); }))
+      paths.push_back(folder + '/' + origin + '/' + path);
   }
   return paths;
 }
 
-// Returns whether a file is in UTF-16, which X3D does not allow.
+// Returns whether a file is in UTF-16, which ClassicVRML does not allow.
 bool isUtf16(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return file.get() == 0xff && file.get() == 0xfe;
@@ -36,17 +40,18 @@ bool isUtf16(const std::string& path) {
 
 bool hasNodes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  return std::string(std::istreambuf_iterator<char>(file), {}).find('{') != std::string::npos;
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  return text.find('{') != std::string::npos || text.find("<Scene>") != std::string::npos;
 }
 
-TEST(CorpusX3d, ClassicFilesAreReadAndSurviveWriting) {
-  const auto files = classicFiles();
+// wanted: percent of the files that have to load without an error.
+void expectToBeRead(const std::vector<std::string>& files, size_t wanted) {
   if (files.empty()) GTEST_SKIP() << "no corpus of X3D files";
   size_t clean = 0, withoutErrors = 0;
   for (const std::string& path : files) {
-    if (isUtf16(path)) continue;
+    if (path.ends_with(".x3dv") && isUtf16(path)) continue;
     LoadOptions options;
-    options.loadInlines = false; // they may name files in encodings that are not read yet
+    options.loadInlines = false; // they may name files in formats that are not read yet
     std::unique_ptr<World> world;
     ASSERT_NO_THROW(world = loadWorld(path, options)) << path;
     const Diagnostics& said = world->diagnostics;
@@ -59,10 +64,47 @@ TEST(CorpusX3d, ClassicFilesAreReadAndSurviveWriting) {
     const auto again = loadWorldFromMemory(text, path, options);
     EXPECT_EQ(writeWorld(*again), text) << path;
   }
-  RecordProperty("files", static_cast<int>(files.size()));
-  RecordProperty("clean", static_cast<int>(clean));
-  RecordProperty("without_errors", static_cast<int>(withoutErrors));
-  EXPECT_GE(withoutErrors * 4, files.size() * 3);
+  testing::Test::RecordProperty("files", static_cast<int>(files.size()));
+  testing::Test::RecordProperty("clean", static_cast<int>(clean));
+  testing::Test::RecordProperty("without_errors", static_cast<int>(withoutErrors));
+  EXPECT_GE(withoutErrors * 100, files.size() * wanted);
+}
+
+TEST(CorpusX3d, ClassicFilesAreReadAndSurviveWriting) { expectToBeRead(filesWith({".x3dv"}), 75); }
+
+TEST(CorpusX3d, FilesInXmlAndJsonAreReadAndSurviveWriting) {
+  expectToBeRead(filesWith({".x3d", ".x3dz", ".x3dj"}), 90);
+}
+
+// Returns the paths of the corpus's files in VRML 1.0; empty if there is no corpus.
+std::vector<std::string> vrml1Files() {
+  std::vector<std::string> paths;
+  for (const std::string& path : filesWith({".wrl"})) {
+    std::ifstream file(path, std::ios::binary);
+    std::string line;
+    if (std::getline(file, line) && line.starts_with("#VRML V1.0")) paths.push_back(path);
+  }
+  return paths;
+}
+
+TEST(CorpusX3d, FilesInVrml1AreReadAndSurviveWriting) {
+  const auto files = vrml1Files();
+  if (files.empty()) GTEST_SKIP() << "no corpus of VRML 1.0 files";
+  size_t withoutErrors = 0;
+  for (const std::string& path : files) {
+    LoadOptions options;
+    options.loadInlines = false;
+    std::unique_ptr<World> world;
+    ASSERT_NO_THROW(world = loadWorld(path, options)) << path;
+    const Diagnostics& said = world->diagnostics;
+    withoutErrors += said.errors() == 0;
+    EXPECT_EQ(world->head.version.encoding, Encoding::vrml1) << path;
+    const std::string text = writeWorld(*world);
+    const auto again = loadWorldFromMemory(text, path, options);
+    EXPECT_EQ(again->diagnostics.errors(), 0u) << path;
+    EXPECT_EQ(writeWorld(*again), text) << path;
+  }
+  EXPECT_GE(withoutErrors * 100, files.size() * 95);
 }
 
 } // namespace

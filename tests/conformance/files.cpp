@@ -18,7 +18,10 @@ std::vector<std::string> filesOf(const std::string& folder) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const auto suffix = entry.path().extension();
-    if (suffix == ".wrl" || suffix == ".x3dv") paths.push_back(entry.path().string());
+    if (suffix == ".wrl" || suffix == ".x3dv" || suffix == ".x3d" || suffix == ".x3dj" ||
+        suffix == ".stl" || suffix == ".ply" || suffix == ".obj" || suffix == ".gltf" ||
+        suffix == ".glb")
+      paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -45,17 +48,20 @@ void expectRoundTrip(const World& world, const std::string& name, Encoding encod
   const std::string text = writeWorld(world, "", encoding);
   const auto again = loadWorldFromMemory(text, name);
   EXPECT_EQ(again->head.version.encoding, encoding);
-  const bool spokenThere = encoding != Encoding::vrml97 || !world.head.version.isX3d();
+  const bool spokenThere = encoding != Encoding::vrml97 || world.head.version == FileVersion();
   EXPECT_EQ(spokenThere ? messages(*again) : "", "") << text;
   std::string difference;
-  EXPECT_TRUE(equalScopes(world.scope, again->scope, &difference)) << difference << '\n' << text;
+  // Nodes that a reader of VRML 1.0 shares have no names; those that are read again have.
+  const bool named = world.head.version.encoding != Encoding::vrml1;
+  EXPECT_TRUE(!named || equalScopes(world.scope, again->scope, &difference)) << difference << '\n'
+                                                                             << text;
   EXPECT_EQ(writeWorld(*again, "", encoding), text);
 }
 
 TEST_P(Good, LoadsSilentlyAndRoundTrips) {
   const auto world = loadWorld(GetParam());
   EXPECT_EQ(messages(*world), "");
-  for (const Encoding encoding : {Encoding::vrml97, Encoding::x3dClassic})
+  for (const Encoding encoding : {Encoding::vrml97, Encoding::x3dClassic, Encoding::x3dXml})
     expectRoundTrip(*world, GetParam(), encoding);
 }
 
@@ -69,10 +75,13 @@ std::vector<Expected> expectations(const std::string& path) {
   std::string line;
   std::getline(file, line);
   std::getline(file, line);
+  // In XML the line is a comment, in JSON a string.
   const std::string mark = "# expect ";
   std::vector<Expected> all;
-  if (!line.starts_with(mark)) return all;
-  line.erase(0, mark.size());
+  const size_t begin = line.find(mark); // meshes may have no comments, but some text
+  if (begin == line.npos) return all;
+  line.erase(0, begin + mark.size());
+  line.erase(std::min({line.size(), line.find(" -->"), line.find("\"")}));
   for (size_t at = 0; at < line.size();) {
     const size_t end = std::min(line.find(" | ", at), line.size());
     std::istringstream item(line.substr(at, end - at));

@@ -16,9 +16,8 @@ struct Pictures : Node {
 #pragma GCC diagnostic ignored "-Winvalid-offsetof" // one base, not virtual
 
 constexpr FieldRow described(const char* name, size_t offset) {
-  return {
-      name, FieldType::MFString, Access::exposedField, Change::none, false, uint32_t(offset), {},
-      "",   "Strings."};
+  return {name, FieldType::MFString, Access::exposedField, Change::none, 0, uint32_t(offset), {},
+          "",   "Strings."};
 }
 
 constexpr FieldRow fields[] = {described("url", offsetof(Pictures, url)),

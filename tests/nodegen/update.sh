@@ -2,7 +2,7 @@
 # usage: tests/nodegen/update.sh NODEGEN: rewrites tests/nodegen/expected. Read the differences before you commit them.
 set -eu
 cd "$(dirname "$0")"
-for name in tiny roles; do
+for name in tiny roles x3d; do
   out=$(mktemp -d)
   "$1" --output "$out" --reference "$out/nodes.md" --stub "$out/nodes.pyi" "$name.node"
   mkdir -p "expected/$name"

@@ -260,6 +260,15 @@ def test_list_nodes(vv):
     assert len(nodes) >= 54
     size = next(f for f in nodes["Box"]["fields"] if f["name"] == "size")
     assert (size["type"], size["access"], size["default"]) == ("SFVec3f", "field", "2 2 2")
+    assert "standard" not in size
+    solid = next(f for f in nodes["Box"]["fields"] if f["name"] == "solid")
+    assert solid["standard"] == "ISO/IEC 19775-1"
+    assert (nodes["Box"]["standard"], nodes["Box"]["clause"]) == ("ISO/IEC 14772-1", "6.7")
+    group = nodes["StaticGroup"]
+    assert (group["standard"], group["clause"]) == ("ISO/IEC 19775-1", "10.4.2")
+    assert "standard" not in nodes["ORTSensor"]
+    assert "ISO/IEC 19775-1 clause 10.4.2." in text and "solid         TRUE  # X3D" in " ".join(
+        text.split("\n"))
     vv.write("proto.wrl", HEADER + "PROTO Lamp [ field SFFloat power 2.5 ] { Group { } } Lamp { }")
     data = json.loads(vv("proto.wrl", "--list-nodes", "--json").text)
     assert data["prototypes"][0]["name"] == "Lamp" and data["prototypes"][0]["fields"][0][

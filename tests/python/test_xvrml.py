@@ -71,8 +71,8 @@ def test_sources_that_are_none(tmp_path):
 
 def test_parse_error(tmp_path):
     path = tmp_path / "old.wrl"
-    path.write_text("#VRML V1.0 ascii\nSeparator { }\n")
-    with pytest.raises(xvrml.ParseError, match="VRML 1.0") as caught:
+    path.write_text("#VRML V3.0 utf8\nGroup { }\n")
+    with pytest.raises(xvrml.ParseError, match="not VRML97") as caught:
         xvrml.load(path)
     assert caught.value.file == str(path) and caught.value.line == 1 and caught.value.column >= 1
     assert isinstance(caught.value, ValueError)

@@ -51,11 +51,12 @@ TEST(DynamicNode, HoldsWhatItsTypeDeclares) {
   type->name = "Thing";
   type->index = -1;
   type->fields.push_back(
-      {"go", FieldType::SFBool, Access::eventIn, Change::none, false, 0, {}, {}, "", ""});
+      {"go", FieldType::SFBool, Access::eventIn, Change::none, false, false, 0, {}, {}, "", ""});
   type->fields.push_back({"title",
                           FieldType::SFString,
                           Access::field,
                           Change::none,
+                          false,
                           false,
                           0,
                           std::string("none"),
@@ -66,6 +67,7 @@ TEST(DynamicNode, HoldsWhatItsTypeDeclares) {
                           FieldType::MFVec3f,
                           Access::exposedField,
                           Change::none,
+                          false,
                           false,
                           1,
                           MFVec3f{{1, 2, 3}},

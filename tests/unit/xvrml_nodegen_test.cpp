@@ -91,6 +91,11 @@ TEST_F(Nodegen, AbstractTypesDescribeTheFieldsOfTheirNodes) {
                {"xvrml/nodes.h", "nodes_roles.cpp", "nodes_list.cpp", "nodes.md", "nodes.pyi"});
 }
 
+TEST_F(Nodegen, AComponentOfX3dSaysSo) {
+  expectGolden("x3d",
+               {"xvrml/nodes.h", "nodes_x3d.cpp", "nodes_list.cpp", "nodes.md", "nodes.pyi"});
+}
+
 TEST_F(Nodegen, WhatItWritesCompiles) {
   ASSERT_EQ(
       nodegen(

@@ -38,9 +38,8 @@ TEST(ParserSource, HeadersThatAreNearlyRight) {
 // expected.
 TEST(ParserSource, WhatIsNoWorldIsRefused) {
   const std::pair<std::string, const char*> cases[] = {
-      {"#VRML V1.0 ascii\nSeparator { }", "VRML 1.0"},
-      {"<?xml version='1.0'?><X3D profile='Full'/>", "X3D world (XML encoding)"},
-      {"#Inventor V2.1 ascii\nSeparator { }", "Inventor"},
+      {"<?xml version='1.0'?><svg/>", "#VRML V2.0 utf8"},
+      {"#Inventor V2.1 binary\n", "binary Open Inventor"},
       {"<html></html>", "web page"},
       {"\x89PNG\r\n\x1a\n", "picture"},
       {"%PDF-1.4", "PDF"},

@@ -246,7 +246,7 @@ constexpr FieldRow described(bool holdsUrls) {
           FieldType::MFString,
           Access::field,
           Change::none,
-          holdsUrls,
+          holdsUrls ? fieldHoldsUrls : uint8_t(0),
           offsetof(Described, url),
           {},
           "",

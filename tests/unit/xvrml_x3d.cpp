@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/x3d.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
@@ -109,6 +110,47 @@ TEST(X3d, NothingOfItIsReadInVrml97) {
        {"Switch { children Group { } }", "PROTO P [ inputOnly SFBool b ] { Group { } }",
         "StringSensor { }", "DEF S Script { inputOnly SFBool b }"})
     EXPECT_GT(load(std::string("#VRML V2.0 utf8\n") + text)->diagnostics.errors(), 0u) << text;
+}
+
+// What X3D adds to VRML97 and this library has works in VRML97, too. Other browsers would not know
+// it, so each name is reported once in a file.
+TEST(X3d, NodesAndFieldsOfItWorkInVrml97WithAWarning) {
+  const char* const text =
+      "StaticGroup { children Shape { geometry DEF S Sphere { solid FALSE } } }\n"
+      "StaticGroup { }\nShape { geometry Sphere { solid FALSE } }\n"
+      "PROTO P [ field SFBool solid FALSE ] { Shape { geometry Box { "
+      "solid IS solid } } }";
+  const auto world = load(std::string("#VRML V2.0 utf8\n") + text, "a.wrl");
+  EXPECT_EQ(messagesOf(*world),
+            (Messages{"a.wrl:2:1: warning: 'StaticGroup' is a node of X3D: other browsers of "
+                      "VRML97 do not know it",
+                      "a.wrl:2:56: warning: 'solid' is a field that X3D adds to Sphere: other "
+                      "browsers of VRML97 do not know it",
+                      "a.wrl:5:63: warning: 'solid' is a field that X3D adds to Box: other "
+                      "browsers of VRML97 do not know it"}));
+  ASSERT_EQ(world->scope.roots.size(), 3u);
+  EXPECT_FALSE(nodeCast<nodes::Sphere>(world->scope.names.at("S"))->solid);
+  EXPECT_EQ(messagesOf(*load(std::string("#X3D V3.3 utf8\n") + text)), Messages());
+}
+
+// VRML97 does not know the names of X3D's nodes, so its prototypes may have them.
+TEST(X3d, PrototypesTakeItsNamesInVrml97) {
+  const auto world =
+      load("#VRML V2.0 utf8\nPROTO StaticGroup [ field SFFloat height 2 ] { Group { } }\n"
+           "EXTERNPROTO TriangleSet [ ] \"none.wrl\"\nStaticGroup { height 1 }",
+           "a.wrl");
+  EXPECT_EQ(messagesOf(*world), Messages());
+  ASSERT_EQ(world->scope.roots.size(), 1u);
+  EXPECT_LT(world->scope.roots[0]->type().index, 0);
+}
+
+// The lists of what X3D has and this library lacks name nothing that it has.
+TEST(X3d, NothingThatIsThereIsListedAsMissing) {
+  for (const NodeType* type : nodeTypes()) {
+    EXPECT_FALSE(isX3dNode(type->name)) << type->name;
+    for (const FieldInfo& field : type->fields)
+      EXPECT_FALSE(isX3dField(type->name, field.name)) << type->name << '.' << field.name;
+  }
 }
 
 // A written world is VRML97, whatever it was read from.

@@ -165,9 +165,12 @@ WorldCounts countWorld(const World& world) {
 }
 
 std::string headText(const xvrml::FileHead& head) {
-  std::string text = fmt::format("file        {} {}.{}{}\n", encodingName(head.version.encoding),
-                                 head.version.major, head.version.minor,
-                                 head.profile.empty() ? "" : ", profile " + head.profile);
+  const xvrml::Encoding encoding = head.version.encoding;
+  std::string text = fmt::format("file        {}", encodingName(encoding));
+  if (isMesh(encoding)) text += ", read as X3D";
+  if (encoding != xvrml::Encoding::vrml1) // its name says the version
+    text += fmt::format(" {}.{}", head.version.major, head.version.minor);
+  text += head.profile.empty() ? "\n" : fmt::format(", profile {}\n", head.profile);
   for (const auto& one : head.components)
     text += fmt::format("component   {}:{}\n", one.name, one.level);
   for (const auto& one : head.units)

@@ -84,34 +84,6 @@ Json channelNames(uint32_t channels) {
   return names;
 }
 
-Json typeJson(const xvrml::NodeType& type) {
-  Json fields = Json::array();
-  for (const xvrml::FieldInfo& field : type.fields) {
-    Json one = {{"name", field.name},
-                {"type", fieldTypeName(field.type)},
-                {"access", accessName(field.access)}};
-    if (holdsValue(field)) one["default"] = valueText(field.defaultValue);
-    if (!field.nodeTypes.empty()) one["accepts"] = field.nodeTypes;
-    if (!field.text.empty()) one["text"] = field.text;
-    fields.push_back(std::move(one));
-  }
-  return {{"name", type.name},
-          {"component", type.component},
-          {"text", type.text},
-          {"fields", std::move(fields)}};
-}
-
-std::string typeText(const xvrml::NodeType& type, std::string_view comment) {
-  std::string out = fmt::format("{} {{{}{}\n", type.name, comment.empty() ? "" : " # ", comment);
-  for (const xvrml::FieldInfo& field : type.fields) {
-    std::string line = fmt::format("  {:<12} {:<10} {}", accessName(field.access),
-                                   fieldTypeName(field.type), field.name);
-    if (holdsValue(field)) line = fmt::format("{:<46} {}", line, valueText(field.defaultValue));
-    out += line + "\n";
-  }
-  return out + "}\n";
-}
-
 Json viewpointsJson(const std::vector<xvrml::ViewpointInfo>& viewpoints) {
   Json list = Json::array();
   for (size_t i = 0; i < viewpoints.size(); ++i) {
@@ -395,30 +367,6 @@ std::map<std::string, std::pair<uint64_t, uint64_t>> scriptsByProtocol(const Wor
   return all;
 }
 } // namespace
-
-std::string listNodes(const xvrml::World* world, bool json) {
-  Json list = Json::array(), prototypes = Json::array();
-  std::string text;
-  for (const xvrml::NodeType* type : xvrml::nodeTypes()) {
-    if (json)
-      list.push_back(typeJson(*type));
-    else
-      text += typeText(*type, type->text);
-  }
-  if (world) {
-    for (const xvrml::ProtoPtr& prototype : world->scope.prototypes) {
-      if (json)
-        prototypes.push_back(typeJson(*prototype->type));
-      else
-        text += typeText(*prototype->type, prototype->isExtern ? "EXTERNPROTO of " + world->path
-                                                               : "PROTO of " + world->path);
-    }
-  }
-  if (!json) return text;
-  Json all = {{"nodes", std::move(list)}};
-  if (world) all["prototypes"] = std::move(prototypes);
-  return dump(all);
-}
 
 std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json) {
   if (json) return dump(viewpointsJson(viewpoints));

@@ -51,8 +51,6 @@ class SequenceStats {
 std::string explainWorld(const Options& options, const xvrml::World& world, const RTstats& stats,
                          const std::vector<xvrml::ExplainedObject>& objects);
 
-// world may be null: then only the node types are listed.
-std::string listNodes(const xvrml::World* world, bool json);
 std::string listViewpoints(const std::vector<xvrml::ViewpointInfo>& viewpoints, bool json);
 // The up axis, and why it was chosen; the reason is empty if the axis was given.
 struct UpAxis {

@@ -77,7 +77,7 @@ class Layout {
     for (size_t i = 0; i < lines_.size() && !full_; i++) addLine(i);
     if (mesh_.ownIndices.empty()) return {};
     mesh_.kind = Mesh::Kind::triangles;
-    mesh_.solid = false; // visible from both sides (clause 6.47)
+    mesh_.solid = node_.solid; // always FALSE in VRML97 (6.47)
     mesh_.viewOwn();
     return std::move(mesh_);
   }

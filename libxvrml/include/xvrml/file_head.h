@@ -9,19 +9,29 @@
 
 namespace xvrml {
 
-enum class Encoding : uint8_t { vrml97, x3dClassic, x3dXml };
+enum class Encoding : uint8_t { vrml97, x3dClassic, x3dXml, x3dJson, vrml1, stl, ply, obj, gltf };
+inline constexpr int encodingCount = 9;
 // Returns the name of an encoding as users call it.
 constexpr std::string_view encodingName(Encoding encoding) {
-  constexpr std::string_view names[] = {"VRML97", "X3D ClassicVRML", "X3D XML"};
+  constexpr std::string_view names[encodingCount] = {"VRML97",   "X3D ClassicVRML", "X3D XML",
+                                                     "X3D JSON", "VRML 1.0",        "STL",
+                                                     "PLY",      "Wavefront OBJ",   "glTF"};
   return names[static_cast<size_t>(encoding)];
 }
+// Returns whether a file is a mesh. Its nodes follow X3D 4.0.
+constexpr bool isMesh(Encoding encoding) {
+  return encoding == Encoding::stl || encoding == Encoding::ply || encoding == Encoding::obj ||
+         encoding == Encoding::gltf;
+}
 
-// The encoding and the version of the standard that a file follows. VRML97 is version 2.0, X3D
-// begins with 3.0.
+// The encoding and the version of the standard that a file follows. VRML 1.0 is version 1.0, VRML97
+// is 2.0, X3D begins with 3.0.
 struct FileVersion {
   Encoding encoding = Encoding::vrml97;
   int major = 2, minor = 0;
   bool isX3d() const { return major >= 3; }
+  // Returns whether colour textures multiply diffuseColor. In VRML97 they replace it.
+  bool texturesMultiply() const { return major != 2; }
   bool operator==(const FileVersion&) const = default;
 };
 

@@ -24,6 +24,14 @@ constexpr std::string_view accessName(Access access) {
   return names[static_cast<size_t>(access)];
 }
 
+// The standard that a node type belongs to: none for those of OpenRT, of plug-ins and of worlds.
+enum class Standard : uint8_t { none, vrml97, x3d };
+// Returns the document of a standard: "ISO/IEC 14772-1"; "" for none.
+constexpr std::string_view standardName(Standard standard) {
+  constexpr std::string_view names[] = {"", "ISO/IEC 14772-1", "ISO/IEC 19775-1"};
+  return names[static_cast<size_t>(standard)];
+}
+
 // The kind of scene data that a write to a field invalidates (architecture.md section 2).
 enum class Change : uint8_t {
   none,
@@ -65,7 +73,9 @@ struct FieldInfo {
   Change change;
   // The strings of this MFString are URLs, relative to the node's file. Always false in the type of
   // a prototype: use holdsUrls() of world.h for nodes of any type.
-  bool holdsUrls = false;
+  bool holdsUrls : 1 = false;
+  // X3D adds the field to a node of VRML97. It works in files of VRML97, too, with a warning.
+  bool ofX3d : 1 = false;
   // Static nodes: bytes from the start of the Node. Dynamic nodes: index of the value. Events:
   // unused.
   uint32_t offset;
@@ -85,6 +95,8 @@ inline bool holdsValue(const FieldInfo& field) {
 struct NodeType {
   std::string name;
   int index; // position in the registry's list of static types; -1 for prototypes and scripts
+  // Stands in bytes that were padding, so that node plug-ins made earlier still fit.
+  Standard standard = Standard::none;
   // Roles that the node can take in SFNode and MFNode fields: child, grouping, geometry, appearance
   // ...
   std::vector<std::string> abstract;
@@ -92,7 +104,7 @@ struct NodeType {
   std::string text;
   std::vector<FieldInfo> fields;
   Node* (*create)(const NodeType& type);
-  std::string clause; // clause of ISO/IEC 14772-1, "6.6"; empty: not a standard node
+  std::string clause; // clause of the standard, "6.6"; empty: not a standard node
   // Returns the nodes that a plug-in's node stands for (xvrml/node_plugin.h). Null: the node itself
   // is rendered.
   NodeRef (*expand)(const Node& node) = nullptr;

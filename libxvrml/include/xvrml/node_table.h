@@ -9,20 +9,25 @@
 
 namespace xvrml {
 
+// What FieldRow::words can say, joined by |. The bits never change: plug-ins have them compiled in.
+inline constexpr uint8_t fieldHoldsUrls = 1; // `urls`; plug-ins before minor 1 never say it
+inline constexpr uint8_t fieldOfX3d = 2;     // `x3d`; plug-ins before minor 2 never say it
+
 // FieldInfo as a constant. The default is left out: a new node holds it.
 struct FieldRow {
   const char* name;
   FieldType type;
   Access access;
   Change change;
-  bool holdsUrls; // stands in a byte that was padding; plug-ins before minor 1 have false here
+  uint8_t words; // stands in a byte that was padding
   uint32_t offset;
   FieldRange range;
   const char* nodeTypes;
   const char* text;
 };
 
-// NodeType as a constant. `roles` are separated by blanks.
+// NodeType as a constant. `roles` are separated by blanks. The clause of a node of X3D begins with
+// "X3D ", because a member for the standard would make plug-ins of minor 1 unusable.
 struct NodeRow {
   const char* name;
   const char* roles;

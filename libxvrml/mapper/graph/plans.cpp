@@ -18,6 +18,9 @@ void group(Plan& plan, const MFNode& children) {
 void planGroup(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::Group&>(node).children);
 }
+void planStaticGroup(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::StaticGroup&>(node).children);
+}
 void planAnchor(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::Anchor&>(node).children);
 }
@@ -110,6 +113,7 @@ std::vector<PlanFunction>& table() {
       t[size_t(index)] = plan;
     };
     set(nodes::Group::typeIndex, planGroup);
+    set(nodes::StaticGroup::typeIndex, planStaticGroup);
     set(nodes::Anchor::typeIndex, planAnchor);
     set(nodes::Collision::typeIndex, planCollision);
     set(nodes::Transform::typeIndex, planTransform);

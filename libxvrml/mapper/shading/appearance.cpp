@@ -212,9 +212,10 @@ void Surfaces::makeSurface(Entry& entry) {
   }
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
-  // In X3D a colour texture always multiplies diffuseColor (ISO/IEC 19775-1 17.2.2.3).
+  // In X3D and in VRML 1.0 a colour texture always multiplies diffuseColor (ISO/IEC 19775-1
+  // 17.2.2.3).
   const bool multiplies =
-      multiplyTextures || (entry.appearance && versionOf(*entry.appearance).isX3d());
+      multiplyTextures || (entry.appearance && versionOf(*entry.appearance).texturesMultiply());
   const bool first = entry.own == 0 && !entry.shared;
   if (entry.shared || (first && mayShare(entry))) {
     const std::string key = keyOf(parts, texture, linear_, multiplies);

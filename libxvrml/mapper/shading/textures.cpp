@@ -4,6 +4,8 @@
 #include <exception>
 #include <stdexcept>
 
+#include "base/data_url.h"
+#include "base/locator.h"
 #include "image/decoders.h"
 #include "xvrml/media.h"
 #include "xvrml/nodes.h"
@@ -112,11 +114,13 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool
   const std::string& base = node.source.file ? *node.source.file : world_.path;
   std::string error;
   for (const std::string& url : urls) {
-    const ResolvedUrl resolved = resolveUrl(url, base, world_.options);
+    const ResolvedUrl resolved =
+        isDataUrl(url) ? ResolvedUrl{url, {}, {}} : resolveUrl(url, base, world_.options);
     std::string why = resolved.error;
     if (why.empty())
       if (const RTid id = ofFile(resolved.path, repeatS, repeatT, why)) return id;
-    if (error.empty()) error = why.find(url) == std::string::npos ? url + ": " + why : why;
+    if (error.empty())
+      error = why.find(url) == std::string::npos ? shortened(url) + ": " + why : why;
   }
   if (urls.empty()) return 0;
   ++missing_;

@@ -83,7 +83,7 @@ TEST(Recovery, AScriptWithAnExposedFieldRunsAndHasItAsAField) {
 }
 
 TEST(Recovery, AScriptWithADeclarationOfAnUnknownTypeRunsWithoutIt) {
-  Scripted r("DEF S Script { field SFVec4f v 1 2 3 4 field MFDouble d [ 1 2 ] eventOut SFDouble o "
+  Scripted r("DEF S Script { field SFVec5f v 1 2 3 4 5 field MFLong d [ 1 2 ] eventOut SFLong o "
              "field SFInt32 n 20 eventIn SFInt32 a eventOut SFInt32 b url \"test:a: add n b\" } "
              "DEF W Switch {} ROUTE S.b TO W.whichChoice");
   EXPECT_EQ(errors(r), 3u);

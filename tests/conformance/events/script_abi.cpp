@@ -84,7 +84,7 @@ TEST(ScriptAbi, RefusalsNameWhatIsWrong) {
               p.major = 7;
               p.minor = 3;
             }),
-            "script library abc.so: made for script ABI 7.3; this library has 1.1");
+            "script library abc.so: made for script ABI 7.3; this library has 1.2");
   EXPECT_TRUE(has(refusal([](XsPlugin& p, XsEngine&) { p.magic = 1; }), "wrong magic number"));
   EXPECT_TRUE(
       has(refusal([](XsPlugin& p, XsEngine&) { p.size += 8; }), "claims a plug-in structure of"));

@@ -1,0 +1,74 @@
+// data_url.cpp: decodes data: URLs, whose bytes stand in the URL itself.
+#include "base/data_url.h"
+
+#include <fmt/format.h>
+
+namespace xvrml {
+namespace {
+
+int hexDigit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+} // namespace
+
+bool isDataUrl(std::string_view url) {
+  constexpr std::string_view scheme = "data:";
+  if (url.size() < scheme.size()) return false;
+  for (size_t i = 0; i < scheme.size(); ++i)
+    if ((url[i] >= 'A' && url[i] <= 'Z' ? char(url[i] + 32) : url[i]) != scheme[i]) return false;
+  return true;
+}
+
+// "data:[type][;parameter]...[;base64],bytes"
+bool decodeDataUrl(std::string_view url, uint64_t most, DataUrl& out, std::string& why) {
+  const size_t comma = url.find(',');
+  if (!isDataUrl(url) || comma == url.npos) {
+    why = "this is not a data: URL";
+    return false;
+  }
+  std::string_view head = url.substr(5, comma - 5), body = url.substr(comma + 1);
+  out.bytes.clear();
+  out.type.clear();
+  for (const char c : head.substr(0, head.find(';')))
+    out.type += c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  if (body.size() > 3 * most) {
+    why = fmt::format("a data: URL of more than {} bytes", most);
+    return false;
+  }
+  if (!head.ends_with(";base64")) {
+    for (size_t i = 0; i < body.size(); ++i) { // here %00 is a byte like any other
+      const int high = body[i] == '%' && i + 2 < body.size() ? hexDigit(body[i + 1]) : -1;
+      const int low = high >= 0 ? hexDigit(body[i + 2]) : -1;
+      out.bytes += low >= 0 ? char(high * 16 + low) : body[i];
+      if (low >= 0) i += 2;
+    }
+  } else {
+    constexpr std::string_view digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    uint32_t bits = 0;
+    int count = 0;
+    for (const char c : body) {
+      if (c == '=' || c == ' ' || c == '\t' || c == '\r' || c == '\n') continue;
+      const size_t digit = digits.find(c);
+      if (digit == digits.npos) {
+        why = "a data: URL that is not base64";
+        return false;
+      }
+      bits = bits << 6 | uint32_t(digit);
+      if ((count += 6) < 8) continue;
+      count -= 8;
+      out.bytes += char(bits >> count & 0xff);
+    }
+  }
+  if (out.bytes.size() > most) {
+    why = fmt::format("a data: URL of more than {} bytes", most);
+    return false;
+  }
+  return true;
+}
+
+} // namespace xvrml

@@ -1,0 +1,178 @@
+// json_index.cpp: makes the index from the events of nlohmann's parser, which is not recursive.
+#include "parse/json_index.h"
+
+#include <cstddef>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "parse/parser.h"
+
+namespace xvrml {
+namespace {
+
+// An iterator whose copies share one position, so that the events know where the parser is.
+class SharedPosition {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+  explicit SharedPosition(const char** position) : position_(position) {}
+  reference operator*() const { return **position_; }
+  SharedPosition& operator++() {
+    ++*position_;
+    return *this;
+  }
+  bool operator==(const SharedPosition& other) const { return *position_ == *other.position_; }
+  bool operator!=(const SharedPosition& other) const { return !(*this == other); }
+
+ private:
+  const char** position_;
+};
+
+// A node takes at most three levels: its object, that of its type, and the list of its children.
+constexpr size_t deepest = 3 * Parser::maximumNesting + 100;
+
+} // namespace
+
+class JsonIndex::Reader : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  Reader(Locator& locator, JsonIndex& index)
+      : locator_(locator), index_(index), end_(locator.text().data() + locator.text().size()),
+        position_(locator.text().data()), done_(position_) {}
+
+  void read() {
+    nlohmann::json::sax_parse(SharedPosition(&position_), SharedPosition(&end_), this);
+    while (!open_.empty()) { // after an error
+      index_.values_[open_.back()].complete = false;
+      leave();
+    }
+  }
+
+  bool null() override { return single(Value::Kind::other, false); }
+  bool boolean(bool) override { return single(Value::Kind::other, false); }
+  bool number_integer(number_integer_t) override { return single(Value::Kind::other, true); }
+  bool number_unsigned(number_unsigned_t) override { return single(Value::Kind::other, true); }
+  bool number_float(number_float_t, const string_t&) override {
+    return single(Value::Kind::other, true);
+  }
+  bool string(string_t&) override {
+    if (inArray()) index_.values_[open_.back()].hasStrings = true;
+    return single(Value::Kind::string, false);
+  }
+  bool binary(binary_t&) override { return false; } // JSON has none
+  bool start_object(size_t) override { return enter(Value::Kind::object); }
+  bool key(string_t&) override {
+    const char* const first = tokenStart();
+    key_ = {first + 1, static_cast<size_t>(position_ - first - 2)};
+    done_ = position_;
+    return true;
+  }
+  bool end_object() override { return leave(); }
+  bool start_array(size_t) override { return enter(Value::Kind::array); }
+  bool end_array() override { return leave(); }
+  bool parse_error(size_t, const std::string&, const nlohmann::detail::exception& error) override {
+    std::string_view text = error.what();
+    if (const size_t what = text.find("syntax error"); what != text.npos)
+      text.remove_prefix(what);
+    else if (const size_t behind = text.find("] "); behind != text.npos)
+      text.remove_prefix(behind + 2);
+    locator_.error(position_, fmt::format("this is not well-formed JSON: {}; what follows is left "
+                                          "out",
+                                          text.substr(0, 160)));
+    return false;
+  }
+
+ private:
+  bool inArray() const {
+    return !open_.empty() && index_.values_[open_.back()].kind == Value::Kind::array;
+  }
+
+  // Returns where the token that was just read begins: only separators stand before it.
+  const char* tokenStart() const {
+    const char* p = done_;
+    while (p < end_ &&
+           (*p == ' ' || *p == '\t' || *p == '\r' || *p == '\n' || *p == ',' || *p == ':'))
+      ++p;
+    return p;
+  }
+
+  bool add(Value::Kind kind, const char* end) {
+    if (!index_.share_.take(sizeof(Value))) {
+      locator_.error(position_, fmt::format("the index of this file takes, together with the rest "
+                                            "of the world, more than {}; what follows is left out",
+                                            index_.share_.budget()->name()));
+      return false;
+    }
+    const char* const first = tokenStart();
+    Value value;
+    value.kind = kind;
+    value.key = inArray() ? std::string_view() : std::exchange(key_, {});
+    value.text = {first, static_cast<size_t>(end - first)};
+    index_.values_.push_back(value);
+    index_.values_.back().next = index_.values_.size();
+    return true;
+  }
+
+  // The parser reads one character behind a number.
+  bool single(Value::Kind kind, bool number) {
+    const char* const end = number && position_ < end_ ? position_ - 1 : position_;
+    const bool good = (inArray() && kind == Value::Kind::other) || add(kind, end);
+    done_ = end;
+    return good;
+  }
+
+  bool enter(Value::Kind kind) {
+    if (open_.size() >= deepest) {
+      locator_.error(position_ - 1, fmt::format("objects and lists nested deeper than {}; what "
+                                                "follows is left out",
+                                                deepest));
+      return false;
+    }
+    if (!add(kind, position_)) return false;
+    open_.push_back(index_.values_.size() - 1);
+    done_ = position_;
+    return true;
+  }
+
+  bool leave() {
+    Value& value = index_.values_[open_.back()];
+    open_.pop_back();
+    value.text = {value.text.data(), static_cast<size_t>(position_ - value.text.data())};
+    value.next = index_.values_.size();
+    done_ = position_;
+    return true;
+  }
+
+  Locator& locator_;
+  JsonIndex& index_;
+  const char* end_;
+  const char* position_; // behind the last character that the parser has read
+  const char* done_;     // behind the last token
+  std::string_view key_;
+  std::vector<size_t> open_; // the objects and arrays around the token
+};
+
+JsonIndex::JsonIndex(Locator& locator, const BudgetPtr& budget) : share_(budget) {
+  Reader(locator, *this).read();
+}
+
+std::string JsonIndex::decoded(const Value& string) const {
+  if (string.text.find('\\') == string.text.npos)
+    return std::string(string.text.substr(1, string.text.size() - 2));
+  return nlohmann::json::parse(string.text).get<std::string>();
+}
+
+std::vector<std::string> JsonIndex::strings(const Value& array) const {
+  std::vector<std::string> result;
+  eachWithin(static_cast<size_t>(&array - values_.data()), [&](size_t i) {
+    if (values_[i].kind == Value::Kind::string) result.push_back(decoded(values_[i]));
+  });
+  return result;
+}
+
+} // namespace xvrml

@@ -1,0 +1,302 @@
+// materials.cpp: PhysicalMaterial, UnlitMaterial and ImageTexture of glTF's materials.
+#include "parse/mesh/gltf/materials.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "parse/mesh/gltf/base64.h"
+
+namespace xvrml::gltf {
+namespace {
+
+Color colorOf(const std::vector<double>& numbers, Color fallback) {
+  if (numbers.size() < 3) return fallback;
+  const auto part = [&](size_t i) { return float(std::clamp(numbers[i], 0.0, 1.0)); };
+  return {part(0), part(1), part(2)};
+}
+
+// KHR_materials_pbrSpecularGlossiness, which older programs write beside or instead of the
+// metallic-roughness model.
+Item glossiness(const Item& material) {
+  return material.extension("KHR_materials_pbrSpecularGlossiness");
+}
+
+bool usesGlossiness(const Item& material) {
+  return !material.has("pbrMetallicRoughness") && glossiness(material);
+}
+
+std::vector<double> baseFactor(const Item& material) {
+  return usesGlossiness(material)
+             ? glossiness(material).numbers("diffuseFactor", 4)
+             : material.object("pbrMetallicRoughness").numbers("baseColorFactor", 4);
+}
+
+TexCoordUse useOf(const Item& texture) {
+  TexCoordUse use;
+  use.set = size_t(texture.count("texCoord", 0));
+  const Item transform = texture.extension("KHR_texture_transform");
+  if (!transform) return use;
+  use.set = size_t(transform.count("texCoord", use.set));
+  const auto offset = transform.numbers("offset", 2), scale = transform.numbers("scale", 2);
+  if (!offset.empty()) std::copy(offset.begin(), offset.end(), use.offset);
+  if (!scale.empty()) std::copy(scale.begin(), scale.end(), use.scale);
+  use.rotation = transform.number("rotation", 0);
+  return use;
+}
+
+float inUnit(double value) { return float(std::clamp(value, 0.0, 1.0)); }
+
+} // namespace
+
+Materials::Materials(const MeshFile& file, NodeStream& nodes, const Item& root,
+                     Accessors& accessors)
+    : file_(file), nodes_(nodes), accessors_(accessors), materials_(root.list("materials")),
+      textures_(root.list("textures")), images_(root.list("images")),
+      samplers_(root.list("samplers")), surfaces_(materials_.size()) {}
+
+bool Materials::isDoubleSided(std::optional<size_t> material) const {
+  return material && materials_[*material].boolean("doubleSided", false);
+}
+
+bool Materials::isUnlit(const Item& material) const {
+  return bool(material.extension("KHR_materials_unlit"));
+}
+
+std::string Materials::mappingName(size_t texCoordUse) { return fmt::format("UV{}", texCoordUse); }
+
+// The pictures of a material, with the fields of PhysicalMaterial that show them.
+std::vector<Materials::Picture> Materials::picturesOf(const Item& material) const {
+  const Item pbr = material.object("pbrMetallicRoughness");
+  std::vector<Picture> all = {{"baseTexture", usesGlossiness(material)
+                                                  ? glossiness(material).object("diffuseTexture")
+                                                  : pbr.object("baseColorTexture")},
+                              {"metallicRoughnessTexture", pbr.object("metallicRoughnessTexture")},
+                              {"normalTexture", material.object("normalTexture")},
+                              {"occlusionTexture", material.object("occlusionTexture")},
+                              {"emissiveTexture", material.object("emissiveTexture")}};
+  std::erase_if(all, [](const Picture& picture) { return !picture.texture; });
+  return all;
+}
+
+std::vector<TexCoordUse> Materials::texCoords(std::optional<size_t> material) const {
+  return material ? texCoordsOf(materials_[*material]) : std::vector<TexCoordUse>();
+}
+
+std::vector<TexCoordUse> Materials::texCoordsOf(const Item& material) const {
+  std::vector<TexCoordUse> uses;
+  for (const Picture& picture : picturesOf(material)) {
+    const TexCoordUse use = useOf(picture.texture);
+    if (std::find(uses.begin(), uses.end(), use) == uses.end()) uses.push_back(use);
+  }
+  return uses;
+}
+
+Color Materials::baseColor(std::optional<size_t> material) const {
+  return material ? baseColor(materials_[*material]) : Color{1, 1, 1};
+}
+
+Color Materials::baseColor(const Item& material) const {
+  return colorOf(baseFactor(material), {1, 1, 1});
+}
+
+bool Materials::hasPhysical() const {
+  return nodes_.knows("PhysicalMaterial") && nodes_.knows("UnlitMaterial");
+}
+
+void Materials::writeSurface(std::optional<size_t> material) {
+  if (!material && !hasPhysical()) {
+    nodes_.openIn("appearance", "Appearance");
+    nodes_.openIn("material", "Material");
+    nodes_.closeIn();
+    nodes_.closeIn();
+    return;
+  }
+  if (!material) { // the defaults of both standards are the same (glTF 2.0, 3.9.6)
+    nodes_.openIn("appearance", "Appearance");
+    nodes_.openIn("material", "PhysicalMaterial");
+    nodes_.closeIn();
+    nodes_.closeIn();
+    return;
+  }
+  std::string_view& def = surfaces_[*material];
+  if (!def.empty()) return nodes_.useIn("appearance", def);
+  const Item& item = materials_[*material];
+  def = nodes_.define(item.text("name"), "Material");
+  nodes_.openIn("appearance", "Appearance", def);
+  writeAppearance(item);
+  nodes_.closeIn();
+}
+
+void Materials::writeAppearance(const Item& material) {
+  if (!hasPhysical())
+    writePhong(material);
+  else
+    isUnlit(material) ? writeFlat(material) : writePhysical(material);
+  writeAlpha(material);
+  warnOfExtensions(material);
+}
+
+// The nearest that VRML97 has: the base colour with its picture. Metals, which have no diffuse
+// reflection, become coloured surfaces.
+void Materials::writePhong(const Item& material) {
+  if (!isUnlit(material)) {
+    nodes_.openIn("material", "Material");
+    nodes_.set("diffuseColor", baseColor(material));
+    nodes_.set("emissiveColor", emissionOf(material));
+    nodes_.set("transparency", transparencyOf(material));
+    nodes_.closeIn();
+  } else if (!material.object("pbrMetallicRoughness").has("baseColorTexture")) {
+    nodes_.openIn("material", "Material");
+    nodes_.set("diffuseColor", Color{0, 0, 0});
+    nodes_.set("emissiveColor", baseColor(material));
+    nodes_.set("transparency", transparencyOf(material));
+    nodes_.closeIn();
+  }
+  for (const Picture& picture : picturesOf(material))
+    if (picture.field == "baseTexture") writePicture(material, {"texture", picture.texture});
+}
+
+void Materials::writeUnlit(std::optional<size_t> material) {
+  nodes_.openIn("appearance", "Appearance");
+  nodes_.openIn("material", hasPhysical() ? "UnlitMaterial" : "Material");
+  nodes_.set("emissiveColor", baseColor(material));
+  if (material) nodes_.set("transparency", transparencyOf(materials_[*material]));
+  nodes_.closeIn();
+  nodes_.closeIn();
+}
+
+float Materials::transparencyOf(const Item& material) const {
+  const std::string mode = material.text("alphaMode");
+  if (mode != "BLEND" && mode != "MASK") return 0;
+  const std::vector<double> factor = baseFactor(material);
+  return factor.empty() ? 0 : inUnit(1 - factor[3]);
+}
+
+void Materials::writeAlpha(const Item& material) {
+  if (!nodes_.knows("Appearance", "alphaMode")) return;
+  const std::string mode = material.text("alphaMode");
+  const bool known = mode == "MASK" || mode == "BLEND";
+  nodes_.set("alphaMode", known ? mode : std::string("OPAQUE"));
+  if (mode == "MASK") nodes_.set("alphaCutoff", inUnit(material.number("alphaCutoff", 0.5)));
+}
+
+// KHR_materials_emissive_strength multiplies. Fields of colours end at 1.
+Color Materials::emissionOf(const Item& material) {
+  const Color factor = colorOf(material.numbers("emissiveFactor", 3), {0, 0, 0});
+  const double strength =
+      material.extension("KHR_materials_emissive_strength").number("emissiveStrength", 1);
+  const auto part = [&](float value) { return inUnit(double(value) * strength); };
+  return {part(factor.r), part(factor.g), part(factor.b)};
+}
+
+void Materials::writePhysical(const Item& material) {
+  const Item pbr = material.object("pbrMetallicRoughness");
+  nodes_.openIn("material", "PhysicalMaterial");
+  nodes_.set("baseColor", colorOf(baseFactor(material), {1, 1, 1}));
+  const bool glossy = usesGlossiness(material);
+  nodes_.set("metallic", glossy ? 0.0f : inUnit(pbr.number("metallicFactor", 1)));
+  nodes_.set("roughness", glossy ? inUnit(1 - glossiness(material).number("glossinessFactor", 1))
+                                 : inUnit(pbr.number("roughnessFactor", 1)));
+  nodes_.set("emissiveColor", emissionOf(material));
+  nodes_.set("transparency", transparencyOf(material));
+  if (const Item normal = material.object("normalTexture"))
+    nodes_.set("normalScale", float(std::max(0.0, normal.number("scale", 1))));
+  if (const Item occlusion = material.object("occlusionTexture"))
+    nodes_.set("occlusionStrength", inUnit(occlusion.number("strength", 1)));
+  writePictures(material, {"baseTexture", "metallicRoughnessTexture", "normalTexture",
+                           "occlusionTexture", "emissiveTexture"});
+  nodes_.closeIn();
+}
+
+// KHR_materials_unlit: the base colour is what is seen.
+void Materials::writeFlat(const Item& material) {
+  nodes_.openIn("material", "UnlitMaterial");
+  nodes_.set("emissiveColor", colorOf(baseFactor(material), {1, 1, 1}));
+  nodes_.set("transparency", transparencyOf(material));
+  writePictures(material, {"baseTexture"});
+  nodes_.closeIn();
+}
+
+void Materials::writePictures(const Item& material,
+                              std::initializer_list<std::string_view> fields) {
+  for (const Picture& picture : picturesOf(material))
+    if (std::find(fields.begin(), fields.end(), picture.field) != fields.end())
+      writePicture(material, picture);
+}
+
+void Materials::writePicture(const Item& material, const Picture& picture) {
+  const auto number = picture.texture.index("index", textures_.size());
+  if (!number) return;
+  const Item& texture = textures_[*number];
+  const bool flat = hasPhysical() && isUnlit(material);
+  const std::string_view field = flat ? "emissiveTexture" : picture.field;
+  const std::string url = urlOf(texture);
+  if (url.empty()) return;
+  // A texture that several materials show is one node.
+  const std::string key = fmt::format("{}", *number);
+  if (const auto known = shared_.find(key); known != shared_.end()) {
+    nodes_.useIn(field, known->second);
+  } else {
+    const std::string_view def = nodes_.define(texture.text("name"), "Texture");
+    shared_.emplace(key, def);
+    nodes_.openIn(field, "ImageTexture", def);
+    nodes_.setUrl(url);
+    writeSampler(texture);
+    nodes_.closeIn();
+  }
+  const std::vector<TexCoordUse> uses = texCoordsOf(material);
+  if (uses.size() < 2) return;
+  const auto use = std::find(uses.begin(), uses.end(), useOf(picture.texture));
+  constexpr std::pair<std::string_view, std::string_view> mappings[] = {
+      {"baseTexture", "baseTextureMapping"},
+      {"metallicRoughnessTexture", "metallicRoughnessTextureMapping"},
+      {"normalTexture", "normalTextureMapping"},
+      {"occlusionTexture", "occlusionTextureMapping"},
+      {"emissiveTexture", "emissiveTextureMapping"}};
+  for (const auto& [of, mapping] : mappings)
+    if (of == field) nodes_.set(mapping, mappingName(size_t(use - uses.begin())));
+}
+
+// Pictures in other files keep their URL. Those in the file become data: URLs.
+std::string Materials::urlOf(const Item& texture) {
+  size_t number = 0;
+  if (const auto source = texture.index("source", images_.size())) {
+    number = *source;
+  } else {
+    texture.warn("the texture has no picture that can be read (PNG or JPEG)");
+    return {};
+  }
+  const Item& image = images_[number];
+  if (const std::string* uri = image.longText("uri")) return *uri;
+  const auto view = image.index("bufferView", accessors_.viewCount());
+  const std::string_view bytes = view ? accessors_.viewBytes(*view) : std::string_view();
+  if (bytes.empty()) return {};
+  std::string url = "data:" + image.text("mimeType") + ";base64,";
+  Scratch scratch(file_.budget);
+  scratch.take(bytes.size() / 3 * 4 + 4);
+  appendBase64(bytes, url);
+  return url;
+}
+
+void Materials::writeSampler(const Item& texture) {
+  constexpr uint64_t clampToEdge = 33071;
+  const auto number = texture.index("sampler", samplers_.size());
+  if (!number) return;
+  const Item& sampler = samplers_[*number];
+  if (sampler.count("wrapS", 0) == clampToEdge) nodes_.set("repeatS", false);
+  if (sampler.count("wrapT", 0) == clampToEdge) nodes_.set("repeatT", false);
+}
+
+void Materials::warnOfExtensions(const Item& material) {
+  constexpr std::string_view known[] = {"KHR_materials_unlit", "KHR_materials_emissive_strength",
+                                        "KHR_materials_pbrSpecularGlossiness"};
+  for (const std::string& name : material.object("extensions").keys()) {
+    if (std::find(std::begin(known), std::end(known), name) != std::end(known)) continue;
+    if (warned_.emplace(name, true).second)
+      material.warn(fmt::format("{} is not supported: it is left out here and below", name));
+  }
+}
+
+} // namespace xvrml::gltf

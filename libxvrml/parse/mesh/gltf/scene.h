@@ -1,0 +1,68 @@
+// scene.h: the nodes of a glTF file (glTF 2.0, 3.5) as Transforms with what they hold: meshes,
+// cameras, lights, skins. [the thread that loads]
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "parse/mesh/gltf/primitives.h"
+
+namespace xvrml::gltf {
+
+class Scene {
+ public:
+  Scene(const MeshFile& file, NodeStream& nodes, const Item& root, Accessors& accessors);
+
+  // Writes the scenes: the default one, or a Switch of all.
+  void write();
+
+  // For the animations.
+  size_t size() const { return nodes_.size(); }
+  // DEF name of a node's Transform; empty: it is in no scene.
+  std::string_view defOf(size_t node) const { return defs_[node]; }
+  bool isJoint(size_t node) const { return isJoint_[node]; }
+  const std::vector<Primitives::Morph>* morphsOf(size_t node) const;
+
+ private:
+  void findParents();
+  void findAnimated(const Item& root);
+  std::vector<size_t> rootsOf(const Item& scene) const;
+  void writeRoots(const std::vector<size_t>& roots);
+  void writeNode(size_t node, uint64_t depth);
+  void writePlace(const Item& node);
+  void writeMesh(size_t node);
+  void writeSkinned();
+  std::vector<double> weightsOf(const Item& node) const;
+  std::vector<Imath::M44d> jointsOf(size_t skin);
+  Imath::M44d matrixOf(const Item& node) const;
+  Imath::M44d worldMatrix(size_t node) const;
+
+  const MeshFile& file_;
+  NodeStream& out_;
+  Accessors& accessors_;
+  Materials materials_;
+  Primitives primitives_;
+  std::vector<Item> nodes_, scenes_, cameras_, lights_, skins_;
+  std::optional<size_t> scene_;
+  std::vector<std::vector<size_t>> children_;
+  std::vector<size_t> parents_; // size(): none
+  std::vector<std::string_view> defs_;
+  std::vector<bool> isJoint_, hasMorphAnimation_, inThisScene_;
+  std::vector<size_t> skinned_; // nodes of this scene whose mesh has a skin
+  std::map<size_t, std::vector<Primitives::Morph>> morphs_;
+};
+
+// The lights of KHR_lights_punctual and the cameras, into the open list of nodes. They look along
+// -z of the node that holds them.
+void writeLight(NodeStream& out, const Item& light);
+void writeCamera(NodeStream& out, const Item& camera);
+
+// Returns the angle and axis of a quaternion x y z w; no rotation if it has no length.
+Rotation rotationOf(double x, double y, double z, double w);
+
+// Writes the animations as TimeSensors, interpolators and routes, after the scenes.
+void writeAnimations(const MeshFile& file, NodeStream& out, const Item& root, Accessors& accessors,
+                     const Scene& scene);
+
+} // namespace xvrml::gltf

@@ -1,0 +1,87 @@
+// views.cpp: cameras (glTF 2.0, 3.10) as Viewpoint and OrthoViewpoint, and the lights of
+// KHR_lights_punctual.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "parse/mesh/gltf/scene.h"
+
+namespace xvrml::gltf {
+
+// fieldOfView is the angle of the smaller side of the picture (ISO/IEC 19775-1 23.4.6). yfov is
+// that of the height, which is the smaller side unless aspectRatio is below 1.
+static float fieldOfView(const Item& perspective) {
+  const double y = std::clamp(perspective.number("yfov", 0.8), 0.01, 3.0);
+  const double aspect = perspective.number("aspectRatio", 1);
+  if (!(aspect > 0 && aspect < 1)) return float(y);
+  return float(2 * std::atan(aspect * std::tan(y / 2)));
+}
+
+void writeCamera(NodeStream& out, const Item& camera) {
+  if (!camera) return;
+  const std::string name = camera.text("name");
+  const bool ortho = camera.text("type") == "orthographic";
+  if (ortho && !out.knows("OrthoViewpoint"))
+    camera.warn("orthographic cameras are not supported: a perspective one stands for it");
+  const bool parallel = ortho && out.knows("OrthoViewpoint");
+  out.open(parallel ? "OrthoViewpoint" : "Viewpoint", out.define(name, "Camera"));
+  out.set("description", name.empty() ? std::string("Camera") : name);
+  out.set("position", Vec3f{0, 0, 0});
+  if (parallel) {
+    const Item size = camera.object("orthographic");
+    const float x = float(std::abs(size.number("xmag", 1))),
+                y = float(std::abs(size.number("ymag", 1)));
+    out.set("fieldOfView", MFFloat{-x, -y, x, y});
+  } else if (!ortho) {
+    out.set("fieldOfView", fieldOfView(camera.object("perspective")));
+  }
+  out.close();
+}
+
+static Color lightColor(const Item& light) {
+  const auto rgb = light.numbers("color", 3);
+  if (rgb.empty()) return {1, 1, 1};
+  const auto part = [&](size_t i) { return float(std::clamp(rgb[i], 0.0, 1.0)); };
+  return {part(0), part(1), part(2)};
+}
+
+// glTF's matt surfaces reflect 1/pi of the light, those of VRML and X3D all of it; so candela and
+// lux are divided by pi. Where a lamp may not be as strong as it should, a placed one gets a
+// smaller attenuation: it is the same light from the distance on at which a white surface is white.
+static void writeIntensity(NodeStream& out, const Item& light, std::string_view type) {
+  const bool placed = type != "DirectionalLight";
+  const double intensity = std::max(0.0, light.number("intensity", 1)) / std::numbers::pi;
+  const double most = out.maximum(type, "intensity");
+  out.set("intensity", float(std::min(intensity, most)));
+  if (!placed) return;
+  const double falloff = intensity > most ? most / intensity : 1;
+  out.set("attenuation", Vec3f{0, 0, float(falloff)});
+}
+
+// Light decreases with the square of the distance. `range` ends it; without one it never ends.
+void writeLight(NodeStream& out, const Item& light) {
+  if (!light) return;
+  const std::string type = light.text("type"), name = light.text("name");
+  const bool spot = type == "spot";
+  if (!spot && type != "point" && type != "directional")
+    return light.error("the light has no type that is known (directional, point, spot)");
+  const bool placed = type != "directional";
+  const std::string_view node = spot ? "SpotLight" : placed ? "PointLight" : "DirectionalLight";
+  out.open(node, out.define(name, "Light"));
+  out.set("color", lightColor(light));
+  writeIntensity(out, light, node);
+  if (placed)
+    out.set("radius", float(light.has("range") ? std::max(0.0, light.number("range", 1)) : 1e9));
+  if (out.knows(node, "global")) out.set("global", true);
+  if (spot) {
+    const Item cone = light.object("spot");
+    const double half = std::numbers::pi / 2;
+    const double outer = std::clamp(cone.number("outerConeAngle", half / 2), 1e-3, half);
+    const double inner = std::clamp(cone.number("innerConeAngle", 0), 1e-3, outer);
+    out.set("cutOffAngle", float(outer));
+    out.set("beamWidth", float(inner));
+  }
+  out.close();
+}
+
+} // namespace xvrml::gltf

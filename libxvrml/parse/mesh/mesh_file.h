@@ -1,0 +1,82 @@
+// mesh_file.h: the readers of meshes (STL, PLY, OBJ, glTF) and what they share. A reader turns the
+// bytes of a file into calls of a ParseSink, as the parser of VRML97 does, so that names, limits
+// and messages are those of any world. [the thread that loads]
+#pragma once
+
+#include <deque>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "base/budget.h"
+#include "base/locator.h"
+#include "parse/sink.h"
+#include "xvrml/file_head.h"
+#include "xvrml/world.h"
+
+namespace xvrml {
+
+// A file that is being read, and where its nodes go.
+struct MeshFile {
+  std::string_view bytes;
+  const std::string& path; // relative URLs count from it
+  Locator& locator;
+  ParseSink& sink;
+  const LoadOptions& options;
+  BudgetPtr budget;
+  std::deque<std::string>& names; // DEF names; they live as long as the sink
+};
+
+// The reason why the rest of a file cannot be read. readMesh() reports it.
+struct MeshFault {
+  const char* at; // null: the file as a whole
+  std::string message;
+};
+
+// Memory that a reader needs while it reads.
+class Scratch {
+ public:
+  explicit Scratch(const BudgetPtr& budget) : share_(budget) {}
+  // Reserves bytes of the world's budget before they are allocated. Throws MeshFault if not enough
+  // are left.
+  void take(uint64_t bytes);
+
+ private:
+  Share share_;
+};
+
+// Counts faults of one kind, to report them once: at the first one.
+class FaultCount {
+ public:
+  void add(const char* at) {
+    if (count_++ == 0) first_ = at;
+  }
+  // Reports "3 MESSAGE; the first one is here". Nothing if there were none.
+  void report(Locator& locator, Severity severity, std::string_view message) const;
+
+ private:
+  uint64_t count_ = 0;
+  const char* first_ = nullptr;
+};
+
+// Recognises a mesh by its content: the signatures and grammars of the formats.
+bool isBinaryStl(std::string_view bytes);
+bool isAsciiStl(std::string_view bytes);
+bool isPly(std::string_view bytes);
+bool isObj(std::string_view bytes);
+bool isGltf(std::string_view bytes); // also binary (.glb)
+// Finds the encoding of a mesh by its content or by the suffix of its name (also before .gz).
+// Return false if it is no mesh's.
+bool findMeshEncoding(std::string_view bytes, Encoding& encoding);
+bool findMeshSuffix(std::string_view path, Encoding& encoding);
+
+// Reads a mesh. What is wrong with the file is reported through the locator; what could be read is
+// kept.
+void readMesh(Encoding encoding, const MeshFile& file);
+
+void readStl(const MeshFile& file);
+void readPly(const MeshFile& file);
+void readObj(const MeshFile& file);
+void readGltf(const MeshFile& file);
+
+} // namespace xvrml

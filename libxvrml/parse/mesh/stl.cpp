@@ -1,0 +1,230 @@
+// stl.cpp: reads STL, text and binary (3D Systems, StereoLithography Interface Specification,
+// 1989). Each solid becomes a Shape with an IndexedFaceSet, whose equal vertices are welded. The
+// normals of facets follow from their vertices. Colours of facets are those of VisCAM and
+// SolidView, or of Materialise Magics, which use the attribute bytes.
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "parse/mesh/bare_shape.h"
+#include "parse/mesh/mesh_file.h"
+#include "parse/mesh/node_stream.h"
+#include "parse/mesh/text_cursor.h"
+#include "parse/mesh/weld.h"
+
+namespace xvrml {
+namespace {
+
+constexpr size_t headBytes = 84, facetBytes = 50;
+
+struct Solid {
+  std::string_view name;
+  std::vector<Vec3f> corners; // three for each facet
+  std::vector<Color> colors;  // one for each facet; empty: none
+};
+
+bool isFinite(const Vec3f& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+void writeSolid(const MeshFile& file, NodeStream& nodes, Solid&& solid) {
+  if (solid.corners.empty()) return;
+  if (solid.corners.size() > INT32_MAX / 2)
+    throw MeshFault{
+        nullptr, fmt::format("{} triangles in one solid are too many", solid.corners.size() / 3)};
+  Scratch scratch(file.budget);
+  const size_t facets = solid.corners.size() / 3;
+  scratch.take(weldBytes(solid.corners.size()) + facets * 4 * sizeof(int32_t));
+  const std::vector<uint32_t> index = weldPoints(solid.corners);
+  solid.corners.shrink_to_fit();
+  MFInt32 coordIndex(4 * facets);
+  for (size_t i = 0; i < facets; ++i) {
+    for (size_t k = 0; k < 3; ++k) coordIndex[4 * i + k] = int32_t(index[3 * i + k]);
+    coordIndex[4 * i + 3] = -1;
+  }
+  BareShape shape;
+  shape.name = solid.name;
+  shape.points = std::move(solid.corners);
+  shape.coordIndex = std::move(coordIndex);
+  shape.colors = std::move(solid.colors);
+  shape.colorPerVertex = false;
+  writeBareShape(nodes, std::move(shape));
+}
+
+// "solid name", facets of "facet normal x y z", "outer loop", three times "vertex x y z",
+// "endloop", "endfacet", then "endsolid name"; in any case of letters, on any lines.
+class TextReader {
+ public:
+  explicit TextReader(const MeshFile& file)
+      : file_(file), nodes_(file), text_(file.bytes), scratch_(file.budget) {}
+
+  void read() {
+    for (text_.skipSpace(); !text_.atEnd(); text_.skipSpace()) statement();
+    if (open_) {
+      file_.locator.error(text_.at(), "the file ends within a solid: expected endsolid");
+      finish();
+    }
+    bad_.report(file_.locator, Severity::error,
+                "facets are left out, because they do not have three vertices of three numbers");
+  }
+
+ private:
+  static bool is(std::string_view word, std::string_view keyword) {
+    return word.size() == keyword.size() &&
+           std::equal(word.begin(), word.end(), keyword.begin(), [](char a, char b) {
+             return a == b || (a >= 'A' && a <= 'Z' && a + 32 == b);
+           });
+  }
+
+  void statement() {
+    const char* at = text_.at();
+    const std::string_view word = text_.word();
+    if (is(word, "vertex")) {
+      Vec3f p;
+      const bool good = text_.number(p.x) && text_.number(p.y) && text_.number(p.z);
+      if (!good) text_.nextLine();
+      if (good && vertices_ < 3) facet_[vertices_] = p;
+      vertices_ += good ? 1 : 4; // 4: the facet is bad
+    } else if (is(word, "facet")) {
+      facetAt_ = at;
+      vertices_ = 0;
+      text_.nextLine();
+    } else if (is(word, "endfacet")) {
+      endFacet();
+    } else if (is(word, "solid")) {
+      if (open_) finish();
+      open_ = true;
+      solid_.name = text_.rest();
+    } else if (is(word, "endsolid")) {
+      text_.nextLine();
+      finish();
+    } else if (!is(word, "endloop") && !is(word, "outer") && !is(word, "loop")) {
+      throw MeshFault{at, fmt::format("expected a statement of an STL file (facet, vertex, "
+                                      "endsolid), found {}; the rest of the file is left out",
+                                      describe(Name{word, at}))};
+    }
+  }
+
+  void endFacet() {
+    if (vertices_ != 3) return bad_.add(facetAt_);
+    if (solid_.corners.size() == solid_.corners.capacity())
+      scratch_.take(std::max<size_t>(1024, solid_.corners.size()) * sizeof(Vec3f));
+    solid_.corners.insert(solid_.corners.end(), facet_, facet_ + 3);
+    vertices_ = 0;
+  }
+
+  void finish() {
+    writeSolid(file_, nodes_, std::move(solid_));
+    solid_ = {};
+    open_ = false;
+  }
+
+  const MeshFile& file_;
+  NodeStream nodes_;
+  TextCursor text_;
+  Scratch scratch_;
+  Solid solid_;
+  bool open_ = false;
+  Vec3f facet_[3];
+  int vertices_ = 0;
+  const char* facetAt_ = nullptr;
+  FaultCount bad_;
+};
+
+// Colours of facets in 15 bits. Magics: the header holds "COLOR=" with red, green, blue, alpha;
+// bit 15 of a facet says that it has that colour, else bits 0-4 are red. VisCAM: bit 15 says that
+// the facet has a colour of its own, whose bits 0-4 are blue.
+class FacetColors {
+ public:
+  explicit FacetColors(std::string_view head) {
+    const size_t at = head.find("COLOR=");
+    magics_ = at != head.npos && at + 10 <= head.size();
+    for (int i = 0; magics_ && i < 3; ++i)
+      whole_[i] = float(static_cast<unsigned char>(head[at + 6 + i])) / 255;
+  }
+  bool has(uint16_t bits) const { return magics_ || (bits & 0x8000); }
+  Color of(uint16_t bits) const {
+    const auto part = [bits](int shift) { return float(bits >> shift & 31) / 31; };
+    if (magics_ && (bits & 0x8000)) return {whole_[0], whole_[1], whole_[2]};
+    if (magics_) return {part(0), part(5), part(10)};
+    if (bits & 0x8000) return {part(10), part(5), part(0)};
+    return {0.8f, 0.8f, 0.8f}; // Material's diffuseColor
+  }
+
+ private:
+  bool magics_ = false;
+  float whole_[3] = {};
+};
+
+// 80 bytes of any content, the number of facets, then for each facet 12 floats (normal and three
+// vertices) and 2 attribute bytes; little-endian.
+void readBinary(const MeshFile& file) {
+  uint32_t count = 0;
+  if (file.bytes.size() < headBytes) throw MeshFault{nullptr, "the STL file ends in its header"};
+  std::memcpy(&count, file.bytes.data() + 80, sizeof count);
+  const uint64_t present = (file.bytes.size() - headBytes) / facetBytes;
+  if (count > present) {
+    file.locator.error(nullptr,
+                       fmt::format("the STL file ends early: it announces {} triangles and "
+                                   "has {}",
+                                   count, present));
+    count = uint32_t(present);
+  }
+  Solid solid;
+  Scratch scratch(file.budget);
+  scratch.take(uint64_t(count) * (3 * sizeof(Vec3f) + sizeof(Color)));
+  solid.corners.reserve(3 * size_t(count));
+  const FacetColors colors(file.bytes.substr(0, 80));
+  FaultCount bad;
+  const char* facet = file.bytes.data() + headBytes;
+  for (uint32_t i = 0; i < count; ++i, facet += facetBytes) {
+    Vec3f corners[3];
+    std::memcpy(corners, facet + 12, sizeof corners);
+    uint16_t attribute = 0;
+    std::memcpy(&attribute, facet + 48, sizeof attribute);
+    if (!isFinite(corners[0]) || !isFinite(corners[1]) || !isFinite(corners[2])) {
+      bad.add(nullptr);
+      continue;
+    }
+    if (solid.colors.empty() && colors.has(attribute))
+      solid.colors.assign(solid.corners.size() / 3, colors.of(0));
+    solid.corners.insert(solid.corners.end(), corners, corners + 3);
+    if (colors.has(attribute) || !solid.colors.empty())
+      solid.colors.push_back(colors.of(attribute));
+  }
+  bad.report(file.locator, Severity::error,
+             "triangles are left out, because their vertices are not finite");
+  NodeStream nodes(file);
+  writeSolid(file, nodes, std::move(solid));
+}
+
+} // namespace
+
+bool isBinaryStl(std::string_view bytes) {
+  if (bytes.size() < headBytes) return false;
+  uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, sizeof count);
+  return count > 0 && uint64_t(headBytes) + uint64_t(facetBytes) * count == bytes.size();
+}
+
+bool isAsciiStl(std::string_view bytes) {
+  TextCursor text(bytes.substr(0, 4096));
+  text.skipSpace();
+  const std::string_view first = text.word();
+  if (first != "solid" && first != "SOLID") return false;
+  text.nextLine();
+  text.skipSpace();
+  const std::string_view second = text.word();
+  return second == "facet" || second == "FACET" || second == "endsolid" || second == "ENDSOLID";
+}
+
+void readStl(const MeshFile& file) {
+  // Some programs begin the header of a binary file with "solid".
+  if (!isBinaryStl(file.bytes) && isAsciiStl(file.bytes))
+    TextReader(file).read();
+  else
+    readBinary(file);
+}
+
+} // namespace xvrml

@@ -1,0 +1,166 @@
+// x3d_json.cpp: hands the objects of a JSON file to X3dElements. The walk has a stack of its own.
+#include "parse/x3d_json.h"
+
+#include <algorithm>
+#include <deque>
+
+#include <fmt/format.h>
+
+#include "parse/json_index.h"
+
+namespace xvrml {
+namespace {
+
+using Value = JsonIndex::Value;
+
+// Writes a string as an MFString of VRML has it.
+void addQuoted(std::string& list, std::string_view string) {
+  list += " \"";
+  for (const char c : string) {
+    if (c == '"' || c == '\\') list += '\\';
+    list += c;
+  }
+  list += '"';
+}
+
+// Members that others refer to come first, whatever their order in the file.
+bool comesFirst(std::string_view key) {
+  return key == "head" || key == "ProtoInterface" || key == "field";
+}
+
+class Walk {
+ public:
+  Walk(Locator& locator, const JsonIndex& index, X3dElements& elements)
+      : locator_(locator), index_(index), elements_(elements) {}
+
+  void walk() {
+    if (index_.values().empty()) return;
+    if (index_.values()[0].kind != Value::Kind::object) {
+      locator_.error(index_.values()[0].text.data(), "expected an object, {\"X3D\": ...}");
+      return;
+    }
+    index_.eachWithin(0, [&](size_t i) { addElements(i); });
+    while (!tasks_.empty()) {
+      const Task task = tasks_.back();
+      tasks_.pop_back();
+      if (task.closes)
+        elements_.close();
+      else
+        open(task);
+    }
+  }
+
+ private:
+  struct Task {
+    std::string_view element; // its name
+    size_t value = 0;         // its object
+    std::string_view container;
+    bool closes = false; // closes an element instead of opening one
+  };
+
+  const Value& at(size_t index) const { return index_.values()[index]; }
+
+  // Opens an element, and plans what stands in it.
+  void open(const Task& task) {
+    decoded_.clear();
+    std::vector<Attribute> attributes;
+    std::string source;
+    const char* sourceAt = nullptr;
+    index_.eachWithin(task.value, [&](size_t i) {
+      const Value& member = at(i);
+      if (member.key.starts_with('@')) addAttribute(member, attributes);
+      if (!member.key.starts_with("#source")) return;
+      sourceAt = member.text.data();
+      source = sourceOf(member);
+    });
+    if (!task.container.empty() && !findAttribute(attributes, "containerField"))
+      attributes.push_back(
+          {{"containerField", task.container.data()}, task.container, task.container.data()});
+    elements_.open({task.element, task.element.data()}, attributes);
+    if (sourceAt) elements_.characters(source, sourceAt);
+    tasks_.push_back({{}, 0, {}, true});
+    const size_t first = tasks_.size();
+    for (const bool early : {true, false})
+      index_.eachWithin(task.value, [&](size_t i) {
+        if (comesFirst(at(i).key) == early) addElements(i);
+      });
+    std::reverse(tasks_.begin() + static_cast<ptrdiff_t>(first), tasks_.end());
+  }
+
+  // Plans the elements that a member of an object stands for: "-children" holds objects with one
+  // member each, whose name is the element's; other members are elements, or lists of them.
+  void addElements(size_t index) {
+    const Value& member = at(index);
+    if (member.key.starts_with('@') || member.key.starts_with('#')) return;
+    const bool nodes = member.key.starts_with('-');
+    const auto add = [&](size_t object) {
+      if (at(object).kind != Value::Kind::object) return;
+      if (!nodes) return tasks_.push_back({member.key, object, {}});
+      index_.eachWithin(object, [&](size_t i) {
+        const Value& node = at(i);
+        if (node.key.starts_with('#')) return;
+        if (node.kind == Value::Kind::object)
+          tasks_.push_back({node.key, i, member.key.substr(1)});
+        else
+          locator_.error(node.text.data(), fmt::format("expected an object of type {}",
+                                                       describe(Name{node.key, nullptr})));
+      });
+    };
+    if (member.kind == Value::Kind::array)
+      index_.eachWithin(index, add);
+    else
+      add(index);
+  }
+
+  void addAttribute(const Value& member, std::vector<Attribute>& attributes) {
+    const std::string_view key = member.key.substr(1);
+    Attribute attribute{{key, key.data()}, member.text, member.text.data(), true};
+    if (!member.complete || member.text == "null") return;
+    switch (member.kind) {
+    case Value::Kind::object:
+      locator_.error(attribute.at, fmt::format("expected a value of {}, found an object",
+                                               describe(attribute.name)));
+      return;
+    case Value::Kind::string:
+      attribute.value = decoded_.emplace_back(index_.decoded(member));
+      break;
+    case Value::Kind::array:
+      attribute.value = member.hasStrings ? std::string_view(listOf(member))
+                                          : member.text.substr(1, member.text.size() - 2);
+      break;
+    case Value::Kind::other: break;
+    }
+    attributes.push_back(attribute);
+  }
+
+  const std::string& listOf(const Value& array) {
+    std::string& list = decoded_.emplace_back();
+    for (const std::string& string : index_.strings(array)) addQuoted(list, string);
+    return list;
+  }
+
+  // Returns the lines of a Script's program.
+  std::string sourceOf(const Value& member) const {
+    if (member.kind == Value::Kind::string) return index_.decoded(member);
+    std::string text;
+    if (member.kind == Value::Kind::array)
+      for (const std::string& line : index_.strings(member)) text += line + '\n';
+    return text;
+  }
+
+  Locator& locator_;
+  const JsonIndex& index_;
+  X3dElements& elements_;
+  std::vector<Task> tasks_;
+  std::deque<std::string> decoded_; // values of the element that is opened
+};
+
+} // namespace
+
+void readX3dJson(Locator& locator, const BudgetPtr& budget, X3dElements& elements) {
+  const JsonIndex index(locator, budget);
+  Walk(locator, index, elements).walk();
+  elements.finish();
+}
+
+} // namespace xvrml

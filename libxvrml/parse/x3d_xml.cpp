@@ -1,0 +1,140 @@
+// x3d_xml.cpp: hands the elements that expat finds to X3dElements, with their places. Attributes
+// are taken from the file's own bytes, except where XML decodes them.
+#include "parse/x3d_xml.h"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <memory>
+
+#include <expat.h>
+#include <fmt/format.h>
+
+namespace xvrml {
+namespace {
+
+class Reader {
+ public:
+  Reader(const XmlText& text, Locator& locator, X3dElements& elements)
+      : text_(text), locator_(locator), elements_(elements),
+        // The text is in UTF-8, whatever its declaration says.
+        parser_(XML_ParserCreate("UTF-8")) {
+    if (!parser_) throw std::bad_alloc();
+    // Entities in other files and parameter entities are not read: expat does not unless it is told
+    // to. It limits by itself how much entities within the file may grow.
+    XML_SetUserData(parser_.get(), this);
+    XML_SetElementHandler(parser_.get(), openElement, closeElement);
+    XML_SetCharacterDataHandler(parser_.get(), readCharacters);
+    XML_SetSkippedEntityHandler(parser_.get(), skipEntity);
+  }
+
+  void read() {
+    // expat takes the length as an int.
+    constexpr size_t step = size_t(1) << 30;
+    std::string_view rest = text_.shortText();
+    XML_Status status = XML_STATUS_OK;
+    do {
+      const std::string_view part = rest.substr(0, step);
+      rest.remove_prefix(part.size());
+      status = XML_Parse(parser_.get(), part.data(), static_cast<int>(part.size()),
+                         rest.empty() ? 1 : 0);
+    } while (status == XML_STATUS_OK && !rest.empty());
+    if (failure_) std::rethrow_exception(failure_);
+    if (status != XML_STATUS_OK) reportError();
+  }
+
+ private:
+  struct Free {
+    void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
+  };
+
+  // Runs a handler. An exception must not pass through expat: it stops the parser.
+  template <class Function> static void guarded(void* data, Function function) {
+    auto& reader = *static_cast<Reader*>(data);
+    if (reader.failure_) return;
+    try {
+      function(reader);
+    } catch (...) {
+      reader.failure_ = std::current_exception();
+      XML_StopParser(reader.parser_.get(), XML_FALSE);
+    }
+  }
+
+  static void XMLCALL openElement(void* data, const XML_Char* name, const XML_Char** attributes) {
+    guarded(data, [&](Reader& reader) { reader.open(name, attributes); });
+  }
+  static void XMLCALL closeElement(void* data, const XML_Char*) {
+    guarded(data, [](Reader& reader) { reader.elements_.close(); });
+  }
+  static void XMLCALL readCharacters(void* data, const XML_Char* text, int size) {
+    guarded(data, [&](Reader& reader) {
+      const std::string_view part(text, static_cast<size_t>(size));
+      reader.elements_.characters(reader.text_.restored(part, reader.offset(), reader.whole_),
+                                  reader.place());
+    });
+  }
+  static void XMLCALL skipEntity(void* data, const XML_Char* name, int isParameter) {
+    guarded(data, [&](Reader& reader) {
+      if (isParameter) return;
+      reader.locator_.warn(reader.place(), fmt::format("the entity &{}; is not known here: it is "
+                                                       "left out",
+                                                       shortened(name)));
+    });
+  }
+
+  size_t offset() const {
+    return static_cast<size_t>(std::max<XML_Index>(XML_GetCurrentByteIndex(parser_.get()), 0));
+  }
+  const char* place() const { return text_.place(offset()); }
+
+  void open(const char* name, const char** given) {
+    const char* const at = place();
+    const auto specified = static_cast<size_t>(XML_GetSpecifiedAttributeCount(parser_.get())) / 2;
+    // An element that comes from an entity has no tag in the file.
+    const bool hasTag = XmlText::findAttributes(text_.text(), at, attributes_) &&
+                        attributes_.size() == specified && tagIs(at, name);
+    if (!hasTag) attributes_.clear();
+    for (size_t i = 0; given[2 * i]; ++i) {
+      const std::string_view decoded = given[2 * i + 1];
+      if (i >= attributes_.size()) { // the document type gives it
+        attributes_.push_back({{given[2 * i], at}, decoded, at, true});
+      } else if (attributes_[i].value.find('&') != std::string_view::npos) {
+        attributes_[i].value = decoded;
+        attributes_[i].decoded = true;
+      }
+    }
+    const std::string_view element =
+        hasTag ? std::string_view(at + 1, std::strlen(name)) : std::string_view(name);
+    elements_.open({element, hasTag ? at + 1 : at}, attributes_);
+  }
+
+  bool tagIs(const char* at, std::string_view name) const {
+    const std::string_view text = text_.text();
+    return text.substr(static_cast<size_t>(at + 1 - text.data())).starts_with(name);
+  }
+
+  void reportError() {
+    const XML_Error code = XML_GetErrorCode(parser_.get());
+    const char* const known = XML_ErrorString(code);
+    locator_.error(place(), fmt::format("this is not well-formed XML: {}; what follows is left out",
+                                        known ? known : "unknown error"));
+  }
+
+  const XmlText& text_;
+  Locator& locator_;
+  X3dElements& elements_;
+  std::unique_ptr<XML_ParserStruct, Free> parser_;
+  std::vector<Attribute> attributes_;
+  std::string whole_;
+  std::exception_ptr failure_;
+};
+
+} // namespace
+
+void readX3dXml(const XmlText& text, Locator& locator, X3dElements& elements) {
+  if (!text.complaint().empty()) locator.warn(text.text().data(), text.complaint());
+  Reader(text, locator, elements).read();
+  elements.finish();
+}
+
+} // namespace xvrml
