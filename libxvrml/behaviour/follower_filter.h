@@ -97,6 +97,10 @@ template <class T> class ChaserFilter {
   // Adds the step from `before` to the destination.
   void addStep(const List& before, double now) {
     if (before == destination_ || before.size() != destination_.size()) return;
+    if (duration_ == 0) {
+      base_ = destination_;
+      return;
+    }
     if (steps_.size() >= maximumSteps) halve();
     Step step{now, std::vector<Delta>(before.size())};
     for (size_t i = 0; i < before.size(); ++i)
@@ -153,7 +157,7 @@ template <class T> class DamperFilter {
       for (size_t i = 0; i < value.size(); ++i)
         error.push_back(Motion<T>::between(destination_[i], value[i]));
     for (Stage& stage : stages_) stage = error;
-    isMoving_ = !stages_.empty() && !error.empty() && value != destination_;
+    isMoving_ = tau_ > 0 && !stages_.empty() && !error.empty() && value != destination_;
   }
   void setDestination(const List& destination, double now) {
     if (destination.size() != destination_.size()) { // no way between lists of different lengths
@@ -166,8 +170,8 @@ template <class T> class DamperFilter {
     for (Stage& stage : stages_)
       for (size_t i = 0; i < stage.size(); ++i)
         stage[i] = Motion<T>::between(destination[i], Motion<T>::moved(destination_[i], stage[i]));
-    isMoving_ =
-        !stages_.empty() && !destination.empty() && (isMoving_ || destination != destination_);
+    isMoving_ = tau_ > 0 && !stages_.empty() && !destination.empty() &&
+                (isMoving_ || destination != destination_);
     destination_ = destination;
   }
   // Returns the value at time now, which must not go back. Afterwards moving() tells whether it has
