@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/vector_math.h"
+#include "behaviour/quaternion.h"
 
 namespace xvrml {
 namespace {
@@ -37,25 +37,6 @@ Color toRgb(const Hsv& c) {
   return {channel(5), channel(3), channel(1)};
 }
 
-struct Quaternion {
-  V3d v;
-  double w;
-};
-
-Quaternion toQuaternion(const Rotation& r) {
-  const V3d axis = unit(V3d(r.x, r.y, r.z));
-  if (axis == V3d(0) || !std::isfinite(r.angle)) return {V3d(0), 1};
-  return {axis * std::sin(0.5 * double(r.angle)), std::cos(0.5 * double(r.angle))};
-}
-
-// Returns the weights of the ends of an arc with the given angle in [0,pi). Near 0 they are those
-// of the chord.
-std::pair<double, double> arcWeights(double angle, double t) {
-  const double sine = std::sin(angle);
-  if (sine < 1e-6) return {1 - t, t};
-  return {std::sin((1 - t) * angle) / sine, std::sin(t * angle) / sine};
-}
-
 // Returns the angle of two unit vectors. It is accurate also near 0 and pi (Kahan).
 double angleBetween(const V3d& a, const V3d& b) {
   return 2 * std::atan2((a - b).length(), (a + b).length());
@@ -78,26 +59,9 @@ Color blend(const Color& first, const Color& second, float t) {
 Rotation blend(const Rotation& first, const Rotation& second, float t) {
   const Quaternion a = toQuaternion(first);
   Quaternion b = toQuaternion(second);
-  double cosine = a.v.dot(b.v) + a.w * b.w;
-  if (cosine < -1e-3) { // -q is the same rotation as q
-    b = {-b.v, -b.w};
-    cosine = -cosine;
-  }
-  const auto [x, y] = arcWeights(std::acos(std::clamp(cosine, -1.0, 1.0)), t);
-  V3d v = a.v * x + b.v * y;
-  double w = a.w * x + b.w * y;
-  if (w < 0) {
-    v = -v;
-    w = -w;
-  }
-  const double length = v.length();
-  const V3d axis = unit(v);
-  if (axis == V3d(0)) { // no rotation: keep the axis of one of the ends
-    const V3d kept = unit(V3d(first.x, first.y, first.z));
-    return kept == V3d(0) ? Rotation{0, 0, 1, 0}
-                          : Rotation{float(kept.x), float(kept.y), float(kept.z), 0};
-  }
-  return {float(axis.x), float(axis.y), float(axis.z), float(2 * std::atan2(length, w))};
+  if (dot(a, b) < -1e-3) b = -b; // -q is the same rotation as q
+  // no rotation keeps the axis of one of the ends
+  return toRotation(slerp(a, b, t), V3d(first.x, first.y, first.z));
 }
 
 Vec3f blendNormals(const Vec3f& first, const Vec3f& second, float t) {

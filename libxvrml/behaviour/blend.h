@@ -7,6 +7,9 @@
 namespace xvrml {
 
 inline float blend(float a, float b, float t) { return a + (b - a) * t; }
+inline Vec2f blend(const Vec2f& a, const Vec2f& b, float t) {
+  return {blend(a.x, b.x, t), blend(a.y, b.y, t)};
+}
 inline Vec3f blend(const Vec3f& a, const Vec3f& b, float t) {
   return {blend(a.x, b.x, t), blend(a.y, b.y, t), blend(a.z, b.z, t)};
 }

@@ -9,6 +9,12 @@ void addBuiltinBehaviours(const AddBehaviour& add) {
   addInlineBehaviours(add);
   addGroupingBehaviours(add);
   addInterpolatorBehaviours(add);
+  addSplineInterpolatorBehaviours(add);
+  addSquadInterpolatorBehaviours(add);
+  addEaseBehaviours(add);
+  addEventUtilityBehaviours(add);
+  addSequencerBehaviours(add);
+  addFollowerBehaviours(add);
   addTimeSensorBehaviours(add);
   addAudioClipBehaviours(add);
   addMovieTextureBehaviours(add);

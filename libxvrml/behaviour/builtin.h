@@ -19,6 +19,12 @@ void addRegionBehaviours(const AddBehaviour& add);   // ProximitySensor, Visibil
 void addInlineBehaviours(const AddBehaviour& add);   // set_url loads the content
 void addGroupingBehaviours(const AddBehaviour& add); // addChildren, removeChildren
 void addInterpolatorBehaviours(const AddBehaviour& add);
+void addSplineInterpolatorBehaviours(const AddBehaviour& add);
+void addSquadInterpolatorBehaviours(const AddBehaviour& add);
+void addEaseBehaviours(const AddBehaviour& add);
+void addEventUtilityBehaviours(const AddBehaviour& add); // filters and triggers
+void addSequencerBehaviours(const AddBehaviour& add);
+void addFollowerBehaviours(const AddBehaviour& add); // chasers and dampers
 void addTimeSensorBehaviours(const AddBehaviour& add);
 void addAudioClipBehaviours(const AddBehaviour& add);
 void addMovieTextureBehaviours(const AddBehaviour& add);

@@ -1,5 +1,5 @@
-// interpolators.cpp: the six interpolators (clauses 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37, 6.39):
-// set_fraction produces value_changed.
+// interpolators.cpp: the linear interpolators (ISO/IEC 14772-1 4.6.8, 6.10, 6.13, 6.31, 6.32, 6.37,
+// 6.39; ISO/IEC 19775-1 19.4.3, 19.4.8): set_fraction produces value_changed.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -8,6 +8,7 @@
 
 #include "behaviour/blend.h"
 #include "behaviour/builtin.h"
+#include "behaviour/keys.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml {
@@ -16,27 +17,6 @@ namespace {
 struct State : NodeState {
   bool warned = false; // the mismatch of key and keyValue has been reported
 };
-
-// The position of a fraction: between the values `left` and `left` + 1, at parameter t. t 0:
-// exactly the value `left`.
-struct KeyPosition {
-  size_t left;
-  float t;
-};
-
-// Finds the position of a fraction (clause 4.6.8). Below the first key it is the first value, above
-// the last key the last value. At a repeated key it is the last of its values (the limit from the
-// right), except at the ends. With decreasing keys the result is arbitrary but never out of bounds.
-KeyPosition locate(const float* keys, size_t count, float fraction) {
-  if (fraction <= keys[0]) return {0, 0};
-  if (fraction >= keys[count - 1]) return {count - 1, 0};
-  const size_t right = size_t(std::upper_bound(keys, keys + count, fraction) - keys);
-  if (right == 0 || right == count) return {right == 0 ? 0 : count - 1, 0};
-  const float from = keys[right - 1], to = keys[right];
-  const float t = float((double(fraction) - from) / (double(to) - from));
-  if (t >= 1) return {right, 0}; // rounded up
-  return {right - 1, t > 0 ? t : 0};
-}
 
 template <class T> T between(const T* values, KeyPosition place) {
   return place.t == 0 ? values[place.left]
@@ -72,15 +52,15 @@ template <class Interpolator> void evaluate(Events& events, Interpolator& node, 
               between(node.keyValue.data(), locate(node.key.data(), shape.keys, fraction)));
 }
 
-// For CoordinateInterpolator and NormalInterpolator: perKey consecutive values for each key.
-template <class Interpolator>
+// For interpolators of lists: perKey consecutive values for each key.
+template <class Interpolator, class T>
 void evaluateLists(Events& events, Interpolator& node, float fraction,
-                   Vec3f (*blendOne)(const Vec3f&, const Vec3f&, float)) {
+                   T (*blendOne)(const T&, const T&, float)) {
   const Shape shape = shapeOf(events, node, true);
   if (shape.keys == 0) return;
   const KeyPosition place = locate(node.key.data(), shape.keys, fraction);
-  const Vec3f* left = node.keyValue.data() + place.left * shape.perKey;
-  MFVec3f result(left, left + shape.perKey);
+  const T* left = node.keyValue.data() + place.left * shape.perKey;
+  std::vector<T> result(left, left + shape.perKey);
   if (place.t != 0)
     for (size_t i = 0; i < shape.perKey; ++i)
       result[i] = blendOne(left[i], left[i + shape.perKey], place.t);
@@ -89,7 +69,10 @@ void evaluateLists(Events& events, Interpolator& node, float fraction,
 }
 
 void evaluate(Events& events, nodes::CoordinateInterpolator& node, float fraction) {
-  evaluateLists(events, node, fraction, blend);
+  evaluateLists<nodes::CoordinateInterpolator, Vec3f>(events, node, fraction, blend);
+}
+void evaluate(Events& events, nodes::CoordinateInterpolator2D& node, float fraction) {
+  evaluateLists<nodes::CoordinateInterpolator2D, Vec2f>(events, node, fraction, blend);
 }
 void evaluate(Events& events, nodes::NormalInterpolator& node, float fraction) {
   evaluateLists(events, node, fraction, blendNormals);
@@ -99,11 +82,13 @@ void evaluate(Events& events, nodes::NormalInterpolator& node, float fraction) {
 template <class Interpolator> void presetFirst(Events& events, Interpolator& node) {
   static const FieldInfo& out = fieldOf<Interpolator>("value_changed");
   if (node.keyValue.empty()) return;
+  using List = decltype(node.keyValue);
   if constexpr (std::is_same_v<Interpolator, nodes::CoordinateInterpolator> ||
+                std::is_same_v<Interpolator, nodes::CoordinateInterpolator2D> ||
                 std::is_same_v<Interpolator, nodes::NormalInterpolator>) {
     const size_t perKey = node.key.empty() ? 0 : node.keyValue.size() / node.key.size();
     events.preset(node, out,
-                  MFVec3f(node.keyValue.begin(), node.keyValue.begin() + ptrdiff_t(perKey)));
+                  List(node.keyValue.begin(), node.keyValue.begin() + ptrdiff_t(perKey)));
   } else {
     events.preset(node, out, node.keyValue[0]);
   }
@@ -134,9 +119,11 @@ template <class Interpolator> void addOne(const AddBehaviour& add) {
 void addInterpolatorBehaviours(const AddBehaviour& add) {
   addOne<nodes::ColorInterpolator>(add);
   addOne<nodes::CoordinateInterpolator>(add);
+  addOne<nodes::CoordinateInterpolator2D>(add);
   addOne<nodes::NormalInterpolator>(add);
   addOne<nodes::OrientationInterpolator>(add);
   addOne<nodes::PositionInterpolator>(add);
+  addOne<nodes::PositionInterpolator2D>(add);
   addOne<nodes::ScalarInterpolator>(add);
 }
 
