@@ -18,6 +18,8 @@ struct Interface {
 };
 constexpr Interface interfaces[] = {
     {"10.4.2", "StaticGroup", 0, 0, 3, 0},
+    {"12.4.6", "PhysicalMaterial", 0, 17, 0, 0},
+    {"12.4.10", "UnlitMaterial", 0, 7, 0, 0},
 };
 
 // A field that X3D adds to a node of VRML97.
@@ -28,8 +30,12 @@ struct Addition {
   Value value;
 };
 const Addition additions[] = {
-    {"Box", "solid", Access::field, true},      {"Cone", "solid", Access::field, true},
-    {"Cylinder", "solid", Access::field, true}, {"Sphere", "solid", Access::field, true},
+    {"Appearance", "alphaMode", Access::exposedField, SFString("AUTO")},
+    {"Appearance", "alphaCutoff", Access::exposedField, 0.5f},
+    {"Box", "solid", Access::field, true},
+    {"Cone", "solid", Access::field, true},
+    {"Cylinder", "solid", Access::field, true},
+    {"Sphere", "solid", Access::field, true},
     {"Text", "solid", Access::field, false},
 };
 
