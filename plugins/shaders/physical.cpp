@@ -73,7 +73,7 @@ class AlbedoTable {
   }
 
  private:
-  static constexpr int widths = 81, cosines = 65;
+  static constexpr int widths = 65, cosines = 97;
 
   // Writes the entry before x (0..1) to `index` and returns the place after it, 0..1.
   static float split(float x, int count, int& index) {
