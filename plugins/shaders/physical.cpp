@@ -73,7 +73,7 @@ class AlbedoTable {
   }
 
  private:
-  static constexpr int widths = 33, cosines = 49;
+  static constexpr int widths = 65, cosines = 97;
 
   // Writes the entry before x (0..1) to `index` and returns the place after it, 0..1.
   static float split(float x, int count, int& index) {
@@ -83,6 +83,10 @@ class AlbedoTable {
   }
   static Albedo integrate(float roughness, float cosine) {
     constexpr int up = 64, around = 24; // samples; half of the circle, because the rest is equal
+    if (!(roughness > 0)) {             // polished: the Fresnel term itself
+      const float bias = schlickPower(cosine);
+      return {1 - bias, bias};
+    }
     const microfacet::Ggx ggx{std::fmax(microfacet::minAlpha, roughness * roughness)};
     const rts::Vec3 o{std::sqrt(std::fmax(0.0f, 1 - cosine * cosine)), 0, cosine};
     double scale = 0, bias = 0;
@@ -167,6 +171,8 @@ struct Physical : rts::Surface<Physical> {
       "alphaMode", opaque, "0: opaque; 1: mask, nothing where alpha is below alphaCutoff; 2: blend",
       0, 2};
   rts::Param<float> alphaCutoff{"alphaCutoff", .5f, "smallest alpha that mode 1 shows", 0, 1};
+  rts::Param<int32_t> lit{
+      "lit", 1, "0: reflects nothing; emissiveTexture then has the alpha (UnlitMaterial)", 0, 1};
   rts::Param<rts::Texture> texture{"texture", "multiplies baseColor; its alpha multiplies alpha"};
   rts::Param<rts::Texture> metallicRoughnessTexture{
       "metallicRoughnessTexture", "green multiplies roughness, blue metallic; linear"};
@@ -192,23 +198,25 @@ struct Physical : rts::Surface<Physical> {
     return nullptr;
   }
   rts::Color transmit(const rts::Hit& hit) const {
-    const float through = alphaMode == opaque ? 0 : 1 - opacity(hit, texel(hit, texture));
+    const float through = alphaMode == opaque ? 0 : 1 - opacity(hit, pattern(hit));
     return {through, through, through};
   }
   void surface(const rts::Hit& hit, rts::Closures& out) const {
-    const rts::Vec4 t = texel(hit, texture);
+    const rts::Vec4 t = pattern(hit);
     const rts::Color base{unit(baseColor->r * t.x * hit.color.x),
                           unit(baseColor->g * t.y * hit.color.y),
                           unit(baseColor->b * t.z * hit.color.z)};
     const float shown = opacity(hit, t);
-    out.albedo(base);
+    out.albedo(lit ? base : *emissiveColor * rts::Color{t.x, t.y, t.z});
     if (shown < 1) out.transparent({1 - shown, 1 - shown, 1 - shown});
     if (!(shown > 0)) return;
     if (emits()) {
       const rts::Vec4 e = texel(hit, emissiveTexture);
-      out.emission(shown * *emissiveStrength * *emissiveColor * rts::Color{e.x, e.y, e.z});
+      const rts::Color own =
+          lit ? rts::Color{1, 1, 1} : rts::Color{hit.color.x, hit.color.y, hit.color.z};
+      out.emission(shown * *emissiveStrength * *emissiveColor * own * rts::Color{e.x, e.y, e.z});
     }
-    addLobes(hit, base, shown, out);
+    if (lit) addLobes(hit, base, shown, out);
   }
 
  private:
@@ -239,9 +247,17 @@ struct Physical : rts::Surface<Physical> {
   rts::Vec4 texel(const rts::Hit& hit, rts::Texture from) const {
     return from.id && !hit.line() ? hit.sample(from, place(hit)) : rts::Vec4{1, 1, 1, 1};
   }
+  // Colours of hits without RTS_HIT_COLOR are not set where the engine calls transmit().
+  static float alphaOf(const rts::Hit& hit) {
+    return (hit.flags & RTS_HIT_COLOR) != 0 ? hit.color.w : 1.f;
+  }
+  // Returns the texel that has the alpha.
+  rts::Vec4 pattern(const rts::Hit& hit) const {
+    return texel(hit, lit ? *texture : *emissiveTexture);
+  }
   float opacity(const rts::Hit& hit, rts::Vec4 texel) const {
     if (alphaMode == opaque) return 1;
-    const float alpha = unit((1 - transparency) * texel.w * hit.color.w);
+    const float alpha = unit((1 - transparency) * texel.w * alphaOf(hit));
     if (alphaMode == mask) return alpha >= alphaCutoff ? 1 : 0;
     return alpha;
   }

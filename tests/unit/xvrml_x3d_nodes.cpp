@@ -18,6 +18,8 @@ struct Interface {
 };
 constexpr Interface interfaces[] = {
     {"10.4.2", "StaticGroup", 0, 0, 3, 0},
+    {"12.4.6", "PhysicalMaterial", 0, 17, 0, 0},
+    {"12.4.10", "UnlitMaterial", 0, 7, 0, 0},
     {"19.4.3", "CoordinateInterpolator2D", 1, 2, 0, 1},
     {"19.4.4", "EaseInEaseOut", 1, 2, 0, 1},
     {"19.4.8", "PositionInterpolator2D", 1, 2, 0, 1},
@@ -56,8 +58,12 @@ struct Addition {
   Value value;
 };
 const Addition additions[] = {
-    {"Box", "solid", Access::field, true},      {"Cone", "solid", Access::field, true},
-    {"Cylinder", "solid", Access::field, true}, {"Sphere", "solid", Access::field, true},
+    {"Appearance", "alphaMode", Access::exposedField, SFString("AUTO")},
+    {"Appearance", "alphaCutoff", Access::exposedField, 0.5f},
+    {"Box", "solid", Access::field, true},
+    {"Cone", "solid", Access::field, true},
+    {"Cylinder", "solid", Access::field, true},
+    {"Sphere", "solid", Access::field, true},
     {"Text", "solid", Access::field, false},
 };
 

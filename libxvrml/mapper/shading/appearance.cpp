@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "mapper/shading/physical.h"
 #include "xvrml/change.h"
 #include "xvrml/nodes.h"
 
@@ -15,13 +16,16 @@ namespace {
 // The parts of an Appearance or ORTAppearance, with prototype instances resolved.
 struct Parts {
   nodes::Material* material = nullptr;
+  Node* anyMaterial = nullptr; // also one of X3D 4
+  const nodes::Appearance* plain = nullptr;
   Node* texture = nullptr;
   nodes::TextureTransform* textureTransform = nullptr;
   nodes::ORTShader* shader = nullptr;
 };
 
 template <class T> void surfaceParts(const T& appearance, Parts& parts) {
-  parts.material = nodeCast<nodes::Material>(renderedNode(appearance.material.get()));
+  parts.anyMaterial = renderedNode(appearance.material.get());
+  parts.material = nodeCast<nodes::Material>(parts.anyMaterial);
   parts.texture = renderedNode(appearance.texture.get());
   parts.textureTransform =
       nodeCast<nodes::TextureTransform>(renderedNode(appearance.textureTransform.get()));
@@ -32,6 +36,7 @@ Parts partsOf(Node* appearance) {
   Node* node = renderedNode(appearance);
   if (auto* plain = nodeCast<nodes::Appearance>(node)) {
     surfaceParts(*plain, parts);
+    parts.plain = plain;
   } else if (auto* custom = nodeCast<nodes::ORTAppearance>(node)) {
     surfaceParts(*custom, parts);
     parts.shader = nodeCast<nodes::ORTShader>(renderedNode(custom->shader.get()));
@@ -43,7 +48,7 @@ Parts partsOf(Node* appearance) {
 
 bool isTextured(Node* appearance) {
   const Parts parts = partsOf(appearance);
-  return parts.texture || parts.shader;
+  return parts.texture || parts.shader || (parts.anyMaterial && hasPictures(*parts.anyMaterial));
 }
 
 namespace {
@@ -95,7 +100,7 @@ bool Surfaces::mayShare(const Entry& entry) const {
   Node* node = entry.appearance.get();
   if (!node || surfaces_.size() <= smallWorld) return false;
   const Parts parts = partsOf(node);
-  if (parts.shader) return false;
+  if (parts.shader || isPhysical(parts.anyMaterial)) return false;
   for (const Node* part :
        {static_cast<const Node*>(node), static_cast<const Node*>(parts.material),
         static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.textureTransform)})
@@ -152,8 +157,8 @@ Surface Surfaces::makeLines(Node* appearance) {
   ShaderSetup shader(classes_.get("VRML97", ""));
   surface.shader = shader.id();
   shader.integer("lit", 0);
-  if (const nodes::Material* material = partsOf(appearance).material)
-    surface.lineColor = convert(material->emissiveColor, linear_);
+  if (Node* material = partsOf(appearance).anyMaterial)
+    surface.lineColor = convert(emissionOf(*material), linear_);
   report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
          "appearance of lines or points");
   return surface;
@@ -210,6 +215,7 @@ void Surfaces::makeSurface(Entry& entry) {
       return;
     }
   }
+  if (!parts.shader && isPhysical(parts.anyMaterial)) return makePhysical(entry);
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
   // In X3D and in VRML 1.0 a colour texture always multiplies diffuseColor (ISO/IEC 19775-1
@@ -255,6 +261,26 @@ void Surfaces::makeSurface(Entry& entry) {
          "appearance");
 }
 
+// Makes the surface of a PhysicalMaterial or UnlitMaterial, or sets new parameters.
+void Surfaces::makePhysical(Entry& entry) {
+  const Parts parts = partsOf(entry.appearance.get());
+  if (entry.shared) leaveShared(entry);
+  if (entry.physical == 0 && !take(entry, bytesOfShader)) {
+    entry.surface = Surface();
+    return;
+  }
+  std::optional<ShaderSetup> setup;
+  const RTid shaderClass = classes_.get("Physical", "physical");
+  if (entry.physical == 0)
+    setup.emplace(shaderClass);
+  else
+    setup.emplace(shaderClass, entry.physical, sets_);
+  entry.surface.shader = entry.physical = setup->id();
+  setPhysical(*setup, *parts.anyMaterial, {parts.plain, parts.texture, parts.textureTransform},
+              textures_, world_, linear_);
+  report(world_.diagnostics, entry.appearance->source, parts.anyMaterial->type().name);
+}
+
 Surfaces::Effect Surfaces::update(Node& appearance) {
   Effect effect;
   if (const auto it = surfaces_.find(&appearance); it != surfaces_.end()) {
@@ -266,8 +292,8 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
     it->second.textured = textured;
   }
   if (const auto it = lines_.find(&appearance); it != lines_.end()) {
-    const nodes::Material* material = partsOf(&appearance).material;
-    const Color color = material ? convert(material->emissiveColor, linear_) : Surface().lineColor;
+    Node* material = partsOf(&appearance).anyMaterial;
+    const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
     effect.colored = !(color == it->second.surface.lineColor);
     it->second.surface.lineColor = color;
   }
@@ -284,6 +310,10 @@ void Surfaces::forget(Entry& entry) {
   if (entry.shared) leaveShared(entry);
   if (entry.own != 0) {
     rtDeleteShader(entry.own);
+    quota_.give(bytesOfShader);
+  }
+  if (entry.physical != 0) {
+    rtDeleteShader(entry.physical);
     quota_.give(bytesOfShader);
   }
   if (entry.appearance) custom_.forget(*entry.appearance);

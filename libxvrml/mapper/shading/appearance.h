@@ -62,14 +62,16 @@ class Surfaces {
     NodeRef appearance;
     Surface surface;
     RTid own = 0;             // own shader of the class VRML97
+    RTid physical = 0;        // own shader of the class Physical
     Shared* shared = nullptr; // shader shared with equal appearances; then `own` is 0
-    // Taken from the budget, without a shader of the class VRML97; 0: the appearance is left out.
+    // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
     bool textured = false;
   };
   using Entries = std::unordered_map<const Node*, Entry>;
   Surface makeLines(Node* appearance);
   void makeSurface(Entry& entry);
+  void makePhysical(Entry& entry);
   bool mayShare(const Entry& entry) const;
   bool share(Entry& entry, const std::string& key);
   void leaveShared(Entry& entry);

@@ -43,16 +43,31 @@ bool ownImage(Node& node, OwnImage& own) {
 
 } // namespace
 
-RTid Textures::ofNode(Node* texture) {
+RTid Textures::ofNode(Node* texture) { return find(texture, false); }
+
+RTid Textures::ofData(Node* texture) { return find(texture, true); }
+
+RTid Textures::find(Node* texture, bool data) {
   Node* node = renderedNode(texture);
   if (!node) return 0;
-  const auto [it, fresh] = nodes_.try_emplace(node, TextureEntry{NodeRef(node), 0});
-  if (!fresh) return it->second.id;
-  const RTid id = makeNode(*node);
+  const auto [it, fresh] = nodes_.try_emplace(node, TextureEntry{NodeRef(node), 0, data});
+  if (!fresh) {
+    if (it->second.data != data && srgb_)
+      world_.diagnostics.warn(node->source, node->type().name +
+                                                ": one node shows colours and holds numbers; use "
+                                                "two nodes, because only colours are decoded");
+    return it->second.id;
+  }
+  const RTid id = makeNode(*node, data);
   return nodes_[node].id = id;
 }
 
-RTid Textures::makeNode(Node& node) {
+RTid Textures::makeNode(Node& node, bool data) {
+  data_ = data;
+  struct Reset {
+    bool& flag;
+    ~Reset() { flag = false; }
+  } reset{data_};
   if (auto* image = nodeCast<nodes::ImageTexture>(&node))
     return ofUrls(image->url, node, image->repeatS, image->repeatT);
   RTid id = 0;
@@ -105,7 +120,7 @@ bool Textures::changed(Node& node) {
     remove(before);
     --count_;
   }
-  const RTid id = makeNode(node);
+  const RTid id = makeNode(node, found->second.data);
   nodes_[&node].id = id;
   return id != before;
 }
@@ -129,7 +144,7 @@ RTid Textures::ofUrls(const MFString& urls, const Node& node, bool repeatS, bool
 }
 
 RTid Textures::black() {
-  RTid& texture = files_[{std::string(), false, false}].first; // no file has an empty path
+  RTid& texture = files_[{std::string(), false, false, false}].first; // no file has an empty path
   if (texture == 0) {
     RadianceImage texel;
     texel.width = texel.height = 1;
@@ -140,7 +155,7 @@ RTid Textures::black() {
 }
 
 RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error) {
-  const auto [it, fresh] = files_.try_emplace({path, repeatS, repeatT}, 0, std::string());
+  const auto [it, fresh] = files_.try_emplace({path, repeatS, repeatT, data_}, 0, std::string());
   auto& [id, why] = it->second;
   if (fresh) {
     try {
@@ -209,7 +224,7 @@ template <class Picture> RTid Textures::make(const Picture& image, bool repeatS,
   }
   rtTexParameteri(RT_TEXTURE_WRAP_S, repeatS ? RT_REPEAT : RT_CLAMP_TO_EDGE);
   rtTexParameteri(RT_TEXTURE_WRAP_T, repeatT ? RT_REPEAT : RT_CLAMP_TO_EDGE);
-  rtTexParameteri(RT_TEXTURE_SRGB, srgb_ ? 1 : 0);
+  rtTexParameteri(RT_TEXTURE_SRGB, srgb_ && !data_ ? 1 : 0);
   ++count_;
   return id;
 }

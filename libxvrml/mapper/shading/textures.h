@@ -22,6 +22,9 @@ class Textures {
   // Returns the texture of an ImageTexture, PixelTexture or MovieTexture node (or null). Returns 0
   // if there is none or it cannot be loaded (reported once).
   RTid ofNode(Node* texture);
+  // The same for a picture of numbers, such as normals, which are never decoded as colours. A node
+  // that shows colours, too, stays as it was used first, with a warning if that makes a difference.
+  RTid ofData(Node* texture);
   // Returns the first URL of a list that leads to a picture. node: for messages, and its file is
   // the base of relative URLs.
   RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
@@ -44,20 +47,24 @@ class Textures {
   void take(RTid texture, uint64_t bytes);
   void remove(RTid texture);
   uint64_t room() const; // bytes that still images may still take
-  RTid makeNode(Node& texture);
+  RTid find(Node* texture, bool data);
+  RTid makeNode(Node& texture, bool data);
 
   struct TextureEntry {
     NodeRef node;
     RTid id = 0;
+    bool data = false; // ofData
   };
   World& world_;
   bool srgb_;
+  bool data_ = false;                        // the picture that is being made holds numbers
   Share share_;                              // share of the world's budget
   std::unordered_map<RTid, uint64_t> bytes_; // bytes of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
   std::unordered_map<const Node*, TextureEntry> nodes_;
-  // The texture of each file and repeat mode, or the reason why there is none.
-  std::map<std::tuple<std::string, bool, bool>, std::pair<RTid, std::string>> files_;
+  // The texture of each file, by repeat modes and whether it holds numbers, or the reason why there
+  // is none.
+  std::map<std::tuple<std::string, bool, bool, bool>, std::pair<RTid, std::string>> files_;
 };
 
 } // namespace xvrml::mapper

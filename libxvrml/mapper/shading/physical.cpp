@@ -1,0 +1,110 @@
+#include "mapper/shading/physical.h"
+
+#include <string>
+
+namespace xvrml::mapper {
+namespace {
+
+// Values of the parameter alphaMode.
+enum AlphaMode { opaque, mask, blend };
+
+// AUTO blends: an opaque surface then has an alpha of 1 everywhere (ISO/IEC 19775-1:2023 12.4.2).
+AlphaMode alphaModeOf(const nodes::Appearance* appearance, World& world) {
+  if (!appearance || appearance->alphaMode == "AUTO" || appearance->alphaMode == "BLEND")
+    return blend;
+  if (appearance->alphaMode == "OPAQUE") return opaque;
+  if (appearance->alphaMode == "MASK") return mask;
+  world.diagnostics.warn(appearance->source,
+                         "alphaMode is \"" + appearance->alphaMode +
+                             "\", expected AUTO, OPAQUE, MASK or BLEND: AUTO is used");
+  return blend;
+}
+
+// Sets what both materials have.
+template <class Material> void setCommon(ShaderSetup& shader, const Material& m,
+                                         const PhysicalParts& parts, Textures& textures,
+                                         World& world, bool linear) {
+  shader.color("emissiveColor", convert(m.emissiveColor, linear));
+  shader.texture("emissiveTexture", textures.ofNode(m.emissiveTexture.get()));
+  shader.texture("normalTexture", textures.ofData(m.normalTexture.get()));
+  shader.number("normalScale", m.normalScale, 0, 100);
+  shader.number("transparency", m.transparency, 0, 1);
+  shader.integer("alphaMode", alphaModeOf(parts.appearance, world));
+  shader.number("alphaCutoff", parts.appearance ? parts.appearance->alphaCutoff : 0.5f, 0, 1);
+  const nodes::TextureTransform* t = parts.transform;
+  shader.matrix("textureTransform",
+                t ? textureMatrix(t->center, t->rotation, t->scale, t->translation) : Matrix());
+}
+
+void setMaterial(ShaderSetup& shader, const nodes::PhysicalMaterial& m, const PhysicalParts& parts,
+                 Textures& textures, bool linear) {
+  shader.integer("lit", 1);
+  shader.color("baseColor", convert(m.baseColor, linear));
+  shader.number("metallic", m.metallic, 0, 1);
+  shader.number("roughness", m.roughness, 0, 1);
+  Node* own = renderedNode(m.baseTexture.get());
+  shader.texture("texture", textures.ofNode(own ? own : parts.texture));
+  shader.texture("metallicRoughnessTexture", textures.ofData(m.metallicRoughnessTexture.get()));
+}
+
+// The picture of an UnlitMaterial is its emissiveTexture; an appearance's texture stands for it.
+void setMaterial(ShaderSetup& shader, const nodes::UnlitMaterial& m, const PhysicalParts& parts,
+                 Textures& textures) {
+  shader.integer("lit", 0);
+  Node* own = renderedNode(m.emissiveTexture.get());
+  if (!own) shader.texture("emissiveTexture", textures.ofNode(parts.texture));
+}
+
+void warnOfMappings(const Node& material, std::initializer_list<const std::string*> mappings,
+                    World& world) {
+  const std::string* first = nullptr;
+  for (const std::string* mapping : mappings) {
+    if (mapping->empty()) continue;
+    if (first && *first != *mapping) {
+      world.diagnostics.warn(material.source,
+                             material.type().name +
+                                 ": pictures with different mappings are not supported; all use "
+                                 "the first texture coordinates");
+      return;
+    }
+    first = mapping;
+  }
+}
+
+} // namespace
+
+bool isPhysical(Node* material) {
+  return nodeCast<nodes::PhysicalMaterial>(material) || nodeCast<nodes::UnlitMaterial>(material);
+}
+
+Color emissionOf(Node& material) {
+  if (const auto* m = nodeCast<nodes::Material>(&material)) return m->emissiveColor;
+  if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material)) return m->emissiveColor;
+  if (const auto* m = nodeCast<nodes::UnlitMaterial>(&material)) return m->emissiveColor;
+  return {1, 1, 1};
+}
+
+bool hasPictures(Node& material) {
+  if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material))
+    return m->baseTexture || m->emissiveTexture || m->metallicRoughnessTexture || m->normalTexture;
+  if (const auto* m = nodeCast<nodes::UnlitMaterial>(&material)) return bool(m->emissiveTexture);
+  return false;
+}
+
+void setPhysical(ShaderSetup& shader, Node& material, const PhysicalParts& parts,
+                 Textures& textures, World& world, bool linear) {
+  if (const auto* m = nodeCast<nodes::PhysicalMaterial>(&material)) {
+    setCommon(shader, *m, parts, textures, world, linear);
+    setMaterial(shader, *m, parts, textures, linear);
+    if (shader.fresh())
+      warnOfMappings(material,
+                     {&m->baseTextureMapping, &m->emissiveTextureMapping,
+                      &m->metallicRoughnessTextureMapping, &m->normalTextureMapping},
+                     world);
+  } else if (const auto* flat = nodeCast<nodes::UnlitMaterial>(&material)) {
+    setCommon(shader, *flat, parts, textures, world, linear);
+    setMaterial(shader, *flat, parts, textures);
+  }
+}
+
+} // namespace xvrml::mapper

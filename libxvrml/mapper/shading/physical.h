@@ -1,0 +1,31 @@
+// physical.h: PhysicalMaterial and UnlitMaterial of X3D 4 as parameters of the shader class
+// Physical. [the mapper's thread]
+#pragma once
+
+#include "mapper/rt.h"
+#include "mapper/shading/textures.h"
+#include "xvrml/nodes.h"
+#include "xvrml/world.h"
+
+namespace xvrml::mapper {
+
+// Returns whether the node is a material that the class Physical draws.
+bool isPhysical(Node* material);
+// Returns the emissiveColor of a material of any type. It is the colour of lines and points.
+Color emissionOf(Node& material);
+// Returns whether a material has a picture of its own.
+bool hasPictures(Node& material);
+
+// The parts of an appearance beside its material; null where it has none.
+struct PhysicalParts {
+  const nodes::Appearance* appearance = nullptr;
+  Node* texture = nullptr; // stands for the picture of the base colour if the material has none
+  const nodes::TextureTransform* transform = nullptr;
+};
+
+// Sets all parameters of a shader of the class Physical. Warns where a material asks for different
+// texture coordinates for its pictures.
+void setPhysical(ShaderSetup& shader, Node& material, const PhysicalParts& parts,
+                 Textures& textures, World& world, bool linear);
+
+} // namespace xvrml::mapper
