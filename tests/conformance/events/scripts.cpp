@@ -325,7 +325,7 @@ TEST_P(Scripts, AnEngineOfAnEarlierVersionSeesTheTypesItKnows) {
   options.scriptPath = XVRML_OLD_SCRIPTS;
   const std::string world = "DEF S Script { field SFVec3f u 1 2 3 field SFVec4f v 1 2 3 4 eventIn "
                             "MFBool flags eventIn SFBool go url \"test:initialize: print alive "
-                            "u\\ngo: print gone\" }";
+                            "u\ngo: print gone\" }";
   Scripted r(world, options);
   EXPECT_EQ(r.printed(), Log{"alive u"});
   r.set("S", "flags", MFBool{true});
@@ -333,7 +333,7 @@ TEST_P(Scripts, AnEngineOfAnEarlierVersionSeesTheTypesItKnows) {
   EXPECT_EQ(r.printed(), Log{"gone"});
   const auto warning = [](const char* type, const char* field) {
     return fmt::format(
-        "1: Script S: the engine test was built for script ABI 1.1, which has no {}: it "
+        "2: Script S: the engine test was built for script ABI 1.1, which has no {}: it "
         "does not see {}",
         type, field);
   };
