@@ -27,9 +27,12 @@ def test_loads_reads_text_and_bytes():
         assert xvrml.loads(text)["Ball"].node_type == "Transform"
     with pytest.raises(TypeError, match="load\\(\\) takes files"):
         xvrml.loads(3)
+    part = "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n" \
+           "endloop\nendfacet\nendsolid part\n"
+    assert xvrml.loads(part, path="part.stl").render(fit=True, **SMALL).stats["triangles"] == 1
     with pytest.raises(xvrml.ParseError) as caught:
-        xvrml.loads("solid part\n facet normal 0 0 1\n", path="part.stl")
-    assert "STL" in str(caught.value) and caught.value.file == "part.stl"
+        xvrml.loads("DXF is not read here", path="part.dxf")
+    assert "STL" in str(caught.value) and caught.value.file == "part.dxf"
 
 
 def test_urls_of_a_text_are_looked_up_beside_its_path(tmp_path):

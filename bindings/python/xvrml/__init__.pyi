@@ -498,6 +498,9 @@ class World:
     def to_vrml(self) -> str:
         ...
 
+    def to_x3d(self, encoding: str = ...) -> str:
+        ...
+
     def save(self, path: _Path) -> None:
         ...
 
