@@ -1,17 +1,25 @@
-// grouping.cpp: addChildren and removeChildren of all grouping nodes (clause 4.6.5).
+// grouping.cpp: addChildren and removeChildren of all grouping nodes (clause 4.6.5), and of LOD and
+// Switch (ISO/IEC 19775-1 23.4.3 and 10.4.4).
 #include <algorithm>
 
 #include "behaviour/builtin.h"
+#include "xvrml/nodes.h"
 
 namespace xvrml {
 namespace {
+
+// Returns the field that holds the children.
+const FieldInfo& listOf(const NodeType& type) {
+  if (type.index == nodes::LOD::typeIndex) return *type.find("level");
+  return *type.find(type.index == nodes::Switch::typeIndex ? "choice" : "children");
+}
 
 // Adds or removes children. children is an exposedField, so a change sends children_changed. Adding
 // a present child or removing an absent one has no effect and sends no event.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value& value) {
   const bool adds = in.name == "addChildren";
   if (!adds && in.name != "removeChildren") return;
-  const FieldInfo& children = *node.type().find("children");
+  const FieldInfo& children = listOf(node.type());
   auto list = std::get<MFNode>(node.get(children));
   const MFNode before = list;
   const auto holds = [&](const NodeRef& child) {
@@ -35,7 +43,7 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value& value
 
 void addGroupingBehaviours(const AddBehaviour& add) {
   for (const NodeType* type : nodeTypes())
-    if (type->is("parent")) add(*type, {.receive = receive});
+    if (type->is("parent") || type->is("selecting")) add(*type, {.receive = receive});
 }
 
 } // namespace xvrml

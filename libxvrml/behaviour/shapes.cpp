@@ -9,6 +9,7 @@
 #include "event/hierarchy.h"
 #include "geometry/mesh.h"
 #include "graph/inline_node.h"
+#include "nodes/visible.h"
 #include "xvrml/build.h"
 
 namespace xvrml {
@@ -82,6 +83,7 @@ std::vector<PlacedShape> placedShapes(const World& world, const double* view) {
     ancestors.resize(visit.parent + 1); // none + 1 is 0
     path.resize(visit.parent + 1);
     const Matrix outside = visit.parent == none ? Matrix() : ancestors[visit.parent];
+    if (!isVisible(*visit.node)) continue;
     // A program may have made a node that contains itself; it is skipped.
     if (std::find(path.begin(), path.end(), visit.node) != path.end()) continue;
     if (auto* shape = nodeCast<nodes::Shape>(visit.node)) {

@@ -5,6 +5,7 @@
 
 #include "behaviour/viewer/interaction.h"
 #include "event/hierarchy.h"
+#include "geometry/lens.h"
 #include "nodes/viewpoint.h"
 
 namespace xvrml {
@@ -59,8 +60,7 @@ CameraSettings Guest::camera(double aspect) const {
   CameraSettings camera;
   toArray(impl_->last, camera.matrix);
   const auto fields = viewpointFields(impl_->carrier.get());
-  camera.fovy = verticalFieldOfView(fields ? fields->fieldOfView : 0.785398f, aspect);
-  if (fields) camera.shader = renderedNode(fields->shader);
+  setLens(camera, fields, Viewer::surroundingsOf(impl_->carrier.get()), aspect);
   return camera;
 }
 

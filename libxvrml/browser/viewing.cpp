@@ -90,11 +90,12 @@ void Browser::pointer(double x, double y, bool button) {
   Interaction& interaction = interactionOf(*impl_->engine);
   const CameraSettings camera = interaction.viewer.camera(interaction.aspect);
   const Matrix view = fromArray(camera.matrix);
-  const double size = std::tan(camera.fovy / 2);
-  interaction.pointer.point(
-      {transformPoint(view, Vector(0)),
-       transformDirection(view, {x * size * interaction.aspect, y * size, -1})},
-      button);
+  const bool parallel = camera.fovy == 0;
+  const double size = parallel ? camera.height / 2 : std::tan(camera.fovy / 2);
+  const Vector aside(x * size * interaction.aspect, y * size, 0), ahead(0, 0, -1);
+  interaction.pointer.point({transformPoint(view, parallel ? aside : Vector(0)),
+                             transformDirection(view, parallel ? ahead : aside + ahead)},
+                            button);
   impl_->runJobs(); // a Script may have requested another world
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/lens.h"
 #include "nodes/bindable.h"
 #include "nodes/viewpoint.h"
 
@@ -103,19 +104,13 @@ std::vector<SensorInfo> listSensors(const Graph& graph, const Places& places,
 }
 
 CameraSettings cameraOf(const Node* node, const Matrix& parent, double aspect) {
-  Vec3f position{0, 0, 10}; // defaults of clause 6.53
-  Rotation orientation;
-  float fieldOfView = 0.785398f;
+  const auto viewpoint = viewpointFields(node);
+  const Vec3f position = viewpoint ? viewpoint->position : Vec3f(0, 0, 10); // as in clause 6.53
+  const Rotation orientation = viewpoint ? viewpoint->orientation : Rotation();
   CameraSettings camera;
-  if (const auto viewpoint = viewpointFields(node)) {
-    position = viewpoint->position;
-    orientation = viewpoint->orientation;
-    fieldOfView = viewpoint->fieldOfView;
-    camera.shader = renderedNode(viewpoint->shader);
-  }
   toArray(rigid(compose(parent, compose(translation(vector(position)), rotation(orientation)))),
           camera.matrix);
-  camera.fovy = verticalFieldOfView(fieldOfView, aspect);
+  setLens(camera, viewpoint, parent, aspect);
   return camera;
 }
 

@@ -27,6 +27,7 @@ class Checker {
 
   void run() {
     collectNames();
+    eachType([this](TypeSpec& type) { addMetadata(type); });
     eachType([this](TypeSpec& type) { resolveRoles(type); });
     eachType([this](TypeSpec& type) { checkFieldNames(type); });
     eachType([this](TypeSpec& type) { type.isAbstract ? checkAbstract(type) : checkNode(type); });
@@ -56,6 +57,25 @@ class Checker {
         model_.error(type.source, fmt::format("{} is defined at {} already", type.name,
                                               place(known->second->source)));
     });
+  }
+
+  // Gives a node the field metadata, which every node of X3D has (ISO/IEC 19775-1 7.3.1). Without
+  // the abstract type of its values, as in specifications apart from the library's, there is none.
+  void addMetadata(TypeSpec& type) {
+    constexpr std::string_view values = "metadataObject";
+    if (type.isAbstract || !types_.contains(std::string(values)) || findField(type, "metadata"))
+      return;
+    FieldSpec& field = type.fields.emplace_back();
+    field.name = "metadata";
+    field.type = FieldType::SFNode;
+    field.access = Access::exposedField;
+    field.source = field.valueSource = field.changeSource = type.source;
+    field.value = NodeRef();
+    field.valueText = "NULL";
+    field.change = Change::none;
+    field.accepts.push_back({std::string(values), type.source});
+    field.ofX3d = !type.ofX3d && !type.clause.empty();
+    field.text = "Information about the node.";
   }
 
   const TypeSpec* abstractType(const Reference& reference) {

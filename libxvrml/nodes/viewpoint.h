@@ -1,5 +1,5 @@
-// viewpoint.h: the fields that all viewpoint nodes have (the abstract type in bindable.node), for
-// code that uses any of them. [any thread]
+// viewpoint.h: the fields that viewpoint nodes have (the abstract type in bindable.node), for code
+// that uses any of them. [any thread]
 #pragma once
 
 #include <optional>
@@ -8,14 +8,18 @@
 
 namespace xvrml {
 
-// References to the fields of a viewpoint node; valid as long as the node.
+// References to the fields of a viewpoint node; valid as long as the node. A pointer is null if the
+// node's type lacks the field.
 struct ViewpointFields {
   const Vec3f& position;
   const Rotation& orientation;
-  const float& fieldOfView;
   const bool& jump;
   const std::string& description;
-  Node* shader; // camera shader as written; null: the built-in camera
+  const float* fieldOfView;      // angle of a view in perspective
+  const MFFloat* extent;         // left, bottom, right, top of a view in parallel projection
+  const Vec3f* centerOfRotation; // of X3D
+  const bool* retainUserOffsets; // of X3D
+  Node* shader;                  // camera shader as written; null: the built-in camera
 };
 
 inline bool isViewpoint(const Node* node) {
@@ -24,16 +28,22 @@ inline bool isViewpoint(const Node* node) {
 
 inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
   if (!isViewpoint(node)) return std::nullopt;
-  // nodegen has checked that the node has the fields of its abstract types.
-  const auto at = [&](std::string_view name) { return node->storage(*node->type().find(name)); };
-  const FieldInfo* shader = node->type().find("shader");
-  return ViewpointFields{*static_cast<const SFVec3f*>(at("position")),
-                         *static_cast<const SFRotation*>(at("orientation")),
-                         *static_cast<const SFFloat*>(at("fieldOfView")),
-                         *static_cast<const SFBool*>(at("jump")),
-                         *static_cast<const SFString*>(at("description")),
-                         shader ? static_cast<const SFNode*>(node->storage(*shader))->get()
-                                : nullptr};
+  const auto at = [&](std::string_view name, FieldType type) -> const void* {
+    const FieldInfo* field = node->type().find(name);
+    return field && field->type == type ? node->storage(*field) : nullptr;
+  };
+  const auto* shader = static_cast<const SFNode*>(at("shader", FieldType::SFNode));
+  // nodegen has checked that the node has the fields of its abstract type, which are not optional.
+  return ViewpointFields{
+      *static_cast<const SFVec3f*>(at("position", FieldType::SFVec3f)),
+      *static_cast<const SFRotation*>(at("orientation", FieldType::SFRotation)),
+      *static_cast<const SFBool*>(at("jump", FieldType::SFBool)),
+      *static_cast<const SFString*>(at("description", FieldType::SFString)),
+      static_cast<const SFFloat*>(at("fieldOfView", FieldType::SFFloat)),
+      static_cast<const MFFloat*>(at("fieldOfView", FieldType::MFFloat)),
+      static_cast<const SFVec3f*>(at("centerOfRotation", FieldType::SFVec3f)),
+      static_cast<const SFBool*>(at("retainUserOffsets", FieldType::SFBool)),
+      shader ? shader->get() : nullptr};
 }
 
 } // namespace xvrml

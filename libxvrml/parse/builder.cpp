@@ -78,6 +78,8 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
   if (known->name == "Script") {
     ++state_.scripts;
     frame.scriptType = scriptType(*known);
+    // A Script of VRML97 may declare a field of that name.
+    if (isVrml97()) std::erase_if(frame.scriptType->fields, [](const FieldInfo& field) { return field.name == "metadata"; });
     frame.node = NodeRef(new ScriptNode(frame.scriptType));
   } else {
     frame.node = makeStaticNode(*known);

@@ -41,7 +41,7 @@ void Binding::remove(size_t type, size_t index) {
   const bool wasTop = index + 1 == stack.size();
   if (!wasTop) {
     stack.erase(stack.begin() + ptrdiff_t(index));
-    if (type == viewpointStack) viewer_.forget(*node);
+    if (type == viewpointStack) viewer_.left(*node);
     return;
   }
   stack.pop_back();
@@ -117,7 +117,8 @@ std::vector<Node*> Binding::viewpoints(const Scope& scope) {
   std::vector<Node*> list;
   walkScope(scope, [&](Node& node) {
     if (typeOf(node) == viewpointStack) list.push_back(&node);
-    return true;
+    const auto* group = nodeCast<nodes::ViewpointGroup>(&node);
+    return !group || group->displayed;
   });
   return list;
 }

@@ -7,6 +7,7 @@
 #include "behaviour/viewer/interaction.h"
 #include "nodes/viewpoint.h"
 #include "xvrml/nodes.h"
+#include "xvrml/world.h"
 
 namespace xvrml {
 
@@ -48,10 +49,15 @@ bool Navigator::findObstacle(const PickRay& ray, const Matrix& view, bool touch,
   return true;
 }
 
-// Returns the centre of rotation for EXAMINE. It lies on the line of sight, so the view does not
+// Returns the centre of rotation for EXAMINE. A viewpoint of X3D says it (ISO/IEC 19775-1 23.3.1).
+// Otherwise it lies on the line of sight, so the view does not
 // change. Its distance is that of the centre of the Shape in the middle of the picture, else of the
 // world. If the world's centre is not ahead, that centre itself is used.
 Vector Navigator::centerOf(const Matrix& view) {
+  const Node* viewpoint = interaction_.binding.bound().viewpoint;
+  if (const auto fields = viewpointFields(viewpoint);
+      fields && fields->centerOfRotation && versionOf(*viewpoint).isX3d())
+    return transformPoint(Viewer::surroundingsOf(viewpoint), vector(*fields->centerOfRotation));
   Picker& picker = interaction_.picker;
   const Vector eye(view.x[3][0], view.x[3][1], view.x[3][2]),
       back(view.x[2][0], view.x[2][1], view.x[2][2]);

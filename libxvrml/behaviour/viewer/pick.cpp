@@ -7,6 +7,7 @@
 
 #include "behaviour/viewer/descend.h"
 #include "event/hierarchy.h"
+#include "nodes/visible.h"
 #include "xvrml/browser.h"
 #include "xvrml/nodes.h"
 
@@ -16,9 +17,10 @@ namespace {
 // The number of nodes that one ray may visit. Scenes built by events have no limit of their own.
 constexpr size_t maximumSteps = 4'000'000;
 
-// Appends the children that any viewer may see (all levels of an LOD), and proxies.
+// Appends the children that any viewer may see (all levels of an LOD), and proxies. What is
+// invisible has empty bounds, which no ray hits.
 void partsOf(Node& node, std::vector<Node*>& parts) {
-  if (node.type().index == nodes::Shape::typeIndex) return;
+  if (node.type().index == nodes::Shape::typeIndex || !isVisible(node)) return;
   if (const auto* choice = nodeCast<nodes::Switch>(&node)) {
     if (choice->whichChoice >= 0 && size_t(choice->whichChoice) < choice->choice.size())
       parts.push_back(choice->choice[size_t(choice->whichChoice)].get());
@@ -75,7 +77,7 @@ const PickMesh* Picker::meshOf(Node& node) {
 PickBox Picker::boundsFromParts(Node& node, const std::vector<Node*>& parts) {
   PickBox box;
   if (node.type().index == nodes::Shape::typeIndex) {
-    if (const PickMesh* mesh = meshOf(node)) box = mesh->bounds();
+    if (const PickMesh* mesh = isVisible(node) ? meshOf(node) : nullptr) box = mesh->bounds();
     return box;
   }
   for (Node* part : parts)

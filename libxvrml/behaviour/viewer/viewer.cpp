@@ -8,7 +8,9 @@
 
 #include "behaviour/viewer/binding.h"
 #include "event/hierarchy.h"
+#include "geometry/lens.h"
 #include "nodes/viewpoint.h"
+#include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -29,6 +31,13 @@ Matrix between(const Matrix& a, const Matrix& b, double s) {
   m.x[3][1] = eye.y;
   m.x[3][2] = eye.z;
   return m;
+}
+
+// Returns whether a viewpoint keeps how far the viewer has moved from it while it is not bound
+// (ISO/IEC 19775-1 23.3.1).
+bool retains(const Node* viewpoint) {
+  const auto fields = viewpointFields(viewpoint);
+  return fields && fields->retainUserOffsets && *fields->retainUserOffsets;
 }
 
 Matrix above(const Node* node) {
@@ -71,8 +80,7 @@ CameraSettings Viewer::camera(double aspect) const {
   CameraSettings camera;
   toArray(view(), camera.matrix);
   const auto fields = viewpointFields(bound());
-  camera.fovy = verticalFieldOfView(fields ? fields->fieldOfView : 0.785398f, aspect);
-  if (fields) camera.shader = renderedNode(fields->shader);
+  setLens(camera, fields, surroundings(), aspect);
   return camera;
 }
 
@@ -101,13 +109,35 @@ void Viewer::reset() {
 void Viewer::jump(const Matrix& from) {
   jumped_ = true;
   hasLast_ = false;
-  moving_ = {transition_ > 0, engine_.now(), from};
+  const double seconds = transitionSeconds();
+  moving_ = {seconds > 0, engine_.now(), seconds, from};
+  if (!moving_.running && begun_) completeTransition();
+}
+
+// X3D's NavigationInfo says how long a transition takes (ISO/IEC 19775-1 23.4.4). One of VRML97
+// says nothing about it.
+double Viewer::transitionSeconds() const {
+  const auto* info = nodeCast<nodes::NavigationInfo>(binding_.bound().navigationInfo);
+  if (!info || !versionOf(*info).isX3d() || !(transition_ > 0)) return transition_;
+  for (const std::string& type : info->transitionType) {
+    if (type == "TELEPORT") return 0;
+    if (type == "LINEAR" || type == "ANIMATE") break;
+  }
+  return std::isfinite(info->transitionTime) ? std::max(info->transitionTime, 0.0) : transition_;
+}
+
+void Viewer::completeTransition() {
+  moving_.running = false;
+  if (auto* info = nodeCast<nodes::NavigationInfo>(binding_.bound().navigationInfo))
+    engine_.send(*info, "transitionComplete", true);
 }
 
 // Rule b of 6.53. `to` is already on the stack; the view is still relative to `from`.
 void Viewer::bind(Node* from, Node* to) {
   const Matrix seen = shown(rigid(compose(leavingPlace(from), offset_)));
   saved_[from] = offset_;
+  const auto before = saved_.find(to);
+  const Matrix offset = before != saved_.end() && retains(to) ? before->second : Matrix();
   saved_.erase(to);
   if (!begun_) { // nothing was visible yet: jump FALSE has no view to keep
     offset_ = Matrix();
@@ -115,7 +145,7 @@ void Viewer::bind(Node* from, Node* to) {
     keep(seen, to);
     moving_.running = false;
   } else {
-    offset_ = Matrix();
+    offset_ = offset;
     jump(seen);
   }
 }
@@ -124,6 +154,7 @@ void Viewer::bind(Node* from, Node* to) {
 // has jump FALSE, the view stays.
 void Viewer::unbind(Node& from, Node* to) {
   const Matrix seen = shown(rigid(compose(leavingPlace(&from), offset_)));
+  const Matrix moved = offset_;
   const auto saved = saved_.find(to);
   if (const auto left = viewpointFields(&from); !left || left->jump) {
     offset_ = saved == saved_.end() ? Matrix() : saved->second;
@@ -133,7 +164,12 @@ void Viewer::unbind(Node& from, Node* to) {
     moving_.running = false;
   }
   saved_.erase(to);
-  saved_.erase(&from);
+  saved_[&from] = moved;
+  left(from);
+}
+
+void Viewer::left(const Node& viewpoint) {
+  if (!retains(&viewpoint)) saved_.erase(&viewpoint);
 }
 
 void Viewer::restart() {
@@ -146,7 +182,7 @@ void Viewer::forget(const Node& viewpoint) { saved_.erase(&viewpoint); }
 
 Matrix Viewer::shown(const Matrix& to) const {
   if (!moving_.running) return to;
-  const double s = std::clamp((engine_.now() - moving_.start) / transition_, 0.0, 1.0);
+  const double s = std::clamp((engine_.now() - moving_.start) / moving_.seconds, 0.0, 1.0);
   return between(moving_.from, to, s * s * (3 - 2 * s));
 }
 
@@ -156,7 +192,7 @@ void Viewer::setTransition(double seconds) {
 }
 
 void Viewer::ticked() {
-  if (moving_.running && engine_.now() >= moving_.start + transition_) moving_.running = false;
+  if (moving_.running && engine_.now() >= moving_.start + moving_.seconds) completeTransition();
   const double step = engine_.now() - lastTick_;
   const Vector now = place(offset_);
   if (!(step > 0) && hasLast_) return;

@@ -38,7 +38,8 @@ class Viewer {
   // the binding are sent.
   void bind(Node* from, Node* to);
   void unbind(Node& from, Node* to);
-  void forget(const Node& viewpoint); // the Viewpoint has left the stack
+  void left(const Node& viewpoint);   // the Viewpoint has left the stack
+  void forget(const Node& viewpoint); // the Viewpoint is gone
   // Sets how many seconds a jump is animated; 0: none.
   void setTransition(double seconds);
 
@@ -58,18 +59,21 @@ class Viewer {
   Matrix shown(const Matrix& target) const;             // the view with the transition applied
   void keep(const Matrix& view, const Node* viewpoint); // sets the offset that leads to `view`
   void jump(const Matrix& from);
+  double transitionSeconds() const; // how long a jump from now on takes
+  void completeTransition();
 
   Engine& engine_;
   const Binding& binding_;
   // The place of the bound Viewpoint when it was last in the scene; it may be removed from there.
   Matrix lastPlace_;
   Matrix offset_; // matrix from the Viewpoint to the viewer
-  // Offsets of the Viewpoints below the top of the stack; null: of the default Viewpoint.
+  // Offsets of the Viewpoints below the top of the stack, and of those with retainUserOffsets; null:
+  // of the default Viewpoint.
   std::unordered_map<const Node*, Matrix> saved_;
   double transition_ = 0;
   struct {
     bool running = false;
-    double start = 0;
+    double start = 0, seconds = 0;
     Matrix from;
   } moving_;
   bool jumped_ = false, begun_ = false;

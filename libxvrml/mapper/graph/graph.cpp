@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "mapper/shading/appearance.h"
+#include "nodes/visible.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
@@ -90,7 +91,7 @@ void Graph::planItem(ItemId id) {
     plan.add(context_.world.scope.roots);
   } else {
     Node& node = *items[id].node;
-    planOf(node.type())(context_, node, plan);
+    if (isVisible(node)) planOf(node.type())(context_, node, plan);
   }
   std::vector<ItemId> children;
   children.reserve(plan.children.size());

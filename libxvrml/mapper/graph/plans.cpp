@@ -96,6 +96,9 @@ void planOrtLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::ORTLight>(node, Kind::localLight, plan);
 }
 
+void planViewpointGroup(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::ViewpointGroup&>(node).children);
+}
 void planSensor(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::sensor; }
 void planViewpoint(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::viewpoint; }
 void planBackground(PlanContext&, Node&, Plan& plan) { plan.kind = Kind::background; }
@@ -129,6 +132,7 @@ std::vector<PlanFunction>& table() {
     set(nodes::SpotLight::typeIndex, planSpotLight);
     set(nodes::ORTLight::typeIndex, planOrtLight);
     set(nodes::ORTSensor::typeIndex, planSensor);
+    set(nodes::ViewpointGroup::typeIndex, planViewpointGroup);
     for (const NodeType* type : nodeTypes())
       if (const BindableStack stack = bindableStack(*type); stack != BindableStack::none)
         set(type->index, bindablePlans[size_t(stack)]);

@@ -102,29 +102,31 @@ NodeRef convertLight(Graph& graph, const TreeNode& node, const Placement& placem
   return result;
 }
 
-// The DEF name of a camera is what browsers list.
+namespace {
+
+// Sets what both kinds of viewpoints have. The DEF name of a camera is what browsers list.
+template <class View> void setPlace(const TreeNode& node, View& view) {
+  view.position = node.get<Vec3f>("position");
+  view.orientation = node.has("direction") || node.has("up")
+                         ? lookingAlong(node.get<Vec3f>("direction"), node.get<Vec3f>("up"))
+                         : node.get<Rotation>("orientation");
+  view.description = node.name;
+}
+
+} // namespace
+
 NodeRef convertCamera(Graph& graph, const TreeNode& node) {
-  auto* view = graph.make<nodes::Viewpoint>(node);
-  view->position = node.get<Vec3f>("position");
-  view->orientation = node.has("direction") || node.has("up")
-                          ? lookingAlong(node.get<Vec3f>("direction"), node.get<Vec3f>("up"))
-                          : node.get<Rotation>("orientation");
-  view->description = node.name;
-  constexpr float pi = std::numbers::pi_v<float>;
   if (node.kind == Kind::perspectiveCamera) {
+    constexpr float pi = std::numbers::pi_v<float>;
+    auto* view = graph.make<nodes::Viewpoint>(node);
+    setPlace(node, *view);
     view->fieldOfView = std::clamp(node.get<float>("heightAngle"), 1e-3f, pi - 1e-3f);
-  } else {
-    // VRML97 has views in perspective only. The eye is so far back that the picture shows as much
-    // of what lies at the focal distance.
-    const double height = std::max(std::abs(double(node.get<float>("height"))), 1e-6);
-    const double distance = height / 2 / std::tan(double(view->fieldOfView) / 2);
-    const Vector back = transformDirection(rotation(view->orientation), Vector(0, 0, 1)) *
-                        (distance - double(node.get<float>("focalDistance")));
-    view->position = narrowed(vector(view->position) + back);
-    graph.warnOnce(node, "orthographic",
-                   "OrthographicCamera is shown in perspective: at focalDistance the picture has "
-                   "the camera's height");
+    return graph.finish(view);
   }
+  auto* view = graph.make<nodes::OrthoViewpoint>(node);
+  setPlace(node, *view);
+  const float half = std::max(std::abs(node.get<float>("height")), 1e-6f) / 2;
+  view->fieldOfView = {-half, -half, half, half};
   return graph.finish(view);
 }
 
