@@ -297,6 +297,11 @@ std::string_view x3dName(std::string_view type, std::string_view name) {
   return name;
 }
 
+const Value* x3dDefault(std::string_view type, std::string_view field) {
+  static const Value navigation = MFString{"EXAMINE", "ANY"}; // ISO/IEC 19775-1 23.4.4
+  return type == "NavigationInfo" && field == "type" ? &navigation : nullptr;
+}
+
 bool isX3dNode(std::string_view type) {
   return std::find(std::begin(nodes), std::end(nodes), type) != std::end(nodes);
 }
@@ -306,8 +311,7 @@ bool isX3dField(std::string_view type, std::string_view field) {
   if (field.ends_with("_changed") && field != "level_changed" && field != "fogType_changed" &&
       field != "centerOfRotation_changed")
     field.remove_suffix(8);
-  return field == "metadata" || // every node of X3D has it
-         std::any_of(std::begin(fields), std::end(fields),
+  return std::any_of(std::begin(fields), std::end(fields),
                      [&](const Field& one) { return one.type == type && one.field == field; });
 }
 

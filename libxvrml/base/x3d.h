@@ -1,5 +1,5 @@
 // x3d.h: the nodes and fields of X3D (ISO/IEC 19775-1) that VRML97 does not have, for messages, and
-// those that it spells otherwise. Pure functions, any thread.
+// those that it spells otherwise or gives other defaults. Pure functions, any thread.
 #pragma once
 
 #include <string_view>
@@ -23,5 +23,8 @@ bool isX3dField(std::string_view type, std::string_view field);
 std::string_view ownName(std::string_view type, std::string_view name);
 // Returns the name in X3D of a field or event of ours: the reverse of ownName.
 std::string_view x3dName(std::string_view type, std::string_view name);
+
+// Returns the default of a field of VRML97 where X3D gives it another one; null: they are the same.
+const Value* x3dDefault(std::string_view type, std::string_view field);
 
 } // namespace xvrml

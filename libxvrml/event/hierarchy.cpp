@@ -21,7 +21,11 @@ void childrenInHierarchy(Node& node, std::vector<Node*>& out) {
     if (Node* standsFor = expansionOf(node)) out.push_back(standsFor);
     return;
   }
-  forEachChild(node, [&](NodeRef& child, const FieldInfo&) { out.push_back(child.get()); });
+  // Editors keep references to other nodes in a MetadataSet; they do not put them into the scene.
+  const bool describes = node.type().index == nodes::MetadataSet::typeIndex;
+  forEachChild(node, [&](NodeRef& child, const FieldInfo&) {
+    if (!describes || child->type().is("metadataObject")) out.push_back(child.get());
+  });
   if (const Scope* content = inlineScope(node)) appendRoots(*content, out);
 }
 

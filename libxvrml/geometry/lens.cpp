@@ -19,7 +19,7 @@ Extent extentOf(const MFFloat& given) {
   const Extent extent{given[0], given[1], given[2], given[3]};
   const double width = extent.right - extent.left, height = extent.top - extent.bottom;
   return width > 0 && height > 0 && std::isfinite(width) && std::isfinite(height) ? extent
-                                                                                 : Extent{};
+                                                                                  : Extent{};
 }
 
 // The whole extent is seen; a picture of another shape shows more in one direction (23.4.5).
@@ -30,7 +30,8 @@ void setParallel(CameraSettings& camera, const Extent& extent, double scale, dou
                up = (extent.bottom + extent.top) / 2 * scale;
   camera.fovy = 0;
   camera.height = aspect > 0 ? std::max(height, width / aspect) : height;
-  for (int i = 0; i < 3; ++i) camera.matrix[12 + i] += camera.matrix[i] * right + camera.matrix[4 + i] * up;
+  for (int i = 0; i < 3; ++i)
+    camera.matrix[12 + i] += camera.matrix[i] * right + camera.matrix[4 + i] * up;
 }
 
 } // namespace
@@ -39,8 +40,8 @@ void setLens(CameraSettings& camera, const std::optional<ViewpointFields>& viewp
              const Matrix& surroundings, double aspect) {
   if (viewpoint && viewpoint->extent) {
     const double scale = std::cbrt(std::abs(determinant(surroundings)));
-    setParallel(camera, extentOf(*viewpoint->extent),
-                scale > 0 && std::isfinite(scale) ? scale : 1, aspect);
+    setParallel(camera, extentOf(*viewpoint->extent), scale > 0 && std::isfinite(scale) ? scale : 1,
+                aspect);
   } else {
     const bool given = viewpoint && viewpoint->fieldOfView;
     camera.fovy = verticalFieldOfView(given ? *viewpoint->fieldOfView : 0.785398f, aspect);

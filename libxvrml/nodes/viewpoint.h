@@ -34,16 +34,15 @@ inline std::optional<ViewpointFields> viewpointFields(const Node* node) {
   };
   const auto* shader = static_cast<const SFNode*>(at("shader", FieldType::SFNode));
   // nodegen has checked that the node has the fields of its abstract type, which are not optional.
-  return ViewpointFields{
-      *static_cast<const SFVec3f*>(at("position", FieldType::SFVec3f)),
-      *static_cast<const SFRotation*>(at("orientation", FieldType::SFRotation)),
-      *static_cast<const SFBool*>(at("jump", FieldType::SFBool)),
-      *static_cast<const SFString*>(at("description", FieldType::SFString)),
-      static_cast<const SFFloat*>(at("fieldOfView", FieldType::SFFloat)),
-      static_cast<const MFFloat*>(at("fieldOfView", FieldType::MFFloat)),
-      static_cast<const SFVec3f*>(at("centerOfRotation", FieldType::SFVec3f)),
-      static_cast<const SFBool*>(at("retainUserOffsets", FieldType::SFBool)),
-      shader ? shader->get() : nullptr};
+  return ViewpointFields{*static_cast<const SFVec3f*>(at("position", FieldType::SFVec3f)),
+                         *static_cast<const SFRotation*>(at("orientation", FieldType::SFRotation)),
+                         *static_cast<const SFBool*>(at("jump", FieldType::SFBool)),
+                         *static_cast<const SFString*>(at("description", FieldType::SFString)),
+                         static_cast<const SFFloat*>(at("fieldOfView", FieldType::SFFloat)),
+                         static_cast<const MFFloat*>(at("fieldOfView", FieldType::MFFloat)),
+                         static_cast<const SFVec3f*>(at("centerOfRotation", FieldType::SFVec3f)),
+                         static_cast<const SFBool*>(at("retainUserOffsets", FieldType::SFBool)),
+                         shader ? shader->get() : nullptr};
 }
 
 } // namespace xvrml

@@ -78,11 +78,13 @@ bool Builder::makeNode(const Name& type, NodeFrame& frame) {
   if (known->name == "Script") {
     ++state_.scripts;
     frame.scriptType = scriptType(*known);
-    // A Script of VRML97 may declare a field of that name.
-    if (isVrml97()) std::erase_if(frame.scriptType->fields, [](const FieldInfo& field) { return field.name == "metadata"; });
     frame.node = NodeRef(new ScriptNode(frame.scriptType));
   } else {
     frame.node = makeStaticNode(*known);
+    if (isX3d())
+      for (const FieldInfo& field : known->fields)
+        if (const Value* other = x3dDefault(known->name, field.name))
+          frame.node->set(field, *other);
   }
   return true;
 }

@@ -45,8 +45,10 @@ bool isDeclared(const Node& node, const FieldInfo& field) {
   return !script || !script->find(field.name);
 }
 
-bool hasOwnValue(Node& node, const FieldInfo& field) {
-  const Value* standard = &field.defaultValue;
+// x3d: the file is X3D, which has other defaults for some fields.
+bool hasOwnValue(Node& node, const FieldInfo& field, bool x3d) {
+  const Value* standard = x3d ? x3dDefault(node.type().name, field.name) : nullptr;
+  if (!standard) standard = &field.defaultValue;
   if (const auto* instance = dynamic_cast<ProtoInstance*>(&node)) {
     // A default of the prototype's file that a program has assigned again stays a default.
     if (instance->isGiven(field) && instance->hasOwnUrlBase(field)) return true;
@@ -156,8 +158,8 @@ Writer::Field Writer::fieldOf(Node& node, const FieldInfo& info) const {
   Field field{&info, isDeclared(node, info), nullptr, nullptr, {}};
   for (const IsConnection* connection : connectionsOf(node))
     if (connection->field == info.name) field.interfaces.push_back(connection->interfaceName);
-  const bool value =
-      holdsValue(info) && (field.declared ? field.interfaces.empty() : hasOwnValue(node, info));
+  const bool value = holdsValue(info) &&
+                     (field.declared ? field.interfaces.empty() : hasOwnValue(node, info, isX3d()));
   if (!value) return field;
   field.value = node.storage(info);
   if (hasNormalizedAxes(info)) { // a program may have written to the struct

@@ -75,8 +75,8 @@ TEST(X3d, TheHeadIsKept) {
 TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
   const auto world =
       load("#X3D V3.3 utf8\nStringSensor { }\nDEF L LoadSensor { children Inline { } }\n"
-           "LoadSensor { }\nViewpoint { centerOfRotation 0 0 0 position 1 2 3 }\n"
-           "Viewpoint { centerOfRotation 0 0 0 metadata MetadataString { } }\n"
+           "LoadSensor { }\nViewpoint { viewAll TRUE position 1 2 3 }\n"
+           "Viewpoint { viewAll TRUE nearDistance 1 }\n"
            "ROUTE L.isActive TO L.enabled");
   EXPECT_EQ(
       messagesOf(*world),
@@ -84,10 +84,10 @@ TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
                 "are left out here and below, with all that they hold",
                 "test.x3dv:3:7: warning: nodes of type 'LoadSensor' are not supported: they are "
                 "left out here and below, with all that they hold",
-                "test.x3dv:5:13: warning: field 'centerOfRotation' of Viewpoint is not "
+                "test.x3dv:5:13: warning: field 'viewAll' of Viewpoint is not "
                 "supported: it is left out here and below",
-                "test.x3dv:6:36: warning: field 'metadata' of Viewpoint is not supported: it is "
-                "left out here and below",
+                "test.x3dv:6:26: warning: field 'nearDistance' of Viewpoint is not supported: "
+                "it is left out here and below",
                 "test.x3dv:7:7: warning: 'L' was left out above",
                 "test.x3dv:7:21: warning: 'L' was left out above"}));
   ASSERT_EQ(world->scope.roots.size(), 2u);

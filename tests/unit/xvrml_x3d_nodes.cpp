@@ -92,10 +92,10 @@ const Addition additions[] = {
     {"Shape", "bboxSize", Access::field, Vec3f(-1, -1, -1)},
     {"Switch", "bboxCenter", Access::field, Vec3f(0, 0, 0)},
     {"Switch", "bboxSize", Access::field, Vec3f(-1, -1, -1)},
-    {"LOD", "addChildren", Access::eventIn, {}},
-    {"LOD", "removeChildren", Access::eventIn, {}},
-    {"Switch", "addChildren", Access::eventIn, {}},
-    {"Switch", "removeChildren", Access::eventIn, {}},
+    {"LOD", "addChildren", Access::eventIn, MFNode()},
+    {"LOD", "removeChildren", Access::eventIn, MFNode()},
+    {"Switch", "addChildren", Access::eventIn, MFNode()},
+    {"Switch", "removeChildren", Access::eventIn, MFNode()},
     {"LOD", "forceTransitions", Access::field, false},
     {"NavigationInfo", "transitionComplete", Access::eventOut, {}},
     {"NavigationInfo", "transitionTime", Access::exposedField, SFTime(1)},
@@ -110,8 +110,9 @@ const Addition additions[] = {
 };
 
 int count(const NodeType& type, Access access) {
-  return int(std::count_if(type.fields.begin(), type.fields.end(),
-                           [&](const FieldInfo& field) { return field.access == access && field.name != "metadata"; }));
+  return int(std::count_if(type.fields.begin(), type.fields.end(), [&](const FieldInfo& field) {
+    return field.access == access && field.name != "metadata";
+  }));
 }
 
 TEST(X3dNodes, InterfacesAreThoseOfTheStandard) {
@@ -135,8 +136,9 @@ TEST(X3dNodes, InterfacesAreThoseOfTheStandard) {
 TEST(X3dNodes, FieldsAreAddedToNodesOfVrml97) {
   std::ptrdiff_t marked = 0;
   for (const NodeType* type : nodeTypes())
-    marked += std::count_if(type->fields.begin(), type->fields.end(),
-                            [](const FieldInfo& field) { return field.ofX3d && field.name != "metadata"; });
+    marked += std::count_if(type->fields.begin(), type->fields.end(), [](const FieldInfo& field) {
+      return field.ofX3d && field.name != "metadata";
+    });
   EXPECT_EQ(marked, std::ssize(additions));
   for (const Addition& expected : additions) {
     SCOPED_TRACE(std::string(expected.node) + '.' + expected.field);

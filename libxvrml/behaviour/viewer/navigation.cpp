@@ -6,6 +6,7 @@
 
 #include "behaviour/viewer/interaction.h"
 #include "nodes/viewpoint.h"
+#include "xvrml/browser.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
@@ -120,7 +121,9 @@ Navigation Navigator::type() const { return typeFor(chosen_); }
 
 Navigation Navigator::typeFor(std::optional<Navigation> chosen) const {
   const auto* info = nodeCast<nodes::NavigationInfo>(interaction_.binding.bound().navigationInfo);
-  const MFString standard{"WALK", "ANY"};
+  Browser* browser = interaction_.engine.browser();
+  const bool x3d = browser && browser->world().head.version.isX3d();
+  const MFString standard{x3d ? "EXAMINE" : "WALK", "ANY"}; // defaults of 6.29 and of X3D's 23.4.4
   const MFString& list = info ? info->type : standard;
   const auto lists = [&](std::string_view name) {
     return std::find(list.begin(), list.end(), name) != list.end();

@@ -67,8 +67,8 @@ class Viewer {
   // The place of the bound Viewpoint when it was last in the scene; it may be removed from there.
   Matrix lastPlace_;
   Matrix offset_; // matrix from the Viewpoint to the viewer
-  // Offsets of the Viewpoints below the top of the stack, and of those with retainUserOffsets; null:
-  // of the default Viewpoint.
+  // Offsets of the Viewpoints below the top of the stack, and of those with retainUserOffsets;
+  // null: of the default Viewpoint.
   std::unordered_map<const Node*, Matrix> saved_;
   double transition_ = 0;
   struct {

@@ -134,6 +134,7 @@ TEST_P(Scripts, NodesAreDescribed) {
   EXPECT_EQ(r.printed(),
             (Log{"Group 'T'", "eventIn 15 addChildren", "eventIn 15 removeChildren",
                  "exposedField 15 children", "field 11 bboxCenter", "field 11 bboxSize",
+                 "exposedField 1 bboxDisplay", "exposedField 1 visible", "exposedField 6 metadata",
                  "set_children is 15 children", "find: 2 Group has no field or event 'nothing'"}));
 }
 

@@ -17,11 +17,13 @@ std::string textOf(const Value& value);
 
 class Running {
  public:
-  // The clock has epoch 0, so that tests can use times 0, 1, 2.
+  // The clock has epoch 0, so that tests can use times 0, 1, 2. A text without a header of X3D is
+  // VRML97.
   explicit Running(const std::string& vrml, double start = 0, BrowserOptions options = {},
                    const RunOptions& run = {.epoch = 0})
-      : browser(loadWorldFromMemory("#VRML V2.0 utf8\n" + vrml, "test.wrl"), std::move(options),
-                start, run) {}
+      : browser(loadWorldFromMemory((vrml.starts_with("#X3D") ? "" : "#VRML V2.0 utf8\n") + vrml,
+                                    "test.wrl"),
+                std::move(options), start, run) {}
 
   Node& node(std::string_view name) { return *browser.node(name); }
   // Appends every later event of name.out to the log as "time name.out value".
