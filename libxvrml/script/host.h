@@ -32,8 +32,11 @@ struct Script {
     const FieldInfo* field;
     Value value;
   };
+  // Returns whether the Script declares the field itself. Every node of X3D has `metadata`; in
+  // VRML97 it may be a Script's own.
   static bool isOwn(const FieldInfo& field) {
-    return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate";
+    return field.name != "url" && field.name != "directOutput" && field.name != "mustEvaluate" &&
+           !(field.name == "metadata" && field.ofX3d);
   }
   // Returns whether the engine has the type in its table. Before minor version 2 of the ABI there
   // were the types of VRML97 alone.

@@ -106,8 +106,7 @@ struct HostTable {
   static XsResult write(Host table, XsNode self, const char* name, const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       const FieldInfo* field = name ? script.node->type().find(name) : nullptr;
-      const bool own = field && field->access == Access::field && field->name != "directOutput" &&
-                       field->name != "mustEvaluate";
+      const bool own = field && field->access == Access::field && Script::isOwn(*field);
       if (!own) return noField(script, *script.node, "field that it may write,", name);
       Value taken;
       if (!take(host, script, value, field->type, taken))
