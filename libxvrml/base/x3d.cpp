@@ -216,6 +216,15 @@ bool isX3dNode(std::string_view type) {
   return std::find(std::begin(nodes), std::end(nodes), type) != std::end(nodes);
 }
 
+bool isGpuNode(std::string_view type) {
+  constexpr std::string_view programs[] = {
+      "ComposedShader", "FloatVertexAttribute", "Matrix3VertexAttribute", "Matrix4VertexAttribute",
+      "PackagedShader", "ProgramShader",        "ShaderPart",             "ShaderProgram"};
+  return std::find(std::begin(programs), std::end(programs), type) != std::end(programs);
+}
+
+bool isGpuField(std::string_view field) { return field == "shaders" || field == "attrib"; }
+
 bool isX3dField(std::string_view type, std::string_view field) {
   if (field.starts_with("set_")) field.remove_prefix(4);
   if (field.ends_with("_changed") && field != "level_changed" && field != "fogType_changed" &&

@@ -15,6 +15,10 @@ constexpr std::string_view x3dAccessName(Access access) {
 }
 
 bool isX3dNode(std::string_view type);
+// Return whether a node of X3D, or a field that holds such nodes, belongs to a program for graphics
+// processors (clause 31): it can only be run there.
+bool isGpuNode(std::string_view type);
+bool isGpuField(std::string_view field);
 // Returns whether X3D adds this field to a node type of VRML97.
 bool isX3dField(std::string_view type, std::string_view field);
 // Returns the name in VRML97 of a field or event of a node of X3D: "choice" for a Switch's
