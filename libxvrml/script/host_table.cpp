@@ -87,30 +87,46 @@ struct HostTable {
 
   static XsResult send(Host table, XsNode self, const char* name, const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
-      const FieldInfo* out = name ? script.node->type().find(name) : nullptr;
-      if (!out || out->access != Access::eventOut)
-        return noField(script, *script.node, "eventOut", name);
+      const FieldInfo* out = name ? script.node->type().findEventOut(name) : nullptr;
+      if (!out || !Script::isOwn(*out)) return noField(script, *script.node, "eventOut", name);
       Value taken;
       if (!take(host, script, value, out->type, taken))
         return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
-      for (Script::Output& output : script.outputs)
-        if (!output.to && output.field == out) {
-          output.value = std::move(taken);
-          return XS_OK;
-        }
-      script.outputs.push_back({{}, out, std::move(taken)});
+      if (out->access == Access::exposedField) return writeExposed(host, script, *out, taken);
+      output(script, *out, std::move(taken));
       return XS_OK;
     });
+  }
+
+  // Notes an event from the Script's own node. It leaves when the function returns.
+  static void output(Script& script, const FieldInfo& out, Value value) {
+    for (Script::Output& output : script.outputs)
+      if (!output.to && output.field == &out) {
+        output.value = std::move(value);
+        return;
+      }
+    script.outputs.push_back({{}, &out, std::move(value)});
+  }
+
+  // Sets an inputOutput field of the Script, which sends NAME_changed (ISO/IEC 19775-1 4.4.2.2).
+  static XsResult writeExposed(ScriptHost& host, Script& script, const FieldInfo& field,
+                               Value value) {
+    if (!host.engine_.store(*script.node, field, std::move(value)))
+      return refuse(script, XS_FAILED, "not a value it can have");
+    output(script, field, script.node->get(field));
+    return XS_OK;
   }
 
   static XsResult write(Host table, XsNode self, const char* name, const XsValue* value) {
     return act(table, self, [&](ScriptHost& host, Script& script) {
       const FieldInfo* field = name ? script.node->type().find(name) : nullptr;
-      const bool own = field && field->access == Access::field && Script::isOwn(*field);
+      const bool own = field && holdsValue(*field) && Script::isOwn(*field);
       if (!own) return noField(script, *script.node, "field that it may write,", name);
       Value taken;
       if (!take(host, script, value, field->type, taken))
         return refuse(script, XS_WRONG_TYPE, fmt::format("{}: {}", name, script.error));
+      if (field->access == Access::exposedField)
+        return writeExposed(host, script, *field, std::move(taken));
       return host.engine_.store(*script.node, *field, std::move(taken))
                  ? XS_OK
                  : refuse(script, XS_FAILED, "not a value it can have");

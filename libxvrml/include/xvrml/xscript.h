@@ -170,7 +170,7 @@ typedef struct XsScriptInfo {
   XsString text; /* the program: the text after the scheme, or the file's bytes */
   uint32_t fieldCount;
   /* The fields and events that the Script declares, in order, without url, directOutput and
-   * mustEvaluate. */
+   * mustEvaluate. Since minor version 2 there are exposedFields, too (inputOutput in X3D). */
   const XsField* fields;
   /* --- 1.1 --- */
   /* Bytes that the program may use, if the engine can tell; beyond them it fails as if out of
@@ -180,8 +180,10 @@ typedef struct XsScriptInfo {
 
 typedef struct XsEvent {
   uint32_t size;    /* sizeof(XsEvent) in the host's header */
-  uint32_t index;   /* index of the eventIn in XsScriptInfo.fields */
-  const char* name; /* name of the eventIn */
+  uint32_t index;   /* index of the eventIn or exposedField in XsScriptInfo.fields */
+  /* Name of the eventIn or exposedField x. An exposedField already has the value and has sent it
+   * on; the stock engines call the program's function set_x. */
+  const char* name;
   XsValue value;    /* valid until the function returns */
   double time;      /* the event's timestamp in seconds */
 } XsEvent;
@@ -266,7 +268,8 @@ struct XsHost {
    * eventOut gets several, the last one counts. Each eventOut sends at most once per cascade; later
    * events are dropped (4.10.3). */
   XsResult (*send)(const XsHost* host, XsNode self, const char* eventOut, const XsValue* value);
-  /* Sets one of the Script's own fields, without an event. */
+  /* Sets one of the Script's own fields, without an event. An exposedField x also sends x_changed,
+   * as if by `send`. */
   XsResult (*write)(const XsHost* host, XsNode self, const char* field, const XsValue* value);
 
   /* --- Nodes --- */
