@@ -59,8 +59,9 @@ void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
   plan.isInline = true;
   const Scope* scope = inlineScope(node);
-  plan.awaited = !scope && !context.world.options.loadInlines &&
-                 !static_cast<nodes::Inline&>(node).url.empty();
+  const auto& content = static_cast<nodes::Inline&>(node);
+  plan.awaited = !scope && !context.world.options.loadInlines && content.load &&
+                 !content.url.empty();
   if (scope) plan.add(scope->roots);
 }
 
