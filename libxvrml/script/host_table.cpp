@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "event/hierarchy.h"
 #include "graph/field_access.h"
 
 namespace xvrml {
@@ -374,6 +375,40 @@ struct HostTable {
     return XS_OK;
   }
 
+  // --- The scene of the Script ---
+
+  // Returns the scene that the Script stands in: the content of the innermost Inline above it, else
+  // the world's. Bodies of prototypes have no scenes of their own here.
+  static const Scope& sceneOf(ScriptHost& host, const Node& script) {
+    const std::vector<Path> paths = pathsTo(script, 1);
+    if (!paths.empty())
+      for (size_t i = paths[0].size(); i-- > 0;)
+        if (const Scope* content = inlineScope(*paths[0][i])) return *content;
+    return host.world_.scope;
+  }
+
+  static XsResult namedNode(Host table, XsNode self, XsString name, XsValue* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      const std::string wanted = text(host, name);
+      const auto& names = sceneOf(host, *script.node).names;
+      const auto found = names.find(wanted);
+      if (!out || found == names.end() || !found->second)
+        return refuse(script, XS_NO_NODE, fmt::format("the scene has no node '{}'", wanted));
+      *out = script.lent.lend(SFNode(found->second), script.handles);
+      return XS_OK;
+    });
+  }
+  static XsResult rootNodes(Host table, XsNode self, XsValue* out) {
+    return enter(table, self, [&](ScriptHost& host, Script& script) {
+      if (!out) return refuse(script, XS_FAILED, "no place for the answer");
+      MFNode roots;
+      for (const NodeRef& root : sceneOf(host, *script.node).roots)
+        if (root) roots.push_back(root);
+      *out = script.lent.lend(std::move(roots), script.handles);
+      return XS_OK;
+    });
+  }
+
   // --- The library's own objects ---
 
   static void* object(Host table, XsNode self, XsNode number) {
@@ -421,7 +456,9 @@ ScriptHost::Table::Table(ScriptHost& host)
              HostTable::log,
              HostTable::lastError,
              HostTable::object,
-             HostTable::number},
+             HostTable::number,
+             HostTable::namedNode,
+             HostTable::rootNodes},
       host(host) {}
 
 } // namespace xvrml

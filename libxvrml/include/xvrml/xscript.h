@@ -335,6 +335,13 @@ struct XsHost {
   void* (*object)(const XsHost* host, XsNode self, XsNode node);
   /* Returns the number of such a node, as if it had been read from a field; 0 if there is none. */
   XsNode (*number)(const XsHost* host, XsNode self, void* object);
+
+  /* --- 1.2: the scene that the Script stands in: the world's file, or the content of an Inline. An
+   * engine reads these members only if `size` says that they are there. */
+  /* out: the SFNode of a DEF name. XS_NO_NODE if the scene has no such name. */
+  XsResult (*namedNode)(const XsHost* host, XsNode self, XsString name, XsValue* out);
+  /* out: an MFNode, the outermost nodes. */
+  XsResult (*rootNodes)(const XsHost* host, XsNode self, XsValue* out);
 };
 
 #if defined(_WIN32)

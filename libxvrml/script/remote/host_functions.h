@@ -22,7 +22,8 @@ using HostFunctions = FunctionList<
     &XsHost::findField, &XsHost::retain, &XsHost::release, &XsHost::getName, &XsHost::getVersion,
     &XsHost::getCurrentSpeed, &XsHost::getCurrentFrameRate, &XsHost::getWorldUrl,
     &XsHost::setDescription, &XsHost::replaceWorld, &XsHost::loadUrl, &XsHost::createVrmlFromUrl,
-    &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute, &XsHost::log>;
+    &XsHost::createVrmlFromString, &XsHost::addRoute, &XsHost::deleteRoute, &XsHost::log,
+    &XsHost::namedNode, &XsHost::rootNodes>;
 
 // Output arguments.
 template <class T> constexpr bool isOut =

@@ -162,5 +162,49 @@ TEST_F(EcmaScript, ExposedFieldInAFileOfVrml97) {
   EXPECT_NE(messages[0].find("6.40"), messages[0].npos);
 }
 
+// --- The Browser object of X3D (ISO/IEC 19777-1) ---
+
+TEST_F(EcmaScript, BrowserHasTheScene) {
+  EcmaWorld r(header + EcmaWorld::script(
+      "inputOnly SFBool go directOutput TRUE",
+      "function go() { var scene = Browser.currentScene; var t = scene.getNamedNode('T');"
+      "print(t.translation.x, scene.rootNodes.length, scene.rootNodes[1].translation.y);"
+      "t.translation = new SFVec3f(4, 5, 6);"
+      "scene.addRoute(t, 'translation_changed', scene.getNamedNode('U'), 'set_translation');"
+      "try { scene.getNamedNode('X'); } catch (e) { print('no X'); } }",
+      "DEF T Transform { translation 1 2 3 } DEF U Transform { }"));
+  r.set("S", "go", true);
+  EXPECT_EQ(r.takeOutput(), "1 3 2\nno X");
+  EXPECT_EQ(r.get("T", "translation"), "4 5 6");
+  r.set("T", "translation", Vec3f{7, 8, 9});
+  EXPECT_EQ(r.get("U", "translation"), "7 8 9");
+}
+
+TEST_F(EcmaScript, BrowserHasPropertiesOfX3d) {
+  EcmaWorld r(header + EcmaWorld::script(
+      "inputOnly SFBool go",
+      "function go() { print(Browser.name == Browser.getName(), Browser.version == "
+      "Browser.getVersion(), Browser.currentSpeed, Browser.currentFrameRate);"
+      "Browser.description = 'said'; print(Browser.description);"
+      "var made = Browser.createX3DFromString('Transform { translation 1 2 3 }');"
+      "print(made.length, made[0].translation.z); Browser.println('ln'); }"));
+  r.set("S", "go", true);
+  EXPECT_EQ(r.takeOutput(), "true true 0 0\nsaid\n1 3\nln");
+  EXPECT_EQ(r.browser.description(), "said");
+}
+
+TEST_F(EcmaScript, BrowserHasTheSceneInAProcess) {
+  BrowserOptions options;
+  options.scriptPath = XVRML_SCRIPTS;
+  options.scriptIsolation = BrowserOptions::Isolation::always;
+  Scripted r(header + EcmaWorld::script(
+      "inputOnly SFBool go outputOnly SFVec3f out",
+      "function go() { out = Browser.currentScene.getNamedNode('T').translation; }",
+      "DEF T Transform { translation 1 2 3 }"), options);
+  r.set("S", "go", true);
+  EXPECT_EQ(r.get("S", "out"), "1 2 3");
+  EXPECT_EQ(r.messages(), Log());
+}
+
 } // namespace
 } // namespace xvrml
