@@ -26,12 +26,8 @@ struct State : Media {
   }
   TimeFields fields(const Node& node) const override {
     const auto& n = static_cast<const nodes::AudioClip&>(node);
-    return {n.startTime,
-            n.stopTime,
-            duration > 0 && n.pitch > 0 ? duration / n.pitch : 0,
-            n.loop,
-            true,
-            n.pauseTime,
+    return {n.startTime, n.stopTime, duration > 0 && n.pitch > 0 ? duration / n.pitch : 0,
+            n.loop,      true,       n.pauseTime,
             n.resumeTime};
   }
   void play(Events&, Node&, const TimeStep& step) override { position = step.fraction * duration; }

@@ -59,8 +59,8 @@ namespace {
 
 // load TRUE of an Inline that has its content, or FALSE of one that has none, changes nothing.
 void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
-  const bool loads = in.name == "load" && static_cast<nodes::Inline&>(node).load !=
-                                              (inlineScope(node) != nullptr);
+  const bool loads =
+      in.name == "load" && static_cast<nodes::Inline&>(node).load != (inlineScope(node) != nullptr);
   if (in.name == "url" || loads) loadInlineContent(static_cast<Engine&>(events), node);
 }
 

@@ -1,6 +1,6 @@
-// load_sensor.cpp: LoadSensor (ISO/IEC 19775-1 9.4.3): tells when the files that nodes name have been
-// loaded. Sounds and films are known by their length, Inlines by their content. Pictures are read when
-// they are drawn: of them it is asked whether a file is there.
+// load_sensor.cpp: LoadSensor (ISO/IEC 19775-1 9.4.3): tells when the files that nodes name have
+// been loaded. Sounds and films are known by their length, Inlines by their content. Pictures are
+// read when they are drawn: of them it is asked whether a file is there.
 #include <algorithm>
 #include <fstream>
 
@@ -57,8 +57,8 @@ void end(Events& events, Node& node) {
 void tick(Events& events, Node& node) {
   auto& sensor = static_cast<nodes::LoadSensor&>(node);
   State& state = stateOf(events, node);
-  const auto count =
-      std::count_if(sensor.watchList.begin(), sensor.watchList.end(), [](const NodeRef& n) { return bool(n); });
+  const auto count = std::count_if(sensor.watchList.begin(), sensor.watchList.end(),
+                                   [](const NodeRef& n) { return bool(n); });
   if (!sensor.enabled || count == 0) {
     if (state.senses) return end(events, node);
     return events.wantTicks(node, false);

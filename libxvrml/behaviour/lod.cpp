@@ -38,8 +38,7 @@ void lookLod(Events& events, Node& node) {
   above.pop_back();
   const auto level = int32_t(levelFor(lod, Picker::toWorld(above, view), view));
   auto& state = static_cast<State&>(*events.state(node));
-  if (std::exchange(state.level, level) != level)
-    events.send(node, "activeLevel_changed", level);
+  if (std::exchange(state.level, level) != level) events.send(node, "activeLevel_changed", level);
 }
 
 std::unique_ptr<NodeState> beginLod(Events& events, Node& node) {

@@ -44,8 +44,8 @@ void receive(Events& events, Node& node, const FieldInfo& in, const Value&) {
     events.send(node, "duration_changed", media.duration);
   }
   const TimeFields fields = media.fields(node);
-  const TimeStep step = media.time.fieldChanged(fields, events.now(), maySend(events, node),
-                                                in.name == "startTime");
+  const TimeStep step =
+      media.time.fieldChanged(fields, events.now(), maySend(events, node), in.name == "startTime");
   send(events, node, media, step);
   events.wantTicks(node, media.time.wantsTicks(fields, events.now()));
 }

@@ -71,9 +71,9 @@ bool centerOfRotation(Events& events, const Matrix& viewerToSensor, Vec3f& cente
   Matrix toViewer;
   if (!fields || !fields->centerOfRotation || !invert(interaction.viewer.view(), toViewer))
     return false;
-  const Vector p = transformPoint(
-      compose(viewerToSensor, compose(toViewer, Viewer::surroundingsOf(viewpoint))),
-      vector(*fields->centerOfRotation));
+  const Vector p =
+      transformPoint(compose(viewerToSensor, compose(toViewer, Viewer::surroundingsOf(viewpoint))),
+                     vector(*fields->centerOfRotation));
   center = {float(p.x), float(p.y), float(p.z)};
   return true;
 }

@@ -99,8 +99,8 @@ void TimeDependent::place(const TimeFields& fields, TimeStep& step) const {
   step.cycleStart = start;
   step.fraction = 0;
   if (!(fields.cycle > 0) || !(elapsed > 0) || !std::isfinite(elapsed)) return;
-  const double resolution = std::numeric_limits<double>::epsilon() *
-                            std::max(std::abs(step.time), std::abs(start));
+  const double resolution =
+      std::numeric_limits<double>::epsilon() * std::max(std::abs(step.time), std::abs(start));
   double rest = std::fmod(elapsed, fields.cycle);
   if (elapsed >= fields.cycle && rest <= resolution) rest = 0;
   // A cycle such as .1 is no exact double, so the sum of many may fall a little after the intended
@@ -147,7 +147,7 @@ TimeStep TimeDependent::step(const TimeFields& fields, double now, MaySend may) 
     step.alreadySent = (stepped_ == now || (wasPaused && paused_)) && !step.ends;
     step.time = now >= over ? std::clamp(over, std::min(last_, now), now)
                             : now; // a stopTime in the past stops now
-    if (paused_ && step.ends) { // the pause ends with the run, where it began
+    if (paused_ && step.ends) {    // the pause ends with the run, where it began
       wait(pausedAt_, step.time);
       paused_ = false;
       step.resumes = !std::exchange(step.pauses, false);

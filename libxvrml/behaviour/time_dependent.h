@@ -1,6 +1,6 @@
 // time_dependent.h: the state machine that decides when TimeSensors, AudioClips and MovieTextures
-// are active (clause 4.6.9) and paused (ISO/IEC 19775-1 8.2.4). Each of these nodes has one in its NodeState and sends the events of
-// its steps. [the browser's thread]
+// are active (clause 4.6.9) and paused (ISO/IEC 19775-1 8.2.4). Each of these nodes has one in its
+// NodeState and sends the events of its steps. [the browser's thread]
 #pragma once
 
 #include <limits>
@@ -27,8 +27,8 @@ struct TimeStep {
   bool newCycle = false;
   // A step at this very time has already sent fraction and time, or it is paused.
   bool alreadySent = false;
-  bool pauses = false;  // isPaused TRUE must be sent after fraction and time
-  bool resumes = false; // isPaused FALSE must be sent before them
+  bool pauses = false;   // isPaused TRUE must be sent after fraction and time
+  bool resumes = false;  // isPaused FALSE must be sent before them
   double time = 0;       // in seconds: now, or the exact end if it has passed since the last step
   double cycleStart = 0; // in seconds: start of the cycle that `time` lies in
   // Part of the cycle that has passed, in [0,1]; 1 at the cycle's end, never 0.

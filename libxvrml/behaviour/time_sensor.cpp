@@ -1,4 +1,5 @@
-// time_sensor.cpp: TimeSensor (clause 6.50, ISO/IEC 19775-1 8.4.1), based on the state machine of time-dependent nodes.
+// time_sensor.cpp: TimeSensor (clause 6.50, ISO/IEC 19775-1 8.4.1), based on the state machine of
+// time-dependent nodes.
 #include "behaviour/builtin.h"
 #include "behaviour/time_dependent.h"
 #include "xvrml/nodes.h"

@@ -127,8 +127,8 @@ CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
   const Place& place = impl_->places.all[size_t(places[index])];
   const auto fields = viewpointFields(impl_->graph.items[place.item].node.get());
   if (!fields || !fields->viewAll || !*fields->viewAll || impl_->bounds().empty) return camera;
-  CameraSettings all = cameraAround(impl_->bounds(), camera.matrix, camera.fovy,
-                                    impl_->options.aspect);
+  CameraSettings all =
+      cameraAround(impl_->bounds(), camera.matrix, camera.fovy, impl_->options.aspect);
   all.shader = camera.shader;
   return all;
 }

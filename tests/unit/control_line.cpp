@@ -68,7 +68,8 @@ TEST(ControlLine, CommandsAreRead) {
       std::get<PressKey>(good(R"({"command":"key","key":"F1","pressed":false})").command->action);
   EXPECT_EQ(key.key, "F1");
   EXPECT_EQ(key.pressed, std::optional(false));
-  EXPECT_EQ(std::get<PressKey>(good(R"({"command":"key","text":"a b"})").command->action).text, "a b");
+  EXPECT_EQ(std::get<PressKey>(good(R"({"command":"key","text":"a b"})").command->action).text,
+            "a b");
   EXPECT_EQ(*std::get<Time>(good(R"({"command":"time","skip":0.25})").command->action).skip, .25);
   EXPECT_EQ(std::get<Bind>(good(R"({"command":"bind","viewpoint":2})").command->action).viewpoint,
             "2");

@@ -1,5 +1,5 @@
-// window_world_keys.cpp: which keys the KeySensor or StringSensor of a world gets, which of them are
-// the window's commands as well, and how scripts for --input write them.
+// window_world_keys.cpp: which keys the KeySensor or StringSensor of a world gets, which of them
+// are the window's commands as well, and how scripts for --input write them.
 #include <gtest/gtest.h>
 
 #include <vector>

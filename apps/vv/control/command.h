@@ -86,8 +86,7 @@ struct Quit {};
 
 using Action =
     std::variant<Hello, Get, Set, Subscribe, Create, ChangeRoots, Release, ChangeRoute, Describe,
-                 ListNames, ListViewpoints, Bind, Load, Replace, Render, Time, Quit,
-                 PressKey>;
+                 ListNames, ListViewpoints, Bind, Load, Replace, Render, Time, Quit, PressKey>;
 
 struct Command {
   std::string id;     // the client's "id" as JSON text, for the answer; "": none

@@ -103,10 +103,9 @@ std::string Pilot::hint() const {
   for (const xvrml::NodeRef& node : browser_.sensorsAtPointer()) {
     const auto* anchor = xvrml::nodeCast<xvrml::nodes::Anchor>(node.get());
     const xvrml::FieldInfo* text = node->type().find("description");
-    const auto* description =
-        text && text->type == xvrml::FieldType::SFString
-            ? static_cast<const std::string*>(node->storage(*text))
-            : nullptr;
+    const auto* description = text && text->type == xvrml::FieldType::SFString
+                                  ? static_cast<const std::string*>(node->storage(*text))
+                                  : nullptr;
     if (!anchor && description && !description->empty()) return *description; // a sensor of X3D
     if (!anchor) continue;
     return !anchor->description.empty() ? anchor->description

@@ -16,11 +16,11 @@ struct ActionKey {
   std::string_view name;
   int32_t number;
 };
-constexpr ActionKey actionKeys[] = {
-    {"F1", 1},   {"F2", 2},   {"F3", 3},   {"F4", 4},      {"F5", 5},        {"F6", 6},  {"F7", 7},
-    {"F8", 8},   {"F9", 9},   {"F10", 10}, {"F11", 11},    {"F12", 12},      {"Home", 13},
-    {"End", 14}, {"PageUp", 15}, {"PageDown", 16}, {"Up", 17}, {"Down", 18}, {"Left", 19},
-    {"Right", 20}};
+constexpr ActionKey actionKeys[] = {{"F1", 1},    {"F2", 2},    {"F3", 3},      {"F4", 4},
+                                    {"F5", 5},    {"F6", 6},    {"F7", 7},      {"F8", 8},
+                                    {"F9", 9},    {"F10", 10},  {"F11", 11},    {"F12", 12},
+                                    {"Home", 13}, {"End", 14},  {"PageUp", 15}, {"PageDown", 16},
+                                    {"Up", 17},   {"Down", 18}, {"Left", 19},   {"Right", 20}};
 
 struct Modifier {
   std::string_view name, out;

@@ -1,5 +1,5 @@
-// keyboard.h: the keyboard of the world: KeySensor and StringSensor (ISO/IEC 19775-1 clause 21). One
-// of them at a time is active. Keys that move the viewer are not its business (navigation.h).
+// keyboard.h: the keyboard of the world: KeySensor and StringSensor (ISO/IEC 19775-1 clause 21).
+// One of them at a time is active. Keys that move the viewer are not its business (navigation.h).
 // [the browser's thread]
 #pragma once
 

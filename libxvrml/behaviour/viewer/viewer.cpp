@@ -96,8 +96,8 @@ void Viewer::keep(const Matrix& view, const Node* viewpoint) {
   hasLast_ = false;
 }
 
-// Looks at the middle of the sphere around the world's bounds, so that it fits into a picture of any
-// shape.
+// Looks at the middle of the sphere around the world's bounds, so that it fits into a picture of
+// any shape.
 bool Viewer::seeAll(const Node* viewpoint) {
   shownRadius_ = 0;
   const auto fields = viewpointFields(viewpoint);

@@ -176,8 +176,8 @@ class Browser {
   // Presses or releases a key of the world's keyboard for the KeySensor or StringSensor that is
   // enabled (ISO/IEC 19775-1 21), at now(). name: the character that the key types, in UTF-8, or F1
   // to F12, Home, End, PageUp, PageDown, Up, Down, Left, Right, Shift, Control, Alt, Enter,
-  // Backspace, Tab, Escape, Delete or Space. Returns false if no sensor is enabled, or for any other
-  // name. The viewer does not move.
+  // Backspace, Tab, Escape, Delete or Space. Returns false if no sensor is enabled, or for any
+  // other name. The viewer does not move.
   bool worldKey(std::string_view name, bool pressed);
   // Presses and releases the key of each character of a text in UTF-8; a line feed is Enter.
   bool worldText(std::string_view text);

@@ -179,13 +179,13 @@ typedef struct XsScriptInfo {
 } XsScriptInfo;
 
 typedef struct XsEvent {
-  uint32_t size;    /* sizeof(XsEvent) in the host's header */
-  uint32_t index;   /* index of the eventIn or exposedField in XsScriptInfo.fields */
+  uint32_t size;  /* sizeof(XsEvent) in the host's header */
+  uint32_t index; /* index of the eventIn or exposedField in XsScriptInfo.fields */
   /* Name of the eventIn or exposedField x. An exposedField already has the value and has sent it
    * on; the stock engines call the program's function set_x. */
   const char* name;
-  XsValue value;    /* valid until the function returns */
-  double time;      /* the event's timestamp in seconds */
+  XsValue value; /* valid until the function returns */
+  double time;   /* the event's timestamp in seconds */
 } XsEvent;
 
 /* An engine's number or pointer for an interpreter. The host only passes it back. */

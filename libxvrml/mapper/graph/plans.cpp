@@ -60,8 +60,8 @@ void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.isInline = true;
   const Scope* scope = inlineScope(node);
   const auto& content = static_cast<nodes::Inline&>(node);
-  plan.awaited = !scope && !context.world.options.loadInlines && content.load &&
-                 !content.url.empty();
+  plan.awaited =
+      !scope && !context.world.options.loadInlines && content.load && !content.url.empty();
   if (scope) plan.add(scope->roots);
 }
 

@@ -11,7 +11,7 @@ struct Linked {
   std::string variable;
   XsType type{};
   Interpreter::Output output{};
-  Object last; // last value of the variable
+  Object last;          // last value of the variable
   bool renewed = false; // an event sets the variable just now: nothing is written or sent
 };
 

@@ -1,6 +1,6 @@
-// x3d_scripts.cpp: inputOutput fields of Scripts (ISO/IEC 19775-1 29.2.2): they take events as x and
-// set_x, send x_changed when a route or the program writes them, and are variables of the program, in
-// all languages. Languages that are not built are skipped.
+// x3d_scripts.cpp: inputOutput fields of Scripts (ISO/IEC 19775-1 29.2.2): they take events as x
+// and set_x, send x_changed when a route or the program writes them, and are variables of the
+// program, in all languages. Languages that are not built are skipped.
 #include "conformance/events/ecmascript_world.h"
 #include "xvrml/script_engines.h"
 
@@ -52,10 +52,11 @@ TEST_P(InputOutput, TakesAndSendsEventsAndIsAVariable) {
 TEST_P(InputOutput, IsRoutedUnderAllItsNames) {
   for (const char* in : {"x", "set_x"})
     for (const char* out : {"x", "x_changed"}) {
-      Scripted r(world("DEF A Transform { } DEF F ScalarInterpolator { key [0 1] keyValue [0 10] }\n"
-                       "DEF P PointLight { }\nROUTE F.value_changed TO S." +
-                       std::string(in) + "\nROUTE S." + out + " TO P.set_intensity\n"),
-                 trusting());
+      Scripted r(
+          world("DEF A Transform { } DEF F ScalarInterpolator { key [0 1] keyValue [0 10] }\n"
+                "DEF P PointLight { }\nROUTE F.value_changed TO S." +
+                std::string(in) + "\nROUTE S." + out + " TO P.set_intensity\n"),
+          trusting());
       r.set("F", "set_fraction", 0.05f);
       EXPECT_EQ(r.get("P", "intensity"), "0.5") << in << " " << out;
       r.set("S", "put", 0.1f);
@@ -85,8 +86,9 @@ INSTANTIATE_TEST_SUITE_P(
     Languages, InputOutput,
     testing::Values(Language{"ecmascript", "ecmascript:\nfunction set_x(v) { out = x + 1; }\n"
                                            "function put(v) { x = v * 10; }"},
-                    Language{"tcl", "tcl:\nproc set_x {v t} {global x out; set out [expr {$x + 1}]}\n"
-                                    "proc put {v t} {global x; set x [expr {$v * 10}]}"},
+                    Language{"tcl",
+                             "tcl:\nproc set_x {v t} {global x out; set out [expr {$x + 1}]}\n"
+                             "proc put {v t} {global x; set x [expr {$v * 10}]}"},
                     Language{"python", "python:\ndef set_x(v, t): script.out = script.x + 1\n"
                                        "def put(v, t): script.x = v * 10"},
                     Language{"native", "native:native_test#set_x: out = addOne(x)\n"
@@ -165,14 +167,16 @@ TEST_F(EcmaScript, ExposedFieldInAFileOfVrml97) {
 // --- The Browser object of X3D (ISO/IEC 19777-1) ---
 
 TEST_F(EcmaScript, BrowserHasTheScene) {
-  EcmaWorld r(header + EcmaWorld::script(
-      "inputOnly SFBool go directOutput TRUE",
-      "function go() { var scene = Browser.currentScene; var t = scene.getNamedNode('T');"
-      "print(t.translation.x, scene.rootNodes.length, scene.rootNodes[1].translation.y);"
-      "t.translation = new SFVec3f(4, 5, 6);"
-      "scene.addRoute(t, 'translation_changed', scene.getNamedNode('U'), 'set_translation');"
-      "try { scene.getNamedNode('X'); } catch (e) { print('no X'); } }",
-      "DEF T Transform { translation 1 2 3 } DEF U Transform { }"));
+  EcmaWorld r(
+      header +
+      EcmaWorld::script(
+          "inputOnly SFBool go directOutput TRUE",
+          "function go() { var scene = Browser.currentScene; var t = scene.getNamedNode('T');"
+          "print(t.translation.x, scene.rootNodes.length, scene.rootNodes[1].translation.y);"
+          "t.translation = new SFVec3f(4, 5, 6);"
+          "scene.addRoute(t, 'translation_changed', scene.getNamedNode('U'), 'set_translation');"
+          "try { scene.getNamedNode('X'); } catch (e) { print('no X'); } }",
+          "DEF T Transform { translation 1 2 3 } DEF U Transform { }"));
   r.set("S", "go", true);
   EXPECT_EQ(r.takeOutput(), "1 3 2\nno X");
   EXPECT_EQ(r.get("T", "translation"), "4 5 6");
@@ -181,13 +185,14 @@ TEST_F(EcmaScript, BrowserHasTheScene) {
 }
 
 TEST_F(EcmaScript, BrowserHasPropertiesOfX3d) {
-  EcmaWorld r(header + EcmaWorld::script(
-      "inputOnly SFBool go",
-      "function go() { print(Browser.name == Browser.getName(), Browser.version == "
-      "Browser.getVersion(), Browser.currentSpeed, Browser.currentFrameRate);"
-      "Browser.description = 'said'; print(Browser.description);"
-      "var made = Browser.createX3DFromString('Transform { translation 1 2 3 }');"
-      "print(made.length, made[0].translation.z); Browser.println('ln'); }"));
+  EcmaWorld r(header +
+              EcmaWorld::script(
+                  "inputOnly SFBool go",
+                  "function go() { print(Browser.name == Browser.getName(), Browser.version == "
+                  "Browser.getVersion(), Browser.currentSpeed, Browser.currentFrameRate);"
+                  "Browser.description = 'said'; print(Browser.description);"
+                  "var made = Browser.createX3DFromString('Transform { translation 1 2 3 }');"
+                  "print(made.length, made[0].translation.z); Browser.println('ln'); }"));
   r.set("S", "go", true);
   EXPECT_EQ(r.takeOutput(), "true true 0 0\nsaid\n1 3\nln");
   EXPECT_EQ(r.browser.description(), "said");
@@ -197,10 +202,12 @@ TEST_F(EcmaScript, BrowserHasTheSceneInAProcess) {
   BrowserOptions options;
   options.scriptPath = XVRML_SCRIPTS;
   options.scriptIsolation = BrowserOptions::Isolation::always;
-  Scripted r(header + EcmaWorld::script(
-      "inputOnly SFBool go outputOnly SFVec3f out",
-      "function go() { out = Browser.currentScene.getNamedNode('T').translation; }",
-      "DEF T Transform { translation 1 2 3 }"), options);
+  Scripted r(header +
+                 EcmaWorld::script(
+                     "inputOnly SFBool go outputOnly SFVec3f out",
+                     "function go() { out = Browser.currentScene.getNamedNode('T').translation; }",
+                     "DEF T Transform { translation 1 2 3 }"),
+             options);
   r.set("S", "go", true);
   EXPECT_EQ(r.get("S", "out"), "1 2 3");
   EXPECT_EQ(r.messages(), Log());

@@ -15,8 +15,8 @@ const std::string head = "#X3D V3.3 utf8\nPROFILE Immersive\n";
 
 TEST(KeySensor, SendsCharactersAndTheNumbersOfActionKeys) {
   Running r(head + "DEF K KeySensor { }\n");
-  for (const char* out : {"keyPress", "keyRelease", "actionKeyPress", "actionKeyRelease", "shiftKey",
-                          "controlKey", "altKey"})
+  for (const char* out : {"keyPress", "keyRelease", "actionKeyPress", "actionKeyRelease",
+                          "shiftKey", "controlKey", "altKey"})
     r.log("K", out);
   EXPECT_TRUE(r.browser.sensesKeys());
   EXPECT_TRUE(r.browser.worldKey("a", true));
@@ -26,8 +26,8 @@ TEST(KeySensor, SendsCharactersAndTheNumbersOfActionKeys) {
   EXPECT_TRUE(r.browser.worldKey("Shift", false));
   EXPECT_EQ(r.take(), (Log{"0 K.keyPress a", "0 K.keyRelease a", "0 K.shiftKey TRUE",
                            "0 K.keyPress \xc3\x9c", "0 K.shiftKey FALSE"}));
-  const char* const names[] = {"F1", "F12", "Home", "End", "PageUp", "PageDown",
-                               "Up", "Down", "Left", "Right"};
+  const char* const names[] = {"F1",       "F12", "Home", "End",  "PageUp",
+                               "PageDown", "Up",  "Down", "Left", "Right"};
   std::string numbers;
   for (const char* name : names) {
     r.browser.worldKey(name, true);
@@ -93,9 +93,9 @@ TEST(StringSensor, CollectsTextUntilEnter) {
   r.browser.worldKey("Backspace", true);
   r.browser.worldText("i\n");
   r.browser.worldText("x");
-  EXPECT_EQ(r.take(),
-            (Log{"0 S.enteredText h", "0 S.enteredText h\xc3\xbc", "0 S.enteredText h",
-                 "0 S.enteredText hi", "0 S.finalText hi", "0 S.enteredText ", "0 S.enteredText x"}));
+  EXPECT_EQ(r.take(), (Log{"0 S.enteredText h", "0 S.enteredText h\xc3\xbc", "0 S.enteredText h",
+                           "0 S.enteredText hi", "0 S.finalText hi", "0 S.enteredText ",
+                           "0 S.enteredText x"}));
 }
 
 TEST(StringSensor, DeletesOnlyIfAllowedAndWhatIsThere) {
@@ -122,13 +122,13 @@ Browser* loading(std::unique_ptr<Browser>& made, const Folder& folder, const std
   folder.write("picture.png", "any bytes");
   LoadOptions options;
   options.loadInlines = loadInlines;
-  made = std::make_unique<Browser>(
-      loadWorldFromMemory(head + text, folder / "world.x3dv", options), BrowserOptions(), 0,
-      RunOptions{.epoch = 0});
+  made = std::make_unique<Browser>(loadWorldFromMemory(head + text, folder / "world.x3dv", options),
+                                   BrowserOptions(), 0, RunOptions{.epoch = 0});
   for (const char* out : {"isActive", "isLoaded", "loadTime", "progress"})
-    made->listen(*made->node("L"), out, [&events, &made, out](Node&, const FieldInfo&, const Value& v) {
-      events.push_back(fmt::format("{:g} {} {}", made->now(), out, textOf(v)));
-    });
+    made->listen(*made->node("L"), out,
+                 [&events, &made, out](Node&, const FieldInfo&, const Value& v) {
+                   events.push_back(fmt::format("{:g} {} {}", made->now(), out, textOf(v)));
+                 });
   return made.get();
 }
 
@@ -174,7 +174,8 @@ TEST(LoadSensor, WaitsForInlinesUntilTheTimeIsOver) {
                            "\"part.x3dv\" } }\n";
   loading(made, folder, text, events);
   for (const double time : {1, 3, 7}) made->tick(time);
-  EXPECT_EQ(events, (Log{"1 isActive TRUE", "1 progress 0", "7 isLoaded FALSE", "7 isActive FALSE"}));
+  EXPECT_EQ(events,
+            (Log{"1 isActive TRUE", "1 progress 0", "7 isLoaded FALSE", "7 isActive FALSE"}));
   events.clear();
   loading(made, folder, text, events);
   made->tick(1);
@@ -230,9 +231,10 @@ TEST(InlineLoad, LoadsAndUnloads) {
 // --- LOD (23.4.3) ---
 
 TEST(LodLevel, IsSentWhenTheViewersDistanceChoosesAnother) {
-  Running r(head + "DEF V Viewpoint { position 0 0 10 }\nTransform { scale 2 2 2 children DEF L LOD "
-                   "{ range [ 3 8 ] children [ Shape { } Shape { } Shape { } ] } }\n"
-                   "DEF W Switch { }\nROUTE L.level_changed TO W.whichChoice\n");
+  Running r(head +
+            "DEF V Viewpoint { position 0 0 10 }\nTransform { scale 2 2 2 children DEF L LOD "
+            "{ range [ 3 8 ] children [ Shape { } Shape { } Shape { } ] } }\n"
+            "DEF W Switch { }\nROUTE L.level_changed TO W.whichChoice\n");
   r.log("L", "activeLevel_changed");
   r.browser.tick(1);
   EXPECT_EQ(r.get("W", "whichChoice"), "1"); // the distance is 5 in the LOD's coordinates
@@ -269,8 +271,9 @@ void drag(Running& r, double x, double y, double z, double dx, double dy, double
 
 TEST(AxisRotation, TurnsThePlaneOfAPlaneSensor) {
   // The plane z = 0 is turned about x into the plane y = 0; it is seen from above.
-  Running r(head + "Group { children [ DEF S PlaneSensor { axisRotation 1 0 0 -1.57079633 maxPosition "
-                   "1 9 minPosition -9 -9 } Shape { geometry Box { size 20 2 20 } } ] }\n");
+  Running r(head +
+            "Group { children [ DEF S PlaneSensor { axisRotation 1 0 0 -1.57079633 maxPosition "
+            "1 9 minPosition -9 -9 } Shape { geometry Box { size 20 2 20 } } ] }\n");
   drag(r, 0, 10, 0, 0, -1, 0);
   drag(r, 0.5, 10, 2, 0, -1, 0);
   const auto moved = std::get<Vec3f>(r.browser.get(r.node("S"), "translation_changed"));
@@ -291,8 +294,9 @@ TEST(AxisRotation, TurnsThePlaneOfAPlaneSensor) {
 
 TEST(AxisRotation, TurnsTheAxisOfACylinderSensor) {
   // The axis is z: looking along it, the sensor works as a disk.
-  Running r(head + "Group { children [ DEF S CylinderSensor { axisRotation 1 0 0 1.57079633 } Shape { "
-                   "geometry Box { size 20 20 2 } } ] }\n");
+  Running r(head +
+            "Group { children [ DEF S CylinderSensor { axisRotation 1 0 0 1.57079633 } Shape { "
+            "geometry Box { size 20 20 2 } } ] }\n");
   drag(r, 1, 0, 10, 0, 0, -1);
   drag(r, 0, 1, 10, 0, 0, -1);
   const auto turned = std::get<Rotation>(r.browser.get(r.node("S"), "rotation_changed"));
@@ -324,8 +328,9 @@ TEST(ViewAll, MovesBackUntilTheWorldIsSeen) {
 }
 
 TEST(ViewAll, OfAParallelViewShowsTheWorld) {
-  Running r(head + "OrthoViewpoint { viewAll TRUE fieldOfView [ 0 0 1 1 ] }\nTransform { translation 5 "
-                   "0 0 children Shape { geometry Box { size 6 6 6 } } }\n");
+  Running r(head +
+            "OrthoViewpoint { viewAll TRUE fieldOfView [ 0 0 1 1 ] }\nTransform { translation 5 "
+            "0 0 children Shape { geometry Box { size 6 6 6 } } }\n");
   const CameraSettings camera = r.browser.camera(1);
   EXPECT_NEAR(camera.height, std::sqrt(108.0), 1e-5);
   EXPECT_NEAR(camera.matrix[12], 5, 1e-5);
@@ -337,13 +342,16 @@ TEST(ViewAll, OfNothingStaysWhereItIs) {
                             "Transform { scale 0 0 0 children Shape { geometry Box { } } }"}) {
     Running r(head + "Viewpoint { position 1 2 3 viewAll TRUE }\n" + world + "\n");
     for (const double number : r.browser.camera(1).matrix) EXPECT_TRUE(std::isfinite(number));
-    if (!*world) EXPECT_EQ(eyeOf(r.browser), "1 2 3");
+    if (!*world) {
+      EXPECT_EQ(eyeOf(r.browser), "1 2 3");
+    }
   }
 }
 
 TEST(NavigationInfoOfAViewpoint, IsBoundWithIt) {
-  Running r(head + "DEF N NavigationInfo { }\nDEF A Viewpoint { }\nDEF B Viewpoint { navigationInfo DEF "
-                   "M NavigationInfo { type \"FLY\" } }\n");
+  Running r(head +
+            "DEF N NavigationInfo { }\nDEF A Viewpoint { }\nDEF B Viewpoint { navigationInfo DEF "
+            "M NavigationInfo { type \"FLY\" } }\n");
   EXPECT_EQ(nameOf(r.browser.bound().navigationInfo), "N");
   r.log("M", "isBound");
   r.set("B", "set_bind", true);
@@ -368,21 +376,24 @@ TEST(Cad, PartsPlaceTheirFaces) {
   r.browser.pointerRay(there, direction, false);
   EXPECT_EQ(r.take(), (Log{"0 T.isOver TRUE"}));
   r.set("P", "translation", Vec3f{0, 0, 0});
-  r.browser.pointerRay(there, direction, false);
+  const double beside[3] = {3, 0.5, 10}; // a pointer at rest sends nothing
+  r.browser.pointerRay(beside, direction, false);
   EXPECT_EQ(r.take(), (Log{"0 T.isOver FALSE"}));
   r.browser.pointerRay(here, direction, false);
   EXPECT_EQ(r.take(), (Log{"0 T.isOver TRUE"}));
 }
 
 TEST(Cad, ProximityUsesTheMatrixOfAPart) {
-  Running r(head + "CADPart { translation 0 0 10 children DEF S ProximitySensor { size 1 1 1 } }\n");
+  Running r(head +
+            "CADPart { translation 0 0 10 children DEF S ProximitySensor { size 1 1 1 } }\n");
   r.browser.tick(1);
   EXPECT_EQ(r.get("S", "position_changed"), "0 0 0");
 }
 
 TEST(Cad, LayersShowTheirChildrenOneByOne) {
-  Running r(head + "DEF L CADLayer { visible [ FALSE ] children [ Shape { geometry Box { } } Transform "
-                   "{ translation 4 0 0 children Shape { geometry Box { } } } ] }\n");
+  Running r(head +
+            "DEF L CADLayer { visible [ FALSE ] children [ Shape { geometry Box { } } Transform "
+            "{ translation 4 0 0 children Shape { geometry Box { } } } ] }\n");
   const double direction[3] = {0, 0, -1};
   const double left[3] = {0, 0, 10}, right[3] = {4, 0, 10};
   PickHit hit;

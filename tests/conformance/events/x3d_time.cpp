@@ -21,8 +21,8 @@ Log logOf(const std::string& fields, const std::vector<double>& times,
 }
 
 TEST(Pause, StopsTheFractionUntilResumeTime) {
-  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {1, 2, 3.5, 5, 6, 8, 14, 15},
-                  {"isActive", "isPaused", "fraction_changed"}),
+  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6",
+                  {1, 2, 3.5, 5, 6, 8, 14, 15}, {"isActive", "isPaused", "fraction_changed"}),
             (Log{"1 T.isActive TRUE", "1 T.fraction_changed 0", "2 T.fraction_changed 0.1",
                  "3.5 T.fraction_changed 0.2", "3.5 T.isPaused TRUE", "6 T.isPaused FALSE",
                  "6 T.fraction_changed 0.2", "8 T.fraction_changed 0.4", "14 T.fraction_changed 1",
@@ -31,30 +31,36 @@ TEST(Pause, StopsTheFractionUntilResumeTime) {
 
 TEST(Pause, IsExactWhereTicksAreNot) {
   // ticks at other times give the same fractions, and a pause between two ticks counts
-  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {1, 7}, {"fraction_changed"}),
-            (Log{"1 T.fraction_changed 0", "7 T.fraction_changed 0.3"}));
-  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {1, 4, 7},
-                  {"fraction_changed"}),
-            (Log{"1 T.fraction_changed 0", "4 T.fraction_changed 0.2", "7 T.fraction_changed 0.3"}));
+  EXPECT_EQ(
+      logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {1, 7}, {"fraction_changed"}),
+      (Log{"1 T.fraction_changed 0", "7 T.fraction_changed 0.3"}));
+  EXPECT_EQ(
+      logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {1, 4, 7},
+            {"fraction_changed"}),
+      (Log{"1 T.fraction_changed 0", "4 T.fraction_changed 0.2", "7 T.fraction_changed 0.3"}));
 }
 
 TEST(Pause, BeforeTheWorldWasLoadedCounts) {
-  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {9}, {"fraction_changed"}, 8),
-            (Log{"9 T.fraction_changed 0.5"}));
+  EXPECT_EQ(
+      logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {9}, {"fraction_changed"}, 8),
+      (Log{"9 T.fraction_changed 0.5"}));
   // without the pause its run would be over at 11
-  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {12}, {"fraction_changed"}, 12),
+  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3 resumeTime 6", {12},
+                  {"fraction_changed"}, 12),
             (Log{"12 T.fraction_changed 0.8"}));
   // still paused
-  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3", {20, 30}, {"isPaused", "fraction_changed"}, 20),
+  EXPECT_EQ(logOf("cycleInterval 10 startTime 1 pauseTime 3", {20, 30},
+                  {"isPaused", "fraction_changed"}, 20),
             (Log{"20 T.fraction_changed 0.2", "20 T.isPaused TRUE"}));
 }
 
 TEST(Pause, LoopsGoOnWhereTheyWere) {
-  EXPECT_EQ(logOf("cycleInterval 4 loop TRUE startTime 0 pauseTime 6 resumeTime 7", {0, 6, 7, 8, 9, 10},
-                  {"cycleTime", "fraction_changed"}),
-            (Log{"0 T.cycleTime 0", "0 T.fraction_changed 0", "6 T.cycleTime 4",
-                 "6 T.fraction_changed 0.5", "7 T.fraction_changed 0.5", "8 T.fraction_changed 0.75",
-                 "9 T.cycleTime 9", "9 T.fraction_changed 1", "10 T.fraction_changed 0.25"}));
+  EXPECT_EQ(
+      logOf("cycleInterval 4 loop TRUE startTime 0 pauseTime 6 resumeTime 7", {0, 6, 7, 8, 9, 10},
+            {"cycleTime", "fraction_changed"}),
+      (Log{"0 T.cycleTime 0", "0 T.fraction_changed 0", "6 T.cycleTime 4",
+           "6 T.fraction_changed 0.5", "7 T.fraction_changed 0.5", "8 T.fraction_changed 0.75",
+           "9 T.cycleTime 9", "9 T.fraction_changed 1", "10 T.fraction_changed 0.25"}));
 }
 
 TEST(Pause, ByEvents) {
@@ -108,12 +114,14 @@ TEST(Pause, EnabledFalseEndsItAndTheNextRunIsFresh) {
   for (const double t : {0, 1, 3}) r.browser.tick(t);
   r.take();
   r.set("T", "enabled", false);
-  EXPECT_EQ(r.take(), (Log{"3 T.isPaused FALSE", "3 T.fraction_changed 0.2", "3 T.isActive FALSE"}));
+  EXPECT_EQ(r.take(),
+            (Log{"3 T.isPaused FALSE", "3 T.fraction_changed 0.2", "3 T.isActive FALSE"}));
   r.set("T", "startTime", 5.0); // a pauseTime before the run belongs to the earlier one
   r.set("T", "enabled", true);
   r.browser.tick(5);
   r.browser.tick(6);
-  EXPECT_EQ(r.take(), (Log{"5 T.isActive TRUE", "5 T.fraction_changed 0", "6 T.fraction_changed 0.1"}));
+  EXPECT_EQ(r.take(),
+            (Log{"5 T.isActive TRUE", "5 T.fraction_changed 0", "6 T.fraction_changed 0.1"}));
 }
 
 TEST(Pause, DefaultsAndUnusableTimesDoNotPause) {
@@ -131,8 +139,8 @@ TEST(Pause, DefaultsAndUnusableTimesDoNotPause) {
 }
 
 TEST(Pause, ElapsedTimeIsWithoutPauses) {
-  EXPECT_EQ(logOf("cycleInterval 4 loop TRUE startTime 1 pauseTime 3 resumeTime 6", {1, 2, 4, 5, 7, 9},
-                  {"elapsedTime"}),
+  EXPECT_EQ(logOf("cycleInterval 4 loop TRUE startTime 1 pauseTime 3 resumeTime 6",
+                  {1, 2, 4, 5, 7, 9}, {"elapsedTime"}),
             (Log{"1 T.elapsedTime 0", "2 T.elapsedTime 1", "4 T.elapsedTime 2", "7 T.elapsedTime 3",
                  "9 T.elapsedTime 5"}));
   // it has been active since the world was loaded, not since 1970

@@ -10,11 +10,11 @@ struct Name {
   const char *window, *world;
 };
 // The window's keys have the names of SDL, those of pages the names of browsers.
-constexpr Name names[] = {{"Left Shift", "Shift"},   {"Right Shift", "Shift"},
-                          {"Left Ctrl", "Control"},  {"Right Ctrl", "Control"},
-                          {"Left Alt", "Alt"},       {"Right Alt", "Alt"},
-                          {"AltGraph", "Alt"},       {"AltGr", "Alt"},
-                          {"Return", "Enter"},       {"Keypad Enter", "Enter"}};
+constexpr Name names[] = {{"Left Shift", "Shift"},  {"Right Shift", "Shift"},
+                          {"Left Ctrl", "Control"}, {"Right Ctrl", "Control"},
+                          {"Left Alt", "Alt"},      {"Right Alt", "Alt"},
+                          {"AltGraph", "Alt"},      {"AltGr", "Alt"},
+                          {"Return", "Enter"},      {"Keypad Enter", "Enter"}};
 
 const char* worldNameOf(const std::string& key) {
   for (const Name& name : names)

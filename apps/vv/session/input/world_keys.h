@@ -1,7 +1,7 @@
 // world_keys.h: Passes keys to the KeySensor or StringSensor of the world. While one is enabled it
 // gets all keys. Those that type a character, Enter, Tab, Backspace and Space are then no commands
-// of the window, unless Ctrl is held; arrows, Home, End, PageUp, PageDown, Escape and F keys do both.
-// [the browser's thread]
+// of the window, unless Ctrl is held; arrows, Home, End, PageUp, PageDown, Escape and F keys do
+// both. [the browser's thread]
 #pragma once
 
 #include <map>
