@@ -227,7 +227,7 @@ def test_the_viewer(browser):
 
 
 def test_keys_for_the_world():
-    browser = xvrml.Browser(xvrml.loads("#X3D V3.3 utf8\nPROFILE Immersive\nDEF T StringSensor { }\n"))
+    browser = xvrml.Browser(b"#X3D V3.3 utf8\nPROFILE Immersive\nDEF T StringSensor { }\n")
     assert browser.senses_keys
     assert browser.type_text("h\u00fc!\n") and browser.press_key("x") and browser.press_key("x", False)
     assert not browser.press_key("no key")
