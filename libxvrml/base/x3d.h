@@ -25,8 +25,9 @@ bool isX3dField(std::string_view type, std::string_view field);
 // "children", "set_choice" for its "set_children". Other names are returned as
 // they are.
 std::string_view ownName(std::string_view type, std::string_view name);
-// Returns the name in X3D of a field or event of ours: the reverse of ownName.
-std::string_view x3dName(std::string_view type, std::string_view name);
+// Returns the name in X3D of a field or event of ours: the reverse of ownName. version: the major
+// version of X3D.
+std::string_view x3dName(std::string_view type, std::string_view name, int version);
 
 // Returns the default of a field of VRML97 where X3D gives it another one; null: they are the same.
 const Value* x3dDefault(std::string_view type, std::string_view field);

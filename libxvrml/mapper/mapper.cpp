@@ -7,6 +7,7 @@
 #include "mapper/extent.h"
 #include "mapper/mapper_impl.h"
 #include "mapper/model.h"
+#include "nodes/viewpoint.h"
 
 namespace xvrml {
 
@@ -120,7 +121,16 @@ std::vector<SensorInfo> OpenRTMapper::sensors() const {
 
 CameraSettings OpenRTMapper::viewpointCamera(size_t index) const {
   const std::vector<int32_t>& places = impl_->viewpointPlaces();
-  return impl_->cameraAt(index < places.size() ? places[index] : none);
+  const CameraSettings camera = impl_->cameraAt(index < places.size() ? places[index] : none);
+  if (index >= places.size()) return camera;
+  // viewAll of X3D: back until everything is seen
+  const Place& place = impl_->places.all[size_t(places[index])];
+  const auto fields = viewpointFields(impl_->graph.items[place.item].node.get());
+  if (!fields || !fields->viewAll || !*fields->viewAll || impl_->bounds().empty) return camera;
+  CameraSettings all =
+      cameraAround(impl_->bounds(), camera.matrix, camera.fovy, impl_->options.aspect);
+  all.shader = camera.shader;
+  return all;
 }
 
 CameraSettings OpenRTMapper::fitCamera(double fovy) const {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "geometry/node_matrix.h"
 #include "mapper/mapper_impl.h"
 #include "xvrml/change.h"
 #include "xvrml/walk.h"
@@ -93,7 +94,7 @@ void OpenRTMapper::Impl::transformChanged(Work& work, Node& node) {
   viewsStale |= graph.items[id].placeDependent;
   boundsStale = true;
   if (graph.items[id].kind == Kind::billboard) return; // updated with every frame
-  if (!nodeCast<nodes::Transform>(&node)) {
+  if (!hasMatrix(node)) {
     graph.plan(id);
     work.regroup = true;
     return;

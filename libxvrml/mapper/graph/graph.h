@@ -164,7 +164,7 @@ class Graph {
   // Items planned again by the last settle() and still reachable.
   const std::vector<ItemId>& replanned() const { return replanned_; }
 
-  // Returns the matrix of an item, which is that of its Transform: it is computed when it is
+  // Returns the matrix of an item, which is that of its node: it is computed when it is
   // needed, because a million matrices take more memory than time.
   static Matrix matrixOf(const Item& item);
   static Matrix below(const Matrix& outside, const Item& item);

@@ -5,6 +5,7 @@
 
 #include "mapper/graph/graph.h"
 #include "nodes/bindable.h"
+#include "nodes/visible.h"
 #include "xvrml/nodes.h"
 
 namespace xvrml::mapper {
@@ -58,8 +59,9 @@ void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.kind = Kind::group;
   plan.isInline = true;
   const Scope* scope = inlineScope(node);
-  plan.awaited = !scope && !context.world.options.loadInlines &&
-                 !static_cast<nodes::Inline&>(node).url.empty();
+  const auto& content = static_cast<nodes::Inline&>(node);
+  plan.awaited =
+      !scope && !context.world.options.loadInlines && content.load && !content.url.empty();
   if (scope) plan.add(scope->roots);
 }
 
@@ -96,6 +98,24 @@ void planOrtLight(PlanContext&, Node& node, Plan& plan) {
   planLight<nodes::ORTLight>(node, Kind::localLight, plan);
 }
 
+// X3D clause 32: groups of drawings.
+void planCadAssembly(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::CADAssembly&>(node).children);
+}
+void planCadPart(PlanContext&, Node& node, Plan& plan) {
+  group(plan, static_cast<nodes::CADPart&>(node).children);
+}
+void planCadFace(PlanContext&, Node& node, Plan& plan) {
+  plan.kind = Kind::group;
+  plan.children.push_back(static_cast<nodes::CADFace&>(node).shape.get());
+}
+void planCadLayer(PlanContext&, Node& node, Plan& plan) {
+  const auto& layer = static_cast<nodes::CADLayer&>(node);
+  plan.kind = Kind::group;
+  for (size_t i = 0; i < layer.children.size(); ++i)
+    if (showsChild(layer, i)) plan.children.push_back(layer.children[i].get());
+}
+
 void planViewpointGroup(PlanContext&, Node& node, Plan& plan) {
   group(plan, static_cast<nodes::ViewpointGroup&>(node).children);
 }
@@ -120,6 +140,10 @@ std::vector<PlanFunction>& table() {
     set(nodes::Anchor::typeIndex, planAnchor);
     set(nodes::Collision::typeIndex, planCollision);
     set(nodes::Transform::typeIndex, planTransform);
+    set(nodes::CADAssembly::typeIndex, planCadAssembly);
+    set(nodes::CADPart::typeIndex, planCadPart);
+    set(nodes::CADFace::typeIndex, planCadFace);
+    set(nodes::CADLayer::typeIndex, planCadLayer);
     set(nodes::Switch::typeIndex, planSwitch);
     set(nodes::LOD::typeIndex, planLod);
     set(nodes::Billboard::typeIndex, planBillboard);
