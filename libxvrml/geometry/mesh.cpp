@@ -2,6 +2,7 @@
 #include "geometry/mesh.h"
 
 #include "geometry/builders.h"
+#include "geometry/texture_generator.h"
 #include "xvrml/world.h"
 
 namespace xvrml {
@@ -30,7 +31,7 @@ std::span<const Color> colorValues(const NodeRef& node) {
 }
 
 std::span<const Vec2f> textureCoordinates(const NodeRef& node) {
-  auto* coordinate = nodeCast<nodes::TextureCoordinate>(renderedNode(node.get()));
+  auto* coordinate = nodeCast<nodes::TextureCoordinate>(firstTextureCoordinate(node));
   return coordinate ? std::span<const Vec2f>(coordinate->point) : std::span<const Vec2f>();
 }
 
@@ -60,6 +61,7 @@ Mesh buildMesh(Node& geometry, const MeshOptions& options) {
   Faults faults;
   for (const TryBuild build : builders)
     if (build(node, options, mesh, faults)) break;
+  generateTextureCoordinates(*node, options, mesh);
   faults.report(*node, options.diagnostics, triangleLimitName(options));
   return mesh;
 }

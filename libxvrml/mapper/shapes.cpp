@@ -169,6 +169,8 @@ bool Objects::draw(int32_t mesh, const Surface& surface, bool textured) {
   if (m.kind == Mesh::Kind::triangles && m.exact.empty()) part.triangles += extent.primitives;
   ++part.drawCalls;
   rtBindShader(surface.shader);
+  rtLineWidth(surface.lineWidth);
+  rtPointSize(surface.pointSize);
   (m.solid ? rtEnable : rtDisable)(RT_CULL_FACE);
   (m.ccw ? rtDisable : rtEnable)(RT_CW_FRONT);
   if (m.kind == Mesh::Kind::sphere) {

@@ -145,6 +145,7 @@ void OpenRTMapper::Impl::appearanceChanged(Work& work, Node& first) {
   walkHolders(first, work.visited, [&](Node& node) {
     if (node.type().index == nodes::ORTShader::typeIndex) custom.changed(node);
     if (node.type().index == nodes::ORTLight::typeIndex) lights.changed(node);
+    if (first.type().is("textureProperty") && node.type().is("texture")) textures.changed(node);
     environment.changed(node); // for the shader of an ORTBackground
     if (!isAppearance(node)) return node.type().index < 0 || !planOf(node.type());
     work.appearances.push_back(&node);

@@ -6,7 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "mapper/shading/layers.h"
+#include "mapper/shading/line_properties.h"
 #include "mapper/shading/physical.h"
+#include "mapper/shading/x3d_material.h"
 #include "xvrml/change.h"
 #include "xvrml/nodes.h"
 
@@ -19,7 +22,8 @@ struct Parts {
   Node* anyMaterial = nullptr; // also one of X3D 4
   const nodes::Appearance* plain = nullptr;
   Node* texture = nullptr;
-  nodes::TextureTransform* textureTransform = nullptr;
+  Node* anyTransform = nullptr; // also a MultiTextureTransform
+  const nodes::TextureTransform* textureTransform = nullptr;
   nodes::ORTShader* shader = nullptr;
 };
 
@@ -27,8 +31,8 @@ template <class T> void surfaceParts(const T& appearance, Parts& parts) {
   parts.anyMaterial = renderedNode(appearance.material.get());
   parts.material = nodeCast<nodes::Material>(parts.anyMaterial);
   parts.texture = renderedNode(appearance.texture.get());
-  parts.textureTransform =
-      nodeCast<nodes::TextureTransform>(renderedNode(appearance.textureTransform.get()));
+  parts.anyTransform = renderedNode(appearance.textureTransform.get());
+  parts.textureTransform = firstTransform(parts.anyTransform, "");
 }
 
 Parts partsOf(Node* appearance) {
@@ -44,11 +48,18 @@ Parts partsOf(Node* appearance) {
   return parts;
 }
 
+X3dParts x3dPartsOf(const Parts& parts) {
+  return {parts.plain, parts.anyMaterial, parts.texture, parts.anyTransform};
+}
+
 } // namespace
 
 bool isTextured(Node* appearance) {
   const Parts parts = partsOf(appearance);
-  return parts.texture || parts.shader || (parts.anyMaterial && hasPictures(*parts.anyMaterial));
+  if (parts.texture || parts.shader) return true;
+  if (parts.anyMaterial && hasPictures(*parts.anyMaterial)) return true;
+  Node* back = parts.plain ? renderedNode(parts.plain->backMaterial.get()) : nullptr;
+  return back && hasPictures(*back);
 }
 
 namespace {
@@ -103,7 +114,7 @@ bool Surfaces::mayShare(const Entry& entry) const {
   if (parts.shader || isPhysical(parts.anyMaterial)) return false;
   for (const Node* part :
        {static_cast<const Node*>(node), static_cast<const Node*>(parts.material),
-        static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.textureTransform)})
+        static_cast<const Node*>(parts.texture), static_cast<const Node*>(parts.anyTransform)})
     if (part && part->live && reachOf(*part) != 0) return false;
   return true;
 }
@@ -143,6 +154,7 @@ Surface Surfaces::surfaceFor(Node* appearance, bool lines) {
   const uint64_t bytes = partsOf(node).shader ? bytesOfSurface : bytesOfSharedSurface;
   if (!take(entry, bytes)) return entry.surface;
   entry.bytes = uint32_t(bytes);
+  if (!lines) warnOfFaces(partsOf(node).plain, world_);
   if (!lines)
     makeSurface(entry);
   else if (take(entry, bytesOfShader))
@@ -159,6 +171,10 @@ Surface Surfaces::makeLines(Node* appearance) {
   shader.integer("lit", 0);
   if (Node* material = partsOf(appearance).anyMaterial)
     surface.lineColor = convert(emissionOf(*material), linear_);
+  const LineSizes sizes = lineSizes(partsOf(appearance).plain);
+  surface.lineWidth = sizes.line;
+  surface.pointSize = sizes.point;
+  warnOfLines(partsOf(appearance).plain, world_);
   report(world_.diagnostics, appearance ? appearance->source : SourcePosition(),
          "appearance of lines or points");
   return surface;
@@ -206,6 +222,12 @@ RTid Surfaces::customSurface(Node& appearance, nodes::ORTShader& node) {
   return custom_.shaderFor(node, RT_SURFACE, &appearance, preset);
 }
 
+// In X3D and in VRML 1.0 a colour texture always multiplies diffuseColor (ISO/IEC 19775-1
+// 17.2.2.3).
+bool Surfaces::multiplies(const Entry& entry) const {
+  return multiplyTextures || (entry.appearance && versionOf(*entry.appearance).texturesMultiply());
+}
+
 // Makes the surface, or sets new parameters on its existing shader.
 void Surfaces::makeSurface(Entry& entry) {
   const Parts parts = partsOf(entry.appearance.get());
@@ -215,16 +237,14 @@ void Surfaces::makeSurface(Entry& entry) {
       return;
     }
   }
+  if (!parts.shader && needsX3dMaterial(x3dPartsOf(parts))) return makeX3d(entry);
   if (!parts.shader && isPhysical(parts.anyMaterial)) return makePhysical(entry);
   // This may bind another texture, but no shader.
   const RTid texture = textures_.ofNode(parts.texture);
-  // In X3D and in VRML 1.0 a colour texture always multiplies diffuseColor (ISO/IEC 19775-1
-  // 17.2.2.3).
-  const bool multiplies =
-      multiplyTextures || (entry.appearance && versionOf(*entry.appearance).texturesMultiply());
+  const bool multiplied = multiplies(entry);
   const bool first = entry.own == 0 && !entry.shared;
   if (entry.shared || (first && mayShare(entry))) {
-    const std::string key = keyOf(parts, texture, linear_, multiplies);
+    const std::string key = keyOf(parts, texture, linear_, multiplied);
     if (entry.shared && *entry.shared->key == key) {
       entry.surface.shader = entry.shared->shader;
       return;
@@ -251,7 +271,7 @@ void Surfaces::makeSurface(Entry& entry) {
   const bool fallback = parts.shader != nullptr;
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
-  if (multiplies && shader.fresh()) shader.integer("multiplyTexture", 1);
+  if (multiplied && shader.fresh()) shader.integer("multiplyTexture", 1);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
     shader.matrix("textureTransform",
                   textureMatrix(t->center, t->rotation, t->scale, t->translation));
@@ -281,6 +301,26 @@ void Surfaces::makePhysical(Entry& entry) {
   report(world_.diagnostics, entry.appearance->source, parts.anyMaterial->type().name);
 }
 
+// Makes a surface that needs the class X3DMaterial, or sets new parameters.
+void Surfaces::makeX3d(Entry& entry) {
+  X3dParts parts = x3dPartsOf(partsOf(entry.appearance.get()));
+  parts.multiplies = multiplies(entry);
+  if (entry.shared) leaveShared(entry);
+  if (entry.x3d == 0 && !take(entry, bytesOfShader)) {
+    entry.surface = Surface();
+    return;
+  }
+  std::optional<ShaderSetup> setup;
+  const RTid shaderClass = classes_.get("X3DMaterial", "");
+  if (entry.x3d == 0)
+    setup.emplace(shaderClass);
+  else
+    setup.emplace(shaderClass, entry.x3d, sets_);
+  entry.surface.shader = entry.x3d = setup->id();
+  setX3dMaterial(*setup, parts, textures_, world_, linear_);
+  report(world_.diagnostics, entry.appearance->source, "appearance");
+}
+
 Surfaces::Effect Surfaces::update(Node& appearance) {
   Effect effect;
   if (const auto it = surfaces_.find(&appearance); it != surfaces_.end()) {
@@ -294,8 +334,13 @@ Surfaces::Effect Surfaces::update(Node& appearance) {
   if (const auto it = lines_.find(&appearance); it != lines_.end()) {
     Node* material = partsOf(&appearance).anyMaterial;
     const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
-    effect.colored = !(color == it->second.surface.lineColor);
-    it->second.surface.lineColor = color;
+    const LineSizes sizes = lineSizes(partsOf(&appearance).plain);
+    Surface& surface = it->second.surface;
+    effect.colored = !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
+                     sizes.point != surface.pointSize;
+    surface.lineColor = color;
+    surface.lineWidth = sizes.line;
+    surface.pointSize = sizes.point;
   }
   return effect;
 }
@@ -314,6 +359,10 @@ void Surfaces::forget(Entry& entry) {
   }
   if (entry.physical != 0) {
     rtDeleteShader(entry.physical);
+    quota_.give(bytesOfShader);
+  }
+  if (entry.x3d != 0) {
+    rtDeleteShader(entry.x3d);
     quota_.give(bytesOfShader);
   }
   if (entry.appearance) custom_.forget(*entry.appearance);

@@ -20,7 +20,8 @@ bool isTextured(Node* appearance);
 
 struct Surface {
   RTid shader = 0;
-  Color lineColor{1, 1, 1}; // for lines and points without colours of their own
+  Color lineColor{1, 1, 1};           // for lines and points without colours of their own
+  float lineWidth = 1, pointSize = 1; // in pixels
 };
 
 class Surfaces {
@@ -38,7 +39,7 @@ class Surfaces {
   // use it.
   struct Effect {
     bool other = false;    // they need another shader
-    bool colored = false;  // lines need another colour
+    bool colored = false;  // lines need another colour or width
     bool textured = false; // they now have a texture and had none before
   };
   // Updates the shader parameters of a rendered appearance. It has no effect if no shape uses it.
@@ -63,6 +64,7 @@ class Surfaces {
     Surface surface;
     RTid own = 0;             // own shader of the class VRML97
     RTid physical = 0;        // own shader of the class Physical
+    RTid x3d = 0;             // own shader of the class X3DMaterial
     Shared* shared = nullptr; // shader shared with equal appearances; then `own` is 0
     // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
@@ -72,6 +74,8 @@ class Surfaces {
   Surface makeLines(Node* appearance);
   void makeSurface(Entry& entry);
   void makePhysical(Entry& entry);
+  void makeX3d(Entry& entry);
+  bool multiplies(const Entry& entry) const;
   bool mayShare(const Entry& entry) const;
   bool share(Entry& entry, const std::string& key);
   void leaveShared(Entry& entry);

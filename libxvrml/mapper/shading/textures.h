@@ -2,6 +2,7 @@
 // mode. Made on first use. [the mapper's thread]
 #pragma once
 
+#include <compare>
 #include <map>
 #include <string>
 #include <tuple>
@@ -19,7 +20,8 @@ class Textures {
   Textures(World& world, bool linearColor)
       : world_(world), srgb_(linearColor), share_(budgetOf(world)) {}
 
-  // Returns the texture of an ImageTexture, PixelTexture or MovieTexture node (or null). Returns 0
+  // Returns the texture of an ImageTexture, PixelTexture or MovieTexture node (or null), or of the
+  // first texture of a MultiTexture, with a warning. Returns 0
   // if there is none or it cannot be loaded (reported once).
   RTid ofNode(Node* texture);
   // The same for a picture of numbers, such as normals, which are never decoded as colours. A node
@@ -39,9 +41,20 @@ class Textures {
   uint64_t missing() const { return missing_; }
 
  private:
-  RTid ofFile(const std::string& path, bool repeatS, bool repeatT, std::string& error);
+  // How a picture goes on beyond its edges, and how it is enlarged.
+  struct Sampling {
+    RTenum wrapS = RT_REPEAT, wrapT = RT_REPEAT;
+    bool nearest = false;
+    auto operator<=>(const Sampling&) const = default;
+  };
+  static Sampling samplingOf(bool repeatS, bool repeatT);
+  // The sampling of a node with TextureProperties, which may be null.
+  Sampling samplingOf(bool repeatS, bool repeatT, const NodeRef& properties) const;
+  RTid ofUrls(const MFString& urls, const Node& node, const Sampling& sampling);
+  RTid ofFile(const std::string& path, const Sampling& sampling, std::string& error);
   // Throws std::runtime_error if the world's budget does not allow the picture.
-  template <class Picture> RTid make(const Picture& image, bool repeatS, bool repeatT);
+  template <class Picture> RTid make(const Picture& image, const Sampling& sampling);
+  static void setSampling(const Sampling& sampling);
   void upload(RTid texture, const Image& image);
   void upload(RTid texture, const RadianceImage& image); // values are used unchanged
   void take(RTid texture, uint64_t bytes);
@@ -62,9 +75,9 @@ class Textures {
   std::unordered_map<RTid, uint64_t> bytes_; // bytes of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
   std::unordered_map<const Node*, TextureEntry> nodes_;
-  // The texture of each file, by repeat modes and whether it holds numbers, or the reason why there
+  // The texture of each file, by its sampling and whether it holds numbers, or the reason why there
   // is none.
-  std::map<std::tuple<std::string, bool, bool, bool>, std::pair<RTid, std::string>> files_;
+  std::map<std::tuple<std::string, Sampling, bool>, std::pair<RTid, std::string>> files_;
 };
 
 } // namespace xvrml::mapper

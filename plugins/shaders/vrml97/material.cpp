@@ -105,7 +105,7 @@ Terms allocate(const RtsHost* host, RtsBatch* batch, uint32_t lanes) {
     t.diffuse[c] = next();
     t.specular[c] = next();
   }
-  t.ambient = next();
+  t.ambient[0] = t.ambient[1] = t.ambient[2] = next();
   t.exponent = next();
   t.alpha = next();
   return t;
@@ -130,7 +130,7 @@ template <uint32_t count> VRML97_INLINE void spread(const SurfaceParams& p, uint
     fill(t.specular[c], lit ? p.specularColor[c] : 0.0f);
     summary.specular |= lit & (p.specularColor[c] != 0.0f);
   }
-  fill(t.ambient, p.ambientIntensity);
+  fill(t.ambient[0], p.ambientIntensity);
   fill(t.exponent, 128.0f * p.shininess);
   fill(t.alpha, lit ? 1.0f - p.transparency : 1.0f);
   summary.lit |= lit;
@@ -218,6 +218,7 @@ void colours(const RtsHits* hits, const Summary& summary, const Texels& texels, 
 Summary makeTerms(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, Terms& t) {
   const uint32_t n = wholeLanes(hits->count);
   t = allocate(host, batch, n);
+  std::copy_n(hits->normal, 3, t.normal);
   const Summary summary = materials(hits, n, t);
   if (summary.special)
     colours(hits, summary, summary.textured ? fetch(host, batch, hits, n) : Texels{}, t);
