@@ -110,11 +110,12 @@ class Summary {
   void summariseShape(Item& item) {
     Node& geometry = graph_.meshes.geometry(item.mesh);
     const bool reached = graph_.meshes.dynamic(item.mesh) && !item.merged;
-    const bool lines = geometry.type().is("lines");
     const Meshes::Extent extent = graph_.meshes.extent(item.mesh);
+    const bool lines = geometry.type().is("lines") || extent.kind == Mesh::Kind::lines ||
+                       extent.kind == Mesh::Kind::points;
     item.shapes = 1;
     item.triangles = extent.kind == Mesh::Kind::triangles ? extent.primitives : 0;
-    item.lines = lines || extent.kind == Mesh::Kind::lines || extent.kind == Mesh::Kind::points;
+    item.lines = lines;
     item.draws = true;
     item.recolored = !lines && !item.merged && reachedBy(item, Change::appearance);
     if (lines && reached) item.objectReason = ObjectReason::geometry;

@@ -85,7 +85,7 @@ constexpr uint64_t bytesOfShader = bytesOfSurface - bytesOfSharedSurface;
 constexpr size_t smallWorld = 256;
 
 // Returns the bytes of all values that decide how a surface looks.
-std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) {
+std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply, bool vertexAlpha) {
   std::string key;
   key.reserve(64); // a material takes 60 bytes
   const auto add = [&key](const auto& value) {
@@ -93,6 +93,7 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) 
   };
   add(texture);
   add(multiply);
+  add(vertexAlpha);
   if (const nodes::Material* m = parts.material) {
     for (const Color& color : {m->diffuseColor, m->emissiveColor, m->specularColor})
       add(convert(color, linear));
@@ -109,7 +110,7 @@ std::string keyOf(const Parts& parts, RTid texture, bool linear, bool multiply) 
 // appearances, and no events reach this one.
 bool Surfaces::mayShare(const Entry& entry) const {
   Node* node = entry.appearance.get();
-  if (!node || surfaces_.size() <= smallWorld) return false;
+  if (!node || surfaces_[entry.vertexAlpha].size() <= smallWorld) return false;
   const Parts parts = partsOf(node);
   if (parts.shader || isPhysical(parts.anyMaterial)) return false;
   for (const Node* part :
@@ -144,31 +145,34 @@ void Surfaces::leaveShared(Entry& entry) {
   shared_.erase(*shared.key);
 }
 
-Surface Surfaces::surfaceFor(Node* appearance, bool lines) {
+Surface Surfaces::surfaceFor(Node* appearance, SurfaceUse use) {
   Node* node = renderedNode(appearance);
-  const auto [it, fresh] = (lines ? lines_ : surfaces_).try_emplace(node);
+  const auto [it, fresh] = (use.lines ? lines_ : surfaces_)[use.vertexAlpha].try_emplace(node);
   Entry& entry = it->second;
   if (!fresh) return entry.surface;
   entry.appearance = NodeRef(node);
   entry.textured = isTextured(node);
+  entry.vertexAlpha = use.vertexAlpha;
   const uint64_t bytes = partsOf(node).shader ? bytesOfSurface : bytesOfSharedSurface;
   if (!take(entry, bytes)) return entry.surface;
   entry.bytes = uint32_t(bytes);
-  if (!lines) warnOfFaces(partsOf(node).plain, world_);
-  if (!lines)
+  if (!use.lines) warnOfFaces(partsOf(node).plain, world_);
+  if (!use.lines)
     makeSurface(entry);
   else if (take(entry, bytesOfShader))
-    entry.own = (entry.surface = makeLines(node)).shader;
+    entry.own = (entry.surface = makeLines(entry)).shader;
   return entry.surface;
 }
 
 // Makes the surface of lines and points (clauses 6.24 and 6.36): unlit, in the colours of the
 // geometry, else in emissiveColor.
-Surface Surfaces::makeLines(Node* appearance) {
+Surface Surfaces::makeLines(const Entry& entry) {
+  Node* appearance = entry.appearance.get();
   Surface surface;
   ShaderSetup shader(classes_.get("VRML97", ""));
   surface.shader = shader.id();
   shader.integer("lit", 0);
+  if (entry.vertexAlpha) shader.integer("vertexAlpha", 1);
   if (Node* material = partsOf(appearance).anyMaterial)
     surface.lineColor = convert(emissionOf(*material), linear_);
   const LineSizes sizes = lineSizes(partsOf(appearance).plain);
@@ -244,7 +248,7 @@ void Surfaces::makeSurface(Entry& entry) {
   const bool multiplied = multiplies(entry);
   const bool first = entry.own == 0 && !entry.shared;
   if (entry.shared || (first && mayShare(entry))) {
-    const std::string key = keyOf(parts, texture, linear_, multiplied);
+    const std::string key = keyOf(parts, texture, linear_, multiplied, entry.vertexAlpha);
     if (entry.shared && *entry.shared->key == key) {
       entry.surface.shader = entry.shared->shader;
       return;
@@ -272,6 +276,7 @@ void Surfaces::makeSurface(Entry& entry) {
   setMaterial(shader, parts.material ? parts.material : fallback ? &standard : nullptr, linear_);
   if (texture != 0 || !shader.fresh()) shader.texture("texture", texture);
   if (multiplied && shader.fresh()) shader.integer("multiplyTexture", 1);
+  if (entry.vertexAlpha && shader.fresh()) shader.integer("vertexAlpha", 1);
   if (const nodes::TextureTransform* t = parts.textureTransform; t && texture != 0)
     shader.matrix("textureTransform",
                   textureMatrix(t->center, t->rotation, t->scale, t->translation));
@@ -298,6 +303,7 @@ void Surfaces::makePhysical(Entry& entry) {
   entry.surface.shader = entry.physical = setup->id();
   setPhysical(*setup, *parts.anyMaterial, {parts.plain, parts.texture, parts.textureTransform},
               textures_, world_, linear_);
+  if (entry.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, parts.anyMaterial->type().name);
 }
 
@@ -318,35 +324,38 @@ void Surfaces::makeX3d(Entry& entry) {
     setup.emplace(shaderClass, entry.x3d, sets_);
   entry.surface.shader = entry.x3d = setup->id();
   setX3dMaterial(*setup, parts, textures_, world_, linear_);
+  if (entry.vertexAlpha && setup->fresh()) setup->integer("vertexAlpha", 1);
   report(world_.diagnostics, entry.appearance->source, "appearance");
 }
 
 Surfaces::Effect Surfaces::update(Node& appearance) {
   Effect effect;
-  if (const auto it = surfaces_.find(&appearance); it != surfaces_.end()) {
-    const RTid before = it->second.surface.shader;
-    if (it->second.bytes > 0) makeSurface(it->second);
-    effect.other = it->second.surface.shader != before;
-    const bool textured = isTextured(&appearance);
-    effect.textured = textured && !it->second.textured;
-    it->second.textured = textured;
-  }
-  if (const auto it = lines_.find(&appearance); it != lines_.end()) {
-    Node* material = partsOf(&appearance).anyMaterial;
-    const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
-    const LineSizes sizes = lineSizes(partsOf(&appearance).plain);
-    Surface& surface = it->second.surface;
-    effect.colored = !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
-                     sizes.point != surface.pointSize;
-    surface.lineColor = color;
-    surface.lineWidth = sizes.line;
-    surface.pointSize = sizes.point;
-  }
+  for (Entries& surfaces : surfaces_)
+    if (const auto it = surfaces.find(&appearance); it != surfaces.end()) {
+      const RTid before = it->second.surface.shader;
+      if (it->second.bytes > 0) makeSurface(it->second);
+      effect.other |= it->second.surface.shader != before;
+      const bool textured = isTextured(&appearance);
+      effect.textured |= textured && !it->second.textured;
+      it->second.textured = textured;
+    }
+  for (Entries& lines : lines_)
+    if (const auto it = lines.find(&appearance); it != lines.end()) {
+      Node* material = partsOf(&appearance).anyMaterial;
+      const Color color = material ? convert(emissionOf(*material), linear_) : Surface().lineColor;
+      const LineSizes sizes = lineSizes(partsOf(&appearance).plain);
+      Surface& surface = it->second.surface;
+      effect.colored |= !(color == surface.lineColor) || sizes.line != surface.lineWidth ||
+                        sizes.point != surface.pointSize;
+      surface.lineColor = color;
+      surface.lineWidth = sizes.line;
+      surface.pointSize = sizes.point;
+    }
   return effect;
 }
 
 void Surfaces::clear() {
-  for (Entries* entries : {&surfaces_, &lines_})
+  for (Entries* entries : {&surfaces_[0], &surfaces_[1], &lines_[0], &lines_[1]})
     for (auto& [node, entry] : *entries) forget(entry);
 }
 

@@ -24,6 +24,15 @@ struct Surface {
   float lineWidth = 1, pointSize = 1; // in pixels
 };
 
+// What a surface is for.
+struct SurfaceUse {
+  // Lines or points, which are neither lit nor textured (clauses 6.24, 6.36).
+  bool lines = false;
+  // The geometry's colours are those of a ColorRGBA, whose opacities stand in place of the
+  // material's transparency (ISO/IEC 19775-1 11.4.3).
+  bool vertexAlpha = false;
+};
+
 class Surfaces {
  public:
   Surfaces(World& world, bool linearColor, ShaderClasses& classes, Textures& textures,
@@ -31,9 +40,8 @@ class Surfaces {
       : world_(world), linear_(linearColor), classes_(classes), textures_(textures),
         custom_(custom), quota_(world, "appearances") {}
 
-  // Returns the surface of a Shape's appearance, which may be null or a prototype instance. lines:
-  // for IndexedLineSet and PointSet, which are neither lit nor textured (clauses 6.24, 6.36).
-  Surface surfaceFor(Node* appearance, bool lines);
+  // Returns the surface of a Shape's appearance, which may be null or a prototype instance.
+  Surface surfaceFor(Node* appearance, SurfaceUse use);
 
   // The effect that a change of an appearance node, or of a node it holds, has on the shapes that
   // use it.
@@ -48,7 +56,9 @@ class Surfaces {
   // whether a rendered appearance is used.
   template <class Uses> void forgetUnless(const Uses& uses);
   void clear(); // deletes everything
-  size_t count() const { return surfaces_.size() + lines_.size(); }
+  size_t count() const {
+    return surfaces_[0].size() + surfaces_[1].size() + lines_[0].size() + lines_[1].size();
+  }
   uint64_t parametersSet() const { return sets_; }
   bool multiplyTextures = false; // OpenRTMapper::setMultiplyTextures
 
@@ -69,9 +79,10 @@ class Surfaces {
     // Taken from the budget, without its own shaders; 0: the appearance is left out.
     uint32_t bytes = 0;
     bool textured = false;
+    bool vertexAlpha = false;
   };
   using Entries = std::unordered_map<const Node*, Entry>;
-  Surface makeLines(Node* appearance);
+  Surface makeLines(const Entry& entry);
   void makeSurface(Entry& entry);
   void makePhysical(Entry& entry);
   void makeX3d(Entry& entry);
@@ -89,13 +100,13 @@ class Surfaces {
   Textures& textures_;
   CustomShaders& custom_;
   Quota quota_;
-  Entries surfaces_, lines_;
+  Entries surfaces_[2], lines_[2];                 // without and with vertexAlpha
   std::unordered_map<std::string, Shared> shared_; // by the values, see keyOf()
   uint64_t sets_ = 0;
 };
 
 template <class Uses> void Surfaces::forgetUnless(const Uses& uses) {
-  for (Entries* entries : {&surfaces_, &lines_})
+  for (Entries* entries : {&surfaces_[0], &surfaces_[1], &lines_[0], &lines_[1]})
     for (auto it = entries->begin(); it != entries->end();) {
       if (!it->first || uses(it->first)) {
         ++it;

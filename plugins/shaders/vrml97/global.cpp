@@ -70,9 +70,11 @@ uint32_t scatterTraits(const SurfaceParams& p) {
   return (p.lit ? 0u : uint32_t(RTS_NO_SCATTER)) |
          (p.lit && any(p.specularColor) ? uint32_t(RTS_GLOSSY) : 0u) |
          (!p.lit || any(p.emissiveColor) ? uint32_t(RTS_EMISSIVE) : 0u) |
-         // Colours of vertices do not change the emission of lit surfaces, but the alpha of a
-         // texture does.
-         (p.lit && any(p.emissiveColor) && !p.texture ? uint32_t(RTS_UNIFORM_EMISSION) : 0u);
+         // Colours of vertices do not change the emission of lit surfaces, but their alpha
+         // and that of a texture do.
+         (p.lit && any(p.emissiveColor) && !p.texture && !p.vertexAlpha
+              ? uint32_t(RTS_UNIFORM_EMISSION)
+              : 0u);
 }
 
 void scatter(const RtsHost* host, RtsBatch* batch, const RtsHits* hits, RtsSurface* out) {

@@ -20,6 +20,7 @@ struct SurfaceParams {
   RtsTexture texture;
   float textureTransform[16];
   int32_t multiplyTexture;
+  int32_t vertexAlpha;
 };
 
 extern const RtsParam surfaceParams[];

@@ -35,6 +35,15 @@ Lane laneOf(const RtsHits* hits, uint32_t i) {
           (flags & RTS_HIT_COLOR) != 0};
 }
 
+// Returns the alpha of a lane before any picture. That of the geometry's colours stands in place of
+// the material's where vertexAlpha asks for it.
+float alphaOf(const Lane& lane, const RtsHits* hits) {
+  if (lane.colored && lane.p.front.vertexAlpha)
+    return std::clamp(hits->color[3][lane.from], 0.0f, 1.0f);
+  if (!lane.lit) return 1;
+  return 1 - (lane.side == 1 ? lane.p.backTransparency : lane.p.front.transparency);
+}
+
 // Fills the terms from parameters and colours of the geometry.
 Summary materials(const RtsHits* hits, uint32_t lanes, const Terms& t) {
   Summary summary;
@@ -55,7 +64,7 @@ Summary materials(const RtsHits* hits, uint32_t lanes, const Terms& t) {
       summary.specular |= t.specular[c][i] != 0.0f;
     }
     t.exponent[i] = 128.0f * (back ? p.backShininess : p.front.shininess);
-    t.alpha[i] = !lane.lit ? 1.0f : 1.0f - (back ? p.backTransparency : p.front.transparency);
+    t.alpha[i] = alphaOf(lane, hits);
     summary.lit |= lane.lit;
   }
   return summary;
@@ -157,8 +166,7 @@ void combineLayers(const RtsHits* hits, uint32_t lanes, Pictures& pictures, cons
         colors.factor.c[c] = p.factor[c];
       }
       colors.current.a = t.alpha[i];
-      colors.diffuse.a = colors.specular.a =
-          !lane.lit ? 1.0f : 1.0f - (back ? p.backTransparency : p.front.transparency);
+      colors.diffuse.a = colors.specular.a = alphaOf(lane, hits);
       colors.factor.a = p.factor[3];
       const Rgba texel = {{pictures.rgba[0][i], pictures.rgba[1][i], pictures.rgba[2][i]},
                           pictures.rgba[3][i]};
@@ -296,7 +304,8 @@ bool any(const float c[3]) { return c[0] > 0 || c[1] > 0 || c[2] > 0; }
 bool maybeTransparent(const RtsHost* host, const X3dParams& p) {
   if (!p.filled) return true;
   if (p.alphaMode == alphaOpaque) return false;
-  bool clear = p.front.lit && (p.front.transparency > 0 || (p.twoSided && p.backTransparency > 0));
+  bool clear = p.front.vertexAlpha != 0;
+  clear |= p.front.lit && (p.front.transparency > 0 || (p.twoSided && p.backTransparency > 0));
   const auto alpha = [&](RtsTexture t) { return t != 0 && hasAlpha(host->components(host, t)); };
   clear |= alpha(p.front.texture) || (p.twoSided && alpha(p.backTexture));
   for (const RtsTexture t : p.further) clear |= alpha(t);
