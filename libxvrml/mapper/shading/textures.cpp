@@ -62,18 +62,37 @@ RTid Textures::find(Node* texture, bool data) {
   return nodes_[node].id = id;
 }
 
-RTid Textures::makeNode(Node& node, bool data) {
+RTid Textures::ofFace(Node* texture) {
+  Node* node = renderedNode(texture);
+  if (!node) return 0;
+  const auto [it, fresh] = faces_.try_emplace(node, TextureEntry{NodeRef(node), 0, false});
+  if (!fresh) return it->second.id;
+  const RTid id = makeNode(*node, false, true);
+  return faces_[node].id = id;
+}
+
+void Textures::drop(RTid texture) {
+  if (texture == 0) return;
+  remove(texture);
+  --count_;
+}
+
+ImageRoom Textures::roomForPicture() const {
+  return {world_.options.limits, room(), share_.budget().get()};
+}
+
+RTid Textures::makeNode(Node& node, bool data, bool face) {
   data_ = data;
   struct Reset {
     bool& flag;
     ~Reset() { flag = false; }
   } reset{data_};
   if (auto* image = nodeCast<nodes::ImageTexture>(&node))
-    return ofUrls(image->url, node, image->repeatS, image->repeatT);
+    return ofUrls(image->url, node, image->repeatS && !face, image->repeatT && !face);
   RTid id = 0;
   if (OwnImage own; ownImage(node, own)) {
     try {
-      if (own.image) id = make(*own.image, own.repeatS, own.repeatT);
+      if (own.image) id = make(*own.image, own.repeatS && !face, own.repeatT && !face);
     } catch (const std::runtime_error& failure) {
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
     }
@@ -90,7 +109,8 @@ RTid Textures::makeNode(Node& node, bool data) {
 
 void Textures::clear() {
   std::vector<RTid> ids;
-  for (const auto& [node, known] : nodes_) ids.push_back(known.id);
+  for (const Entries* entries : {&nodes_, &faces_})
+    for (const auto& [node, known] : *entries) ids.push_back(known.id);
   for (const auto& [file, made] : files_) ids.push_back(made.first);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -100,8 +120,13 @@ void Textures::clear() {
 }
 
 bool Textures::changed(Node& node) {
-  const auto found = nodes_.find(&node);
-  if (found == nodes_.end()) return false; // the texture is loaded on first use
+  const bool other = changedIn(nodes_, node, false);
+  return changedIn(faces_, node, true) || other;
+}
+
+bool Textures::changedIn(Entries& entries, Node& node, bool face) {
+  const auto found = entries.find(&node);
+  if (found == entries.end()) return false; // the texture is loaded on first use
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
@@ -111,17 +136,17 @@ bool Textures::changed(Node& node) {
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
       remove(before);
       --count_;
-      nodes_[&node].id = 0;
+      entries[&node].id = 0;
     }
     report(world_.diagnostics, node.source, node.type().name);
-    return nodes_[&node].id != before;
+    return entries[&node].id != before;
   }
   if (OwnImage own; before != 0 && ownImage(node, own)) { // the node has no picture any more
     remove(before);
     --count_;
   }
-  const RTid id = makeNode(node, found->second.data);
-  nodes_[&node].id = id;
+  const RTid id = makeNode(node, found->second.data, face);
+  entries[&node].id = id;
   return id != before;
 }
 
@@ -160,7 +185,7 @@ RTid Textures::ofFile(const std::string& path, bool repeatS, bool repeatT, std::
   if (fresh) {
     try {
       const Limits& limits = world_.options.limits;
-      const ImageRoom room{limits, this->room(), share_.budget().get()};
+      const ImageRoom room = roomForPicture();
       const std::vector<uint8_t> bytes = readPictureFile(path, room);
       id = looksLikeRadiance(bytes.data(), bytes.size())
                ? make(decodeRadiance(bytes.data(), bytes.size(), limits), repeatS, repeatT)
