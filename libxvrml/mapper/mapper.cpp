@@ -14,10 +14,10 @@ namespace xvrml {
 using namespace mapper;
 
 OpenRTMapper::Impl::Impl(World& w, const MapOptions& o)
-    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor),
+    : world(w), options(o), graph(w), places(w), textures(w, o.linearColor), cubes(w, textures),
       custom(w, classes, textures), surfaces(w, o.linearColor, classes, textures, custom),
       objects(w, o.linearColor, graph, places, surfaces), lights(w, o.linearColor, classes, custom),
-      environment(w, o.linearColor, classes, textures, custom),
+      environment(w, o.linearColor, classes, textures, cubes, custom),
       camera(cameraOf(nullptr, Matrix(), o.aspect)) {
   summarise(graph, world.diagnostics);
   std::vector<Place> gone;
@@ -34,6 +34,7 @@ OpenRTMapper::Impl::~Impl() {
     environment.clear();
     surfaces.clear();
     custom.clear();
+    cubes.clear();
     textures.clear();
   } catch (const std::bad_alloc&) {} // the remaining objects are freed with the context
 }
@@ -179,7 +180,7 @@ void OpenRTMapper::map(const CameraSettings& camera) {
     around.background = {};
     around.backgroundPlace = none;
   }
-  m.environment.updateForFrame(m.places, around);
+  m.environment.updateForFrame(m.graph, m.places, around);
   m.objects.updateForFrame();
   m.lights.updateForFrame(m.graph, m.places);
   m.lights.atCamera(m.lightsModel() ? CameraLight::model

@@ -143,12 +143,16 @@ void OpenRTMapper::Impl::appearanceChanged(Work& work, Node& first) {
         !graph.items[id].merged && graph.items[id].objectReason != ObjectReason::appearance;
     return;
   }
-  if (first.type().is("texture") && !textures.changed(first)) return; // only the picture changed
+  const bool cube = first.type().is("environmentTexture");
+  if (cube) cubes.changed(first);
+  if (!cube && first.type().is("texture") && !textures.changed(first))
+    return; // only the picture changed
   walkHolders(first, work.visited, [&](Node& node) {
     if (node.type().index == nodes::ORTShader::typeIndex) custom.changed(node);
     if (node.type().index == nodes::ORTLight::typeIndex) lights.changed(node);
     if (first.type().is("textureProperty") && node.type().is("texture")) textures.changed(node);
-    environment.changed(node); // for the shader of an ORTBackground
+    // For the shader of an ORTBackground, the pictures of TextureBackgrounds and EnvironmentLights.
+    environment.changed(node);
     if (!isAppearance(node)) return node.type().index < 0 || !planOf(node.type());
     work.appearances.push_back(&node);
     return false;
@@ -187,9 +191,12 @@ void OpenRTMapper::Impl::lightChanged(Work& work, Node& node) {
   const ItemId id = graph.find(&node);
   // The headlight of a NavigationInfo is read every frame.
   if (id == 0 || !isLight(graph.items[id].kind)) return;
+  const bool scoped = graph.items[id].scoped;
   graph.readLight(id);
   lights.changed(node);
+  environment.changed(node);
   if (graph.items[id].on && !graph.items[id].placeDependent) work.regroup = true;
+  if (graph.items[id].scoped != scoped) work.regroup = true;
 }
 
 void OpenRTMapper::Impl::regroup() {

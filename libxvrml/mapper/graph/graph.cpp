@@ -56,6 +56,7 @@ void Graph::readLight(ItemId id) {
   Plan plan;
   planOf(item.node->type())(context_, *item.node, plan);
   item.on = plan.on;
+  item.scoped = plan.scoped;
 }
 
 ItemId Graph::newItem() {
@@ -103,6 +104,8 @@ void Graph::planItem(ItemId id) {
   item.isInline = plan.isInline;
   item.awaited = plan.awaited;
   item.on = plan.on;
+  item.scoped = plan.scoped;
+  item.limitsLights = plan.limitsLights;
   item.children = children;
   int32_t mesh = none;
   if (auto* shape = nodeCast<nodes::Shape>(item.node); shape && item.kind == Kind::shape)

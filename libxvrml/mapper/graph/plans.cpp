@@ -63,6 +63,8 @@ void planInline(PlanContext& context, Node& node, Plan& plan) {
   plan.awaited =
       !scope && !context.world.options.loadInlines && content.load && !content.url.empty();
   if (scope) plan.add(scope->roots);
+  // Inline has the field `global` since ISO/IEC 19775-1:2023 (9.4.2).
+  plan.limitsLights = versionOf(node).major >= 4 && !static_cast<nodes::Inline&>(node).global;
 }
 
 void planStatic(PlanContext&, Node& node, Plan& plan) {
@@ -84,14 +86,22 @@ template <class Light> void planLight(Node& node, Kind kind, Plan& plan) {
   plan.kind = kind;
   plan.on = static_cast<Light&>(node).on;
 }
+// The defaults of `global` are the rules of VRML97 (clauses 6.16, 6.35 and 6.45), which lacks it.
+template <class Light> void planScopedLight(Node& node, Kind kind, Plan& plan) {
+  planLight<Light>(node, kind, plan);
+  plan.scoped = !static_cast<Light&>(node).global;
+}
 void planDirectionalLight(PlanContext&, Node& node, Plan& plan) {
-  planLight<nodes::DirectionalLight>(node, Kind::directionalLight, plan);
+  planScopedLight<nodes::DirectionalLight>(node, Kind::directionalLight, plan);
 }
 void planPointLight(PlanContext&, Node& node, Plan& plan) {
-  planLight<nodes::PointLight>(node, Kind::localLight, plan);
+  planScopedLight<nodes::PointLight>(node, Kind::localLight, plan);
 }
 void planSpotLight(PlanContext&, Node& node, Plan& plan) {
-  planLight<nodes::SpotLight>(node, Kind::localLight, plan);
+  planScopedLight<nodes::SpotLight>(node, Kind::localLight, plan);
+}
+void planEnvironmentLight(PlanContext&, Node& node, Plan& plan) {
+  planLight<nodes::EnvironmentLight>(node, Kind::environmentLight, plan);
 }
 
 void planOrtLight(PlanContext&, Node& node, Plan& plan) {
@@ -154,6 +164,7 @@ std::vector<PlanFunction>& table() {
     set(nodes::DirectionalLight::typeIndex, planDirectionalLight);
     set(nodes::PointLight::typeIndex, planPointLight);
     set(nodes::SpotLight::typeIndex, planSpotLight);
+    set(nodes::EnvironmentLight::typeIndex, planEnvironmentLight);
     set(nodes::ORTLight::typeIndex, planOrtLight);
     set(nodes::ORTSensor::typeIndex, planSensor);
     set(nodes::ViewpointGroup::typeIndex, planViewpointGroup);

@@ -69,7 +69,26 @@ RTid Textures::find(Node* texture, bool data) {
   return nodes_[node].id = id;
 }
 
-RTid Textures::makeNode(Node& node, bool data) {
+RTid Textures::ofFace(Node* texture) {
+  Node* node = renderedNode(texture);
+  if (!node) return 0;
+  const auto [it, fresh] = faces_.try_emplace(node, TextureEntry{NodeRef(node), 0, false});
+  if (!fresh) return it->second.id;
+  const RTid id = makeNode(*node, false, true);
+  return faces_[node].id = id;
+}
+
+void Textures::drop(RTid texture) {
+  if (texture == 0) return;
+  remove(texture);
+  --count_;
+}
+
+ImageRoom Textures::roomForPicture() const {
+  return {world_.options.limits, room(), share_.budget().get()};
+}
+
+RTid Textures::makeNode(Node& node, bool data, bool face) {
   data_ = data;
   struct Reset {
     bool& flag;
@@ -77,11 +96,14 @@ RTid Textures::makeNode(Node& node, bool data) {
   } reset{data_};
   if (auto* image = nodeCast<nodes::ImageTexture>(&node))
     return ofUrls(image->url, node,
-                  samplingOf(image->repeatS, image->repeatT, image->textureProperties));
+                  face ? samplingOf(false, false)
+                       : samplingOf(image->repeatS, image->repeatT, image->textureProperties));
   RTid id = 0;
   if (OwnImage own; ownImage(node, own)) {
     try {
-      if (own.image) id = make(*own.image, samplingOf(own.repeatS, own.repeatT, own.properties));
+      if (own.image)
+        id = make(*own.image, face ? samplingOf(false, false)
+                                   : samplingOf(own.repeatS, own.repeatT, own.properties));
     } catch (const std::runtime_error& failure) {
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
     }
@@ -98,7 +120,8 @@ RTid Textures::makeNode(Node& node, bool data) {
 
 void Textures::clear() {
   std::vector<RTid> ids;
-  for (const auto& [node, known] : nodes_) ids.push_back(known.id);
+  for (const Entries* entries : {&nodes_, &faces_})
+    for (const auto& [node, known] : *entries) ids.push_back(known.id);
   for (const auto& [file, made] : files_) ids.push_back(made.first);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -109,29 +132,34 @@ void Textures::clear() {
 
 bool Textures::changed(Node& node) {
   if (nodeCast<nodes::MultiTexture>(&node)) return true;
-  const auto found = nodes_.find(&node);
-  if (found == nodes_.end()) return false; // the texture is loaded on first use
+  const bool other = changedIn(nodes_, node, false);
+  return changedIn(faces_, node, true) || other;
+}
+
+bool Textures::changedIn(Entries& entries, Node& node, bool face) {
+  const auto found = entries.find(&node);
+  if (found == entries.end()) return false; // the texture is loaded on first use
   const RTid before = found->second.id;
   if (OwnImage own; before != 0 && ownImage(node, own) && own.image && usable(*own.image)) {
     rtBindTexture(before);
-    if (own.properties) setSampling(samplingOf(own.repeatS, own.repeatT, own.properties));
+    if (own.properties && !face) setSampling(samplingOf(own.repeatS, own.repeatT, own.properties));
     try {
       upload(before, *own.image);
     } catch (const std::runtime_error& failure) { // as makeNode() does
       world_.diagnostics.error(node.source, node.type().name + ": no picture: " + failure.what());
       remove(before);
       --count_;
-      nodes_[&node].id = 0;
+      entries[&node].id = 0;
     }
     report(world_.diagnostics, node.source, node.type().name);
-    return nodes_[&node].id != before;
+    return entries[&node].id != before;
   }
   if (OwnImage own; before != 0 && ownImage(node, own)) { // the node has no picture any more
     remove(before);
     --count_;
   }
-  const RTid id = makeNode(node, found->second.data);
-  nodes_[&node].id = id;
+  const RTid id = makeNode(node, found->second.data, face);
+  entries[&node].id = id;
   return id != before;
 }
 
@@ -174,7 +202,7 @@ RTid Textures::ofFile(const std::string& path, const Sampling& sampling, std::st
   if (fresh) {
     try {
       const Limits& limits = world_.options.limits;
-      const ImageRoom room{limits, this->room(), share_.budget().get()};
+      const ImageRoom room = roomForPicture();
       const std::vector<uint8_t> bytes = readPictureFile(path, room);
       id = looksLikeRadiance(bytes.data(), bytes.size())
                ? make(decodeRadiance(bytes.data(), bytes.size(), limits), sampling)

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "base/budget.h"
+#include "image/image.h"
 #include "mapper/rt.h"
 #include "xvrml/radiance.h"
 #include "xvrml/world.h"
@@ -30,6 +31,16 @@ class Textures {
   // Returns the first URL of a list that leads to a picture. node: for messages, and its file is
   // the base of relative URLs.
   RTid ofUrls(const MFString& urls, const Node& node, bool repeatS, bool repeatT);
+  // The same for a face of a panorama or cube map: the picture does not repeat, whatever the node
+  // says, because its edges meet those of other faces.
+  RTid ofFace(Node* texture);
+  // Makes a picture that the caller keeps, without repetition, and deletes it. Throws
+  // std::runtime_error if the world's budget does not allow it.
+  RTid add(const Image& image) { return make(image, false, false); }
+  RTid add(const RadianceImage& image) { return make(image, false, false); }
+  void drop(RTid texture);
+  // Returns the memory that another picture from a file may take.
+  ImageRoom roomForPicture() const;
   // Returns a black texel, used for an environment whose picture cannot be loaded.
   RTid black();
   // Uploads the new picture of a texture node, under the same id if the node owns its picture.
@@ -60,8 +71,11 @@ class Textures {
   void take(RTid texture, uint64_t bytes);
   void remove(RTid texture);
   uint64_t room() const; // bytes that still images may still take
+  struct TextureEntry;
+  using Entries = std::unordered_map<const Node*, TextureEntry>;
   RTid find(Node* texture, bool data);
-  RTid makeNode(Node& texture, bool data);
+  RTid makeNode(Node& texture, bool data, bool face = false);
+  bool changedIn(Entries& entries, Node& texture, bool face);
 
   struct TextureEntry {
     NodeRef node;
@@ -74,7 +88,7 @@ class Textures {
   Share share_;                              // share of the world's budget
   std::unordered_map<RTid, uint64_t> bytes_; // bytes of each texture
   uint64_t count_ = 0, missing_ = 0, loaded_ = 0;
-  std::unordered_map<const Node*, TextureEntry> nodes_;
+  Entries nodes_, faces_; // faces_: those of ofFace()
   // The texture of each file, by its sampling and whether it holds numbers, or the reason why there
   // is none.
   std::map<std::tuple<std::string, Sampling, bool>, std::pair<RTid, std::string>> files_;
