@@ -24,6 +24,8 @@ std::string_view ownName(std::string_view type, std::string_view name);
 // Returns the name in X3D of a field or event of ours: the reverse of ownName.
 std::string_view x3dName(std::string_view type, std::string_view name);
 
+// Returns whether the numbers of a field of ours, which are no rotations, are angles.
+bool isAngleField(std::string_view type, std::string_view field);
 // Returns the default of a field of VRML97 where X3D gives it another one; null: they are the same.
 const Value* x3dDefault(std::string_view type, std::string_view field);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/budget.h"
+#include "graph/exchange.h"
 #include "xvrml/nodes.h"
 #include "xvrml/world.h"
 
@@ -11,6 +12,8 @@ namespace xvrml {
 struct InlineNode : nodes::Inline {
   using nodes::Inline::Inline;
   std::shared_ptr<const Scope> content; // null until it is loaded
+  std::shared_ptr<Exchange> exchange;   // what the file of the content shares; null: nothing
+  std::weak_ptr<Exchange> importer;     // what this node's own file imports from the content
   Share share; // reservation of the world's budget for content that a running world has loaded
 };
 

@@ -363,9 +363,15 @@ void Builder::closeField(bool good) {
   const FieldInfo& field = *frame.field;
   if (holdsNodes(field)) {
     nodeTargets_.pop_back();
-  } else if (!good) {
+    return;
+  }
+  if (!good) {
     frame.node->set(field, field.defaultValue);
-  } else if (hasNormalizedAxes(field)) {
+    return;
+  }
+  if (angle_ != 1 && isAngle(*frame.node, field))
+    convertAngles(field.type, frame.node->storage(field));
+  if (hasNormalizedAxes(field)) {
     Rotation first;
     const size_t outside = normalizeAxes(field.type, frame.node->storage(field), &first);
     if (outside > 0)

@@ -84,7 +84,8 @@ class XmlWriter : public Writer {
     text_ += fmt::format("<X3D profile='{}' version='{}.{}'>", profileOf(head), version_.major,
                          version_.minor);
     indent_ = 2;
-    if (!head.components.empty() || !head.meta.empty()) writeStatements(head);
+    if (!head.components.empty() || !head.meta.empty() || !unitsOf(head).empty())
+      writeStatements(head);
     line();
     text_ += "<Scene>";
     indent_ = 4;
@@ -99,6 +100,14 @@ class XmlWriter : public Writer {
       text_ += "<component";
       attribute("name", one.name);
       attribute("level", std::to_string(one.level));
+      text_ += "/>";
+    }
+    for (const FileHead::Unit& one : unitsOf(head)) {
+      line();
+      text_ += "<unit";
+      attribute("category", one.category);
+      attribute("name", one.name);
+      attribute("conversionFactor", fmt::format("{}", one.factor));
       text_ += "/>";
     }
     for (const FileHead::Meta& one : head.meta) {
@@ -282,6 +291,21 @@ class XmlWriter : public Writer {
     attribute("fromField", route.fromField);
     attribute("toNode", route.to);
     attribute("toField", route.toField);
+    text_ += "/>";
+  }
+
+  void writeImport(const std::string& inlineName, const std::string& exported,
+                   const std::string& local) override {
+    text_ += "<IMPORT";
+    attribute("inlineDEF", inlineName);
+    attribute("importedDEF", exported);
+    attribute("AS", local);
+    text_ += "/>";
+  }
+  void writeExport(const std::string& node, const std::string& exported) override {
+    text_ += "<EXPORT";
+    attribute("localDEF", node);
+    attribute("AS", exported);
     text_ += "/>";
   }
 
