@@ -74,8 +74,8 @@ std::vector<ResolvedRoute> resolveImports(Exchange& exchange, const Node* inline
     return !end.node && exchange.imports[end.import].inlineNode.get() == inlineNode;
   };
   for (Exchange::Import& import : exchange.imports)
-    if ((!inlineNode || import.inlineNode.get() == inlineNode) &&
-        inlineScope(*import.inlineNode) && !exportedNode(*import.inlineNode, import.exported))
+    if ((!inlineNode || import.inlineNode.get() == inlineNode) && inlineScope(*import.inlineNode) &&
+        !exportedNode(*import.inlineNode, import.exported))
       reportImport(import, diagnostics);
   for (Exchange::ImportedRoute& route : exchange.routes) {
     if (inlineNode && !leadsTo(route.from) && !leadsTo(route.to)) continue;

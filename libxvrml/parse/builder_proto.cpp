@@ -146,13 +146,13 @@ void Builder::closeDeclaration(bool good) {
                         declaration.field.type == FieldType::MFRotation;
   if (angle_ != 1 && rotation && declaration.hasValue && good) {
     NodeFrame* const script = isScript() ? &nodes_.back() : nullptr;
-    const FieldInfo* const own = script ? script->node->type().find(declaration.field.name) : nullptr;
+    const FieldInfo* const own =
+        script ? script->node->type().find(declaration.field.name) : nullptr;
     if (own && own->type == declaration.field.type && declaration.accepted)
       convertAngles(own->type, script->node->storage(*own));
     else if (!script)
-      convertAngles(declaration.field.type,
-                    std::visit([](auto& value) -> void* { return &value; },
-                               declaration.field.defaultValue));
+      convertAngles(declaration.field.type, std::visit([](auto& value) -> void* { return &value; },
+                                                       declaration.field.defaultValue));
   }
   if (good && declaration.accepted && !isScript())
     addField(*scope().protoType, std::move(declaration.field));
@@ -184,8 +184,8 @@ void Builder::closeProto(bool good) {
     for (FieldInfo& field : type->fields)
       if ((field.type == FieldType::SFFloat || field.type == FieldType::MFFloat) &&
           isAngle(*instance, field))
-        convertAngles(field.type, std::visit([](auto& value) -> void* { return &value; },
-                                             field.defaultValue));
+        convertAngles(field.type,
+                      std::visit([](auto& value) -> void* { return &value; }, field.defaultValue));
   }
   if (!proto->isExtern && proto->body.roots.empty()) {
     state_.diagnostics.warn(

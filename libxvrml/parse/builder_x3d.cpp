@@ -2,6 +2,7 @@
 // (ISO/IEC 19775-1).
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -99,11 +100,11 @@ void Builder::unit(const Name& category, const Name& name, double factor) {
   const bool twice = std::any_of(units.begin(), units.end(), [&](const FileHead::Unit& one) {
     return one.category == category.text;
   });
-  // The factor is also a float, in which a Transform converts lengths.
-  if (const auto single = float(factor); !(single > 0) || !std::isnormal(single)) {
-    locator_.error(name.at, fmt::format("one {} is {} {}s: expected a positive number; the unit is "
-                                        "left out",
-                                        describe(name), factor, known ? category.text : "unit"));
+  if (!(factor >= 1e-15 && factor <= 1e15)) { // a quotient of two is a float, too
+    locator_.error(name.at,
+                   fmt::format("one {} is {} {}s: expected a number from 1e-15 to 1e15; the unit "
+                               "is left out",
+                               describe(name), factor, known ? category.text : "unit"));
     return;
   }
   if (!known || twice) {
@@ -140,13 +141,23 @@ bool Builder::isAngle(const Node& node, const FieldInfo& field) const {
 
 // Converts angles in the file's unit to radians.
 void Builder::convertAngles(FieldType type, void* storage) const {
-  const auto convert = [&](float& angle) { angle = float(double(angle) * angle_); };
+  constexpr double most = std::numeric_limits<float>::max();
+  const auto inRadians = [&](float angle) {
+    return std::clamp(double(angle) * angle_, -most, most); // a file's NaN stays one
+  };
+  const auto turn = [&](float& angle) { angle = float(inRadians(angle)); };
+  // 180 degrees must not become more than pi, where the range of a field ends.
+  const auto convert = [&](float& angle) {
+    const double exact = inRadians(angle);
+    angle = float(exact);
+    if (std::abs(double(angle)) > std::abs(exact)) angle = std::nextafter(angle, 0.0f);
+  };
   if (type == FieldType::SFFloat) convert(*static_cast<SFFloat*>(storage));
-  if (type == FieldType::SFRotation) convert(static_cast<SFRotation*>(storage)->angle);
+  if (type == FieldType::SFRotation) turn(static_cast<SFRotation*>(storage)->angle);
   if (type == FieldType::MFFloat)
     for (float& one : *static_cast<MFFloat*>(storage)) convert(one);
   if (type == FieldType::MFRotation)
-    for (Rotation& one : *static_cast<MFRotation*>(storage)) convert(one.angle);
+    for (Rotation& one : *static_cast<MFRotation*>(storage)) turn(one.angle);
 }
 
 Exchange& Builder::exchange() {
@@ -173,8 +184,8 @@ void Builder::importNode(const Name& keyword, const ImportNames& names) {
                    fmt::format("IMPORT takes nodes from the file of an Inline, but {} is a node of "
                                "type {}",
                                describe(names.inlineName), node->type().name));
-  const bool taken = scope().scope->names.contains(names.local.text) ||
-                     imports_.contains(names.local.text);
+  const bool taken =
+      scope().scope->names.contains(names.local.text) || imports_.contains(names.local.text);
   if (inlineNode && taken)
     locator_.error(names.local.at, fmt::format("the name {} of an imported node is taken already "
                                                "(ISO/IEC 19775-1 4.4.6)",
@@ -222,8 +233,8 @@ bool Builder::importedRoute(const Name& keyword, const RouteNames& names) {
   };
   const Exchange::End from = end(names.from, names.fromField, true);
   const Exchange::End to = end(names.to, names.toField, false);
-  const bool good = (from.node || isImported(names.from.text)) &&
-                    (to.node || isImported(names.to.text));
+  const bool good =
+      (from.node || isImported(names.from.text)) && (to.node || isImported(names.to.text));
   if (!good || !reserveMemory(bytesOfRoute, keyword)) return true;
   exchange().routes.push_back({from, to, locator_.place(keyword.at)});
   return true;

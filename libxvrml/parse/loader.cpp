@@ -1,7 +1,6 @@
 // loader.cpp: loads Inlines and EXTERNPROTOs, and limits the size of the whole world.
 #include "parse/loader.h"
 
-#include <cmath>
 #include <filesystem>
 #include <new>
 
@@ -126,15 +125,8 @@ void Loader::complete(ParsedFile& file, uint64_t depth) {
 void Loader::setContent(InlineNode& node, const InlinedFile& file) {
   node.content = file.content;
   node.exchange = file.exchange;
-  const double factor = file.length / lengthUnit(node.source.file);
-  const auto scale = float(factor);
+  const auto scale = float(file.length / lengthUnit(node.source.file));
   if (scale == 1 || file.content->roots.empty()) return;
-  if (!std::isnormal(scale)) {
-    state_.diagnostics.warn(node.source, fmt::format("the units of this Inline's file are {:.3g} "
-                                                     "times those around it: they are not applied",
-                                                     factor));
-    return;
-  }
   auto* const transform = new nodes::Transform();
   transform->source = file.content->roots[0] ? file.content->roots[0]->source : node.source;
   transform->scale = {scale, scale, scale};

@@ -299,13 +299,12 @@ void X3dElements::route(const Name& element, Attributes attributes) {
 void X3dElements::import(const Name& element, Attributes attributes) {
   const bool old = !findAttribute(attributes, "importedDEF");
   ParseSink::ImportNames names;
-  const bool good = nameOf(names.inlineName, element, attributes, "inlineDEF") &&
-                    nameOf(names.exported, element, attributes,
-                           old && findAttribute(attributes, "exportedDEF") ? "exportedDEF"
-                                                                           : "importedDEF");
+  const bool good =
+      nameOf(names.inlineName, element, attributes, "inlineDEF") &&
+      nameOf(names.exported, element, attributes,
+             old && findAttribute(attributes, "exportedDEF") ? "exportedDEF" : "importedDEF");
   names.local = names.exported;
-  if (good &&
-      (!findAttribute(attributes, "AS") || nameOf(names.local, element, attributes, "AS")))
+  if (good && (!findAttribute(attributes, "AS") || nameOf(names.local, element, attributes, "AS")))
     sink_.importNode(element, names);
   push(Kind::leaf, element);
 }

@@ -28,8 +28,8 @@ class VrmlWriter : public Writer {
     for (const FileHead::Component& one : head.components)
       text_ += fmt::format("COMPONENT {}:{}\n", nameText(one.name), one.level);
     for (const FileHead::Unit& one : unitsOf(head))
-      text_ += fmt::format("UNIT {} {} {}\n", nameText(one.category), nameText(one.name),
-                           one.factor);
+      text_ +=
+          fmt::format("UNIT {} {} {}\n", nameText(one.category), nameText(one.name), one.factor);
     for (const FileHead::Meta& one : head.meta) {
       text_ += "META ";
       writeString(text_, one.name);
