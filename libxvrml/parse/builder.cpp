@@ -203,7 +203,11 @@ std::string_view Builder::fieldFor(std::string_view name, bool use) const {
   if (use ? !scopes_.back().scope->names.contains(name) : !typeNamed(name)) return {};
   const NodeType* const type = typeOf(name, use);
   const NodeType& parent = nodes_.back().node->type();
-  const std::string_view usual = type ? containerOf(*type) : "children";
+  std::string_view usual = type ? containerOf(*type) : "children";
+  // In X3D 4 the parts of a MetadataSet need not say that they are its value.
+  if (usual == "metadata" && file_.head.version.major >= 4 &&
+      parent.index == nodes::MetadataSet::typeIndex)
+    usual = "value";
   const auto takes = [&](const FieldInfo& field) {
     return holdsValue(field) && holdsNodes(field) &&
            (!type || field.nodeTypes.empty() || typeAccepted(field.nodeTypes, *type));

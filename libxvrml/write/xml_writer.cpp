@@ -165,7 +165,9 @@ class XmlWriter : public Writer {
   void attributeOfPlace(const Node& node, std::string_view place) {
     const bool instance = dynamic_cast<const ProtoInstance*>(&node) != nullptr;
     const std::string_view usual = instance ? "children" : containerOf(node.type());
-    if (!place.empty() && place != usual) attribute("containerField", place);
+    // X3D 4 has another usual field for metadata in a MetadataSet.
+    const bool varies = version_.major >= 4 && usual == "metadata";
+    if (!place.empty() && (place != usual || varies)) attribute("containerField", place);
   }
 
   void writeNode(const Content& content, std::string_view place) override {

