@@ -250,9 +250,9 @@ const Value* x3dDefault(std::string_view type, std::string_view field) {
 }
 
 bool isAngleField(std::string_view type, std::string_view field) {
-  constexpr std::string_view names[] = {"beamWidth",   "creaseAngle", "cutOffAngle", "diskAngle",
-                                        "endAngle",    "fieldOfView", "groundAngle", "maxAngle",
-                                        "minAngle",    "skyAngle",    "startAngle"};
+  constexpr std::string_view names[] = {"beamWidth", "creaseAngle", "cutOffAngle", "diskAngle",
+                                        "endAngle",  "fieldOfView", "groundAngle", "maxAngle",
+                                        "minAngle",  "skyAngle",    "startAngle"};
   if (field == "rotation") return type == "TextureTransform";
   if (field == "offset") return type == "CylinderSensor";
   if (field == "fieldOfView") return type != "OrthoViewpoint" && type != "TextureProjectorParallel";

@@ -39,8 +39,8 @@ struct LoadState {
 struct ParsedFile {
   FileHead head;
   Scope scope;
-  std::vector<NodeRef> instances; // prototype instances to expand
-  std::vector<NodeRef> inlines;   // Inline nodes to load
+  std::vector<NodeRef> instances;     // prototype instances to expand
+  std::vector<NodeRef> inlines;       // Inline nodes to load
   std::shared_ptr<Exchange> exchange; // null: the file neither imports nor exports
 };
 

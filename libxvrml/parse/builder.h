@@ -154,7 +154,7 @@ class Builder : public ParseSink {
   std::unordered_set<std::string> reported_;           // nodes and fields of X3D that were reported
   std::unordered_map<std::string_view, size_t> imports_; // numbers in Exchange::imports
   std::vector<std::pair<Name, Name>> exports_;           // nodes, and the names they are given
-  double angle_ = 1; // radians in the file's unit of angles
+  double angle_ = 1;                                     // radians in the file's unit of angles
   const NodeType* fullInterface_ = nullptr; // the last type that declares more than the limit
 };
 

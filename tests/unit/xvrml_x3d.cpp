@@ -72,24 +72,24 @@ TEST(X3d, TheHeadIsKept) {
 
 TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
   const auto world =
-      load("#X3D V3.3 utf8\nStringSensor { }\nDEF L LoadSensor { children Inline { } }\n"
-           "LoadSensor { }\nViewpoint { viewAll TRUE position 1 2 3 }\n"
-           "Viewpoint { viewAll TRUE nearDistance 1 }\n"
+      load("#X3D V3.3 utf8\nClipPlane { }\nDEF L Layer { children Inline { } }\n"
+           "Layer { }\nAnchor { load TRUE description \"x\" }\n"
+           "Anchor { load TRUE autoRefresh 1 }\n"
            "ROUTE L.isActive TO L.enabled");
   EXPECT_EQ(
       messagesOf(*world),
-      (Messages{"test.x3dv:2:1: warning: nodes of type 'StringSensor' are not supported: they "
+      (Messages{"test.x3dv:2:1: warning: nodes of type 'ClipPlane' are not supported: they "
                 "are left out here and below, with all that they hold",
-                "test.x3dv:3:7: warning: nodes of type 'LoadSensor' are not supported: they are "
+                "test.x3dv:3:7: warning: nodes of type 'Layer' are not supported: they are "
                 "left out here and below, with all that they hold",
-                "test.x3dv:5:13: warning: field 'viewAll' of Viewpoint is not "
+                "test.x3dv:5:10: warning: field 'load' of Anchor is not "
                 "supported: it is left out here and below",
-                "test.x3dv:6:26: warning: field 'nearDistance' of Viewpoint is not supported: "
+                "test.x3dv:6:20: warning: field 'autoRefresh' of Anchor is not supported: "
                 "it is left out here and below",
                 "test.x3dv:7:7: warning: 'L' was left out above",
                 "test.x3dv:7:21: warning: 'L' was left out above"}));
   ASSERT_EQ(world->scope.roots.size(), 2u);
-  EXPECT_EQ(nodeCast<nodes::Viewpoint>(world->scope.roots[0])->position, (Vec3f{1, 2, 3}));
+  EXPECT_EQ(nodeCast<nodes::Anchor>(world->scope.roots[0])->description, "x");
 }
 
 // What they do is tested in conformance/events/imports.cpp.
@@ -108,7 +108,7 @@ TEST(X3d, ImportedNamesAreNamesForRoutes) {
 TEST(X3d, NothingOfItIsReadInVrml97) {
   for (const char* text :
        {"Switch { children Group { } }", "PROTO P [ inputOnly SFBool b ] { Group { } }",
-        "StringSensor { }", "DEF S Script { inputOnly SFBool b }"})
+        "ClipPlane { }", "DEF S Script { inputOnly SFBool b }"})
     EXPECT_GT(load(std::string("#VRML V2.0 utf8\n") + text)->diagnostics.errors(), 0u) << text;
 }
 
