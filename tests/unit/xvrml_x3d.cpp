@@ -71,23 +71,21 @@ TEST(X3d, TheHeadIsKept) {
 }
 
 TEST(X3d, MissingNodesAndFieldsAreSaidOnce) {
-  const auto world =
-      load("#X3D V3.3 utf8\nClipPlane { }\nDEF L Layer { children Inline { } }\n"
-           "Layer { }\nAnchor { load TRUE description \"x\" }\n"
-           "Anchor { load TRUE autoRefresh 1 }\n"
-           "ROUTE L.isActive TO L.enabled");
-  EXPECT_EQ(
-      messagesOf(*world),
-      (Messages{"test.x3dv:2:1: warning: nodes of type 'ClipPlane' are not supported: they "
-                "are left out here and below, with all that they hold",
-                "test.x3dv:3:7: warning: nodes of type 'Layer' are not supported: they are "
-                "left out here and below, with all that they hold",
-                "test.x3dv:5:10: warning: field 'load' of Anchor is not "
-                "supported: it is left out here and below",
-                "test.x3dv:6:20: warning: field 'autoRefresh' of Anchor is not supported: "
-                "it is left out here and below",
-                "test.x3dv:7:7: warning: 'L' was left out above",
-                "test.x3dv:7:21: warning: 'L' was left out above"}));
+  const auto world = load("#X3D V3.3 utf8\nClipPlane { }\nDEF L Layer { children Inline { } }\n"
+                          "Layer { }\nAnchor { load TRUE description \"x\" }\n"
+                          "Anchor { load TRUE autoRefresh 1 }\n"
+                          "ROUTE L.isActive TO L.enabled");
+  EXPECT_EQ(messagesOf(*world),
+            (Messages{"test.x3dv:2:1: warning: nodes of type 'ClipPlane' are not supported: they "
+                      "are left out here and below, with all that they hold",
+                      "test.x3dv:3:7: warning: nodes of type 'Layer' are not supported: they are "
+                      "left out here and below, with all that they hold",
+                      "test.x3dv:5:10: warning: field 'load' of Anchor is not "
+                      "supported: it is left out here and below",
+                      "test.x3dv:6:20: warning: field 'autoRefresh' of Anchor is not supported: "
+                      "it is left out here and below",
+                      "test.x3dv:7:7: warning: 'L' was left out above",
+                      "test.x3dv:7:21: warning: 'L' was left out above"}));
   ASSERT_EQ(world->scope.roots.size(), 2u);
   EXPECT_EQ(nodeCast<nodes::Anchor>(world->scope.roots[0])->description, "x");
 }
