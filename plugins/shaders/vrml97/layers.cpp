@@ -55,8 +55,13 @@ template <class Enum> Enum enumOf(float number) {
 
 } // namespace
 
-Layer layerOf(const X3dParams& p, uint32_t index) {
+Layer layerOf(const X3dParams& p, uint32_t index, uint32_t components) {
   const uint32_t first = numbersPerLayer * index;
+  if (p.layers.count == 0 && index == 0) { // ISO/IEC 14772-1 table 4.6
+    const bool multiplies = components <= 2 || p.front.multiplyTexture != 0;
+    return {multiplies ? LayerMode::modulate : LayerMode::replace, LayerMode::replace,
+            LayerSource::current, LayerFunction::none};
+  }
   if (p.layers.count < first + numbersPerLayer) return {};
   const float* n = p.layers.data + first;
   return {enumOf<LayerMode>(n[0]), enumOf<LayerMode>(n[1]), enumOf<LayerSource>(n[2]),

@@ -162,8 +162,8 @@ void combineLayers(const RtsHits* hits, uint32_t lanes, Pictures& pictures, cons
       colors.factor.a = p.factor[3];
       const Rgba texel = {{pictures.rgba[0][i], pictures.rgba[1][i], pictures.rgba[2][i]},
                           pictures.rgba[3][i]};
-      const Rgba result = combined(hasOwnPicture(lane) ? Layer() : layerOf(p, layer), texel,
-                                   hasAlpha(components), colors);
+      const Rgba result = combined(hasOwnPicture(lane) ? Layer() : layerOf(p, layer, components),
+                                   texel, hasAlpha(components), colors);
       for (int c = 0; c < 3; c++) base[c][i] = result.c[c];
       t.alpha[i] = result.a;
     }
