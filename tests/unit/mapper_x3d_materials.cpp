@@ -108,6 +108,10 @@ TEST_F(MapX3dMaterials, AlphaHasItsOwnModeSourceAndFunction) {
   loadX3d(begin + square("texture MultiTexture { source \"FACTOR\" color 0 .5 1 texture " +
                          texel("CC6633") + " }"));
   expectSeen(0, .2f, .2f, "FACTOR");
+  loadX3d(begin + square("texture MultiTexture { source \"FACTOR\" mode \"SELECTARG2\" function "
+                         "\"ALPHAREPLICATE\" color 0 0 1 alpha .5 texture " +
+                         texel("CC6633") + " }"));
+  expectSeen(.25f, .25f, .25f, "ALPHAREPLICATE of FACTOR, half of it through");
   loadX3d(begin + square("texture MultiTexture { function \"COMPLEMENT\" texture " +
                          texel("CC6633") + " }"));
   expectSeen(.2f, .6f, .8f, "COMPLEMENT");

@@ -81,10 +81,13 @@ Rgba combined(const Layer& layer, const Rgba& texel, bool hasAlpha, const LayerC
                       ? dot
                       : unit(combine(layer.color, texel.c[c], other.c[c], texel.a, colors));
   const LayerMode alpha = alphaModeOf(layer.alpha);
-  result.a = !hasAlpha ? colors.current.a
-             : alpha == LayerMode::dotProduct3
-                 ? dot
-                 : unit(combine(alpha, texel.a, other.a, texel.a, colors));
+  if (!hasAlpha)
+    result.a =
+        alpha == LayerMode::selectArg2 || alpha == LayerMode::modulate ? other.a : colors.current.a;
+  else
+    result.a = alpha == LayerMode::dotProduct3
+                   ? dot
+                   : unit(combine(alpha, texel.a, other.a, texel.a, colors));
   if (layer.function == LayerFunction::complement)
     for (float& c : result.c) c = 1 - c;
   if (layer.function == LayerFunction::alphaReplicate)

@@ -50,7 +50,7 @@ struct LayerColors {
   Rgba current, diffuse, specular, factor;
 };
 // Returns the colour after a layer with this texel. A texel without alpha (hasAlpha false) leaves
-// the alpha as it is.
+// the alpha as it is, except where the mode takes that of the other argument.
 Rgba combined(const Layer& layer, const Rgba& texel, bool hasAlpha, const LayerColors& colors);
 
 } // namespace vrml97

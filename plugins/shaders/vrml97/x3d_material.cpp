@@ -300,6 +300,8 @@ bool maybeTransparent(const RtsHost* host, const X3dParams& p) {
   const auto alpha = [&](RtsTexture t) { return t != 0 && hasAlpha(host->components(host, t)); };
   clear |= alpha(p.front.texture) || (p.twoSided && alpha(p.backTexture));
   for (const RtsTexture t : p.further) clear |= alpha(t);
+  for (uint32_t k = 0; k < maxLayers; k++)
+    clear |= layerOf(p, k, 0).source == LayerSource::factor && p.factor[3] < 1;
   return clear;
 }
 
