@@ -28,5 +28,6 @@ void addFollowerBehaviours(const AddBehaviour& add); // chasers and dampers
 void addTimeSensorBehaviours(const AddBehaviour& add);
 void addAudioClipBehaviours(const AddBehaviour& add);
 void addMovieTextureBehaviours(const AddBehaviour& add);
+void addTextBehaviours(const AddBehaviour& add);
 
 } // namespace xvrml
