@@ -41,7 +41,7 @@ TEST(GeometryX3d, TrianglesOfAnIndexShareTheirPoints) {
   Built built = build(node);
   expectSound(built.mesh);
   EXPECT_EQ(built.mesh.kind, Mesh::Kind::triangles);
-  EXPECT_EQ(built.mesh.points.size(), 6u);
+  EXPECT_EQ(built.mesh.points.size(), 4u);
   EXPECT_EQ(std::vector(built.mesh.indices.begin(), built.mesh.indices.end()),
             (std::vector<uint32_t>{0, 2, 1, 1, 2, 3}));
   EXPECT_EQ(built.diagnostics.list().size(), 0u);
@@ -278,7 +278,9 @@ TEST(GeometryX3d, OpacitiesAreMixedWhereAFaceCrossesItself) {
   expectSound(built.mesh);
   ASSERT_EQ(built.mesh.alphas.size(), built.mesh.points.size());
   for (size_t i = 0; i < built.mesh.points.size(); i++)
-    if (built.mesh.points[i].x == .5f) EXPECT_NEAR(built.mesh.alphas[i], .5, 1e-6);
+    if (built.mesh.points[i].x == .5f) {
+      EXPECT_NEAR(built.mesh.alphas[i], .5, 1e-6);
+    }
 }
 
 } // namespace
