@@ -9,7 +9,7 @@ namespace {
 const std::string x3d = "#X3D V3.3 utf8\nPROFILE Full\n";
 
 TEST(TextExtents, AreSentAtTheStartAndWhenTheTextChanges) {
-  Running r(x3d + "DEF T Text { string [ \"wide\", \"i\" ] length [ 4, 3 ] }");
+  Running r(x3d + "Shape { geometry DEF T Text { string [ \"wide\", \"i\" ] length [ 4, 3 ] } }");
   r.log("T", "textBounds");
   r.browser.tick(1);
   EXPECT_EQ(r.take().size(), 1u);
@@ -34,8 +34,9 @@ TEST(TextExtents, AreSentAtTheStartAndWhenTheTextChanges) {
 }
 
 TEST(TextExtents, FollowTheFontStyle) {
-  Running r(x3d + "DEF T Text { string \"abc\" length 6 fontStyle FontStyle { size 2 justify [ "
-                  "\"MIDDLE\", \"MIDDLE\" ] } }");
+  Running r(x3d + "Shape { geometry DEF T Text { string \"abc\" length 6 fontStyle FontStyle { "
+                  "size 2 justify [ "
+                  "\"MIDDLE\", \"MIDDLE\" ] } } }");
   r.browser.tick(1);
   const auto all = std::get<SFVec2f>(r.browser.get(r.node("T"), "textBounds"));
   const auto origin = std::get<SFVec3f>(r.browser.get(r.node("T"), "origin"));
@@ -45,8 +46,10 @@ TEST(TextExtents, FollowTheFontStyle) {
 }
 
 TEST(TextExtents, WildSizesGiveZeros) {
-  Running r(x3d + "DEF T Text { string \"abc\" length 3e38 fontStyle FontStyle { size 1e20 } }\n"
-                  "DEF U Text { string \"abc\" fontStyle FontStyle { size -1 } }");
+  Running r(x3d +
+            "Shape { geometry DEF T Text { string \"abc\" length 3e38 fontStyle FontStyle { size "
+            "1e20 } } }\n"
+            "Shape { geometry DEF U Text { string \"abc\" fontStyle FontStyle { size -1 } } }");
   r.browser.tick(1);
   for (const char* name : {"T", "U"}) {
     const auto all = std::get<SFVec2f>(r.browser.get(r.node(name), "textBounds"));
