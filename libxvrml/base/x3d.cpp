@@ -234,9 +234,22 @@ constexpr Renamed renamed[] = {
     {"Switch", "children_changed", "choice_changed"},
 };
 
+// Names of X3D 4 for fields that X3D 3 has, too (ISO/IEC 19775-1:2023 34.4.1). They are read, and
+// written as in X3D 3.
+constexpr Renamed renamedSince4[] = {
+    {"ComposedCubeMapTexture", "backTexture", "back"},
+    {"ComposedCubeMapTexture", "bottomTexture", "bottom"},
+    {"ComposedCubeMapTexture", "frontTexture", "front"},
+    {"ComposedCubeMapTexture", "leftTexture", "left"},
+    {"ComposedCubeMapTexture", "rightTexture", "right"},
+    {"ComposedCubeMapTexture", "topTexture", "top"},
+};
+
 } // namespace
 
 std::string_view ownName(std::string_view type, std::string_view name) {
+  for (const Renamed& one : renamedSince4)
+    if (one.type == type && one.x3d == name) return one.own;
   for (const Renamed& one : renamed)
     if (one.type == type && one.x3d == name) return one.own;
   return name;
