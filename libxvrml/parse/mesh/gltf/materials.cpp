@@ -50,6 +50,13 @@ float inUnit(double value) { return float(std::clamp(value, 0.0, 1.0)); }
 
 } // namespace
 
+Color encoded(const Color& linear) { // IEC 61966-2-1
+  const auto part = [](float v) {
+    return v <= 0.0031308f ? 12.92f * v : float(1.055 * std::pow(double(v), 1 / 2.4) - 0.055);
+  };
+  return {part(linear.r), part(linear.g), part(linear.b)};
+}
+
 Materials::Materials(const MeshFile& file, NodeStream& nodes, const Item& root,
                      Accessors& accessors)
     : file_(file), nodes_(nodes), accessors_(accessors), materials_(root.list("materials")),
@@ -143,14 +150,14 @@ void Materials::writeAppearance(const Item& material) {
 void Materials::writePhong(const Item& material) {
   if (!isUnlit(material)) {
     nodes_.openIn("material", "Material");
-    nodes_.set("diffuseColor", baseColor(material));
-    nodes_.set("emissiveColor", emissionOf(material));
+    nodes_.set("diffuseColor", encoded(baseColor(material)));
+    nodes_.set("emissiveColor", encoded(emissionOf(material)));
     nodes_.set("transparency", transparencyOf(material));
     nodes_.closeIn();
   } else if (!material.object("pbrMetallicRoughness").has("baseColorTexture")) {
     nodes_.openIn("material", "Material");
     nodes_.set("diffuseColor", Color{0, 0, 0});
-    nodes_.set("emissiveColor", baseColor(material));
+    nodes_.set("emissiveColor", encoded(baseColor(material)));
     nodes_.set("transparency", transparencyOf(material));
     nodes_.closeIn();
   }
@@ -161,7 +168,7 @@ void Materials::writePhong(const Item& material) {
 void Materials::writeUnlit(std::optional<size_t> material) {
   nodes_.openIn("appearance", "Appearance");
   nodes_.openIn("material", hasPhysical() ? "UnlitMaterial" : "Material");
-  nodes_.set("emissiveColor", baseColor(material));
+  nodes_.set("emissiveColor", encoded(baseColor(material)));
   if (material) nodes_.set("transparency", transparencyOf(materials_[*material]));
   nodes_.closeIn();
   nodes_.closeIn();
@@ -194,12 +201,12 @@ Color Materials::emissionOf(const Item& material) {
 void Materials::writePhysical(const Item& material) {
   const Item pbr = material.object("pbrMetallicRoughness");
   nodes_.openIn("material", "PhysicalMaterial");
-  nodes_.set("baseColor", colorOf(baseFactor(material), {1, 1, 1}));
+  nodes_.set("baseColor", encoded(baseColor(material)));
   const bool glossy = usesGlossiness(material);
   nodes_.set("metallic", glossy ? 0.0f : inUnit(pbr.number("metallicFactor", 1)));
   nodes_.set("roughness", glossy ? inUnit(1 - glossiness(material).number("glossinessFactor", 1))
                                  : inUnit(pbr.number("roughnessFactor", 1)));
-  nodes_.set("emissiveColor", emissionOf(material));
+  nodes_.set("emissiveColor", encoded(emissionOf(material)));
   nodes_.set("transparency", transparencyOf(material));
   if (const Item normal = material.object("normalTexture"))
     nodes_.set("normalScale", float(std::max(0.0, normal.number("scale", 1))));
@@ -213,7 +220,7 @@ void Materials::writePhysical(const Item& material) {
 // KHR_materials_unlit: the base colour is what is seen.
 void Materials::writeFlat(const Item& material) {
   nodes_.openIn("material", "UnlitMaterial");
-  nodes_.set("emissiveColor", colorOf(baseFactor(material), {1, 1, 1}));
+  nodes_.set("emissiveColor", encoded(baseColor(material)));
   nodes_.set("transparency", transparencyOf(material));
   writePictures(material, {"baseTexture"});
   nodes_.closeIn();

@@ -199,7 +199,7 @@ void Primitives::writeGeometry(const Item& primitive, Vertices&& vertices, bool 
                                              : "IndexedLineSet");
   // A Color node stands for the base colour, which glTF multiplies.
   const Color base = materials_.baseColor(material);
-  for (Color& c : vertices.colors) c = {c.r * base.r, c.g * base.g, c.b * base.b};
+  for (Color& c : vertices.colors) c = encoded({c.r * base.r, c.g * base.g, c.b * base.b});
   const Item attributes = primitive.object("attributes");
   if (!faces) vertices.normals.clear();
   writeVertices(attributes, std::move(vertices), deformed || base != Color{1, 1, 1});

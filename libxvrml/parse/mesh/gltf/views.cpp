@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "parse/mesh/gltf/materials.h"
 #include "parse/mesh/gltf/scene.h"
 
 namespace xvrml::gltf {
@@ -42,7 +43,7 @@ static Color lightColor(const Item& light) {
   const auto rgb = light.numbers("color", 3);
   if (rgb.empty()) return {1, 1, 1};
   const auto part = [&](size_t i) { return float(std::clamp(rgb[i], 0.0, 1.0)); };
-  return {part(0), part(1), part(2)};
+  return encoded({part(0), part(1), part(2)});
 }
 
 // glTF's matt surfaces reflect 1/pi of the light, those of VRML and X3D all of it; so candela and
